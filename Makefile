@@ -1,0 +1,52 @@
+# Every target works alone from a clean clone: it needs Python ≥ 3.11 and make.
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test test-all lint docs bench clean
+
+help:  ## list the targets
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 12
+
+$(BIN)/python:
+	@command -v $(PYTHON) >/dev/null || { echo "$(PYTHON) not found: install Python 3.11 or newer, or name one: make PYTHON=python3.12"; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+		|| { echo "$(PYTHON) is older than Python 3.11: name a newer one, for example make PYTHON=python3.12"; exit 1; }
+	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null \
+		|| { echo "Python's venv module is missing: install it (on Debian or Ubuntu: apt install python3-venv) and run make again"; exit 1; }
+	@$(PYTHON) -m venv $(VENV)
+	@$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1'
+
+# One stamp for each set of dependencies, renewed when pyproject.toml changes.
+$(VENV)/.core: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --editable .
+	@touch $@
+
+$(VENV)/.%: pyproject.toml | $(VENV)/.core
+	$(BIN)/python -m pip install --quiet --group $*
+	@touch $@
+
+demo: $(VENV)/.core  ## reproduce, check and draw the source paper into stylobate-paper/
+	$(BIN)/stylobate paper
+
+test: $(VENV)/.core $(VENV)/.test  ## the tests
+	$(BIN)/python -m pytest -n auto
+
+test-all: $(VENV)/.core $(VENV)/.test  ## the tests, the slow ones included
+	$(BIN)/python -m pytest -n auto -m ""
+
+lint: $(VENV)/.core $(VENV)/.lint  ## style, types, import contracts
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+docs: $(VENV)/.core $(VENV)/.docs  ## the documentation into docs/_build/html
+	$(BIN)/sphinx-build --fail-on-warning --keep-going docs docs/_build/html
+
+bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks
+	$(BIN)/python -m pytest benchmarks --benchmark-enable --benchmark-only
+
+clean:  ## remove what the targets made
+	rm -rf $(VENV) docs/_build stylobate-paper

@@ -1,0 +1,80 @@
+"""Free-standing round columns on shaking bases: they stay, rock, roll round their rim, or overturn.
+
+>>> import stylobate as sb
+>>> column = sb.Column.dimensionless(slenderness=0.1)
+>>> model = sb.Slender(column, damping=0.1)
+>>> motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
+>>> steady = sb.theory.steady_rolling(1.8, 0.065, c=0.1, eta=0.1).upper
+>>> bool(steady.stable)
+True
+
+Public names are imported when they are first used.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from stylobate import errors, motions, plots, spec, studies, theory
+    from stylobate.column import Column
+    from stylobate.engine import OutcomeRules, simulate
+    from stylobate.errors import Outcome
+    from stylobate.models import Model, Slender
+    from stylobate.motions import BaseMotion, Harmonic
+    from stylobate.plots import plot
+    from stylobate.results import Event, Response, load
+
+__all__ = [
+    "BaseMotion",
+    "Column",
+    "Event",
+    "Harmonic",
+    "Model",
+    "Outcome",
+    "OutcomeRules",
+    "Response",
+    "Slender",
+    "__version__",
+    "errors",
+    "load",
+    "motions",
+    "plot",
+    "plots",
+    "simulate",
+    "spec",
+    "studies",
+    "theory",
+]
+
+_HOMES = {
+    "BaseMotion": "motions",
+    "Column": "column",
+    "Event": "results",
+    "Harmonic": "motions",
+    "Model": "models",
+    "Outcome": "errors",
+    "OutcomeRules": "engine",
+    "Response": "results",
+    "Slender": "models",
+    "load": "results",
+    "plot": "plots",
+    "simulate": "engine",
+}
+_MODULES = ("errors", "motions", "plots", "spec", "studies", "theory")
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOMES:
+        return getattr(import_module(f"stylobate.{_HOMES[name]}"), name)
+    if name in _MODULES:
+        return import_module(f"stylobate.{name}")
+    if name == "__version__":
+        from importlib.metadata import version  # noqa: PLC0415
+
+        return version("stylobate")
+    message = f"module 'stylobate' has no attribute {name!r}"
+    raise AttributeError(message)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,249 @@
+"""The column: a rigid body of revolution that stands free on its flat circular base."""
+
+import math
+from dataclasses import dataclass
+from typing import Self
+
+from stylobate.errors import ParameterError, require_positive
+
+STANDARD_GRAVITY = 9.80665
+"""Standard gravity [m/s²]."""
+
+# Relative slack for bounds that an exact body meets with equality (a hoop, a rod) and rounding may miss.
+_ROUNDING = 1e-12
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Column:
+    """A rigid free-standing body of revolution on a flat circular base.
+
+    Parameters
+    ----------
+    radius
+        Base radius r [m].
+    mass_height
+        Height h of the centre of mass above the base [m].
+    mass
+        Mass m [kg].
+    transverse_inertia
+        Moment of inertia I_t about a horizontal axis through the centre of mass [kg m²].
+    axial_inertia
+        Moment of inertia I_a about the axis of the column [kg m²].
+    height
+        Height of the whole body [m], where it is known; it bounds the others and serves drawings.
+    gravity
+        Acceleration of gravity g [m/s²].
+
+    Raises
+    ------
+    ParameterError
+        If a length, mass or inertia is not finite and positive, if the centre of mass lies outside the body,
+        or if no body can have these inertias.
+
+    Examples
+    --------
+    >>> column = Column.solid(radius=0.5, height=10.0, density=2700.0)
+    >>> round(column.slenderness, 3), round(column.inertia_ratio, 4), round(column.frequency_scale, 4)
+    (0.1, 0.7486, 1.2116)
+    """
+
+    radius: float
+    mass_height: float
+    mass: float
+    transverse_inertia: float
+    axial_inertia: float
+    height: float | None = None
+    gravity: float = STANDARD_GRAVITY
+
+    def __post_init__(self) -> None:
+        for name, unit in _UNITS.items():
+            value = getattr(self, name)
+            if value is not None:
+                object.__setattr__(self, name, require_positive(name, value, unit))
+        self._check_inertias()
+        if self.height is not None:
+            self._check_height(self.height)
+
+    @classmethod
+    def solid(cls, *, radius: float, height: float, density: float, gravity: float = STANDARD_GRAVITY) -> Self:
+        """Return a solid cylinder of `radius` [m], `height` [m] and `density` [kg/m³]."""
+        return cls.frustum(radius=radius, top_radius=radius, height=height, density=density, gravity=gravity)
+
+    @classmethod
+    def hollow(
+        cls,
+        *,
+        radius: float,
+        inner_radius: float,
+        height: float,
+        density: float,
+        gravity: float = STANDARD_GRAVITY,
+    ) -> Self:
+        """Return a tube of outer `radius` and `inner_radius` [m], `height` [m] and wall `density` [kg/m³].
+
+        It stands on its outer rim as a solid cylinder does: what counts for tipping is the outer radius.
+        """
+        radius = require_positive("radius", radius, "m")
+        inner_radius = require_positive("inner_radius", inner_radius, "m")
+        height = require_positive("height", height, "m")
+        density = require_positive("density", density, "kg/m³")
+        if inner_radius >= radius:
+            message = f"inner_radius must be below radius = {radius!r} m, got {inner_radius!r} m"
+            raise ParameterError(message)
+        mass = density * math.pi * (radius - inner_radius) * (radius + inner_radius) * height
+        squares = radius**2 + inner_radius**2
+        return cls(
+            radius=radius,
+            mass_height=height / 2.0,
+            mass=mass,
+            transverse_inertia=mass * (3.0 * squares + height**2) / 12.0,
+            axial_inertia=mass * squares / 2.0,
+            height=height,
+            gravity=gravity,
+        )
+
+    @classmethod
+    def frustum(
+        cls, *, radius: float, top_radius: float, height: float, density: float, gravity: float = STANDARD_GRAVITY
+    ) -> Self:
+        """Return a solid frustum of a cone: `radius` at the base, `top_radius`, `height` [m], `density` [kg/m³]."""
+        a = require_positive("radius", radius, "m")
+        b = require_positive("top_radius", top_radius, "m")
+        height = require_positive("height", height, "m")
+        density = require_positive("density", density, "kg/m³")
+        # Moments of the cross-section: ∫ R² zⁿ dz and ∫ R⁴ dz with R running linearly from a to b, z in heights.
+        area = (a * a + a * b + b * b) / 3.0
+        first = (a * a + 2.0 * a * b + 3.0 * b * b) / 12.0
+        second = (a * a + 3.0 * a * b + 6.0 * b * b) / 30.0
+        fourth = (a**4 + a**3 * b + a * a * b * b + a * b**3 + b**4) / 5.0
+        line_density = density * math.pi * height
+        mass = line_density * area
+        mass_height = height * first / area
+        axial = line_density * fourth / 2.0
+        about_base = axial / 2.0 + line_density * height**2 * second
+        return cls(
+            radius=a,
+            mass_height=mass_height,
+            mass=mass,
+            transverse_inertia=about_base - mass * mass_height**2,
+            axial_inertia=axial,
+            height=height,
+            gravity=gravity,
+        )
+
+    @classmethod
+    def dimensionless(cls, slenderness: float, inertia_ratio: float = 0.75, axial_ratio: float = 0.5) -> Self:
+        """Return a column with m = g = ω0 = 1, for which SI numbers are the numbers of the dimensionless equations.
+
+        Parameters
+        ----------
+        slenderness
+            c = r/h.
+        inertia_ratio
+            κ = m h²/J0, below 1; ¾ is the slender solid cylinder.
+        axial_ratio
+            I_a/(m r²); ½ is the solid cylinder.
+
+        Returns
+        -------
+        Column
+            With h = κ, r = cκ and J0 = κ.
+
+        Raises
+        ------
+        ParameterError
+            If a ratio is out of range or no body can have them.
+        """
+        c = require_positive("slenderness", slenderness)
+        ratio = require_positive("inertia_ratio", inertia_ratio)
+        axial_ratio = require_positive("axial_ratio", axial_ratio)
+        if ratio >= 1.0:
+            message = f"inertia_ratio must be below 1 (a point mass has 1), got {inertia_ratio!r}"
+            raise ParameterError(message)
+        radius = c * ratio
+        return cls(
+            radius=radius,
+            mass_height=ratio,
+            mass=1.0,
+            transverse_inertia=ratio * (1.0 - ratio),
+            axial_inertia=axial_ratio * radius**2,
+            gravity=1.0,
+        )
+
+    @property
+    def slenderness(self) -> float:
+        """c = r/h, the tipping angle of the small-angle models."""
+        return self.radius / self.mass_height
+
+    @property
+    def base_inertia(self) -> float:
+        """J0 = I_t + m h², about a diameter of the base [kg m²]."""
+        return self.transverse_inertia + self.mass * self.mass_height**2
+
+    @property
+    def rim_inertia(self) -> float:
+        """K = I_t + m (h² + r²), about a tangent of the rim [kg m²]."""
+        return self.base_inertia + self.mass * self.radius**2
+
+    @property
+    def inertia_ratio(self) -> float:
+        """κ = m h²/J0, between 0 and 1."""
+        return self.mass * self.mass_height**2 / self.base_inertia
+
+    @property
+    def axial_ratio(self) -> float:
+        """i_a = I_a/(m r²)."""
+        return self.axial_inertia / (self.mass * self.radius**2)
+
+    @property
+    def frequency_scale(self) -> float:
+        """ω0 = √(m g h/J0), the unit of dimensionless frequency [rad/s]."""
+        return math.sqrt(self.mass * self.gravity * self.mass_height / self.base_inertia)
+
+    @property
+    def tipping_angle(self) -> float:
+        """α = atan(r/h), the angle of static tipping of the rocking-block literature [rad]."""
+        return math.atan2(self.radius, self.mass_height)
+
+    @property
+    def rim_distance(self) -> float:
+        """R = √(h² + r²), from the centre of mass to the rim: the size parameter of the literature [m]."""
+        return math.hypot(self.mass_height, self.radius)
+
+    @property
+    def frequency_parameter(self) -> float:
+        """p = √(m g R/K) of the rocking-block literature [rad/s]."""
+        return math.sqrt(self.mass * self.gravity * self.rim_distance / self.rim_inertia)
+
+    def _check_inertias(self) -> None:
+        # I_t = I_a/2 + ∫ z² dm for every body of revolution, z from the centre of mass.
+        if self.axial_inertia > 2.0 * self.transverse_inertia * (1.0 + _ROUNDING):
+            message = (
+                f"axial_inertia must be at most twice transverse_inertia = {self.transverse_inertia!r} kg m² "
+                f"for a body of revolution, got {self.axial_inertia!r} kg m²"
+            )
+            raise ParameterError(message)
+
+    def _check_height(self, height: float) -> None:
+        if self.mass_height >= height:
+            message = f"mass_height must lie inside the body, below height = {height!r} m, got {self.mass_height!r} m"
+            raise ParameterError(message)
+        # No distribution of mass over 0…H with its mean at h spreads wider than two points at the ends.
+        spread = self.mass * self.mass_height * (height - self.mass_height)
+        if self.transverse_inertia - self.axial_inertia / 2.0 > spread * (1.0 + _ROUNDING):
+            message = (
+                f"transverse_inertia must be at most {spread + self.axial_inertia / 2.0!r} kg m² for a body of "
+                f"height {height!r} m, got {self.transverse_inertia!r} kg m²"
+            )
+            raise ParameterError(message)
+
+
+_UNITS = {
+    "radius": "m",
+    "mass_height": "m",
+    "mass": "kg",
+    "transverse_inertia": "kg m²",
+    "axial_inertia": "kg m²",
+    "height": "m",
+    "gravity": "m/s²",
+}

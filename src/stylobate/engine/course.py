@@ -1,0 +1,171 @@
+"""The course of one run: from rest to motion and back, until something ends it."""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from stylobate.engine.forcing import Forcing, common_line
+from stylobate.engine.moving import Leg, Mover
+from stylobate.engine.resting import departure, release_time, rest_piece, stays_for_good
+from stylobate.engine.trajectory import Piece, Trajectory, nearest_turn
+from stylobate.engine.watch import Reason
+from stylobate.models import Model
+from stylobate.results import Event
+
+Line = tuple[float, float]
+
+# A motion out of a plane that begins exactly at the upright begins this far from it [units of c], along its speed.
+_FIRST_STEP_OFF = 1e-13
+
+
+@dataclass(slots=True)
+class Course:
+    """A run on its way; `follow` takes it to its end.
+
+    Attributes
+    ----------
+    pieces, events
+        What has been computed; times of pieces are dimensionless, of events in s.
+    ended
+        Why the run ended; STOP when its time was up.
+    planar
+        Whether all of its motion was integrated in one vertical plane.
+    least_passage
+        Least tilt at a passage of the upright out of a plane [rad].
+    """
+
+    model: Model
+    forcing: Forcing
+    mover: Mover
+    stop: float
+    pieces: list[Piece] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
+    ended: Reason = Reason.STOP
+    failure: str = ""
+    planar: bool = True
+    least_passage: float = math.inf
+    _time: float = 0.0
+    _azimuth: float | None = None
+
+    @property
+    def trajectory(self) -> Trajectory:
+        """What has been computed, as one function of time."""
+        return Trajectory(self.pieces, len(self.model.state_names))
+
+    @property
+    def stands(self) -> bool:
+        """Whether the column stands at the end."""
+        return self.pieces[-1].resting
+
+    def follow(self, state: tuple[float, ...]) -> None:
+        """Go on from `state` at time 0 to the end."""
+        now: tuple[float, ...] | None = state
+        while now is not None and self._time < self.stop:
+            upright = not any(now)
+            now = self._stand() if upright else self._move(now)
+        if not self.pieces:  # not even a first step could be made
+            held = np.array(state)[:, np.newaxis]
+            nodes, azimuths = np.zeros(1), np.array([self._lean(state)])
+            self._add(Piece(0.0, 0.0, lambda tau: np.repeat(held, tau.size, axis=1), False, nodes, azimuths))
+
+    def _stand(self) -> tuple[float, ...] | None:
+        # Stands until the motion releases the column; returns the state of departure, or None.
+        start = self._time
+        release = release_time(self.model, self.forcing, start, self.stop)
+        if release is None:
+            if stays_for_good(self.model, self.forcing, start):
+                self.ended = Reason.RESTED
+            self._add(rest_piece(len(self.model.state_names), start, self.stop))
+            return None
+        later, state = departure(self.model, self.forcing, release)
+        if later >= self.stop:
+            self._add(rest_piece(len(self.model.state_names), start, self.stop))
+            return None
+        self._note("release", release)
+        # The departure itself lifts the column by the third power of its duration: shown as rest.
+        self._add(rest_piece(len(self.model.state_names), start, later))
+        return state
+
+    def _move(self, state: tuple[float, ...]) -> tuple[float, ...] | None:
+        column = np.array(state)[:, np.newaxis]
+        tilt, rate = self.model.tilt(column)[:, 0], self.model.tilt_rate(column)[:, 0]
+        line = common_line(
+            (float(tilt[0]), float(tilt[1])), (float(rate[0]), float(rate[1])), *self.forcing.motion.directions()
+        )
+        c = self.model.column.slenderness
+        if line is not None and self.model.planar_rates(c, 0.0, 1.0, 0.0, 0.0) is not None:
+            return self._move_in_plane((float(tilt @ line), float(rate @ line)), line)
+        self.planar = False
+        return self._move_in_space(state)
+
+    def _move_in_plane(self, state: tuple[float, ...], line: Line) -> tuple[float, ...] | None:
+        n_states = len(self.model.state_names)
+        while self._time < self.stop:
+            if state == (0.0, 0.0):
+                return (0.0,) * n_states
+            leg = self.mover.in_plane(self._time, (state[0], state[1]), self._next_stop(), line, self._budget())
+            self._take(leg)
+            if leg.reason is Reason.RESTED:
+                return (0.0,) * n_states
+            if leg.reason not in (Reason.CROSSED, Reason.STOP):
+                return None
+            state = leg.state
+        return None
+
+    def _move_in_space(self, state: tuple[float, ...]) -> tuple[float, ...] | None:
+        state = self._off_the_upright(state)
+        while self._time < self.stop:
+            leg = self.mover.in_space(self._time, state, self._next_stop(), self._lean(state), self._budget())
+            self._take(leg)
+            if leg.reason is Reason.CROSSED:
+                hop = self.mover.over_the_upright(self._time, leg.state, self._lean(leg.state))
+                if hop is not None:
+                    self._take(hop)
+                    leg = hop
+            if leg.reason is Reason.RESTED:
+                return (0.0,) * len(state)
+            if leg.reason not in (Reason.CROSSED, Reason.STOP):
+                return None
+            state = leg.state
+        return None
+
+    def _off_the_upright(self, state: tuple[float, ...]) -> tuple[float, ...]:
+        """Return `state`; where it begins at the upright itself with some speed, moved off along that speed."""
+        column = np.array(state)[:, np.newaxis]
+        if np.any(self.model.tilt(column)):
+            return state
+        rate = self.model.tilt_rate(column)[:, 0]
+        step = _FIRST_STEP_OFF * self.model.column.slenderness / float(np.hypot(*rate))
+        x, y = (step * float(part) for part in rate)
+        scale = self.model.time_scale
+        return self.model.start((x, y), (float(rate[0]) / scale, float(rate[1]) / scale))
+
+    def _take(self, leg: Leg) -> None:
+        if leg.piece is not None:
+            self._add(leg.piece)
+        self.least_passage = min(self.least_passage, leg.least_tilt)
+        if leg.reason is Reason.RESTED:
+            self._note("rest", self._time)
+        elif leg.reason not in (Reason.CROSSED, Reason.STOP):
+            self.ended, self.failure = leg.reason, leg.failure
+            self._note(leg.reason.name.lower(), self._time)
+
+    def _add(self, piece: Piece) -> None:
+        self.pieces.append(piece)
+        self._time = piece.end
+        if piece.azimuths.size:
+            self._azimuth = float(piece.azimuths[-1])
+
+    def _lean(self, state: tuple[float, ...]) -> float:
+        x, y = self.model.tilt(np.array(state)[:, np.newaxis])[:, 0]
+        return nearest_turn(math.atan2(y, x), self._azimuth)
+
+    def _next_stop(self) -> float:
+        return next(stop for stop in self.forcing.stops(self.stop) if stop > self._time)
+
+    def _budget(self) -> int:
+        return self.mover.method.max_steps - sum(piece.steps for piece in self.pieces)
+
+    def _note(self, kind: str, tau: float) -> None:
+        self.events.append(Event(kind, tau * self.forcing.time_scale))

@@ -1,0 +1,70 @@
+"""A base motion as a model sees it: dimensionless time, accelerations in g."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.models import Model
+from stylobate.motions import BaseMotion
+from stylobate.motions.base import ACCELERATION
+
+Floats = npt.NDArray[np.float64]
+
+# Vectors count as parallel up to this many units of rounding.
+_PARALLEL_ULP = 8.0
+
+
+@dataclass(frozen=True, slots=True)
+class Forcing:
+    """`motion` in the units of `model`."""
+
+    motion: BaseMotion
+    time_scale: float
+    gravity: float
+
+    @classmethod
+    def of(cls, model: Model, motion: BaseMotion) -> "Forcing":
+        """Return `motion` as `model` sees it."""
+        return cls(motion, model.time_scale, model.column.gravity)
+
+    def at(self, tau: float) -> tuple[float, float, float]:
+        """Return ax, ay, az [g] at one dimensionless time."""
+        x, y, z = self.motion.derivative(tau * self.time_scale, ACCELERATION)
+        return float(x) / self.gravity, float(y) / self.gravity, float(z) / self.gravity
+
+    def along(self, tau: Floats) -> Floats:
+        """Return ax, ay, az [g], shape (3, n), at dimensionless times."""
+        return np.stack(self.motion.derivative(tau * self.time_scale, ACCELERATION)) / self.gravity
+
+    def largest_horizontal(self, since: float) -> float:
+        """Return a bound of |a_h| [g] from `since` on."""
+        return self.motion.largest_horizontal(since * self.time_scale) / self.gravity
+
+    def least_vertical(self, since: float) -> float:
+        """Return a bound of a_z [g] from `since` on."""
+        return self.motion.vertical_range(since * self.time_scale)[0] / self.gravity
+
+    @property
+    def highest_frequency(self) -> float:
+        """Highest dimensionless frequency; 0 for a base at rest."""
+        return self.motion.highest_frequency * self.time_scale
+
+    def stops(self, end: float) -> tuple[float, ...]:
+        """Return the times up to `end` at which an integration must stop: breaks of the acceleration, and `end`."""
+        breaks = (time / self.time_scale for time in self.motion.breaks)
+        return (*(tau for tau in breaks if 0.0 < tau < end), end)
+
+
+def common_line(*vectors: tuple[float, float]) -> tuple[float, float] | None:
+    """Return the unit vector to which all `vectors` are parallel to 8 ulp, or None; zero vectors fit any line."""
+    longest = max(vectors, key=lambda vector: math.hypot(*vector), default=(0.0, 0.0))
+    length = math.hypot(*longest)
+    if length == 0.0:
+        return None
+    ux, uy = longest[0] / length, longest[1] / length
+    for x, y in vectors:
+        if abs(ux * y - uy * x) > _PARALLEL_ULP * np.finfo(float).eps * math.hypot(x, y):
+            return None
+    return ux, uy

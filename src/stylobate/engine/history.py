@@ -1,0 +1,116 @@
+"""A trajectory as a labelled dataset in SI units."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.engine.forcing import Floats, Forcing
+from stylobate.engine.trajectory import Trajectory
+from stylobate.errors import ParameterError
+from stylobate.models import Model
+from stylobate.motions import BaseMotion
+
+# Default samples: this many to each period of the forcing and unit of the column's own time, within the bounds.
+_PER_PERIOD, _PER_UNIT = 48, 24
+_FEWEST, _MOST = 1001, 50_001
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """The samples of a run, its summary numbers, and the means to take samples at other times."""
+
+    data: xr.Dataset
+    measures: dict[str, float]
+    sampler: Callable[[npt.ArrayLike], xr.Dataset]
+
+
+def history(model: Model, motion: BaseMotion, trajectory: Trajectory, samples: int | None) -> Recorded:
+    """Return the samples of a run at equal steps, `samples` of them or enough to draw every swing."""
+    end = trajectory.end * model.time_scale
+    count = _default_count(model, motion, trajectory.end) if samples is None else _checked(samples)
+
+    def sampler(time: npt.ArrayLike) -> xr.Dataset:
+        t = np.atleast_1d(np.asarray(time, dtype=float))
+        if t.size and not (t.min() >= 0.0 and t.max() <= end * (1.0 + 1e-12)):
+            message = f"time must lie within the run, 0 to {end!r} s, got {t.min()!r} to {t.max()!r} s"
+            raise ParameterError(message)
+        return _dataset(model, motion, trajectory, t)
+
+    data = sampler(np.linspace(0.0, end, count))
+    return Recorded(data, _measures(model, trajectory, data), sampler)
+
+
+def _dataset(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Floats) -> xr.Dataset:
+    tau = np.minimum(time / model.time_scale, trajectory.end)
+    states, resting = trajectory.states(tau), trajectory.resting(tau)
+    tilt, rate = model.tilt(states), model.tilt_rate(states) / model.time_scale
+    amplitude = np.hypot(*tilt)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rolling = (tilt[0] * rate[1] - tilt[1] * rate[0]) / amplitude**2  # (6): ω = β̇
+        radial = (tilt[0] * rate[0] + tilt[1] * rate[1]) / amplitude  # (6): μ = Ȧ
+    variables = {
+        "tilt": _along_axis(tilt.T, "rad", "tilt vector"),
+        "tilt_rate": _along_axis(rate.T, "rad s-1", "rate of the tilt vector"),
+        "amplitude": _along_time(amplitude, "rad", "tilt angle"),
+        "amplitude_rate": _along_time(radial, "rad s-1", "rate of the tilt angle"),
+        "azimuth": _along_time(trajectory.azimuth(tau, tilt), "rad", "azimuth of the lean"),
+        "rolling_rate": _along_time(rolling, "rad s-1", "rate of the azimuth"),
+        "resting": xr.Variable("time", resting, {"long_name": "stands on its base"}),
+    }
+    for name, values, units in (
+        ("base_displacement", motion.displacement(time), "m"),
+        ("base_velocity", motion.velocity(time), "m s-1"),
+        ("base_acceleration", motion.acceleration(time), "m s-2"),
+    ):
+        variables[name] = xr.Variable(
+            ("time", "direction"), values, {"units": units, "long_name": name.replace("_", " ")}
+        )
+    for name, output in model.outputs(states, Forcing.of(model, motion).along(tau), resting).items():
+        make = _along_time if output.values.ndim == 1 else _along_axis
+        variables[name] = make(output.values, output.units, output.long_name)
+    coordinates = {
+        "time": xr.Variable("time", time, {"units": "s", "long_name": "time"}),
+        "axis": ["x", "y"],
+        "direction": ["x", "y", "z"],
+    }
+    slenderness = {"slenderness": model.column.slenderness, "base_radius": model.column.radius}
+    return xr.Dataset(variables, coords=coordinates, attrs=slenderness)
+
+
+def _measures(model: Model, trajectory: Trajectory, data: xr.Dataset) -> dict[str, float]:
+    amplitude, azimuth = data["amplitude"].to_numpy(), data["azimuth"].to_numpy()
+    largest = int(np.argmax(amplitude))
+    known = azimuth[np.isfinite(azimuth)]
+    return {
+        "largest_tilt": float(amplitude[largest]),
+        "largest_tilt_over_c": float(amplitude[largest]) / model.column.slenderness,
+        "time_of_largest_tilt": float(data["time"][largest]),
+        "least_tilt": float(amplitude.min()),
+        "turns": float(known[-1] - known[0]) / (2.0 * math.pi) if known.size else 0.0,
+        "steps": float(trajectory.steps),
+    }
+
+
+def _along_time(values: Floats, units: str, long_name: str) -> xr.Variable:
+    return xr.Variable("time", values, {"units": units, "long_name": long_name})
+
+
+def _along_axis(values: Floats, units: str, long_name: str) -> xr.Variable:
+    return xr.Variable(("time", "axis"), values, {"units": units, "long_name": long_name})
+
+
+def _default_count(model: Model, motion: BaseMotion, end: float) -> int:
+    periods = end * motion.highest_frequency * model.time_scale / (2.0 * math.pi)
+    return int(np.clip(math.ceil(_PER_PERIOD * periods + _PER_UNIT * end) + 1, _FEWEST, _MOST))
+
+
+def _checked(samples: int) -> int:
+    least = 2
+    if samples < least:
+        message = f"samples must be at least {least}, got {samples!r}"
+        raise ParameterError(message)
+    return int(samples)

@@ -1,0 +1,257 @@
+"""The column in motion: stretches of SciPy's DOP853, in space or in one vertical plane, from event to event."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from scipy.integrate import DOP853, DenseOutput, OdeSolution
+from scipy.optimize import brentq
+
+from stylobate.engine.forcing import Floats, Forcing
+from stylobate.engine.trajectory import Piece, unwrapped_azimuths
+from stylobate.engine.watch import Reason, Watch
+from stylobate.models import Model
+
+# A passage is hopped over, in closed form, from within this distance [units of c] if its offset from the upright is
+# below the second number: the straight path is then right to about the product of the two.
+_HOP_FROM = 1e-6
+_HOP_OFFSET = 1e-9
+
+# A swing shorter than this part of a step leaves the column at rest on its base.
+_SMALLEST_SWING = 1e-12
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Method:
+    """How to integrate: tolerances of DOP853, its longest step and the most steps of a run."""
+
+    rtol: float
+    atol: float
+    max_step: float
+    max_steps: int
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """A stretch of motion: its piece, the state at its end, why it ended and the least tilt of its passages.
+
+    The piece is None where the first step already failed.
+    """
+
+    piece: Piece | None
+    state: tuple[float, ...]
+    reason: Reason
+    least_tilt: float = math.inf
+    failure: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Mover:
+    """Advances a moving column to the next event."""
+
+    model: Model
+    forcing: Forcing
+    watch: Watch
+    method: Method
+
+    def in_space(self, start: float, state: tuple[float, ...], stop: float, azimuth: float, budget: int) -> Leg:
+        """Advance a general motion from `start` to `stop` at most; `azimuth` [rad] is where its lean begins."""
+        rates, parameters, forcing = self.model.rates, self.model.parameters, self.forcing
+
+        def derivative(tau: float, y: Floats) -> Floats:
+            return np.array(rates(*y.tolist(), *forcing.at(tau), *parameters))
+
+        solver = self._solver(derivative, start, state, stop)
+        steps = _Steps(start)
+        least = math.inf
+        while solver.status == "running":
+            if len(steps.dense) >= budget:
+                return self._space_leg(steps, solver.y, azimuth, Reason.FAILED, least, "step limit reached")
+            failure = solver.step()
+            if failure is not None:
+                return self._space_leg(steps, solver.y, azimuth, Reason.FAILED, least, failure)
+            dense = steps.add(solver)
+            least = min(least, self._passage_tilt(steps.times[-2], solver.t, dense))
+            event = self.watch.first_event(steps.times[-2], solver.t, dense)
+            if event is not None:
+                time, reason = event
+                steps.cut(time)
+                return self._space_leg(steps, dense(time), azimuth, reason, least)
+            if self._grazes(solver.y):
+                return self._space_leg(steps, solver.y, azimuth, Reason.CROSSED, least)
+        return self._space_leg(steps, solver.y, azimuth, Reason.STOP, least)
+
+    def over_the_upright(self, start: float, state: tuple[float, ...], azimuth: float) -> Leg | None:
+        """Hop over the upright by the model's law of passage, where it has one."""
+        passed = self.model.pass_upright(state, self.forcing.at(start))
+        if passed is None:
+            return None
+        elapsed, end_state = passed
+        ends = np.array([state, end_state]).T
+
+        def states(tau: Floats) -> Floats:
+            share = (tau - start) / elapsed
+            return ends[:, :1] * (1.0 - share) + ends[:, 1:] * share
+
+        nodes = np.array([start, start + elapsed])
+        piece = Piece(
+            start,
+            start + elapsed,
+            states,
+            resting=False,
+            nodes=nodes,
+            azimuths=unwrapped_azimuths(self.model.tilt(ends), azimuth),
+        )
+        (x, y), (vx, vy) = self.model.tilt(ends)[:, 0], self.model.tilt_rate(ends)[:, 0]
+        return Leg(piece, end_state, Reason.STOP, abs(x * vy - y * vx) / math.hypot(vx, vy))
+
+    def in_plane(
+        self, start: float, state: tuple[float, float], stop: float, line: tuple[float, float], budget: int
+    ) -> Leg:
+        """Advance a motion in the plane along `line`; `state` is (tilt, rate) along it, on one side of the upright."""
+        model, forcing = self.model, self.forcing
+        side = math.copysign(1.0, state[0] if state[0] != 0.0 else state[1])
+
+        def derivative(tau: float, y: Floats) -> Floats:
+            ax, ay, az = forcing.at(tau)
+            rates = model.planar_rates(float(y[0]), float(y[1]), side, ax * line[0] + ay * line[1], az)
+            assert rates is not None
+            return np.array(rates)
+
+        solver = self._solver(derivative, start, state, stop)
+        steps = _Steps(start)
+
+        def leg(end: Floats, reason: Reason, failure: str = "") -> Leg:
+            return self._planar_leg(steps, end, reason, line, side, failure)
+
+        while solver.status == "running":
+            if len(steps.dense) >= budget:
+                return leg(solver.y, Reason.FAILED, "step limit reached")
+            failure = solver.step()
+            if failure is not None:
+                return leg(solver.y, Reason.FAILED, failure)
+            dense = steps.add(solver)
+            end, crossed = solver.t, side * solver.y[0] < 0.0
+            if crossed:
+                crossing = _crossing(dense, side, steps.times[-2], end)
+                if crossing is None:
+                    steps.cut(steps.times[-2])
+                    return leg(np.zeros(2), Reason.CROSSED)
+                end = crossing
+                steps.cut(end)
+            event = self.watch.first_event(steps.times[-2], end, partial(self._from_plane, dense, line))
+            if event is not None:
+                time, reason = event
+                steps.cut(time)
+                return leg(dense(time), reason)
+            if crossed:
+                return leg(np.array([0.0, dense(end)[1]]), Reason.CROSSED)
+        return leg(solver.y, Reason.STOP)
+
+    def _from_plane(self, dense: DenseOutput, line: tuple[float, float], tau: Floats) -> Floats:
+        return self.model.from_plane(dense(tau), line)
+
+    def _solver(
+        self,
+        derivative: Callable[[float, Floats], Floats],
+        start: float,
+        state: tuple[float, ...],
+        stop: float,
+    ) -> DOP853:
+        method = self.method
+        return DOP853(
+            derivative, start, np.array(state), stop, max_step=method.max_step, rtol=method.rtol, atol=method.atol
+        )
+
+    def _grazes(self, state: Floats) -> bool:
+        column = state[:, np.newaxis]
+        (x, y), (vx, vy) = self.model.tilt(column)[:, 0], self.model.tilt_rate(column)[:, 0]
+        c, speed = self.model.column.slenderness, math.hypot(vx, vy)
+        inward = x * vx + y * vy < 0.0
+        return bool(
+            inward and math.hypot(x, y) < _HOP_FROM * min(c, speed) and abs(x * vy - y * vx) < _HOP_OFFSET * c * speed
+        )
+
+    def _passage_tilt(self, start: float, end: float, dense: DenseOutput) -> float:
+        # Least tilt where it stops falling and grows within the step; infinite if it does not.
+        def radial(tau: float) -> float:
+            state = dense(np.array([tau]))
+            return float(np.vdot(self.model.tilt(state), self.model.tilt_rate(state)))
+
+        if not radial(start) < 0.0 < radial(end):
+            return math.inf
+        nearest = brentq(radial, start, end, xtol=1e-300, rtol=1e-15)
+        return float(np.hypot(*self.model.tilt(dense(np.array([nearest])))[:, 0]))
+
+    def _space_leg(
+        self, steps: "_Steps", end: Floats, azimuth: float, reason: Reason, least: float, failure: str = ""
+    ) -> Leg:
+        if not steps.dense:
+            return Leg(None, tuple(map(float, end)), reason, least, failure)
+        nodes, states = np.array(steps.times), OdeSolution(steps.times, steps.dense)
+        azimuths = unwrapped_azimuths(self.model.tilt(states(nodes)), azimuth)
+        piece = Piece(
+            steps.times[0],
+            steps.times[-1],
+            states,
+            resting=False,
+            nodes=nodes,
+            azimuths=azimuths,
+            steps=len(steps.dense),
+        )
+        return Leg(piece, tuple(map(float, end)), reason, least, failure)
+
+    def _planar_leg(
+        self, steps: "_Steps", end: Floats, reason: Reason, line: tuple[float, float], side: float, failure: str
+    ) -> Leg:
+        if not steps.dense:
+            return Leg(None, (float(end[0]), float(end[1])), reason, math.inf, failure)
+        solution, from_plane = OdeSolution(steps.times, steps.dense), self.model.from_plane
+
+        def states(tau: Floats) -> Floats:
+            return from_plane(solution(tau), line)
+
+        piece = Piece(
+            steps.times[0],
+            steps.times[-1],
+            states,
+            resting=False,
+            nodes=np.array(steps.times[:1]),
+            azimuths=np.array([math.atan2(side * line[1], side * line[0])]),
+            steps=len(steps.dense),
+        )
+        return Leg(piece, (float(end[0]), float(end[1])), reason, math.inf, failure)
+
+
+class _Steps:
+    """Accepted steps of one solver, with their dense output."""
+
+    def __init__(self, start: float) -> None:
+        self.times = [start]
+        self.dense: list[DenseOutput] = []
+
+    def add(self, solver: DOP853) -> DenseOutput:
+        dense = solver.dense_output()
+        self.times.append(float(solver.t))
+        self.dense.append(dense)
+        return dense
+
+    def cut(self, time: float) -> None:
+        """End the last step at `time`, where an event was found; no step is left without extent."""
+        self.times[-1] = max(time, math.nextafter(self.times[-2], math.inf))
+
+
+def _crossing(dense: DenseOutput, side: float, start: float, end: float) -> float | None:
+    """Return the time in a step at which a planar tilt comes back to the upright from its `side`.
+
+    None where the swing begins and ends within a part of the step too small to be told.
+    """
+
+    def height(tau: float) -> float:
+        return side * float(dense(tau)[0])
+
+    candidates = start + (end - start) * np.concatenate([[0.0], np.geomspace(0.5, _SMALLEST_SWING, 40)])
+    above = next((float(time) for time in candidates if height(float(time)) > 0.0), None)
+    return None if above is None else float(brentq(height, above, end, xtol=4e-15 * max(1.0, end)))

@@ -1,0 +1,202 @@
+"""One run, for a user to look at: `simulate`."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+
+from stylobate.engine.course import Course
+from stylobate.engine.forcing import Forcing
+from stylobate.engine.history import history
+from stylobate.engine.moving import Method, Mover
+from stylobate.engine.verdict import OutcomeRules, Verdict, long_term
+from stylobate.engine.watch import Reason, Thresholds, Watch
+from stylobate.errors import Outcome, ParameterError, require_not_negative, require_positive, require_vector
+from stylobate.models import Model
+from stylobate.motions import BASE_AT_REST, BaseMotion
+from stylobate.results import Response
+from stylobate.spec import provenance_of_run
+
+_RTOL_RANGE = (1e-13, 1e-2)
+# Default absolute tolerance: this part of rtol × c, so that tilts far below c are still resolved.
+_ATOL_SHARE = 0.01
+# The energy of steady rolling at frequency θ is 1.5 c²/θ²; rest is entered below a hundredth of it at most.
+_REST_ENERGY, _REST_ENERGY_ROLLING = 1e-4, 0.015
+# A passage of the upright closer than this part of c is ill-conditioned for every integrator.
+_CLOSE_PASSAGE = 1e-8
+
+
+def simulate(
+    model: Model,
+    motion: BaseMotion | None = None,
+    *,
+    tilt: Sequence[float] = (0.0, 0.0),
+    tilt_rate: Sequence[float] = (0.0, 0.0),
+    duration: float,
+    rtol: float = 1e-8,
+    atol: float | None = None,
+    tilt_limit: float | None = None,
+    rest_energy: float | None = None,
+    max_steps: int = 200_000,
+    samples: int | None = None,
+    rules: OutcomeRules | None = None,
+) -> Response:
+    """Follow one column from a start to its outcome.
+
+    Integrates with DOP853 (Hairer, Nørsett, Wanner, "Solving Ordinary Differential Equations I"), piece by piece
+    between events that are located on its dense output: release from rest, coming to rest, overturning, the tilt
+    limit, lift-off. Start and base motion that lie in one vertical plane to 8 ulp are integrated in that plane.
+
+    Parameters
+    ----------
+    model
+        The column with its equations of motion, such as `Slender(column, damping=0.1)`.
+    motion
+        The base motion; None is a base at rest.
+    tilt
+        Tilt vector at t = 0: where the column leans, its length the tilt angle [rad].
+    tilt_rate
+        Its rate [rad/s].
+    duration
+        How long to follow it [s].
+    rtol, atol
+        Local error tolerances of the integrator, relative and absolute [rad]; `atol` is 0.01 rtol c by default.
+    tilt_limit
+        A tilt that ends the run [rad]; none by default.
+    rest_energy
+        ε: with friction, rest is entered below the energy ε c² where |a_h| cannot release the column. By default the
+        smaller of 1e-4 and 0.015/θ² with θ the highest dimensionless frequency of the base motion.
+    max_steps
+        Steps after which the run ends as FAILED.
+    samples
+        Number of samples in `data`; by default enough to draw every swing.
+    rules
+        When a motion counts as rolling, rocking or modulated.
+
+    Returns
+    -------
+    Response
+        Outcome and history. OVERTURNED is proved by the model's no-return criterion where it has one.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> sb.simulate(model, tilt=(0.05, 0.0), duration=50.0).outcome
+    <Outcome.AT_REST: 'at rest'>
+    >>> shaking = sb.Harmonic.circular(acceleration=0.15, angular_frequency=0.5)
+    >>> sb.simulate(model, shaking, duration=50.0).outcome
+    <Outcome.OVERTURNED: 'overturned'>
+    """
+    _require_nouns(model, motion)
+    moved = BASE_AT_REST if motion is None else motion
+    start_tilt = _pair("tilt", tilt, "rad")
+    start_rate = _pair("tilt_rate", tilt_rate, "rad/s")
+    duration = require_positive("duration", duration, "s")
+    method = _method(model, moved, rtol, atol, max_steps)
+    thresholds = _thresholds(model, moved, tilt_limit, rest_energy)
+    rules = rules or OutcomeRules()
+    forcing = Forcing.of(model, moved)
+    mover = Mover(model, forcing, Watch(model, forcing, thresholds), method)
+    course = Course(model, forcing, mover, duration / model.time_scale)
+    course.follow(model.start(start_tilt, start_rate))
+    verdict = _verdict(model, moved, course, rules)
+    recorded = history(model, moved, course.trajectory, samples)
+    return Response(
+        outcome=verdict.outcome,
+        reason=verdict.reason,
+        decided_at=_decided_at(course, verdict, duration),
+        uncertain=course.least_passage < _CLOSE_PASSAGE * model.column.slenderness or course.ended is Reason.FAILED,
+        planar=course.planar,
+        data=recorded.data,
+        events=tuple(course.events),
+        thresholds={"close_passage": _CLOSE_PASSAGE, **asdict(thresholds), **asdict(rules)},
+        measures={**recorded.measures, "least_passage": course.least_passage, **verdict.measures},
+        provenance=provenance_of_run(
+            model,
+            moved,
+            tilt=start_tilt,
+            tilt_rate=start_rate,
+            duration=duration,
+            rtol=method.rtol,
+            atol=method.atol,
+            tilt_limit=tilt_limit,
+            rest_energy=rest_energy,
+            max_steps=max_steps,
+        ),
+        sampler=recorded.sampler,
+    )
+
+
+_ENDINGS = {
+    Reason.OVERTURNED: (Outcome.OVERTURNED, "its tilt grows beyond the tilt from which it could come back"),
+    Reason.LIMIT: (Outcome.LIMIT_REACHED, "its tilt reached tilt_limit"),
+    Reason.LIFTED: (Outcome.LIFTED_OFF, "the base accelerates downwards faster than gravity"),
+    Reason.RESTED: (Outcome.AT_REST, "it stands, and the base motion to come cannot release it"),
+}
+
+
+def _verdict(model: Model, motion: BaseMotion, course: Course, rules: OutcomeRules) -> Verdict:
+    if course.ended is Reason.FAILED:
+        return Verdict(Outcome.FAILED, f"the integration stopped: {course.failure}", {})
+    if course.ended in _ENDINGS:
+        return Verdict(*_ENDINGS[course.ended], {})
+    if course.stands:
+        return Verdict(Outcome.AT_REST, "it stands at the end of the run", {})
+    period = None if motion.period is None else motion.period / model.time_scale
+    return long_term(model, course.trajectory, period, rules, planar=course.planar)
+
+
+def _decided_at(course: Course, verdict: Verdict, duration: float) -> float:
+    if verdict.outcome is Outcome.AT_REST and course.ended is Reason.RESTED:
+        return course.pieces[-1].start * course.model.time_scale
+    if course.ended is Reason.STOP:
+        return duration
+    return course.trajectory.end * course.model.time_scale
+
+
+def _method(model: Model, motion: BaseMotion, rtol: float, atol: float | None, max_steps: int) -> Method:
+    low, high = _RTOL_RANGE
+    rtol = require_positive("rtol", rtol)
+    if not low <= rtol <= high:
+        message = f"rtol must lie between {low!r} and {high!r}, got {rtol!r}"
+        raise ParameterError(message)
+    atol = _ATOL_SHARE * rtol * model.column.slenderness if atol is None else require_positive("atol", atol, "rad")
+    if max_steps < 1:
+        message = f"max_steps must be at least 1, got {max_steps!r}"
+        raise ParameterError(message)
+    # Half the shortest period: no step can miss the forcing.
+    frequency = motion.highest_frequency * model.time_scale
+    return Method(
+        rtol=rtol, atol=atol, max_step=math.pi / frequency if frequency > 0.0 else math.inf, max_steps=max_steps
+    )
+
+
+def _thresholds(model: Model, motion: BaseMotion, tilt_limit: float | None, rest_energy: float | None) -> Thresholds:
+    frequency = motion.highest_frequency * model.time_scale
+    if not model.comes_to_rest:
+        energy = 0.0
+    elif rest_energy is not None:
+        energy = require_not_negative("rest_energy", rest_energy)
+    else:
+        energy = min(_REST_ENERGY, _REST_ENERGY_ROLLING / frequency**2) if frequency > 0.0 else _REST_ENERGY
+    limit = math.inf if tilt_limit is None else require_positive("tilt_limit", tilt_limit, "rad")
+    return Thresholds(rest_energy=energy, tilt_limit=limit)
+
+
+def _pair(name: str, value: Sequence[float], unit: str) -> tuple[float, float]:
+    x, y = require_vector(name, value, 2, unit)
+    return x, y
+
+
+def _require_nouns(model: Model, motion: BaseMotion | None) -> None:
+    if not isinstance(model, Model):
+        message = f"model must be a model such as Slender(column), got {model!r}"
+        raise ParameterError(message)
+    if motion is not None and not isinstance(motion, BaseMotion):
+        message = f"motion must be a base motion such as Harmonic.circular(...) or None, got {motion!r}"
+        raise ParameterError(message)

@@ -1,0 +1,132 @@
+"""What can end a stretch of motion: seen on samples inside each step, located on its dense output."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum, auto
+from functools import partial
+
+import numpy as np
+from scipy.optimize import brentq
+
+from stylobate.engine.forcing import Floats, Forcing
+from stylobate.models import Model
+
+# Points of each step at which conditions are looked at; a step of the integrator resolves the motion.
+_SAMPLES = 5
+
+
+class Reason(Enum):
+    """Why a stretch of motion ended."""
+
+    STOP = auto()
+    """The time was up."""
+    RESTED = auto()
+    OVERTURNED = auto()
+    LIMIT = auto()
+    LIFTED = auto()
+    CROSSED = auto()
+    """The upright was passed in a plane, or came so near that it is passed in closed form."""
+    FAILED = auto()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Thresholds:
+    """The numbers by which a run is judged; all of them are kept with its result.
+
+    Parameters
+    ----------
+    rest_energy
+        ε: rest is entered below the energy ε c²; 0 where friction cannot bring the column to rest.
+    tilt_limit
+        Tilt that ends the run, set by the user [rad]; infinite for none.
+    overturned_tilt
+        Tilt that counts as overturned where no rigorous criterion exists [rad].
+    """
+
+    rest_energy: float
+    tilt_limit: float = math.inf
+    overturned_tilt: float = math.pi / 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class Watch:
+    """Looks for the first event inside a step."""
+
+    model: Model
+    forcing: Forcing
+    thresholds: Thresholds
+
+    def first_event(self, start: float, end: float, states: Callable[[Floats], Floats]) -> tuple[float, Reason] | None:
+        """Return the time and kind of the first event in (start, end], or None.
+
+        Parameters
+        ----------
+        start, end
+            The step, in dimensionless time; the two may be equal to ask about one instant.
+        states
+            Full states, shape (number of states, n), at n times inside.
+        """
+        tau = np.linspace(start, end, _SAMPLES) if end > start else np.array([start])
+        sampled = states(tau)
+        tilt = np.hypot(*self.model.tilt(sampled))
+        found = []
+        for reason, condition, suspected in (
+            (Reason.LIFTED, self._pull, self.forcing.least_vertical(start) <= -1.0),
+            (Reason.OVERTURNED, self._beyond_return, tilt[-1] > self._no_return_tilt(end)),
+            (Reason.LIMIT, self._beyond_limit, tilt.max() > self.thresholds.tilt_limit),
+            (Reason.RESTED, self._below_rest_energy, tilt.min() < self._rest_tilt),
+        ):
+            if suspected:
+                time = _first_positive(partial(condition, states), tau)
+                if time is not None:
+                    found.append((time, reason))
+        return min(found, key=lambda event: event[0], default=None)
+
+    @property
+    def _rest_tilt(self) -> float:
+        # The energy bounds the tilt only while |a_h| is well below its limit; near it the tilt is bounded by √ε c.
+        return math.sqrt(self.thresholds.rest_energy) * self.model.column.slenderness
+
+    def _no_return_tilt(self, tau: float) -> float:
+        limit = self.model.no_return_tilt(self.forcing.largest_horizontal(tau), self.forcing.least_vertical(tau))
+        return limit if math.isfinite(limit) else self.thresholds.overturned_tilt
+
+    def _motion(self, states: Callable[[Floats], Floats], tau: float) -> tuple[float, float, float]:
+        # |α|, α·α̇ and |α̇| at one time
+        state = states(np.array([tau]))
+        (x, y), (vx, vy) = self.model.tilt(state)[:, 0], self.model.tilt_rate(state)[:, 0]
+        return math.hypot(x, y), x * vx + y * vy, math.hypot(vx, vy)
+
+    def _pull(self, states: Callable[[Floats], Floats], tau: float) -> float:
+        del states
+        return -(1.0 + self.forcing.at(tau)[2])
+
+    def _beyond_return(self, states: Callable[[Floats], Floats], tau: float) -> float:
+        tilt, radial, _ = self._motion(states, tau)
+        return min(tilt - self._no_return_tilt(tau), radial)
+
+    def _beyond_limit(self, states: Callable[[Floats], Floats], tau: float) -> float:
+        return self._motion(states, tau)[0] - self.thresholds.tilt_limit
+
+    def _below_rest_energy(self, states: Callable[[Floats], Floats], tau: float) -> float:
+        tilt, _, speed = self._motion(states, tau)
+        ax, ay, az = self.forcing.at(tau)
+        horizontal = math.hypot(ax, ay)
+        energy = self.model.rest_energy(tilt, speed, horizontal, az)
+        return min(
+            self.model.rest_capacity * (1.0 + az) - horizontal,
+            self.thresholds.rest_energy * self.model.column.slenderness**2 - energy,
+            self._rest_tilt - tilt,
+        )
+
+
+def _first_positive(condition: Callable[[float], float], tau: Floats) -> float | None:
+    before = float(tau[0])
+    if condition(before) > 0.0:
+        return before
+    for time in map(float, tau[1:]):
+        if condition(time) > 0.0:
+            return float(brentq(condition, before, time, xtol=4e-15 * max(1.0, abs(time))))
+        before = time
+    return None

@@ -1,0 +1,120 @@
+"""The exceptions stylobate raises, the checks that raise them, and the outcomes a motion can have.
+
+::
+
+    StylobateError
+    ├── ParameterError (ValueError)    a number or an option that no column, motion or run can have
+    │   └── DescriptionError           the same in a TOML or JSON description: one line for each mistake
+    ├── UnsupportedError               a study asks for what a model lacks
+    └── FileError                      a file that cannot be read or written
+
+Misuse is an exception. What the physics does, numerical failure included, is an `Outcome`.
+"""
+
+import math
+from collections.abc import Sequence
+from enum import Enum
+
+
+class StylobateError(Exception):
+    """Anything stylobate raises on purpose."""
+
+
+class ParameterError(StylobateError, ValueError):
+    """An argument no column, motion or run can have; the message names it, its value and the remedy."""
+
+
+class DescriptionError(ParameterError):
+    """A TOML or JSON description with mistakes.
+
+    Attributes
+    ----------
+    problems
+        One line for each mistake.
+    """
+
+    def __init__(self, problems: Sequence[str]) -> None:
+        self.problems = tuple(problems)
+        super().__init__("\n".join(self.problems))
+
+
+class UnsupportedError(StylobateError):
+    """A study or run asks for something the model does not provide."""
+
+
+class FileError(StylobateError):
+    """A file that cannot be read or written; the message names it."""
+
+
+class Outcome(Enum):
+    """What became of the column."""
+
+    AT_REST = "at rest"
+    """It stands on its base and the base motion cannot release it, or it stood to the end of the run."""
+    ROCKING = "rocking"
+    """A periodic motion whose contact point does not travel round the rim."""
+    ROLLING = "rolling"
+    """A periodic motion whose contact point goes once round the rim in each period of the base motion."""
+    MODULATED = "modulated"
+    """Rolling at the mean rate of the base motion that does not repeat: the tilt is modulated."""
+    OVERTURNED = "overturned"
+    """It cannot come back (or has passed the stated limit where no proof exists)."""
+    STILL_MOVING = "still moving"
+    """None of the others by the end of the run."""
+    LIMIT_REACHED = "limit reached"
+    """The tilt reached the limit that the user set."""
+    LIFTED_OFF = "lifted off"
+    """The base dropped away: the contact would have to pull."""
+    FAILED = "failed"
+    """The integration could not go on; the run's `reason` says why."""
+
+
+def require_finite(name: str, value: float, unit: str = "") -> float:
+    """Return `value` as a float, or raise ParameterError unless it is a finite real number."""
+    number = _as_float(name, value)
+    if not math.isfinite(number):
+        message = f"{name} must be finite, got {_quantity(value, unit)}"
+        raise ParameterError(message)
+    return number
+
+
+def require_positive(name: str, value: float, unit: str = "") -> float:
+    """Return `value` as a float, or raise ParameterError unless it is finite and above zero."""
+    number = _as_float(name, value)
+    if not (math.isfinite(number) and number > 0.0):
+        message = f"{name} must be positive, got {_quantity(value, unit)}"
+        raise ParameterError(message)
+    return number
+
+
+def require_not_negative(name: str, value: float, unit: str = "") -> float:
+    """Return `value` as a float, or raise ParameterError unless it is finite and zero or above."""
+    number = _as_float(name, value)
+    if not (math.isfinite(number) and number >= 0.0):
+        message = f"{name} must be zero or positive, got {_quantity(value, unit)}"
+        raise ParameterError(message)
+    return number
+
+
+def require_vector(name: str, value: Sequence[float], length: int, unit: str = "") -> tuple[float, ...]:
+    """Return `value` as a tuple of `length` finite floats, or raise ParameterError."""
+    try:
+        numbers = tuple(value)
+    except TypeError:
+        numbers = ()
+    if len(numbers) != length:
+        message = f"{name} must have {length} numbers, got {value!r}"
+        raise ParameterError(message)
+    return tuple(require_finite(f"{name}[{i}]", number, unit) for i, number in enumerate(numbers))
+
+
+def _as_float(name: str, value: float) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        message = f"{name} must be a real number, got {value!r}"
+        raise ParameterError(message) from None
+
+
+def _quantity(value: float, unit: str) -> str:
+    return f"{float(value)!r} {unit}".rstrip()

@@ -1,0 +1,191 @@
+"""The slender column that cannot turn about the vertical: equations (1) of the source paper."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.column import Column
+from stylobate.errors import ParameterError, require_not_negative
+from stylobate.models.model import Floats, Model, Output, Push
+
+# Keeps 1/|α| finite at the upright itself, far below any tilt that is resolved.
+_TINY = 1e-300
+
+
+def rates(  # noqa: D103  the public description is Slender's
+    x: float, y: float, vx: float, vy: float, ax: float, ay: float, az: float, c: float, eta: float
+) -> tuple[float, float, float, float]:
+    # (1): α̈ = (1 + a_z)(α − c û) − η α̇ − a_h, û = α/|α|
+    weight = 1.0 + az
+    lean = weight * (1.0 - c / math.sqrt(x * x + y * y + _TINY))
+    return vx, vy, lean * x - eta * vx - ax, lean * y - eta * vy - ay
+
+
+@dataclass(frozen=True, slots=True)
+class Slender(Model):
+    """A slender column: small tilt, no slip, no rotation about the vertical; equations (1).
+
+    α̈ = (1 + a_z)(α − c û) − η α̇ − a_h with û = α/|α|, in units of 1/ω0 and g. At α = 0 the base rests flat and û is
+    any vector of length up to 1: the column stays while |a_h| ≤ c(1 + a_z).
+
+    Parameters
+    ----------
+    column
+        The column; its slenderness c should be well below 1.
+    damping
+        Viscous friction η = D1/(ω0 J0), dimensionless; D1 is `damping_coefficient`.
+
+    Raises
+    ------
+    ParameterError
+        If `column` is no Column or `damping` is negative or not finite.
+
+    Notes
+    -----
+    Source: "Dynamic of a cylindrical column on a vibrating base" (Vibroengineering Procedia), equations (1), with
+    the vertical acceleration a_z added. Errors of the model are of the order c².
+    """
+
+    column: Column
+    damping: float = 0.0
+
+    name: ClassVar[str] = "slender"
+    state_names: ClassVar[tuple[str, ...]] = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.column, Column):
+            message = f"column must be a Column, such as Column.solid(...), got {self.column!r}"
+            raise ParameterError(message)
+        object.__setattr__(self, "damping", require_not_negative("damping", self.damping))
+
+    rates: ClassVar[Callable[..., tuple[float, ...]]] = staticmethod(rates)
+
+    @property
+    def damping_coefficient(self) -> float:
+        """D1 = η ω0 J0, friction moment by angular velocity [N m s]."""
+        return self.damping * self.column.frequency_scale * self.column.base_inertia
+
+    @property
+    def parameters(self) -> tuple[float, float]:
+        """c and η."""
+        return self.column.slenderness, self.damping
+
+    def start(self, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, float, float, float]:
+        """Return the state with this tilt vector [rad] and its rate [rad/s]."""
+        scale = self.time_scale
+        return tilt[0], tilt[1], tilt_rate[0] * scale, tilt_rate[1] * scale
+
+    def tilt(self, states: Floats) -> Floats:
+        """Return the tilt vectors [rad], shape (2, n)."""
+        return states[:2]
+
+    def tilt_rate(self, states: Floats) -> Floats:
+        """Return the dimensionless rates of the tilt vectors, shape (2, n)."""
+        return states[2:]
+
+    @property
+    def comes_to_rest(self) -> bool:
+        """Whether there is friction."""
+        return self.damping > 0.0
+
+    def rest_energy(self, tilt: float, speed: float, horizontal: float, vertical: float) -> float:
+        """Return ½|α̇|² + (c(1 + a_z) − |a_h|)|α|, what is left above the state of rest."""
+        return 0.5 * speed * speed + (self.column.slenderness * (1.0 + vertical) - horizontal) * tilt
+
+    def no_return_tilt(self, largest_horizontal: float, least_vertical: float) -> float:
+        """Return c + sup|a_h|/(1 + inf a_z) [rad].
+
+        From (6), Ä ≥ (1 + a_z)(A − c) − |a_h| − ηȦ: beyond this tilt Ȧ ≥ 0 stays so. With 1 + inf a_z ≤ 0 nothing
+        is certain and the answer is infinite.
+        """
+        weight = 1.0 + least_vertical
+        return self.column.slenderness + largest_horizontal / weight if weight > 0.0 else math.inf
+
+    def depart(self, push: Push, elapsed: float) -> tuple[float, float, float, float]:
+        """Return the state a short time δ = `elapsed` after release, by series about α = 0.
+
+        Along the push α = Fδ²/2 with F = excess + excess_rate δ/3; across it α = qδ³ with
+        q (6 + 2c/F) = |a_h| × turning_rate, which for F → 0 is a lean that follows −a_h.
+        """
+        c = push.acceleration - push.excess  # c(1 + a_z)
+        mean_excess = push.excess + push.excess_rate * elapsed / 3.0
+        if mean_excess <= 0.0:
+            return 0.0, 0.0, 0.0, 0.0
+        along = 0.5 * mean_excess * elapsed**2
+        along_rate = push.excess * elapsed + 0.5 * push.excess_rate * elapsed**2
+        turn = push.acceleration * push.turning_rate
+        across = turn * elapsed**3 / (6.0 + 2.0 * c / mean_excess)
+        across_rate = across / elapsed * (3.0 + push.excess_rate * elapsed / 3.0 / mean_excess)
+        ux, uy = push.direction
+        return (
+            along * ux - across * uy,
+            along * uy + across * ux,
+            along_rate * ux - across_rate * uy,
+            along_rate * uy + across_rate * ux,
+        )
+
+    def pass_upright(
+        self, state: tuple[float, ...], accelerations: tuple[float, float, float]
+    ) -> tuple[float, tuple[float, float, float, float]]:
+        """Return the duration and the end of a straight passage with offset b at speed v, past the upright.
+
+        The force −c û turns by π within b/v; along a straight path its components integrate in closed form: none
+        along the path, −(2cb/v) asinh(l/b) across it, l being the distance to the point of closest approach.
+        """
+        x, y, vx, vy = state
+        ax, ay, az = accelerations
+        speed = math.hypot(vx, vy)
+        ux, uy = vx / speed, vy / speed
+        ahead, offset = -(x * ux + y * uy), y * ux - x * uy
+        elapsed = 2.0 * ahead / speed
+        kick = -2.0 * self.column.slenderness * (1.0 + az) / speed
+        kick *= offset * math.asinh(ahead / abs(offset)) if offset != 0.0 else 0.0
+        jump_x = -kick * uy - (self.damping * vx + ax) * elapsed
+        jump_y = kick * ux - (self.damping * vy + ay) * elapsed
+        end = (
+            x + (vx + 0.5 * jump_x) * elapsed,
+            y + (vy + 0.5 * jump_y) * elapsed,
+            vx + jump_x,
+            vy + jump_y,
+        )
+        return elapsed, end
+
+    def planar_rates(
+        self, tilt: float, rate: float, side: float, horizontal: float, vertical: float
+    ) -> tuple[float, float]:
+        """Return the rates of (`tilt`, `rate`) in a vertical plane, with û = `side` (±1)."""
+        c, eta = self.column.slenderness, self.damping
+        return rate, (1.0 + vertical) * (tilt - c * side) - eta * rate - horizontal
+
+    def from_plane(self, planar: Floats, line: tuple[float, float]) -> Floats:
+        """Return the states, shape (4, n), of planar states (tilt, rate) along the unit vector `line`."""
+        tilt, rate = planar
+        return np.stack([tilt * line[0], tilt * line[1], rate * line[0], rate * line[1]])
+
+    def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
+        """Return energy [J] and angular momentum about the vertical [kg m²/s], and the centre of pressure [m].
+
+        Energy is ½|α̇|² + cA − ½A² in units of J0 ω0², 0 at rest; angular momentum A²β̇ in units of J0 ω0: the two
+        integrals of free motion (page "theory", free vibration). The centre of pressure lies at −h a_h/(1 + a_z)
+        from the axis while the column stands, at the contact point of the rim while it leans.
+        """
+        x, y, vx, vy = states
+        column = self.column
+        c, unit = column.slenderness, column.base_inertia * column.frequency_scale
+        tilt = np.hypot(x, y)
+        energy = 0.5 * (vx**2 + vy**2) + c * tilt - 0.5 * tilt**2
+        momentum = x * vy - y * vx
+        ax, ay, az = accelerations
+        with np.errstate(invalid="ignore", divide="ignore"):
+            standing = -column.mass_height * np.stack([ax, ay]) / (1.0 + az)
+            leaning = column.radius * np.stack([x, y]) / tilt
+        pressure = np.where(resting, standing, leaning)
+        return {
+            "energy": Output(energy * unit * column.frequency_scale, "J", "energy above rest"),
+            "angular_momentum": Output(momentum * unit, "kg m2 s-1", "angular momentum about the vertical"),
+            "centre_of_pressure": Output(pressure.T, "m", "centre of pressure from the axis"),
+        }

@@ -1,0 +1,236 @@
+"""Motions made of motions: sums, and scaled, rotated and delayed copies."""
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.errors import ParameterError, require_finite
+from stylobate.motions.base import ACCELERATION, VELOCITY, BaseMotion, Components
+
+# Frequencies whose ratio is n/d to this relative accuracy, d up to the limit, share a period.
+_RATIO_TOLERANCE = 1e-12
+_LARGEST_DENOMINATOR = 64
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sum(BaseMotion):
+    """The sum of `motions`; of none, a base at rest."""
+
+    motions: tuple[BaseMotion, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "motions", tuple(self.motions))
+        for motion in self.motions:
+            _require_motion("motions", motion)
+
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return the sum of the displacements (`order` 0), velocities (1) or accelerations (2)."""
+        t = np.asarray(time, dtype=float)
+        x, y, z = np.zeros_like(t), np.zeros_like(t), np.zeros_like(t)
+        for motion in self.motions:
+            dx, dy, dz = motion.derivative(t, order)
+            x, y, z = x + dx, y + dy, z + dz
+        return x, y, z
+
+    def largest_horizontal(self, since: float = 0.0) -> float:
+        """Return the sum of the parts' bounds [m/s²]: never below sup |a_h|, and above it where peaks do not meet."""
+        return math.fsum(motion.largest_horizontal(since) for motion in self.motions)
+
+    def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
+        """Return the sums of the parts' bounds [m/s²]."""
+        ranges = [motion.vertical_range(since) for motion in self.motions]
+        return math.fsum(low for low, _ in ranges), math.fsum(high for _, high in ranges)
+
+    def directions(self) -> tuple[tuple[float, float], ...]:
+        """Return the directions of all the parts [m/s²]."""
+        return tuple(vector for motion in self.motions for vector in motion.directions())
+
+    @property
+    def duration(self) -> float:
+        """The longest duration of a part [s]; 0 for none."""
+        return max((motion.duration for motion in self.motions), default=0.0)
+
+    @property
+    def period(self) -> float | None:
+        """The least common period of the parts [s], where their frequencies are in a simple ratio."""
+        periods = [motion.period for motion in self.motions]
+        if not periods or periods[0] is None:
+            return None
+        common = periods[0]
+        for period in periods[1:]:
+            if period is None:
+                return None
+            ratio = Fraction(common / period).limit_denominator(_LARGEST_DENOMINATOR)
+            if ratio == 0 or abs(common / period / float(ratio) - 1.0) > _RATIO_TOLERANCE:
+                return None
+            common *= ratio.denominator
+        return common
+
+    @property
+    def highest_frequency(self) -> float:
+        """The highest angular frequency of a part [rad/s]."""
+        return max((motion.highest_frequency for motion in self.motions), default=0.0)
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The breaks of all the parts [s]."""
+        return tuple(sorted({time for motion in self.motions for time in motion.breaks}))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Transformed(BaseMotion):
+    """A copy of `motion` that has all its properties but those a subclass changes."""
+
+    motion: BaseMotion
+
+    def __post_init__(self) -> None:
+        _require_motion("motion", self.motion)
+
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return the displacement (`order` 0), velocity (1) or acceleration (2) of the motion."""
+        return self.motion.derivative(time, order)
+
+    def largest_horizontal(self, since: float = 0.0) -> float:
+        """Return the bound of the motion [m/s²]."""
+        return self.motion.largest_horizontal(since)
+
+    def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
+        """Return the bounds of the motion [m/s²]."""
+        return self.motion.vertical_range(since)
+
+    def directions(self) -> tuple[tuple[float, float], ...]:
+        """Return the directions of the motion [m/s²]."""
+        return self.motion.directions()
+
+    @property
+    def duration(self) -> float:
+        """The duration of the motion [s]."""
+        return self.motion.duration
+
+    @property
+    def period(self) -> float | None:
+        """The period of the motion [s]."""
+        return self.motion.period
+
+    @property
+    def highest_frequency(self) -> float:
+        """The highest angular frequency of the motion [rad/s]."""
+        return self.motion.highest_frequency
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The breaks of the motion [s]."""
+        return self.motion.breaks
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scaled(Transformed):
+    """`motion` with its horizontal part times `factor` and its vertical part times `vertical`."""
+
+    factor: float
+    vertical: float
+
+    def __post_init__(self) -> None:
+        Transformed.__post_init__(self)
+        require_finite("factor", self.factor)
+        require_finite("vertical", self.vertical)
+
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return the scaled displacement (`order` 0), velocity (1) or acceleration (2)."""
+        x, y, z = self.motion.derivative(time, order)
+        return self.factor * x, self.factor * y, self.vertical * z
+
+    def largest_horizontal(self, since: float = 0.0) -> float:
+        """Return |factor| times the bound of the motion [m/s²]."""
+        return abs(self.factor) * self.motion.largest_horizontal(since)
+
+    def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
+        """Return the scaled bounds, in order [m/s²]."""
+        low, high = (self.vertical * bound for bound in self.motion.vertical_range(since))
+        return min(low, high), max(low, high)
+
+    def directions(self) -> tuple[tuple[float, float], ...]:
+        """Return the scaled directions of the motion [m/s²]."""
+        return tuple((self.factor * x, self.factor * y) for x, y in self.motion.directions())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rotated(Transformed):
+    """`motion` turned by `angle` [rad] about the vertical."""
+
+    angle: float
+
+    def __post_init__(self) -> None:
+        Transformed.__post_init__(self)
+        require_finite("angle", self.angle, "rad")
+
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return the turned displacement (`order` 0), velocity (1) or acceleration (2)."""
+        x, y, z = self.motion.derivative(time, order)
+        cos, sin = math.cos(self.angle), math.sin(self.angle)
+        return cos * x - sin * y, sin * x + cos * y, z
+
+    def directions(self) -> tuple[tuple[float, float], ...]:
+        """Return the turned directions of the motion [m/s²]."""
+        cos, sin = math.cos(self.angle), math.sin(self.angle)
+        return tuple((cos * x - sin * y, sin * x + cos * y) for x, y in self.motion.directions())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Delayed(Transformed):
+    """`motion` begun `delay` [s] later, without acceleration before; a negative delay skips its first part."""
+
+    delay: float
+
+    def __post_init__(self) -> None:
+        Transformed.__post_init__(self)
+        require_finite("delay", self.delay, "s")
+
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return the delayed displacement (`order` 0), velocity (1) or acceleration (2)."""
+        t = np.asarray(time, dtype=float) - self.delay
+        if self.delay <= 0.0:
+            return self.motion.derivative(t, order)
+        running = np.maximum(t, 0.0)
+        values = self.motion.derivative(running, order)
+        if order == ACCELERATION:
+            x, y, z = (np.where(t < 0.0, 0.0, value) for value in values)
+        elif order == VELOCITY:
+            x, y, z = values
+        else:
+            initial = self.motion.derivative(0.0, VELOCITY)
+            x, y, z = (value + rate * (t - running) for value, rate in zip(values, initial, strict=True))
+        return x, y, z
+
+    def largest_horizontal(self, since: float = 0.0) -> float:
+        """Return the bound of the motion from the delayed time on [m/s²]."""
+        return self.motion.largest_horizontal(max(0.0, since - self.delay))
+
+    def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
+        """Return the bounds of the motion from the delayed time on [m/s²], 0 included while it waits."""
+        low, high = self.motion.vertical_range(max(0.0, since - self.delay))
+        return (min(low, 0.0), max(high, 0.0)) if since < self.delay else (low, high)
+
+    @property
+    def duration(self) -> float:
+        """The duration of the motion, the delay added [s]."""
+        return max(0.0, self.motion.duration + self.delay)
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The onset and the delayed breaks of the motion [s]."""
+        onset = (self.delay,) if self.delay > 0.0 else ()
+        return onset + tuple(time + self.delay for time in self.motion.breaks if time + self.delay > 0.0)
+
+
+BASE_AT_REST = Sum()
+"""A base that does not move."""
+
+
+def _require_motion(name: str, motion: object) -> None:
+    if not isinstance(motion, BaseMotion):
+        message = f"{name} must be a base motion such as Harmonic.circular(...), got {motion!r}"
+        raise ParameterError(message)

@@ -1,0 +1,90 @@
+"""The result of one run."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.errors import Outcome, UnsupportedError
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """Something that happened in a run: its `kind` and `time` [s].
+
+    Kinds are "release", "rest", "overturned", "limit", "lifted" and "failed".
+    """
+
+    kind: str
+    time: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Response:
+    """The motion of one column: what became of it, and its history.
+
+    Attributes
+    ----------
+    outcome
+        What became of the column.
+    reason
+        One line that says how the outcome was decided.
+    decided_at
+        Time at which it was decided [s].
+    uncertain
+        Whether a small change could alter the outcome: a passage within 1e-8 c of the upright out of a plane, or a
+        run cut short by its step limit.
+    planar
+        Whether the motion was integrated in one vertical plane, because start and base motion lie in it.
+    data
+        Dataset over `time` [s]: `tilt` and `tilt_rate` (time, axis), `amplitude`, `azimuth`, `rolling_rate`,
+        `resting`, the base motion, and what else the model gives; units in the attributes.
+    events
+        What happened when.
+    thresholds
+        The numbers that decided, by name.
+    measures
+        Summary numbers, by name: largest and least tilt, turns of the contact point, steps, and for periodic base
+        motion the mean rolling rate and the repetition of the last periods.
+    provenance
+        Everything needed to run it again: version, column, model, motion, start, tolerances.
+    """
+
+    outcome: Outcome
+    reason: str
+    decided_at: float
+    uncertain: bool
+    planar: bool
+    data: xr.Dataset
+    events: tuple[Event, ...]
+    thresholds: Mapping[str, float]
+    measures: Mapping[str, float]
+    provenance: Mapping[str, Any]
+    sampler: Callable[[npt.ArrayLike], xr.Dataset] | None = field(default=None, repr=False, compare=False)
+
+    def sample(self, time: npt.ArrayLike) -> xr.Dataset:
+        """Return the data at other times [s], from the integrator's dense output.
+
+        Raises
+        ------
+        UnsupportedError
+            If this result was loaded from a file, which keeps samples only.
+        ParameterError
+            If a time lies outside the run.
+        """
+        if self.sampler is None:
+            message = "sample needs a run made in this process: a loaded result has the samples in .data only"
+            raise UnsupportedError(message)
+        return self.sampler(time)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the run to a netCDF file at `path`, with its provenance; `stylobate.load` reads it again."""
+        from stylobate.results.storage import save_response  # noqa: PLC0415  storage needs this class
+
+        return save_response(self, Path(path))
+
+    def __repr__(self) -> str:
+        return f"Response({self.outcome.name} at {self.decided_at:.6g} s: {self.reason})"

@@ -1,0 +1,77 @@
+"""Results as netCDF files: the samples as variables, everything else in the attributes."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from stylobate.errors import FileError, Outcome
+from stylobate.results.response import Event, Response
+
+_FORMAT = "stylobate response 1"
+
+
+def save_response(response: Response, path: Path) -> Path:
+    """Write `response` to the netCDF file `path` and return the path.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written.
+    """
+    attributes = {
+        "format": _FORMAT,
+        "outcome": response.outcome.name,
+        "reason": response.reason,
+        "decided_at": response.decided_at,
+        "uncertain": int(response.uncertain),
+        "planar": int(response.planar),
+        "events": json.dumps([[event.kind, event.time] for event in response.events]),
+        "thresholds": json.dumps(dict(response.thresholds)),
+        "measures": json.dumps(dict(response.measures)),
+        "provenance": json.dumps(dict(response.provenance)),
+    }
+    data = response.data.assign_attrs(attributes)
+    data["resting"] = data["resting"].astype(np.int8)
+    try:
+        data.to_netcdf(path, engine="h5netcdf")
+    except OSError as error:
+        message = f"cannot write {path}: {error.strerror or error}"
+        raise FileError(message) from error
+    return path
+
+
+def load(path: str | Path) -> Response:
+    """Return the run saved in the netCDF file `path`.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read or holds no saved run.
+    """
+    try:
+        with xr.open_dataset(path, engine="h5netcdf") as stored:
+            data = stored.load()
+    except (OSError, ValueError) as error:
+        message = f"cannot read {path}: {getattr(error, 'strerror', None) or error}"
+        raise FileError(message) from error
+    attributes: dict[str, Any] = dict(data.attrs)
+    if attributes.get("format") != _FORMAT:
+        message = f"{path} is no run saved by stylobate: its format is {attributes.get('format')!r}, not {_FORMAT!r}"
+        raise FileError(message)
+    data.attrs = {}
+    data["resting"] = data["resting"].astype(bool)
+    return Response(
+        outcome=Outcome[attributes["outcome"]],
+        reason=str(attributes["reason"]),
+        decided_at=float(attributes["decided_at"]),
+        uncertain=bool(attributes["uncertain"]),
+        planar=bool(attributes["planar"]),
+        data=data,
+        events=tuple(Event(kind, time) for kind, time in json.loads(attributes["events"])),
+        thresholds=json.loads(attributes["thresholds"]),
+        measures=json.loads(attributes["measures"]),
+        provenance=json.loads(attributes["provenance"]),
+    )

@@ -1,0 +1,11 @@
+"""Descriptions: plain values, as in TOML and JSON, and the objects they stand for."""
+
+from stylobate.spec.simulation import (
+    Setup,
+    SimulationDescription,
+    description_of,
+    provenance_of_run,
+    read_description,
+)
+
+__all__ = ["Setup", "SimulationDescription", "description_of", "provenance_of_run", "read_description"]

@@ -1,0 +1,104 @@
+"""Descriptions of columns, told apart by their `shape`."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from stylobate.column import STANDARD_GRAVITY, Column
+from stylobate.spec.description import Description
+
+
+class SolidColumn(Description):
+    """A solid cylinder; lengths in m, density in kg/m³."""
+
+    shape: Literal["solid"] = "solid"
+    radius: float
+    height: float
+    density: float
+    gravity: float = STANDARD_GRAVITY
+
+    def build(self) -> Column:
+        """Return the column."""
+        return Column.solid(radius=self.radius, height=self.height, density=self.density, gravity=self.gravity)
+
+
+class HollowColumn(Description):
+    """A tube; lengths in m, density in kg/m³."""
+
+    shape: Literal["hollow"]
+    radius: float
+    inner_radius: float
+    height: float
+    density: float
+    gravity: float = STANDARD_GRAVITY
+
+    def build(self) -> Column:
+        """Return the column."""
+        return Column.hollow(
+            radius=self.radius,
+            inner_radius=self.inner_radius,
+            height=self.height,
+            density=self.density,
+            gravity=self.gravity,
+        )
+
+
+class FrustumColumn(Description):
+    """A frustum of a cone; lengths in m, density in kg/m³."""
+
+    shape: Literal["frustum"]
+    radius: float
+    top_radius: float
+    height: float
+    density: float
+    gravity: float = STANDARD_GRAVITY
+
+    def build(self) -> Column:
+        """Return the column."""
+        return Column.frustum(
+            radius=self.radius,
+            top_radius=self.top_radius,
+            height=self.height,
+            density=self.density,
+            gravity=self.gravity,
+        )
+
+
+class DimensionlessColumn(Description):
+    """A column with m = g = ω0 = 1."""
+
+    shape: Literal["dimensionless"]
+    slenderness: float
+    inertia_ratio: float = 0.75
+    axial_ratio: float = 0.5
+
+    def build(self) -> Column:
+        """Return the column."""
+        return Column.dimensionless(self.slenderness, self.inertia_ratio, self.axial_ratio)
+
+
+class GivenColumn(Description):
+    """Any body of revolution by its numbers, in SI units."""
+
+    shape: Literal["given"]
+    radius: float
+    mass_height: float
+    mass: float
+    transverse_inertia: float
+    axial_inertia: float
+    height: float | None = None
+    gravity: float = STANDARD_GRAVITY
+
+    def build(self) -> Column:
+        """Return the column."""
+        return Column(**self.model_dump(exclude={"shape"}))
+
+    @classmethod
+    def of(cls, column: Column) -> "GivenColumn":
+        """Return the description of `column`."""
+        return cls(shape="given", **{name: getattr(column, name) for name in cls.model_fields if name != "shape"})
+
+
+ColumnDescription = Annotated[
+    SolidColumn | HollowColumn | FrustumColumn | DimensionlessColumn | GivenColumn, Field(discriminator="shape")
+]

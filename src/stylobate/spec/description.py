@@ -1,0 +1,63 @@
+"""What all descriptions share: strict keys, and mistakes told one to a line."""
+
+from collections.abc import Mapping
+from typing import Any, Self
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from stylobate.errors import DescriptionError
+
+# Fields whose value is one of several descriptions, told apart by a tag; so is each element of a list.
+_UNION_FIELDS = ("column", "model", "motion")
+
+
+class Description(BaseModel):
+    """A part of a TOML or JSON description; unknown keys are mistakes."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    @classmethod
+    def parse(cls, values: Mapping[str, Any]) -> Self:
+        """Return the description of these `values`.
+
+        Raises
+        ------
+        DescriptionError
+            With one line for each mistake.
+        """
+        try:
+            return cls.model_validate(values)
+        except ValidationError as error:
+            raise DescriptionError([_line(problem) for problem in error.errors()]) from None
+
+    def values(self) -> dict[str, Any]:
+        """Return the description as plain values that JSON and TOML can hold, defaults left out."""
+        return self.model_dump(mode="json", exclude_none=True)
+
+
+def _line(problem: Any) -> str:
+    name = ".".join(_without_tags(problem["loc"])) or "the description"
+    given = problem.get("input")
+    context = problem.get("ctx", {})
+    tag = str(context.get("discriminator", "")).strip("'")
+    match problem["type"]:
+        case "missing":
+            return f"{name} is missing"
+        case "extra_forbidden":
+            return f"{name} is not known here; remove it, or see the documentation for the names"
+        case "union_tag_invalid":
+            return f"{name}.{tag} must be one of {context['expected_tags']}, got {context['tag']!r}"
+        case "union_tag_not_found":
+            return f"{name}.{tag} is missing"
+        case "value_error":
+            return str(context["error"])
+    return f"{name}: {problem['msg'][0].lower()}{problem['msg'][1:]}, got {given!r}"
+
+
+def _without_tags(loc: tuple[int | str, ...]) -> list[str]:
+    # pydantic puts the chosen member of a tagged union behind its field, as in ("motion", "circular", "acceleration").
+    return [
+        str(part)
+        for i, part in enumerate(loc)
+        if i == 0 or not (loc[i - 1] in _UNION_FIELDS or isinstance(loc[i - 1], int))
+    ]

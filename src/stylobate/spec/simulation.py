@@ -1,0 +1,116 @@
+"""The description of one run: from TOML, from the command line, or from a saved result."""
+
+import tomllib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, TypeVar
+
+from stylobate.errors import DescriptionError, FileError, ParameterError, UnsupportedError
+from stylobate.models import Model
+from stylobate.motions import BaseMotion
+from stylobate.spec.columns import ColumnDescription, GivenColumn
+from stylobate.spec.description import Description
+from stylobate.spec.models import ModelDescription, SlenderModel, describe_model
+from stylobate.spec.motions import MotionDescription, RestMotion, describe_motion
+
+_T = TypeVar("_T")
+
+
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """What a description describes: a model, a motion and the keyword arguments of `simulate`."""
+
+    model: Model
+    motion: BaseMotion
+    options: dict[str, Any]
+
+
+class SimulationDescription(Description):
+    """A run: `column`, `model`, `motion` and the arguments of `simulate`, under the same names."""
+
+    column: ColumnDescription
+    model: ModelDescription = SlenderModel()
+    motion: MotionDescription = RestMotion(kind="rest")
+    tilt: tuple[float, float] = (0.0, 0.0)
+    tilt_rate: tuple[float, float] = (0.0, 0.0)
+    duration: float
+    rtol: float = 1e-8
+    atol: float | None = None
+    tilt_limit: float | None = None
+    rest_energy: float | None = None
+    max_steps: int = 200_000
+    samples: int | None = None
+
+    def build(self) -> Setup:
+        """Return the objects described.
+
+        Raises
+        ------
+        DescriptionError
+            With one line for each part that cannot be.
+        """
+        problems: list[str] = []
+        column = _built("column", self.column.build, problems)
+        motion = _built("motion", self.motion.build, problems)
+        model = None if column is None else _built("model", lambda: self.model.build(column), problems)
+        if model is None or motion is None:
+            raise DescriptionError(problems)
+        options = self.model_dump(exclude={"column", "model", "motion"})
+        return Setup(model, motion, options)
+
+
+def read_description(path: str | Path) -> dict[str, Any]:
+    """Return the plain values of the TOML file `path`.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read or is not TOML.
+    """
+    try:
+        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        message = f"cannot read {path}: {error.strerror or error}"
+        raise FileError(message) from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        message = f"{path} is not a TOML file: {error}"
+        raise FileError(message) from None
+
+
+def provenance_of_run(model: Model, motion: BaseMotion, **options: Any) -> dict[str, Any]:
+    """Return what is needed to repeat a run, as plain values: `SimulationDescription` but for the version."""
+    return {
+        "version": version("stylobate"),
+        "column": GivenColumn.of(model.column).values(),
+        "model": _described(lambda: describe_model(model), model),
+        "motion": _described(lambda: describe_motion(motion), motion),
+        **{name: list(value) if isinstance(value, tuple) else value for name, value in options.items()},
+    }
+
+
+def description_of(provenance: Mapping[str, Any]) -> SimulationDescription:
+    """Return the description that repeats a run from its `provenance`.
+
+    Raises
+    ------
+    DescriptionError
+        If the run was made with a model or motion that descriptions do not know.
+    """
+    return SimulationDescription.parse({name: value for name, value in provenance.items() if name != "version"})
+
+
+def _built(name: str, build: Callable[[], _T], problems: list[str]) -> _T | None:
+    try:
+        return build()
+    except ParameterError as error:
+        problems.append(f"{name}: {error}")
+        return None
+
+
+def _described(describe: Callable[[], Description], thing: object) -> dict[str, Any]:
+    try:
+        return describe().values()
+    except UnsupportedError:
+        return {"kind": "other", "repr": repr(thing)}

@@ -1,0 +1,1 @@
+"""Closed forms of the slender column: what theory says before anything is integrated."""

@@ -1,0 +1,117 @@
+"""Straight-line and elliptic base motion as two circular motions, each with its rolling by averaging (9), (10).
+
+Measured against the exact motion, the error of averaging is governed by a1/c alone, and does not shrink with frequency.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stylobate.theory.arguments import ComplexArray, Real, finite, not_negative, positive
+from stylobate.theory.rolling import SteadyRolling, steady_rolling
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AveragedRolling:
+    """Averaged steady rolling in both senses.
+
+    Parameters
+    ----------
+    forward
+        Anticlockwise rolling, driven by the circular part p e^{iθτ}.
+    backward
+        Clockwise rolling, driven by the circular part q e^{−iθτ}.
+    """
+
+    forward: SteadyRolling
+    backward: SteadyRolling
+
+
+def circular_components(a1: Real, a2: Real, phi0: Real) -> tuple[ComplexArray, ComplexArray]:
+    """Split harmonic base motion into two circular motions of opposite sense.
+
+    Parameters
+    ----------
+    a1, a2
+        Acceleration amplitudes along the two horizontal axes [g].
+    phi0
+        Phase φ0 of axis 2 against axis 1 [rad].
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        p and q, complex, of the broadcast shape, such that
+        a1 cos θτ + i a2 cos(θτ + φ0) = p e^{iθτ} + q e^{−iθτ}. The largest acceleration is abs(p) + abs(q).
+
+    Raises
+    ------
+    ParameterError
+        If an argument is not finite.
+
+    Examples
+    --------
+    A circle has one component, a straight line two of half its amplitude.
+
+    >>> p, q = circular_components(0.065, 0.065, -np.pi / 2)
+    >>> print(abs(p).round(12), abs(q).round(12))
+    0.065 0.0
+    >>> p, q = circular_components(0.13, 0.0, 0.0)
+    >>> print(abs(p), abs(q))
+    0.065 0.065
+    """
+    a1, a2, phi0 = np.broadcast_arrays(finite("a1", a1), finite("a2", a2), finite("phi0", phi0))
+    turn = np.exp(1.0j * phi0)
+    return 0.5 * (a1 + 1.0j * a2 * turn), 0.5 * (a1 + 1.0j * a2 * turn.conj())
+
+
+def averaged_rolling(theta: Real, a1: Real, a2: Real = 0.0, phi0: Real = 0.0, *, c: Real, eta: Real) -> AveragedRolling:
+    """Steady rolling under straight-line or elliptic base motion, by averaging.
+
+    Parameters
+    ----------
+    theta
+        Excitation frequency θ, positive.
+    a1, a2
+        Acceleration amplitudes along the two horizontal axes [g]. By default the base moves along axis 1.
+    phi0
+        Phase φ0 of axis 2 against axis 1 [rad].
+    c
+        Slenderness.
+    eta
+        Viscous friction η.
+
+    Returns
+    -------
+    AveragedRolling
+        Rolling in both senses, arrays of the broadcast shape. The azimuth of the contact point is, in the mean,
+        β = sense · (θτ + ψ) + azimuth_offset.
+
+    Raises
+    ------
+    ParameterError
+        If `theta` or `c` is not positive, `eta` is negative, or an amplitude or phase is not finite.
+
+    Notes
+    -----
+    (10): (8) with a0 = abs(p) forward and a0 = abs(q) backward; both are a1/2 for straight-line motion. Exact for
+    circular motion. Its small parameter is a1/c: at a1 = 0.4c the exact tilt angle stays within a third of the averaged
+    one, at a1 = 1.3c it does not, and the exact critical frequency lies 11 and 16 per cent higher (c = η = 0.1).
+
+    Examples
+    --------
+    >>> rolling = averaged_rolling(3.0, 0.13, c=0.1, eta=0.1)
+    >>> print(rolling.forward.upper.amplitude.round(4), rolling.backward.upper.amplitude.round(4))
+    0.0165 0.0165
+    """
+    theta, c, eta = positive("theta", theta), positive("c", c), not_negative("eta", eta)
+    p, q = circular_components(a1, a2, phi0)
+    return AveragedRolling(
+        forward=_rolling(theta, p, c, eta, sense=1),
+        backward=_rolling(theta, q, c, eta, sense=-1),
+    )
+
+
+def _rolling(theta: Real, component: ComplexArray, c: Real, eta: Real, *, sense: int) -> SteadyRolling:
+    rolling = steady_rolling(theta, np.abs(component), c=c, eta=eta)
+    offset = np.broadcast_to(np.angle(component), rolling.azimuth_offset.shape).copy()
+    return SteadyRolling(upper=rolling.upper, lower=rolling.lower, sense=sense, azimuth_offset=offset)

@@ -1,0 +1,76 @@
+"""The two backbones of a free-standing column: how the amplitude of its free motions depends on their frequency.
+
+A round column that rolls and a block that rocks in a plane have curves that look alike and are different: (5) and (3).
+"""
+
+import numpy as np
+
+from stylobate.theory.arguments import FloatArray, Real, finite, positive
+
+
+def rolling_backbone(omega: Real, c: Real) -> FloatArray:
+    """Tilt angle A at which the free column rolls steadily round its rim.
+
+    Parameters
+    ----------
+    omega
+        Rolling rate ω = β̇ of the contact point, either sense.
+    c
+        Slenderness.
+
+    Returns
+    -------
+    numpy.ndarray
+        Tilt angle [rad], of the broadcast shape.
+
+    Raises
+    ------
+    ParameterError
+        If `omega` is not finite or `c` is not positive.
+
+    Notes
+    -----
+    (5): A = c / (1 + ω²). It exists for every ω; without friction it is stable where ω² > 1/3.
+
+    Examples
+    --------
+    >>> print(rolling_backbone([0.0, 1.0, 3.0], c=0.1))
+    [0.1  0.05 0.01]
+    """
+    omega, c = finite("omega", omega), positive("c", c)
+    return c / (1.0 + omega**2)  # (5)
+
+
+def planar_backbone(omega: Real, c: Real) -> FloatArray:
+    """Amplitude A0 at which the free column rocks in a plane with the frequency ω.
+
+    Parameters
+    ----------
+    omega
+        Frequency ω = 2π / period of the rocking, positive.
+    c
+        Slenderness.
+
+    Returns
+    -------
+    numpy.ndarray
+        Largest tilt angle [rad], of the broadcast shape.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is not positive.
+
+    Notes
+    -----
+    (3): A0 = c [1 − 1/cosh(π/2ω)], written as c tanh x tanh(x/2) with x = π/2ω, which keeps its relative accuracy at
+    every frequency. Without friction, and with α kept in one plane: out of the plane this motion is unstable.
+
+    Examples
+    --------
+    >>> print(planar_backbone([0.5, 1.0, 3.0], c=0.1).round(4))
+    [0.0914 0.0601 0.0123]
+    """
+    omega, c = positive("omega", omega), positive("c", c)
+    quarter_period = 0.5 * np.pi / omega
+    return c * np.tanh(quarter_period) * np.tanh(0.5 * quarter_period)  # (3)

@@ -1,0 +1,185 @@
+"""The critical frequency θ*, below which steady rolling on a circularly moving base is unstable, for any friction.
+
+The boundary A = c/x* of `stylobate.theory.stability`, put into (8), gives the critical amplitude in closed form,
+
+    a0*/c = √[(1 + θ² − x*)² + η²θ²] / x*,    x* = 4 / (1 + √(1 + 4/(4θ² + η²))).
+
+On it a pair of eigenvalues ±iΩ crosses the imaginary axis, Ω² = q/2. The curve begins at q = p0 = 0, on the fold at the
+lower end of the band without rolling (a Bogdanov–Takens point), where 3θ⁴ + (2 + η²)θ² = 1. From there a0* rises with θ
+without bound: seen on a fine grid for every η from 0 to 100. So θ* exists, and is unique, for every amplitude above the
+one at that point. For a smaller amplitude there is none: rolling is unstable at all frequencies below the band without
+rolling and stable at all frequencies above it.
+"""
+
+import numpy as np
+
+from stylobate.theory.arguments import FloatArray, Real, not_negative, positive
+from stylobate.theory.stability import critical_ratio
+
+_BISECTIONS = 64  # from an interval as long as the root is large to rounding
+
+
+def critical_amplitude(theta: Real, *, c: Real, eta: Real) -> FloatArray:
+    """Base acceleration amplitude at which the excitation frequency θ is the critical one.
+
+    Parameters
+    ----------
+    theta
+        Excitation frequency θ, positive.
+    c
+        Slenderness.
+    eta
+        Viscous friction η.
+
+    Returns
+    -------
+    numpy.ndarray
+        Amplitude a0* [g], of the broadcast shape: the upper branch of steady rolling is stable for a0 < a0*. NaN below
+        the frequency at which the curve begins; there no amplitude makes rolling stable.
+
+    Raises
+    ------
+    ParameterError
+        If `theta` or `c` is not positive or `eta` is negative.
+
+    Notes
+    -----
+    From (7), (8) and Routh–Hurwitz; see the module's notes.
+
+    Examples
+    --------
+    >>> print(critical_amplitude([0.5, 1.0, 1.3971075892], c=0.1, eta=0.1).round(9))
+    [       nan 0.02152925 0.065     ]
+    """
+    theta, c, eta = positive("theta", theta), positive("c", c), not_negative("eta", eta)
+    begins = _least_frequency(eta)
+    return np.where(theta >= begins, c * _amplitude_ratio(theta, eta), np.nan)
+
+
+def critical_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
+    """Critical frequency θ* above which steady rolling on a circularly moving base is stable.
+
+    Parameters
+    ----------
+    a0
+        Acceleration amplitude of the base [g].
+    c
+        Slenderness.
+    eta
+        Viscous friction η.
+
+    Returns
+    -------
+    numpy.ndarray
+        Critical frequency, of the broadcast shape. NaN where a0 lies below the least critical amplitude: rolling then
+        changes its stability nowhere but across the band of `rolling_gap`. At amplitudes a little above the least one
+        that band is still there and interrupts the stable range.
+
+    Raises
+    ------
+    ParameterError
+        If `c` is not positive, or `a0` or `eta` is negative.
+
+    Notes
+    -----
+    The inverse of `critical_amplitude`, bisected to rounding between the start of the curve and √(1 + 2a0/c). For
+    straight-line base motion a0 = a1/2 gives the value of averaging, which the exact motion does not follow closely.
+
+    Examples
+    --------
+    >>> print(critical_frequency([0.001, 0.02, 0.065], c=0.1, eta=0.1).round(10))
+    [       nan 0.98130802 1.39710759]
+    """
+    ratio, eta = np.broadcast_arrays(not_negative("a0", a0) / positive("c", c), not_negative("eta", eta))
+    low, high = _least_frequency(eta), np.sqrt(1.0 + 2.0 * ratio)  # x* < 2 bounds θ*
+    exists = ratio >= _amplitude_ratio(low, eta)
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        beyond = _amplitude_ratio(middle, eta) > ratio
+        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+    return np.where(exists, 0.5 * (low + high), np.nan)
+
+
+def crossing_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
+    """Frequency Ω with which steady rolling begins to be modulated at the critical frequency.
+
+    Parameters
+    ----------
+    a0
+        Acceleration amplitude of the base [g].
+    c
+        Slenderness.
+    eta
+        Viscous friction η.
+
+    Returns
+    -------
+    numpy.ndarray
+        Imaginary part Ω of the pair of eigenvalues that crosses at θ*, in the frame that turns with the base motion;
+        NaN where there is no θ*.
+
+    Raises
+    ------
+    ParameterError
+        If `c` is not positive, or `a0` or `eta` is negative.
+
+    Notes
+    -----
+    Ω² = q/2 = θ*² − 1 + x*/2, from the odd part of the characteristic polynomial.
+
+    Examples
+    --------
+    >>> print(crossing_frequency([0.02, 0.065], c=0.1, eta=0.1).round(4))
+    [0.8872 1.3598]
+    """
+    theta = critical_frequency(a0, c=c, eta=eta)
+    eta = not_negative("eta", eta)
+    return np.sqrt(np.maximum(theta**2 - 1.0 + 0.5 * critical_ratio(theta, eta), 0.0))
+
+
+def critical_frequency_frictionless(a0: Real, *, c: Real) -> FloatArray:
+    """Critical frequency θ* of the column without friction, in closed form.
+
+    Parameters
+    ----------
+    a0
+        Acceleration amplitude of the base [g].
+    c
+        Slenderness.
+
+    Returns
+    -------
+    numpy.ndarray
+        Critical frequency, of the broadcast shape: from 1/√3 as a0 → 0 upward without bound.
+
+    Raises
+    ------
+    ParameterError
+        If `c` is not positive or `a0` is negative.
+
+    Notes
+    -----
+    θ* = (1+√σ)/√(4 − (1+√σ)²) with σ = a0/(a0 + c): two imaginary pairs of eigenvalues of (7) meet (Krein). Above θ*
+    rolling is neutrally stable. Weak friction moves θ* little: at c = η = 0.1 by a quarter to one per cent.
+
+    Examples
+    --------
+    >>> print(critical_frequency_frictionless([0.02, 0.065], c=0.1).round(5))
+    [0.99162 1.40046]
+    """
+    amplitude, c = not_negative("a0", a0), positive("c", c)
+    root = np.sqrt(amplitude / (amplitude + c))
+    below_two = c / (amplitude + c) / (1.0 + root)  # 1 − √σ without cancellation
+    return (1.0 + root) / np.sqrt(below_two * (3.0 + root))
+
+
+def _least_frequency(eta: FloatArray) -> FloatArray:
+    """Return θ at which the critical curve begins, from 3θ⁴ + (2 + η²)θ² = 1."""
+    half = 2.0 + eta**2
+    return np.sqrt(2.0 / (half + np.sqrt(half**2 + 12.0)))
+
+
+def _amplitude_ratio(theta: FloatArray, eta: FloatArray) -> FloatArray:
+    """Return a0*/c."""
+    x = critical_ratio(theta, eta)
+    return np.hypot(1.0 + theta**2 - x, eta * theta) / x

@@ -1,0 +1,150 @@
+"""Free motion without friction between its turning points: the tilt oscillates while the contact point runs on (11)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stylobate.theory.arguments import FloatArray, Real, finite, positive
+from stylobate.theory.quadrature import quarter_turn
+
+_NEWTON_STEPS = 64  # a double root is approached by halving: enough to go from 1 to rounding
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FreeMotion:
+    """Free motions of the column without friction, arrays of one shape; NaN where the column overturns.
+
+    Parameters
+    ----------
+    smallest_tilt, largest_tilt
+        Turning points A1 ≤ A2 of the tilt angle [rad].
+    energy
+        E = ½(Ȧ² + A²β̇²) + cA − ½A², also where the column overturns.
+    angular_momentum
+        ℓ = A²β̇, with the sign of the rolling rate, also where the column overturns.
+    period
+        Time τ from one largest tilt to the next.
+    azimuth_advance
+        How far the contact point travels round the rim in that time [rad], with the sign of the rolling rate.
+    """
+
+    smallest_tilt: FloatArray
+    largest_tilt: FloatArray
+    energy: FloatArray
+    angular_momentum: FloatArray
+    period: FloatArray
+    azimuth_advance: FloatArray
+
+
+def free_motion(tilt: Real, rolling_rate: Real, c: Real) -> FreeMotion:
+    """Free motion without friction, started at a turning point of the tilt.
+
+    Parameters
+    ----------
+    tilt
+        Tilt angle A at the start [rad], positive; its rate Ȧ is zero there.
+    rolling_rate
+        Rolling rate β̇ at the start, either sense.
+    c
+        Slenderness.
+
+    Returns
+    -------
+    FreeMotion
+        Turning points, integrals, period and advance of the azimuth, each of the broadcast shape.
+
+    Raises
+    ------
+    ParameterError
+        If `rolling_rate` is not finite or another argument is not positive.
+
+    Notes
+    -----
+    From (11), Ä = ℓ²/A³ + A − c and β̇ = ℓ/A². In units of c the turning points are roots of the quartic
+    A⁴ − 2A³ + 2EA² − ℓ² = (A − A1)(A − A2)(A − A3)(A − A4) with A4 < 0 < A1 ≤ A2 < A3, and
+    ℓ² = A1²A2²(2 − A1 − A2)/(A1 + A2). The motion is bounded if the start lies below A3. A start on the separatrix
+    A2 = A3, which includes steady rolling at ω² ≤ 1/3, counts as overturning.
+
+    One period holds one passage near the upright. As ℓ → 0 the azimuth turns by π in it, so the limit of the azimuth is
+    the jump from one side of the upright to the other, and `planar_free_period` is two of these periods.
+    At a rolling rate of zero the advance is reported as +π.
+
+    Examples
+    --------
+    >>> motion = free_motion(0.05, [0.0, 0.5, 1.0], c=0.1)
+    >>> print(motion.smallest_tilt.round(4))
+    [0.     0.0179 0.05  ]
+    >>> print(motion.azimuth_advance.round(4))
+    [3.1416 3.869  4.4429]
+    """
+    tilt, rate, c = np.broadcast_arrays(positive("tilt", tilt), finite("rolling_rate", rolling_rate), positive("c", c))
+    start = tilt / c
+    partner = _partner_turning_point(start, np.abs(rate))
+    period, advance = _period_and_advance(np.minimum(start, partner), np.maximum(start, partner))
+    return FreeMotion(
+        smallest_tilt=c * np.minimum(start, partner),
+        largest_tilt=c * np.maximum(start, partner),
+        energy=0.5 * (tilt * rate) ** 2 + c * tilt - 0.5 * tilt**2,
+        angular_momentum=tilt**2 * rate,
+        period=period,
+        azimuth_advance=np.where(rate < 0.0, -advance, advance),
+    )
+
+
+def _partner_turning_point(start: FloatArray, rate: FloatArray) -> FloatArray:
+    """Return the other turning point in units of c, NaN where the motion is unbounded.
+
+    A' is a turning point if A'²(2 − A0 − A') = A0²w²(A0 + A'). With A' = A0 w/Z that is the convex cubic
+    F(Z) = Z³ + wZ² − gZ + w = 0, g = 2/A0 − 1, for Z > 0: the partner belongs to its larger root, A3 to the smaller,
+    and the start itself stands at Z = w. Newton from above the larger root descends to it without fail.
+    """
+    slope = 2.0 / start - 1.0
+
+    def cubic(z: FloatArray) -> FloatArray:
+        return ((z + rate) * z - slope) * z + rate
+
+    at_start = rate * (2.0 * rate**2 - slope + 1.0)
+    lowest = (np.sqrt(rate**2 + 3.0 * np.maximum(slope, 0.0)) - rate) / 3.0
+    start_is_largest = (slope > 0.0) & (2.0 * rate**2 - slope + 1.0 < 0.0)
+    start_is_smallest = (slope > 0.0) & (at_start >= 0.0) & (lowest < rate) & (cubic(lowest) < 0.0)
+    bounded = start_is_largest | start_is_smallest
+    z = np.where(start_is_smallest, rate, np.sqrt(np.maximum(slope, 1.0)))
+    z = np.where(bounded, z, 1.0)
+    for _ in range(_NEWTON_STEPS):
+        steepness = (3.0 * z + 2.0 * rate) * z - slope
+        falls = bounded & (steepness > 0.0) & (cubic(z) > 0.0)
+        z = z - np.where(falls, cubic(z), 0.0) / np.where(falls, steepness, 1.0)
+    return np.where(bounded, start * rate / z, np.nan)
+
+
+def _period_and_advance(a1: FloatArray, a2: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the period and the advance of the azimuth between the turning points a1 ≤ a2 in units of c.
+
+    With A² = A1²cos²φ + A2²sin²φ the half period is the integral over a quarter turn of
+    √[(A + A1)(A + A2) / ((A3 − A)(A − A4))]; with 1/A² = cos²χ/A1² + sin²χ/A2², which undoes the peak of β̇ = ℓ/A²
+    at the passage of the upright, half the advance is ℓ/(A1 A2) times the integral of the same root over χ.
+    """
+    others = 2.0 - a1 - a2  # A3 + A4
+    product = a1 * a2 * others / (a1 + a2)  # −A3 A4
+    a3 = 0.5 * (others + np.sqrt(others**2 + 4.0 * product))
+    a4 = -product / a3
+    spread = (a2 - a1) * (a1 + a2)
+
+    def root(a: FloatArray, rise: FloatArray, fall: FloatArray) -> FloatArray:
+        """Evaluate the root where A² − A1² = rise and A2² − A² = fall, both given free of cancellation."""
+        below_a3 = (a3 - a2) + fall / (a2 + a)
+        above_a4 = (a1 - a4) + rise / (a + a1)
+        return np.sqrt((a + a1) * (a + a2) / (below_a3 * above_a4))
+
+    upright = a1 == 0.0
+    half_period, half_advance = np.zeros_like(a1), np.zeros_like(a1)
+    for sine, cosine, weight in quarter_turn():  # one node at a time: memory stays that of the arguments
+        a = np.hypot(a1 * cosine, a2 * sine)
+        half_period = half_period + weight * root(a, spread * sine**2, spread * cosine**2)
+        squeeze = np.hypot(a2 * cosine, a1 * sine)  # A1 A2 / A
+        a = np.where(upright, a2, a2 * (a1 / squeeze))
+        rise, fall = spread * (sine * a1 / squeeze) ** 2, spread * (cosine * a2 / squeeze) ** 2
+        with np.errstate(divide="ignore", invalid="ignore"):  # A1 = 0, whose limit is put in below
+            half_advance = half_advance + weight * root(a, rise, fall)
+    advance = np.where(upright, np.pi, 2.0 * np.sqrt(others / (a1 + a2)) * half_advance)
+    return 2.0 * half_period, advance

@@ -1,0 +1,270 @@
+"""Rocking in a plane under straight-line base motion: the symmetric orbits of the forcing period, in closed form.
+
+Between two passages of the upright the equation (1) is linear. A motion that leaves the upright at the speed v0, comes
+back after half a forcing period H = π/θ at the speed −v0 and then repeats with the opposite sign obeys, with the rates
+λ = (η + √(η² + 4))/2 of decay and 1/λ of growth,
+
+    f  = c [tanh(λH/2) − λ² tanh(H/2λ)] / (1 + λ²),              the forced part of α at the passage,
+    v0 = cλ [tanh(λH/2) + tanh(H/2λ)] / (1 + λ²) ± θ√(Z² − f²),  Z = a1/√((1 + θ²)² + η²θ²).
+
+The amplitude a1 enters only through Z. Without friction f = 0.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, not_negative, positive
+
+_NODES = 256  # Chebyshev intervals over half a period; they crowd where the exponentials live
+_BISECTIONS = 60
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanarOrbit:
+    """Symmetric rocking orbits of the forcing period, arrays of one shape; NaN (and False) where there is none.
+
+    Parameters
+    ----------
+    amplitude
+        Largest tilt angle [rad].
+    phase
+        Phase of the base acceleration a1 cos(θτ + phase) when the column passes the upright towards positive tilt at
+        τ = 0 [rad], in (−π, π].
+    crossing_velocity
+        Tilt rate v0 at that passage.
+    exists
+        Whether there is such an orbit.
+    multipliers
+        The two multipliers of the half-period map within the plane, complex, along a last axis of length 2; squared
+        they are those of the period. Out of the plane there are none, see `planar_kick_slope`.
+    stable_in_plane
+        Whether no deviation within the plane grows. Without friction nothing decays either: True then means neutrally
+        stable.
+    """
+
+    amplitude: FloatArray
+    phase: FloatArray
+    crossing_velocity: FloatArray
+    exists: BoolArray
+    multipliers: ComplexArray
+    stable_in_plane: BoolArray
+
+    def start(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Tilt angle, tilt rate and phase of the base acceleration from which the orbit can be integrated."""
+        return np.zeros_like(self.phase), self.crossing_velocity, self.phase
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanarForcedResponse:
+    """Both symmetric rocking orbits of the forcing period.
+
+    Parameters
+    ----------
+    fast
+        The orbit that passes the upright at the higher speed, + in the formula for v0: tilt against base acceleration.
+    slow
+        The orbit that passes it at the lower speed.
+    """
+
+    fast: PlanarOrbit
+    slow: PlanarOrbit
+
+
+def planar_forced_response(theta: Real, a1: Real, *, c: Real, eta: Real) -> PlanarForcedResponse:
+    """Symmetric rocking in a plane with the period of a straight-line base motion.
+
+    Parameters
+    ----------
+    theta
+        Excitation frequency θ, positive.
+    a1
+        Acceleration amplitude of the base [g].
+    c
+        Slenderness.
+    eta
+        Viscous friction η.
+
+    Returns
+    -------
+    PlanarForcedResponse
+        Both orbits, arrays of the broadcast shape.
+
+    Raises
+    ------
+    ParameterError
+        If `theta` or `c` is not positive, or `a1` or `eta` is negative.
+
+    Notes
+    -----
+    From (1) with α2 = 0; derivation in the module's notes. An orbit exists if abs(f) ≤ Z, v0 > 0 and the column stays
+    on its side for the whole half period. The last is checked at the least tilt between two maxima, which is looked for
+    on 257 Chebyshev nodes and then refined. Orbits with other periods or without the symmetry are not looked for.
+
+    Without friction and as a1 → 0 both orbits become the free rocking (2), (3). At a1 = 0 their phase is arbitrary.
+
+    Examples
+    --------
+    >>> response = planar_forced_response(3.0, 0.13, c=0.1, eta=0.1)
+    >>> print(response.fast.amplitude.round(5), response.fast.stable_in_plane)
+    0.02528 True
+    """
+    theta, a1, c, eta = np.broadcast_arrays(
+        positive("theta", theta), not_negative("a1", a1), positive("c", c), not_negative("eta", eta)
+    )
+    return PlanarForcedResponse(fast=_orbit(theta, a1, c, eta, 1.0), slow=_orbit(theta, a1, c, eta, -1.0))
+
+
+def planar_kick_slope(crossing_velocity: Real, c: Real) -> FloatArray:
+    """How the kick out of the plane at a passage of the upright depends on the distance from it.
+
+    Parameters
+    ----------
+    crossing_velocity
+        Speed v of the passage, positive.
+    c
+        Slenderness.
+
+    Returns
+    -------
+    numpy.ndarray
+        Slope 2c/v of Δẏ/y0 against ln(y0), of the broadcast shape, where y0 is the tilt across the plane at the passage
+        and Δẏ the change of its rate.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is not positive.
+
+    Notes
+    -----
+    From (1): Δẏ = −(2c/v) y0 [ln(1/y0) + O(1)] as y0 → 0. The relative kick grows without bound the smaller the offset,
+    so the passage has no linearisation across the plane, the orbit no finite multiplier there, and rocking in a plane
+    is unstable with friction and forcing too.
+
+    Examples
+    --------
+    >>> print(planar_kick_slope(0.05, c=0.1))
+    4.0
+    """
+    return 2.0 * positive("c", c) / positive("crossing_velocity", crossing_velocity)
+
+
+def _orbit(theta: FloatArray, a1: FloatArray, c: FloatArray, eta: FloatArray, branch: float) -> PlanarOrbit:
+    arc = _arc(theta, a1, c, eta, branch)
+    top, bottom = arc.extremes()
+    exists = (arc.speed > 0.0) & (top > 0.0) & (bottom > 0.0)
+    multipliers, stable = _in_plane(theta, c, eta, np.where(exists, arc.speed, np.nan))
+    return PlanarOrbit(
+        amplitude=np.where(exists, top, np.nan),
+        phase=np.where(exists, _wrapped(arc.lag - np.arctan2(eta * theta, 1.0 + theta**2)), np.nan),
+        crossing_velocity=np.where(exists, arc.speed, np.nan),
+        exists=exists,
+        multipliers=multipliers,
+        stable_in_plane=stable,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Arc:
+    """The half period on the positive side: α = c + C1 e^{(τ−H)/λ} + C2 e^{−λτ} + Z cos(θτ + lag).
+
+    The growing exponential is counted from its end, so that nothing overflows however long the half period is.
+    """
+
+    theta: FloatArray
+    c: FloatArray
+    half_period: FloatArray
+    decay: FloatArray
+    growing: FloatArray
+    decaying: FloatArray
+    size: FloatArray
+    lag: FloatArray
+    speed: FloatArray
+
+    def tilt(self, tau: FloatArray) -> FloatArray:
+        """Tilt angle at the times τ along a leading axis."""
+        growing, decaying = self._exponentials(tau)
+        return self.c + growing + decaying + self.size * np.cos(self.theta * tau + self.lag)
+
+    def tilt_rate(self, tau: FloatArray) -> FloatArray:
+        """Tilt rate at the times τ along a leading axis."""
+        growing, decaying = self._exponentials(tau)
+        harmonic = -self.theta * self.size * np.sin(self.theta * tau + self.lag)
+        return growing / self.decay - self.decay * decaying + harmonic
+
+    def _exponentials(self, tau: FloatArray) -> tuple[FloatArray, FloatArray]:
+        growing = self.growing * np.exp((tau - self.half_period) / self.decay)
+        return growing, self.decaying * np.exp(-self.decay * tau)
+
+    def extremes(self) -> tuple[FloatArray, FloatArray]:
+        """Return the highest maximum and the lowest minimum of the tilt inside the half period (+∞ if no minimum)."""
+        fraction = 0.5 * (1.0 - np.cos(np.pi * np.arange(_NODES + 1) / _NODES))
+        tau = fraction.reshape(-1, *([1] * self.half_period.ndim)) * self.half_period
+        tilt, rate = self.tilt(tau), self.tilt_rate(tau)
+        peaks = (rate[:-1] > 0.0) & (rate[1:] <= 0.0)
+        dips = (rate[:-1] <= 0.0) & (rate[1:] > 0.0)
+        highest = np.argmax(np.where(peaks, np.maximum(tilt[:-1], tilt[1:]), -np.inf), axis=0)
+        lowest = np.argmin(np.where(dips, np.minimum(tilt[:-1], tilt[1:]), np.inf), axis=0)
+        top = np.where(peaks.any(axis=0), self._refined(tau, highest, 1.0), np.nan)
+        bottom = np.where(dips.any(axis=0), self._refined(tau, lowest, -1.0), np.inf)
+        return top, bottom
+
+    def _refined(self, tau: FloatArray, index: npt.NDArray[np.intp], direction: float) -> FloatArray:
+        """Bisect the tilt rate between two nodes, falling through zero if `direction` is +1, and return the tilt."""
+        low = np.take_along_axis(tau, index[np.newaxis], axis=0)[0]
+        high = np.take_along_axis(tau, index[np.newaxis] + 1, axis=0)[0]
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (low + high)
+            before = direction * self.tilt_rate(middle) > 0.0
+            low, high = np.where(before, middle, low), np.where(before, high, middle)
+        return self.tilt(0.5 * (low + high))
+
+
+def _arc(theta: FloatArray, a1: FloatArray, c: FloatArray, eta: FloatArray, branch: float) -> _Arc:
+    """Solve α(0) = α(H) = 0 and α̇(H) = −α̇(0), three linear equations in C1, C2 and f."""
+    half_period, decay = np.pi / theta, 0.5 * (eta + np.hypot(eta, 2.0))
+    up, down = np.tanh(0.5 * half_period / decay), np.tanh(0.5 * half_period * decay)
+    share = c / (1.0 + decay**2)
+    size = a1 / np.hypot(1.0 + theta**2, eta * theta)
+    forced = share * (down - decay**2 * up)
+    square = (size - forced) * (size + forced)
+    across = branch * np.sqrt(np.where(square >= 0.0, square, np.nan))
+    return _Arc(
+        theta=theta,
+        c=c,
+        half_period=half_period,
+        decay=decay,
+        growing=-share * decay**2 * (1.0 + up),
+        decaying=-share * (1.0 + down),
+        size=size,
+        lag=np.arctan2(-across, forced),
+        speed=share * decay * (up + down) + theta * across,
+    )
+
+
+def _in_plane(theta: FloatArray, c: FloatArray, eta: FloatArray, speed: FloatArray) -> tuple[ComplexArray, BoolArray]:
+    """Multipliers of the half-period map, its smooth part followed by the jump of the weight at the passage.
+
+    At the passage the acceleration jumps by 2c while the tilt falls at the speed v0, so the map of (α, α̇) is
+    −[[1, 0], [−2c/v0, 1]] e^{MH}: determinant e^{−ηH}, trace as below. The sign is the symmetry of the orbit.
+    """
+    half_period, width = np.pi / theta, np.hypot(eta, 2.0)
+    growth = 2.0 / (width + eta)
+    shrink = np.exp(-width * half_period)
+    kick = 2.0 * c / (speed * width)
+    scaled = -((1.0 + shrink) - kick * (1.0 - shrink))  # trace · e^{−H/λ}
+    determinant = np.exp(-eta * half_period)
+    with np.errstate(over="ignore", invalid="ignore"):  # beyond the largest float at very low θ; NaN without an orbit
+        stretch = np.exp(growth * half_period)
+        half = (0.5 * scaled).astype(np.complex128)
+        root = np.sqrt(half**2 - shrink)
+        larger = stretch * (half + np.where(half.real < 0.0, -root, root))
+        multipliers = np.stack([larger, determinant / larger], axis=-1)
+        return multipliers, np.abs(stretch * scaled) < 1.0 + determinant
+
+
+def _wrapped(angle: FloatArray) -> FloatArray:
+    """Return the angle in (−π, π]."""
+    return np.pi - np.mod(np.pi - angle, 2.0 * np.pi)

@@ -1,0 +1,179 @@
+"""Steady rolling on a circularly moving base, the exact solution (8) of (7), and the frequencies it leaves out."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, not_negative, positive
+from stylobate.theory.stability import rolling_eigenvalues, satisfies_routh_hurwitz
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RollingBranch:
+    """One branch of steady rolling, arrays of one shape; NaN (and False) where it does not exist.
+
+    Parameters
+    ----------
+    amplitude
+        Tilt angle A [rad].
+    phase
+        Phase ψ by which the contact point leads the base acceleration [rad], in (−π, π].
+    exists
+        Whether there is such a solution.
+    stable
+        Whether no deviation grows (Routh–Hurwitz). Without friction nothing decays either: True then means neutrally
+        stable, all eigenvalues imaginary and distinct.
+    eigenvalues
+        The four eigenvalues of the Jacobian of (7), complex, along a last axis of length 4.
+    """
+
+    amplitude: FloatArray
+    phase: FloatArray
+    exists: BoolArray
+    stable: BoolArray
+    eigenvalues: ComplexArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SteadyRolling:
+    """Steady rolling in one sense: the azimuth of the contact point is β = sense · (θτ + ψ) + azimuth_offset.
+
+    Parameters
+    ----------
+    upper
+        Branch A+, phase near 0 away from the folds. Stable above the critical frequency.
+    lower
+        Branch A−, phase near ±π away from the folds. Always a saddle.
+    sense
+        +1 anticlockwise, −1 clockwise.
+    azimuth_offset
+        Where the driving circular motion points at τ = 0 [rad].
+    """
+
+    upper: RollingBranch
+    lower: RollingBranch
+    sense: int = 1
+    azimuth_offset: FloatArray
+
+
+def steady_rolling(theta: Real, a0: Real, *, c: Real, eta: Real) -> SteadyRolling:
+    """Steady rolling of the column round its rim on a base that moves in a circle.
+
+    Parameters
+    ----------
+    theta
+        Excitation frequency θ, positive.
+    a0
+        Acceleration amplitude of the base [g].
+    c
+        Slenderness.
+    eta
+        Viscous friction η.
+
+    Returns
+    -------
+    SteadyRolling
+        Both branches, arrays of the broadcast shape, for the base acceleration a0 (cos θτ, sin θτ).
+
+    Raises
+    ------
+    ParameterError
+        If `theta` or `c` is not positive, or `a0` or `eta` is negative.
+
+    See Also
+    --------
+    rolling_gap : where neither branch exists.
+    critical_frequency : where the upper branch becomes stable.
+
+    Notes
+    -----
+    (8): with D = (1+θ²)² + η²θ² the amplitudes are the roots of D A² − 2c(1+θ²) A + c² − a0² = 0, the lower from their
+    product, since it is a small difference when a0 is near c. The lower branch exists for a0 < c only. The phase
+    follows from a0 cos ψ = A(1+θ²) − c and a0 sin ψ = ηθA; it is arbitrary (returned as 0 and π) at a0 = 0, where both
+    branches are the backbone (5) and exist only without friction.
+
+    Stability is decided in closed form, see `stylobate.theory.stability`, and needs no eigenvalues.
+
+    Examples
+    --------
+    >>> rolling = steady_rolling([1.3, 1.5], 0.065, c=0.1, eta=0.1)
+    >>> print(rolling.upper.amplitude.round(6), rolling.upper.stable)
+    [0.061157 0.050632] [False  True]
+    """
+    theta, a, c, eta = np.broadcast_arrays(
+        positive("theta", theta), not_negative("a0", a0) / positive("c", c), positive("c", c), not_negative("eta", eta)
+    )
+    k = 1.0 + theta**2
+    drag = eta * theta
+    d = k**2 + drag**2
+    # a²D − η²θ² as a product, or the folds would be lost in rounding
+    square = (a * np.sqrt(d) - drag) * (a * np.sqrt(d) + drag)
+    root = np.sqrt(np.where(square >= 0.0, square, np.nan))
+    upper = (k + root) / d  # (8), in units of c
+    lower = (1.0 - a) * (1.0 + a) / (d * upper)
+    lower = np.where(lower > 0.0, lower, np.nan)
+    return SteadyRolling(
+        upper=_branch(theta, c, eta, upper, root, (k * root - drag**2) / d),
+        lower=_branch(theta, c, eta, lower, -root, -(k * root + drag**2) / d),
+        azimuth_offset=np.zeros_like(a),
+    )
+
+
+def _branch(
+    theta: FloatArray, c: FloatArray, eta: FloatArray, ratio: FloatArray, root: FloatArray, push: FloatArray
+) -> RollingBranch:
+    """Describe the branch A = c · ratio, where a0 cos ψ = c · push and p0 = root/ratio."""
+    exists = np.isfinite(ratio)
+    x = 1.0 / ratio
+    q = 2.0 * theta**2 - 2.0 + x
+    p0 = x * root
+    return RollingBranch(
+        amplitude=c * ratio,
+        phase=np.arctan2(eta * theta * ratio, push),
+        exists=exists,
+        stable=satisfies_routh_hurwitz(theta, x, eta, q, p0),
+        eigenvalues=rolling_eigenvalues(eta, q, p0),
+    )
+
+
+def rolling_gap(a0: Real, *, c: Real, eta: Real) -> tuple[FloatArray, FloatArray]:
+    """Band of excitation frequencies in which friction leaves no steady rolling.
+
+    Parameters
+    ----------
+    a0
+        Acceleration amplitude of the base [g].
+    c
+        Slenderness.
+    eta
+        Viscous friction η.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        Lower and upper end of the band, the folds at which both branches meet; NaN where rolling exists at every
+        frequency, a0 ≥ ηc/√(4 + η²). With friction and no base motion the band is (0, ∞).
+
+    Raises
+    ------
+    ParameterError
+        If `c` is not positive, or `a0` or `eta` is negative.
+
+    Notes
+    -----
+    The root in (8) vanishes where θ + 1/θ = η√(c² − a0²)/a0: the ends are reciprocal.
+
+    Examples
+    --------
+    >>> low, high = rolling_gap(0.01, c=0.1, eta=0.3)
+    >>> print(low.round(4), high.round(4))
+    0.3846 2.6004
+    """
+    a, eta = np.broadcast_arrays(not_negative("a0", a0) / positive("c", c), not_negative("eta", eta))
+    inside = a < eta / np.sqrt(4.0 + eta**2)
+    still = inside & (a == 0.0)
+    ratio = np.where(inside & ~still, a, 1.0)
+    total = np.where(still, np.inf, eta * np.sqrt(np.maximum((1.0 - ratio) * (1.0 + ratio), 0.0)) / ratio)
+    total = np.where(inside, np.maximum(total, 2.0), np.nan)
+    high = 0.5 * (total + np.sqrt((total - 2.0) * (total + 2.0)))
+    return 1.0 / high, high

@@ -1,0 +1,98 @@
+"""Circular base motion seen from the frame that turns with it: an autonomous system of four equations (7).
+
+The same equations with a0 = a1/2 are the averaged slow flow of straight-line base motion (10).
+"""
+
+import numpy as np
+
+from stylobate.errors import ParameterError
+from stylobate.theory.arguments import FloatArray, Real
+
+STATE_LENGTH = 4
+
+
+def rotating_frame_rates(state: Real, theta: Real, a0: Real, *, c: Real, eta: Real) -> FloatArray:
+    """Right-hand side of (7), the column on a circularly moving base.
+
+    Parameters
+    ----------
+    state
+        Tilt rate μ, rolling rate ω, tilt angle A > 0 and phase ψ = β − θτ, along the first axis: shape (4, ...).
+    theta
+        Excitation frequency θ.
+    a0
+        Acceleration amplitude of the base [g].
+    c
+        Slenderness.
+    eta
+        Viscous friction η.
+
+    Returns
+    -------
+    numpy.ndarray
+        Rates of the state in the same order, shape (4, ...). Nothing is checked but the length of the first axis: this
+        is what an integrator calls. Not defined at A = 0.
+
+    Raises
+    ------
+    ParameterError
+        If the first axis of `state` does not have four entries.
+
+    Examples
+    --------
+    >>> print(rotating_frame_rates([0.0, 1.0, 0.05, 0.0], 1.0, 0.0, c=0.1, eta=0.0))
+    [0. 0. 0. 0.]
+    """
+    mu, omega, tilt, psi = _components(state)
+    theta, a0, c, eta = (np.asarray(value, dtype=np.float64) for value in (theta, a0, c, eta))
+    rates = (
+        tilt * (1.0 + omega**2) - c - eta * mu - a0 * np.cos(psi),  # (7)
+        -2.0 * mu * omega / tilt - eta * omega + a0 / tilt * np.sin(psi),
+        mu,
+        omega - theta,
+    )
+    return np.stack(np.broadcast_arrays(*rates))
+
+
+def rotating_frame_jacobian(state: Real, a0: Real, *, eta: Real) -> FloatArray:
+    """Jacobian of (7) with respect to the state (μ, ω, A, ψ), at any state.
+
+    Parameters
+    ----------
+    state
+        As for `rotating_frame_rates`, shape (4, ...).
+    a0
+        Acceleration amplitude of the base [g].
+    eta
+        Viscous friction η.
+
+    Returns
+    -------
+    numpy.ndarray
+        Matrices along the last two axes, shape (..., 4, 4), as `numpy.linalg` takes them. θ and c do not enter.
+
+    Raises
+    ------
+    ParameterError
+        If the first axis of `state` does not have four entries.
+    """
+    mu, omega, tilt, psi = _components(state)
+    a0, eta = (np.asarray(value, dtype=np.float64) for value in (a0, eta))
+    push, drive = a0 * np.cos(psi), a0 * np.sin(psi)
+    rows = (
+        (-eta, 2.0 * tilt * omega, 1.0 + omega**2, drive),
+        (-2.0 * omega / tilt, -2.0 * mu / tilt - eta, (2.0 * mu * omega - drive) / tilt**2, push / tilt),
+        (1.0, 0.0, 0.0, 0.0),
+        (0.0, 1.0, 0.0, 0.0),
+    )
+    entries = np.broadcast_arrays(*(entry for row in rows for entry in row))
+    matrices = np.stack(entries, axis=-1)
+    return matrices.reshape(*matrices.shape[:-1], STATE_LENGTH, STATE_LENGTH)
+
+
+def _components(state: Real) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    array = np.asarray(state, dtype=np.float64)
+    if array.ndim == 0 or len(array) != STATE_LENGTH:
+        message = f"state must have the four entries (μ, ω, A, ψ) along its first axis, got the shape {array.shape}"
+        raise ParameterError(message)
+    return array[0], array[1], array[2], array[3]

@@ -1,0 +1,56 @@
+"""Periodic functions on an odd number of equally spaced points: their derivative, and their values in between."""
+
+import numpy as np
+
+from stylobate.theory.arguments import FloatArray
+
+
+def differentiation_matrix(points: int) -> FloatArray:
+    """Matrix that differentiates a function of period 1 given at j/points, exact for its trigonometric interpolant.
+
+    Parameters
+    ----------
+    points
+        Number of points, odd.
+
+    Returns
+    -------
+    numpy.ndarray
+        Matrix D of shape (points, points), antisymmetric; the derivative is D @ values.
+
+    References
+    ----------
+    L. N. Trefethen, Spectral Methods in MATLAB, SIAM 2000, chapter 3.
+    """
+    index = np.arange(points)
+    apart = index[:, np.newaxis] - index
+    sine = np.sin(np.pi * apart / points)
+    np.fill_diagonal(sine, np.inf)
+    return np.pi * np.where(apart % 2 == 0, 1.0, -1.0) / sine
+
+
+def interpolated(values: FloatArray, fraction: FloatArray) -> FloatArray:
+    """Values of the trigonometric interpolant at any fraction of the period.
+
+    Parameters
+    ----------
+    values
+        Values at j/points along the last axis, an odd number of them, shape (m, points).
+    fraction
+        Where to evaluate, shape (n,).
+
+    Returns
+    -------
+    numpy.ndarray
+        Values of shape (m, n).
+    """
+    coefficients = 2.0 * np.fft.rfft(values, axis=-1) / values.shape[-1]
+    coefficients[..., 0] *= 0.5
+    waves = np.exp(2.0j * np.pi * np.outer(np.arange(coefficients.shape[-1]), fraction))
+    return np.real(coefficients @ waves)
+
+
+def unresolved(values: FloatArray) -> float:
+    """Size of the highest harmonics against the largest, the error left by too few points."""
+    size = np.abs(np.fft.rfft(values, axis=-1)).max(axis=0)
+    return float(size[-3:].max() / size.max())

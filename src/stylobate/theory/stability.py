@@ -1,0 +1,96 @@
+"""Stability of steady rolling on a circularly moving base, in closed form.
+
+With x = c/A, k = 1 + θ² and D = k² + η²θ², small deviations from steady rolling grow as e^{sτ} where
+
+    (s² + ηs)² + q (s² + ηs) + p0 = 0,    q = 2θ² − 2 + x,    p0 = D − kx.
+
+The quartic of the Jacobian of (7) is thus a quadratic in s² + ηs. Routh–Hurwitz asks for η > 0, q > 0, p0 > 0 and
+q² + 2η²q > 4p0. The last expression is the difference x² + 2wx − 4w with w = 4θ² + η², so it says no more than
+
+    x > x* = 4 / (1 + √(1 + 4/w)),    that is    A < c/x*.
+
+On the branches of (8) p0 = ±x√(a0²D/c² − η²θ²): positive on the upper branch, negative on the lower. The lower branch
+is therefore a saddle wherever it exists, with exactly one positive eigenvalue: p0 < 0 makes the two roots s² + ηs real
+and of opposite sign, and only the positive one gives a positive s.
+
+Without friction an equilibrium can at best be neutrally stable. There the same inequalities say that all four
+eigenvalues are imaginary and distinct: deviations stay small in the linear sense, none decays.
+"""
+
+import numpy as np
+
+from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, not_negative, positive
+
+
+def hurwitz_coefficients(theta: Real, tilt: Real, *, c: Real, eta: Real) -> FloatArray:
+    """Coefficients of the characteristic polynomial of steady rolling, highest power first.
+
+    Parameters
+    ----------
+    theta
+        Excitation frequency θ, which is the rolling rate.
+    tilt
+        Tilt angle A of the steady rolling [rad].
+    c
+        Slenderness.
+    eta
+        Viscous friction η.
+
+    Returns
+    -------
+    numpy.ndarray
+        1, 2η, η² + q, ηq, p0 along the last axis, shape (..., 5).
+
+    Raises
+    ------
+    ParameterError
+        If `theta`, `tilt` or `c` is not positive or `eta` is negative.
+
+    Notes
+    -----
+    From the Jacobian of (7). The amplitude a0 does not enter: θ, A and η fix it through (8).
+    """
+    theta, eta = positive("theta", theta), not_negative("eta", eta)
+    q, p0 = stability_coefficients(theta, positive("c", c) / positive("tilt", tilt), eta)
+    return np.stack(np.broadcast_arrays(np.ones_like(q), 2.0 * eta, eta**2 + q, eta * q, p0), axis=-1)
+
+
+def stability_coefficients(theta: FloatArray, x: FloatArray, eta: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return q and p0 of the quadratic in s² + ηs at the slenderness ratio x = c/A."""
+    k = 1.0 + theta**2
+    return 2.0 * theta**2 - 2.0 + x, k * (k - x) + (eta * theta) ** 2
+
+
+def critical_ratio(theta: FloatArray, eta: FloatArray) -> FloatArray:
+    """Return x* = c/A above which the Hopf condition of stability holds, the positive root of x² + 2wx − 4w."""
+    return 4.0 / (1.0 + np.sqrt(1.0 + 4.0 / (4.0 * theta**2 + eta**2)))
+
+
+def satisfies_routh_hurwitz(
+    theta: FloatArray, x: FloatArray, eta: FloatArray, q: FloatArray, p0: FloatArray
+) -> BoolArray:
+    """Whether no deviation grows; without friction, whether all eigenvalues are imaginary and distinct."""
+    return (q > 0.0) & (p0 > 0.0) & (x > critical_ratio(theta, eta))
+
+
+def rolling_eigenvalues(eta: FloatArray, q: FloatArray, p0: FloatArray) -> ComplexArray:
+    """Return the four roots s along the last axis; each product is used for the root that would cancel."""
+    with np.errstate(invalid="ignore"):  # NaN, where there is no rolling, passes through
+        return _roots(eta.astype(np.complex128), q.astype(np.complex128), p0.astype(np.complex128))
+
+
+def _roots(eta: ComplexArray, q: ComplexArray, p0: ComplexArray) -> ComplexArray:
+    discriminant = np.sqrt(q**2 - 4.0 * p0)
+    larger = -0.5 * (q + np.where(q.real < 0.0, -discriminant, discriminant))
+    smaller = _divide(p0, larger)
+    pairs = []
+    for u in (larger, smaller):
+        fast = -0.5 * eta - np.sqrt(0.25 * eta**2 + u)
+        pairs += [fast, _divide(-u, fast)]
+    return np.stack(pairs, axis=-1)
+
+
+def _divide(numerator: ComplexArray, denominator: ComplexArray) -> ComplexArray:
+    """Divide, with 0/0 = 0: both roots of s² + bs vanish when b does."""
+    zero = denominator == 0.0
+    return np.where(zero, 0.0, numerator / np.where(zero, 1.0, denominator))
