@@ -1,1 +1,62 @@
-"""Closed forms of the slender column: what theory says before anything is integrated."""
+"""Closed forms of the slender column: what theory says before anything is integrated.
+
+Everything here is dimensionless as in the equations (1) to (11): angles in rad, the time τ = ω0 t, frequencies in units
+of ω0, accelerations in g, c the slenderness and η the friction. Arguments are numbers or arrays that broadcast; a
+result has the broadcast shape, with NaN (False in a truth value) where there is no solution.
+"""
+
+from stylobate.theory.averaging import AveragedRolling, averaged_rolling, circular_components
+from stylobate.theory.backbones import planar_backbone, rolling_backbone
+from stylobate.theory.critical import (
+    critical_amplitude,
+    critical_frequency,
+    critical_frequency_frictionless,
+    crossing_frequency,
+)
+from stylobate.theory.free_motion import FreeMotion, free_motion
+from stylobate.theory.high_frequency import HighFrequencyRolling, high_frequency_rates, high_frequency_rolling
+from stylobate.theory.lyapunov import first_lyapunov_coefficient
+from stylobate.theory.modulated import ModulatedRolling, modulated_rolling
+from stylobate.theory.planar_forced import (
+    PlanarForcedResponse,
+    PlanarOrbit,
+    planar_forced_response,
+    planar_kick_slope,
+)
+from stylobate.theory.planar_free import planar_free_motion, planar_free_period
+from stylobate.theory.rolling import RollingBranch, SteadyRolling, rolling_gap, steady_rolling
+from stylobate.theory.rotating_frame import rotating_frame_jacobian, rotating_frame_rates
+from stylobate.theory.stability import hurwitz_coefficients
+
+__all__ = [
+    "AveragedRolling",
+    "FreeMotion",
+    "HighFrequencyRolling",
+    "ModulatedRolling",
+    "PlanarForcedResponse",
+    "PlanarOrbit",
+    "RollingBranch",
+    "SteadyRolling",
+    "averaged_rolling",
+    "circular_components",
+    "critical_amplitude",
+    "critical_frequency",
+    "critical_frequency_frictionless",
+    "crossing_frequency",
+    "first_lyapunov_coefficient",
+    "free_motion",
+    "high_frequency_rates",
+    "high_frequency_rolling",
+    "hurwitz_coefficients",
+    "modulated_rolling",
+    "planar_backbone",
+    "planar_forced_response",
+    "planar_free_motion",
+    "planar_free_period",
+    "planar_kick_slope",
+    "rolling_backbone",
+    "rolling_gap",
+    "rotating_frame_jacobian",
+    "rotating_frame_rates",
+    "steady_rolling",
+]

@@ -78,7 +78,8 @@ class CycleProblem:
 
     def unit(self, direction: FloatArray) -> FloatArray:
         """Return the direction scaled to length one."""
-        return direction / np.sqrt(np.sum(self.weight * direction**2))
+        length = float(np.sqrt(np.sum(self.weight * direction**2)))
+        return direction / length
 
     def corrected(self, guess: FloatArray, closing: FloatArray) -> tuple[FloatArray, FloatArray, int] | None:
         """Solve by Newton's method within the plane through the guess to which `closing` is normal.
@@ -98,7 +99,8 @@ class CycleProblem:
             if np.sqrt(np.sum(self.weight * correction**2)) < _NEWTON_TOLERANCE:
                 along = np.zeros_like(unknowns)
                 along[-1] = 1.0
-                return unknowns, self.unit(np.linalg.solve(matrix, along)), count
+                tangent = np.linalg.solve(matrix, along).astype(np.float64)
+                return unknowns, self.unit(tangent), count
         return None
 
     def _equations(self, unknowns: FloatArray, reference: FloatArray) -> tuple[FloatArray, FloatArray]:

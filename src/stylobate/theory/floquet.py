@@ -42,8 +42,8 @@ def floquet_multipliers(state: FloatArray, period: float, a0: float, eta: float)
 
     Notes
     -----
-    The variational equation is integrated with the Gauss–Legendre method of order 6 along the trigonometric interpolant.
-    Their product is e^{−2ηT} (Liouville): the base motion and the weight do not contract.
+    The variational equation is integrated with the Gauss–Legendre method of order 6 along the trigonometric
+    interpolant. Their product is e^{−2ηT} (Liouville): the base motion and the weight do not contract.
     """
     steps = _STEPS_PER_POINT * state.shape[-1]
     fraction = ((np.arange(steps)[:, np.newaxis] + _NODES) / steps).ravel()
@@ -62,4 +62,5 @@ def _step_matrices(jacobian: FloatArray, step: float) -> FloatArray:
     coupling = np.einsum("ij,nipq->nipjq", _STAGES, jacobian).reshape(-1, size, size)
     slopes = np.linalg.solve(np.eye(size) - step * coupling, jacobian.reshape(-1, size, STATE_LENGTH))
     slopes = slopes.reshape(-1, stages, STATE_LENGTH, STATE_LENGTH)
-    return np.eye(STATE_LENGTH) + step * np.einsum("i,nipq->npq", _WEIGHTS, slopes)
+    increments: FloatArray = np.einsum("i,nipq->npq", _WEIGHTS, slopes)
+    return np.eye(STATE_LENGTH) + step * increments

@@ -1,4 +1,4 @@
-"""Modulated rolling: below θ* the column still rolls with the base motion, at a tilt that swings and does not settle."""
+"""Modulated rolling: below θ* the column still rolls with the base motion, at a tilt that swings for ever."""
 
 from dataclasses import dataclass
 
@@ -85,8 +85,9 @@ def modulated_rolling(theta: float, a0: float, *, c: float, eta: float, points: 
     Notes
     -----
     A limit cycle of (7) born in the Hopf bifurcation of steady rolling at θ*, found by Fourier collocation and followed
-    from there. At c = η = 0.1 and a0 = 0.065 it is stable from θ* = 1.3971 down to about 1.320, where a multiplier
-    leaves through −1: the modulation doubles its period. The unstable cycle goes on to lower frequencies.
+    from there. At c = η = 0.1 and a0 = 0.065 it is stable from θ* = 1.3971 down to 1.3224, where a multiplier
+    leaves through −1: the modulation doubles its period. Integration then shows a cascade of doublings, which ends
+    near 1.313 with the column overturning. The unstable cycle itself goes on to lower frequencies.
 
     Examples
     --------

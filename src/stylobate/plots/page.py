@@ -1,0 +1,93 @@
+"""A self-contained web page of text, figures and tables: one file, nothing fetched."""
+
+import base64
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from io import BytesIO
+
+from matplotlib.figure import Figure
+
+_STYLE = """
+:root { color-scheme: light; }
+body { font: 16px/1.55 system-ui, sans-serif; color: #1a1a1a; background: #fff; margin: 2rem auto; max-width: 60rem;
+  padding: 0 1rem; }
+h1 { line-height: 1.2; } h2 { margin-top: 2.5rem; border-bottom: 1px solid #ccc; }
+figure { margin: 1.5rem 0; } figure img { max-width: 100%; height: auto; }
+figcaption { font-size: .92rem; color: #333; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; width: 100%; font-size: .92rem; }
+th, td { text-align: left; vertical-align: top; padding: .4rem .6rem; border-bottom: 1px solid #ddd; }
+thead th { border-bottom: 2px solid #666; }
+.verdict { font-weight: 600; white-space: nowrap; }
+nav a { margin-right: 1rem; }
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A figure with its `caption` and a text that says what it shows to those who cannot see it."""
+
+    figure: Figure
+    caption: str
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Rows of plain text below a `header`."""
+
+    header: Sequence[str]
+    rows: Sequence[Sequence[str]]
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A heading with paragraphs, pictures and tables, in this order of `content`."""
+
+    heading: str
+    content: Sequence[str | Picture | Table]
+
+
+def page(title: str, introduction: Sequence[str], sections: Sequence[Section]) -> str:
+    """Return the HTML of a page; all text is escaped, figures are embedded as PNG."""
+    links = "".join(f'<a href="#s{i}">{escape(section.heading)}</a>' for i, section in enumerate(sections))
+    body = "".join(_section(i, section) for i, section in enumerate(sections))
+    lead = "".join(f"<p>{escape(text)}</p>" for text in introduction)
+    return (
+        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"<title>{escape(title)}</title><style>{_STYLE}</style></head>"
+        f"<body><h1>{escape(title)}</h1>{lead}<nav>{links}</nav>{body}</body></html>\n"
+    )
+
+
+def _section(index: int, section: Section) -> str:
+    parts = "".join(_part(part) for part in section.content)
+    return f'<section id="s{index}"><h2>{escape(section.heading)}</h2>{parts}</section>'
+
+
+def _part(part: str | Picture | Table) -> str:
+    match part:
+        case str():
+            return f"<p>{escape(part)}</p>"
+        case Picture():
+            return _picture(part)
+        case Table():
+            return _table(part)
+
+
+def _picture(picture: Picture) -> str:
+    buffer = BytesIO()
+    picture.figure.savefig(buffer, format="png")
+    data = base64.b64encode(buffer.getvalue()).decode("ascii")
+    caption = escape(picture.caption)
+    return (
+        f'<figure><img alt="{caption}" src="data:image/png;base64,{data}">'
+        f"<figcaption>{caption}</figcaption></figure>"
+    )
+
+
+def _table(table: Table) -> str:
+    head = "".join(f"<th>{escape(name)}</th>" for name in table.header)
+    rows = "".join("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in table.rows)
+    return f'<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'

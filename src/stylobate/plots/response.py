@@ -1,0 +1,48 @@
+"""Amplitude and phase of steady rolling against the frequency of the base."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from stylobate.plots.style import GREY, PALETTE, STABLE_WIDTH, UNSTABLE_WIDTH, new_axes, new_figure
+
+
+def plot_response(curves: xr.Dataset) -> Figure:
+    """Return a figure of response `curves`: amplitude above, phase below, stable bold, unstable thin."""
+    figure = new_figure(6.4)
+    amplitude, phase = new_axes(figure, 2, 1, 1), new_axes(figure, 2, 1, 2)
+    frequency = curves["angular_frequency"]
+    amplitude.plot(frequency, curves["backbone"], color=GREY, linestyle=(0, (4, 2)), label="free rolling (5)")
+    for index, sense in enumerate(curves["sense"].to_numpy()):
+        colour = PALETTE[index]
+        for branch in curves["branch"].to_numpy():
+            part = curves.sel(sense=sense, branch=branch)
+            draw_branch(amplitude, frequency, part["amplitude"], part["stable"], color=colour)
+            draw_branch(phase, frequency, part["phase"], part["stable"], color=colour)
+        amplitude.plot([], [], color=colour, linewidth=STABLE_WIDTH, label=f"rolling {sense}, stable")
+        amplitude.plot([], [], color=colour, linewidth=UNSTABLE_WIDTH, label=f"rolling {sense}, unstable")
+    averaged = "averaged " if curves.attrs["averaged"] else ""
+    amplitude.set_ylabel(f"{averaged}tilt A [rad]")
+    amplitude.set_ylim(bottom=0.0)
+    amplitude.legend()
+    set_phase_axis(phase)
+    phase.set_ylabel(f"{averaged}phase ψ [rad]")
+    phase.set_xlabel("angular frequency of the base [rad/s]")
+    phase.sharex(amplitude)
+    return figure
+
+
+def draw_branch(
+    axes: Axes, frequency: xr.DataArray, values: xr.DataArray, stable: xr.DataArray, **options: object
+) -> None:
+    """Draw one branch, bold where stable and thin where not; the two parts meet."""
+    x, y, bold = frequency.to_numpy(), values.to_numpy(), stable.to_numpy()
+    touching = bold | np.append(bold[1:], False) & np.isfinite(y)
+    axes.plot(x, y, linewidth=UNSTABLE_WIDTH, **options)  # type: ignore[arg-type]
+    axes.plot(x, np.where(touching, y, np.nan), linewidth=STABLE_WIDTH, **options)  # type: ignore[arg-type]
+
+
+def set_phase_axis(axes: Axes) -> None:
+    """Mark 0, π/2 and π on a phase axis."""
+    axes.set_yticks([0.0, np.pi / 2.0, np.pi], ["0", "π/2", "π"])

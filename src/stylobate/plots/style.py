@@ -1,0 +1,42 @@
+"""How figures look: one palette that survives colour blindness and grey print, one page width."""
+
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+# Okabe and Ito's palette ("Color Universal Design", 2008), its yellow left out; order alternates in lightness.
+PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
+BLUE, VERMILION, GREEN, PURPLE, SKY, ORANGE, BLACK = PALETTE
+GREY = "#767676"
+
+# Line styles that tell curves apart without colour.
+DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3)))
+
+STABLE_WIDTH, UNSTABLE_WIDTH = 2.8, 0.9
+WIDTH = 7.2
+"""Width of a figure that spans a page [inches]."""
+
+_SETTINGS = {
+    "font.size": 9.5,
+    "axes.titlesize": 10,
+    "axes.titlelocation": "left",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.6,
+    "legend.frameon": False,
+    "legend.fontsize": 8.5,
+    "savefig.dpi": 180,
+}
+
+
+def new_figure(height: float, *, width: float = WIDTH) -> Figure:
+    """Return an empty figure of this `width` and `height` [inches], apart from any interactive backend."""
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def new_axes(figure: Figure, *grid: int, **options: object) -> Axes:
+    """Return new axes in `figure`, drawn in the common style; `grid` is rows, columns, index."""
+    with rc_context(_SETTINGS):
+        return figure.add_subplot(*(grid or (1, 1, 1)), **options)  # type: ignore[arg-type]

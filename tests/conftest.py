@@ -1,0 +1,36 @@
+"""What all tests share: equations (1) written out once more, and settings of hypothesis."""
+
+import numpy as np
+import pytest
+from hypothesis import settings
+from scipy.integrate import solve_ivp
+
+settings.register_profile("stylobate", deadline=None, derandomize=True)
+settings.load_profile("stylobate")
+
+
+def _no_acceleration(tau):
+    del tau
+    return 0.0, 0.0, 0.0
+
+
+def _integrate_equations_1(
+    state, span, *, c, eta=0.0, acceleration=_no_acceleration, rtol=1e-12, atol=None, max_step=np.inf, events=None
+):
+    """Integrate (1) from `state` (α1, α2, α̇1, α̇2), independently of the package; accelerations in g."""
+
+    def rates(tau, y):
+        tilt, rate = y[:2], y[2:]
+        *horizontal, vertical = acceleration(tau)
+        lean = tilt / np.hypot(*tilt)
+        return np.concatenate([rate, (1.0 + vertical) * (tilt - c * lean) - eta * rate - np.array(horizontal)])
+
+    atol = 1e-13 * c if atol is None else atol
+    return solve_ivp(
+        rates, span, state, method="DOP853", rtol=rtol, atol=atol, max_step=max_step, dense_output=True, events=events
+    )
+
+
+@pytest.fixture(scope="session")
+def integrate_equations_1():
+    return _integrate_equations_1

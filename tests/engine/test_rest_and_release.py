@@ -1,0 +1,193 @@
+"""The column at rest: what cannot move it, when it is released, how it departs, how it comes to rest again."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.optimize import brentq
+
+import stylobate as sb
+from stylobate.engine.forcing import Forcing
+from stylobate.engine.resting import departure, release_time
+
+C = 0.1
+
+
+def model(damping=0.0):
+    return sb.Slender(sb.Column.dimensionless(C), damping=damping)
+
+
+def standing_acceleration(kind, frequency, start_phase, acceleration=C):
+    options = {"angular_frequency": frequency, "start_phase": start_phase}
+    if kind == "circular":
+        return sb.Harmonic.circular(acceleration=acceleration, **options)
+    if kind == "straight":
+        return sb.Harmonic.straight(acceleration=acceleration, direction=start_phase / 3.0, **options)
+    return sb.Harmonic.elliptic(amplitude=(acceleration, 0.6 * acceleration), phase=math.pi / 2.0, **options)
+
+
+@pytest.mark.parametrize("kind", ["circular", "straight", "elliptic"])
+@given(frequency=st.floats(0.05, 40.0), start_phase=st.floats(-7.0, 7.0))
+def test_a_column_at_rest_stays_while_the_acceleration_never_exceeds_c(kind, frequency, start_phase):
+    run = sb.simulate(model(0.1), standing_acceleration(kind, frequency, start_phase), duration=100.0)
+    assert run.outcome is sb.Outcome.AT_REST
+    assert run.decided_at == 0.0
+    assert run.events == ()
+    assert run.data.amplitude.max() == 0.0
+    assert bool(run.data.resting.all())
+
+
+def test_standing_column_shows_the_centre_of_pressure_on_the_rim_at_the_limit():
+    run = sb.simulate(model(), sb.Harmonic.circular(acceleration=C, angular_frequency=2.0), duration=5.0)
+    pressure = np.hypot(*run.data.centre_of_pressure.to_numpy().T)
+    np.testing.assert_allclose(pressure, model().column.radius, rtol=1e-12)
+
+
+@pytest.mark.parametrize("start_phase", [-1.5, -0.9, 0.6, 2.0, 3.0])
+@pytest.mark.parametrize("excess", [1e-8, 1e-4, 0.1, 2.0])
+def test_release_comes_when_a_straight_acceleration_reaches_c(excess, start_phase):
+    peak, frequency = C * (1.0 + excess), 1.7
+    motion = sb.Harmonic.straight(acceleration=peak, angular_frequency=frequency, direction=0.4, start_phase=start_phase)
+    run = sb.simulate(model(0.1), motion, duration=8.0)
+    # |cos(Ωt + φ)| = c/peak for the first time: Ωt + φ = nπ − acos(c/peak), unless it is exceeded from the start.
+    before = math.acos(C / peak)
+    turns = math.ceil((start_phase + before) / math.pi)
+    released = max(0.0, (turns * math.pi - before - start_phase) / frequency)
+    if abs(math.cos(start_phase)) * peak > C:
+        released = 0.0
+    first = run.events[0]
+    # At a graze |a_h| moves with the square root of the rounding: the margin of 8 ulp shifts the instant by
+    # 8 ulp/(Ω √(2 excess)), below 1e-10.
+    assert first.kind == "release"
+    assert first.time == pytest.approx(released, abs=1e-9)
+
+
+@pytest.mark.parametrize("start_phase", [0.3, 1.1, 2.9])
+def test_release_comes_when_an_elliptic_acceleration_reaches_the_weight_left(start_phase):
+    motion = sb.Harmonic.elliptic(
+        amplitude=(0.09, 0.02), phase=0.8, angular_frequency=1.3, start_phase=start_phase
+    ) + sb.Harmonic.vertical(acceleration=0.4, angular_frequency=3.1, start_phase=0.5)
+
+    def excess(t):
+        ax = 0.09 * math.cos(1.3 * t + start_phase)
+        ay = 0.02 * math.cos(1.3 * t + start_phase + 0.8)
+        return math.hypot(ax, ay) - C * (1.0 + 0.4 * math.cos(3.1 * t + 0.5))
+
+    grid = np.linspace(0.0, 10.0, 100_001)
+    values = np.array([excess(t) for t in grid])
+    above = int(np.argmax(values > 0.0))
+    expected = grid[0] if above == 0 else brentq(excess, grid[above - 1], grid[above], xtol=1e-14)
+    run = sb.simulate(model(0.1), motion, duration=10.0)
+    assert run.events[0].kind == "release"
+    assert run.events[0].time == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize("width", [1e-2, 1e-4, 1e-6])
+def test_a_release_between_samples_is_not_missed(width):
+    # |a_h| > c only within ± width/Ω of the peaks, far less than the 1/64 period between samples.
+    motion = sb.Harmonic.straight(acceleration=C / math.cos(width), angular_frequency=1.0, start_phase=1.234567)
+    forcing = Forcing.of(model(), motion)
+    released = release_time(model(), forcing, 0.0, 20.0)
+    assert released == pytest.approx(math.pi - width - 1.234567, abs=1e-9)
+
+
+def test_release_of_a_delayed_motion_comes_at_its_onset():
+    motion = sb.Harmonic.circular(acceleration=0.15, angular_frequency=2.0).delayed(3.3)
+    run = sb.simulate(model(0.1), motion, duration=5.0)
+    assert run.events[0] == sb.Event("release", pytest.approx(3.3, abs=1e-9))
+    assert float(run.sample(3.29).amplitude[0]) == 0.0
+    assert float(run.sample(3.6).amplitude[0]) > 0.0
+
+
+@pytest.mark.parametrize("acceleration", [0.12, 0.3])
+@pytest.mark.parametrize("kind", ["circular", "elliptic"])
+def test_motion_after_release_agrees_with_the_inclusion_smoothed_near_the_upright(
+    kind, acceleration, integrate_equations_1
+):
+    motion = standing_acceleration(kind, 1.4, 0.5, acceleration)
+    run = sb.simulate(model(0.1), motion, duration=4.0, rtol=1e-11)
+    start = run.events[0].time
+    now = motion.acceleration(start)[:2]
+    size = np.hypot(*now)
+    # To leading order α = −(|a_h| − c) â δ²/2 after the time δ: what it neglects is of the order δ³.
+    ends = []
+    for delta in (2e-4, 1e-4):
+        push = -(size - C) * now / size
+        state = (*(0.5 * push * delta**2), *(push * delta))
+        later = integrate_equations_1(
+            state, (start + delta, 4.0), c=C, eta=0.1, acceleration=motion.acceleration, rtol=1e-11, atol=1e-16
+        )
+        ends.append(later.sol(float(run.data.time[-1])) if later.t[-1] >= float(run.data.time[-1]) else later.y[:, -1])
+    found = np.concatenate([run.data.tilt.to_numpy()[-1], run.data.tilt_rate.to_numpy()[-1]])
+    # First order in δ: two reference runs tell the error that is left, extrapolation removes it.
+    extrapolated = 2.0 * ends[1] - ends[0]
+    spread = np.abs(ends[1] - ends[0]).max()
+    assert np.abs(found - extrapolated).max() < 1e-2 * spread + 1e-8 * np.abs(extrapolated).max()
+
+
+def test_the_departure_series_is_right_to_the_fourth_order(integrate_equations_1):
+    motion = sb.Harmonic.straight(acceleration=0.15, angular_frequency=1.4, start_phase=0.5)
+    later, state = departure(model(), Forcing.of(model(), motion), 0.0)
+
+    # In a plane (1) is linear after the release: α̈ = α + c − a cos(τ + …), leaning against the acceleration.
+    def rates(y, tau):
+        return np.array([y[1], y[0] + C - 0.15 * math.cos(1.4 * tau + 0.5)])
+
+    y, n = np.zeros(2), 1000
+    step = later / n
+    for i in range(n):  # classical Runge-Kutta: its error is far below rounding here
+        k1 = rates(y, i * step)
+        k2 = rates(y + 0.5 * step * k1, (i + 0.5) * step)
+        k3 = rates(y + 0.5 * step * k2, (i + 0.5) * step)
+        k4 = rates(y + step * k3, (i + 1) * step)
+        y = y + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+    assert state[0] < 0.0
+    np.testing.assert_allclose([state[0], state[2]], y, rtol=0.0, atol=later**3 * 0.05)
+    np.testing.assert_allclose([state[0], state[2]], y, rtol=10.0 * later**2)
+
+
+@pytest.mark.parametrize("damping", [0.05, 0.3, 1.5])
+def test_friction_brings_the_column_to_rest_at_the_threshold_of_energy(damping):
+    run = sb.simulate(model(damping), tilt=(0.05, 0.01), tilt_rate=(0.0, 0.02), duration=200.0, rtol=1e-10)
+    assert run.outcome is sb.Outcome.AT_REST
+    rest = next(event for event in run.events if event.kind == "rest")
+    assert run.decided_at == pytest.approx(rest.time, rel=1e-12)
+    before = run.sample(np.nextafter(rest.time, 0.0))
+    tilt, speed = float(before.amplitude[0]), float(np.hypot(*before.tilt_rate.to_numpy()[0]))
+    energy = (0.5 * speed**2 + C * tilt) / C**2
+    assert run.thresholds["rest_energy"] == 1e-4
+    assert energy <= 1e-4 * (1.0 + 1e-6)
+    assert energy >= 0.5e-4  # entered at the threshold, not long after
+    assert float(run.data.amplitude[-1]) == 0.0
+
+
+def test_without_friction_the_column_never_comes_to_rest():
+    run = sb.simulate(model(), tilt=(1e-5, 0.0), tilt_rate=(0.0, 1e-6), duration=2.0)
+    assert run.outcome is sb.Outcome.STILL_MOVING
+    assert not any(event.kind == "rest" for event in run.events)
+
+
+def test_rest_is_followed_by_release_when_the_base_begins_to_move():
+    motion = sb.Harmonic.circular(acceleration=0.13, angular_frequency=2.0, ramp=30.0).delayed(40.0)
+    run = sb.simulate(model(0.2), motion, tilt=(0.03, 0.0), duration=70.0)
+    kinds = [event.kind for event in run.events]
+    assert kinds[:2] == ["rest", "release"]
+    rest, release = run.events[:2]
+    assert rest.time < 40.0
+    # ½(1 − cos(π s/30)) 0.13 = c
+    assert release.time == pytest.approx(40.0 + 30.0 / math.pi * math.acos(1.0 - 2.0 * C / 0.13), abs=1e-9)
+    assert bool(run.sample(0.5 * (rest.time + release.time)).resting[0])
+
+
+@pytest.mark.parametrize(("theta", "a0"), [(5.0, 0.05), (20.0, 0.05), (20.0, 0.02), (60.0, 0.09)])
+def test_steady_rolling_is_never_taken_for_rest(theta, a0):
+    upper = sb.theory.steady_rolling(theta, a0, c=C, eta=0.1).upper
+    amplitude, phase = float(upper.amplitude), float(upper.phase)
+    motion = sb.Harmonic.circular(acceleration=a0, angular_frequency=theta)
+    lean = amplitude * np.array([math.cos(phase), math.sin(phase)])
+    along = amplitude * theta * np.array([-math.sin(phase), math.cos(phase)])
+    run = sb.simulate(model(0.1), motion, tilt=lean, tilt_rate=along, duration=12.0 * 2.0 * math.pi / theta)
+    assert run.outcome is sb.Outcome.ROLLING
+    assert not run.data.resting.any()
