@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import stylobate as sb
@@ -39,8 +39,9 @@ def test_free_motion_in_a_plane_conserves_energy_through_every_passage():
     np.testing.assert_array_equal(run.data.angular_momentum, 0.0)
 
 
+@settings(max_examples=40)
 @given(
-    tilt=st.floats(0.05, 0.9),
+    tilt=st.floats(0.1, 0.9),
     rate=st.floats(0.0, 0.5),
     heading=st.floats(0.0, 2.0 * math.pi),
     damping=st.floats(0.01, 2.0),
@@ -50,7 +51,8 @@ def test_friction_never_adds_energy_on_a_base_at_rest(tilt, rate, heading, dampi
         model(damping),
         tilt=(tilt * C, 0.0),
         tilt_rate=(rate * C * math.cos(heading), rate * C * math.sin(heading)),
-        duration=10.0,
+        duration=4.0,
+        rest_energy=1e-3,
     )
     # Rounding and the tolerance 1e-8 of the integration may add that much of the largest energy, c²/2.
     assert np.diff(in_units_of_c(run, "energy")).max() < 1e-7
@@ -61,12 +63,12 @@ def test_friction_never_adds_energy_on_a_base_at_rest(tilt, rate, heading, dampi
     "motion",
     [
         sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8),
-        sb.Harmonic.elliptic(amplitude=(0.02, 0.06), phase=1.0, angular_frequency=2.4, ramp=3.0),
+        sb.Harmonic.elliptic(amplitude=(0.02, 0.03), phase=-1.4, angular_frequency=2.4, ramp=3.0),
     ],
     ids=["circular", "elliptic with a ramp"],
 )
 def test_energy_changes_by_the_work_of_base_and_friction(motion, damping):
-    run = sb.simulate(model(damping), motion, tilt=(0.04, 0.0), tilt_rate=(0.0, 0.07), duration=20.0, rtol=1e-11)
+    run = sb.simulate(model(damping), motion, tilt=(0.04, 0.0), tilt_rate=(0.0, 0.07), duration=10.0, rtol=1e-11)
     assert run.data.amplitude.min() > 0.003  # no near passage: the power is smooth on the scale of the nodes
     points, weights = np.polynomial.legendre.leggauss(8)
     edges = np.linspace(0.0, float(run.data.time[-1]), 1001)

@@ -58,8 +58,7 @@ def test_release_comes_when_a_straight_acceleration_reaches_c(excess, start_phas
     if abs(math.cos(start_phase)) * peak > C:
         released = 0.0
     first = run.events[0]
-    # At a graze |a_h| moves with the square root of the rounding: the margin of 8 ulp shifts the instant by
-    # 8 ulp/(Ω √(2 excess)), below 1e-10.
+    # The margin of 8 ulp shifts the instant by 8 ulp/(Ω √(2 excess)), below 1e-10.
     assert first.kind == "release"
     assert first.time == pytest.approx(released, abs=1e-9)
 
@@ -90,7 +89,8 @@ def test_a_release_between_samples_is_not_missed(width):
     motion = sb.Harmonic.straight(acceleration=C / math.cos(width), angular_frequency=1.0, start_phase=1.234567)
     forcing = Forcing.of(model(), motion)
     released = release_time(model(), forcing, 0.0, 20.0)
-    assert released == pytest.approx(math.pi - width - 1.234567, abs=1e-9)
+    # The margin of 8 ulp delays it by 8 ulp/width.
+    assert released == pytest.approx(math.pi - width - 1.234567, abs=1e-12 + 3e-15 / width)
 
 
 def test_release_of_a_delayed_motion_comes_at_its_onset():
@@ -102,29 +102,28 @@ def test_release_of_a_delayed_motion_comes_at_its_onset():
 
 
 @pytest.mark.parametrize("acceleration", [0.12, 0.3])
-@pytest.mark.parametrize("kind", ["circular", "elliptic"])
-def test_motion_after_release_agrees_with_the_inclusion_smoothed_near_the_upright(
-    kind, acceleration, integrate_equations_1
-):
-    motion = standing_acceleration(kind, 1.4, 0.5, acceleration)
+@pytest.mark.parametrize("shape", [1.0, 0.95])
+def test_motion_after_release_agrees_with_starts_ever_closer_to_the_upright(shape, acceleration, integrate_equations_1):
+    motion = sb.Harmonic.elliptic(
+        amplitude=(acceleration, shape * acceleration), phase=math.pi / 2.0, angular_frequency=1.4, start_phase=0.5
+    )
     run = sb.simulate(model(0.1), motion, duration=4.0, rtol=1e-11)
-    start = run.events[0].time
-    now = motion.acceleration(start)[:2]
-    size = np.hypot(*now)
-    # To leading order α = −(|a_h| − c) â δ²/2 after the time δ: what it neglects is of the order δ³.
-    ends = []
-    for delta in (2e-4, 1e-4):
-        push = -(size - C) * now / size
+    now = motion.acceleration(0.0)[:2]
+    push = -(1.0 - C / np.hypot(*now)) * now
+
+    def reference(delta):
+        # To leading order α = Fδ²/2 with F = −(|a_h| − c) â; the rate neglects terms of the order δ².
         state = (*(0.5 * push * delta**2), *(push * delta))
-        later = integrate_equations_1(
-            state, (start + delta, 4.0), c=C, eta=0.1, acceleration=motion.acceleration, rtol=1e-11, atol=1e-16
-        )
-        ends.append(later.sol(float(run.data.time[-1])) if later.t[-1] >= float(run.data.time[-1]) else later.y[:, -1])
+        span = (delta, float(run.data.time[-1]))
+        return integrate_equations_1(state, span, c=C, eta=0.1, acceleration=motion.acceleration, atol=1e-17).y[:, -1]
+
+    coarse, fine = reference(1e-3), reference(5e-4)
+    error = (fine - coarse) / 3.0  # second order in δ
     found = np.concatenate([run.data.tilt.to_numpy()[-1], run.data.tilt_rate.to_numpy()[-1]])
-    # First order in δ: two reference runs tell the error that is left, extrapolation removes it.
-    extrapolated = 2.0 * ends[1] - ends[0]
-    spread = np.abs(ends[1] - ends[0]).max()
-    assert np.abs(found - extrapolated).max() < 1e-2 * spread + 1e-8 * np.abs(extrapolated).max()
+    assert run.events[0] == sb.Event("release", 0.0)
+    assert np.abs(error).max() < 1e-5
+    # What is left is of the third order, two thousandths of what was removed and some more; and rounding of the runs.
+    np.testing.assert_allclose(found, fine + error, rtol=0.0, atol=0.01 * np.abs(error).max() + 1e-9 * C)
 
 
 def test_the_departure_series_is_right_to_the_fourth_order(integrate_equations_1):
@@ -148,9 +147,10 @@ def test_the_departure_series_is_right_to_the_fourth_order(integrate_equations_1
     np.testing.assert_allclose([state[0], state[2]], y, rtol=10.0 * later**2)
 
 
-@pytest.mark.parametrize("damping", [0.05, 0.3, 1.5])
-def test_friction_brings_the_column_to_rest_at_the_threshold_of_energy(damping):
-    run = sb.simulate(model(damping), tilt=(0.05, 0.01), tilt_rate=(0.0, 0.02), duration=200.0, rtol=1e-10)
+@pytest.mark.parametrize("rate", [(0.0, 0.0), (0.0, 0.01)], ids=["in a plane", "in space"])
+@pytest.mark.parametrize("damping", [0.3, 1.5])
+def test_friction_brings_the_column_to_rest_at_the_threshold_of_energy(damping, rate):
+    run = sb.simulate(model(damping), tilt=(0.01, 0.0), tilt_rate=rate, duration=100.0)
     assert run.outcome is sb.Outcome.AT_REST
     rest = next(event for event in run.events if event.kind == "rest")
     assert run.decided_at == pytest.approx(rest.time, rel=1e-12)
@@ -171,7 +171,7 @@ def test_without_friction_the_column_never_comes_to_rest():
 
 def test_rest_is_followed_by_release_when_the_base_begins_to_move():
     motion = sb.Harmonic.circular(acceleration=0.13, angular_frequency=2.0, ramp=30.0).delayed(40.0)
-    run = sb.simulate(model(0.2), motion, tilt=(0.03, 0.0), duration=70.0)
+    run = sb.simulate(model(1.0), motion, tilt=(0.01, 0.0), duration=70.0)
     kinds = [event.kind for event in run.events]
     assert kinds[:2] == ["rest", "release"]
     rest, release = run.events[:2]

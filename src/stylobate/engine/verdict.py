@@ -32,16 +32,17 @@ class OutcomeRules:
         The motion repeats if states one period apart differ by less than this part of the largest tilt and rate.
     rest_tilt
         Rolling: the tilt never falls below this part of c.
-    settled_tolerance
-        Modulated: the range of the tilt over the last n periods and over the n before differ by less than this part
-        of the tilt; otherwise the motion is still on its way.
+    settled_tolerance, modulation_floor
+        Modulated: states one period apart differ by more than the floor, and over the last n periods by as much as
+        over the n before, to this part. A difference that shrinks or grows is a motion still on its way.
     """
 
     periods: int = 10
     frequency_tolerance: float = 1e-3
     repeat_tolerance: float = 1e-6
     rest_tilt: float = 1e-6
-    settled_tolerance: float = 0.02
+    settled_tolerance: float = 0.05
+    modulation_floor: float = 1e-3
 
     def __post_init__(self) -> None:
         for name in self.__slots__:
@@ -67,76 +68,90 @@ def long_term(
     if trajectory.end < (n + 1) * period:
         reason = f"the run is shorter than the {n + 1} periods of the base motion by which a steady motion is told"
         return Verdict(Outcome.STILL_MOVING, reason, {})
-    tau = trajectory.end - period * np.arange(n * _SAMPLES, -1, -1) / _SAMPLES
-    states = trajectory.states(tau)
-    tilt = np.hypot(*model.tilt(states))
-    turned = 0.0 if planar else _turned(model, trajectory, tau)
+    late = _Window.of(model, trajectory, trajectory.end, n, period)
+    turned = 0.0 if planar else late.turned
     measures = {
-        "mean_rolling_rate": turned / (n * period * model.time_scale),
-        "repetition": _repetition(model, states[:, ::_SAMPLES]),
-        "mean_tilt_late": float(np.trapezoid(tilt, tau) / (n * period)),
-        "least_tilt_late": float(tilt.min()),
-        "largest_tilt_late": float(tilt.max()),
+        "mean_rolling_rate": 2.0 * math.pi * turned / (n * period * model.time_scale),
+        "repetition": late.repetition,
+        "mean_tilt_late": late.mean_tilt,
+        "least_tilt_late": late.least_tilt,
+        "largest_tilt_late": late.largest_tilt,
     }
-    off = abs(abs(turned) / (2.0 * math.pi * n) - 1.0)
-    tilted = tilt.min() > rules.rest_tilt * model.column.slenderness
-    repeats = measures["repetition"] < rules.repeat_tolerance
-    if repeats and tilted and off < rules.frequency_tolerance:
-        return Verdict(Outcome.ROLLING, f"it rolled once round in each of the last {n} periods and repeats", measures)
-    if repeats and abs(turned) < rules.frequency_tolerance * 2.0 * math.pi * n:
-        return Verdict(Outcome.ROCKING, f"it repeats over the last {n} periods without travelling round", measures)
+    off = abs(abs(turned) / n - 1.0)
+    tilted = late.least_tilt > rules.rest_tilt * model.column.slenderness
+    if late.repetition < rules.repeat_tolerance:
+        if tilted and off < rules.frequency_tolerance:
+            reason = f"it rolled once round in each of the last {n} periods and repeats"
+            return Verdict(Outcome.ROLLING, reason, measures)
+        if abs(turned) < rules.frequency_tolerance * n:
+            return Verdict(Outcome.ROCKING, f"it repeats over the last {n} periods without travelling round", measures)
     # The lag of a modulated motion swings to and fro: its mean rate is told from averages over windows.
-    if tilted and not repeats and off * n < _LESS_THAN_ONE_TURN:
-        return _modulated(model, trajectory, period, rules, measures)
+    elif tilted and off * n < _LESS_THAN_ONE_TURN:
+        return _modulated(model, trajectory, period, rules, late, measures)
     return Verdict(Outcome.STILL_MOVING, f"its last {n} periods are no steady motion", measures)
 
 
 def _modulated(
-    model: Model, trajectory: Trajectory, period: float, rules: OutcomeRules, measures: dict[str, float]
+    model: Model,
+    trajectory: Trajectory,
+    period: float,
+    rules: OutcomeRules,
+    late: "_Window",
+    measures: dict[str, float],
 ) -> Verdict:
     n = rules.periods
-    if trajectory.end < 2 * n * period:
-        reason = f"the run is shorter than the {2 * n} periods of the base motion by which lasting modulation is told"
+    if trajectory.end < (2 * n + 1) * period:
+        reason = f"the run is shorter than the {2 * n + 1} periods of the base motion by which modulation is told"
         return Verdict(Outcome.STILL_MOVING, reason, measures)
-    before, late = (_Window.of(model, trajectory, trajectory.end - first * period, n, period) for first in (2 * n, n))
-    mean_tilt = measures["mean_tilt_late"]
-    drift = abs(late.mean_lag - before.mean_lag) / (2.0 * math.pi * n)
-    change = abs(late.depth - before.depth) / mean_tilt
-    measures = measures | {"modulation_depth": late.depth, "modulation_change": change, "rolling_rate_error": drift}
+    before = _Window.of(model, trajectory, trajectory.end - n * period, n, period)
+    drift = abs(late.mean_lag - before.mean_lag) / n
+    change = abs(late.repetition / before.repetition - 1.0)
+    measures = measures | {"modulation_change": change, "rolling_rate_error": drift}
     if not drift < rules.frequency_tolerance:
         return Verdict(Outcome.STILL_MOVING, f"its last {2 * n} periods are no steady motion", measures)
-    if change < rules.settled_tolerance < late.depth / mean_tilt:
+    if change < rules.settled_tolerance and late.repetition > rules.modulation_floor:
         return Verdict(Outcome.MODULATED, "it rolls at the mean rate of the base motion, its tilt modulated", measures)
     return Verdict(Outcome.STILL_MOVING, "it rolls at the mean rate of the base motion and has not settled", measures)
 
 
 @dataclass(frozen=True, slots=True)
 class _Window:
-    """Some periods of a rolling motion: the range of its tilt, and the mean lag of its azimuth behind the forcing."""
+    """Some periods of a motion under a periodic base motion.
 
-    depth: float
+    `turned` is how far the azimuth went, `mean_lag` its mean lag behind the forcing [turns]; `repetition` the largest
+    difference of states one period apart, over the largest tilt or rate.
+    """
+
+    least_tilt: float
+    largest_tilt: float
+    mean_tilt: float
+    turned: float
     mean_lag: float
+    repetition: float
 
     @classmethod
-    def of(cls, model: Model, trajectory: Trajectory, start: float, periods: int, period: float) -> "_Window":
-        turns = np.arange(periods * _SAMPLES + 1) / _SAMPLES
-        tau = start + period * turns
-        tilt = model.tilt(trajectory.states(tau))
-        azimuth = trajectory.azimuth(tau, tilt)
-        sense = math.copysign(1.0, azimuth[-1] - azimuth[0])
-        lag = azimuth - sense * 2.0 * math.pi * (turns + start / period)
-        return cls(float(np.ptp(np.hypot(*tilt))), float(np.trapezoid(lag, turns)) / periods)
+    def of(cls, model: Model, trajectory: Trajectory, end: float, periods: int, period: float) -> "_Window":
+        """Look at the `periods` before `end`, and one more to compare with."""
+        turns = end / period - np.arange((periods + 1) * _SAMPLES, -1, -1) / _SAMPLES
+        tau = np.maximum(period * turns, 0.0)
+        states = trajectory.states(tau)
+        tilt = model.tilt(states)
+        repetition = max(_repetition(tilt), _repetition(model.tilt_rate(states)))
+        turns, amplitude = turns[_SAMPLES:], np.hypot(*tilt[:, _SAMPLES:])
+        # No azimuth while it stands: then it does not travel round.
+        azimuth = np.nan_to_num(trajectory.azimuth(tau, tilt)[_SAMPLES:]) / (2.0 * math.pi)
+        turned = float(azimuth[-1] - azimuth[0])
+        lag = azimuth - math.copysign(1.0, turned) * turns
+        return cls(
+            least_tilt=float(amplitude.min()),
+            largest_tilt=float(amplitude.max()),
+            mean_tilt=float(np.trapezoid(amplitude, turns)) / periods,
+            turned=turned,
+            mean_lag=float(np.trapezoid(lag, turns)) / periods,
+            repetition=repetition,
+        )
 
 
-def _turned(model: Model, trajectory: Trajectory, tau: Floats) -> float:
-    ends = tau[[0, -1]]
-    first, last = trajectory.azimuth(ends, model.tilt(trajectory.states(ends)))
-    return float(np.nan_to_num(last - first))  # no azimuth while it stands: then it does not travel round
-
-
-def _repetition(model: Model, states: Floats) -> float:
-    tilt, rate = model.tilt(states), model.tilt_rate(states)
-    scale_tilt, scale_rate = np.abs(tilt).max(), np.abs(rate).max()
-    if scale_tilt == 0.0 or scale_rate == 0.0:
-        return 0.0
-    return float(max(np.abs(np.diff(tilt)).max() / scale_tilt, np.abs(np.diff(rate)).max() / scale_rate))
+def _repetition(vectors: Floats) -> float:
+    largest = np.abs(vectors).max()
+    return float(np.abs(vectors[:, _SAMPLES:] - vectors[:, :-_SAMPLES]).max() / largest) if largest > 0.0 else 0.0

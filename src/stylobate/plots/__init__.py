@@ -6,11 +6,12 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stylobate.errors import ParameterError
+from stylobate.plots.paper_report import paper_report
 from stylobate.plots.response import plot_response
 from stylobate.plots.runs import plot_runs
 from stylobate.results import Response
 
-__all__ = ["plot", "plot_response", "plot_runs"]
+__all__ = ["paper_report", "plot", "plot_response", "plot_runs"]
 
 
 def plot(result: Response | xr.Dataset | Sequence[Response], *, labels: Sequence[str] | None = None) -> Figure:

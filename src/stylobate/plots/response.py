@@ -5,13 +5,14 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from stylobate.plots.style import GREY, PALETTE, STABLE_WIDTH, UNSTABLE_WIDTH, new_axes, new_figure
+from stylobate.plots.style import GREY, PALETTE, STABLE_WIDTH, UNSTABLE_WIDTH, new_figure, styled
 
 
+@styled
 def plot_response(curves: xr.Dataset) -> Figure:
     """Return a figure of response `curves`: amplitude above, phase below, stable bold, unstable thin."""
     figure = new_figure(6.4)
-    amplitude, phase = new_axes(figure, 2, 1, 1), new_axes(figure, 2, 1, 2)
+    amplitude, phase = figure.add_subplot(2, 1, 1), figure.add_subplot(2, 1, 2)
     frequency = curves["angular_frequency"]
     amplitude.plot(frequency, curves["backbone"], color=GREY, linestyle=(0, (4, 2)), label="free rolling (5)")
     for index, sense in enumerate(curves["sense"].to_numpy()):

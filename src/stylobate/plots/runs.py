@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from stylobate.plots.style import BLACK, DASHES, GREY, PALETTE, new_axes, new_figure
+from stylobate.plots.style import BLACK, DASHES, GREY, PALETTE, new_figure, styled
 from stylobate.results import Response
 
 _EVENT_NAMES = {
@@ -23,6 +23,7 @@ _EVENT_NAMES = {
 _MOST_EVENTS = 6
 
 
+@styled
 def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> Figure:
     """Return a figure of one run, or of several compared.
 
@@ -38,9 +39,9 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
     """
     names = labels or [run.outcome.value for run in runs]
     figure = new_figure(5.0)
-    tilt = new_axes(figure, 2, 2, 1)
-    azimuth = new_axes(figure, 2, 2, 3, sharex=tilt)
-    orbit = new_axes(figure, 1, 2, 2)
+    tilt = figure.add_subplot(2, 2, 1)
+    azimuth = figure.add_subplot(2, 2, 3, sharex=tilt)
+    orbit = figure.add_subplot(1, 2, 2)
     for index, (run, name) in enumerate(zip(runs, names, strict=True)):
         line = {"color": PALETTE[index % len(PALETTE)], "linestyle": DASHES[index % len(DASHES)] if index else "-"}
         time = run.data["time"]

@@ -1,7 +1,10 @@
 """How figures look: one palette that survives colour blindness and grey print, one page width."""
 
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, ParamSpec
+
 from matplotlib import rc_context
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 # Okabe and Ito's palette ("Color Universal Design", 2008), its yellow left out; order alternates in lightness.
@@ -16,7 +19,7 @@ STABLE_WIDTH, UNSTABLE_WIDTH = 2.8, 0.9
 WIDTH = 7.2
 """Width of a figure that spans a page [inches]."""
 
-_SETTINGS = {
+_SETTINGS: dict[Any, Any] = {
     "font.size": 9.5,
     "axes.titlesize": 10,
     "axes.titlelocation": "left",
@@ -31,12 +34,20 @@ _SETTINGS = {
 }
 
 
+P = ParamSpec("P")
+
+
+def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
+    """Draw with the common settings, and leave those of the user as they were."""
+
+    @wraps(draw)
+    def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:
+        with rc_context(_SETTINGS):
+            return draw(*args, **kwargs)
+
+    return drawn
+
+
 def new_figure(height: float, *, width: float = WIDTH) -> Figure:
     """Return an empty figure of this `width` and `height` [inches], apart from any interactive backend."""
     return Figure(figsize=(width, height), layout="constrained")
-
-
-def new_axes(figure: Figure, *grid: int, **options: object) -> Axes:
-    """Return new axes in `figure`, drawn in the common style; `grid` is rows, columns, index."""
-    with rc_context(_SETTINGS):
-        return figure.add_subplot(*(grid or (1, 1, 1)), **options)  # type: ignore[arg-type]

@@ -1,6 +1,7 @@
 """Results: what a computation returns, saved and loaded with everything needed to repeat it."""
 
+from stylobate.results.findings import Finding, PaperCheck, Section, Verdict
 from stylobate.results.response import Event, Response
 from stylobate.results.storage import load
 
-__all__ = ["Event", "Response", "load"]
+__all__ = ["Event", "Finding", "PaperCheck", "Response", "Section", "Verdict", "load"]

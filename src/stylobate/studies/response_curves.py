@@ -73,7 +73,11 @@ def response_curves(
     return xr.Dataset(
         {
             "amplitude": (dims, stacked["amplitude"], {"units": "rad", "long_name": "tilt angle"}),
-            "phase": (dims, stacked["phase"], {"units": "rad", "long_name": "phase of the lean against the base acceleration"}),
+            "phase": (
+                dims,
+                stacked["phase"],
+                {"units": "rad", "long_name": "phase of the lean against the base acceleration"},
+            ),
             "stable": (dims, stacked["stable"], {"long_name": "stable"}),
             "backbone": (dims[-1:], theory.rolling_backbone(frequency / scale, c), {"units": "rad"}),
             "critical_frequency": ("sense", critical, {"units": "rad s-1", "long_name": "critical frequency"}),

@@ -63,7 +63,9 @@ def steady_start(model: Slender, motion: Harmonic, *, branch: str = "upper", sen
         raise ParameterError(message)
     tilt, phase = float(chosen.amplitude), float(chosen.phase)
     if not math.isfinite(tilt):
-        message = f"motion has no steady rolling on the {branch} branch at angular_frequency {motion.angular_frequency!r}"
+        message = (
+            f"motion has no steady rolling on the {branch} branch at angular_frequency {motion.angular_frequency!r}"
+        )
         raise ParameterError(message)
     # The closed form measures its azimuth from axis 1 at the phase of that axis.
     azimuth = turning * (motion.start_phase + phi1 + phase) + float(np.asarray(steady.azimuth_offset))

@@ -8,16 +8,8 @@ import xarray as xr
 from stylobate import theory
 from stylobate.engine import simulate
 from stylobate.motions import Harmonic
-from stylobate.studies.paper.findings import (
-    CIRCULAR_AMPLITUDES,
-    DAMPING,
-    SLENDERNESS,
-    Finding,
-    Section,
-    Verdict,
-    judged,
-    paper_model,
-)
+from stylobate.results import Finding, Section, Verdict
+from stylobate.studies.paper.setting import CIRCULAR_AMPLITUDES, DAMPING, SLENDERNESS, judged, paper_model
 from stylobate.studies.starts import steady_start
 
 _PARAMETERS = {"c": SLENDERNESS, "eta": DAMPING}

@@ -7,7 +7,8 @@ import xarray as xr
 
 from stylobate import theory
 from stylobate.engine import simulate
-from stylobate.studies.paper.findings import SLENDERNESS, Finding, Section, Verdict, judged, paper_model
+from stylobate.results import Finding, Section, Verdict
+from stylobate.studies.paper.setting import SLENDERNESS, judged, paper_model
 
 _C = SLENDERNESS
 

@@ -8,7 +8,8 @@ import xarray as xr
 from stylobate.engine import simulate
 from stylobate.errors import Outcome
 from stylobate.motions import Harmonic
-from stylobate.studies.paper.findings import SLENDERNESS, Finding, Section, judged, paper_model
+from stylobate.results import Finding, Section
+from stylobate.studies.paper.setting import SLENDERNESS, judged, paper_model
 
 _C = SLENDERNESS
 

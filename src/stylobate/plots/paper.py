@@ -1,0 +1,263 @@
+"""The figures of the source paper and those that go beyond it, from the data of its check."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+
+from stylobate.plots.response import draw_branch, set_phase_axis
+from stylobate.plots.style import (
+    BLACK,
+    BLUE,
+    DASHES,
+    GREY,
+    PALETTE,
+    STABLE_WIDTH,
+    UNSTABLE_WIDTH,
+    VERMILION,
+    new_figure,
+    styled,
+)
+
+# The paper's numbers of the curves, by amplitude and branch, and where along θ to put them.
+_CURVE_NUMBERS = {(0, "lower"): (2, 0.62), (0, "upper"): (3, 0.28), (1, "lower"): (4, 0.42), (1, "upper"): (5, 0.5)}
+_COLOURS = (BLUE, VERMILION)
+_LIMIT = (0, (4, 2))
+
+
+@styled
+def figure_2(response: xr.Dataset, straight: xr.Dataset | None = None) -> Figure:
+    """Return Fig. 2, tilt against frequency; for straight-line motion with the `straight` full motion beside it."""
+    figure = new_figure(4.4)
+    axes = figure.subplots()
+    theta = response["theta"]
+    axes.plot(theta, response["backbone"], color=GREY, linestyle=_LIMIT)
+    _number(axes, 1, 0.05, float(response["backbone"][0]))
+    for (index, branch), (number, place) in _CURVE_NUMBERS.items():
+        part = response.isel(a0=index).sel(branch=branch)
+        draw_branch(axes, theta, part["amplitude"], part["stable"], color=_COLOURS[index])
+        _number(axes, number, place, float(part["amplitude"].interp(theta=place)), color=_COLOURS[index])
+    if straight is not None:
+        _draw_full_motion(axes, straight)
+    _amplitude_legend(axes, response, straight)
+    axes.set_xlabel("frequency of the base θ = θ₀/ω₀")
+    axes.set_ylabel("tilt angle A [rad]" if straight is None else "tilt angle A, averaged [rad]")
+    axes.set_xlim(0.0, 4.1)
+    axes.set_ylim(0.0, 0.172)
+    return figure
+
+
+@styled
+def figure_3(response: xr.Dataset, *, averaged: bool) -> Figure:
+    """Return Fig. 3, phase against frequency; `averaged` for straight-line motion."""
+    figure = new_figure(4.0)
+    axes = figure.subplots()
+    places = {2: 0.8, 3: 2.6, 4: 1.2, 5: 1.9}
+    for (index, branch), (number, _) in _CURVE_NUMBERS.items():
+        part = response.isel(a0=index).sel(branch=branch)
+        draw_branch(axes, response["theta"], part["phase"], part["stable"], color=_COLOURS[index])
+        place = places[number]
+        _number(axes, number, place, float(part["phase"].interp(theta=place)), color=_COLOURS[index])
+    set_phase_axis(axes)
+    _amplitude_legend(axes, response, averaged or None)
+    axes.set_xlabel("frequency of the base θ = θ₀/ω₀")
+    axes.set_ylabel("phase ψ, averaged [rad]" if averaged else "phase ψ [rad]")
+    axes.set_xlim(0.0, float(response["theta"][-1]))
+    return figure
+
+
+@styled
+def backbones(data: xr.Dataset) -> Figure:
+    """Return the two backbones, each with the forced response that hugs it."""
+    figure = new_figure(4.2)
+    axes = figure.subplots()
+    theta = data["theta"]
+    axes.plot(theta, data["rolling_backbone"], color=BLUE, linestyle=_LIMIT, label="free rolling (5)")
+    axes.plot(theta, data["planar_backbone"], color=VERMILION, linestyle=":", linewidth=1.6, label="free rocking (3)")
+    for branch in data["branch"].to_numpy():
+        part = data.sel(branch=branch)
+        draw_branch(axes, theta, part["rolling"], part["rolling_stable"], color=BLUE)
+    for orbit in data["orbit"].to_numpy():
+        part = data.sel(orbit=orbit)
+        draw_branch(axes, theta, part["planar"], part["planar_stable"], color=VERMILION)
+    axes.plot([], [], color=BLUE, linewidth=STABLE_WIDTH, label=f"rolling on a circle, a0 = {data.attrs['a0']:g}")
+    axes.plot([], [], color=VERMILION, linewidth=STABLE_WIDTH, label=f"rocking in a plane, a1 = {data.attrs['a1']:g}")
+    axes.plot([], [], color=BLACK, linewidth=UNSTABLE_WIDTH, label="thin: unstable (rocking: within its plane)")
+    axes.legend()
+    axes.set_xlabel("frequency θ, ω")
+    axes.set_ylabel("largest tilt angle [rad]")
+    axes.set_ylim(0.0, 1.05 * data.attrs["c"])
+    return figure
+
+
+@styled
+def averaging(data: xr.Dataset) -> Figure:
+    """Return tilt against time by the full equations and by the slow flow, where averaging is good and where not."""
+    figure = new_figure(5.4)
+    for k, (theta, a1) in enumerate(zip(data.attrs["theta"], data.attrs["a1"], strict=True)):
+        axes = figure.add_subplot(2, 1, k + 1)
+        axes.plot(data[f"time_{k}"], data[f"full_{k}"], color=BLUE, linewidth=1.1, label="full motion (1)")
+        axes.plot(
+            data[f"time_{k}"], data[f"slow_{k}"], color=BLACK, linewidth=2.0, linestyle="--", label="averaged (10)"
+        )
+        overturned = bool(np.isnan(data[f"full_{k}"]).any())
+        fate = "averaged motion stable, the column overturns" if overturned else "averaging follows the mean"
+        axes.set_title(f"a1 = {a1:g}, θ = {theta:g}: {fate}")
+        axes.set_ylabel("tilt angle A [rad]")
+        axes.set_ylim(0.0, 2.2 * data.attrs["c"] if overturned else None)
+        axes.legend(loc="upper right")
+    axes.set_xlabel("time τ")
+    return figure
+
+
+@styled
+def modulated(data: xr.Dataset) -> Figure:
+    """Return the modulated rolling below θ*: tilt over a few of its periods, and its cycle in the rotating frame."""
+    figure = new_figure(3.6)
+    history, cycle = figure.add_subplot(1, 2, 1), figure.add_subplot(1, 2, 2)
+    for k, theta in enumerate(data.attrs["theta"]):
+        line = {"color": PALETTE[k], "linestyle": DASHES[k], "label": f"θ = {theta:g}"}
+        tau, tilt, phase = (data[f"{name}_{k}"].to_numpy() for name in ("tau", "amplitude", "phase"))
+        turns = np.concatenate([tau[:-1] + n * tau[-1] for n in range(3)])
+        history.plot(turns, np.tile(tilt[:-1], 3), **line)
+        cycle.plot(tilt * np.cos(phase), tilt * np.sin(phase), **line)
+        psi = float(data[f"steady_phase_{k}"])
+        cycle.plot(np.cos(psi), np.sin(psi), marker="+", color=PALETTE[k])
+    history.axhline(1.0, color=GREY, linewidth=0.9, linestyle=_LIMIT)
+    history.set_xlabel("time τ")
+    history.set_ylabel("tilt over that of steady rolling, A/A₊")
+    history.legend(loc="lower right")
+    cycle.set_aspect("equal", adjustable="datalim")
+    cycle.set_xlabel("A cos ψ / A₊")
+    cycle.set_ylabel("A sin ψ / A₊")
+    cycle.set_title("frame of the base; + steady, unstable")
+    return figure
+
+
+@styled
+def runaway(data: xr.Dataset) -> Figure:
+    """Return the azimuth of free motions that begin ever closer to a plane, and one of the paths."""
+    figure = new_figure(3.8)
+    azimuth, path = figure.add_subplot(1, 2, 1), figure.add_subplot(1, 2, 2)
+    for k, offset in enumerate(data["offset"].to_numpy()):
+        part = data.sel(offset=offset)
+        name = f"{offset:g}" if offset else "0: in its plane"
+        azimuth.plot(part["time"], part["azimuth"] / np.pi, color=PALETTE[k], linestyle=DASHES[k], label=name)
+    c = data.attrs["c"]
+    shown = data.isel(offset=0)
+    path.plot(shown["tilt"].sel(axis="x") / c, shown["tilt"].sel(axis="y") / c, color=PALETTE[0], linewidth=0.9)
+    path.add_patch(Circle((0.0, 0.0), 1.0, fill=False, color=GREY, linestyle=_LIMIT))
+    azimuth.set_xlabel("time τ")
+    azimuth.set_ylabel("azimuth β [half turns]")
+    azimuth.set_ylim(-1.5, 13.5)
+    azimuth.legend(title="sideways rate at the start, in c", loc="upper left", ncols=2)
+    path.set_aspect("equal", adjustable="datalim")
+    path.set_xlabel("α₁/c")
+    path.set_ylabel("α₂/c")
+    path.set_title(f"path with sideways rate {float(data['offset'][0]):g}c")
+    return figure
+
+
+@styled
+def critical(data: xr.Dataset) -> Figure:
+    """Return the critical frequency against the amplitude of circular base motion."""
+    figure = new_figure(4.0)
+    axes = figure.subplots()
+    for k, eta in enumerate(data["eta"].to_numpy()):
+        axes.plot(data["a0"], data["theta"].sel(eta=eta), color=PALETTE[k], linestyle=DASHES[k], label=f"η = {eta:g}")
+    axes.plot(
+        data["a0"][::12], data["frictionless"][::12], "o", markersize=3.5, color=BLACK, label="η = 0, closed form"
+    )
+    axes.set_xlabel("amplitude of the base acceleration a0 [g]")
+    axes.set_ylabel("critical frequency θ*")
+    axes.set_xlim(0.0, float(data["a0"][-1]))
+    axes.set_ylim(0.0, None)
+    axes.annotate("rolling stable", (0.4, 0.9), xycoords="axes fraction", color=GREY)
+    axes.annotate("rolling unstable", (0.4, 0.3), xycoords="axes fraction", color=GREY)
+    axes.legend(loc="lower right", ncols=2)
+    return figure
+
+
+@styled
+def pressure(data: xr.Dataset) -> Figure:
+    """Return the path of the centre of pressure under a standing column."""
+    figure = new_figure(3.8, width=6.0)
+    axes = figure.subplots()
+    axes.add_patch(Circle((0.0, 0.0), 1.0, fill=False, color=BLACK, linewidth=1.2))
+    for k, motion in enumerate(data["motion"].to_numpy()):
+        part = data["path"].sel(motion=motion)
+        axes.plot(part.sel(axis="x"), part.sel(axis="y"), color=PALETTE[k], linestyle=DASHES[k], label=str(motion))
+    axes.set_aspect("equal")
+    axes.set_xlim(-1.15, 1.15)
+    axes.set_ylim(-1.15, 1.15)
+    axes.set_xlabel("x / r")
+    axes.set_ylabel("y / r")
+    axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0))
+    return figure
+
+
+@styled
+def kicks(data: xr.Dataset) -> Figure:
+    """Return the sideways kick of one passage against its offset from the upright, with the exact slope."""
+    figure = new_figure(3.4, width=5.2)
+    axes = figure.subplots()
+    offset, kick = data["offset"].to_numpy(), data["kick"].to_numpy()
+    axes.semilogx(offset, kick, "o", color=BLUE, label="integrated")
+    middle = len(offset) // 2
+    line = kick[middle] + data.attrs["slope"] * np.log(offset / offset[middle])
+    axes.semilogx(offset, line, color=BLACK, linewidth=1.0, label="slope 2c/v")
+    axes.set_xlabel("offset y₀ from the upright at the passage [rad]")
+    axes.set_ylabel("sideways kick Δẏ/y₀")
+    axes.legend()
+    return figure
+
+
+def _draw_full_motion(axes: Axes, straight: xr.Dataset) -> None:
+    width = 0.02
+    for index, a1 in enumerate(straight["a1"].to_numpy()):
+        part = straight.sel(a1=a1)
+        x = part["theta"].to_numpy() + (index - 0.5) * width
+        mean, low, high = (part[name].to_numpy() for name in ("mean", "least", "largest"))
+        axes.errorbar(
+            x, mean, yerr=[mean - low, high - mean], fmt="o", markersize=3.5, capsize=2, linewidth=0.9,
+            color=_COLOURS[index],
+        )  # fmt: skip
+        fallen = np.isnan(mean)
+        axes.plot(x[fallen], np.full(fallen.sum(), 0.165 - 0.005 * index), "x", color=_COLOURS[index], markersize=6)
+    axes.errorbar([], [], yerr=[], fmt="o", markersize=3.5, capsize=2, color=BLACK, label="full motion: mean, range")
+    axes.plot([], [], "x", color=BLACK, label="full motion: overturned")
+
+
+def _amplitude_legend(axes: Axes, response: xr.Dataset, straight: object) -> None:
+    factor, name = (1.0, "a0") if straight is None else (2.0, "a1")
+    for index, a0 in enumerate(response["a0"].to_numpy()):
+        axes.plot([], [], color=_COLOURS[index], linewidth=STABLE_WIDTH, label=f"{name} = {factor * a0:g}, stable")
+        axes.plot([], [], color=_COLOURS[index], linewidth=UNSTABLE_WIDTH, label=f"{name} = {factor * a0:g}, unstable")
+    axes.legend(loc="upper right")
+
+
+def _number(axes: Axes, number: int, x: float, y: float, color: str = GREY) -> None:
+    axes.annotate(
+        str(number),
+        (x, y),
+        ha="center",
+        va="center",
+        fontsize=9,
+        fontweight="bold",
+        color=color,
+        bbox={"boxstyle": "circle,pad=0.15", "facecolor": "white", "edgecolor": "none"},
+    )
+
+
+__all__ = [
+    "averaging",
+    "backbones",
+    "critical",
+    "figure_2",
+    "figure_3",
+    "kicks",
+    "modulated",
+    "pressure",
+    "runaway",
+]

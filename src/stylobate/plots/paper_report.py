@@ -1,0 +1,155 @@
+"""The report on the source paper: its figures as files, its findings as a table, all of it on one page."""
+
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from stylobate.errors import FileError
+from stylobate.plots import paper
+from stylobate.plots.page import Picture, Section, Table, page
+from stylobate.results import Finding, PaperCheck
+
+_TITLE = "A round column on a vibrating base: the source paper reproduced, checked and corrected"
+
+_INTRODUCTION = (
+    "The paper, “Dynamic of a cylindrical column on a vibrating base” (Vibroengineering Procedia), studies a slender "
+    "free-standing column with a circular base under harmonic base motion. This page repeats its curves from its "
+    "equations, measures each of its statements, corrects its misprints, and says where a statement fails. Numbers in "
+    "parentheses are the paper's equations.",
+    "Units: angles in rad, time τ = ω₀t, frequency θ = θ₀/ω₀, accelerations in g. Unless said otherwise c = η = 0.1, the "
+    "numbers of the paper's figures. Every number below was computed when this page was made.",
+)
+
+# Name of the picture, the heading it stands under, how to draw it, and its caption.
+_PICTURES: tuple[tuple[str, str, Callable[[PaperCheck], Figure], str], ...] = (
+    (
+        "figure-2-circular",
+        "Circular base motion",
+        lambda check: paper.figure_2(check.data["response"]),
+        "Fig. 2 of the paper: tilt of steady rolling against the frequency of a circular base motion. 1: free rolling (5). "
+        "2, 3: lower and upper branch at a0 = 0.02. 4, 5: the same at a0 = 0.065. Bold: stable.",
+    ),
+    (
+        "figure-3-circular",
+        "Circular base motion",
+        lambda check: paper.figure_3(check.data["response"], averaged=False),
+        "Fig. 3 of the paper: phase of the contact point to the base acceleration, with the curves' numbers of Fig. 2.",
+    ),
+    (
+        "critical-frequency",
+        "Circular base motion",
+        lambda check: paper.critical(check.data["critical"]),
+        "The frequency θ* above which rolling is stable, against the amplitude of the base, for several frictions η. "
+        "Dots: the closed form without friction. A curve begins where the boundary meets the fold of the two branches.",
+    ),
+    (
+        "modulated-rolling",
+        "Below the critical frequency",
+        lambda check: paper.modulated(check.data["modulated"]),
+        "Modulated rolling, stable, below θ* = 1.3971 at a0 = 0.065: limit cycles of (7).",
+    ),
+    (
+        "figure-2-straight",
+        "Straight-line base motion",
+        lambda check: paper.figure_2(check.data["response"], check.data["straight"]),
+        "Fig. 2 for straight-line base motion: the averaged curves, and the full motion started on them: mean and range "
+        "of the tilt over the second half of 60 periods; a cross where the column overturned (its height means nothing).",
+    ),
+    (
+        "figure-3-straight",
+        "Straight-line base motion",
+        lambda check: paper.figure_3(check.data["response"], averaged=True),
+        "Fig. 3 for straight-line base motion, averaged.",
+    ),
+    (
+        "averaging-in-time",
+        "Straight-line base motion",
+        lambda check: paper.averaging(check.data["averaging"]),
+        "Full motion (1) and slow flow (10). Above: both start 15 % above the averaged tilt. Below: both start on the "
+        "averaged solution, which (10) calls stable; the column overturns.",
+    ),
+    (
+        "backbones",
+        "Motion in a plane",
+        lambda check: paper.backbones(check.data["backbones"]),
+        "Two curves that look alike and are not: free rolling (5) and free rocking (3), each with a forced response that "
+        "hugs it. Rocking is shown stable or not within its plane; out of it, it is always unstable.",
+    ),
+    (
+        "planar-kick",
+        "Motion in a plane",
+        lambda check: paper.kicks(check.data["kicks"]),
+        "Why planar motion is lost: the sideways kick of one passage of the upright, over its offset, grows without bound "
+        "as the offset shrinks.",
+    ),
+    (
+        "runaway-azimuth",
+        "Free vibration",
+        lambda check: paper.runaway(check.data["runaway"]),
+        "Free motion without friction from a tilt of 0.7c with a small sideways rate: the azimuth of the lean runs on by "
+        "about half a turn at each passage of the upright. Right: the path of the tilt vector inside the circle |α| = c.",
+    ),
+    (
+        "centre-of-pressure",
+        "The standing column",
+        lambda check: paper.pressure(check.data["pressure"]),
+        "A standing column: path of the centre of pressure on its base (black: the rim).",
+    ),
+)
+
+
+def paper_report(check: PaperCheck, folder: str | Path) -> Path:
+    """Write figures (PNG), data (netCDF), findings (JSON) and `report.html` into `folder`; return the report's path.
+
+    Raises
+    ------
+    FileError
+        If the folder cannot be written.
+    """
+    target = Path(folder)
+    try:
+        (target / "data").mkdir(parents=True, exist_ok=True)
+        pictures = _draw(check, target)
+        for name, data in check.data.items():
+            data.to_netcdf(target / "data" / f"{name}.nc", engine="h5netcdf")
+        findings = [_plain(finding) for finding in check.findings]
+        (target / "findings.json").write_text(json.dumps(findings, indent=1, ensure_ascii=False), encoding="utf-8")
+        report = target / "report.html"
+        report.write_text(page(_TITLE, _INTRODUCTION, _sections(check, pictures)), encoding="utf-8")
+    except OSError as error:
+        message = f"cannot write into {target}: {error.strerror or error}"
+        raise FileError(message) from error
+    return report
+
+
+def findings_table(findings: Sequence[Finding]) -> Table:
+    """Return the findings as a table."""
+    header = ("where", "statement", "measured", "verdict")
+    return Table(header, [(f.source, f.statement, f.measured, f.verdict.value) for f in findings])
+
+
+def _draw(check: PaperCheck, target: Path) -> dict[str, list[Picture]]:
+    drawn: dict[str, list[Picture]] = {}
+    for name, heading, draw, caption in _PICTURES:
+        figure = draw(check)
+        figure.savefig(target / f"{name}.png", dpi=180)
+        drawn.setdefault(heading, []).append(Picture(figure, caption))
+    return drawn
+
+
+def _sections(check: PaperCheck, pictures: dict[str, list[Picture]]) -> list[Section]:
+    return [
+        Section(heading, [*pictures.get(heading, []), findings_table(section.findings)])
+        for heading, section in check.sections.items()
+    ]
+
+
+def _plain(finding: Finding) -> dict[str, str]:
+    return {
+        "source": finding.source,
+        "statement": finding.statement,
+        "measured": finding.measured,
+        "verdict": finding.verdict.value,
+    }

@@ -1,0 +1,53 @@
+"""What a check of a publication finds: its claims with measurements and verdicts, and the data of its figures."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+
+import xarray as xr
+
+
+class Verdict(Enum):
+    """How a statement of a publication fares."""
+
+    HOLDS = "holds"
+    SHARPENED = "holds, sharpened"
+    LIMITED = "holds within limits"
+    FAILS = "fails"
+    ERRATUM = "misprint"
+    NOT_CONFIRMED = "not confirmed here"
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One statement, in our words, with what was measured and how it fares."""
+
+    source: str
+    statement: str
+    measured: str
+    verdict: Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """The findings of one part and the data of its figures, by name."""
+
+    findings: tuple[Finding, ...]
+    data: Mapping[str, xr.Dataset] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class PaperCheck:
+    """A publication checked: `sections` by heading, in its order."""
+
+    sections: Mapping[str, Section]
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """All findings."""
+        return tuple(finding for section in self.sections.values() for finding in section.findings)
+
+    @property
+    def data(self) -> Mapping[str, xr.Dataset]:
+        """The data of all figures, by name."""
+        return {name: data for section in self.sections.values() for name, data in section.data.items()}

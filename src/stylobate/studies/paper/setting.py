@@ -1,0 +1,21 @@
+"""The numbers of the source paper's figures, and the column they belong to."""
+
+from stylobate.column import Column
+from stylobate.models import Slender
+from stylobate.results import Verdict
+
+SLENDERNESS, DAMPING = 0.1, 0.1
+"""c and η of the paper's figures."""
+
+CIRCULAR_AMPLITUDES = (0.02, 0.065)
+"""a0 of the paper's curves 2, 3 and 4, 5 [g]; for straight-line motion a1 is twice that."""
+
+
+def paper_model(damping: float = DAMPING) -> Slender:
+    """Return the paper's column, c = 0.1, in its own units (m = g = ω0 = 1)."""
+    return Slender(Column.dimensionless(SLENDERNESS), damping=damping)
+
+
+def judged(condition: bool, verdict: Verdict = Verdict.HOLDS) -> Verdict:
+    """Return `verdict` if the measurement bears it out, NOT_CONFIRMED otherwise."""
+    return verdict if condition else Verdict.NOT_CONFIRMED
