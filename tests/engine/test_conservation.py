@@ -85,7 +85,9 @@ def test_energy_changes_by_the_work_of_base_and_friction(motion, damping):
 def test_vertical_motion_enters_as_a_change_of_weight():
     # (1) with a_z: d/dτ(½|α̇|²) = (1 + a_z)(α − cû)·α̇, so dE/dτ = a_z (A − c) Ȧ.
     motion = sb.Harmonic.vertical(acceleration=0.5, angular_frequency=2.0)
-    run = sb.simulate(model(), motion, tilt=(0.05, 0.0), tilt_rate=(0.0, 0.05), duration=10.0, rtol=1e-11, samples=20_001)
+    run = sb.simulate(
+        model(), motion, tilt=(0.05, 0.0), tilt_rate=(0.0, 0.05), duration=10.0, rtol=1e-11, samples=20_001
+    )
     data = run.data
     power = data.base_acceleration[:, 2] * (data.amplitude - C) * data.amplitude_rate
     energy = in_units_of_c(run, "energy")

@@ -22,7 +22,9 @@ def final_state(run):
 def test_forced_motion_reaches_the_published_state(c):
     # Physics page, "Numbers to test against", in units of c: the equations without friction scale with c.
     straight = sb.Harmonic(amplitude=(0.9 * c, 0.7 * c, 0.0), phase=(0.0, 0.9, 0.0), angular_frequency=1.7)
-    run = sb.simulate(model(c=c), straight, tilt=(0.5 * c, 0.2 * c), tilt_rate=(0.1 * c, 0.35 * c), duration=3.0, rtol=1e-12)
+    run = sb.simulate(
+        model(c=c), straight, tilt=(0.5 * c, 0.2 * c), tilt_rate=(0.1 * c, 0.35 * c), duration=3.0, rtol=1e-12
+    )
     published = [0.033153473664, 0.6700240983541, 0.507152125059, -0.2563540126826]
     np.testing.assert_allclose(final_state(run) / c, published, rtol=0.0, atol=1e-9)
 

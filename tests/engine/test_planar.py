@@ -95,9 +95,7 @@ def test_coplanar_start_and_motion_stay_on_their_line(direction, damping):
 
 @pytest.mark.parametrize("direction", [0.3, 1.1, 2.0])
 def test_release_by_a_straight_motion_stays_in_its_plane(direction):
-    motion = sb.Harmonic.straight(
-        acceleration=0.13, angular_frequency=3.0, direction=direction, start_phase=-1.4
-    )
+    motion = sb.Harmonic.straight(acceleration=0.13, angular_frequency=3.0, direction=direction, start_phase=-1.4)
     run = sb.simulate(model(0.1), motion, duration=30.0)
     tilt = run.data.tilt.to_numpy()
     assert run.planar
@@ -139,7 +137,14 @@ def test_forced_motion_in_a_plane_is_piecewise_linear(tilt, rate, a, theta, phi,
     motion = sb.Harmonic.straight(acceleration=C * a, angular_frequency=theta, direction=0.3, start_phase=phi)
     line = np.array([math.cos(0.3), math.sin(0.3)])
     run = sb.simulate(
-        model(eta), motion, tilt=tilt * line, tilt_rate=rate * line, duration=6.0, rtol=1e-11, rest_energy=0.0, samples=301
+        model(eta),
+        motion,
+        tilt=tilt * line,
+        tilt_rate=rate * line,
+        duration=6.0,
+        rtol=1e-11,
+        rest_energy=0.0,
+        samples=301,
     )
     exact, crossings = PiecewiseLinear(C * a, theta, phi, eta).at(run.data.time.to_numpy(), tilt, rate)
     if crossings > 40:  # swings of no size: nothing to compare

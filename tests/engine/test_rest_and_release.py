@@ -49,7 +49,9 @@ def test_standing_column_shows_the_centre_of_pressure_on_the_rim_at_the_limit():
 @pytest.mark.parametrize("excess", [1e-8, 1e-4, 0.1, 2.0])
 def test_release_comes_when_a_straight_acceleration_reaches_c(excess, start_phase):
     peak, frequency = C * (1.0 + excess), 1.7
-    motion = sb.Harmonic.straight(acceleration=peak, angular_frequency=frequency, direction=0.4, start_phase=start_phase)
+    motion = sb.Harmonic.straight(
+        acceleration=peak, angular_frequency=frequency, direction=0.4, start_phase=start_phase
+    )
     run = sb.simulate(model(0.1), motion, duration=8.0)
     # |cos(Ωt + φ)| = c/peak for the first time: Ωt + φ = nπ − acos(c/peak), unless it is exceeded from the start.
     before = math.acos(C / peak)

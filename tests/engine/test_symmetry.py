@@ -40,9 +40,7 @@ def test_turning_motion_and_start_together_turns_the_answer(angle):
     )
     assert other.outcome is one.outcome
     assert not other.planar
-    np.testing.assert_allclose(
-        other.data.tilt, turned(one.data.tilt.to_numpy(), angle), rtol=0.0, atol=1e-6 * C
-    )
+    np.testing.assert_allclose(other.data.tilt, turned(one.data.tilt.to_numpy(), angle), rtol=0.0, atol=1e-6 * C)
     assert other.measures["turns"] == pytest.approx(one.measures["turns"], abs=1e-6)
 
 
@@ -93,9 +91,7 @@ def test_a_real_column_gives_the_dimensionless_answer(column):
     np.testing.assert_allclose(real.data.tilt, paper.data.tilt, rtol=0.0, atol=1e-7 * C)
     np.testing.assert_allclose(real.data.tilt_rate / scale, paper.data.tilt_rate, rtol=0.0, atol=1e-7 * C)
     energy_unit = column.base_inertia * scale**2
-    np.testing.assert_allclose(
-        real.data.energy / energy_unit, paper.data.energy / 0.75, rtol=0.0, atol=1e-7 * C**2
-    )
+    np.testing.assert_allclose(real.data.energy / energy_unit, paper.data.energy / 0.75, rtol=0.0, atol=1e-7 * C**2)
     assert real.outcome is paper.outcome
 
 
@@ -128,6 +124,8 @@ def test_start_phase_is_a_shift_of_time(shift):
 def test_without_friction_time_runs_backwards_as_well():
     out = sb.simulate(model(0.0), tilt=START[0], tilt_rate=START[1], duration=8.0, rtol=1e-12)
     end = out.data.isel(time=-1)
-    back = sb.simulate(model(0.0), tilt=end.tilt.to_numpy(), tilt_rate=-end.tilt_rate.to_numpy(), duration=8.0, rtol=1e-12)
+    back = sb.simulate(
+        model(0.0), tilt=end.tilt.to_numpy(), tilt_rate=-end.tilt_rate.to_numpy(), duration=8.0, rtol=1e-12
+    )
     np.testing.assert_allclose(back.data.tilt[-1], START[0], rtol=0.0, atol=1e-8 * C)
     np.testing.assert_allclose(back.data.tilt_rate[-1], -START[1], rtol=0.0, atol=1e-8 * C)

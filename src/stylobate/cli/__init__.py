@@ -1,1 +1,5 @@
-"""Draft."""
+"""The command line: one file a command."""
+
+from stylobate.cli.main import main
+
+__all__ = ["main"]

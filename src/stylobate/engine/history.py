@@ -28,7 +28,7 @@ class Recorded:
     sampler: Callable[[npt.ArrayLike], xr.Dataset]
 
 
-def history(model: Model, motion: BaseMotion, trajectory: Trajectory, samples: int | None) -> Recorded:
+def history(model: Model, motion: BaseMotion, trajectory: Trajectory, samples: int | None, *, planar: bool) -> Recorded:
     """Return the samples of a run at equal steps, `samples` of them or enough to draw every swing."""
     end = trajectory.end * model.time_scale
     count = _default_count(model, motion, trajectory.end) if samples is None else _checked(samples)
@@ -41,7 +41,7 @@ def history(model: Model, motion: BaseMotion, trajectory: Trajectory, samples: i
         return _dataset(model, motion, trajectory, t)
 
     data = sampler(np.linspace(0.0, end, count))
-    return Recorded(data, _measures(model, trajectory, data), sampler)
+    return Recorded(data, _measures(model, trajectory, data, planar=planar), sampler)
 
 
 def _dataset(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Floats) -> xr.Dataset:
@@ -81,10 +81,11 @@ def _dataset(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Flo
     return xr.Dataset(variables, coords=coordinates, attrs=slenderness)
 
 
-def _measures(model: Model, trajectory: Trajectory, data: xr.Dataset) -> dict[str, float]:
+def _measures(model: Model, trajectory: Trajectory, data: xr.Dataset, *, planar: bool) -> dict[str, float]:
     amplitude, azimuth = data["amplitude"].to_numpy(), data["azimuth"].to_numpy()
     largest = int(np.argmax(amplitude))
-    known = azimuth[np.isfinite(azimuth)]
+    # In a plane the lean changes sides; the contact point does not travel round the rim.
+    known = azimuth[np.isfinite(azimuth) & (not planar)]
     return {
         "largest_tilt": float(amplitude[largest]),
         "largest_tilt_over_c": float(amplitude[largest]) / model.column.slenderness,

@@ -105,7 +105,7 @@ def simulate(
     course = Course(model, forcing, mover, duration / model.time_scale)
     course.follow(model.start(start_tilt, start_rate))
     verdict = _verdict(model, moved, course, rules)
-    recorded = history(model, moved, course.trajectory, samples)
+    recorded = history(model, moved, course.trajectory, samples, planar=course.planar)
     return Response(
         outcome=verdict.outcome,
         reason=verdict.reason,

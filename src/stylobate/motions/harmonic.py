@@ -100,6 +100,7 @@ class Harmonic(BaseMotion):
         ramp: float = 0.0,
     ) -> Self:
         """Return a motion on a circle with constant `acceleration` [m/s²]; `sense` +1 anticlockwise, −1 clockwise."""
+        acceleration = require_finite("acceleration", acceleration, "m/s²")
         return cls.elliptic(
             amplitude=(acceleration, acceleration),
             phase=-_sense(sense) * math.pi / 2.0,
@@ -133,6 +134,7 @@ class Harmonic(BaseMotion):
         cls, *, acceleration: float, angular_frequency: float, start_phase: float = 0.0, ramp: float = 0.0
     ) -> Self:
         """Return a vertical motion of amplitude `acceleration` [m/s²]; add it to a horizontal one with `+`."""
+        acceleration = require_finite("acceleration", acceleration, "m/s²")
         return cls(
             amplitude=(0.0, 0.0, acceleration),
             angular_frequency=angular_frequency,

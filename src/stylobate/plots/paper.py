@@ -1,5 +1,7 @@
 """The figures of the source paper and those that go beyond it, from the data of its check."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -117,7 +119,7 @@ def modulated(data: xr.Dataset) -> Figure:
     figure = new_figure(3.6)
     history, cycle = figure.add_subplot(1, 2, 1), figure.add_subplot(1, 2, 2)
     for k, theta in enumerate(data.attrs["theta"]):
-        line = {"color": PALETTE[k], "linestyle": DASHES[k], "label": f"θ = {theta:g}"}
+        line: dict[str, Any] = {"color": PALETTE[k], "linestyle": DASHES[k], "label": f"θ = {theta:g}"}
         tau, tilt, phase = (data[f"{name}_{k}"].to_numpy() for name in ("tau", "amplitude", "phase"))
         turns = np.concatenate([tau[:-1] + n * tau[-1] for n in range(3)])
         history.plot(turns, np.tile(tilt[:-1], 3), **line)

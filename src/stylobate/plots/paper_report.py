@@ -18,8 +18,8 @@ _INTRODUCTION = (
     "free-standing column with a circular base under harmonic base motion. This page repeats its curves from its "
     "equations, measures each of its statements, corrects its misprints, and says where a statement fails. Numbers in "
     "parentheses are the paper's equations.",
-    "Units: angles in rad, time τ = ω₀t, frequency θ = θ₀/ω₀, accelerations in g. Unless said otherwise c = η = 0.1, the "
-    "numbers of the paper's figures. Every number below was computed when this page was made.",
+    "Units: angles in rad, time τ = ω₀t, frequency θ = θ₀/ω₀, accelerations in g. Unless said otherwise c = η = 0.1, "
+    "the numbers of the paper's figures. Every number below was computed when this page was made.",
 )
 
 # Name of the picture, the heading it stands under, how to draw it, and its caption.
@@ -28,8 +28,8 @@ _PICTURES: tuple[tuple[str, str, Callable[[PaperCheck], Figure], str], ...] = (
         "figure-2-circular",
         "Circular base motion",
         lambda check: paper.figure_2(check.data["response"]),
-        "Fig. 2 of the paper: tilt of steady rolling against the frequency of a circular base motion. 1: free rolling (5). "
-        "2, 3: lower and upper branch at a0 = 0.02. 4, 5: the same at a0 = 0.065. Bold: stable.",
+        "Fig. 2 of the paper: tilt of steady rolling against the frequency of a circular base motion. 1: free rolling "
+        "(5). 2, 3: lower and upper branch at a0 = 0.02. 4, 5: the same at a0 = 0.065. Bold: stable.",
     ),
     (
         "figure-3-circular",
@@ -54,8 +54,9 @@ _PICTURES: tuple[tuple[str, str, Callable[[PaperCheck], Figure], str], ...] = (
         "figure-2-straight",
         "Straight-line base motion",
         lambda check: paper.figure_2(check.data["response"], check.data["straight"]),
-        "Fig. 2 for straight-line base motion: the averaged curves, and the full motion started on them: mean and range "
-        "of the tilt over the second half of 60 periods; a cross where the column overturned (its height means nothing).",
+        "Fig. 2 for straight-line base motion: the averaged curves, and the full motion started on them: mean and "
+        "range of the tilt over the second half of 60 periods; a cross where the column overturned (its height means "
+        "nothing).",
     ),
     (
         "figure-3-straight",
@@ -74,22 +75,23 @@ _PICTURES: tuple[tuple[str, str, Callable[[PaperCheck], Figure], str], ...] = (
         "backbones",
         "Motion in a plane",
         lambda check: paper.backbones(check.data["backbones"]),
-        "Two curves that look alike and are not: free rolling (5) and free rocking (3), each with a forced response that "
-        "hugs it. Rocking is shown stable or not within its plane; out of it, it is always unstable.",
+        "Two curves that look alike and are not: free rolling (5) and free rocking (3), each with a forced response "
+        "that hugs it. Rocking is shown stable or not within its plane; out of it, it is always unstable.",
     ),
     (
         "planar-kick",
         "Motion in a plane",
         lambda check: paper.kicks(check.data["kicks"]),
-        "Why planar motion is lost: the sideways kick of one passage of the upright, over its offset, grows without bound "
-        "as the offset shrinks.",
+        "Why planar motion is lost: the sideways kick of one passage of the upright, over its offset, grows without "
+        "bound as the offset shrinks.",
     ),
     (
         "runaway-azimuth",
         "Free vibration",
         lambda check: paper.runaway(check.data["runaway"]),
-        "Free motion without friction from a tilt of 0.7c with a small sideways rate: the azimuth of the lean runs on by "
-        "about half a turn at each passage of the upright. Right: the path of the tilt vector inside the circle |α| = c.",
+        "Free motion without friction from a tilt of 0.7c with a small sideways rate: the azimuth of the lean runs on "
+        "by about half a turn at each passage of the upright. Right: the path of the tilt vector inside the circle |α| "
+        "= c.",
     ),
     (
         "centre-of-pressure",

@@ -15,14 +15,14 @@ def plot_response(curves: xr.Dataset) -> Figure:
     amplitude, phase = figure.add_subplot(2, 1, 1), figure.add_subplot(2, 1, 2)
     frequency = curves["angular_frequency"]
     amplitude.plot(frequency, curves["backbone"], color=GREY, linestyle=(0, (4, 2)), label="free rolling (5)")
-    for index, sense in enumerate(curves["sense"].to_numpy()):
+    for index, (sense, name) in enumerate(_distinct(curves)):
         colour = PALETTE[index]
         for branch in curves["branch"].to_numpy():
             part = curves.sel(sense=sense, branch=branch)
             draw_branch(amplitude, frequency, part["amplitude"], part["stable"], color=colour)
             draw_branch(phase, frequency, part["phase"], part["stable"], color=colour)
-        amplitude.plot([], [], color=colour, linewidth=STABLE_WIDTH, label=f"rolling {sense}, stable")
-        amplitude.plot([], [], color=colour, linewidth=UNSTABLE_WIDTH, label=f"rolling {sense}, unstable")
+        amplitude.plot([], [], color=colour, linewidth=STABLE_WIDTH, label=f"rolling {name}, stable")
+        amplitude.plot([], [], color=colour, linewidth=UNSTABLE_WIDTH, label=f"rolling {name}, unstable")
     averaged = "averaged " if curves.attrs["averaged"] else ""
     amplitude.set_ylabel(f"{averaged}tilt A [rad]")
     amplitude.set_ylim(bottom=0.0)
@@ -32,6 +32,15 @@ def plot_response(curves: xr.Dataset) -> Figure:
     phase.set_xlabel("angular frequency of the base [rad/s]")
     phase.sharex(amplitude)
     return figure
+
+
+def _distinct(curves: xr.Dataset) -> list[tuple[str, str]]:
+    """Return the senses of rolling to draw with their names; senses with the same curve are drawn once."""
+    senses = [str(sense) for sense in curves["sense"].to_numpy()]
+    first = curves["amplitude"].sel(sense=senses[0]).to_numpy()
+    if len(senses) > 1 and np.allclose(first, curves["amplitude"].sel(sense=senses[1]), rtol=1e-9, equal_nan=True):
+        return [(senses[0], "in either sense")]
+    return [(sense, sense) for sense in senses]
 
 
 def draw_branch(

@@ -1,6 +1,7 @@
 """Pictures of single runs: tilt against time, orbit of the tilt vector, azimuth; one run or several compared."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -21,6 +22,8 @@ _EVENT_NAMES = {
 }
 # A run with more events than this (rest and release in every period) keeps its curve readable without their marks.
 _MOST_EVENTS = 6
+# The name of an event later than this part of the run stands to its left.
+_LATE = 0.8
 
 
 @styled
@@ -39,11 +42,14 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
     """
     names = labels or [run.outcome.value for run in runs]
     figure = new_figure(5.0)
-    tilt = figure.add_subplot(2, 2, 1)
-    azimuth = figure.add_subplot(2, 2, 3, sharex=tilt)
-    orbit = figure.add_subplot(1, 2, 2)
+    axes = figure.subplot_mosaic([["tilt", "orbit"], ["azimuth", "orbit"]], width_ratios=(1.15, 1.0))
+    tilt, azimuth, orbit = axes["tilt"], axes["azimuth"], axes["orbit"]
+    azimuth.sharex(tilt)
     for index, (run, name) in enumerate(zip(runs, names, strict=True)):
-        line = {"color": PALETTE[index % len(PALETTE)], "linestyle": DASHES[index % len(DASHES)] if index else "-"}
+        line: dict[str, Any] = {
+            "color": PALETTE[index % len(PALETTE)],
+            "linestyle": DASHES[index % len(DASHES)] if index else "-",
+        }
         time = run.data["time"]
         tilt.plot(time, run.data["amplitude"], linewidth=1.1, label=name, **line)
         azimuth.plot(time, run.data["azimuth"] / (2.0 * np.pi), linewidth=1.1, **line)
@@ -57,11 +63,11 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
     return figure
 
 
-def _draw_orbit(axes: Axes, data: xr.Dataset, line: dict[str, object]) -> None:
+def _draw_orbit(axes: Axes, data: xr.Dataset, line: dict[str, Any]) -> None:
     x, y = data["tilt"].sel(axis="x"), data["tilt"].sel(axis="y")
-    axes.plot(x, y, linewidth=0.9, **line)  # type: ignore[arg-type]
-    axes.plot(x[:1], y[:1], marker="o", markersize=5, markerfacecolor="white", color=line["color"])  # type: ignore[arg-type]
-    axes.plot(x[-1:], y[-1:], marker="s", markersize=5, color=line["color"])  # type: ignore[arg-type]
+    axes.plot(x, y, linewidth=0.9, **line)
+    axes.plot(x[:1], y[:1], marker="o", markersize=5, markerfacecolor="white", color=line["color"])
+    axes.plot(x[-1:], y[-1:], marker="s", markersize=5, color=line["color"])
 
 
 def _mark_events(axes: Axes, run: Response) -> None:
@@ -74,7 +80,7 @@ def _mark_events(axes: Axes, run: Response) -> None:
             (event.time, height),
             xytext=(0, 10),
             textcoords="offset points",
-            ha="center",
+            ha="right" if event.time > _LATE * run.data["time"][-1] else "center",
             fontsize=7.5,
             arrowprops={"arrowstyle": "-|>", "color": BLACK, "linewidth": 0.6, "mutation_scale": 7},
         )

@@ -1,5 +1,6 @@
 """Descriptions: plain values, as in TOML and JSON, and the objects they stand for."""
 
+from stylobate.spec.response import ResponseDescription
 from stylobate.spec.simulation import (
     Setup,
     SimulationDescription,
@@ -8,4 +9,11 @@ from stylobate.spec.simulation import (
     read_description,
 )
 
-__all__ = ["Setup", "SimulationDescription", "description_of", "provenance_of_run", "read_description"]
+__all__ = [
+    "ResponseDescription",
+    "Setup",
+    "SimulationDescription",
+    "description_of",
+    "provenance_of_run",
+    "read_description",
+]

@@ -1,11 +1,13 @@
 """What all descriptions share: strict keys, and mistakes told one to a line."""
 
-from collections.abc import Mapping
-from typing import Any, Self
+from collections.abc import Callable, Mapping
+from typing import Any, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from stylobate.errors import DescriptionError
+from stylobate.errors import DescriptionError, ParameterError
+
+_T = TypeVar("_T")
 
 # Fields whose value is one of several descriptions, told apart by a tag; so is each element of a list.
 _UNION_FIELDS = ("column", "model", "motion")
@@ -33,6 +35,15 @@ class Description(BaseModel):
     def values(self) -> dict[str, Any]:
         """Return the description as plain values that JSON and TOML can hold, defaults left out."""
         return self.model_dump(mode="json", exclude_none=True)
+
+
+def built(name: str, build: Callable[[], _T], problems: list[str]) -> _T | None:
+    """Return what `build` makes; where it cannot, None, and a line more in `problems`."""
+    try:
+        return build()
+    except ParameterError as error:
+        problems.append(f"{name}: {error}")
+        return None
 
 
 def _line(problem: Any) -> str:

@@ -5,17 +5,15 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
-from stylobate.errors import DescriptionError, FileError, ParameterError, UnsupportedError
+from stylobate.errors import DescriptionError, FileError, UnsupportedError
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 from stylobate.spec.columns import ColumnDescription, GivenColumn
-from stylobate.spec.description import Description
+from stylobate.spec.description import Description, built
 from stylobate.spec.models import ModelDescription, SlenderModel, describe_model
 from stylobate.spec.motions import MotionDescription, RestMotion, describe_motion
-
-_T = TypeVar("_T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,9 +50,9 @@ class SimulationDescription(Description):
             With one line for each part that cannot be.
         """
         problems: list[str] = []
-        column = _built("column", self.column.build, problems)
-        motion = _built("motion", self.motion.build, problems)
-        model = None if column is None else _built("model", lambda: self.model.build(column), problems)
+        column = built("column", self.column.build, problems)
+        motion = built("motion", self.motion.build, problems)
+        model = None if column is None else built("model", lambda: self.model.build(column), problems)
         if model is None or motion is None:
             raise DescriptionError(problems)
         options = self.model_dump(exclude={"column", "model", "motion"})
@@ -99,14 +97,6 @@ def description_of(provenance: Mapping[str, Any]) -> SimulationDescription:
         If the run was made with a model or motion that descriptions do not know.
     """
     return SimulationDescription.parse({name: value for name, value in provenance.items() if name != "version"})
-
-
-def _built(name: str, build: Callable[[], _T], problems: list[str]) -> _T | None:
-    try:
-        return build()
-    except ParameterError as error:
-        problems.append(f"{name}: {error}")
-        return None
 
 
 def _described(describe: Callable[[], Description], thing: object) -> dict[str, Any]:

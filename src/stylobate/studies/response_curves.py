@@ -9,12 +9,12 @@ import xarray as xr
 from stylobate import theory
 from stylobate.errors import ParameterError, UnsupportedError
 from stylobate.models import Model, Slender
-from stylobate.motions import Harmonic
+from stylobate.motions import BaseMotion, Harmonic
 from stylobate.spec import provenance_of_run
 
 
 def response_curves(
-    model: Model, motion: Harmonic, *, angular_frequency: npt.ArrayLike | Sequence[float]
+    model: Model, motion: BaseMotion, *, angular_frequency: npt.ArrayLike | Sequence[float]
 ) -> xr.Dataset:
     """Return amplitude and phase of steady rolling against the frequency of a harmonic base motion.
 
@@ -76,7 +76,7 @@ def response_curves(
             "phase": (
                 dims,
                 stacked["phase"],
-                {"units": "rad", "long_name": "phase of the lean against the base acceleration"},
+                {"units": "rad", "long_name": "phase of the lean to the base acceleration"},
             ),
             "stable": (dims, stacked["stable"], {"long_name": "stable"}),
             "backbone": (dims[-1:], theory.rolling_backbone(frequency / scale, c), {"units": "rad"}),
@@ -114,7 +114,7 @@ def _frequencies(angular_frequency: npt.ArrayLike) -> npt.NDArray[np.float64]:
     return frequency
 
 
-def _amplitudes(motion: Harmonic, gravity: float) -> tuple[float, float, float]:
+def _amplitudes(motion: BaseMotion, gravity: float) -> tuple[float, float, float]:
     if not isinstance(motion, Harmonic):
         message = f"motion must be a Harmonic motion, got {motion!r}"
         raise ParameterError(message)

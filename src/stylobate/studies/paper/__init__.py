@@ -7,8 +7,6 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
 
-import xarray as xr
-
 from stylobate.results import PaperCheck, Section
 from stylobate.studies.paper.circular import check_circular
 from stylobate.studies.paper.free import check_free

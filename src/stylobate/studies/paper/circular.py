@@ -73,8 +73,9 @@ def _solution() -> Finding:
     for branch in (steady.upper, steady.lower):
         tilt, phase = branch.amplitude[branch.exists], branch.phase[branch.exists]
         state = np.stack([np.zeros_like(tilt), theta[branch.exists], tilt, phase])
-        at = {"c": SLENDERNESS, "eta": eta[branch.exists]}
-        rates = theory.rotating_frame_rates(state, theta[branch.exists], a0[branch.exists], **at)
+        rates = theory.rotating_frame_rates(
+            state, theta[branch.exists], a0[branch.exists], c=SLENDERNESS, eta=eta[branch.exists]
+        )
         worst = max(worst, float(np.abs(rates[0]).max()), float(np.abs(tilt * rates[1]).max()))
     return Finding(
         "(7), (8)",

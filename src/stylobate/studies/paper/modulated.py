@@ -1,6 +1,7 @@
 """Below the critical frequency: modulated rolling, against conclusion 3."""
 
 import math
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -30,7 +31,7 @@ def check_modulated() -> Section:
 
 def modulated_data() -> xr.Dataset:
     """Return the limit cycles of (7) below θ*: tilt over one period and the path in the (A cos ψ, A sin ψ) plane."""
-    fields = {}
+    fields: dict[str, Any] = {}
     for k, theta in enumerate(_FREQUENCIES):
         cycle = theory.modulated_rolling(theta, _A0, c=_C, eta=DAMPING)
         steady = float(theory.steady_rolling(theta, _A0, c=_C, eta=DAMPING).upper.amplitude)

@@ -84,7 +84,7 @@ def _two_curves() -> Finding:
     return Finding(
         "conclusion 6",
         "The curves of a round column hug (5), those of a parallelepiped (3); they look alike and are different.",
-        f"For 0.2 ≤ θ ≤ 4 the backbones differ by {100 * float(gap.min()):.0f} to {100 * float(gap.max()):.0f} % of (5), "
+        f"For 0.2 ≤ θ ≤ 4 the backbones differ by {100 * gap.min():.0f} to {100 * gap.max():.0f} % of (5), "
         f"most at θ = {theta[int(np.argmax(gap))]:.1f}; for large θ their ratio tends to π²/8 ({float(series):.4f} at "
         "θ = 50, π²/8 = 1.2337).",
         judged(abs(float(series) - math.pi**2 / 8.0) < 0.01),  # noqa: PLR2004  the next term is of the order 1/θ²
@@ -116,8 +116,8 @@ def _planar_loss(kicks: xr.Dataset) -> Finding:
         "conclusion 5",
         "Motion in one plane is unstable (shown for free motion without friction).",
         "It holds with forcing and friction, and more strongly: one passage of the upright at speed v with the offset "
-        "y0 kicks the column sideways by Δẏ = −(2c/v) y0 (ln 1/|y0| + O(1)). There is no finite multiplier: the smaller "
-        f"the offset, the larger its relative growth. Measured slope of Δẏ/y0 against ln|y0|: {slope:.4f}, 2c/v = "
-        f"{exact:.4f} (θ = 3, a1 = 0.13, η = 0.1).",
+        "y0 kicks the column sideways by Δẏ = −(2c/v) y0 (ln 1/|y0| + O(1)). There is no finite multiplier: the "
+        f"smaller the offset, the larger its relative growth. Measured slope of Δẏ/y0 against ln|y0|: {slope:.4f}, "
+        f"2c/v = {exact:.4f} (θ = 3, a1 = 0.13, η = 0.1).",
         judged(abs(slope / exact - 1.0) < 0.01, Verdict.SHARPENED),  # noqa: PLR2004
     )

@@ -117,9 +117,9 @@ def _both_senses() -> Finding:
     return Finding(
         "section 4",
         "A straight-line motion can drive rolling.",
-        f"In either sense: started on the averaged solution at θ = 3, a1 = 0.04 the contact point turns {turns[0]:+.1f} "
-        f"or {turns[1]:+.1f} times in 30 periods, the two motions mirror images to {mirrored:.0e} rad. Elliptic motion "
-        "has two such solutions with amplitudes |p| and |q|.",
+        "In either sense: started on the averaged solution at θ = 3, a1 = 0.04 the contact point turns "
+        f"{turns[0]:+.1f} or {turns[1]:+.1f} times in 30 periods, the two motions mirror images to {mirrored:.0e} rad. "
+        "Elliptic motion has two such solutions with amplitudes |p| and |q|.",
         judged(turns[0] > 29.0 and turns[1] < -29.0, Verdict.SHARPENED),  # noqa: PLR2004
     )
 
@@ -178,9 +178,9 @@ def _small_parameters() -> Finding:
     return Finding(
         "after (9)",
         "Averaging is good while η/2θ, a1/4θ and the detuning are small, that is at high frequency.",
-        f"Tilt over averaged tilt, started on the averaged solution: {'; '.join(told)}. It does not improve with θ: with "
-        "α = c y/θ² the limit θ → ∞ is y″ = −ŷ − (a1/c) cos s, whose one parameter is a1/c; integrated at a1/c = 0.4 "
-        f"from the averaged start it swings from {limit[0]:.2f} to {limit[1]:.2f}.",
+        f"Tilt over averaged tilt, started on the averaged solution: {'; '.join(told)}. It does not improve with θ: "
+        "with α = c y/θ² the limit θ → ∞ is y″ = −ŷ − (a1/c) cos s, whose one parameter is a1/c; integrated at a1/c = "
+        f"0.4 from the averaged start it swings from {limit[0]:.2f} to {limit[1]:.2f}.",
         judged(max(same) < 0.1, Verdict.LIMITED),  # noqa: PLR2004  the same swing within a tenth
     )
 

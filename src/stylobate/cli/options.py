@@ -1,0 +1,102 @@
+"""Options that commands share, and how they join with a TOML file: same names, options win."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+
+def _option(text: str, panel: str) -> Any:
+    return typer.Option(help=text, rich_help_panel=panel, show_default=False)
+
+
+_COLUMN, _MODEL, _MOTION, _OUTPUT = "Column", "Model", "Base motion", "Output"
+
+Shape = Annotated[str | None, _option("solid, hollow, frustum, dimensionless or given; told from the others", _COLUMN)]
+Radius = Annotated[float | None, _option("base radius [m]", _COLUMN)]
+Height = Annotated[float | None, _option("height [m]", _COLUMN)]
+Density = Annotated[float | None, _option("density [kg/m³]", _COLUMN)]
+InnerRadius = Annotated[float | None, _option("inner radius of a hollow column [m]", _COLUMN)]
+TopRadius = Annotated[float | None, _option("top radius of a frustum [m]", _COLUMN)]
+Slenderness = Annotated[float | None, _option("r/h of a dimensionless column (m = g = ω0 = 1)", _COLUMN)]
+Gravity = Annotated[float | None, _option("gravity [m/s²], 9.80665 by default", _COLUMN)]
+
+Damping = Annotated[float | None, _option("viscous friction η, dimensionless", _MODEL)]
+
+Motion = Annotated[str | None, _option("rest, circular, straight, elliptic, vertical, stroke or orbit", _MOTION)]
+Acceleration = Annotated[float | None, _option("acceleration amplitude [m/s²]", _MOTION)]
+AngularFrequency = Annotated[float | None, _option("angular frequency [rad/s]", _MOTION)]
+Frequency = Annotated[float | None, _option("frequency of a stroke [Hz]", _MOTION)]
+Amplitude = Annotated[tuple[float, float] | None, _option("two amplitudes of an ellipse [m/s²]", _MOTION)]
+Phase = Annotated[float | None, _option("phase of the second axis of an ellipse [rad]", _MOTION)]
+Direction = Annotated[float | None, _option("direction of a straight motion [rad]", _MOTION)]
+Sense = Annotated[int | None, _option("1 anticlockwise, -1 clockwise", _MOTION)]
+Stroke = Annotated[float | None, _option("stroke from peak to peak [m]", _MOTION)]
+Diameter = Annotated[float | None, _option("diameter of an orbit [m]", _MOTION)]
+Rpm = Annotated[float | None, _option("turns a minute of an orbit", _MOTION)]
+StartPhase = Annotated[float | None, _option("phase at the start [rad]", _MOTION)]
+Ramp = Annotated[float | None, _option("time over which the amplitude rises [s]", _MOTION)]
+
+Figure = Annotated[Path | None, _option("draw into this file (.png, .pdf, .svg)", _OUTPUT)]
+Output = Annotated[Path | None, _option("save the result into this netCDF file", _OUTPUT)]
+Json = Annotated[bool, typer.Option("--json", help="print JSON instead of a table", rich_help_panel=_OUTPUT)]
+
+_COLUMN_NAMES = ("shape", "radius", "height", "density", "inner_radius", "top_radius", "slenderness", "gravity")
+_MODEL_NAMES = ("damping",)
+_MOTION_NAMES = (
+    "acceleration",
+    "angular_frequency",
+    "frequency",
+    "amplitude",
+    "phase",
+    "direction",
+    "sense",
+    "stroke",
+    "diameter",
+    "rpm",
+    "start_phase",
+    "ramp",
+)
+_SHAPES = {"slenderness": "dimensionless", "inner_radius": "hollow", "top_radius": "frustum"}
+
+
+def overlay(described: Mapping[str, Any], given: Mapping[str, Any], run_names: tuple[str, ...]) -> dict[str, Any]:
+    """Return the values `described` in a file with those `given` as options laid over them.
+
+    Parameters
+    ----------
+    described
+        Values of a TOML file, or nothing.
+    given
+        All options of the command by name; None is not given.
+    run_names
+        Names of the options that stand at the top of a description.
+    """
+    values = dict(described)
+    column = _section(values, "column", _pick(given, _COLUMN_NAMES))
+    if column and "shape" not in column:
+        column["shape"] = next((shape for name, shape in _SHAPES.items() if name in column), "solid")
+    _section(values, "model", _pick(given, _MODEL_NAMES))
+    motion = {**({"kind": given["motion"]} if given.get("motion") else {}), **_pick(given, _MOTION_NAMES)}
+    kept: dict[str, Any] | None = (
+        {} if "kind" in motion else None
+    )  # another kind of motion replaces the one in the file
+    _section(values, "motion", motion, base=kept)
+    return values | _pick(given, run_names)
+
+
+def _pick(given: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
+    return {name: given[name] for name in names if given.get(name) is not None}
+
+
+def _section(
+    values: dict[str, Any], name: str, options: dict[str, Any], base: Mapping[str, Any] | None = None
+) -> dict[str, Any]:
+    described = values.get(name, {}) if base is None else base
+    if not isinstance(described, Mapping):
+        return options
+    merged = {**described, **options}
+    if merged or name in values:
+        values[name] = merged
+    return merged

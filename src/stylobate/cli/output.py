@@ -1,0 +1,65 @@
+"""What commands print and write: tables and JSON on stdout, figures and data into files."""
+
+import json
+import math
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from stylobate.errors import FileError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def print_json(values: Any) -> None:
+    """Print `values` as JSON; a number that is not finite becomes null."""
+    print(json.dumps(_finite(values), indent=2, ensure_ascii=False))
+
+
+def print_table(title: str, rows: Sequence[Sequence[str]], header: Sequence[str] | None = None) -> None:
+    """Print `rows` as a table, on a terminal as wide as it is; plain aligned text where there is none."""
+    from rich.console import Console  # noqa: PLC0415  only tables need it
+    from rich.table import Table  # noqa: PLC0415
+
+    table = Table(title=None, show_header=header is not None, title_justify="left")
+    for name in header or [""] * len(rows[0] if rows else ()):
+        table.add_column(name, overflow="fold")
+    for row in rows:
+        table.add_row(*row)
+    table.caption = title if header is not None else None
+    width = None if sys.stdout.isatty() else _PLAIN_WIDTH
+    Console(width=width, markup=False, highlight=False).print(table)
+
+
+def save_figure(figure: "Figure", path: Path) -> None:
+    """Write `figure` into the file `path`, whose ending names the format.
+
+    Raises
+    ------
+    FileError
+        If it cannot be written or the ending is no format for figures.
+    """
+    try:
+        figure.savefig(path, dpi=180)
+    except OSError as error:
+        message = f"cannot write {path}: {error.strerror or error}"
+        raise FileError(message) from None
+    except ValueError as error:
+        message = f"cannot draw into {path}: {error}"
+        raise FileError(message) from None
+
+
+def _finite(values: Any) -> Any:
+    match values:
+        case dict():
+            return {name: _finite(value) for name, value in values.items()}
+        case list() | tuple():
+            return [_finite(value) for value in values]
+        case float() if not math.isfinite(values):
+            return None
+    return values
+
+
+_PLAIN_WIDTH = 120

@@ -1,0 +1,133 @@
+"""`stylobate simulate`: one column, one base motion, one outcome."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from stylobate.cli import options as opt
+from stylobate.cli.output import print_json, print_table, save_figure
+
+if TYPE_CHECKING:
+    from stylobate.results import Response
+
+_RUN = "Run"
+_RUN_NAMES = ("tilt", "tilt_rate", "duration", "rtol", "tilt_limit", "samples")
+
+Source = Annotated[
+    Path | None, typer.Argument(help="TOML description, or a saved run (.nc) to repeat", show_default=False)
+]
+Tilt = Annotated[tuple[float, float] | None, typer.Option(help="tilt vector at the start [rad]", rich_help_panel=_RUN)]
+TiltRate = Annotated[tuple[float, float] | None, typer.Option(help="its rate [rad/s]", rich_help_panel=_RUN)]
+Duration = Annotated[float | None, typer.Option(help="how long to follow it [s]", rich_help_panel=_RUN)]
+Rtol = Annotated[float | None, typer.Option(help="relative tolerance, 1e-8 by default", rich_help_panel=_RUN)]
+TiltLimit = Annotated[float | None, typer.Option(help="tilt that ends the run [rad]", rich_help_panel=_RUN)]
+Samples = Annotated[int | None, typer.Option(help="number of samples kept", rich_help_panel=_RUN)]
+
+
+def simulate(
+    context: typer.Context,
+    source: Source = None,
+    tilt: Tilt = None,
+    tilt_rate: TiltRate = None,
+    duration: Duration = None,
+    rtol: Rtol = None,
+    tilt_limit: TiltLimit = None,
+    samples: Samples = None,
+    shape: opt.Shape = None,
+    radius: opt.Radius = None,
+    height: opt.Height = None,
+    density: opt.Density = None,
+    inner_radius: opt.InnerRadius = None,
+    top_radius: opt.TopRadius = None,
+    slenderness: opt.Slenderness = None,
+    gravity: opt.Gravity = None,
+    damping: opt.Damping = None,
+    motion: opt.Motion = None,
+    acceleration: opt.Acceleration = None,
+    angular_frequency: opt.AngularFrequency = None,
+    frequency: opt.Frequency = None,
+    amplitude: opt.Amplitude = None,
+    phase: opt.Phase = None,
+    direction: opt.Direction = None,
+    sense: opt.Sense = None,
+    stroke: opt.Stroke = None,
+    diameter: opt.Diameter = None,
+    rpm: opt.Rpm = None,
+    start_phase: opt.StartPhase = None,
+    ramp: opt.Ramp = None,
+    figure: opt.Figure = None,
+    output: opt.Output = None,
+    as_json: opt.Json = False,
+) -> None:
+    """Follow one column from a start to its outcome.
+
+    Everything can be given as options or in a TOML file with the same names; options win. Examples:
+
+    stylobate simulate --radius 0.5 --height 10 --density 2700 --damping 0.02 --motion straight
+    --acceleration 1.5 --angular-frequency 4 --start-phase 1.57 --duration 30
+
+    stylobate simulate run.toml --duration 60 --figure run.png --output run.nc
+    """
+    from stylobate import engine, plots, spec  # noqa: PLC0415  heavy imports wait until the options are read
+
+    described = _described(source)
+    description = spec.SimulationDescription.parse(opt.overlay(described, context.params, _RUN_NAMES))
+    setup = description.build()
+    run = engine.simulate(setup.model, setup.motion, **setup.options)
+    if output is not None:
+        run.save(output)
+    if figure is not None:
+        save_figure(plots.plot(run), figure)
+    if as_json:
+        print_json(_summary(run))
+    else:
+        print_table("run", _rows(run))
+
+
+def _described(source: Path | None) -> dict[str, Any]:
+    from stylobate import results, spec  # noqa: PLC0415
+
+    if source is None:
+        return {}
+    if source.suffix == ".nc":
+        return spec.description_of(results.load(source).provenance).values()
+    return spec.read_description(source)
+
+
+def _summary(run: "Response") -> dict[str, Any]:
+    return {
+        "outcome": run.outcome.name,
+        "reason": run.reason,
+        "decided_at": run.decided_at,
+        "uncertain": run.uncertain,
+        "planar": run.planar,
+        "events": [{"kind": event.kind, "time": event.time} for event in run.events],
+        "measures": dict(run.measures),
+        "thresholds": dict(run.thresholds),
+        "provenance": dict(run.provenance),
+    }
+
+
+def _rows(run: "Response") -> list[tuple[str, str]]:
+    events = ", ".join(f"{event.kind} at {event.time:.4f} s" for event in run.events[:_SHOWN])
+    more = f", and {len(run.events) - _SHOWN} more" if len(run.events) > _SHOWN else ""
+    measures = run.measures
+    rows = [
+        ("outcome", run.outcome.value + (" (uncertain)" if run.uncertain else "")),
+        ("because", run.reason),
+        ("decided at", f"{run.decided_at:.4f} s"),
+        ("largest tilt", f"{measures['largest_tilt']:.6g} rad, {measures['largest_tilt_over_c']:.4g} c"),
+        ("at", f"{measures['time_of_largest_tilt']:.4f} s"),
+        ("turns of the contact point", f"{measures['turns']:.3f}"),
+        ("events", (events + more) or "none"),
+        ("steps", f"{measures['steps']:.0f}"),
+    ]
+    if "mean_rolling_rate" in measures:
+        rows.insert(6, ("mean rolling rate", f"{measures['mean_rolling_rate']:.6g} rad/s"))
+    return rows
+
+
+_SHOWN = 4
+
+__all__ = ["simulate"]

@@ -1,0 +1,54 @@
+"""The description of response curves: a column, its model, a harmonic motion and a range of frequencies."""
+
+from collections.abc import Mapping
+from typing import Any, Self
+
+from stylobate.errors import DescriptionError
+from stylobate.spec.columns import ColumnDescription
+from stylobate.spec.description import Description, built
+from stylobate.spec.models import ModelDescription, SlenderModel
+from stylobate.spec.motions import MotionDescription
+from stylobate.spec.simulation import Setup
+
+
+class ResponseDescription(Description):
+    """Response curves: `column`, `model`, `motion` (its own frequency may be left out), range and number of points."""
+
+    column: ColumnDescription
+    model: ModelDescription = SlenderModel()
+    motion: MotionDescription
+    angular_frequency_range: tuple[float, float]
+    points: int = 400
+
+    @classmethod
+    def parse(cls, values: Mapping[str, Any]) -> Self:
+        """Return the description of these `values`; the frequency of the motion is taken from the range."""
+        motion, frequencies = values.get("motion"), values.get("angular_frequency_range")
+        if isinstance(motion, Mapping) and isinstance(frequencies, (list, tuple)) and frequencies:
+            given = {"angular_frequency": frequencies[0]} if motion.get("kind") in _BY_ACCELERATION else {}
+            values = {**values, "motion": {**given, **motion}}
+        return super().parse(values)
+
+    def build(self) -> Setup:
+        """Return model and motion; the options hold the range and number of frequencies.
+
+        Raises
+        ------
+        DescriptionError
+            With one line for each part that cannot be.
+        """
+        problems: list[str] = []
+        column = built("column", self.column.build, problems)
+        motion = built("motion", self.motion.build, problems)
+        model = None if column is None else built("model", lambda: self.model.build(column), problems)
+        low, high = self.angular_frequency_range
+        if not 0.0 < low < high:
+            problems.append(f"angular_frequency_range must rise from above zero, got {low!r} to {high!r} rad/s")
+        if not self.points > 1:
+            problems.append(f"points must be at least 2, got {self.points!r}")
+        if model is None or motion is None or problems:
+            raise DescriptionError(problems)
+        return Setup(model, motion, {"range": self.angular_frequency_range, "points": self.points})
+
+
+_BY_ACCELERATION = ("circular", "straight", "elliptic")
