@@ -44,7 +44,7 @@ class Column:
     --------
     >>> column = Column.solid(radius=0.5, height=10.0, density=2700.0)
     >>> round(column.slenderness, 3), round(column.inertia_ratio, 4), round(column.frequency_scale, 4)
-    (0.1, 0.7486, 1.2116)
+    (0.1, 0.7486, 1.2117)
     """
 
     radius: float

@@ -10,8 +10,15 @@ from hypothesis import strategies as st
 import stylobate as sb
 
 C = 0.1
-phases = st.floats(0.0, 6.0)
-frequencies = st.floats(0.2, 8.0)
+
+
+def numbers(low, high):
+    # In steps of a thousandth: nothing is learnt from amplitudes of 1e-200.
+    return st.integers(round(1000 * low), round(1000 * high)).map(lambda n: n / 1000.0)
+
+
+phases = numbers(0.0, 6.0)
+frequencies = numbers(0.2, 8.0)
 
 
 def model(damping=0.0):
@@ -21,7 +28,7 @@ def model(damping=0.0):
 @st.composite
 def elliptic(draw):
     return sb.Harmonic.elliptic(
-        amplitude=(draw(st.floats(0.0, 3.0 * C)), draw(st.floats(0.0, 3.0 * C))),
+        amplitude=(draw(numbers(0.0, 3.0 * C)), draw(numbers(0.0, 3.0 * C))),
         phase=draw(phases),
         angular_frequency=draw(frequencies),
         start_phase=draw(phases),
@@ -33,13 +40,13 @@ def elliptic(draw):
 def motions(draw):
     motion = draw(elliptic())
     if draw(st.booleans()):
-        motion = motion + draw(elliptic()).delayed(draw(st.floats(-3.0, 6.0)))
+        motion = motion + draw(elliptic()).delayed(draw(numbers(-3.0, 6.0)))
     if draw(st.booleans()):
         motion = motion + sb.Harmonic.vertical(
-            acceleration=draw(st.floats(0.0, 0.8)), angular_frequency=draw(frequencies), start_phase=draw(phases)
+            acceleration=draw(numbers(0.0, 0.8)), angular_frequency=draw(frequencies), start_phase=draw(phases)
         )
     if draw(st.booleans()):
-        motion = motion.delayed(draw(st.floats(-3.0, 5.0))).scaled(draw(st.floats(-1.5, 1.5)), vertical=1.0)
+        motion = motion.delayed(draw(numbers(-3.0, 5.0))).scaled(draw(numbers(-1.5, 1.5)), vertical=1.0)
     return motion
 
 
@@ -52,13 +59,13 @@ def no_return_tilt(motion, since):
 @settings(max_examples=60)
 @given(
     motion=motions(),
-    tilt=st.tuples(st.floats(-1.5, 1.5), st.floats(-1.5, 1.5)),
-    rate=st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)),
+    tilt=numbers(0.1, 2.0),
+    rate=st.tuples(numbers(-1.5, 1.5), numbers(-1.5, 1.5)),
     damping=st.sampled_from([0.0, 0.1, 0.5, 2.0]),
 )
 def test_what_is_overturned_goes_on_growing(motion, tilt, rate, damping, integrate_equations_1):
     run = sb.simulate(
-        model(damping), motion, tilt=np.array(tilt) * C, tilt_rate=np.array(rate) * C, duration=15.0, rest_energy=1e-3
+        model(damping), motion, tilt=(tilt * C, 0.0), tilt_rate=np.array(rate) * C, duration=15.0, max_steps=2000
     )
     assume(run.outcome is sb.Outcome.OVERTURNED)
     end = run.data.isel(time=-1)

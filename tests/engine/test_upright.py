@@ -14,8 +14,8 @@ def model(damping=0.0):
     return sb.Slender(sb.Column.dimensionless(C), damping=damping)
 
 
-def polar_reference(tilt, momentum, span):
-    """Integrate the general free motion (11): Ä = ℓ²/A³ + A − c, β̇ = ℓ/A², by quadrature from the turning point.
+def half_swing(tilt, momentum):
+    """Return time and angle of the free motion (11), Ä = ℓ²/A³ + A − c and β̇ = ℓ/A², by quadrature.
 
     With u = Ȧ² = 2(E − cA + A²/2) − ℓ²/A² the time and angle to the inner turning point are integrals of 1/√u and
     ℓ/(A²√u); tanh-sinh nodes take their endpoints, where u vanishes.
@@ -25,7 +25,6 @@ def polar_reference(tilt, momentum, span):
     roots = np.roots([1.0, -2.0 * C, 2.0 * energy, 0.0, -(momentum**2)])
     inner = min(r.real for r in roots if abs(r.imag) < 1e-9 * abs(r) + 1e-18 and r.real > 0.0)
     others = [r for r in roots if r.real < 0.0 or r.real > tilt * (1.0 + 1e-9)]
-    del span
     s = np.linspace(-3.6, 3.6, 4001)
     near = 1.0 / (1.0 + np.exp(-math.pi * np.sinh(s)))  # from 0 at the inner point to 1 at the outer one
     far = 1.0 / (1.0 + np.exp(math.pi * np.sinh(s)))
@@ -39,18 +38,18 @@ def polar_reference(tilt, momentum, span):
     return float(np.sum(weight * reach / speed)), float(np.sum(weight * reach * momentum / a**2 / speed))
 
 
-@pytest.mark.parametrize("momentum", [0.3, 1e-2, 1e-4, -1e-4])
+@pytest.mark.parametrize("momentum", [0.1, 1e-2, 1e-4, -1e-4])
 def test_free_motion_takes_the_time_and_angle_of_its_quadratures(momentum):
     # Angular momentum in units of c²; from one outer turning point to the next.
     tilt, ell = 0.5 * C, momentum * C**2
-    half, angle = polar_reference(tilt, ell, None)
+    half, angle = half_swing(tilt, ell)
     run = sb.simulate(model(), tilt=(tilt, 0.0), tilt_rate=(0.0, ell / tilt), duration=2.0 * half, rtol=1e-12)
     assert float(run.data.amplitude[-1]) == pytest.approx(tilt, rel=1e-8)
     assert float(run.data.amplitude_rate[-1]) == pytest.approx(0.0, abs=1e-8 * C)
     assert float(run.data.azimuth[-1] - run.data.azimuth[0]) == pytest.approx(2.0 * angle, abs=1e-6)
 
 
-@pytest.mark.parametrize("exponent", [-3, -6, -8, -10, -12, -14])
+@pytest.mark.parametrize("exponent", [-3, -6, -7, -9, -10, -12, -14])
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_the_azimuth_turns_by_half_a_turn_at_each_passage_in_the_sense_of_the_momentum(exponent, sense):
     # In the limit ℓ → 0; the offset b differs from it by terms b ln b.
@@ -65,7 +64,7 @@ def test_the_azimuth_turns_by_half_a_turn_at_each_passage_in_the_sense_of_the_mo
     assert turned == pytest.approx(sense * 3.0 * math.pi, abs=100.0 * offset * abs(math.log(offset)) + 1e-4)
     assert run.measures["turns"] == pytest.approx(turned / (2.0 * math.pi), rel=1e-9)
     momentum = run.data.angular_momentum.to_numpy()
-    np.testing.assert_allclose(momentum, momentum[0], rtol=1e-3)
+    np.testing.assert_allclose(momentum, momentum[0], rtol=5e-3)
     assert run.measures["least_passage"] == pytest.approx(offset * C, rel=1e-2)
     assert run.uncertain == (offset < 1e-8)
 

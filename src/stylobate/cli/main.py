@@ -64,8 +64,9 @@ def run(arguments: Sequence[str]) -> int:
     except StylobateError as error:
         return _tell([str(error)])
     except (KeyboardInterrupt, typer.Abort):
+        status = _INTERRUPTED
+    if status == _INTERRUPTED:
         print("stylobate: interrupted", file=sys.stderr)
-        return _INTERRUPTED
     return int(status or 0)
 
 

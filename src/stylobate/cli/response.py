@@ -72,7 +72,7 @@ def response(
 
 def _save(curves: "xr.Dataset", path: Path) -> None:
     try:
-        curves.astype({"stable": "int8"} if "stable" in curves else {}).to_netcdf(path, engine="h5netcdf")
+        curves.assign(stable=curves["stable"].astype("int8")).to_netcdf(path, engine="h5netcdf")
     except OSError as error:
         message = f"cannot write {path}: {error.strerror or error}"
         raise FileError(message) from None

@@ -86,7 +86,7 @@ def simulate(
     --------
     >>> import stylobate as sb
     >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
-    >>> sb.simulate(model, tilt=(0.05, 0.0), duration=50.0).outcome
+    >>> sb.simulate(model, tilt=(0.05, 0.0), duration=150.0).outcome
     <Outcome.AT_REST: 'at rest'>
     >>> shaking = sb.Harmonic.circular(acceleration=0.15, angular_frequency=0.5)
     >>> sb.simulate(model, shaking, duration=50.0).outcome

@@ -102,4 +102,4 @@ def _finish(tilt: Axes, orbit: Axes, azimuth: Axes, c: float, *, compared: bool,
     orbit.set_aspect("equal", adjustable="datalim")
     orbit.set_xlabel("tilt α₁ [rad]")
     orbit.set_ylabel("tilt α₂ [rad]")
-    orbit.set_title("tilt vector: ○ start, ■ end, circle |α| = c")
+    orbit.set_title("○ start, ■ end, dashed |α| = c")

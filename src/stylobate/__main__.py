@@ -1,0 +1,5 @@
+"""`python -m stylobate` is `stylobate`."""
+
+from stylobate.cli import main
+
+main()

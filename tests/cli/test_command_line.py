@@ -1,0 +1,132 @@
+"""The command line does what the public names do, and tells mistakes one to a line."""
+
+import json
+import subprocess
+import sys
+import time
+
+import pytest
+
+import stylobate as sb
+from stylobate.cli.main import run
+
+COLUMN = ["--slenderness", "0.1", "--damping", "0.1"]
+MOTION = ["--motion", "circular", "--acceleration", "0.065", "--angular-frequency", "1.8"]
+START = ["--tilt", "0.04", "0", "--tilt-rate", "0", "0.07", "--duration", "20"]
+
+
+def stylobate(*arguments, **options):
+    command = [sys.executable, "-m", "stylobate", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False, **options)
+
+
+def test_simulate_prints_what_simulate_finds(capsys):
+    assert run(["simulate", *COLUMN, *MOTION, *START, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    model = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
+    motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
+    found = sb.simulate(model, motion, tilt=(0.04, 0.0), tilt_rate=(0.0, 0.07), duration=20.0)
+    assert told["outcome"] == found.outcome.name
+    assert told["measures"]["largest_tilt"] == found.measures["largest_tilt"]
+
+
+def test_options_win_over_a_file_of_the_same_names(tmp_path, capsys):
+    description = tmp_path / "run.toml"
+    description.write_text(
+        'duration = 50.0\ntilt = [0.05, 0.0]\n[column]\nshape = "dimensionless"\nslenderness = 0.1\n'
+        '[model]\ndamping = 0.1\n[motion]\nkind = "straight"\nacceleration = 0.01\nangular_frequency = 2.0\n'
+    )
+    assert run(["simulate", str(description), "--duration", "5", "--acceleration", "0.02", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["provenance"]["duration"] == 5.0
+    assert told["provenance"]["motion"]["amplitude"] == [0.02, 0.0, 0.0]
+    assert told["provenance"]["tilt"] == [0.05, 0.0]
+
+
+def test_a_saved_run_can_be_repeated(tmp_path, capsys):
+    saved = tmp_path / "run.nc"
+    assert run(["simulate", *COLUMN, *MOTION, *START, "--output", str(saved), "--json"]) == 0
+    first = json.loads(capsys.readouterr().out)
+    assert run(["simulate", str(saved), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["measures"] == first["measures"]
+
+
+def test_figures_and_tables_are_made(tmp_path, capsys):
+    drawn = tmp_path / "run.png"
+    assert run(["simulate", *COLUMN, *MOTION, *START, "--figure", str(drawn)]) == 0
+    assert "outcome" in capsys.readouterr().out
+    assert drawn.stat().st_size > 10_000
+    drawn = tmp_path / "response.svg"
+    arguments = [*COLUMN, *MOTION[:4], "--angular-frequency-range", "0.5", "3", "--points", "50"]
+    assert run(["response", *arguments, "--figure", str(drawn), "--output", str(tmp_path / "r.nc")]) == 0
+    assert "critical frequency 1.397108 rad/s" in capsys.readouterr().out
+    assert drawn.stat().st_size > 10_000
+
+
+def test_response_as_json_has_every_curve(capsys):
+    arguments = [*COLUMN, *MOTION[:4], "--angular-frequency-range", "0.5", "3", "--points", "5", "--json"]
+    assert run(["response", *arguments]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["branch"] == ["upper", "lower"]
+    assert len(told["amplitude"][0][0]) == len(told["angular_frequency"]) == 5
+
+
+@pytest.mark.parametrize(
+    ("arguments", "lines"),
+    [
+        (["simulate"], ["column is missing", "duration is missing"]),
+        (["simulate", *COLUMN], ["duration is missing"]),
+        (["simulate", *COLUMN, "--duration", "-2"], ["duration must be positive, got -2.0 s"]),
+        (
+            ["simulate", "--slenderness", "-1", *MOTION[:2], "--acceleration", "nan", *MOTION[4:], "--duration", "1"],
+            ["column: slenderness must be positive, got -1.0", "motion: acceleration must be finite, got nan m/s²"],
+        ),
+        (["simulate", *COLUMN, "--radius", "1", "--duration", "1"], ["column.radius is not known here"]),
+        (["simulate", "no such file.toml"], ["cannot read no such file.toml: No such file or directory"]),
+        (["response", *COLUMN, *MOTION[:4], "--angular-frequency-range", "3", "1"], ["angular_frequency_range must rise"]),
+        (["simulate", *COLUMN, "--duration", "1", "--figure", "run.xyz"], ["cannot draw into run.xyz"]),
+        (["nonsense"], ["No such command"]),
+        (["simulate", "--nonsense"], ["No such option"]),
+    ],
+)
+def test_bad_input_is_told_one_mistake_a_line(arguments, lines, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run(arguments) == 2
+    captured = capsys.readouterr()
+    told = captured.err.strip().splitlines()
+    assert len(told) == len(lines)
+    assert all(line in text for line, text in zip(lines, told, strict=True))
+    assert "Traceback" not in captured.err
+
+
+def test_a_file_that_is_not_toml_is_told(tmp_path, capsys):
+    broken = tmp_path / "broken.toml"
+    broken.write_bytes(b"\xff\xfe duration = ")
+    assert run(["simulate", str(broken)]) == 2
+    assert "is not a TOML file" in capsys.readouterr().err
+
+
+def test_the_program_runs_as_installed_and_helps_quickly():
+    started = time.perf_counter()
+    helped = stylobate("--help")
+    elapsed = time.perf_counter() - started
+    assert helped.returncode == 0
+    assert all(command in helped.stdout for command in ("paper", "simulate", "response"))
+    # The target is one second on an idle machine; tests share theirs.
+    assert elapsed < 5.0
+    assert stylobate("--version").stdout.split() == ["stylobate", sb.__version__]
+
+
+def test_help_imports_nothing_heavy():
+    code = "import sys; from stylobate.cli.main import run; run(['--help']); print(sorted(sys.modules))"
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert not any(f"'{name}'" in shown for name in ("scipy", "xarray", "matplotlib", "pydantic.main"))
+
+
+def test_an_interrupt_ends_without_a_traceback(monkeypatch, capsys):
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("stylobate.engine.simulate", interrupted)
+    assert run(["simulate", *COLUMN, *START]) == 130
+    assert capsys.readouterr().err == "stylobate: interrupted\n"

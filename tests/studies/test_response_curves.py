@@ -1,0 +1,75 @@
+"""Response curves in SI units are the closed forms, and their starts are motions of the model."""
+
+import numpy as np
+import pytest
+
+import stylobate as sb
+from stylobate.errors import ParameterError
+
+MODEL = sb.Slender(sb.Column.solid(radius=0.5, height=10.0, density=2700.0), damping=0.1)
+
+
+def test_si_curves_are_the_dimensionless_ones():
+    gravity, scale = MODEL.column.gravity, MODEL.column.frequency_scale
+    motion = sb.Harmonic.circular(acceleration=0.065 * gravity, angular_frequency=1.0)
+    frequency = scale * np.array([0.8, 1.4, 2.5])
+    curves = sb.studies.response_curves(MODEL, motion, angular_frequency=frequency)
+    c = MODEL.column.slenderness
+    steady = sb.theory.steady_rolling(frequency / scale, 0.065, c=c, eta=0.1)
+    np.testing.assert_allclose(curves["amplitude"].sel(branch="upper")[0], steady.upper.amplitude, rtol=1e-12)
+    np.testing.assert_allclose(curves["phase"].sel(branch="lower")[0], steady.lower.phase, rtol=1e-12)
+    critical = scale * sb.theory.critical_frequency(0.065, c=c, eta=0.1)
+    np.testing.assert_allclose(curves["critical_frequency"], [critical], rtol=1e-12)
+
+
+def test_straight_motion_rolls_in_both_senses_and_circular_in_one():
+    straight = sb.Harmonic.straight(acceleration=1.0, angular_frequency=1.0, direction=0.4)
+    circular = sb.Harmonic.circular(acceleration=1.0, angular_frequency=1.0, sense=-1)
+    both = sb.studies.response_curves(MODEL, straight, angular_frequency=[3.0])
+    one = sb.studies.response_curves(MODEL, circular, angular_frequency=[3.0])
+    assert list(both["sense"].values) == ["anticlockwise", "clockwise"]
+    assert list(one["sense"].values) == ["clockwise"]
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+@pytest.mark.parametrize("start_phase", [0.0, 0.9])
+def test_a_start_on_circular_rolling_stays_on_it(sense, start_phase):
+    motion = sb.Harmonic.circular(acceleration=0.6, angular_frequency=2.4, sense=sense, start_phase=start_phase)
+    start = sb.studies.steady_start(MODEL, motion)
+    run = sb.simulate(MODEL, motion, **start, duration=10 * motion.period, rtol=1e-11)
+    tilt = np.hypot(*start["tilt"])
+    # Ten times the accumulated tolerance of some 300 steps.
+    assert np.abs(run.data["amplitude"] / tilt - 1.0).max() < 3e-8
+    assert run.measures["turns"] == pytest.approx(10.0 * sense, rel=1e-7)
+
+
+def test_a_start_on_elliptic_rolling_is_near_a_motion_that_follows_it():
+    motion = sb.Harmonic.elliptic(amplitude=(0.6, 0.5), phase=-1.4, angular_frequency=4.0, start_phase=0.3)
+    start = sb.studies.steady_start(MODEL, motion)
+    run = sb.simulate(MODEL, motion, **start, duration=20 * motion.period)
+    assert run.measures["turns"] == pytest.approx(20.0, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("change", "name"),
+    [
+        ({"angular_frequency": [-1.0]}, "angular_frequency"),
+        ({"angular_frequency": [[1.0]]}, "angular_frequency"),
+        ({"motion": sb.Harmonic.vertical(acceleration=1.0, angular_frequency=1.0)}, "motion"),
+        ({"motion": 3}, "motion"),
+    ],
+)
+def test_bad_input_is_named(change, name):
+    arguments = {
+        "motion": sb.Harmonic.circular(acceleration=1.0, angular_frequency=1.0),
+        "angular_frequency": [1.0],
+    } | change
+    with pytest.raises(ParameterError, match=name):
+        sb.studies.response_curves(MODEL, arguments["motion"], angular_frequency=arguments["angular_frequency"])
+
+
+def test_no_start_where_there_is_no_solution():
+    model = sb.Slender(sb.Column.dimensionless(0.1), damping=0.3)
+    motion = sb.Harmonic.circular(acceleration=0.01, angular_frequency=1.0)
+    with pytest.raises(ParameterError, match="no steady rolling"):
+        sb.studies.steady_start(model, motion)
