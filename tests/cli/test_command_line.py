@@ -83,7 +83,10 @@ def test_response_as_json_has_every_curve(capsys):
         ),
         (["simulate", *COLUMN, "--radius", "1", "--duration", "1"], ["column.radius is not known here"]),
         (["simulate", "no such file.toml"], ["cannot read no such file.toml: No such file or directory"]),
-        (["response", *COLUMN, *MOTION[:4], "--angular-frequency-range", "3", "1"], ["angular_frequency_range must rise"]),
+        (
+            ["response", *COLUMN, *MOTION[:4], "--angular-frequency-range", "3", "1"],
+            ["angular_frequency_range must rise"],
+        ),
         (["simulate", *COLUMN, "--duration", "1", "--figure", "run.xyz"], ["cannot draw into run.xyz"]),
         (["nonsense"], ["No such command"]),
         (["simulate", "--nonsense"], ["No such option"]),

@@ -84,7 +84,7 @@ def test_unstable_rolling_overturns_in_the_end():
 
 @pytest.mark.parametrize("sense", [1, -1])
 def test_rolling_is_told_in_both_senses(sense):
-    _, run = roll(3.0, 0.065, 90, off=1.1, sense=sense)
+    _, run = roll(3.0, 0.065, 150, off=1.1, sense=sense)
     assert run.outcome is sb.Outcome.ROLLING
     assert run.measures["mean_rolling_rate"] == pytest.approx(sense * 3.0, rel=1e-6)
     assert run.measures["repetition"] < 1e-6

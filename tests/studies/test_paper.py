@@ -8,7 +8,9 @@ from stylobate.results import Verdict
 from stylobate.studies.paper import circular, free, modulated, planar, standing, straight
 
 
-@pytest.mark.parametrize("check", [free.check_free, circular.check_circular, standing.check_standing, planar.check_planar])
+@pytest.mark.parametrize(
+    "check", [free.check_free, circular.check_circular, standing.check_standing, planar.check_planar]
+)
 def test_every_finding_is_confirmed(check):
     section = check()
     assert section.findings

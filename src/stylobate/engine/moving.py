@@ -19,6 +19,9 @@ from stylobate.models import Model
 _HOP_FROM = 1e-6
 _HOP_OFFSET = 1e-9
 
+# Passages of the upright closer than this are measured [units of c].
+_PASSAGE = 0.1
+
 # A swing shorter than this part of a step leaves the column at rest on its base.
 _SMALLEST_SWING = 1e-12
 
@@ -69,11 +72,12 @@ class Mover:
         while solver.status == "running":
             if len(steps.dense) >= budget:
                 return self._space_leg(steps, solver.y, azimuth, Reason.FAILED, least, "step limit reached")
+            before = solver.y
             failure = solver.step()
             if failure is not None:
                 return self._space_leg(steps, solver.y, azimuth, Reason.FAILED, least, failure)
             dense = steps.add(solver)
-            least = min(least, self._passage_tilt(steps.times[-2], solver.t, dense))
+            least = min(least, self._passage_tilt(before, steps, solver.y))
             event = self.watch.first_event(steps.times[-2], solver.t, dense)
             if event is not None:
                 time, reason = event
@@ -174,16 +178,22 @@ class Mover:
             inward and math.hypot(x, y) < _HOP_FROM * min(c, speed) and abs(x * vy - y * vx) < _HOP_OFFSET * c * speed
         )
 
-    def _passage_tilt(self, start: float, end: float, dense: DenseOutput) -> float:
-        # Least tilt where it stops falling and grows within the step; infinite if it does not.
-        def radial(tau: float) -> float:
-            state = dense(np.array([tau]))
-            return float(np.vdot(self.model.tilt(state), self.model.tilt_rate(state)))
-
-        if not radial(start) < 0.0 < radial(end):
+    def _passage_tilt(self, before: Floats, steps: "_Steps", after: Floats) -> float:
+        # Least tilt where it stops falling and grows within the last step; infinite if it does not, or stays wide.
+        (tilt, radial), (_, radial_after) = self._radial(before), self._radial(after)
+        if not (radial < 0.0 < radial_after and tilt < _PASSAGE * self.model.column.slenderness):
             return math.inf
-        nearest = brentq(radial, start, end, xtol=1e-300, rtol=1e-15)
-        return float(np.hypot(*self.model.tilt(dense(np.array([nearest])))[:, 0]))
+        dense = steps.dense[-1]
+        nearest = brentq(
+            lambda tau: self._radial(dense(tau))[1], steps.times[-2], steps.times[-1], xtol=1e-300, rtol=1e-15
+        )
+        return self._radial(dense(nearest))[0]
+
+    def _radial(self, state: Floats) -> tuple[float, float]:
+        """Return |α| and α·α̇ of one state."""
+        column = state[:, np.newaxis]
+        (x, y), (vx, vy) = self.model.tilt(column)[:, 0].tolist(), self.model.tilt_rate(column)[:, 0].tolist()
+        return math.hypot(x, y), x * vx + y * vy
 
     def _space_leg(
         self, steps: "_Steps", end: Floats, azimuth: float, reason: Reason, least: float, failure: str = ""

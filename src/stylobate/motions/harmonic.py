@@ -194,19 +194,18 @@ class Harmonic(BaseMotion):
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
         """Return the displacement (`order` 0), velocity (1) or acceleration (2) along x, y and z."""
         t = np.asarray(time, dtype=float)
-        frequency, start = self.angular_frequency, self.start_phase
+        frequency = self.angular_frequency
         gain = (-1.0, 1.0, 1.0)[order] / frequency ** (ACCELERATION - order)
-        quarter = (0.0, -math.pi / 2.0, 0.0)[order]
-        angle = frequency * t + (start + quarter)
-        x, y, z = (
-            gain * a * np.cos(angle + phase) if a != 0.0 else np.zeros_like(t)
-            for a, phase in zip(self.amplitude, self.phase, strict=True)
-        )
+        angle = frequency * t + (self.start_phase - (math.pi / 2.0 if order == VELOCITY else 0.0))
+        (ax, ay, az), (fx, fy, fz) = self.amplitude, self.phase
+        x = gain * ax * np.cos(angle + fx)
+        y = gain * ay * np.cos(angle + fy)
+        z = gain * az * np.cos(angle + fz) if az != 0.0 else 0.0 * angle
         if self.ramp > 0.0 and np.any(t < self.ramp):
-            x, y, z = (
-                np.where(t < self.ramp, self._ramped(t, order, a, phase), steady)
-                for a, phase, steady in zip(self.amplitude, self.phase, (x, y, z), strict=True)
-            )
+            early = t < self.ramp
+            x = np.where(early, self._ramped(t, order, ax, fx), x)
+            y = np.where(early, self._ramped(t, order, ay, fy), y)
+            z = np.where(early, self._ramped(t, order, az, fz), z)
         return x, y, z
 
     def largest_horizontal(self, since: float = 0.0) -> float:

@@ -1,0 +1,33 @@
+"""What a single run costs, beside SciPy's solver on the bare equations (1): run by `make bench`."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import stylobate as sb
+
+C, ETA, A0, THETA = 0.1, 0.1, 0.065, 3.0
+PERIODS = 200
+MODEL = sb.Slender(sb.Column.dimensionless(C), damping=ETA)
+MOTION = sb.Harmonic.circular(acceleration=A0, angular_frequency=THETA)
+START = sb.studies.steady_start(MODEL, MOTION)
+DURATION = PERIODS * MOTION.period
+
+
+def equations_1(tau, state):
+    x, y, vx, vy = state
+    lean = 1.0 - C / np.sqrt(x * x + y * y)
+    return vx, vy, lean * x - ETA * vx - A0 * np.cos(THETA * tau), lean * y - ETA * vy - A0 * np.sin(THETA * tau)
+
+
+@pytest.mark.benchmark(group=f"rolling, {PERIODS} periods, rtol 1e-8")
+def test_simulate_with_events_outcome_and_history(benchmark):
+    run = benchmark(sb.simulate, MODEL, MOTION, **START, duration=DURATION)
+    assert run.outcome is sb.Outcome.ROLLING
+
+
+@pytest.mark.benchmark(group=f"rolling, {PERIODS} periods, rtol 1e-8")
+def test_scipy_on_the_bare_equations(benchmark):
+    start = [*START["tilt"], *START["tilt_rate"]]
+    flow = benchmark(solve_ivp, equations_1, (0.0, DURATION), start, method="DOP853", rtol=1e-8, atol=1e-11)
+    assert flow.success
