@@ -39,6 +39,7 @@ def paper(folder: Folder = Path("stylobate-paper"), workers: Workers = None, as_
         print_json([dict(zip(("source", "statement", "measured", "verdict"), row, strict=True)) for row in rows])
     else:
         print_table("Every claim of the paper, measured", rows, ("where", "statement", "measured", "verdict"))
+        print(check.summary)
         print(f"report: {report}")
     if any(finding.verdict is Verdict.NOT_CONFIRMED for finding in check.findings):
         raise typer.Exit(1)

@@ -8,6 +8,9 @@ from io import BytesIO
 
 from matplotlib.figure import Figure
 
+# Dots per inch of embedded figures; the page scales them to its width.
+_RESOLUTION = 160
+
 _STYLE = """
 :root { color-scheme: light; }
 body { font: 16px/1.55 system-ui, sans-serif; color: #1a1a1a; background: #fff; margin: 2rem auto; max-width: 60rem;
@@ -78,7 +81,7 @@ def _part(part: str | Picture | Table) -> str:
 
 def _picture(picture: Picture) -> str:
     buffer = BytesIO()
-    picture.figure.savefig(buffer, format="png")
+    picture.figure.savefig(buffer, format="png", dpi=_RESOLUTION)
     data = base64.b64encode(buffer.getvalue()).decode("ascii")
     caption = escape(picture.caption)
     return (

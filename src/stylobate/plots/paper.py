@@ -42,7 +42,8 @@ def figure_2(response: xr.Dataset, straight: xr.Dataset | None = None) -> Figure
         _number(axes, number, place, float(part["amplitude"].interp(theta=place)), color=_COLOURS[index])
     if straight is not None:
         _draw_full_motion(axes, straight)
-    _amplitude_legend(axes, response, straight)
+    _name_amplitudes(axes, response, 1.0 if straight is None else 2.0)
+    axes.legend(loc="upper right")
     axes.set_xlabel("frequency of the base θ = θ₀/ω₀")
     axes.set_ylabel("tilt angle A [rad]" if straight is None else "tilt angle A, averaged [rad]")
     axes.set_xlim(0.0, 4.1)
@@ -62,7 +63,8 @@ def figure_3(response: xr.Dataset, *, averaged: bool) -> Figure:
         place = places[number]
         _number(axes, number, place, float(part["phase"].interp(theta=place)), color=_COLOURS[index])
     set_phase_axis(axes)
-    _amplitude_legend(axes, response, averaged or None)
+    _name_amplitudes(axes, response, 2.0 if averaged else 1.0)
+    axes.legend(loc="center right")
     axes.set_xlabel("frequency of the base θ = θ₀/ω₀")
     axes.set_ylabel("phase ψ, averaged [rad]" if averaged else "phase ψ [rad]")
     axes.set_xlim(0.0, float(response["theta"][-1]))
@@ -129,7 +131,8 @@ def modulated(data: xr.Dataset) -> Figure:
     history.axhline(1.0, color=GREY, linewidth=0.9, linestyle=_LIMIT)
     history.set_xlabel("time τ")
     history.set_ylabel("tilt over that of steady rolling, A/A₊")
-    history.legend(loc="lower right")
+    history.set_ylim(bottom=0.3)
+    history.legend(loc="lower center", ncols=3, columnspacing=1.0, handlelength=1.6)
     cycle.set_aspect("equal", adjustable="datalim")
     cycle.set_xlabel("A cos ψ / A₊")
     cycle.set_ylabel("A sin ψ / A₊")
@@ -231,12 +234,11 @@ def _draw_full_motion(axes: Axes, straight: xr.Dataset) -> None:
     axes.plot([], [], "x", color=BLACK, label="full motion: overturned")
 
 
-def _amplitude_legend(axes: Axes, response: xr.Dataset, straight: object) -> None:
-    factor, name = (1.0, "a0") if straight is None else (2.0, "a1")
+def _name_amplitudes(axes: Axes, response: xr.Dataset, factor: float) -> None:
+    name = "a0" if factor == 1.0 else "a1"
     for index, a0 in enumerate(response["a0"].to_numpy()):
         axes.plot([], [], color=_COLOURS[index], linewidth=STABLE_WIDTH, label=f"{name} = {factor * a0:g}, stable")
         axes.plot([], [], color=_COLOURS[index], linewidth=UNSTABLE_WIDTH, label=f"{name} = {factor * a0:g}, unstable")
-    axes.legend(loc="upper right")
 
 
 def _number(axes: Axes, number: int, x: float, y: float, color: str = GREY) -> None:

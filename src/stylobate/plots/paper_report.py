@@ -119,7 +119,7 @@ def paper_report(check: PaperCheck, folder: str | Path) -> Path:
         findings = [_plain(finding) for finding in check.findings]
         (target / "findings.json").write_text(json.dumps(findings, indent=1, ensure_ascii=False), encoding="utf-8")
         report = target / "report.html"
-        report.write_text(page(_TITLE, _INTRODUCTION, _sections(check, pictures)), encoding="utf-8")
+        report.write_text(page(_TITLE, [*_INTRODUCTION, check.summary], _sections(check, pictures)), encoding="utf-8")
     except OSError as error:
         message = f"cannot write into {target}: {error.strerror or error}"
         raise FileError(message) from error

@@ -1,5 +1,6 @@
 """What a check of a publication finds: its claims with measurements and verdicts, and the data of its figures."""
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
@@ -51,3 +52,10 @@ class PaperCheck:
     def data(self) -> Mapping[str, xr.Dataset]:
         """The data of all figures, by name."""
         return {name: data for section in self.sections.values() for name, data in section.data.items()}
+
+    @property
+    def summary(self) -> str:
+        """One line that counts the verdicts."""
+        counts = Counter(finding.verdict for finding in self.findings)
+        told = ", ".join(f"{counts[verdict]} {verdict.value}" for verdict in Verdict if counts[verdict])
+        return f"{counts.total()} statements measured: {told}."

@@ -136,8 +136,8 @@ def _averaged_curves(response: xr.Dataset) -> Finding:
     return Finding(
         "(10), Figs. 2, 3",
         "Figs. 2 and 3 show averages of the motion for straight-line base motion with a1 = 0.04 and 0.13.",
-        f"The mean tilt of the full motion differs from the averaged stable curve by up to {100 * gaps[0]:.0f} % at "
-        f"a1 = 0.04 and {100 * gaps[1]:.0f} % at a1 = 0.13 where the column survives; the tilt swings about it.",
+        f"The mean tilt of the full motion differs from the averaged stable curve by up to {100 * gaps[0]:.1f} % at "
+        f"a1 = 0.04 and {100 * gaps[1]:.1f} % at a1 = 0.13 where the column survives; the tilt swings about it.",
         Verdict.LIMITED,
     )
 

@@ -1,0 +1,68 @@
+"""What `import stylobate` offers."""
+
+import inspect
+import subprocess
+import sys
+from importlib.metadata import version
+
+import pytest
+
+import stylobate
+
+
+@pytest.mark.parametrize("name", stylobate.__all__)
+def test_every_public_name_resolves_and_is_explained(name):
+    value = getattr(stylobate, name)
+    if name == "__version__":
+        assert value == version("stylobate")
+    else:
+        assert len(inspect.getdoc(value) or "") > 10
+
+
+def public_members(cls):
+    return [name for name, value in vars(cls).items() if not name.startswith("_") and callable(getattr(cls, name))]
+
+
+@pytest.mark.parametrize("name", ["BaseMotion", "Column", "Harmonic", "Model", "Response", "Slender"])
+def test_every_public_method_is_explained(name):
+    cls = getattr(stylobate, name)
+    for member in public_members(cls):
+        assert inspect.getdoc(getattr(cls, member)), f"{name}.{member}"
+
+
+def fresh(code):
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip()
+
+
+def test_importing_takes_no_numpy_and_little_time():
+    code = (
+        "import sys, time; start = time.perf_counter(); import stylobate; took = time.perf_counter() - start; "
+        "heavy = {'numpy', 'scipy', 'xarray', 'matplotlib', 'pydantic', 'typer'} & set(sys.modules); "
+        "print(sorted(heavy), took < 0.3)"
+    )
+    assert fresh(code) == "[] True"
+
+
+def test_theory_needs_no_scipy_and_no_xarray():
+    code = (
+        "import sys, stylobate; stylobate.theory; print(sorted({'scipy', 'xarray', 'matplotlib'} & set(sys.modules)))"
+    )
+    assert fresh(code) == "[]"
+
+
+def test_dir_lists_the_public_names():
+    assert dir(stylobate) == sorted(stylobate.__all__)
+    assert len(set(stylobate.__all__)) == len(stylobate.__all__)
+
+
+def test_an_unknown_name_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="module 'stylobate' has no attribute 'colum'"):
+        stylobate.colum  # noqa: B018
+
+
+def test_names_are_the_same_objects_wherever_they_are_reached():
+    from stylobate.column import Column  # noqa: PLC0415
+    from stylobate.engine import simulate  # noqa: PLC0415
+
+    assert stylobate.Column is Column
+    assert stylobate.simulate is simulate
