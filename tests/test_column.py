@@ -120,6 +120,13 @@ def test_each_number_of_a_given_column_is_checked(name):
         sb.Column(**{**GIVEN, name: -1.0})
 
 
+@pytest.mark.parametrize("name", [*GIVEN, "gravity"])
+def test_only_the_height_may_be_unknown(name):
+    with pytest.raises(ParameterError, match=f"^{name} must be a real number, got None"):
+        sb.Column(**{**GIVEN, name: None})
+    assert sb.Column(**GIVEN, height=None).height is None
+
+
 @pytest.mark.parametrize(
     ("make", "name", "value"),
     [

@@ -59,13 +59,13 @@ def test_an_impossible_argument_is_refused_by_name(name, value):
 
 @pytest.mark.parametrize("value", [None, MODEL.column, sb.Slender, "slender"])
 def test_what_is_no_model_is_refused(value):
-    with pytest.raises(ParameterError, match="^model must be a model such as"):
+    with pytest.raises(ParameterError, match=r"^model must be a model such as"):
         sb.simulate(value, duration=1.0)
 
 
 @pytest.mark.parametrize("value", [0.5, MODEL, sb.Harmonic, "circular", (0.1, 0.2)])
 def test_what_is_no_motion_is_refused(value):
-    with pytest.raises(ParameterError, match="^motion must be a base motion such as"):
+    with pytest.raises(ParameterError, match=r"^motion must be a base motion such as"):
         sb.simulate(MODEL, value, duration=1.0)
 
 

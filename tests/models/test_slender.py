@@ -135,11 +135,11 @@ def test_a_passage_through_the_upright_itself_goes_straight_on():
 
 @pytest.mark.parametrize("column", [None, 0.1, "solid"])
 def test_what_is_no_column_is_refused(column):
-    with pytest.raises(ParameterError, match="^column must be a Column"):
+    with pytest.raises(ParameterError, match=r"^column must be a Column"):
         sb.Slender(column)
 
 
 @pytest.mark.parametrize("damping", [-0.1, math.nan, math.inf, "x", None])
 def test_impossible_damping_is_refused(damping):
-    with pytest.raises(ParameterError, match="^damping must be"):
+    with pytest.raises(ParameterError, match=r"^damping must be"):
         sb.Slender(MODEL.column, damping=damping)

@@ -14,8 +14,11 @@ amplitudes = st.floats(-5.0, 5.0)
 phases = st.floats(-7.0, 7.0)
 
 
+SOME_RAMPS = st.sampled_from([0.0, 0.7, 3.0])
+
+
 @st.composite
-def harmonics(draw, ramps=st.sampled_from([0.0, 0.7, 3.0])):
+def harmonics(draw, ramps=SOME_RAMPS):
     return sb.Harmonic(
         amplitude=draw(st.tuples(amplitudes, amplitudes, amplitudes)),
         phase=draw(st.tuples(phases, phases, phases)),

@@ -73,3 +73,28 @@ def test_no_start_where_there_is_no_solution():
     motion = sb.Harmonic.circular(acceleration=0.01, angular_frequency=1.0)
     with pytest.raises(ParameterError, match="no steady rolling"):
         sb.studies.steady_start(model, motion)
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+def test_the_slow_flow_is_exact_on_a_circle(sense):
+    motion = sb.Harmonic.circular(acceleration=0.6, angular_frequency=2.4, sense=sense, start_phase=0.7)
+    start = sb.studies.steady_start(MODEL, motion)
+    start["tilt"] = (1.1 * start["tilt"][0], 1.1 * start["tilt"][1])
+    run = sb.simulate(MODEL, motion, **start, duration=20.0, rtol=1e-11)
+    slow = sb.studies.averaged_motion(MODEL, motion, **start, duration=20.0, rtol=1e-11)
+    full = run.sample(slow["time"])
+    np.testing.assert_allclose(slow["amplitude"], full["amplitude"], rtol=1e-8)
+    np.testing.assert_allclose(slow["azimuth"] - slow["azimuth"][0], full["azimuth"] - full["azimuth"][0], atol=1e-8)
+
+
+def test_the_slow_flow_follows_a_weakly_driven_straight_motion():
+    motion = sb.Harmonic.straight(acceleration=0.12, angular_frequency=4.0, direction=0.5, start_phase=0.3)
+    start = sb.studies.steady_start(MODEL, motion, sense=-1)
+    run = sb.simulate(MODEL, motion, **start, duration=10 * motion.period)
+    slow = sb.studies.averaged_motion(MODEL, motion, **start, duration=10 * motion.period, sense=-1)
+    full = run.sample(slow["time"])
+    # The swing about the average is about 2.3 a1/c = 0.28 of the tilt; the mean follows far better.
+    np.testing.assert_allclose(full["amplitude"], slow["amplitude"], rtol=0.35)
+    assert float(full["amplitude"].mean() / slow["amplitude"].mean()) == pytest.approx(1.0, abs=0.02)
+    turned = float(full["azimuth"][-1] - full["azimuth"][0]) / (2.0 * np.pi)
+    assert turned == pytest.approx(-10.0, abs=0.05)

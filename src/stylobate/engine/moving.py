@@ -61,10 +61,10 @@ class Mover:
 
     def in_space(self, start: float, state: tuple[float, ...], stop: float, azimuth: float, budget: int) -> Leg:
         """Advance a general motion from `start` to `stop` at most; `azimuth` [rad] is where its lean begins."""
-        rates, parameters, forcing = self.model.rates, self.model.parameters, self.forcing
+        rates, parameters, forcing, last = self.model.rates, self.model.parameters, self.forcing, _before(stop)
 
         def derivative(tau: float, y: Floats) -> Floats:
-            return np.array(rates(*y.tolist(), *forcing.at(tau), *parameters))
+            return np.array(rates(*y.tolist(), *forcing.at(min(tau, last)), *parameters))
 
         solver = self._solver(derivative, start, state, stop)
         steps = _Steps(start)
@@ -116,10 +116,10 @@ class Mover:
     ) -> Leg:
         """Advance a motion in the plane along `line`; `state` is (tilt, rate) along it, on one side of the upright."""
         model, forcing = self.model, self.forcing
-        side = math.copysign(1.0, state[0] if state[0] != 0.0 else state[1])
+        side, last = math.copysign(1.0, state[0] if state[0] != 0.0 else state[1]), _before(stop)
 
         def derivative(tau: float, y: Floats) -> Floats:
-            ax, ay, az = forcing.at(tau)
+            ax, ay, az = forcing.at(min(tau, last))
             rates = model.planar_rates(float(y[0]), float(y[1]), side, ax * line[0] + ay * line[1], az)
             assert rates is not None
             return np.array(rates)
@@ -251,6 +251,11 @@ class _Steps:
     def cut(self, time: float) -> None:
         """End the last step at `time`, where an event was found; no step is left without extent."""
         self.times[-1] = max(time, math.nextafter(self.times[-2], math.inf))
+
+
+def _before(stop: float) -> float:
+    """Return the last time before `stop`: what acts up to a break of the acceleration is its limit from the left."""
+    return stop * (1.0 - 4.0 * np.finfo(float).eps)
 
 
 def _crossing(dense: DenseOutput, side: float, start: float, end: float) -> float | None:

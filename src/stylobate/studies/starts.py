@@ -3,12 +3,11 @@
 import math
 from typing import TypedDict
 
-import numpy as np
-
 from stylobate import theory
 from stylobate.errors import ParameterError
 from stylobate.models import Slender
 from stylobate.motions import Harmonic
+from stylobate.studies.rolling_frame import RollingFrame
 
 
 class Start(TypedDict):
@@ -48,27 +47,15 @@ def steady_start(model: Slender, motion: Harmonic, *, branch: str = "upper", sen
     >>> sb.simulate(model, motion, **start, duration=50.0).outcome
     <Outcome.ROLLING: 'rolling'>
     """
-    gravity, scale = model.column.gravity, model.column.frequency_scale
-    (a1, a2, _), (phi1, phi2, _) = motion.amplitude, motion.phase
-    theta = motion.angular_frequency / scale
-    parts = theory.averaged_rolling(
-        theta, a1 / gravity, a2 / gravity, phi2 - phi1, c=model.column.slenderness, eta=model.damping
-    )
-    p, q = theory.circular_components(a1, a2, phi2 - phi1)
-    turning = (1 if abs(p) >= abs(q) else -1) if sense is None else sense
-    steady = parts.forward if turning == 1 else parts.backward
+    frame = RollingFrame.of(model, motion, sense)
+    steady = theory.steady_rolling(frame.theta, frame.drive, c=model.column.slenderness, eta=model.damping)
     chosen = {"upper": steady.upper, "lower": steady.lower}.get(branch)
     if chosen is None:
         message = f'branch must be "upper" or "lower", got {branch!r}'
         raise ParameterError(message)
-    tilt, phase = float(chosen.amplitude), float(chosen.phase)
+    tilt, psi = float(chosen.amplitude), float(chosen.phase)
     if not math.isfinite(tilt):
-        message = (
-            f"motion has no steady rolling on the {branch} branch at angular_frequency {motion.angular_frequency!r}"
-        )
+        message = f"motion has no steady rolling on the {branch} branch at {motion.angular_frequency!r} rad/s"
         raise ParameterError(message)
-    # The closed form measures its azimuth from axis 1 at the phase of that axis.
-    azimuth = turning * (motion.start_phase + phi1 + phase) + float(np.asarray(steady.azimuth_offset))
-    x, y = math.cos(azimuth), math.sin(azimuth)
-    rate = turning * motion.angular_frequency * tilt
-    return {"tilt": (tilt * x, tilt * y), "tilt_rate": (-rate * y, rate * x)}
+    vector, rate = frame.to_tilt(tilt, psi, 0.0, frame.theta)
+    return {"tilt": vector, "tilt_rate": rate}

@@ -9,9 +9,9 @@ from scipy.integrate import solve_ivp
 from stylobate import theory
 from stylobate.engine import simulate
 from stylobate.errors import Outcome
-from stylobate.models import Slender
 from stylobate.motions import Harmonic
 from stylobate.results import Finding, Response, Section, Verdict
+from stylobate.studies.averaged_motion import averaged_motion
 from stylobate.studies.paper.setting import DAMPING, SLENDERNESS, judged, paper_model
 from stylobate.studies.starts import steady_start
 
@@ -56,34 +56,16 @@ def averaging_data() -> xr.Dataset:
     fields = {}
     for k, (theta, a1, periods, off) in enumerate(cases):
         motion = Harmonic.straight(acceleration=a1, angular_frequency=theta)
-        run = _off_averaged(model, motion, periods, off)
-        tau = np.linspace(0.0, periods * motion.period, 1500)
-        fields[f"full_{k}"] = ("sample", np.interp(tau, run.data["time"], run.data["amplitude"], right=np.nan))
-        fields[f"slow_{k}"] = ("sample", _slow_flow(theta, a1, tau, off))
-        fields[f"time_{k}"] = ("sample", tau)
-    return xr.Dataset(
-        fields,
-        attrs={"theta": [case[0] for case in cases], "a1": [case[1] for case in cases], "c": _C},
-    )
-
-
-def _off_averaged(model: Slender, motion: Harmonic, periods: int, off: float) -> Response:
-    start = steady_start(model, motion, sense=1)
-    (x, y), (vx, vy) = start["tilt"], start["tilt_rate"]
-    return simulate(
-        model, motion, tilt=(off * x, off * y), tilt_rate=(off * vx, off * vy), duration=periods * motion.period
-    )
-
-
-def _slow_flow(theta: float, a1: float, tau: np.ndarray, off: float) -> np.ndarray:
-    upper = theory.averaged_rolling(theta, a1, c=_C, eta=DAMPING).forward.upper
-    start = [0.0, theta, off * float(upper.amplitude), float(upper.phase)]
-
-    def rates(_: float, state: np.ndarray) -> np.ndarray:
-        return theory.rotating_frame_rates(state, theta, a1 / 2.0, c=_C, eta=DAMPING)
-
-    flow = solve_ivp(rates, (0.0, tau[-1]), start, method="DOP853", t_eval=tau, rtol=1e-9, atol=1e-12)
-    return np.asarray(flow.y[2])
+        start = steady_start(model, motion, sense=1)
+        (x, y), (vx, vy) = start["tilt"], start["tilt_rate"]
+        start = {"tilt": (off * x, off * y), "tilt_rate": (off * vx, off * vy)}
+        duration = periods * motion.period
+        run = simulate(model, motion, **start, duration=duration)
+        slow = averaged_motion(model, motion, **start, duration=duration, sense=1, samples=1500)
+        full = np.interp(slow["time"], run.data["time"], run.data["amplitude"], right=np.nan)
+        for name, values in (("full", full), ("slow", slow["amplitude"]), ("time", slow["time"])):
+            fields[f"{name}_{k}"] = (f"sample_{k}", np.asarray(values))
+    return xr.Dataset(fields, attrs={"theta": [case[0] for case in cases], "a1": [case[1] for case in cases], "c": _C})
 
 
 def _from_averaged(theta: float, a1: float, periods: int, sense: int = 1) -> Response:

@@ -1,0 +1,54 @@
+"""Settings of the documentation: MyST pages, furo, reference from docstrings, MathJax from a local package."""
+
+import re
+from importlib.metadata import version as installed_version
+from typing import Any
+
+project = "stylobate"
+author = "The stylobate developers"
+copyright = author  # noqa: A001  the name that Sphinx asks for
+release = installed_version("stylobate")
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.mathjax",
+    "sphinx-mathjax-offline",  # the files of MathJax, so that no page fetches anything
+]
+exclude_patterns = ["_build"]
+myst_enable_extensions = ["dollarmath", "colon_fence", "deflist"]
+myst_heading_anchors = 3
+
+# In our docstrings single backticks mean code.
+default_role = "literal"
+napoleon_google_docstring = False
+napoleon_use_ivar = True
+autodoc_member_order = "bysource"
+autodoc_typehints_format = "short"
+autodoc_preserve_defaults = True
+python_maximum_signature_line_length = 88
+
+html_theme = "furo"
+html_title = f"stylobate {release}"
+html_static_path = ["_static"]
+html_css_files = ["page.css"]
+html_copy_source = False
+html_show_sphinx = False
+
+# Text between backticks stays as it is; elsewhere |α| is an amount and no substitution of reStructuredText.
+_CODE = re.compile(r"(`[^`]*`)")
+# numpy.typing writes its alias for whatever can become an array out in full.
+_ARRAY_LIKE = re.compile(r"Buffer \| _SupportsArray\[.*?_NestedSequence\[[^\[\]]*\]")
+
+
+def _escape_bars(app: Any, what: str, name: str, thing: object, options: object, lines: list[str]) -> None:
+    del app, what, name, thing, options
+    for index, line in enumerate(lines):
+        if "|" in line and not line.lstrip().startswith(">>>"):
+            parts = _CODE.split(line)
+            lines[index] = "".join(part if part.startswith("`") else part.replace("|", r"\|") for part in parts)
+
+
+def setup(app: Any) -> None:
+    app.connect("autodoc-process-docstring", _escape_bars)

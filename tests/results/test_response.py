@@ -1,0 +1,169 @@
+"""The result of a run: its data, saved and loaded, sampled, and run again."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import stylobate as sb
+from stylobate.errors import FileError, ParameterError, UnsupportedError
+
+MODEL = sb.Slender(sb.Column.solid(radius=0.5, height=10.0, density=2700.0), damping=0.1)
+MOTION = sb.Harmonic.circular(acceleration=0.7, angular_frequency=2.5, ramp=2.0).delayed(1.0) + sb.Harmonic.vertical(
+    acceleration=0.5, angular_frequency=5.0
+)
+
+
+@pytest.fixture(scope="module")
+def run():
+    return sb.simulate(MODEL, MOTION, tilt=(0.03, 0.01), tilt_rate=(0.0, 0.05), duration=10.0)
+
+
+@pytest.fixture(scope="module")
+def standing():
+    return sb.simulate(MODEL, None, duration=3.0)
+
+
+def same(one, other):
+    for name in ("outcome", "reason", "decided_at", "uncertain", "planar", "events"):
+        assert getattr(one, name) == getattr(other, name), name
+    assert dict(one.thresholds) == dict(other.thresholds)
+    assert dict(one.measures) == dict(other.measures)
+    assert dict(one.provenance) == dict(other.provenance)
+
+
+@pytest.mark.parametrize("which", ["run", "standing"])
+def test_a_saved_run_is_loaded_as_it_was(which, request, tmp_path):
+    saved = request.getfixturevalue(which)
+    path = saved.save(tmp_path / "run.nc")
+    loaded = sb.load(path)
+    same(loaded, saved)
+    xr.testing.assert_identical(loaded.data, saved.data)
+    assert loaded.data.resting.dtype == bool
+    assert sb.load(str(path)).outcome is saved.outcome
+
+
+def test_a_loaded_run_can_be_saved_again(run, tmp_path):
+    first = sb.load(run.save(tmp_path / "first.nc"))
+    second = sb.load(first.save(tmp_path / "second.nc"))
+    same(first, second)
+    xr.testing.assert_identical(first.data, second.data)
+
+
+def test_saving_leaves_the_run_as_it_is(run, tmp_path):
+    before = run.data.copy(deep=True)
+    run.save(str(tmp_path / "run.nc"))
+    xr.testing.assert_identical(run.data, before)
+
+
+def test_numbers_of_other_kinds_can_be_saved(tmp_path):
+    limited = sb.simulate(MODEL, tilt=(0.03, 0.0), duration=1.0, tilt_limit=np.float32(0.5), max_steps=np.int64(1000))
+    same(sb.load(limited.save(tmp_path / "run.nc")), limited)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"tilt_limit": 0.04, "rtol": 1e-10},
+        {"samples": 77},
+        {"rules": sb.OutcomeRules(periods=3)},
+    ],
+    ids=["defaults", "limit and tolerance", "samples", "rules"],
+)
+def test_a_run_is_repeated_from_its_provenance(options, tmp_path):
+    first = sb.simulate(MODEL, MOTION, tilt=(0.03, 0.01), duration=10.0, **options)
+    loaded = sb.load(first.save(tmp_path / "run.nc"))
+    setup = sb.spec.description_of(loaded.provenance).build()
+    again = sb.simulate(setup.model, setup.motion, **setup.options)
+    same(again, first)
+    xr.testing.assert_identical(again.data, first.data)
+
+
+def test_sampling_at_the_times_of_the_data_gives_the_data(run):
+    xr.testing.assert_allclose(run.sample(run.data.time), run.data, rtol=1e-12, atol=1e-15)
+
+
+def test_samples_lie_between_the_samples_of_the_data(run):
+    time = run.data.time.to_numpy()
+    middle = run.sample(0.5 * (time[:-1] + time[1:]))
+    step = time[1] - time[0]
+    between = 0.5 * (run.data.tilt.to_numpy()[:-1] + run.data.tilt.to_numpy()[1:])
+    # The mean of two neighbours is off by h²/8 times the second derivative, at most about 2ω0²c here.
+    assert np.abs(middle.tilt.to_numpy() - between).max() < step**2
+    assert float(run.sample(0.0).amplitude[0]) == pytest.approx(math.hypot(0.03, 0.01), rel=1e-14)
+    assert run.sample(2.0).sizes["time"] == 1
+
+
+@pytest.mark.parametrize("time", [-0.1, 10.1, math.nan, [0.0, 11.0]])
+def test_times_outside_the_run_are_refused(run, time):
+    with pytest.raises(ParameterError, match=r"^time must lie within the run, 0 to"):
+        run.sample(time)
+
+
+def test_a_loaded_run_cannot_be_sampled(run, tmp_path):
+    with pytest.raises(UnsupportedError, match=r"a loaded result has the samples in .data only"):
+        sb.load(run.save(tmp_path / "run.nc")).sample(1.0)
+
+
+def write_foreign(path):
+    xr.Dataset({"a": ("x", [1.0])}).to_netcdf(path, engine="h5netcdf")
+
+
+def write_unfinished(path):
+    xr.Dataset({"a": ("x", [1.0])}, attrs={"format": "stylobate response 1"}).to_netcdf(path, engine="h5netcdf")
+
+
+@pytest.mark.parametrize(
+    "write",
+    [
+        lambda path: path.write_text("no netCDF at all"),
+        lambda path: path.write_bytes(b""),
+        lambda path: path.write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(100)),
+        lambda path: path.mkdir(),
+        lambda _: None,
+        write_foreign,
+        write_unfinished,
+    ],
+    ids=["text", "empty", "broken", "folder", "missing", "foreign", "unfinished"],
+)
+def test_what_holds_no_run_is_a_file_error_that_names_it(write, tmp_path):
+    path = tmp_path / "other.nc"
+    write(path)
+    with pytest.raises(FileError, match=r"other\.nc"):
+        sb.load(path)
+
+
+def test_a_truncated_file_is_a_file_error(run, tmp_path):
+    path = run.save(tmp_path / "run.nc")
+    path.write_bytes(path.read_bytes()[:5000])
+    with pytest.raises(FileError, match=r"run\.nc"):
+        sb.load(path)
+
+
+def test_a_file_that_cannot_be_written_is_a_file_error(run, tmp_path):
+    with pytest.raises(FileError, match=r"cannot write .*run\.nc"):
+        run.save(tmp_path / "missing" / "run.nc")
+
+
+def test_the_data_agree_among_themselves(run):
+    data = run.data
+    x, y = data.tilt.to_numpy().T
+    np.testing.assert_allclose(np.hypot(x, y), data.amplitude, rtol=1e-14)
+    np.testing.assert_allclose(np.cos(data.azimuth) * data.amplitude, x, rtol=0.0, atol=1e-15)
+    np.testing.assert_allclose(np.sin(data.azimuth) * data.amplitude, y, rtol=0.0, atol=1e-15)
+    assert np.abs(np.diff(data.azimuth)).max() < 1.0  # unwrapped
+    np.testing.assert_allclose(data.base_acceleration, MOTION.acceleration(data.time), rtol=1e-15)
+    square = data.amplitude_rate**2 + (data.amplitude * data.rolling_rate) ** 2
+    np.testing.assert_allclose(square, (data.tilt_rate**2).sum("axis"), rtol=1e-10)
+    np.testing.assert_allclose(np.hypot(*data.centre_of_pressure.to_numpy().T), 0.5, rtol=1e-12)
+    for name in set(data.data_vars) - {"resting"}:
+        assert data[name].attrs["units"], name
+        assert data[name].attrs["long_name"], name
+    assert run.measures["largest_tilt"] == float(data.amplitude.max())
+    assert run.measures["turns"] == pytest.approx(float(data.azimuth[-1] - data.azimuth[0]) / (2.0 * math.pi))
+
+
+def test_a_run_says_what_became_of_the_column(run):
+    assert repr(run) == f"Response({run.outcome.name} at {run.decided_at:.6g} s: {run.reason})"

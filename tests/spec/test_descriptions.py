@@ -1,0 +1,234 @@
+"""Descriptions: TOML text to objects, objects to descriptions and back, and mistakes one to a line."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import stylobate as sb
+from stylobate.errors import DescriptionError, FileError
+from stylobate.motions import BASE_AT_REST, Sum
+from stylobate.spec import SimulationDescription, description_of, provenance_of_run, read_description
+
+H = sb.Harmonic
+STONE = '[column]\nshape = "solid"\nradius = 0.5\nheight = 10.0\ndensity = 2700.0\n'
+TIME = np.linspace(0.0, 5.0, 23)
+
+MOTIONS = {
+    'kind = "rest"': BASE_AT_REST,
+    'kind = "circular"\nacceleration = 0.65\nangular_frequency = 1.8\nsense = -1\nramp = 2.0': H.circular(
+        acceleration=0.65, angular_frequency=1.8, sense=-1, ramp=2.0
+    ),
+    'kind = "straight"\nacceleration = 0.65\nangular_frequency = 1.8\ndirection = 0.3\nstart_phase = 1.0': H.straight(
+        acceleration=0.65, angular_frequency=1.8, direction=0.3, start_phase=1.0
+    ),
+    'kind = "elliptic"\namplitude = [0.1, 0.2]\nphase = 0.4\nangular_frequency = 2': H.elliptic(
+        amplitude=(0.1, 0.2), phase=0.4, angular_frequency=2.0
+    ),
+    'kind = "vertical"\nacceleration = 1\nangular_frequency = 2': H.vertical(acceleration=1.0, angular_frequency=2.0),
+    'kind = "displacement"\namplitude = [0.1, 0.2, 0.3]\nphase = [0, 1, 2]\nangular_frequency = 2': (
+        H.displacement_amplitude(amplitude=(0.1, 0.2, 0.3), phase=(0.0, 1.0, 2.0), angular_frequency=2.0)
+    ),
+    'kind = "stroke"\nstroke = 0.04\nfrequency = 5\ndirection = 0.3': H.stroke(
+        stroke=0.04, frequency=5.0, direction=0.3
+    ),
+    'kind = "orbit"\ndiameter = 0.02\nrpm = 300\nsense = -1': H.orbit(diameter=0.02, rpm=300.0, sense=-1),
+    'kind = "harmonic"\namplitude = [0.1, 0.2, 0.3]\nphase = [0, 1, 2]\nangular_frequency = 2': H(
+        amplitude=(0.1, 0.2, 0.3), phase=(0.0, 1.0, 2.0), angular_frequency=2.0
+    ),
+    'kind = "sum"\nmotions = [{kind = "rest"}, {kind = "orbit", diameter = 0.02, rpm = 300}]': Sum(
+        motions=(BASE_AT_REST, H.orbit(diameter=0.02, rpm=300.0))
+    ),
+    'kind = "scaled"\nfactor = 2\nmotion = {kind = "vertical", acceleration = 1, angular_frequency = 2}': H.vertical(
+        acceleration=1.0, angular_frequency=2.0
+    ).scaled(2.0),
+    'kind = "scaled"\nfactor = 2\nvertical = 0\nmotion = {kind = "vertical", acceleration=1, angular_frequency=3}': (
+        H.vertical(acceleration=1.0, angular_frequency=3.0).scaled(2.0, vertical=0.0)
+    ),
+    'kind = "rotated"\nangle = 0.3\nmotion = {kind = "orbit", diameter = 0.02, rpm = 300}': H.orbit(
+        diameter=0.02, rpm=300.0
+    ).rotated(0.3),
+    'kind = "delayed"\ndelay = 1.5\nmotion = {kind = "orbit", diameter = 0.02, rpm = 300}': H.orbit(
+        diameter=0.02, rpm=300.0
+    ).delayed(1.5),
+}
+
+COLUMNS = {
+    'shape = "solid"\nradius = 0.5\nheight = 10\ndensity = 2700': sb.Column.solid(
+        radius=0.5, height=10.0, density=2700.0
+    ),
+    'shape = "hollow"\nradius = 0.5\ninner_radius = 0.4\nheight = 10\ndensity = 2700': sb.Column.hollow(
+        radius=0.5, inner_radius=0.4, height=10.0, density=2700.0
+    ),
+    'shape = "frustum"\nradius = 0.5\ntop_radius = 0.4\nheight = 10\ndensity = 2700\ngravity = 1.6': sb.Column.frustum(
+        radius=0.5, top_radius=0.4, height=10.0, density=2700.0, gravity=1.6
+    ),
+    'shape = "dimensionless"\nslenderness = 0.1': sb.Column.dimensionless(0.1),
+    'shape = "given"\nradius = 0.5\nmass_height = 5\nmass=1e3\ntransverse_inertia=8e3\naxial_inertia=125': sb.Column(
+        radius=0.5, mass_height=5.0, mass=1e3, transverse_inertia=8e3, axial_inertia=125.0
+    ),
+}
+
+
+def described(text, tmp_path):
+    path = tmp_path / "run.toml"
+    path.write_text(text, encoding="utf-8")
+    return SimulationDescription.parse(read_description(path))
+
+
+@pytest.mark.parametrize("text", MOTIONS)
+def test_every_kind_of_motion_can_be_written(text, tmp_path):
+    setup = described(f"duration = 5.0\n{STONE}[motion]\n{text}", tmp_path).build()
+    assert setup.motion == MOTIONS[text]
+
+
+@pytest.mark.parametrize("text", COLUMNS)
+def test_every_shape_of_column_can_be_written(text, tmp_path):
+    setup = described(f"duration = 5.0\n[column]\n{text}", tmp_path).build()
+    assert setup.model == sb.Slender(COLUMNS[text])
+    assert setup.motion == BASE_AT_REST
+
+
+@pytest.mark.parametrize("motion", MOTIONS.values(), ids=lambda motion: type(motion).__name__)
+def test_a_motion_described_and_built_again_is_the_same(motion):
+    model = sb.Slender(sb.Column.dimensionless(0.1), damping=0.3)
+    stored = json.loads(json.dumps(provenance_of_run(model, motion, duration=5.0, tilt=(0.1, 0.2))))
+    setup = description_of(stored).build()
+    assert setup.motion == motion
+    np.testing.assert_array_equal(setup.motion.displacement(TIME), motion.displacement(TIME))
+    assert setup.model == model
+    assert (setup.options["duration"], setup.options["tilt"]) == (5.0, (0.1, 0.2))
+
+
+def test_all_arguments_of_a_run_can_be_written(tmp_path):
+    text = "tilt = [0.01, 0.02]\ntilt_rate = [0.0, 1]\nduration = 5\nrtol = 1e-9\natol = 1e-12\ntilt_limit = 0.5\n"
+    text += (
+        "rest_energy = 1e-5\nmax_steps = 1000\nsamples = 51\n" + STONE + '[model]\nkind = "slender"\ndamping = 0.1\n'
+    )
+    setup = described(text, tmp_path).build()
+    assert setup.model.damping == 0.1
+    run = sb.simulate(setup.model, setup.motion, **setup.options)
+    assert run.data.sizes["time"] == 51
+    assert run.provenance["rtol"] == 1e-9
+
+
+BASE = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "duration": 1.0}
+CIRCULAR = {"kind": "circular", "acceleration": 1.0, "angular_frequency": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("change", "fields"),
+    [
+        ({"duration": "long"}, ["duration"]),
+        ({"duration": None}, ["duration"]),
+        ({"colour": 1}, ["colour"]),
+        ({"tilt": [0.1]}, ["tilt.1"]),
+        ({"tilt": ["x", 0.0]}, ["tilt.0"]),
+        ({"tilt": 0.1}, ["tilt"]),
+        ({"max_steps": 1.5}, ["max_steps"]),
+        ({"column": 3}, ["column"]),
+        ({"column": {}}, ["column.shape"]),
+        ({"column": {"shape": "cube"}}, ["column.shape"]),
+        ({"column": {"shape": "solid", "radius": 0.5, "hight": 3.0, "density": "x"}}, None),
+        ({"model": {"damping": "x"}}, ["model.damping"]),
+        ({"model": {"friction": 0.1}}, ["model.friction"]),
+        ({"model": {"kind": "fat"}}, ["model.kind"]),
+        ({"model": 3}, ["model"]),
+        ({"motion": {"kind": "wild"}}, ["motion.kind"]),
+        ({"motion": {"acceleration": 1.0}}, ["motion.kind"]),
+        ({"motion": {**CIRCULAR, "acceleration": "x"}}, ["motion.acceleration"]),
+        ({"motion": {**CIRCULAR, "sens": 1}}, ["motion.sens"]),
+        ({"motion": {"kind": "circular"}}, ["motion.acceleration", "motion.angular_frequency"]),
+        (
+            {"motion": {"kind": "sum", "motions": [CIRCULAR, {"kind": "orbit", "rpm": 3}]}},
+            ["motion.motions.1.diameter"],
+        ),
+        ({"motion": {"kind": "sum", "motions": [3]}}, ["motion.motions.0"]),
+        ({"motion": {"kind": "rotated", "angle": 1.0, "motion": {"kind": "x"}}}, ["motion.motion.kind"]),
+        ({"motion": {"kind": "elliptic", "amplitude": [1, "x"], "angular_frequency": 1}}, ["motion.amplitude.1"]),
+        ({"motion": {"kind": "scaled", "motion": CIRCULAR}}, ["motion.factor"]),
+    ],
+)
+def test_each_mistake_is_one_line_that_names_its_field(change, fields):
+    with pytest.raises(DescriptionError) as caught:
+        SimulationDescription.parse({**BASE, **change})
+    fields = ["column.density", "column.height", "column.hight"] if fields is None else fields
+    problems = caught.value.problems
+    assert sorted(line.split(" ")[0].rstrip(":") for line in problems) == fields
+    assert str(caught.value).splitlines() == list(problems)
+
+
+def test_all_mistakes_are_told_at_once():
+    with pytest.raises(DescriptionError) as caught:
+        SimulationDescription.parse(
+            {"column": {"shape": "cube"}, "motion": {"kind": "circular"}, "tilt": [1, "x"], "a": 0}
+        )
+    names = [line.split(" ")[0].rstrip(":") for line in caught.value.problems]
+    assert sorted(names) == sorted(
+        ["column.shape", "motion.acceleration", "motion.angular_frequency", "tilt.1", "duration", "a"]
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "starts"),
+    [
+        (
+            {"column": {"shape": "dimensionless", "slenderness": -0.1}},
+            ["column: slenderness must be positive, got -0.1"],
+        ),
+        ({"model": {"damping": -1.0}}, ["model: damping must be zero or positive, got -1.0"]),
+        ({"motion": {**CIRCULAR, "sense": 3}}, ["motion: sense must be +1"]),
+        ({"motion": {**CIRCULAR, "angular_frequency": 0.0}}, ["motion: angular_frequency must be positive, got 0.0"]),
+        (
+            {
+                "column": {"shape": "dimensionless", "slenderness": math.nan},
+                "motion": {**CIRCULAR, "ramp": -1.0},
+            },
+            ["column: slenderness must be positive, got nan", "motion: ramp must be zero or positive, got -1.0"],
+        ),
+    ],
+)
+def test_what_cannot_be_built_is_one_line_for_each_part(change, starts):
+    description = SimulationDescription.parse({**BASE, **change})
+    with pytest.raises(DescriptionError) as caught:
+        description.build()
+    problems = caught.value.problems
+    assert len(problems) == len(starts)
+    assert all(line.startswith(start) for line, start in zip(problems, starts, strict=True))
+
+
+@pytest.mark.parametrize("content", [b"duration = ", b"\xff\xfe", b"a = 1\na = 2"])
+def test_what_is_no_toml_is_a_file_error_that_names_the_file(content, tmp_path):
+    path = tmp_path / "run.toml"
+    path.write_bytes(content)
+    with pytest.raises(FileError, match=r"run\.toml is not a TOML file"):
+        read_description(path)
+
+
+def test_a_missing_file_is_a_file_error_that_names_it(tmp_path):
+    with pytest.raises(FileError, match=r"cannot read .*none\.toml: No such file"):
+        read_description(tmp_path / "none.toml")
+
+
+def test_a_motion_of_the_users_own_runs_and_its_provenance_says_it_cannot_be_repeated():
+    class Own(sb.BaseMotion):
+        def derivative(self, time, order):
+            t = np.asarray(time, dtype=float)
+            return ((-1.0) ** order * np.exp(-t) * 0.01, np.zeros_like(t), np.zeros_like(t))
+
+        def largest_horizontal(self, since=0.0):
+            return 0.01 * math.exp(-since)
+
+        def vertical_range(self, since=0.0):
+            del since
+            return 0.0, 0.0
+
+        def directions(self):
+            return ((1.0, 0.0),)
+
+    run = sb.simulate(sb.Slender(sb.Column.dimensionless(0.1)), Own(), tilt=(0.01, 0.0), duration=1.0)
+    assert run.planar
+    assert run.provenance["motion"]["kind"] == "other"
+    with pytest.raises(DescriptionError, match=r"motion\.kind"):
+        description_of(run.provenance)
