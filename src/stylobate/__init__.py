@@ -17,12 +17,12 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from stylobate import errors, motions, plots, spec, studies, theory
     from stylobate.column import Column
-    from stylobate.engine import OutcomeRules, simulate
+    from stylobate.engine import simulate
     from stylobate.errors import Outcome
     from stylobate.models import Model, Slender
     from stylobate.motions import BaseMotion, Harmonic
     from stylobate.plots import plot
-    from stylobate.results import Event, Response, load
+    from stylobate.results import Event, OutcomeRules, Response, load
 
 __all__ = [
     "BaseMotion",
@@ -53,7 +53,7 @@ _HOMES = {
     "Harmonic": "motions",
     "Model": "models",
     "Outcome": "errors",
-    "OutcomeRules": "engine",
+    "OutcomeRules": "results",
     "Response": "results",
     "Slender": "models",
     "load": "results",

@@ -58,7 +58,7 @@ class Column:
     def __post_init__(self) -> None:
         for name, unit in _UNITS.items():
             value = getattr(self, name)
-            if value is not None:
+            if name != "height" or value is not None:
                 object.__setattr__(self, name, require_positive(name, value, unit))
         self._check_inertias()
         if self.height is not None:

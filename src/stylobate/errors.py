@@ -99,7 +99,7 @@ def require_not_negative(name: str, value: float, unit: str = "") -> float:
 def require_vector(name: str, value: Sequence[float], length: int, unit: str = "") -> tuple[float, ...]:
     """Return `value` as a tuple of `length` finite floats, or raise ParameterError."""
     try:
-        numbers = tuple(value)
+        numbers = () if isinstance(value, (str, bytes)) else tuple(value)
     except TypeError:
         numbers = ()
     if len(numbers) != length:
@@ -108,10 +108,20 @@ def require_vector(name: str, value: Sequence[float], length: int, unit: str = "
     return tuple(require_finite(f"{name}[{i}]", number, unit) for i, number in enumerate(numbers))
 
 
+def require_whole(name: str, value: int, *, least: int) -> int:
+    """Return `value` as an int, or raise ParameterError unless it is a whole number of `least` or more."""
+    number = _as_float(name, value)
+    if not (number >= least and number.is_integer()):
+        message = f"{name} must be a whole number of at least {least}, got {value!r}"
+        raise ParameterError(message)
+    return int(number)
+
+
 def _as_float(name: str, value: float) -> float:
     try:
-        return float(value)
-    except (TypeError, ValueError):
+        # A string that spells a number is a mistake all the same.
+        return float(value + 0.0)
+    except (TypeError, ValueError, OverflowError):
         message = f"{name} must be a real number, got {value!r}"
         raise ParameterError(message) from None
 

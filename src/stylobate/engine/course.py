@@ -11,6 +11,7 @@ from stylobate.engine.resting import departure, release_time, rest_piece, stays_
 from stylobate.engine.trajectory import Piece, Trajectory, nearest_turn
 from stylobate.engine.watch import Reason
 from stylobate.models import Model
+from stylobate.models.model import RELEASE_MARGIN
 from stylobate.results import Event
 
 Line = tuple[float, float]
@@ -78,6 +79,11 @@ class Course:
                 self.ended = Reason.RESTED
             self._add(rest_piece(len(self.model.state_names), start, self.stop))
             return None
+        if 1.0 + self.forcing.at(release)[2] <= RELEASE_MARGIN:  # nothing holds it down: not released but lifted
+            self._add(rest_piece(len(self.model.state_names), start, release))
+            self.ended = Reason.LIFTED
+            self._note("lifted", release)
+            return None
         later, state = departure(self.model, self.forcing, release)
         if later >= self.stop:
             self._add(rest_piece(len(self.model.state_names), start, self.stop))
@@ -119,7 +125,7 @@ class Course:
             leg = self.mover.in_space(self._time, state, self._next_stop(), self._lean(state), self._budget())
             self._take(leg)
             if leg.reason is Reason.CROSSED:
-                hop = self.mover.over_the_upright(self._time, leg.state, self._lean(leg.state))
+                hop = self.mover.over_the_upright(self._time, leg.state, self._next_stop(), self._lean(leg.state))
                 if hop is not None:
                     self._take(hop)
                     leg = hop

@@ -31,7 +31,7 @@ class Recorded:
 def history(model: Model, motion: BaseMotion, trajectory: Trajectory, samples: int | None, *, planar: bool) -> Recorded:
     """Return the samples of a run at equal steps, `samples` of them or enough to draw every swing."""
     end = trajectory.end * model.time_scale
-    count = _default_count(model, motion, trajectory.end) if samples is None else _checked(samples)
+    count = _default_count(model, motion, trajectory.end) if samples is None else samples
 
     def sampler(time: npt.ArrayLike) -> xr.Dataset:
         t = np.atleast_1d(np.asarray(time, dtype=float))
@@ -107,11 +107,3 @@ def _along_axis(values: Floats, units: str, long_name: str) -> xr.Variable:
 def _default_count(model: Model, motion: BaseMotion, end: float) -> int:
     periods = end * motion.highest_frequency * model.time_scale / (2.0 * math.pi)
     return int(np.clip(math.ceil(_PER_PERIOD * periods + _PER_UNIT * end) + 1, _FEWEST, _MOST))
-
-
-def _checked(samples: int) -> int:
-    least = 2
-    if samples < least:
-        message = f"samples must be at least {least}, got {samples!r}"
-        raise ParameterError(message)
-    return int(samples)

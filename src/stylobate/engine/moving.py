@@ -22,6 +22,12 @@ _HOP_OFFSET = 1e-9
 # Passages of the upright closer than this are measured [units of c].
 _PASSAGE = 0.1
 
+# Points of a step at which a planar motion is looked at for a swing over the upright and back.
+_DIP_SAMPLES = 9
+
+# The contact point is followed in turns of at most this angle [rad], each step cut into at most so many parts.
+_NODE_TURN, _MOST_PARTS = 0.5, 64
+
 # A swing shorter than this part of a step leaves the column at rest on its base.
 _SMALLEST_SWING = 1e-12
 
@@ -87,12 +93,14 @@ class Mover:
                 return self._space_leg(steps, solver.y, azimuth, Reason.CROSSED, least)
         return self._space_leg(steps, solver.y, azimuth, Reason.STOP, least)
 
-    def over_the_upright(self, start: float, state: tuple[float, ...], azimuth: float) -> Leg | None:
-        """Hop over the upright by the model's law of passage, where it has one."""
+    def over_the_upright(self, start: float, state: tuple[float, ...], stop: float, azimuth: float) -> Leg | None:
+        """Hop over the upright by the model's law of passage, where it has one and gets there before `stop`."""
         passed = self.model.pass_upright(state, self.forcing.at(start))
         if passed is None:
             return None
         elapsed, end_state = passed
+        if start + elapsed > stop:
+            return None
         ends = np.array([state, end_state]).T
 
         def states(tau: Floats) -> Floats:
@@ -137,21 +145,20 @@ class Mover:
             if failure is not None:
                 return leg(solver.y, Reason.FAILED, failure)
             dense = steps.add(solver)
-            end, crossed = solver.t, side * solver.y[0] < 0.0
-            if crossed:
-                crossing = _crossing(dense, side, steps.times[-2], end)
-                if crossing is None:
-                    steps.cut(steps.times[-2])
+            began = steps.times[-2]
+            back = _back_at_upright(dense, side, began, solver.t)
+            if back is not None:
+                steps.cut(back)
+                if back == began:
                     return leg(np.zeros(2), Reason.CROSSED)
-                end = crossing
-                steps.cut(end)
-            event = self.watch.first_event(steps.times[-2], end, partial(self._from_plane, dense, line))
+            end = solver.t if back is None else back
+            event = self.watch.first_event(began, end, partial(self._from_plane, dense, line))
             if event is not None:
                 time, reason = event
                 steps.cut(time)
                 return leg(dense(time), reason)
-            if crossed:
-                return leg(np.array([0.0, dense(end)[1]]), Reason.CROSSED)
+            if back is not None:
+                return leg(np.array([0.0, dense(back)[1]]), Reason.CROSSED)
         return leg(solver.y, Reason.STOP)
 
     def _from_plane(self, dense: DenseOutput, line: tuple[float, float], tau: Floats) -> Floats:
@@ -200,7 +207,8 @@ class Mover:
     ) -> Leg:
         if not steps.dense:
             return Leg(None, tuple(map(float, end)), reason, least, failure)
-        nodes, states = np.array(steps.times), OdeSolution(steps.times, steps.dense)
+        states = OdeSolution(steps.times, steps.dense)
+        nodes = self._azimuth_nodes(np.array(steps.times), states)
         azimuths = unwrapped_azimuths(self.model.tilt(states(nodes)), azimuth)
         piece = Piece(
             steps.times[0],
@@ -212,6 +220,17 @@ class Mover:
             steps=len(steps.dense),
         )
         return Leg(piece, tuple(map(float, end)), reason, least, failure)
+
+    def _azimuth_nodes(self, times: Floats, states: Callable[[Floats], Floats]) -> Floats:
+        """Return `times` with more between them wherever the contact point goes far within a step."""
+        at_times = states(times)
+        (x, y), (vx, vy) = self.model.tilt(at_times), self.model.tilt_rate(at_times)
+        rolling = np.abs(x * vy - y * vx) / np.maximum(x * x + y * y, np.finfo(float).tiny)
+        turn = np.maximum(rolling[:-1], rolling[1:]) * np.diff(times)
+        parts = np.clip(np.ceil(turn / _NODE_TURN), 1.0, _MOST_PARTS).astype(int)
+        share = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+        between = np.repeat(times[:-1], parts) + share * np.repeat(np.diff(times) / parts, parts)
+        return np.append(between, times[-1])
 
     def _planar_leg(
         self, steps: "_Steps", end: Floats, reason: Reason, line: tuple[float, float], side: float, failure: str
@@ -258,15 +277,29 @@ def _before(stop: float) -> float:
     return stop * (1.0 - 4.0 * np.finfo(float).eps)
 
 
-def _crossing(dense: DenseOutput, side: float, start: float, end: float) -> float | None:
-    """Return the time in a step at which a planar tilt comes back to the upright from its `side`.
+def _back_at_upright(dense: DenseOutput, side: float, start: float, end: float) -> float | None:
+    """Return when a planar tilt first comes back to the upright from its `side` within a step, or None.
 
-    None where the swing begins and ends within a part of the step too small to be told.
+    It is `start` where the swing begins and ends within a part of the step too small to be told.
     """
 
     def height(tau: float) -> float:
         return side * float(dense(tau)[0])
 
-    candidates = start + (end - start) * np.concatenate([[0.0], np.geomspace(0.5, _SMALLEST_SWING, 40)])
+    beyond = end if height(end) < 0.0 else _dip(dense, side, start, end)
+    if beyond is None:
+        return None
+    candidates = start + (beyond - start) * np.concatenate([[0.0], np.geomspace(0.5, _SMALLEST_SWING, 40)])
     above = next((float(time) for time in candidates if height(float(time)) > 0.0), None)
-    return None if above is None else float(brentq(height, above, end, xtol=4e-15 * max(1.0, end)))
+    return start if above is None else float(brentq(height, above, beyond, xtol=4e-15 * max(1.0, beyond)))
+
+
+def _dip(dense: DenseOutput, side: float, start: float, end: float) -> float | None:
+    """Return the time within a step at which a planar tilt lies lowest beyond the upright, if it goes and returns."""
+    tau = np.linspace(start, end, _DIP_SAMPLES)
+    rate = side * dense(tau)[1]
+    for i in np.flatnonzero((rate[:-1] < 0.0) & (rate[1:] > 0.0)):
+        lowest = float(brentq(lambda t: side * float(dense(t)[1]), tau[i], tau[i + 1]))
+        if side * float(dense(lowest)[0]) < 0.0:
+            return lowest
+    return None

@@ -8,12 +8,19 @@ from stylobate.engine.course import Course
 from stylobate.engine.forcing import Forcing
 from stylobate.engine.history import history
 from stylobate.engine.moving import Method, Mover
-from stylobate.engine.verdict import OutcomeRules, Verdict, long_term
+from stylobate.engine.verdict import Verdict, long_term
 from stylobate.engine.watch import Reason, Thresholds, Watch
-from stylobate.errors import Outcome, ParameterError, require_not_negative, require_positive, require_vector
+from stylobate.errors import (
+    Outcome,
+    ParameterError,
+    require_not_negative,
+    require_positive,
+    require_vector,
+    require_whole,
+)
 from stylobate.models import Model
 from stylobate.motions import BASE_AT_REST, BaseMotion
-from stylobate.results import Response
+from stylobate.results import OutcomeRules, Response
 from stylobate.spec import provenance_of_run
 
 _RTOL_RANGE = (1e-13, 1e-2)
@@ -92,11 +99,12 @@ def simulate(
     >>> sb.simulate(model, shaking, duration=50.0).outcome
     <Outcome.OVERTURNED: 'overturned'>
     """
-    _require_nouns(model, motion)
+    _require_nouns(model, motion, rules)
     moved = BASE_AT_REST if motion is None else motion
     start_tilt = _pair("tilt", tilt, "rad")
     start_rate = _pair("tilt_rate", tilt_rate, "rad/s")
     duration = require_positive("duration", duration, "s")
+    samples = None if samples is None else require_whole("samples", samples, least=2)
     method = _method(model, moved, rtol, atol, max_steps)
     thresholds = _thresholds(model, moved, tilt_limit, rest_energy)
     rules = rules or OutcomeRules()
@@ -114,7 +122,12 @@ def simulate(
         planar=course.planar,
         data=recorded.data,
         events=tuple(course.events),
-        thresholds={"close_passage": _CLOSE_PASSAGE, **asdict(thresholds), **asdict(rules)},
+        thresholds={
+            "close_passage": _CLOSE_PASSAGE,
+            "no_return_tilt": model.no_return_tilt(forcing.largest_horizontal(0.0), forcing.least_vertical(0.0)),
+            **asdict(thresholds),
+            **asdict(rules),
+        },
         measures={**recorded.measures, "least_passage": course.least_passage, **verdict.measures},
         provenance=provenance_of_run(
             model,
@@ -124,9 +137,11 @@ def simulate(
             duration=duration,
             rtol=method.rtol,
             atol=method.atol,
-            tilt_limit=tilt_limit,
-            rest_energy=rest_energy,
-            max_steps=max_steps,
+            tilt_limit=None if tilt_limit is None else thresholds.tilt_limit,
+            rest_energy=None if rest_energy is None else thresholds.rest_energy,
+            max_steps=method.max_steps,
+            samples=samples,
+            rules=asdict(rules),
         ),
         sampler=recorded.sampler,
     )
@@ -166,9 +181,7 @@ def _method(model: Model, motion: BaseMotion, rtol: float, atol: float | None, m
         message = f"rtol must lie between {low!r} and {high!r}, got {rtol!r}"
         raise ParameterError(message)
     atol = _ATOL_SHARE * rtol * model.column.slenderness if atol is None else require_positive("atol", atol, "rad")
-    if max_steps < 1:
-        message = f"max_steps must be at least 1, got {max_steps!r}"
-        raise ParameterError(message)
+    max_steps = require_whole("max_steps", max_steps, least=1)
     # Half the shortest period: no step can miss the forcing.
     frequency = motion.highest_frequency * model.time_scale
     return Method(
@@ -193,10 +206,13 @@ def _pair(name: str, value: Sequence[float], unit: str) -> tuple[float, float]:
     return x, y
 
 
-def _require_nouns(model: Model, motion: BaseMotion | None) -> None:
+def _require_nouns(model: Model, motion: BaseMotion | None, rules: OutcomeRules | None) -> None:
     if not isinstance(model, Model):
         message = f"model must be a model such as Slender(column), got {model!r}"
         raise ParameterError(message)
     if motion is not None and not isinstance(motion, BaseMotion):
         message = f"motion must be a base motion such as Harmonic.circular(...) or None, got {motion!r}"
+        raise ParameterError(message)
+    if rules is not None and not isinstance(rules, OutcomeRules):
+        message = f"rules must be OutcomeRules(...) or None, got {rules!r}"
         raise ParameterError(message)

@@ -7,46 +7,14 @@ import numpy as np
 
 from stylobate.engine.forcing import Floats
 from stylobate.engine.trajectory import Trajectory
-from stylobate.errors import Outcome, require_positive
+from stylobate.errors import Outcome
 from stylobate.models import Model
+from stylobate.results import OutcomeRules
 
 # Samples to each forcing period on which least tilt and modulation are read.
 _SAMPLES = 64
 # A motion that lost or won this many turns against the forcing does not follow it.
 _LESS_THAN_ONE_TURN = 0.5
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class OutcomeRules:
-    """When a motion under a periodic base motion counts as rolling, rocking or modulated.
-
-    Parameters
-    ----------
-    periods
-        Number n of forcing periods at the end of the run that are looked at.
-    frequency_tolerance
-        Rolling and modulated: the mean of β̇ differs from the forcing frequency by less than this part of it. For a
-        modulated motion the mean is told from the average lag behind the forcing over the last n periods and over
-        the n before.
-    repeat_tolerance
-        The motion repeats if states one period apart differ by less than this part of the largest tilt and rate.
-    rest_tilt
-        Rolling: the tilt never falls below this part of c.
-    settled_tolerance, modulation_floor
-        Modulated: states one period apart differ by more than the floor, and over the last n periods by as much as
-        over the n before, to this part. A difference that shrinks or grows is a motion still on its way.
-    """
-
-    periods: int = 10
-    frequency_tolerance: float = 1e-3
-    repeat_tolerance: float = 1e-6
-    rest_tilt: float = 1e-6
-    settled_tolerance: float = 0.05
-    modulation_floor: float = 1e-3
-
-    def __post_init__(self) -> None:
-        for name in self.__slots__:
-            require_positive(f"rules.{name}", getattr(self, name))
 
 
 @dataclass(frozen=True, slots=True)

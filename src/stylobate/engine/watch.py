@@ -14,6 +14,8 @@ from stylobate.models import Model
 
 # Points of each step at which conditions are looked at; a step of the integrator resolves the motion.
 _SAMPLES = 5
+# For lift-off, which depends on the base motion alone and may be short.
+_LIFT_SAMPLES = 65
 
 
 class Reason(Enum):
@@ -78,7 +80,8 @@ class Watch:
             (Reason.RESTED, self._below_rest_energy, tilt.min() < self._rest_tilt),
         ):
             if suspected:
-                time = _first_positive(partial(condition, states), tau)
+                looked_at = np.linspace(start, end, _LIFT_SAMPLES) if reason is Reason.LIFTED else tau
+                time = _first_positive(partial(condition, states), looked_at)
                 if time is not None:
                     found.append((time, reason))
         return min(found, key=lambda event: event[0], default=None)

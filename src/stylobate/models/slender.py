@@ -108,18 +108,19 @@ class Slender(Model):
     def depart(self, push: Push, elapsed: float) -> tuple[float, float, float, float]:
         """Return the state a short time δ = `elapsed` after release, by series about α = 0.
 
-        Along the push α = Fδ²/2 with F = excess + excess_rate δ/3; across it α = qδ³ with
+        Along the push α = Fδ²/2 with F = excess + (excess_rate − η excess) δ/3; across it α = qδ³ with
         q (6 + 2c/F) = |a_h| × turning_rate, which for F → 0 is a lean that follows −a_h.
         """
         c = push.acceleration - push.excess  # c(1 + a_z)
-        mean_excess = push.excess + push.excess_rate * elapsed / 3.0
+        jerk = push.excess_rate - self.damping * push.excess
+        mean_excess = push.excess + jerk * elapsed / 3.0
         if mean_excess <= 0.0:
             return 0.0, 0.0, 0.0, 0.0
         along = 0.5 * mean_excess * elapsed**2
-        along_rate = push.excess * elapsed + 0.5 * push.excess_rate * elapsed**2
+        along_rate = push.excess * elapsed + 0.5 * jerk * elapsed**2
         turn = push.acceleration * push.turning_rate
         across = turn * elapsed**3 / (6.0 + 2.0 * c / mean_excess)
-        across_rate = across / elapsed * (3.0 + push.excess_rate * elapsed / 3.0 / mean_excess)
+        across_rate = across / elapsed * (3.0 + jerk * elapsed / 3.0 / mean_excess)
         ux, uy = push.direction
         return (
             along * ux - across * uy,

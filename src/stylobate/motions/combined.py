@@ -56,7 +56,7 @@ class Sum(BaseMotion):
     @property
     def period(self) -> float | None:
         """The least common period of the parts [s], where their frequencies are in a simple ratio."""
-        periods = [motion.period for motion in self.motions]
+        periods = [motion.period for motion in self.motions if motion.duration > 0.0]
         if not periods or periods[0] is None:
             return None
         common = periods[0]

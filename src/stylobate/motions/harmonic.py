@@ -223,7 +223,10 @@ class Harmonic(BaseMotion):
     def directions(self) -> tuple[tuple[float, float], ...]:
         """Return the two horizontal vectors that multiply cos Ωt and sin Ωt [m/s²]."""
         (ax, ay, _), (fx, fy, _) = self.amplitude, self.phase
-        return (ax * math.cos(fx), ay * math.cos(fy)), (ax * math.sin(fx), ay * math.sin(fy))
+        return (
+            (ax * _exact(math.cos(fx)), ay * _exact(math.cos(fy))),
+            (ax * _exact(math.sin(fx)), ay * _exact(math.sin(fy))),
+        )
 
     @property
     def period(self) -> float:
@@ -279,6 +282,11 @@ def _integral_of_exp(z: npt.NDArray[np.complexfloating], times: int) -> npt.NDAr
     safe = np.where(small, 1.0, z)
     closed = np.expm1(safe) / safe if times == 1 else (np.expm1(safe) - safe) / safe**2
     return np.asarray(np.where(small, series, closed))
+
+
+def _exact(ratio: float) -> float:
+    """Return a sine or cosine, 0 where only the rounding of the angle keeps it from that."""
+    return 0.0 if abs(ratio) < 8.0 * np.finfo(float).eps else ratio
 
 
 def _sense(sense: int) -> int:

@@ -2,6 +2,7 @@
 
 from stylobate.results.findings import Finding, PaperCheck, Section, Verdict
 from stylobate.results.response import Event, Response
+from stylobate.results.rules import OutcomeRules
 from stylobate.results.storage import load
 
-__all__ = ["Event", "Finding", "PaperCheck", "Response", "Section", "Verdict", "load"]
+__all__ = ["Event", "Finding", "OutcomeRules", "PaperCheck", "Response", "Section", "Verdict", "load"]

@@ -11,6 +11,18 @@ from stylobate.errors import FileError, Outcome
 from stylobate.results.response import Event, Response
 
 _FORMAT = "stylobate response 1"
+_OWN_ATTRIBUTES = (
+    "format",
+    "outcome",
+    "reason",
+    "decided_at",
+    "uncertain",
+    "planar",
+    "events",
+    "thresholds",
+    "measures",
+    "provenance",
+)
 
 
 def save_response(response: Response, path: Path) -> Path:
@@ -61,7 +73,15 @@ def load(path: str | Path) -> Response:
     if attributes.get("format") != _FORMAT:
         message = f"{path} is no run saved by stylobate: its format is {attributes.get('format')!r}, not {_FORMAT!r}"
         raise FileError(message)
-    data.attrs = {}
+    try:
+        return _response(data, attributes)
+    except (KeyError, TypeError, ValueError) as error:
+        message = f"{path} is damaged: {error}"
+        raise FileError(message) from error
+
+
+def _response(data: xr.Dataset, attributes: dict[str, Any]) -> Response:
+    data.attrs = {name: value for name, value in attributes.items() if name not in _OWN_ATTRIBUTES}
     data["resting"] = data["resting"].astype(bool)
     return Response(
         outcome=Outcome[attributes["outcome"]],

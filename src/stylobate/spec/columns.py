@@ -102,3 +102,6 @@ class GivenColumn(Description):
 ColumnDescription = Annotated[
     SolidColumn | HollowColumn | FrustumColumn | DimensionlessColumn | GivenColumn, Field(discriminator="shape")
 ]
+
+ANY_COLUMN = Column.dimensionless(0.1)
+"""Stands in for a column that cannot be built, so that mistakes in the model are told with it."""

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any, Self
 
 from stylobate.errors import DescriptionError
-from stylobate.spec.columns import ColumnDescription
+from stylobate.spec.columns import ANY_COLUMN, ColumnDescription
 from stylobate.spec.description import Description, built
 from stylobate.spec.models import ModelDescription, SlenderModel
 from stylobate.spec.motions import MotionDescription
@@ -40,7 +40,7 @@ class ResponseDescription(Description):
         problems: list[str] = []
         column = built("column", self.column.build, problems)
         motion = built("motion", self.motion.build, problems)
-        model = None if column is None else built("model", lambda: self.model.build(column), problems)
+        model = built("model", lambda: self.model.build(column or ANY_COLUMN), problems)
         low, high = self.angular_frequency_range
         if not 0.0 < low < high:
             problems.append(f"angular_frequency_range must rise from above zero, got {low!r} to {high!r} rad/s")

@@ -2,15 +2,18 @@
 
 import tomllib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from stylobate.errors import DescriptionError, FileError, UnsupportedError
+from pydantic import Field
+
+from stylobate.errors import DescriptionError, FileError, ParameterError, UnsupportedError
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
-from stylobate.spec.columns import ColumnDescription, GivenColumn
+from stylobate.results import OutcomeRules
+from stylobate.spec.columns import ANY_COLUMN, ColumnDescription, GivenColumn
 from stylobate.spec.description import Description, built
 from stylobate.spec.models import ModelDescription, SlenderModel, describe_model
 from stylobate.spec.motions import MotionDescription, RestMotion, describe_motion
@@ -40,6 +43,7 @@ class SimulationDescription(Description):
     rest_energy: float | None = None
     max_steps: int = 200_000
     samples: int | None = None
+    rules: dict[str, float] = Field(default_factory=dict)
 
     def build(self) -> Setup:
         """Return the objects described.
@@ -52,10 +56,11 @@ class SimulationDescription(Description):
         problems: list[str] = []
         column = built("column", self.column.build, problems)
         motion = built("motion", self.motion.build, problems)
-        model = None if column is None else built("model", lambda: self.model.build(column), problems)
-        if model is None or motion is None:
+        model = built("model", lambda: self.model.build(column or ANY_COLUMN), problems)
+        rules = built("rules", lambda: OutcomeRules(**_known_rules(self.rules)), problems)
+        if model is None or motion is None or problems:
             raise DescriptionError(problems)
-        options = self.model_dump(exclude={"column", "model", "motion"})
+        options = self.model_dump(exclude={"column", "model", "motion"}) | {"rules": rules}
         return Setup(model, motion, options)
 
 
@@ -75,6 +80,15 @@ def read_description(path: str | Path) -> dict[str, Any]:
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         message = f"{path} is not a TOML file: {error}"
         raise FileError(message) from None
+
+
+def _known_rules(rules: Mapping[str, Any]) -> dict[str, Any]:
+    known = {field.name for field in fields(OutcomeRules)}
+    unknown = [name for name in rules if name not in known]
+    if unknown:
+        message = f"{unknown[0]} is not known here; the rules are {', '.join(sorted(known))}"
+        raise ParameterError(message)
+    return dict(rules)
 
 
 def provenance_of_run(model: Model, motion: BaseMotion, **options: Any) -> dict[str, Any]:
