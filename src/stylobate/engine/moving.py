@@ -10,6 +10,7 @@ from scipy.integrate import DOP853, DenseOutput, OdeSolution
 from scipy.optimize import brentq
 
 from stylobate.engine.forcing import Floats, Forcing
+from stylobate.engine.steps import Steps, back_at_upright, just_before
 from stylobate.engine.trajectory import Piece, unwrapped_azimuths
 from stylobate.engine.watch import Reason, Watch
 from stylobate.models import Model
@@ -22,14 +23,8 @@ _HOP_OFFSET = 1e-9
 # Passages of the upright closer than this are measured [units of c].
 _PASSAGE = 0.1
 
-# Points of a step at which a planar motion is looked at for a swing over the upright and back.
-_DIP_SAMPLES = 9
-
 # The contact point is followed in turns of at most this angle [rad], each step cut into at most so many parts.
 _NODE_TURN, _MOST_PARTS = 0.5, 64
-
-# A swing shorter than this part of a step leaves the column at rest on its base.
-_SMALLEST_SWING = 1e-12
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,13 +62,13 @@ class Mover:
 
     def in_space(self, start: float, state: tuple[float, ...], stop: float, azimuth: float, budget: int) -> Leg:
         """Advance a general motion from `start` to `stop` at most; `azimuth` [rad] is where its lean begins."""
-        rates, parameters, forcing, last = self.model.rates, self.model.parameters, self.forcing, _before(stop)
+        rates, parameters, forcing, last = self.model.rates, self.model.parameters, self.forcing, just_before(stop)
 
         def derivative(tau: float, y: Floats) -> Floats:
             return np.array(rates(*y.tolist(), *forcing.at(min(tau, last)), *parameters))
 
         solver = self._solver(derivative, start, state, stop)
-        steps = _Steps(start)
+        steps = Steps(start)
         least = math.inf
         while solver.status == "running":
             if len(steps.dense) >= budget:
@@ -124,7 +119,7 @@ class Mover:
     ) -> Leg:
         """Advance a motion in the plane along `line`; `state` is (tilt, rate) along it, on one side of the upright."""
         model, forcing = self.model, self.forcing
-        side, last = math.copysign(1.0, state[0] if state[0] != 0.0 else state[1]), _before(stop)
+        side, last = math.copysign(1.0, state[0] if state[0] != 0.0 else state[1]), just_before(stop)
 
         def derivative(tau: float, y: Floats) -> Floats:
             ax, ay, az = forcing.at(min(tau, last))
@@ -133,7 +128,7 @@ class Mover:
             return np.array(rates)
 
         solver = self._solver(derivative, start, state, stop)
-        steps = _Steps(start)
+        steps = Steps(start)
 
         def leg(end: Floats, reason: Reason, failure: str = "") -> Leg:
             return self._planar_leg(steps, end, reason, line, side, failure)
@@ -146,7 +141,7 @@ class Mover:
                 return leg(solver.y, Reason.FAILED, failure)
             dense = steps.add(solver)
             began = steps.times[-2]
-            back = _back_at_upright(dense, side, began, solver.t)
+            back = back_at_upright(dense, side, began, solver.t)
             if back is not None:
                 steps.cut(back)
                 if back == began:
@@ -185,7 +180,7 @@ class Mover:
             inward and math.hypot(x, y) < _HOP_FROM * min(c, speed) and abs(x * vy - y * vx) < _HOP_OFFSET * c * speed
         )
 
-    def _passage_tilt(self, before: Floats, steps: "_Steps", after: Floats) -> float:
+    def _passage_tilt(self, before: Floats, steps: Steps, after: Floats) -> float:
         # Least tilt where it stops falling and grows within the last step; infinite if it does not, or stays wide.
         (tilt, radial), (_, radial_after) = self._radial(before), self._radial(after)
         if not (radial < 0.0 < radial_after and tilt < _PASSAGE * self.model.column.slenderness):
@@ -203,7 +198,7 @@ class Mover:
         return math.hypot(x, y), x * vx + y * vy
 
     def _space_leg(
-        self, steps: "_Steps", end: Floats, azimuth: float, reason: Reason, least: float, failure: str = ""
+        self, steps: Steps, end: Floats, azimuth: float, reason: Reason, least: float, failure: str = ""
     ) -> Leg:
         if not steps.dense:
             return Leg(None, tuple(map(float, end)), reason, least, failure)
@@ -233,7 +228,7 @@ class Mover:
         return np.append(between, times[-1])
 
     def _planar_leg(
-        self, steps: "_Steps", end: Floats, reason: Reason, line: tuple[float, float], side: float, failure: str
+        self, steps: Steps, end: Floats, reason: Reason, line: tuple[float, float], side: float, failure: str
     ) -> Leg:
         if not steps.dense:
             return Leg(None, (float(end[0]), float(end[1])), reason, math.inf, failure)
@@ -252,54 +247,3 @@ class Mover:
             steps=len(steps.dense),
         )
         return Leg(piece, (float(end[0]), float(end[1])), reason, math.inf, failure)
-
-
-class _Steps:
-    """Accepted steps of one solver, with their dense output."""
-
-    def __init__(self, start: float) -> None:
-        self.times = [start]
-        self.dense: list[DenseOutput] = []
-
-    def add(self, solver: DOP853) -> DenseOutput:
-        dense = solver.dense_output()
-        self.times.append(float(solver.t))
-        self.dense.append(dense)
-        return dense
-
-    def cut(self, time: float) -> None:
-        """End the last step at `time`, where an event was found; no step is left without extent."""
-        self.times[-1] = max(time, math.nextafter(self.times[-2], math.inf))
-
-
-def _before(stop: float) -> float:
-    """Return the last time before `stop`: what acts up to a break of the acceleration is its limit from the left."""
-    return stop * (1.0 - 4.0 * np.finfo(float).eps)
-
-
-def _back_at_upright(dense: DenseOutput, side: float, start: float, end: float) -> float | None:
-    """Return when a planar tilt first comes back to the upright from its `side` within a step, or None.
-
-    It is `start` where the swing begins and ends within a part of the step too small to be told.
-    """
-
-    def height(tau: float) -> float:
-        return side * float(dense(tau)[0])
-
-    beyond = end if height(end) < 0.0 else _dip(dense, side, start, end)
-    if beyond is None:
-        return None
-    candidates = start + (beyond - start) * np.concatenate([[0.0], np.geomspace(0.5, _SMALLEST_SWING, 40)])
-    above = next((float(time) for time in candidates if height(float(time)) > 0.0), None)
-    return start if above is None else float(brentq(height, above, beyond, xtol=4e-15 * max(1.0, beyond)))
-
-
-def _dip(dense: DenseOutput, side: float, start: float, end: float) -> float | None:
-    """Return the time within a step at which a planar tilt lies lowest beyond the upright, if it goes and returns."""
-    tau = np.linspace(start, end, _DIP_SAMPLES)
-    rate = side * dense(tau)[1]
-    for i in np.flatnonzero((rate[:-1] < 0.0) & (rate[1:] > 0.0)):
-        lowest = float(brentq(lambda t: side * float(dense(t)[1]), tau[i], tau[i + 1]))
-        if side * float(dense(lowest)[0]) < 0.0:
-            return lowest
-    return None

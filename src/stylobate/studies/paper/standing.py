@@ -8,7 +8,7 @@ import xarray as xr
 from stylobate.engine import simulate
 from stylobate.errors import Outcome
 from stylobate.motions import Harmonic
-from stylobate.results import Finding, Section
+from stylobate.results import Finding, Section, Verdict
 from stylobate.studies.paper.setting import SLENDERNESS, judged, paper_model
 
 _C = SLENDERNESS
@@ -16,7 +16,7 @@ _C = SLENDERNESS
 
 def check_standing() -> Section:
     """Check what the paper says about a column that starts at rest, or from elsewhere."""
-    return Section((_stays(), _overturns()), {"pressure": pressure_data()})
+    return Section((_sign_of_forces(), _stays(), _overturns()), {"pressure": pressure_data()})
 
 
 def pressure_data() -> xr.Dataset:
@@ -32,6 +32,20 @@ def pressure_data() -> xr.Dataset:
     path = np.stack([run.data["centre_of_pressure"] for run in runs]) / model.column.radius
     return xr.Dataset(
         {"path": (("motion", "time", "axis"), path)}, coords={"motion": list(motions), "axis": ["x", "y"]}
+    )
+
+
+def _sign_of_forces() -> Finding:
+    push = Harmonic.straight(acceleration=1.2 * _C, angular_frequency=0.1)
+    run = simulate(paper_model(), push, duration=0.5)
+    lean = float(run.data["tilt"].sel(axis="x")[-1])
+    return Finding(
+        "before (1)",
+        "The generalised forces are +m Q0i √(h² + r²) cos(γ − αi) cos θ0t.",
+        "In the frame of the base the force is −m times its acceleration, as in the paper's own (1), with arm h in the "
+        f"small-angle model. With the sign of (1) a base that accelerates along +x at 1.2c makes the column lean to "
+        f"{lean:+.4f} rad, against the acceleration, as it must. (1) is what counts.",
+        judged(lean < 0.0, Verdict.ERRATUM),
     )
 
 
