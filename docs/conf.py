@@ -38,8 +38,6 @@ html_show_sphinx = False
 
 # Text between backticks stays as it is; elsewhere |α| is an amount and no substitution of reStructuredText.
 _CODE = re.compile(r"(`[^`]*`)")
-# numpy.typing writes its alias for whatever can become an array out in full.
-_ARRAY_LIKE = re.compile(r"Buffer \| _SupportsArray\[.*?_NestedSequence\[[^\[\]]*\]")
 
 
 def _escape_bars(app: Any, what: str, name: str, thing: object, options: object, lines: list[str]) -> None:
@@ -50,5 +48,31 @@ def _escape_bars(app: Any, what: str, name: str, thing: object, options: object,
             lines[index] = "".join(part if part.startswith("`") else part.replace("|", r"\|") for part in parts)
 
 
+def _aliases() -> dict[str, str]:
+    # numpy's aliases arrive written out in full; in signatures they get their names back.
+    import numpy as np  # noqa: PLC0415
+    import numpy.typing as npt  # noqa: PLC0415
+    from sphinx.util.typing import stringify_annotation  # noqa: PLC0415  tests import this file without Sphinx
+
+    named = {
+        "ArrayLike": npt.ArrayLike,
+        "NDArray[float64]": npt.NDArray[np.float64],
+        "NDArray[complex128]": npt.NDArray[np.complex128],
+        "NDArray[bool]": npt.NDArray[np.bool_],
+    }
+    return {stringify_annotation(alias, "smart"): name for name, alias in named.items()}
+
+
 def setup(app: Any) -> None:
+    """Connect what docstrings and signatures need."""
+    aliases = _aliases()
+
+    def name_aliases(*event: Any) -> tuple[str | None, str | None]:
+        signature, returned = event[-2:]
+        for alias, name in aliases.items():
+            signature = signature and signature.replace(alias, name)
+            returned = returned and returned.replace(alias, name)
+        return signature, returned
+
     app.connect("autodoc-process-docstring", _escape_bars)
+    app.connect("autodoc-process-signature", name_aliases)
