@@ -5,6 +5,7 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
 
 import stylobate as sb
@@ -133,3 +134,16 @@ def test_an_interrupt_ends_without_a_traceback(monkeypatch, capsys):
     monkeypatch.setattr("stylobate.engine.simulate", interrupted)
     assert run(["simulate", *COLUMN, *START]) == 130
     assert capsys.readouterr().err == "stylobate: interrupted\n"
+
+
+def test_another_shape_or_kind_on_the_command_line_replaces_that_of_the_file(tmp_path, capsys):
+    description = tmp_path / "run.toml"
+    description.write_text(
+        "duration = 5.0\n[column]\nradius = 0.5\nheight = 10.0\ndensity = 2700.0\n"
+        '[motion]\nkind = "straight"\nacceleration = 0.01\nangular_frequency = 2.0\ndirection = 1.0\n'
+    )
+    changed = ["--slenderness", "0.2", "--motion", "stroke", "--stroke", "0.01", "--frequency", "2"]
+    assert run(["simulate", str(description), *changed, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)["provenance"]
+    assert told["column"]["radius"] == pytest.approx(0.15)
+    assert told["motion"]["angular_frequency"] == pytest.approx(4.0 * np.pi)

@@ -13,7 +13,7 @@ def _option(text: str, panel: str) -> Any:
 
 _COLUMN, _MODEL, _MOTION, _OUTPUT = "Column", "Model", "Base motion", "Output"
 
-Shape = Annotated[str | None, _option("solid, hollow, frustum, dimensionless or given; told from the others", _COLUMN)]
+Shape = Annotated[str | None, _option("solid, hollow, frustum or dimensionless; told from the others", _COLUMN)]
 Radius = Annotated[float | None, _option("base radius [m]", _COLUMN)]
 Height = Annotated[float | None, _option("height [m]", _COLUMN)]
 Density = Annotated[float | None, _option("density [kg/m³]", _COLUMN)]
@@ -24,7 +24,10 @@ Gravity = Annotated[float | None, _option("gravity [m/s²], 9.80665 by default",
 
 Damping = Annotated[float | None, _option("viscous friction η, dimensionless", _MODEL)]
 
-Motion = Annotated[str | None, _option("rest, circular, straight, elliptic, vertical, stroke or orbit", _MOTION)]
+Motion = Annotated[
+    str | None,
+    _option("rest, circular, straight, elliptic, vertical, stroke or orbit; a file knows more kinds", _MOTION),
+]
 Acceleration = Annotated[float | None, _option("acceleration amplitude [m/s²]", _MOTION)]
 AngularFrequency = Annotated[float | None, _option("angular frequency [rad/s]", _MOTION)]
 Frequency = Annotated[float | None, _option("frequency of a stroke [Hz]", _MOTION)]
@@ -74,15 +77,15 @@ def overlay(described: Mapping[str, Any], given: Mapping[str, Any], run_names: t
         Names of the options that stand at the top of a description.
     """
     values = dict(described)
-    column = _section(values, "column", _pick(given, _COLUMN_NAMES))
-    if column and "shape" not in column:
-        column["shape"] = next((shape for name, shape in _SHAPES.items() if name in column), "solid")
+    column = _pick(given, _COLUMN_NAMES)
+    shape = column.get("shape") or next((shape for name, shape in _SHAPES.items() if name in column), None)
+    # Another shape of column, or kind of motion, replaces what is in the file.
+    _section(values, "column", column | ({"shape": shape} if shape else {}), tag="shape")
+    if values.get("column") and "shape" not in values["column"]:
+        values["column"]["shape"] = "solid"
     _section(values, "model", _pick(given, _MODEL_NAMES))
     motion = {**({"kind": given["motion"]} if given.get("motion") else {}), **_pick(given, _MOTION_NAMES)}
-    kept: dict[str, Any] | None = (
-        {} if "kind" in motion else None
-    )  # another kind of motion replaces the one in the file
-    _section(values, "motion", motion, base=kept)
+    _section(values, "motion", motion, tag="kind")
     return values | _pick(given, run_names)
 
 
@@ -90,13 +93,11 @@ def _pick(given: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
     return {name: given[name] for name in names if given.get(name) is not None}
 
 
-def _section(
-    values: dict[str, Any], name: str, options: dict[str, Any], base: Mapping[str, Any] | None = None
-) -> dict[str, Any]:
-    described = values.get(name, {}) if base is None else base
+def _section(values: dict[str, Any], name: str, options: dict[str, Any], tag: str = "") -> None:
+    described = values.get(name, {})
     if not isinstance(described, Mapping):
-        return options
-    merged = {**described, **options}
+        return
+    other = tag in options and options[tag] != described.get(tag)
+    merged = options if other else {**described, **options}
     if merged or name in values:
         values[name] = merged
-    return merged

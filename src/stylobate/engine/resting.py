@@ -7,6 +7,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.trajectory import Piece
+from stylobate.errors import UnsupportedError
 from stylobate.models import Model, Push
 
 # Samples to the shortest period of the base motion, and samples looked at together.
@@ -75,8 +76,10 @@ def departure(model: Model, forcing: Forcing, time: float) -> tuple[float, tuple
     )
     state = model.depart(push, elapsed)
     if state is None:
-        message = f"model {model.name} does not say how a column departs from rest"
-        raise NotImplementedError(message)
+        message = (
+            f"model {model.name} does not say how a column departs from rest: give it `depart`, or start it moving"
+        )
+        raise UnsupportedError(message)
     return time + elapsed, state
 
 

@@ -22,7 +22,7 @@ class Harmonic(BaseMotion):
     """Base acceleration a_i cos(Ωt + start_phase + φ_i) along x, y and z, with an optional smooth start.
 
     The named constructors say it in the terms at hand: `circular`, `straight`, `elliptic`, `vertical` by acceleration;
-    `displacement`, `stroke`, `orbit` by the path of the base.
+    `displacement_amplitude`, `stroke`, `orbit` by the path of the base.
 
     Parameters
     ----------

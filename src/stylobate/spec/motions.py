@@ -25,8 +25,8 @@ class _HarmonicMotion(Description):
 
     def build(self) -> BaseMotion:
         """Return the motion, by the constructor of Harmonic that has the name of the kind."""
-        make = getattr(Harmonic, _CONSTRUCTORS[type(self)])
-        motion = make(**self.model_dump(exclude={"kind"}))
+        values = self.model_dump()
+        motion = getattr(Harmonic, values.pop("kind"))(**values)
         assert isinstance(motion, BaseMotion)
         return motion
 
@@ -69,7 +69,7 @@ class VerticalMotion(_HarmonicMotion):
 class DisplacementMotion(_HarmonicMotion):
     """By the displacement amplitudes along x, y and z [m]."""
 
-    kind: Literal["displacement"]
+    kind: Literal["displacement_amplitude"]
     amplitude: tuple[float, float, float]
     phase: tuple[float, float, float] = (0.0, 0.0, 0.0)
     angular_frequency: float
@@ -170,16 +170,6 @@ MotionDescription = Annotated[
     | DelayedMotion,
     Field(discriminator="kind"),
 ]
-
-_CONSTRUCTORS: dict[type[Description], str] = {
-    CircularMotion: "circular",
-    StraightMotion: "straight",
-    EllipticMotion: "elliptic",
-    VerticalMotion: "vertical",
-    DisplacementMotion: "displacement_amplitude",
-    StrokeMotion: "stroke",
-    OrbitMotion: "orbit",
-}
 
 for _composite in (SumMotion, ScaledMotion, RotatedMotion, DelayedMotion):
     _composite.model_rebuild()

@@ -107,9 +107,13 @@ def description_of(provenance: Mapping[str, Any]) -> SimulationDescription:
 
     Raises
     ------
-    DescriptionError
+    UnsupportedError
         If the run was made with a model or motion that descriptions do not know.
     """
+    for name in ("model", "motion"):
+        if provenance[name].get("kind") == "other":
+            message = f"the run used a {name} of its own, of which only the repr is kept: {provenance[name]['repr']}"
+            raise UnsupportedError(message)
     return SimulationDescription.parse({name: value for name, value in provenance.items() if name != "version"})
 
 

@@ -15,7 +15,7 @@ _C = SLENDERNESS
 
 def check_free() -> Section:
     """Check the paper's statements about a base at rest."""
-    return Section((_planar(), _rolling(), _general(), _runaway()), {"runaway": runaway_data()})
+    return Section((_planar(), _rolling(), _planar_rate(), _general(), _runaway()), {"runaway": runaway_data()})
 
 
 def runaway_data() -> xr.Dataset:
@@ -90,12 +90,26 @@ def _general() -> Finding:
     near = run.sample(np.array([1e-3]))
     measured = 2.0 * (float(near["amplitude"][0]) - tilt) / 1e-6
     return Finding(
-        "(11)",
+        "after (11)",
         "With angular momentum ℓ the tilt obeys Ä = −ℓ²/A³ − A + c, where ω0 is the initial β̇.",
         f"All signs are reversed in print: from A = 0.6c, β̇ = 0.5 the integration starts with Ä = {measured:.5f}, "
         f"ℓ²/A³ + A − c = {true:.5f}; its ω0 is the initial A0 β̇. Period {period:.6f} and advance of the azimuth "
         f"{advance:.6f} rad by quadrature agree with the integration to {gap:.0e}.",
         judged(abs(measured - true) < 1e-3 * abs(true) and gap < 1e-8, Verdict.ERRATUM),  # noqa: PLR2004
+    )
+
+
+def _planar_rate() -> Finding:
+    amplitude, tau = 0.6 * _C, 0.5
+    run = simulate(paper_model(damping=0.0), tilt=(amplitude, 0.0), duration=1.0, rtol=1e-11)
+    measured = float(run.sample(tau)["amplitude_rate"][0])
+    printed = (_C - amplitude) * math.sinh(tau)
+    return Finding(
+        "after (11)",
+        "In the planar motion the tilt rate is μ = (c − A0) sinh τ.",
+        f"Its sign is wrong: from A0 = 0.6c at rest the tilt falls, at τ = 0.5 with μ = {measured:.6f}; printed "
+        f"{printed:.6f}. It is the derivative of A = c − (c − A0) cosh τ, −(c − A0) sinh τ.",
+        judged(abs(measured + printed) < 1e-10, Verdict.ERRATUM),  # noqa: PLR2004  ten times the tolerance
     )
 
 
