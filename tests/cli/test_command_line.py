@@ -82,7 +82,10 @@ def test_response_as_json_has_every_curve(capsys):
             ["simulate", "--slenderness", "-1", *MOTION[:2], "--acceleration", "nan", *MOTION[4:], "--duration", "1"],
             ["column: slenderness must be positive, got -1.0", "motion: acceleration must be finite, got nan m/s²"],
         ),
-        (["simulate", *COLUMN, "--radius", "1", "--duration", "1"], ["column.radius is not known here"]),
+        (
+            ["simulate", *COLUMN, "--radius", "1", "--duration", "1"],
+            ["column.radius does not belong to column 'dimensionless'"],
+        ),
         (["simulate", "no such file.toml"], ["cannot read no such file.toml: No such file or directory"]),
         (
             ["response", *COLUMN, *MOTION[:4], "--angular-frequency-range", "3", "1"],
@@ -142,7 +145,20 @@ def test_another_shape_or_kind_on_the_command_line_replaces_that_of_the_file(tmp
         "duration = 5.0\n[column]\nradius = 0.5\nheight = 10.0\ndensity = 2700.0\n"
         '[motion]\nkind = "straight"\nacceleration = 0.01\nangular_frequency = 2.0\ndirection = 1.0\n'
     )
-    changed = ["--slenderness", "0.2", "--motion", "stroke", "--stroke", "0.01", "--frequency", "2"]
+    assert run(["simulate", str(description), "--slenderness", "0.2"]) == 2
+    assert "add --shape dimensionless and all of its numbers" in capsys.readouterr().err
+    changed = [
+        "--shape",
+        "dimensionless",
+        "--slenderness",
+        "0.2",
+        "--motion",
+        "stroke",
+        "--stroke",
+        "0.01",
+        "--frequency",
+        "2",
+    ]
     assert run(["simulate", str(description), *changed, "--json"]) == 0
     told = json.loads(capsys.readouterr().out)["provenance"]
     assert told["column"]["radius"] == pytest.approx(0.15)

@@ -188,3 +188,35 @@ def test_steady_rolling_is_never_taken_for_rest(theta, a0):
     run = sb.simulate(model(0.1), motion, tilt=lean, tilt_rate=along, duration=12.0 * 2.0 * math.pi / theta)
     assert run.outcome is sb.Outcome.ROLLING
     assert not run.data.resting.any()
+
+
+STONE = sb.Slender(sb.Column.solid(radius=0.5, height=10.0, density=2700.0), damping=0.1)
+
+
+@pytest.mark.parametrize("acceleration", [0.99, 1.0, 1.02])
+def test_small_hops_after_release_are_not_cut_off(acceleration):
+    # Just above the limit c g = 0.981 m/s² each peak lifts the column by little. The hops build on each other and
+    # overturn it, as integration with a rest threshold ten thousand times finer shows.
+    motion = sb.Harmonic.straight(acceleration=acceleration, angular_frequency=2.0, start_phase=-math.pi / 2.0)
+    run = sb.simulate(STONE, motion, duration=60.0)
+    finer = sb.simulate(STONE, motion, duration=60.0, rest_energy=1e-12)
+    assert run.outcome is finer.outcome is sb.Outcome.OVERTURNED
+    assert run.decided_at == pytest.approx(finer.decided_at, rel=1e-6)
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])
+def test_the_outcome_near_the_release_limit_does_not_hang_on_the_tolerance(rtol):
+    vase = sb.Column.frustum(radius=0.16, top_radius=0.22, height=1.5, density=2710.0)
+    motion = sb.Harmonic.straight(acceleration=2.0, angular_frequency=2.0 * math.pi, ramp=3.0)
+    run = sb.simulate(sb.Slender(vase, damping=0.05), motion, duration=40.0, rtol=rtol)
+    assert run.outcome is sb.Outcome.OVERTURNED
+    assert run.decided_at == pytest.approx(5.907, abs=2e-3)
+
+
+def test_rest_between_hops_too_small_to_follow_is_reported_as_uncertain():
+    motion = sb.Harmonic.straight(acceleration=0.9815 * 1.0001, angular_frequency=2.0, start_phase=-math.pi / 2.0)
+    column = sb.Column.dimensionless(0.1)
+    tiny = sb.Harmonic.straight(acceleration=0.1 * 1.0001, angular_frequency=2.0, start_phase=-math.pi / 2.0)
+    run = sb.simulate(sb.Slender(column, damping=0.1), tiny, duration=20.0)
+    assert run.uncertain
+    assert not sb.simulate(STONE, motion.scaled(0.99), duration=20.0).uncertain

@@ -22,7 +22,7 @@ def run():
 def test_a_run_shows_tilt_azimuth_and_orbit_with_units(run):
     figure = sb.plot(run)
     labels = {axes.get_ylabel() for axes in figure.axes} | {axes.get_xlabel() for axes in figure.axes}
-    assert {"tilt angle A [rad]", "azimuth β [turns]", "tilt α₁ [rad]", "tilt α₂ [rad]", "time [s]"} <= labels
+    assert {"tilt angle A [rad]", "azimuth β [turns]", "|base acc.| [m/s²]", "tilt α₁ [rad]", "time [s]"} <= labels
     drawn = figure.axes[0].lines[0].get_xydata()
     np.testing.assert_array_equal(drawn[:, 1], run.data["amplitude"])
     circles = [patch for axes in figure.axes for patch in axes.patches if isinstance(patch, Circle)]
@@ -32,7 +32,7 @@ def test_a_run_shows_tilt_azimuth_and_orbit_with_units(run):
 def test_several_runs_are_compared_with_a_legend(run):
     other = sb.simulate(MODEL, tilt=(0.05, 0.0), duration=20.0)
     figure = sb.plot([run, other], labels=["forced", "free"])
-    assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == ["forced", "free"]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["forced", "free"]
 
 
 def test_a_released_and_overturned_column_is_marked():

@@ -146,7 +146,10 @@ CIRCULAR = {"kind": "circular", "acceleration": 1.0, "angular_frequency": 1.0}
         ),
         ({"motion": {"kind": "sum", "motions": [3]}}, ["motion.motions.0"]),
         ({"motion": {"kind": "rotated", "angle": 1.0, "motion": {"kind": "x"}}}, ["motion.motion.kind"]),
-        ({"motion": {"kind": "elliptic", "amplitude": [1, "x"], "angular_frequency": 1}}, ["motion.amplitude.1"]),
+        (
+            {"motion": {"kind": "elliptic", "amplitude": [1, "x"], "phase": 0, "angular_frequency": 1}},
+            ["motion.amplitude.1"],
+        ),
         ({"motion": {"kind": "scaled", "motion": CIRCULAR}}, ["motion.factor"]),
     ],
 )

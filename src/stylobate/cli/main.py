@@ -55,6 +55,7 @@ def main() -> None:
 
 def run(arguments: Sequence[str]) -> int:
     """Run one command and return its exit status."""
+    arguments = arguments or ["--help"]
     try:
         status = typer.main.get_command(app).main(list(arguments), prog_name="stylobate", standalone_mode=False)
     except _UsageError as error:

@@ -6,6 +6,8 @@ from typing import Annotated, Any
 
 import typer
 
+from stylobate.errors import ParameterError
+
 
 def _option(text: str, panel: str) -> Any:
     return typer.Option(help=text, rich_help_panel=panel, show_default=False)
@@ -77,16 +79,29 @@ def overlay(described: Mapping[str, Any], given: Mapping[str, Any], run_names: t
         Names of the options that stand at the top of a description.
     """
     values = dict(described)
-    column = _pick(given, _COLUMN_NAMES)
-    shape = column.get("shape") or next((shape for name, shape in _SHAPES.items() if name in column), None)
-    # Another shape of column, or kind of motion, replaces what is in the file.
-    _section(values, "column", column | ({"shape": shape} if shape else {}), tag="shape")
-    if values.get("column") and "shape" not in values["column"]:
-        values["column"]["shape"] = "solid"
+    _section(values, "column", _column(values.get("column"), _pick(given, _COLUMN_NAMES)), tag="shape")
     _section(values, "model", _pick(given, _MODEL_NAMES))
     motion = {**({"kind": given["motion"]} if given.get("motion") else {}), **_pick(given, _MOTION_NAMES)}
     _section(values, "motion", motion, tag="kind")
     return values | _pick(given, run_names)
+
+
+def _column(described: Any, options: dict[str, Any]) -> dict[str, Any]:
+    """Return the options of the column with its shape told; they may not change the shape of a file unasked."""
+    implied = next((shape for name, shape in _SHAPES.items() if name in options), None)
+    before = described.get("shape", "solid") if isinstance(described, Mapping) else None
+    if not options or "shape" in options:
+        return options
+    if before is None:
+        return options | {"shape": implied or "solid"}
+    if before == "given" or implied not in (None, before):
+        wanted = implied or "solid"
+        message = (
+            f"column: the file has a column of shape {before!r}; to replace it add --shape {wanted} "
+            "and all of its numbers"
+        )
+        raise ParameterError(message)
+    return options | {"shape": before}
 
 
 def _pick(given: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -31,6 +32,18 @@ def print_table(title: str, rows: Sequence[Sequence[str]], header: Sequence[str]
     table.caption = title if header is not None else None
     width = None if sys.stdout.isatty() else _PLAIN_WIDTH
     Console(width=width, markup=False, highlight=False).print(table)
+
+
+def check_writable(*paths: Path | None) -> None:
+    """Raise FileError now for a path that could not be written when the work is done."""
+    for path in paths:
+        if path is None:
+            continue
+        folder = path.parent
+        if path.is_dir() or not folder.is_dir() or not os.access(path if path.exists() else folder, os.W_OK):
+            reason = "it is a folder" if path.is_dir() else f"{folder} is no folder one can write into"
+            message = f"cannot write {path}: {reason}"
+            raise FileError(message)
 
 
 def save_figure(figure: "Figure", path: Path) -> None:

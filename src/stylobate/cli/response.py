@@ -7,7 +7,8 @@ import numpy as np
 import typer
 
 from stylobate.cli import options as opt
-from stylobate.cli.output import print_json, print_table, save_figure
+from stylobate.cli.output import check_writable, print_json, print_table, save_figure
+from stylobate.cli.source import read_source
 from stylobate.errors import FileError
 
 if TYPE_CHECKING:
@@ -54,8 +55,8 @@ def response(
     """
     from stylobate import plots, spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
 
-    described = {} if source is None else spec.read_description(source)
-    values = opt.overlay(described, context.params, _RANGE_NAMES)
+    check_writable(figure, output)
+    values = opt.overlay(read_source(source), context.params, _RANGE_NAMES)
     setup = spec.ResponseDescription.parse(values).build()
     low, high = setup.options["range"]
     frequencies = np.linspace(low, high, setup.options["points"])
@@ -95,7 +96,8 @@ def _print(curves: "xr.Dataset") -> None:
         cells = [_cell(at.sel(sense=sense, branch=branch)) for sense, branch in columns]
         rows.append([f"{float(at['angular_frequency']):.4f}", *cells])
     critical = ", ".join(f"{float(value):.6f} rad/s ({sense})" for sense, value in _critical(curves))
-    print_table(f"stable where marked *; critical frequency {critical}", rows, header)
+    exact = "averaged: the full motion may overturn where this is stable" if curves.attrs["averaged"] else "exact"
+    print_table(f"stable where marked * ({exact}); critical frequency {critical}", rows, header)
 
 
 def _critical(curves: "xr.Dataset") -> list[tuple[str, float]]:

@@ -6,13 +6,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stylobate.cli import options as opt
-from stylobate.cli.output import print_json, print_table, save_figure
+from stylobate.cli.output import check_writable, print_json, print_table, save_figure
+from stylobate.cli.source import read_source
 
 if TYPE_CHECKING:
+    from stylobate.models import Model
     from stylobate.results import Response
 
 _RUN = "Run"
-_RUN_NAMES = ("tilt", "tilt_rate", "duration", "rtol", "tilt_limit", "samples")
+_RUN_NAMES = ("tilt", "tilt_rate", "duration", "rtol", "tilt_limit", "rest_energy", "max_steps", "samples")
 
 Source = Annotated[
     Path | None, typer.Argument(help="TOML description, or a saved run (.nc) to repeat", show_default=False)
@@ -22,6 +24,8 @@ TiltRate = Annotated[tuple[float, float] | None, typer.Option(help="its rate [ra
 Duration = Annotated[float | None, typer.Option(help="how long to follow it [s]", rich_help_panel=_RUN)]
 Rtol = Annotated[float | None, typer.Option(help="relative tolerance, 1e-8 by default", rich_help_panel=_RUN)]
 TiltLimit = Annotated[float | None, typer.Option(help="tilt that ends the run [rad]", rich_help_panel=_RUN)]
+RestEnergy = Annotated[float | None, typer.Option(help="energy of rest ε, in c²", rich_help_panel=_RUN)]
+MaxSteps = Annotated[int | None, typer.Option(help="most integration steps, 200000 by default", rich_help_panel=_RUN)]
 Samples = Annotated[int | None, typer.Option(help="number of samples kept", rich_help_panel=_RUN)]
 
 
@@ -33,6 +37,8 @@ def simulate(
     duration: Duration = None,
     rtol: Rtol = None,
     tilt_limit: TiltLimit = None,
+    rest_energy: RestEnergy = None,
+    max_steps: MaxSteps = None,
     samples: Samples = None,
     shape: opt.Shape = None,
     radius: opt.Radius = None,
@@ -71,7 +77,8 @@ def simulate(
     """
     from stylobate import engine, plots, spec  # noqa: PLC0415  heavy imports wait until the options are read
 
-    described = _described(source)
+    check_writable(figure, output)
+    described = read_source(source)
     description = spec.SimulationDescription.parse(opt.overlay(described, context.params, _RUN_NAMES))
     setup = description.build()
     run = engine.simulate(setup.model, setup.motion, **setup.options)
@@ -82,17 +89,7 @@ def simulate(
     if as_json:
         print_json(_summary(run))
     else:
-        print_table("run", _rows(run))
-
-
-def _described(source: Path | None) -> dict[str, Any]:
-    from stylobate import results, spec  # noqa: PLC0415
-
-    if source is None:
-        return {}
-    if source.suffix == ".nc":
-        return spec.description_of(results.load(source).provenance).values()
-    return spec.read_description(source)
+        print_table("run", [*_column_rows(setup.model), *_rows(run)])
 
 
 def _summary(run: "Response") -> dict[str, Any]:
@@ -107,6 +104,14 @@ def _summary(run: "Response") -> dict[str, Any]:
         "thresholds": dict(run.thresholds),
         "provenance": dict(run.provenance),
     }
+
+
+def _column_rows(model: "Model") -> list[tuple[str, str]]:
+    column = model.column
+    return [
+        ("column", f"c = {column.slenderness:.5g}, ω0 = {column.frequency_scale:.5g} rad/s, {column.mass:.6g} kg"),
+        ("released above", f"{column.slenderness * column.gravity:.5g} m/s² of horizontal acceleration"),
+    ]
 
 
 def _rows(run: "Response") -> list[tuple[str, str]]:

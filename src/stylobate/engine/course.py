@@ -1,6 +1,7 @@
 """The course of one run: from rest to motion and back, until something ends it."""
 
 import math
+from bisect import bisect_right
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -48,6 +49,11 @@ class Course:
     least_passage: float = math.inf
     _time: float = 0.0
     _azimuth: float | None = None
+    _steps: int = 0
+    _stops: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        self._stops = self.forcing.stops(self.stop)
 
     @property
     def trajectory(self) -> Trajectory:
@@ -59,38 +65,43 @@ class Course:
         """Whether the column stands at the end."""
         return self.pieces[-1].resting
 
+    @property
+    def released_from_rest(self) -> bool:
+        """Whether the column came to rest in the run and was released again."""
+        kinds = [event.kind for event in self.events]
+        return "rest" in kinds and "release" in kinds[kinds.index("rest") :]
+
     def follow(self, state: tuple[float, ...]) -> None:
         """Go on from `state` at time 0 to the end."""
         now: tuple[float, ...] | None = state
         while now is not None and self._time < self.stop:
-            upright = not any(now)
-            now = self._stand() if upright else self._move(now)
+            now = self._stand(now) if self.model.stands(now) else self._move(now)
         if not self.pieces:  # not even a first step could be made
             held = np.array(state)[:, np.newaxis]
             nodes, azimuths = np.zeros(1), np.array([self._lean(state)])
             self._add(Piece(0.0, 0.0, lambda tau: np.repeat(held, tau.size, axis=1), False, nodes, azimuths))
 
-    def _stand(self) -> tuple[float, ...] | None:
+    def _stand(self, held: tuple[float, ...]) -> tuple[float, ...] | None:
         # Stands until the motion releases the column; returns the state of departure, or None.
         start = self._time
         release = release_time(self.model, self.forcing, start, self.stop)
         if release is None:
             if stays_for_good(self.model, self.forcing, start):
                 self.ended = Reason.RESTED
-            self._add(rest_piece(len(self.model.state_names), start, self.stop))
+            self._add(rest_piece(held, start, self.stop))
             return None
         if 1.0 + self.forcing.at(release)[2] <= RELEASE_MARGIN:  # nothing holds it down: not released but lifted
-            self._add(rest_piece(len(self.model.state_names), start, release))
+            self._add(rest_piece(held, start, release))
             self.ended = Reason.LIFTED
             self._note("lifted", release)
             return None
         later, state = departure(self.model, self.forcing, release)
         if later >= self.stop:
-            self._add(rest_piece(len(self.model.state_names), start, self.stop))
+            self._add(rest_piece(held, start, self.stop))
             return None
         self._note("release", release)
         # The departure itself lifts the column by the third power of its duration: shown as rest.
-        self._add(rest_piece(len(self.model.state_names), start, later))
+        self._add(rest_piece(held, start, later))
         return state
 
     def _move(self, state: tuple[float, ...]) -> tuple[float, ...] | None:
@@ -106,14 +117,14 @@ class Course:
         return self._move_in_space(state)
 
     def _move_in_plane(self, state: tuple[float, ...], line: Line) -> tuple[float, ...] | None:
-        n_states = len(self.model.state_names)
+        upright = self.model.at_rest((0.0,) * len(self.model.state_names))
         while self._time < self.stop:
             if state == (0.0, 0.0):
-                return (0.0,) * n_states
+                return upright
             leg = self.mover.in_plane(self._time, (state[0], state[1]), self._next_stop(), line, self._budget())
             self._take(leg)
             if leg.reason is Reason.RESTED:
-                return (0.0,) * n_states
+                return upright
             if leg.reason not in (Reason.CROSSED, Reason.STOP):
                 return None
             state = leg.state
@@ -130,7 +141,7 @@ class Course:
                     self._take(hop)
                     leg = hop
             if leg.reason is Reason.RESTED:
-                return (0.0,) * len(state)
+                return self.model.at_rest(leg.state)
             if leg.reason not in (Reason.CROSSED, Reason.STOP):
                 return None
             state = leg.state
@@ -159,6 +170,7 @@ class Course:
 
     def _add(self, piece: Piece) -> None:
         self.pieces.append(piece)
+        self._steps += piece.steps
         self._time = piece.end
         if piece.azimuths.size:
             self._azimuth = float(piece.azimuths[-1])
@@ -168,10 +180,10 @@ class Course:
         return nearest_turn(math.atan2(y, x), self._azimuth)
 
     def _next_stop(self) -> float:
-        return next(stop for stop in self.forcing.stops(self.stop) if stop > self._time)
+        return self._stops[bisect_right(self._stops, self._time)]
 
     def _budget(self) -> int:
-        return self.mover.method.max_steps - sum(piece.steps for piece in self.pieces)
+        return self.mover.method.max_steps - self._steps
 
     def _note(self, kind: str, tau: float) -> None:
         self.events.append(Event(kind, tau * self.forcing.time_scale))

@@ -44,7 +44,12 @@ class Forcing:
 
     def least_vertical(self, since: float) -> float:
         """Return a bound of a_z [g] from `since` on."""
-        return self.motion.vertical_range(since * self.time_scale)[0] / self.gravity
+        return self.vertical_range(since)[0]
+
+    def vertical_range(self, since: float) -> tuple[float, float]:
+        """Return bounds of a_z [g] from `since` on."""
+        low, high = self.motion.vertical_range(since * self.time_scale)
+        return low / self.gravity, high / self.gravity
 
     @property
     def highest_frequency(self) -> float:

@@ -41,7 +41,10 @@ def history(model: Model, motion: BaseMotion, trajectory: Trajectory, samples: i
         return _dataset(model, motion, trajectory, t)
 
     data = sampler(np.linspace(0.0, end, count))
-    return Recorded(data, _measures(model, trajectory, data, planar=planar), sampler)
+    # What is measured does not depend on how many samples are kept.
+    usual = _default_count(model, motion, trajectory.end)
+    seen = data if count == usual else sampler(np.linspace(0.0, end, usual))
+    return Recorded(data, _measures(model, trajectory, seen, planar=planar), sampler)
 
 
 def _dataset(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Floats) -> xr.Dataset:
@@ -77,8 +80,13 @@ def _dataset(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Flo
         "axis": ["x", "y"],
         "direction": ["x", "y", "z"],
     }
-    slenderness = {"slenderness": model.column.slenderness, "base_radius": model.column.radius}
-    return xr.Dataset(variables, coords=coordinates, attrs=slenderness)
+    column = model.column
+    attributes = {
+        "slenderness": column.slenderness,
+        "base_radius": column.radius,
+        "release_acceleration": column.slenderness * column.gravity,
+    }
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
 
 def _measures(model: Model, trajectory: Trajectory, data: xr.Dataset, *, planar: bool) -> dict[str, float]:

@@ -20,6 +20,9 @@ from stylobate.models import Model
 _HOP_FROM = 1e-6
 _HOP_OFFSET = 1e-9
 
+# A motion that begins at a far smaller tilt is followed with a finer tolerance up to this one [units of c].
+_GROWN = 1e-3
+
 # Passages of the upright closer than this are measured [units of c].
 _PASSAGE = 0.1
 
@@ -70,9 +73,17 @@ class Mover:
         solver = self._solver(derivative, start, state, stop)
         steps = Steps(start)
         least = math.inf
+        grown = _GROWN * self.model.column.slenderness if self._atol(state) < self.method.atol else math.inf
         while solver.status == "running":
             if len(steps.dense) >= budget:
-                return self._space_leg(steps, solver.y, azimuth, Reason.FAILED, least, "step limit reached")
+                return self._space_leg(
+                    steps,
+                    solver.y,
+                    azimuth,
+                    Reason.FAILED,
+                    least,
+                    "its step limit is reached; raise max_steps, shorten the run or loosen rtol",
+                )
             before = solver.y
             failure = solver.step()
             if failure is not None:
@@ -84,6 +95,8 @@ class Mover:
                 time, reason = event
                 steps.cut(time)
                 return self._space_leg(steps, dense(time), azimuth, reason, least)
+            if self._radial(solver.y)[0] > grown:  # go on with the usual tolerance
+                return self._space_leg(steps, solver.y, azimuth, Reason.STOP, least)
             if self._grazes(solver.y):
                 return self._space_leg(steps, solver.y, azimuth, Reason.CROSSED, least)
         return self._space_leg(steps, solver.y, azimuth, Reason.STOP, least)
@@ -135,7 +148,11 @@ class Mover:
 
         while solver.status == "running":
             if len(steps.dense) >= budget:
-                return leg(solver.y, Reason.FAILED, "step limit reached")
+                return leg(
+                    solver.y,
+                    Reason.FAILED,
+                    "its step limit is reached; raise max_steps, shorten the run or loosen rtol",
+                )
             failure = solver.step()
             if failure is not None:
                 return leg(solver.y, Reason.FAILED, failure)
@@ -147,13 +164,15 @@ class Mover:
                 if back == began:
                     return leg(np.zeros(2), Reason.CROSSED)
             end = solver.t if back is None else back
-            event = self.watch.first_event(began, end, partial(self._from_plane, dense, line))
+            event = self.watch.first_event(began, end, partial(self._from_plane, dense, line), rests=False)
             if event is not None:
                 time, reason = event
                 steps.cut(time)
                 return leg(dense(time), reason)
             if back is not None:
-                return leg(np.array([0.0, dense(back)[1]]), Reason.CROSSED)
+                speed = float(dense(back)[1])
+                rests = self.watch.is_rest(back, 0.0, abs(speed))
+                return leg(np.array([0.0, speed]), Reason.RESTED if rests else Reason.CROSSED)
         return leg(solver.y, Reason.STOP)
 
     def _from_plane(self, dense: DenseOutput, line: tuple[float, float], tau: Floats) -> Floats:
@@ -166,10 +185,14 @@ class Mover:
         state: tuple[float, ...],
         stop: float,
     ) -> DOP853:
-        method = self.method
-        return DOP853(
-            derivative, start, np.array(state), stop, max_step=method.max_step, rtol=method.rtol, atol=method.atol
-        )
+        method, atol = self.method, self._atol(state)
+        return DOP853(derivative, start, np.array(state), stop, max_step=method.max_step, rtol=method.rtol, atol=atol)
+
+    def _atol(self, state: tuple[float, ...]) -> float:
+        """Return the absolute tolerance from `state` on: a column just released leans by less than the usual one."""
+        in_a_plane = len(state) < len(self.model.state_names)
+        tilt = abs(state[0]) if in_a_plane else self._radial(np.array(state))[0]
+        return min(self.method.atol, self.method.rtol * tilt) if tilt > 0.0 else self.method.atol
 
     def _grazes(self, state: Floats) -> bool:
         column = state[:, np.newaxis]

@@ -83,11 +83,11 @@ def departure(model: Model, forcing: Forcing, time: float) -> tuple[float, tuple
     return time + elapsed, state
 
 
-def rest_piece(n_states: int, start: float, end: float) -> Piece:
-    """Return the column standing from `start` to `end`."""
+def rest_piece(held: tuple[float, ...], start: float, end: float) -> Piece:
+    """Return the column standing in the state `held` from `start` to `end`."""
 
     def states(tau: Floats) -> Floats:
-        return np.zeros((n_states, tau.size))
+        return np.repeat(np.array(held)[:, np.newaxis], tau.size, axis=1)
 
     nothing = np.empty(0)
     return Piece(start, end, states, resting=True, nodes=nothing, azimuths=nothing)

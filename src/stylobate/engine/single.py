@@ -4,6 +4,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict
 
+import numpy as np
+
 from stylobate.engine.course import Course
 from stylobate.engine.forcing import Forcing
 from stylobate.engine.history import history
@@ -20,14 +22,20 @@ from stylobate.errors import (
 )
 from stylobate.models import Model
 from stylobate.motions import BASE_AT_REST, BaseMotion
+from stylobate.motions.base import ACCELERATION
 from stylobate.results import OutcomeRules, Response
 from stylobate.spec import provenance_of_run
 
+# Times at which the promises of a motion are checked before a run.
+_MOTION_SAMPLES, _COMPONENTS = 257, 3
 _RTOL_RANGE = (1e-13, 1e-2)
 # Default absolute tolerance: this part of rtol × c, so that tilts far below c are still resolved.
 _ATOL_SHARE = 0.01
 # The energy of steady rolling at frequency θ is 1.5 c²/θ²; rest is entered below a hundredth of it at most.
 _REST_ENERGY, _REST_ENERGY_ROLLING = 1e-4, 0.015
+# Where the base motion can release the column again, at most a hundredth of the energy it releases it with; not below
+# the last number, which bounds the number of hops to follow.
+_REST_ENERGY_HOP, _LEAST_REST_ENERGY = 0.01, 1e-8
 # A passage of the upright closer than this part of c is ill-conditioned for every integrator.
 _CLOSE_PASSAGE = 1e-8
 
@@ -70,8 +78,9 @@ def simulate(
     tilt_limit
         A tilt that ends the run [rad]; none by default.
     rest_energy
-        ε: with friction, rest is entered below the energy ε c² where |a_h| cannot release the column. By default the
-        smaller of 1e-4 and 0.015/θ² with θ the highest dimensionless frequency of the base motion.
+        ε: with friction, rest is entered below the energy ε c² where the base motion holds the column down. By default
+        the smaller of 1e-4 and 0.015/θ², θ being the highest dimensionless frequency of the base motion; where that
+        can release the column again, also a hundredth of the energy with which it does, but not below 1e-8.
     max_steps
         Steps after which the run ends as FAILED.
     samples
@@ -102,13 +111,17 @@ def simulate(
     _require_nouns(model, motion, rules)
     moved = BASE_AT_REST if motion is None else motion
     start_tilt = _pair("tilt", tilt, "rad")
+    if math.hypot(*start_tilt) >= math.pi / 2.0:
+        message = f"tilt must be below π/2 rad in length (angles are in rad, not degrees), got {start_tilt!r}"
+        raise ParameterError(message)
     start_rate = _pair("tilt_rate", tilt_rate, "rad/s")
     duration = require_positive("duration", duration, "s")
     samples = None if samples is None else require_whole("samples", samples, least=2)
     method = _method(model, moved, rtol, atol, max_steps)
-    thresholds = _thresholds(model, moved, tilt_limit, rest_energy)
-    rules = rules or OutcomeRules()
     forcing = Forcing.of(model, moved)
+    thresholds = _thresholds(model, forcing, tilt_limit, rest_energy)
+    _check_motion(forcing, duration)
+    rules = rules or OutcomeRules()
     mover = Mover(model, forcing, Watch(model, forcing, thresholds), method)
     course = Course(model, forcing, mover, duration / model.time_scale)
     course.follow(model.start(start_tilt, start_rate))
@@ -118,7 +131,7 @@ def simulate(
         outcome=verdict.outcome,
         reason=verdict.reason,
         decided_at=_decided_at(course, verdict, duration),
-        uncertain=course.least_passage < _CLOSE_PASSAGE * model.column.slenderness or course.ended is Reason.FAILED,
+        uncertain=_is_uncertain(model, forcing, course, thresholds),
         planar=course.planar,
         data=recorded.data,
         events=tuple(course.events),
@@ -138,7 +151,7 @@ def simulate(
             rtol=method.rtol,
             atol=method.atol,
             tilt_limit=None if tilt_limit is None else thresholds.tilt_limit,
-            rest_energy=None if rest_energy is None else thresholds.rest_energy,
+            rest_energy=None if rest_energy is None else float(rest_energy),
             max_steps=method.max_steps,
             samples=samples,
             rules=asdict(rules),
@@ -161,9 +174,19 @@ def _verdict(model: Model, motion: BaseMotion, course: Course, rules: OutcomeRul
     if course.ended in _ENDINGS:
         return Verdict(*_ENDINGS[course.ended], {})
     if course.stands:
-        return Verdict(Outcome.AT_REST, "it stands at the end of the run", {})
+        releases = sum(event.kind == "release" for event in course.events)
+        before = f", released {releases} times before" if releases else ""
+        return Verdict(Outcome.AT_REST, f"it stands at the end of the run{before}", {})
     period = None if motion.period is None else motion.period / model.time_scale
     return long_term(model, course.trajectory, period, rules, planar=course.planar)
+
+
+def _is_uncertain(model: Model, forcing: Forcing, course: Course, thresholds: Thresholds) -> bool:
+    close = course.least_passage < _CLOSE_PASSAGE * model.column.slenderness
+    hop = _hop_energy(model, forcing)
+    # Hops so small that rest was entered between them although they may have grown.
+    coarse = course.released_from_rest and hop is not None and _REST_ENERGY_HOP * hop < thresholds.rest_energy
+    return close or coarse or course.ended is Reason.FAILED
 
 
 def _decided_at(course: Course, verdict: Verdict, duration: float) -> float:
@@ -189,16 +212,49 @@ def _method(model: Model, motion: BaseMotion, rtol: float, atol: float | None, m
     )
 
 
-def _thresholds(model: Model, motion: BaseMotion, tilt_limit: float | None, rest_energy: float | None) -> Thresholds:
-    frequency = motion.highest_frequency * model.time_scale
-    if not model.comes_to_rest:
-        energy = 0.0
-    elif rest_energy is not None:
-        energy = require_not_negative("rest_energy", rest_energy)
-    else:
-        energy = min(_REST_ENERGY, _REST_ENERGY_ROLLING / frequency**2) if frequency > 0.0 else _REST_ENERGY
+def _thresholds(model: Model, forcing: Forcing, tilt_limit: float | None, rest_energy: float | None) -> Thresholds:
+    asked = None if rest_energy is None else require_not_negative("rest_energy", rest_energy)
+    energy = 0.0 if not model.comes_to_rest else _default_rest_energy(model, forcing) if asked is None else asked
     limit = math.inf if tilt_limit is None else require_positive("tilt_limit", tilt_limit, "rad")
     return Thresholds(rest_energy=energy, tilt_limit=limit)
+
+
+def _default_rest_energy(model: Model, forcing: Forcing) -> float:
+    frequency = forcing.highest_frequency
+    if frequency == 0.0:
+        return _REST_ENERGY
+    energy = min(_REST_ENERGY, _REST_ENERGY_ROLLING / frequency**2)
+    hop = _hop_energy(model, forcing)
+    return energy if hop is None else min(energy, max(_LEAST_REST_ENERGY, _REST_ENERGY_HOP * hop))
+
+
+def _hop_energy(model: Model, forcing: Forcing) -> float | None:
+    """Return the energy [c²] that a harmonic peak gives a column it has just released; None if it cannot release it.
+
+    With |a_h| = c(1 + δ) at the peak the excess lasts 2√(2δ)/θ and leaves the speed (4/3)√2 c δ^{3/2}/θ.
+    """
+    weight = 1.0 + forcing.least_vertical(0.0)
+    if weight <= 0.0:
+        return math.inf
+    excess = forcing.largest_horizontal(0.0) / (model.rest_capacity * weight) - 1.0
+    return 16.0 / 9.0 * excess**3 / forcing.highest_frequency**2 if excess > 0.0 else None
+
+
+def _check_motion(forcing: Forcing, duration: float) -> None:
+    # A motion of the user's own may break its promises: better told here than by a wrong outcome.
+    motion, time = forcing.motion, np.linspace(0.0, duration, _MOTION_SAMPLES)
+    parts = motion.derivative(time, ACCELERATION)
+    if len(parts) != _COMPONENTS or any(np.shape(part) != time.shape for part in parts):
+        message = f"motion.derivative must return three arrays of the shape of time, got {parts!r}"
+        raise ParameterError(message)
+    broken = ~np.isfinite(np.stack(parts)).all(axis=0)
+    if broken.any():
+        message = f"motion must have a finite acceleration, got {parts[0][broken][0]!r} at t = {time[broken][0]!r} s"
+        raise ParameterError(message)
+    largest, bound = float(np.hypot(parts[0], parts[1]).max()), motion.largest_horizontal(0.0)
+    if not largest <= bound * (1.0 + 1e-9):
+        message = f"motion.largest_horizontal must bound |a_h|, got {bound!r} m/s² although |a_h| reaches {largest!r}"
+        raise ParameterError(message)
 
 
 def _pair(name: str, value: Sequence[float], unit: str) -> tuple[float, float]:

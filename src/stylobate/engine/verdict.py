@@ -79,7 +79,11 @@ def _modulated(
         return Verdict(Outcome.STILL_MOVING, f"its last {2 * n} periods are no steady motion", measures)
     if change < rules.settled_tolerance and late.repetition > rules.modulation_floor:
         return Verdict(Outcome.MODULATED, "it rolls at the mean rate of the base motion, its tilt modulated", measures)
-    return Verdict(Outcome.STILL_MOVING, "it rolls at the mean rate of the base motion and has not settled", measures)
+    return Verdict(
+        Outcome.STILL_MOVING,
+        "it rolls at the mean rate of the base motion and has not settled; follow it longer",
+        measures,
+    )
 
 
 @dataclass(frozen=True, slots=True)

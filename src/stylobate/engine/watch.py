@@ -14,6 +14,8 @@ from stylobate.models import Model
 
 # Points of each step at which conditions are looked at; a step of the integrator resolves the motion.
 _SAMPLES = 5
+# How small a part of the force on a column near rest may change during one hop: one over this.
+_HOPS_APART = 5.0
 # For lift-off, which depends on the base motion alone and may be short.
 _LIFT_SAMPLES = 65
 
@@ -39,7 +41,7 @@ class Thresholds:
     Parameters
     ----------
     rest_energy
-        ε: rest is entered below the energy ε c²; 0 where friction cannot bring the column to rest.
+        ε: rest is entered below the energy ε c² at most; 0 where friction cannot bring the column to rest.
     tilt_limit
         Tilt that ends the run, set by the user [rad]; infinite for none.
     overturned_tilt
@@ -59,7 +61,9 @@ class Watch:
     forcing: Forcing
     thresholds: Thresholds
 
-    def first_event(self, start: float, end: float, states: Callable[[Floats], Floats]) -> tuple[float, Reason] | None:
+    def first_event(
+        self, start: float, end: float, states: Callable[[Floats], Floats], *, rests: bool = True
+    ) -> tuple[float, Reason] | None:
         """Return the time and kind of the first event in (start, end], or None.
 
         Parameters
@@ -68,6 +72,8 @@ class Watch:
             The step, in dimensionless time; the two may be equal to ask about one instant.
         states
             Full states, shape (number of states, n), at n times inside.
+        rests
+            Whether to look for rest; motion in a plane comes to rest at its passages of the upright, see `is_rest`.
         """
         tau = np.linspace(start, end, _SAMPLES) if end > start else np.array([start])
         sampled = states(tau)
@@ -77,7 +83,7 @@ class Watch:
             (Reason.LIFTED, self._pull, self.forcing.least_vertical(start) <= -1.0),
             (Reason.OVERTURNED, self._beyond_return, tilt[-1] > self._no_return_tilt(end)),
             (Reason.LIMIT, self._beyond_limit, tilt.max() > self.thresholds.tilt_limit),
-            (Reason.RESTED, self._below_rest_energy, tilt.min() < self._rest_tilt),
+            (Reason.RESTED, self._below_rest_energy, rests and tilt.min() < self._rest_tilt),
         ):
             if suspected:
                 looked_at = np.linspace(start, end, _LIFT_SAMPLES) if reason is Reason.LIFTED else tau
@@ -86,10 +92,39 @@ class Watch:
                     found.append((time, reason))
         return min(found, key=lambda event: event[0], default=None)
 
+    def is_rest(self, tau: float, tilt: float, speed: float) -> bool:
+        """Return whether a column of this tilt [rad] and (dimensionless) speed comes to rest at the time `tau`."""
+        return self._rest_margin(tau, tilt, speed) > 0.0
+
     @property
     def _rest_tilt(self) -> float:
-        # The energy bounds the tilt only while |a_h| is well below its limit; near it the tilt is bounded by √ε c.
-        return math.sqrt(self.thresholds.rest_energy) * self.model.column.slenderness
+        return self.thresholds.rest_energy * self.model.column.slenderness
+
+    def _rest_margin(self, tau: float, tilt: float, speed: float) -> float:
+        # Positive where the energy is below ε c² and what is left of the motion dies as small hops: a hop of speed v
+        # against the force F takes 2v/F, in which F itself must change by a small part only.
+        ax, ay, az = self.forcing.at(tau)
+        energy = self.model.rest_energy(tilt, speed, az)
+        force = self.model.rest_capacity * (1.0 + az) - math.hypot(ax, ay)
+        if self._holds_from(tau):
+            force = self._least_force(tau)
+        change = 2.0 * math.sqrt(2.0 * max(energy, 0.0)) * self._forcing_rate(tau)
+        return min(
+            self.thresholds.rest_energy * self.model.column.slenderness**2 - energy,
+            force - math.sqrt(_HOPS_APART * change),
+        )
+
+    def _holds_from(self, tau: float) -> bool:
+        return self._least_force(tau) >= 0.0
+
+    def _least_force(self, tau: float) -> float:
+        weight = 1.0 + self.forcing.least_vertical(tau)
+        return self.model.rest_capacity * weight - self.forcing.largest_horizontal(tau)
+
+    def _forcing_rate(self, tau: float) -> float:
+        vertical = max(map(abs, self.forcing.vertical_range(tau)))
+        largest = self.forcing.largest_horizontal(tau) + self.model.column.slenderness * vertical
+        return self.forcing.highest_frequency * largest
 
     def _no_return_tilt(self, tau: float) -> float:
         limit = self.model.no_return_tilt(self.forcing.largest_horizontal(tau), self.forcing.least_vertical(tau))
@@ -114,14 +149,7 @@ class Watch:
 
     def _below_rest_energy(self, states: Callable[[Floats], Floats], tau: float) -> float:
         tilt, _, speed = self._motion(states, tau)
-        ax, ay, az = self.forcing.at(tau)
-        horizontal = math.hypot(ax, ay)
-        energy = self.model.rest_energy(tilt, speed, horizontal, az)
-        return min(
-            self.model.rest_capacity * (1.0 + az) - horizontal,
-            self.thresholds.rest_energy * self.model.column.slenderness**2 - energy,
-            self._rest_tilt - tilt,
-        )
+        return self._rest_margin(tau, tilt, speed)
 
 
 def _first_positive(condition: Callable[[float], float], tau: Floats) -> float | None:

@@ -99,14 +99,36 @@ class Model(ABC):
         """The |a_h|/(g + a_z) up to which the column stays on its base, a margin for rounding included."""
         return self.column.slenderness * (1.0 + RELEASE_MARGIN)
 
+    def stands(self, state: tuple[float, ...]) -> bool:
+        """Return whether the column stands on its base in this state: no tilt, and no rate of it."""
+        column = np.array(state)[:, np.newaxis]
+        return not (np.any(self.tilt(column)) or np.any(self.tilt_rate(column)))
+
+    def at_rest(self, state: tuple[float, ...]) -> tuple[float, ...]:
+        """Return the state in which a column that comes to rest from `state` stands; all zeros unless overridden."""
+        return (0.0,) * len(state)
+
     @property
     def comes_to_rest(self) -> bool:
         """Whether friction brings a free column to rest; without friction it never gets there."""
         return False
 
-    def rest_energy(self, tilt: float, speed: float, horizontal: float, vertical: float) -> float:
-        """Return the energy above the state of rest, in units that make c² the scale; infinite if unknown."""
-        del tilt, speed, horizontal, vertical
+    def rest_energy(self, tilt: float, speed: float, vertical: float) -> float:
+        """Return the energy above the state of rest, without the work of the base; infinite if unknown.
+
+        Parameters
+        ----------
+        tilt, speed
+            |α| [rad] and |α̇| in the model's own time.
+        vertical
+            a_z [g].
+
+        Returns
+        -------
+        float
+            Energy in units that make c² its scale.
+        """
+        del tilt, speed, vertical
         return math.inf
 
     def no_return_tilt(self, largest_horizontal: float, least_vertical: float) -> float:

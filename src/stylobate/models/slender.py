@@ -92,9 +92,9 @@ class Slender(Model):
         """Whether there is friction."""
         return self.damping > 0.0
 
-    def rest_energy(self, tilt: float, speed: float, horizontal: float, vertical: float) -> float:
-        """Return ½|α̇|² + (c(1 + a_z) − |a_h|)|α|, what is left above the state of rest."""
-        return 0.5 * speed * speed + (self.column.slenderness * (1.0 + vertical) - horizontal) * tilt
+    def rest_energy(self, tilt: float, speed: float, vertical: float) -> float:
+        """Return ½|α̇|² + c(1 + a_z)|α|, what is left above the state of rest."""
+        return 0.5 * speed * speed + self.column.slenderness * (1.0 + vertical) * tilt
 
     def no_return_tilt(self, largest_horizontal: float, least_vertical: float) -> float:
         """Return c + sup|a_h|/(1 + inf a_z) [rad].

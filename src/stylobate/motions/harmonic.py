@@ -74,7 +74,7 @@ class Harmonic(BaseMotion):
         cls,
         *,
         amplitude: Sequence[float],
-        phase: float = 0.0,
+        phase: float,
         angular_frequency: float,
         start_phase: float = 0.0,
         ramp: float = 0.0,
@@ -124,6 +124,7 @@ class Harmonic(BaseMotion):
         direction = require_finite("direction", direction, "rad")
         return cls.elliptic(
             amplitude=(acceleration * math.cos(direction), acceleration * math.sin(direction)),
+            phase=0.0,
             angular_frequency=angular_frequency,
             start_phase=start_phase,
             ramp=ramp,
@@ -235,8 +236,8 @@ class Harmonic(BaseMotion):
 
     @property
     def highest_frequency(self) -> float:
-        """Ω, with the ramp's own frequency added while there is one [rad/s]."""
-        return self.angular_frequency + (math.pi / self.ramp if self.ramp > 0.0 else 0.0)
+        """Ω [rad/s]; the ramp is a stretch of its own, see `breaks`."""
+        return self.angular_frequency
 
     @property
     def breaks(self) -> tuple[float, ...]:

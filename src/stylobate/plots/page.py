@@ -1,6 +1,7 @@
 """A self-contained web page of text, figures and tables: one file, nothing fetched."""
 
 import base64
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
@@ -64,6 +65,15 @@ def page(title: str, introduction: Sequence[str], sections: Sequence[Section]) -
     )
 
 
+# A minus sign, and no line break, in numbers such as -0.025 and 2e-12.
+_MINUS = re.compile(r"(?<![\w)])-(?=\d)")
+_EXPONENT = re.compile(r"(?<=\de)-(?=\d)")
+
+
+def _text(text: str) -> str:
+    return escape(_EXPONENT.sub("\u2011", _MINUS.sub("−", text)))
+
+
 def _section(index: int, section: Section) -> str:
     parts = "".join(_part(part) for part in section.content)
     return f'<section id="s{index}"><h2>{escape(section.heading)}</h2>{parts}</section>'
@@ -72,7 +82,7 @@ def _section(index: int, section: Section) -> str:
 def _part(part: str | Picture | Table) -> str:
     match part:
         case str():
-            return f"<p>{escape(part)}</p>"
+            return f"<p>{_text(part)}</p>"
         case Picture():
             return _picture(part)
         case Table():
@@ -91,5 +101,5 @@ def _picture(picture: Picture) -> str:
 
 def _table(table: Table) -> str:
     head = "".join(f"<th>{escape(name)}</th>" for name in table.header)
-    rows = "".join("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in table.rows)
+    rows = "".join("<tr>" + "".join(f"<td>{_text(cell)}</td>" for cell in row) + "</tr>" for row in table.rows)
     return f'<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'

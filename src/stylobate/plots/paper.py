@@ -91,7 +91,7 @@ def backbones(data: xr.Dataset) -> Figure:
     axes.legend()
     axes.set_xlabel("frequency θ, ω")
     axes.set_ylabel("largest tilt angle [rad]")
-    axes.set_ylim(0.0, 1.05 * data.attrs["c"])
+    axes.set_ylim(0.0, 1.2 * data.attrs["c"])
     return figure
 
 
@@ -133,7 +133,7 @@ def modulated(data: xr.Dataset) -> Figure:
     history.set_ylabel("tilt over that of steady rolling, A/A₊")
     history.set_ylim(bottom=0.3)
     history.legend(loc="lower center", ncols=3, columnspacing=1.0, handlelength=1.6)
-    cycle.set_aspect("equal", adjustable="datalim")
+    cycle.set_aspect("equal", adjustable="box")
     cycle.set_xlabel("A cos ψ / A₊")
     cycle.set_ylabel("A sin ψ / A₊")
     cycle.set_title("frame of the base; + steady, unstable")
@@ -178,8 +178,8 @@ def critical(data: xr.Dataset) -> Figure:
     axes.set_ylabel("critical frequency θ*")
     axes.set_xlim(0.0, float(data["a0"][-1]))
     axes.set_ylim(0.0, None)
-    axes.annotate("rolling stable", (0.4, 0.9), xycoords="axes fraction", color=GREY)
-    axes.annotate("rolling unstable", (0.4, 0.3), xycoords="axes fraction", color=GREY)
+    axes.annotate("rolling stable above its curve", (0.3, 0.9), xycoords="axes fraction", color=GREY)
+    axes.annotate("unstable, or no rolling, below", (0.35, 0.42), xycoords="axes fraction", color=GREY)
     axes.legend(loc="lower right", ncols=2)
     return figure
 
@@ -187,9 +187,9 @@ def critical(data: xr.Dataset) -> Figure:
 @styled
 def pressure(data: xr.Dataset) -> Figure:
     """Return the path of the centre of pressure under a standing column."""
-    figure = new_figure(3.8, width=6.0)
+    figure = new_figure(4.2)
     axes = figure.subplots()
-    axes.add_patch(Circle((0.0, 0.0), 1.0, fill=False, color=BLACK, linewidth=1.2))
+    axes.add_patch(Circle((0.0, 0.0), 1.0, fill=False, color=BLACK, linewidth=3.0, alpha=0.35, label="rim"))
     for k, motion in enumerate(data["motion"].to_numpy()):
         part = data["path"].sel(motion=motion)
         axes.plot(part.sel(axis="x"), part.sel(axis="y"), color=PALETTE[k], linestyle=DASHES[k], label=str(motion))
@@ -205,15 +205,15 @@ def pressure(data: xr.Dataset) -> Figure:
 @styled
 def kicks(data: xr.Dataset) -> Figure:
     """Return the sideways kick of one passage against its offset from the upright, with the exact slope."""
-    figure = new_figure(3.4, width=5.2)
+    figure = new_figure(3.4)
     axes = figure.subplots()
     offset, kick = data["offset"].to_numpy(), data["kick"].to_numpy()
-    axes.semilogx(offset, kick, "o", color=BLUE, label="integrated")
+    axes.semilogx(offset, -kick, "o", color=BLUE, label="integrated")
     middle = len(offset) // 2
-    line = kick[middle] + data.attrs["slope"] * np.log(offset / offset[middle])
-    axes.semilogx(offset, line, color=BLACK, linewidth=1.0, label="slope 2c/v")
+    line = -kick[middle] - data.attrs["slope"] * np.log(offset / offset[middle])
+    axes.semilogx(offset, line, color=BLACK, linewidth=1.0, label="exact slope 2c/v")
     axes.set_xlabel("offset y₀ from the upright at the passage [rad]")
-    axes.set_ylabel("sideways kick Δẏ/y₀")
+    axes.set_ylabel("sideways kick −Δẏ/y₀")
     axes.legend()
     return figure
 

@@ -22,6 +22,20 @@ _INTRODUCTION = (
     "the numbers of the paper's figures. Every number below was computed when this page was made.",
 )
 
+_SYMBOLS = Table(
+    ("symbol", "meaning"),
+    (
+        ("r, h; c = r/h", "base radius, height of the centre of mass; slenderness, the tilt at which the column tips"),
+        ("ω₀ = √(mgh/J₀)", "frequency scale; J₀ the moment of inertia about a diameter of the base"),
+        ("α = (α₁, α₂); A, β", "tilt vector: where the column leans and by how much; its length and its azimuth"),
+        ("μ = dA/dτ, ω = dβ/dτ", "tilt rate; rate at which the contact point rolls round the rim"),
+        ("a0; a1, a2", "amplitude of circular base motion; amplitudes along the two axes"),
+        ("ψ", "phase by which the contact point leads the base acceleration"),
+        ("η", "viscous friction"),
+        ("A₊, A₋; θ*", "upper and lower branch of steady rolling; frequency above which the upper one is stable"),
+    ),
+)
+
 # Name of the picture, the heading it stands under, how to draw it, and its caption.
 _PICTURES: tuple[tuple[str, str, Callable[[PaperCheck], Figure], str], ...] = (
     (
@@ -143,8 +157,11 @@ def _draw(check: PaperCheck, target: Path) -> dict[str, list[Picture]]:
 
 def _sections(check: PaperCheck, pictures: dict[str, list[Picture]]) -> list[Section]:
     return [
-        Section(heading, [*pictures.get(heading, []), findings_table(section.findings)])
-        for heading, section in check.sections.items()
+        Section("Symbols", [_SYMBOLS]),
+        *(
+            Section(heading, [*pictures.get(heading, []), findings_table(section.findings)])
+            for heading, section in check.sections.items()
+        ),
     ]
 
 

@@ -20,8 +20,6 @@ _EVENT_NAMES = {
     "lifted": "lifted off",
     "failed": "failed",
 }
-# A run with more events than this (rest and release in every period) keeps its curve readable without their marks.
-_MOST_EVENTS = 6
 # The name of an event later than this part of the run stands to its left.
 _LATE = 0.8
 
@@ -30,8 +28,9 @@ _LATE = 0.8
 def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> Figure:
     """Return a figure of one run, or of several compared.
 
-    Shows the tilt angle and the azimuth of the lean against time, and the path of the tilt vector with the circle
-    |α| = c beyond which the column, left alone, falls.
+    Shows the tilt angle, the azimuth of the lean (in a plane: the tilt with its sign) and the base acceleration
+    against time, and the path of the tilt vector. Dashed: |α| = c, beyond which the column, left alone, falls, and the
+    acceleration c g that releases it.
 
     Parameters
     ----------
@@ -41,10 +40,12 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
         A name for each; by default its outcome.
     """
     names = labels or [run.outcome.value for run in runs]
-    figure = new_figure(5.0)
-    axes = figure.subplot_mosaic([["tilt", "orbit"], ["azimuth", "orbit"]], width_ratios=(1.15, 1.0))
-    tilt, azimuth, orbit = axes["tilt"], axes["azimuth"], axes["orbit"]
+    figure = new_figure(6.0)
+    axes = figure.subplot_mosaic([["tilt", "orbit"], ["azimuth", "orbit"], ["base", "orbit"]], width_ratios=(1.15, 1.0))
+    tilt, azimuth, base, orbit = axes["tilt"], axes["azimuth"], axes["base"], axes["orbit"]
     azimuth.sharex(tilt)
+    base.sharex(tilt)
+    planar = all(run.planar for run in runs)
     for index, (run, name) in enumerate(zip(runs, names, strict=True)):
         line: dict[str, Any] = {
             "color": PALETTE[index % len(PALETTE)],
@@ -52,14 +53,23 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
         }
         time = run.data["time"]
         tilt.plot(time, run.data["amplitude"], linewidth=1.1, label=name, **line)
-        azimuth.plot(time, run.data["azimuth"] / (2.0 * np.pi), linewidth=1.1, **line)
+        azimuth.plot(
+            time, _signed_tilt(run.data) if planar else run.data["azimuth"] / (2.0 * np.pi), linewidth=1.1, **line
+        )
+        base.plot(time, np.hypot(*run.data["base_acceleration"].to_numpy()[:, :2].T), linewidth=1.1, **line)
         _draw_orbit(orbit, run.data, line)
-        _mark_events(tilt, run)
+        if len(runs) == 1:
+            _mark_events(tilt, run)
     limits = {float(run.data.attrs["slenderness"]) for run in runs}
     for c in limits:
         tilt.axhline(c, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)))
         orbit.add_patch(Circle((0.0, 0.0), c, fill=False, color=GREY, linewidth=0.9, linestyle=(0, (4, 2))))
-    _finish(tilt, orbit, azimuth, max(limits), compared=len(runs) > 1, title=names[0])
+    for level in {float(run.data.attrs["release_acceleration"]) for run in runs}:
+        base.axhline(level, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)))
+    base.set_ylabel("|base acc.| [m/s²]")
+    base.set_xlabel("time [s]")
+    azimuth.set_ylabel("tilt along its line [rad]" if planar else "azimuth β [turns]")
+    _finish(tilt, orbit, max(limits), compared=len(runs) > 1, title=names[0])
     return figure
 
 
@@ -70,23 +80,30 @@ def _draw_orbit(axes: Axes, data: xr.Dataset, line: dict[str, Any]) -> None:
     axes.plot(x[-1:], y[-1:], marker="s", markersize=5, color=line["color"])
 
 
+def _signed_tilt(data: xr.Dataset) -> np.ndarray:
+    """Return the tilt along the line in which a planar run moves, positive where it leans most."""
+    tilt = data["tilt"].to_numpy()
+    largest = tilt[np.argmax(np.hypot(*tilt.T))]
+    length = np.hypot(*largest)
+    return np.asarray(tilt @ largest / length) if length > 0.0 else np.zeros(len(tilt))
+
+
 def _mark_events(axes: Axes, run: Response) -> None:
-    if len(run.events) > _MOST_EVENTS:
-        return
-    for event in run.events:
+    # The first and the last: a run may be released and come to rest in every period.
+    for event in dict.fromkeys((*run.events[:1], *run.events[-1:])):
         height = float(np.interp(event.time, run.data["time"], run.data["amplitude"]))
         axes.annotate(
             _EVENT_NAMES.get(event.kind, event.kind),
             (event.time, height),
             xytext=(0, 10),
             textcoords="offset points",
-            ha="right" if event.time > _LATE * run.data["time"][-1] else "center",
+            ha="right" if event.time > _LATE * run.data["time"][-1] else "left",
             fontsize=7.5,
             arrowprops={"arrowstyle": "-|>", "color": BLACK, "linewidth": 0.6, "mutation_scale": 7},
         )
 
 
-def _finish(tilt: Axes, orbit: Axes, azimuth: Axes, c: float, *, compared: bool, title: str) -> None:
+def _finish(tilt: Axes, orbit: Axes, c: float, *, compared: bool, title: str) -> None:
     tilt.set_ylabel("tilt angle A [rad]")
     tilt.margins(y=0.15)
     tilt.set_ylim(bottom=0.0)
@@ -94,11 +111,9 @@ def _finish(tilt: Axes, orbit: Axes, azimuth: Axes, c: float, *, compared: bool,
         "A = c", (1.0, c), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=8, color=GREY
     )
     if compared:
-        tilt.legend(loc="upper left")
+        tilt.figure.legend(loc="outside upper left", ncols=4)
     else:
         tilt.set_title(title)
-    azimuth.set_ylabel("azimuth β [turns]")
-    azimuth.set_xlabel("time [s]")
     orbit.set_aspect("equal", adjustable="datalim")
     orbit.set_xlabel("tilt α₁ [rad]")
     orbit.set_ylabel("tilt α₂ [rad]")

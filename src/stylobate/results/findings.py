@@ -58,4 +58,4 @@ class PaperCheck:
         """One line that counts the verdicts."""
         counts = Counter(finding.verdict for finding in self.findings)
         told = "; ".join(f"{verdict.value}: {counts[verdict]}" for verdict in Verdict if counts[verdict])
-        return f"{counts.total()} statements measured. {told}."
+        return f"{counts.total()} checks of the paper's statements. {told}."

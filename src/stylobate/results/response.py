@@ -1,7 +1,8 @@
 """The result of one run."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -85,6 +86,11 @@ class Response:
         from stylobate.results.storage import save_response  # noqa: PLC0415  storage needs this class
 
         return save_response(self, Path(path))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # The integrator's dense output stays behind: a run sent to another process has its samples only.
+        kept = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "sampler"}
+        return partial(Response, **kept), ()
 
     def __repr__(self) -> str:
         return f"Response({self.outcome.name} at {self.decided_at:.6g} s: {self.reason})"

@@ -55,7 +55,7 @@ def _line(problem: Any) -> str:
         case "missing":
             return f"{name} is missing"
         case "extra_forbidden":
-            return f"{name} is not known here; remove it, or see the documentation for the names"
+            return _unknown(name, problem["loc"])
         case "union_tag_invalid":
             return f"{name}.{tag} must be one of {context['expected_tags']}, got {context['tag']!r}"
         case "union_tag_not_found":
@@ -63,6 +63,12 @@ def _line(problem: Any) -> str:
         case "value_error":
             return str(context["error"])
     return f"{name}: {problem['msg'][0].lower()}{problem['msg'][1:]}, got {given!r}"
+
+
+def _unknown(name: str, loc: tuple[int | str, ...]) -> str:
+    if loc[0] in _UNION_FIELDS and len(loc) > 1:
+        return f"{name} does not belong to {loc[0]} {loc[1]!r}; remove it or choose another"
+    return f"{name} is not known here; remove it, or see the documentation for the names"
 
 
 def _without_tags(loc: tuple[int | str, ...]) -> list[str]:

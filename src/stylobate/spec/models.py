@@ -33,7 +33,7 @@ def describe_model(model: Model) -> Description:
     UnsupportedError
         If the model is of a class that descriptions do not know.
     """
-    if isinstance(model, Slender):
+    if type(model) is Slender:  # a subclass is another model
         return SlenderModel(damping=model.damping)
     message = f"a model of class {type(model).__name__} has no description; results keep its repr only"
     raise UnsupportedError(message)

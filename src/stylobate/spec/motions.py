@@ -54,7 +54,7 @@ class EllipticMotion(_HarmonicMotion):
 
     kind: Literal["elliptic"]
     amplitude: tuple[float, float]
-    phase: float = 0.0
+    phase: float
     angular_frequency: float
 
 
@@ -183,6 +183,9 @@ def describe_motion(motion: BaseMotion) -> Description:
     UnsupportedError
         If the motion is of a class that descriptions do not know.
     """
+    if type(motion) not in (Harmonic, Sum, Scaled, Rotated, Delayed):  # a subclass is another motion
+        message = f"a motion of class {type(motion).__name__} has no description; results keep its repr only"
+        raise UnsupportedError(message)
     match motion:
         case Harmonic():
             return GeneralHarmonicMotion(
@@ -208,5 +211,4 @@ def describe_motion(motion: BaseMotion) -> Description:
         case Delayed():
             changed = {"kind": "delayed", "delay": motion.delay}
             return DelayedMotion.parse({**changed, "motion": describe_motion(motion.motion).values()})
-    message = f"a motion of class {type(motion).__name__} has no description; results keep its repr only"
-    raise UnsupportedError(message)
+    raise AssertionError

@@ -8,7 +8,7 @@ from stylobate.spec.columns import ANY_COLUMN, ColumnDescription
 from stylobate.spec.description import Description, built
 from stylobate.spec.models import ModelDescription, SlenderModel
 from stylobate.spec.motions import MotionDescription
-from stylobate.spec.simulation import Setup
+from stylobate.spec.simulation import Setup, SimulationDescription
 
 
 class ResponseDescription(Description):
@@ -27,7 +27,13 @@ class ResponseDescription(Description):
         if isinstance(motion, Mapping) and isinstance(frequencies, (list, tuple)) and frequencies:
             given = {"angular_frequency": frequencies[0]} if motion.get("kind") in _BY_ACCELERATION else {}
             values = {**values, "motion": {**given, **motion}}
-        return super().parse(values)
+        kind = motion.get("kind") if isinstance(motion, Mapping) else None
+        if kind in _WITHOUT_RESPONSE:
+            message = f"motion.kind must be a horizontal harmonic motion for response curves, got {kind!r}"
+            raise DescriptionError([message])
+        # What a description of a run says besides is of no concern here.
+        of_a_run = set(SimulationDescription.model_fields) - set(cls.model_fields)
+        return super().parse({name: value for name, value in values.items() if name not in of_a_run})
 
     def build(self) -> Setup:
         """Return model and motion; the options hold the range and number of frequencies.
@@ -52,3 +58,4 @@ class ResponseDescription(Description):
 
 
 _BY_ACCELERATION = ("circular", "straight", "elliptic")
+_WITHOUT_RESPONSE = ("rest", "vertical", "sum", "scaled", "rotated", "delayed")

@@ -49,7 +49,7 @@ def response_data() -> xr.Dataset:
 def critical_data() -> xr.Dataset:
     """Return θ* against a0 for several frictions, and its closed form without friction."""
     a0 = np.linspace(1e-4, 0.3, 400)
-    etas = [0.02, 0.1, 0.3, 0.5, 1.0]
+    etas = [0.1, 0.3, 0.5, 1.0]
     theta = np.array([theory.critical_frequency(a0, c=SLENDERNESS, eta=eta) for eta in etas])
     closed = theory.critical_frequency_frictionless(a0, c=SLENDERNESS)
     return xr.Dataset(

@@ -48,9 +48,9 @@ def _supercritical() -> Finding:
     return Finding(
         "after (8)",
         "Below the boundary the rolling is unstable.",
-        f"It is lost in a Hopf bifurcation at the frequency {crossing[0]:.4f} (a0 = 0.02) and {crossing[1]:.4f} "
-        f"(a0 = 0.065), not slow; first Lyapunov coefficient {values[0]:.2f} and {values[1]:.2f} (state μ/c, ω, A/c, "
-        "ψ): supercritical, so a stable modulated rolling takes over below θ*.",
+        "It is lost in a Hopf bifurcation: the tilt begins to oscillate, at a frequency near that of the base, "
+        f"{crossing[0]:.4f} (a0 = 0.02) or {crossing[1]:.4f} (a0 = 0.065). First Lyapunov coefficient "
+        f"{values[0]:.2f} and {values[1]:.2f} (state μ/c, ω, A/c, ψ): supercritical, so a stable modulated rolling takes over below θ*.",
         judged(bool(np.all(values < 0.0)), Verdict.SHARPENED),
     )
 

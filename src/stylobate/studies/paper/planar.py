@@ -9,11 +9,12 @@ from stylobate import theory
 from stylobate.engine import simulate
 from stylobate.motions import Harmonic
 from stylobate.results import Finding, Section, Verdict
-from stylobate.studies.paper.setting import CIRCULAR_AMPLITUDES, DAMPING, SLENDERNESS, judged, paper_model
+from stylobate.studies.paper.setting import DAMPING, SLENDERNESS, judged, paper_model
 
 _C = SLENDERNESS
 _THETA, _A1 = 3.0, 0.13
-_PLANAR_A1 = 0.02
+_PLANAR_A1, _ROLLING_A0 = 0.008, 0.008
+"""Small amplitudes, so that each forced curve hugs its own backbone."""
 
 
 def check_planar() -> Section:
@@ -27,7 +28,7 @@ def check_planar() -> Section:
 def backbone_data() -> xr.Dataset:
     """Return both backbones with the forced response that hugs each: planar rocking and rolling."""
     theta = np.linspace(0.2, 4.0, 800)
-    rolling = theory.steady_rolling(theta, CIRCULAR_AMPLITUDES[0], c=_C, eta=DAMPING)
+    rolling = theory.steady_rolling(theta, _ROLLING_A0, c=_C, eta=DAMPING)
     planar = theory.planar_forced_response(theta, _PLANAR_A1, c=_C, eta=DAMPING)
     orbits = {"fast": planar.fast, "slow": planar.slow}
     return xr.Dataset(
@@ -40,7 +41,7 @@ def backbone_data() -> xr.Dataset:
             "planar_stable": (("orbit", "theta"), np.stack([orbit.stable_in_plane for orbit in orbits.values()])),
         },
         coords={"theta": theta, "branch": ["lower", "upper"], "orbit": list(orbits)},
-        attrs={"c": _C, "a0": CIRCULAR_AMPLITUDES[0], "a1": _PLANAR_A1},
+        attrs={"c": _C, "a0": _ROLLING_A0, "a1": _PLANAR_A1},
     )
 
 
@@ -92,11 +93,11 @@ def _two_curves() -> Finding:
 
 
 def _planar_response() -> Finding:
-    theta = 2.0
-    orbit = theory.planar_forced_response(theta, _PLANAR_A1, c=_C, eta=DAMPING)
+    theta, a1 = 2.0, 0.02
+    orbit = theory.planar_forced_response(theta, a1, c=_C, eta=DAMPING)
     stable = orbit.fast if bool(orbit.fast.stable_in_plane) else orbit.slow
     _, speed, phase = (float(value) for value in stable.start())
-    motion = Harmonic.straight(acceleration=_PLANAR_A1, angular_frequency=theta, start_phase=phase)
+    motion = Harmonic.straight(acceleration=a1, angular_frequency=theta, start_phase=phase)
     run = simulate(paper_model(), motion, tilt_rate=(speed, 0.0), duration=10.0 * motion.period, rtol=1e-11)
     end = run.sample(10.0 * motion.period)
     gap = max(abs(float(end["tilt"][0, 0])), abs(float(end["tilt_rate"][0, 0]) - speed))

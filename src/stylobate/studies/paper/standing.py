@@ -25,7 +25,7 @@ def pressure_data() -> xr.Dataset:
         "circle, a0 = 0.5c": Harmonic.circular(acceleration=0.5 * _C, angular_frequency=2.0),
         "circle, a0 = c": Harmonic.circular(acceleration=_C, angular_frequency=2.0),
         "line, a1 = 0.8c": Harmonic.straight(acceleration=0.8 * _C, angular_frequency=2.0, direction=0.4),
-        "ellipse": Harmonic.elliptic(amplitude=(0.7 * _C, 0.5 * _C), phase=1.0, angular_frequency=2.0),
+        "ellipse, 0.7c by 0.5c": Harmonic.elliptic(amplitude=(0.7 * _C, 0.5 * _C), phase=1.0, angular_frequency=2.0),
     }
     model = paper_model()
     runs = [simulate(model, motion, duration=motion.period, samples=241) for motion in motions.values()]

@@ -100,8 +100,8 @@ def _both_senses() -> Finding:
         "section 4",
         "A straight-line motion can drive rolling.",
         "In either sense: started on the averaged solution at θ = 3, a1 = 0.04 the contact point turns "
-        f"{turns[0]:+.1f} or {turns[1]:+.1f} times in 30 periods, the two motions mirror images to {mirrored:.0e} rad. "
-        "Elliptic motion has two such solutions with amplitudes |p| and |q|.",
+        f"{turns[0]:+.1f} or {turns[1]:+.1f} times in 30 periods, the tilts of the two runs agreeing to "
+        f"{max(mirrored, 1e-16):.0e} rad. Elliptic motion has two such solutions with amplitudes |p| and |q|.",
         judged(turns[0] > 29.0 and turns[1] < -29.0, Verdict.SHARPENED),  # noqa: PLR2004
     )
 

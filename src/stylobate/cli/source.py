@@ -1,0 +1,26 @@
+"""What a command is told in a file: a TOML description, or a saved run."""
+
+from pathlib import Path
+from typing import Any
+
+from stylobate.errors import FileError
+
+
+def read_source(source: Path | None) -> dict[str, Any]:
+    """Return the plain values of a description; of a saved run (.nc), those that repeat it.
+
+    Raises
+    ------
+    FileError
+        If the file is missing or is neither.
+    """
+    from stylobate import results, spec  # noqa: PLC0415  heavy imports wait until the options are read
+
+    if source is None:
+        return {}
+    if not source.is_file():
+        message = f"cannot read {source}: No such file or directory"
+        raise FileError(message)
+    if source.suffix == ".nc":
+        return spec.description_of(results.load(source).provenance).values()
+    return spec.read_description(source)
