@@ -49,8 +49,9 @@ def _supercritical() -> Finding:
         "after (8)",
         "Below the boundary the rolling is unstable.",
         "It is lost in a Hopf bifurcation: the tilt begins to oscillate, at a frequency near that of the base, "
-        f"{crossing[0]:.4f} (a0 = 0.02) or {crossing[1]:.4f} (a0 = 0.065). First Lyapunov coefficient "
-        f"{values[0]:.2f} and {values[1]:.2f} (state μ/c, ω, A/c, ψ): supercritical, so a stable modulated rolling takes over below θ*.",
+        f"{crossing[0]:.4f} (a0 = 0.02) or {crossing[1]:.4f} (a0 = 0.065). The first Lyapunov coefficient is "
+        f"{values[0]:.2f} and {values[1]:.2f} (state μ/c, ω, A/c, ψ): supercritical, so a stable modulated rolling "
+        "takes over below θ*.",
         judged(bool(np.all(values < 0.0)), Verdict.SHARPENED),
     )
 
