@@ -83,6 +83,10 @@ def test_response_as_json_has_every_curve(capsys):
             ["column: slenderness must be positive, got -1.0", "motion: acceleration must be finite, got nan m/s²"],
         ),
         (
+            ["simulate", "--slenderness", "-1", "--damping", "-2", "--duration", "-3", "--samples", "1"],
+            ["column: slenderness", "model: damping", "duration must be positive", "samples must be a whole number"],
+        ),
+        (
             ["simulate", *COLUMN, "--radius", "1", "--duration", "1"],
             ["column.radius does not belong to column 'dimensionless'"],
         ),

@@ -143,3 +143,14 @@ def test_what_is_no_column_is_refused(column):
 def test_impossible_damping_is_refused(damping):
     with pytest.raises(ParameterError, match=r"^damping must be"):
         sb.Slender(MODEL.column, damping=damping)
+
+
+def test_the_centre_of_pressure_of_a_standing_column_follows_both_accelerations():
+    column = sb.Column.dimensionless(C)
+    shaken = sb.Harmonic.straight(acceleration=0.05, angular_frequency=2.0, direction=0.4)
+    lifted = sb.Harmonic.vertical(acceleration=0.3, angular_frequency=3.0)
+    data = sb.simulate(sb.Slender(column), shaken + lifted, duration=3.0).data
+    assert bool(data["resting"].all())
+    a = data["base_acceleration"].to_numpy()
+    expected = -column.mass_height * a[:, :2] / (1.0 + a[:, 2:])
+    np.testing.assert_allclose(data["centre_of_pressure"], expected, atol=1e-15)

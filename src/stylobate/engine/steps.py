@@ -1,13 +1,14 @@
 """Accepted steps of an integrator, and what is found on their dense output."""
 
-import math
-
 import numpy as np
 from scipy.integrate import DOP853, DenseOutput
 from scipy.optimize import brentq
 
 # Points of a step at which a planar motion is looked at for a swing over the upright and back.
 _DIP_SAMPLES = 9
+
+# A step cut at its very start keeps this length, in units of the larger of 1 and the time.
+_SHORTEST = 1e-15
 
 # A swing shorter than this part of a step leaves the column at rest on its base.
 _SMALLEST_SWING = 1e-12
@@ -29,7 +30,8 @@ class Steps:
 
     def cut(self, time: float) -> None:
         """End the last step at `time`, where an event was found; no step is left without extent."""
-        self.times[-1] = max(time, math.nextafter(self.times[-2], math.inf))
+        before = self.times[-2]
+        self.times[-1] = max(time, before + _SHORTEST * max(1.0, abs(before)))
 
 
 def just_before(stop: float) -> float:

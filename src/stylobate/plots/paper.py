@@ -29,6 +29,46 @@ _LIMIT = (0, (4, 2))
 
 
 @styled
+def sketch() -> Figure:
+    """Return the column leaning on its rim, from the side and from above, with the symbols."""
+    figure = new_figure(3.4)
+    side, above = figure.subplots(1, 2, width_ratios=(1.5, 1.0))
+    tilt, r, height = 0.28, 0.5, 3.2
+    turn = np.array([[np.cos(tilt), np.sin(tilt)], [-np.sin(tilt), np.cos(tilt)]])
+    corners = np.array([[-2.0 * r, 0.0], [0.0, 0.0], [0.0, height], [-2.0 * r, height], [-2.0 * r, 0.0]]) @ turn.T
+    foot, centre, top = (np.array([-r, y]) @ turn.T for y in (0.0, height / 2.0, height * 1.12))
+    side.fill(*corners.T, facecolor="#e8edf2", edgecolor=BLACK, linewidth=1.2)
+    side.plot([-1.6, 1.9], [0.0, 0.0], color=BLACK, linewidth=2.0)
+    side.plot(*np.array([foot, top]).T, color=GREY, linestyle="-.", linewidth=0.9)
+    side.plot([foot[0], foot[0]], [foot[1], foot[1] + height * 1.1], color=GREY, linewidth=0.9)
+    side.plot(*centre, "o", color=BLUE)
+    side.plot(0.0, 0.0, "o", color=VERMILION)
+    for text, place in (
+        ("centre of mass, at the height h on the axis", (centre[0] + 0.85, centre[1] - 0.05)),
+        ("contact point on the rim, radius r", (0.1, -0.36)),
+        ("A", (foot[0] + 0.42, foot[1] + height * 1.08)),
+    ):
+        side.annotate(text, place, fontsize=8)
+    side.annotate("", (1.8, -0.75), (0.7, -0.75), arrowprops={"arrowstyle": "->", "color": BLACK})
+    side.annotate("acceleration of the base", (-1.2, -0.82), fontsize=8)
+    angle = 0.9
+    above.add_patch(Circle((0.0, 0.0), 1.0, fill=False, color=BLACK, linewidth=1.2))
+    above.plot([-1.3, 1.3], [0.0, 0.0], color=GREY, linewidth=0.9)
+    above.plot([0.0, 0.0], [-1.3, 1.3], color=GREY, linewidth=0.9)
+    above.annotate("", (np.cos(angle), np.sin(angle)), (0.0, 0.0), arrowprops={"arrowstyle": "->", "color": BLUE})
+    above.plot(np.cos(angle), np.sin(angle), "o", color=VERMILION)
+    arc = np.linspace(0.0, angle, 30)
+    above.plot(0.45 * np.cos(arc), 0.45 * np.sin(arc), color=BLACK, linewidth=0.9)
+    for text, place in (("β", (0.5, 0.2)), ("α", (0.3, 0.62)), ("x₁", (1.32, -0.05)), ("x₂", (-0.06, 1.36))):
+        above.annotate(text, place, fontsize=9)
+    for axes, limits in ((side, (-1.7, 4.1, -1.0, 3.8)), (above, (-1.5, 1.6, -1.4, 1.6))):
+        axes.set_aspect("equal")
+        axes.axis(limits)
+        axes.axis("off")
+    return figure
+
+
+@styled
 def figure_2(response: xr.Dataset, straight: xr.Dataset | None = None) -> Figure:
     """Return Fig. 2, tilt against frequency; for straight-line motion with the `straight` full motion beside it."""
     figure = new_figure(4.4)
@@ -264,4 +304,5 @@ __all__ = [
     "modulated",
     "pressure",
     "runaway",
+    "sketch",
 ]

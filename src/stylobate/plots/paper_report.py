@@ -39,6 +39,13 @@ _SYMBOLS = Table(
 # Name of the picture, the heading it stands under, how to draw it, and its caption.
 _PICTURES: tuple[tuple[str, str, Callable[[PaperCheck], Figure], str], ...] = (
     (
+        "column",
+        "The column and its symbols",
+        lambda _: paper.sketch(),
+        "The leaning column from the side, and its base from above: the tilt vector α points to where it leans, its "
+        "length is the tilt angle A, its azimuth β that of the contact point.",
+    ),
+    (
         "figure-2-circular",
         "Circular base motion",
         lambda check: paper.figure_2(check.data["response"]),
@@ -157,7 +164,7 @@ def _draw(check: PaperCheck, target: Path) -> dict[str, list[Picture]]:
 
 def _sections(check: PaperCheck, pictures: dict[str, list[Picture]]) -> list[Section]:
     return [
-        Section("Symbols", [_SYMBOLS]),
+        Section("The column and its symbols", [*pictures.get("The column and its symbols", []), _SYMBOLS]),
         *(
             Section(heading, [*pictures.get(heading, []), findings_table(section.findings)])
             for heading, section in check.sections.items()

@@ -9,7 +9,16 @@ from typing import Any
 
 from pydantic import Field
 
-from stylobate.errors import DescriptionError, FileError, ParameterError, UnsupportedError
+from stylobate.errors import (
+    DescriptionError,
+    FileError,
+    ParameterError,
+    UnsupportedError,
+    require_not_negative,
+    require_positive,
+    require_vector,
+    require_whole,
+)
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 from stylobate.results import OutcomeRules
@@ -58,10 +67,35 @@ class SimulationDescription(Description):
         motion = built("motion", self.motion.build, problems)
         model = built("model", lambda: self.model.build(column or ANY_COLUMN), problems)
         rules = built("rules", lambda: OutcomeRules(**_known_rules(self.rules)), problems)
+        problems.extend(self._problems_of_the_run())
         if model is None or motion is None or problems:
             raise DescriptionError(problems)
         options = self.model_dump(exclude={"column", "model", "motion"}) | {"rules": rules}
         return Setup(model, motion, options)
+
+    def _problems_of_the_run(self) -> list[str]:
+        problems = []
+        for name, check in _RUN_CHECKS.items():
+            value = getattr(self, name)
+            try:
+                if value is not None:
+                    check(name, value)
+            except ParameterError as error:
+                problems.append(str(error))
+        return problems
+
+
+_RUN_CHECKS: Mapping[str, Callable[[str, Any], object]] = {
+    "duration": lambda name, value: require_positive(name, value, "s"),
+    "tilt_limit": lambda name, value: require_positive(name, value, "rad"),
+    "rtol": require_positive,
+    "atol": lambda name, value: require_positive(name, value, "rad"),
+    "rest_energy": require_not_negative,
+    "max_steps": lambda name, value: require_whole(name, value, least=1),
+    "samples": lambda name, value: require_whole(name, value, least=2),
+    "tilt": lambda name, value: require_vector(name, value, 2, "rad"),
+    "tilt_rate": lambda name, value: require_vector(name, value, 2, "rad/s"),
+}
 
 
 def read_description(path: str | Path) -> dict[str, Any]:
