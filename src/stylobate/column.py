@@ -162,10 +162,11 @@ class Column:
             raise ParameterError(message)
         radius = c * ratio
         # I_a ≤ 2 I_t with I_t = κ(1 − κ), I_a = axial_ratio (cκ)².
-        if axial_ratio * c**2 * ratio > 2.0 * (1.0 - ratio) * (1.0 + _ROUNDING):
+        most = 2.0 * (1.0 - ratio) / (c**2 * ratio)
+        if axial_ratio > most * (1.0 + _ROUNDING):
             message = (
-                "axial_ratio × slenderness² × inertia_ratio must be at most 2 (1 − inertia_ratio) for a body of "
-                f"revolution, got axial_ratio {axial_ratio!r}, slenderness {c!r}, inertia_ratio {ratio!r}"
+                f"axial_ratio must be at most {most!r} for a body of revolution with slenderness {c!r} and inertia_ratio "
+                f"{ratio!r}, got {axial_ratio!r}"
             )
             raise ParameterError(message)
         return cls(
