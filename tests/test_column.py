@@ -149,8 +149,10 @@ def test_impossible_bodies_are_refused_with_name_and_value(make, name, value):
 
 
 def test_bodies_at_the_bounds_are_accepted():
-    sb.Column(**{**GIVEN, "axial_inertia": 16e3})  # a disc
-    sb.Column(**{**GIVEN, "transverse_inertia": 25e3 + 62.5}, height=10.0)  # all mass at the ends
+    disc = sb.Column(**{**GIVEN, "axial_inertia": 16e3})
+    assert disc.axial_inertia == 2.0 * disc.transverse_inertia
+    ends = sb.Column(**{**GIVEN, "transverse_inertia": 25e3 + 62.5}, height=10.0)  # all mass at the ends
+    assert ends.height == 10.0
 
 
 def test_a_column_is_a_value():

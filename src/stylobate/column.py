@@ -165,8 +165,8 @@ class Column:
         most = 2.0 * (1.0 - ratio) / (c**2 * ratio)
         if axial_ratio > most * (1.0 + _ROUNDING):
             message = (
-                f"axial_ratio must be at most {most!r} for a body of revolution with slenderness {c!r} and inertia_ratio "
-                f"{ratio!r}, got {axial_ratio!r}"
+                f"axial_ratio must be at most {most!r} for a body of revolution with slenderness {c!r} and "
+                f"inertia_ratio {ratio!r}, got {axial_ratio!r}"
             )
             raise ParameterError(message)
         return cls(

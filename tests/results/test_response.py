@@ -59,7 +59,9 @@ def test_saving_leaves_the_run_as_it_is(run, tmp_path):
 
 def test_numbers_of_other_kinds_can_be_saved(tmp_path):
     limited = sb.simulate(MODEL, tilt=(0.03, 0.0), duration=1.0, tilt_limit=np.float32(0.5), max_steps=np.int64(1000))
-    same(sb.load(limited.save(tmp_path / "run.nc")), limited)
+    loaded = sb.load(limited.save(tmp_path / "run.nc"))
+    same(loaded, limited)
+    assert loaded.provenance["max_steps"] == 1000
 
 
 @pytest.mark.parametrize(

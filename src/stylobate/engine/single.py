@@ -10,12 +10,12 @@ from stylobate.engine.course import Course
 from stylobate.engine.forcing import Forcing
 from stylobate.engine.history import history
 from stylobate.engine.moving import Method, Mover
+from stylobate.engine.thresholds import Thresholds, thresholds_of
 from stylobate.engine.verdict import Verdict, long_term
-from stylobate.engine.watch import Reason, Thresholds, Watch
+from stylobate.engine.watch import Reason, Watch
 from stylobate.errors import (
     Outcome,
     ParameterError,
-    require_not_negative,
     require_positive,
     require_vector,
     require_whole,
@@ -31,11 +31,6 @@ _MOTION_SAMPLES, _COMPONENTS = 257, 3
 _RTOL_RANGE = (1e-13, 1e-2)
 # Default absolute tolerance: this part of rtol × c, so that tilts far below c are still resolved.
 _ATOL_SHARE = 0.01
-# The energy of steady rolling at frequency θ is 1.5 c²/θ²; rest is entered below a hundredth of it at most.
-_REST_ENERGY, _REST_ENERGY_ROLLING = 1e-4, 0.015
-# Where the base motion can release the column again, at most a hundredth of the energy it releases it with; not below
-# the last number, which bounds the number of hops to follow.
-_REST_ENERGY_HOP, _LEAST_REST_ENERGY = 0.01, 1e-8
 # A passage of the upright closer than this part of c is ill-conditioned for every integrator.
 _CLOSE_PASSAGE = 1e-8
 
@@ -119,7 +114,7 @@ def simulate(
     samples = None if samples is None else require_whole("samples", samples, least=2)
     method = _method(model, moved, rtol, atol, max_steps)
     forcing = Forcing.of(model, moved)
-    thresholds = _thresholds(model, forcing, tilt_limit, rest_energy)
+    thresholds = thresholds_of(model, forcing, tilt_limit, rest_energy)
     _check_motion(forcing, duration)
     rules = rules or OutcomeRules()
     mover = Mover(model, forcing, Watch(model, forcing, thresholds), method)
@@ -183,9 +178,7 @@ def _verdict(model: Model, motion: BaseMotion, course: Course, rules: OutcomeRul
 
 def _is_uncertain(model: Model, forcing: Forcing, course: Course, thresholds: Thresholds) -> bool:
     close = course.least_passage < _CLOSE_PASSAGE * model.column.slenderness
-    hop = _hop_energy(model, forcing)
-    # Hops so small that rest was entered between them although they may have grown.
-    coarse = course.released_from_rest and hop is not None and _REST_ENERGY_HOP * hop < thresholds.rest_energy
+    coarse = course.released_from_rest and thresholds.rest_is_coarse(model, forcing)
     return close or coarse or course.ended is Reason.FAILED
 
 
@@ -210,34 +203,6 @@ def _method(model: Model, motion: BaseMotion, rtol: float, atol: float | None, m
     return Method(
         rtol=rtol, atol=atol, max_step=math.pi / frequency if frequency > 0.0 else math.inf, max_steps=max_steps
     )
-
-
-def _thresholds(model: Model, forcing: Forcing, tilt_limit: float | None, rest_energy: float | None) -> Thresholds:
-    asked = None if rest_energy is None else require_not_negative("rest_energy", rest_energy)
-    energy = 0.0 if not model.comes_to_rest else _default_rest_energy(model, forcing) if asked is None else asked
-    limit = math.inf if tilt_limit is None else require_positive("tilt_limit", tilt_limit, "rad")
-    return Thresholds(rest_energy=energy, tilt_limit=limit)
-
-
-def _default_rest_energy(model: Model, forcing: Forcing) -> float:
-    frequency = forcing.highest_frequency
-    if frequency == 0.0:
-        return _REST_ENERGY
-    energy = min(_REST_ENERGY, _REST_ENERGY_ROLLING / frequency**2)
-    hop = _hop_energy(model, forcing)
-    return energy if hop is None else min(energy, max(_LEAST_REST_ENERGY, _REST_ENERGY_HOP * hop))
-
-
-def _hop_energy(model: Model, forcing: Forcing) -> float | None:
-    """Return the energy [c²] that a harmonic peak gives a column it has just released; None if it cannot release it.
-
-    With |a_h| = c(1 + δ) at the peak the excess lasts 2√(2δ)/θ and leaves the speed (4/3)√2 c δ^{3/2}/θ.
-    """
-    weight = 1.0 + forcing.least_vertical(0.0)
-    if weight <= 0.0:
-        return math.inf
-    excess = forcing.largest_horizontal(0.0) / (model.rest_capacity * weight) - 1.0
-    return 16.0 / 9.0 * excess**3 / forcing.highest_frequency**2 if excess > 0.0 else None
 
 
 def _check_motion(forcing: Forcing, duration: float) -> None:

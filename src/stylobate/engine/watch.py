@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from stylobate.engine.forcing import Floats, Forcing
+from stylobate.engine.thresholds import Thresholds
 from stylobate.models import Model
 
 # Points of each step at which conditions are looked at; a step of the integrator resolves the motion.
@@ -32,25 +33,6 @@ class Reason(Enum):
     CROSSED = auto()
     """The upright was passed in a plane, or came so near that it is passed in closed form."""
     FAILED = auto()
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Thresholds:
-    """The numbers by which a run is judged; all of them are kept with its result.
-
-    Parameters
-    ----------
-    rest_energy
-        ε: rest is entered below the energy ε c² at most; 0 where friction cannot bring the column to rest.
-    tilt_limit
-        Tilt that ends the run, set by the user [rad]; infinite for none.
-    overturned_tilt
-        Tilt that counts as overturned where no rigorous criterion exists [rad].
-    """
-
-    rest_energy: float
-    tilt_limit: float = math.inf
-    overturned_tilt: float = math.pi / 2.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
+from stylobate.errors import UnsupportedError
 
 Floats = npt.NDArray[np.float64]
 
@@ -167,8 +168,16 @@ class Model(ABC):
         return None
 
     def from_plane(self, planar: Floats, line: tuple[float, float]) -> Floats:
-        """Return the states, shape (number of states, n), of planar states (tilt, rate) along the unit vector."""
-        raise NotImplementedError
+        """Return the states, shape (number of states, n), of planar states (tilt, rate) along the unit vector.
+
+        Raises
+        ------
+        UnsupportedError
+            If the model gives `planar_rates` without it.
+        """
+        del planar, line
+        message = f"model {self.name} gives planar_rates and must give from_plane with it"
+        raise UnsupportedError(message)
 
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
         """Return what the model tells besides the tilt, by name.

@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from typing import Any, Self
 
 from stylobate.errors import DescriptionError
-from stylobate.spec.columns import ANY_COLUMN, ColumnDescription
-from stylobate.spec.description import Description, built
+from stylobate.spec.columns import ColumnDescription
+from stylobate.spec.description import Description
 from stylobate.spec.models import ModelDescription, SlenderModel
 from stylobate.spec.motions import MotionDescription
-from stylobate.spec.simulation import Setup, SimulationDescription
+from stylobate.spec.simulation import Setup, SimulationDescription, built_parts
 
 
 class ResponseDescription(Description):
@@ -44,16 +44,12 @@ class ResponseDescription(Description):
             With one line for each part that cannot be.
         """
         problems: list[str] = []
-        column = built("column", self.column.build, problems)
-        motion = built("motion", self.motion.build, problems)
-        model = built("model", lambda: self.model.build(column or ANY_COLUMN), problems)
         low, high = self.angular_frequency_range
         if not 0.0 < low < high:
             problems.append(f"angular_frequency_range must rise from above zero, got {low!r} to {high!r} rad/s")
         if not self.points > 1:
             problems.append(f"points must be at least 2, got {self.points!r}")
-        if model is None or motion is None or problems:
-            raise DescriptionError(problems)
+        model, motion = built_parts(self.column, self.model, self.motion, problems)
         return Setup(model, motion, {"range": self.angular_frequency_range, "points": self.points})
 
 

@@ -1,7 +1,7 @@
 """The description of one run: from TOML, from the command line, or from a saved result."""
 
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from importlib.metadata import version
 from pathlib import Path
@@ -62,19 +62,14 @@ class SimulationDescription(Description):
         DescriptionError
             With one line for each part that cannot be.
         """
-        problems: list[str] = []
-        column = built("column", self.column.build, problems)
-        motion = built("motion", self.motion.build, problems)
-        model = built("model", lambda: self.model.build(column or ANY_COLUMN), problems)
+        problems = self._problems_of_the_run()
         rules = built("rules", lambda: OutcomeRules(**_known_rules(self.rules)), problems)
-        problems.extend(self._problems_of_the_run())
-        if model is None or motion is None or problems:
-            raise DescriptionError(problems)
+        model, motion = built_parts(self.column, self.model, self.motion, problems)
         options = self.model_dump(exclude={"column", "model", "motion"}) | {"rules": rules}
         return Setup(model, motion, options)
 
     def _problems_of_the_run(self) -> list[str]:
-        problems = []
+        problems: list[str] = []
         for name, check in _RUN_CHECKS.items():
             value = getattr(self, name)
             try:
@@ -83,6 +78,25 @@ class SimulationDescription(Description):
             except ParameterError as error:
                 problems.append(str(error))
         return problems
+
+
+def built_parts(
+    column: ColumnDescription, model: ModelDescription, motion: MotionDescription, problems: Sequence[str]
+) -> tuple[Model, BaseMotion]:
+    """Return the model of the column and the motion.
+
+    Raises
+    ------
+    DescriptionError
+        With one line for each part that cannot be, and the `problems` known before.
+    """
+    found: list[str] = []
+    made = built("column", column.build, found)
+    moved = built("motion", motion.build, found)
+    modelled = built("model", lambda: model.build(made or ANY_COLUMN), found)
+    if modelled is None or moved is None or found or problems:
+        raise DescriptionError([*found, *problems])
+    return modelled, moved
 
 
 _RUN_CHECKS: Mapping[str, Callable[[str, Any], object]] = {
