@@ -64,4 +64,7 @@ def hop_energy(model: Model, forcing: Forcing) -> float | None:
     if weight <= 0.0:
         return math.inf
     excess = forcing.largest_horizontal(0.0) / (model.rest_capacity * weight) - 1.0
-    return 16.0 / 9.0 * excess**3 / forcing.highest_frequency**2 if excess > 0.0 else None
+    if excess <= 0.0:
+        return None
+    frequency = forcing.highest_frequency
+    return 16.0 / 9.0 * excess**3 / frequency**2 if frequency > 0.0 else math.inf

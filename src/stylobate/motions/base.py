@@ -74,7 +74,10 @@ class BaseMotion(ABC):
 
     @property
     def highest_frequency(self) -> float:
-        """Highest angular frequency in the acceleration [rad/s]; 0 for a base at rest."""
+        """Highest angular frequency in the acceleration [rad/s]; 0 for a base at rest.
+
+        Steps and searches are no longer than it allows: a motion of your own that changes must give it.
+        """
         return 0.0
 
     @property
