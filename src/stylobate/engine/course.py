@@ -132,9 +132,12 @@ class Course:
 
     def _move_in_space(self, state: tuple[float, ...]) -> tuple[float, ...] | None:
         state = self._off_the_upright(state)
+        begins = True
         while self._time < self.stop:
-            leg = self.mover.in_space(self._time, state, self._next_stop(), self._lean(state), self._budget())
+            lean, stop = self._lean(state), self._next_stop()
+            leg = self.mover.in_space(self._time, state, stop, lean, self._budget(), begins=begins)
             self._take(leg)
+            begins = False
             if leg.reason is Reason.CROSSED:
                 hop = self.mover.over_the_upright(self._time, leg.state, self._next_stop(), self._lean(leg.state))
                 if hop is not None:

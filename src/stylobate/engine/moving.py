@@ -63,17 +63,23 @@ class Mover:
     watch: Watch
     method: Method
 
-    def in_space(self, start: float, state: tuple[float, ...], stop: float, azimuth: float, budget: int) -> Leg:
-        """Advance a general motion from `start` to `stop` at most; `azimuth` [rad] is where its lean begins."""
+    def in_space(
+        self, start: float, state: tuple[float, ...], stop: float, azimuth: float, budget: int, *, begins: bool
+    ) -> Leg:
+        """Advance a general motion from `start` to `stop` at most; `azimuth` [rad] is where its lean begins.
+
+        A motion that `begins`, perhaps at a tilt far below the absolute tolerance, is followed with a finer one while
+        it grows; the leg ends where it has grown, or first turns back.
+        """
         rates, parameters, forcing, last = self.model.rates, self.model.parameters, self.forcing, just_before(stop)
 
         def derivative(tau: float, y: Floats) -> Floats:
             return np.array(rates(*y.tolist(), *forcing.at(min(tau, last)), *parameters))
 
-        solver = self._solver(derivative, start, state, stop)
+        atol = self._beginning_atol(state) if begins else self.method.atol
+        solver = self._solver(derivative, start, state, stop, atol)
         steps = Steps(start)
         least = math.inf
-        grown = _GROWN * self.model.column.slenderness if self._atol(state) < self.method.atol else math.inf
         while solver.status == "running":
             if len(steps.dense) >= budget:
                 return self._space_leg(
@@ -95,7 +101,7 @@ class Mover:
                 time, reason = event
                 steps.cut(time)
                 return self._space_leg(steps, dense(time), azimuth, reason, least)
-            if self._radial(solver.y)[0] > grown:  # go on with the usual tolerance
+            if atol < self.method.atol and self._has_grown(solver.y):
                 return self._space_leg(steps, solver.y, azimuth, Reason.STOP, least)
             if self._grazes(solver.y):
                 return self._space_leg(steps, solver.y, azimuth, Reason.CROSSED, least)
@@ -140,7 +146,8 @@ class Mover:
             assert rates is not None
             return np.array(rates)
 
-        solver = self._solver(derivative, start, state, stop)
+        atol = min(self.method.atol, self.method.rtol * abs(state[0])) if state[0] != 0.0 else self.method.atol
+        solver = self._solver(derivative, start, state, stop, atol)
         steps = Steps(start)
 
         def leg(end: Floats, reason: Reason, failure: str = "") -> Leg:
@@ -184,15 +191,18 @@ class Mover:
         start: float,
         state: tuple[float, ...],
         stop: float,
+        atol: float,
     ) -> DOP853:
-        method, atol = self.method, self._atol(state)
+        method = self.method
         return DOP853(derivative, start, np.array(state), stop, max_step=method.max_step, rtol=method.rtol, atol=atol)
 
-    def _atol(self, state: tuple[float, ...]) -> float:
-        """Return the absolute tolerance from `state` on: a column just released leans by less than the usual one."""
-        in_a_plane = len(state) < len(self.model.state_names)
-        tilt = abs(state[0]) if in_a_plane else self._radial(np.array(state))[0]
+    def _beginning_atol(self, state: tuple[float, ...]) -> float:
+        tilt = self._radial(np.array(state))[0]
         return min(self.method.atol, self.method.rtol * tilt) if tilt > 0.0 else self.method.atol
+
+    def _has_grown(self, state: Floats) -> bool:
+        tilt, radial = self._radial(state)
+        return tilt > _GROWN * self.model.column.slenderness or radial < 0.0
 
     def _grazes(self, state: Floats) -> bool:
         column = state[:, np.newaxis]
