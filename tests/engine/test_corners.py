@@ -180,3 +180,14 @@ def test_a_motion_that_breaks_its_promises_is_told(motion, told):
 def test_degrees_are_refused():
     with pytest.raises(ParameterError, match="rad, not degrees"):
         sb.simulate(MODEL, tilt=(5.0, 0.0), duration=1.0)
+
+
+def test_a_motion_that_repeats_while_it_travels_round_is_not_rocking():
+    # The base rises and falls once in two of its horizontal periods: the common period holds two turns of the rim.
+    round_about = sb.Harmonic.circular(acceleration=0.065, angular_frequency=3.0)
+    up_and_down = sb.Harmonic.vertical(acceleration=0.02, angular_frequency=1.5)
+    start = sb.studies.steady_start(MODEL, round_about)
+    run = sb.simulate(MODEL, round_about + up_and_down, **start, duration=500.0)
+    assert run.measures["repetition"] < sb.OutcomeRules().repeat_tolerance
+    assert run.measures["mean_rolling_rate"] == pytest.approx(3.0, rel=1e-6)
+    assert run.outcome is not sb.Outcome.ROCKING

@@ -140,3 +140,30 @@ def test_impossible_combinations_are_refused_by_name(make, name):
 def test_only_motions_can_be_added():
     with pytest.raises(TypeError):
         ONE + 1.0
+
+
+def test_while_a_motion_waits_its_vertical_range_holds_zero():
+    rising = Constant(vertical=0.3)
+    waiting = rising.delayed(2.0)
+    assert waiting.vertical_range(0.0) == (0.0, 0.3)
+    assert waiting.vertical_range(3.0) == (0.3, 0.3)
+
+
+class Constant(sb.BaseMotion):
+    """A base that accelerates upwards at a constant rate."""
+
+    def __init__(self, vertical):
+        self.vertical = vertical
+
+    def derivative(self, time, order):
+        t = np.asarray(time, dtype=float)
+        return 0.0 * t, 0.0 * t, self.vertical * t ** (2 - order) / (2.0, 1.0, 1.0)[order]
+
+    def largest_horizontal(self, since=0.0):
+        return 0.0
+
+    def vertical_range(self, since=0.0):
+        return self.vertical, self.vertical
+
+    def directions(self):
+        return ()
