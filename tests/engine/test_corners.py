@@ -117,14 +117,15 @@ class Counted(sb.Slender):
     def start(self, tilt, tilt_rate):
         return (*sb.Slender.start(self, tilt, tilt_rate), 1.0)
 
-    def tilt_rate(self, states):
-        return states[2:4]
+    @staticmethod
+    def lean(x, y, vx, vy, way, *_):
+        return x, y, vx, vy
 
-    def at_rest(self, state):
-        return (0.0, 0.0, 0.0, 0.0, state[4])
+    @staticmethod
+    def at_rest(x, y, vx, vy, way, *_):
+        return 0.0, 0.0, 0.0, 0.0, way
 
-    def planar_rates(self, tilt, rate, side, horizontal, vertical):
-        return None
+    planar_rates: ClassVar = None
 
     def outputs(self, states, accelerations, resting):
         return {}

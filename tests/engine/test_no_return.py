@@ -127,6 +127,6 @@ def test_a_motion_that_is_over_no_longer_counts():
 
 def test_with_a_weightless_base_nothing_is_proved_and_the_stated_limit_decides():
     motion = sb.Harmonic.vertical(acceleration=1.0, angular_frequency=2.0, start_phase=1.0)
-    assert model().no_return_tilt(0.0, -1.0) == math.inf
+    assert model().least_safe_tilt(0.0, -1.0) == math.inf
     run = sb.simulate(model(), motion.scaled(1.0, vertical=1.0), tilt=(0.12, 0.0), tilt_rate=(0.0, 0.1), duration=1.0)
     assert run.outcome is sb.Outcome.STILL_MOVING

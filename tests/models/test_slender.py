@@ -37,14 +37,14 @@ def test_planar_rates_are_those_in_space_along_any_line(tilt, rate, side, a, az)
     x, y = (side * tilt * part for part in line)
     vx, vy = (rate * part for part in line)
     _, _, fx, fy = MODEL.rates(x, y, vx, vy, a * line[0], a * line[1], az, *MODEL.parameters)
-    found = MODEL.planar_rates(side * tilt, rate, side, a, az)
+    found = MODEL.planar_rates(side * tilt, rate, side, a, az, *MODEL.parameters)
     assert found == pytest.approx((rate, fx * line[0] + fy * line[1]), rel=1e-12, abs=1e-14)
     assert fx * line[1] - fy * line[0] == pytest.approx(0.0, abs=1e-15)
 
 
 def test_planar_states_lie_along_their_line():
     planar = np.array([[0.1, -0.2], [0.3, 0.4]])
-    states = MODEL.from_plane(planar, (0.6, 0.8))
+    states = MODEL.from_plane(*planar, 0.6, 0.8, *MODEL.parameters)
     np.testing.assert_allclose(states, [[0.06, -0.12], [0.08, -0.16], [0.18, 0.24], [0.24, 0.32]], rtol=1e-15)
 
 
@@ -74,12 +74,12 @@ def test_only_friction_brings_a_column_to_rest():
 def test_energy_above_rest_is_the_kinetic_energy_and_the_work_to_the_upright(tilt, speed, az):
     # With the term ½A² of second order left out: an upper bound.
     work = C * (1.0 + az) * tilt
-    assert MODEL.rest_energy(tilt, speed, az) == pytest.approx(0.5 * speed**2 + work, rel=1e-14)
+    assert MODEL.rest_energy(tilt, speed, az, *MODEL.parameters) == pytest.approx(0.5 * speed**2 + work, rel=1e-14)
 
 
 @given(a=st.floats(0.0, 0.5), az=st.floats(-0.9, 0.0), beyond=st.floats(1e-6, 1.0), heading=st.floats(0.0, 6.3))
 def test_beyond_the_no_return_tilt_every_acceleration_lets_the_tilt_grow(a, az, beyond, heading):
-    tilt = MODEL.no_return_tilt(a, az) + beyond
+    tilt = MODEL.no_return_tilt(a, az, *MODEL.parameters) + beyond
     _, _, radial, _ = MODEL.rates(
         tilt, 0.0, 0.0, 0.0, a * math.cos(heading), a * math.sin(heading), az, *MODEL.parameters
     )
@@ -87,11 +87,11 @@ def test_beyond_the_no_return_tilt_every_acceleration_lets_the_tilt_grow(a, az, 
 
 
 def test_the_no_return_tilt_is_sharp_and_infinite_without_weight():
-    tilt = MODEL.no_return_tilt(0.05, -0.5)
+    tilt = MODEL.no_return_tilt(0.05, -0.5, *MODEL.parameters)
     assert tilt == pytest.approx(0.2, rel=1e-14)
     assert MODEL.rates(tilt, 0.0, 0.0, 0.0, 0.05, 0.0, -0.5, *MODEL.parameters)[2] == pytest.approx(0.0, abs=1e-15)
-    assert MODEL.no_return_tilt(0.05, -1.0) == math.inf
-    assert MODEL.no_return_tilt(0.05, -1.5) == math.inf
+    assert MODEL.no_return_tilt(0.05, -1.0, *MODEL.parameters) == math.inf
+    assert MODEL.no_return_tilt(0.05, -1.5, *MODEL.parameters) == math.inf
 
 
 @pytest.mark.parametrize(("excess", "rate", "turning"), [(0.05, 0.0, 1.0), (0.0, 0.1, -2.0), (0.02, 0.3, 0.0)])
@@ -101,7 +101,7 @@ def test_departure_solves_equations_1_to_leading_order(excess, rate, turning):
     push = Push(direction=(-1.0, 0.0), acceleration=acceleration, excess=excess, excess_rate=rate, turning_rate=turning)
 
     def residual(t, h):
-        before, now, after = (np.array(model.depart(push, t + k * h)) for k in (-1, 0, 1))
+        before, now, after = (np.array(model.departure(push, t + k * h, *model.parameters)) for k in (-1, 0, 1))
         size, angle = acceleration + rate * t, turning * t
         forces = model.rates(*now, size * math.cos(angle), size * math.sin(angle), 0.0, *model.parameters)
         return np.array(forces[2:]) - (after[:2] - 2.0 * now[:2] + before[:2]) / h**2
@@ -113,23 +113,23 @@ def test_departure_solves_equations_1_to_leading_order(excess, rate, turning):
 
 def test_departure_without_excess_stays():
     push = Push(direction=(-1.0, 0.0), acceleration=C, excess=0.0, excess_rate=-0.1, turning_rate=1.0)
-    assert MODEL.depart(push, 1e-3) == (0.0, 0.0, 0.0, 0.0)
+    assert MODEL.departure(push, 1e-3, *MODEL.parameters) == (0.0, 0.0, 0.0, 0.0)
 
 
 @given(offset=st.floats(-1e-9, 1e-9), angle=st.floats(0.0, 6.3))
 def test_a_passage_turns_with_its_direction(offset, angle):
     free = sb.Slender(MODEL.column)
-    plain = np.array(free.pass_upright((-1e-7, offset * C, 0.08, 0.0), (0.0, 0.0, 0.0))[1])
+    plain = np.array(free.passage(-1e-7, offset * C, 0.08, 0.0, 0.0, 0.0, 0.0, *free.parameters)[1])
     cos, sin = math.cos(angle), math.sin(angle)
     turn = np.array([[cos, -sin], [sin, cos]])
     start = (*(turn @ [-1e-7, offset * C]), *(turn @ [0.08, 0.0]))
-    turned = np.array(free.pass_upright(start, (0.0, 0.0, 0.0))[1])
+    turned = np.array(free.passage(*start, 0.0, 0.0, 0.0, *free.parameters)[1])
     np.testing.assert_allclose(turned[:2], turn @ plain[:2], rtol=0.0, atol=1e-20)
     np.testing.assert_allclose(turned[2:], turn @ plain[2:], rtol=0.0, atol=1e-15)
 
 
 def test_a_passage_through_the_upright_itself_goes_straight_on():
-    _, end = sb.Slender(MODEL.column).pass_upright((-1e-7, 0.0, 0.08, 0.0), (0.0, 0.0, 0.0))
+    _, end = sb.Slender.passage(-1e-7, 0.0, 0.08, 0.0, 0.0, 0.0, 0.0, C, 0.0)
     assert end == pytest.approx((1e-7, 0.0, 0.08, 0.0), rel=1e-12)
 
 

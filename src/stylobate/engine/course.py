@@ -110,14 +110,13 @@ class Course:
         line = common_line(
             (float(tilt[0]), float(tilt[1])), (float(rate[0]), float(rate[1])), *self.forcing.motion.directions()
         )
-        c = self.model.column.slenderness
-        if line is not None and self.model.planar_rates(c, 0.0, 1.0, 0.0, 0.0) is not None:
+        if line is not None and self.model.planar_rates is not None:
             return self._move_in_plane((float(tilt @ line), float(rate @ line)), line)
         self.planar = False
         return self._move_in_space(state)
 
     def _move_in_plane(self, state: tuple[float, ...], line: Line) -> tuple[float, ...] | None:
-        upright = self.model.at_rest((0.0,) * len(self.model.state_names))
+        upright = self.model.standing((0.0,) * len(self.model.state_names))
         while self._time < self.stop:
             if state == (0.0, 0.0):
                 return upright
@@ -144,7 +143,7 @@ class Course:
                     self._take(hop)
                     leg = hop
             if leg.reason is Reason.RESTED:
-                return self.model.at_rest(leg.state)
+                return self.model.standing(leg.state)
             if leg.reason not in (Reason.CROSSED, Reason.STOP):
                 return None
             state = leg.state

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from scipy.integrate import DOP853, DenseOutput, OdeSolution
+from scipy.integrate import DOP853, OdeSolution
 from scipy.optimize import brentq
 
 from stylobate.engine.forcing import Floats, Forcing
@@ -109,10 +109,9 @@ class Mover:
 
     def over_the_upright(self, start: float, state: tuple[float, ...], stop: float, azimuth: float) -> Leg | None:
         """Hop over the upright by the model's law of passage, where it has one and gets there before `stop`."""
-        passed = self.model.pass_upright(state, self.forcing.at(start))
-        if passed is None:
+        if self.model.passage is None:
             return None
-        elapsed, end_state = passed
+        elapsed, end_state = self.model.passage(*state, *self.forcing.at(start), *self.model.parameters)
         if start + elapsed > stop:
             return None
         ends = np.array([state, end_state]).T
@@ -137,14 +136,13 @@ class Mover:
         self, start: float, state: tuple[float, float], stop: float, line: tuple[float, float], budget: int
     ) -> Leg:
         """Advance a motion in the plane along `line`; `state` is (tilt, rate) along it, on one side of the upright."""
-        model, forcing = self.model, self.forcing
+        planar_rates, parameters, forcing = self.model.planar_rates, self.model.parameters, self.forcing
+        assert planar_rates is not None
         side, last = math.copysign(1.0, state[0] if state[0] != 0.0 else state[1]), just_before(stop)
 
         def derivative(tau: float, y: Floats) -> Floats:
             ax, ay, az = forcing.at(min(tau, last))
-            rates = model.planar_rates(float(y[0]), float(y[1]), side, ax * line[0] + ay * line[1], az)
-            assert rates is not None
-            return np.array(rates)
+            return np.array(planar_rates(*y.tolist(), side, ax * line[0] + ay * line[1], az, *parameters))
 
         atol = min(self.method.atol, self.method.rtol * abs(state[0])) if state[0] != 0.0 else self.method.atol
         solver = self._solver(derivative, start, state, stop, atol)
@@ -182,8 +180,9 @@ class Mover:
                 return leg(np.array([0.0, speed]), Reason.RESTED if rests else Reason.CROSSED)
         return leg(solver.y, Reason.STOP)
 
-    def _from_plane(self, dense: DenseOutput, line: tuple[float, float], tau: Floats) -> Floats:
-        return self.model.from_plane(dense(tau), line)
+    def _from_plane(self, dense: Callable[[Floats], Floats], line: tuple[float, float], tau: Floats) -> Floats:
+        assert self.model.from_plane is not None
+        return np.stack(self.model.from_plane(*dense(tau), *line, *self.model.parameters))
 
     def _solver(
         self,
@@ -265,15 +264,11 @@ class Mover:
     ) -> Leg:
         if not steps.dense:
             return Leg(None, (float(end[0]), float(end[1])), reason, math.inf, failure)
-        solution, from_plane = OdeSolution(steps.times, steps.dense), self.model.from_plane
-
-        def states(tau: Floats) -> Floats:
-            return from_plane(solution(tau), line)
-
+        solution = OdeSolution(steps.times, steps.dense)
         piece = Piece(
             steps.times[0],
             steps.times[-1],
-            states,
+            partial(self._from_plane, solution, line),
             resting=False,
             nodes=np.array(steps.times[:1]),
             azimuths=np.array([math.atan2(side * line[1], side * line[0])]),

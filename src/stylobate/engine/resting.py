@@ -74,13 +74,12 @@ def departure(model: Model, forcing: Forcing, time: float) -> tuple[float, tuple
         excess_rate=(there - capacity * (1.0 + later[2]) - excess) / elapsed,
         turning_rate=math.atan2(now[0] * later[1] - now[1] * later[0], now[0] * later[0] + now[1] * later[1]) / elapsed,
     )
-    state = model.depart(push, elapsed)
-    if state is None:
+    if model.departure is None:
         message = (
-            f"model {model.name} does not say how a column departs from rest: give it `depart`, or start it moving"
+            f"model {model.name} does not say how a column departs from rest: give it `departure`, or start it moving"
         )
         raise UnsupportedError(message)
-    return time + elapsed, state
+    return time + elapsed, model.departure(push, elapsed, *model.parameters)
 
 
 def rest_piece(held: tuple[float, ...], start: float, end: float) -> Piece:

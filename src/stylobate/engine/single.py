@@ -132,7 +132,7 @@ def simulate(
         events=tuple(course.events),
         thresholds={
             "close_passage": _CLOSE_PASSAGE,
-            "no_return_tilt": model.no_return_tilt(forcing.largest_horizontal(0.0), forcing.least_vertical(0.0)),
+            "no_return_tilt": model.least_safe_tilt(forcing.largest_horizontal(0.0), forcing.least_vertical(0.0)),
             **asdict(thresholds),
             **asdict(rules),
         },

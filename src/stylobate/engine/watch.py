@@ -86,7 +86,7 @@ class Watch:
         # Positive where the energy is below ε c² and what is left of the motion dies as small hops: a hop of speed v
         # against the force F takes 2v/F, in which F itself must change by a small part only.
         ax, ay, az = self.forcing.at(tau)
-        energy = self.model.rest_energy(tilt, speed, az)
+        energy = self._rest_energy(tilt, speed, az)
         force = self.model.rest_capacity * (1.0 + az) - math.hypot(ax, ay)
         if self._holds_from(tau):
             force = self._least_force(tau)
@@ -95,6 +95,10 @@ class Watch:
             self.thresholds.rest_energy * self.model.column.slenderness**2 - energy,
             force - math.sqrt(_HOPS_APART * change),
         )
+
+    def _rest_energy(self, tilt: float, speed: float, vertical: float) -> float:
+        energy = self.model.rest_energy
+        return math.inf if energy is None else energy(tilt, speed, vertical, *self.model.parameters)
 
     def _holds_from(self, tau: float) -> bool:
         return self._least_force(tau) >= 0.0
@@ -109,7 +113,7 @@ class Watch:
         return self.forcing.highest_frequency * largest
 
     def _no_return_tilt(self, tau: float) -> float:
-        limit = self.model.no_return_tilt(self.forcing.largest_horizontal(tau), self.forcing.least_vertical(tau))
+        limit = self.model.least_safe_tilt(self.forcing.largest_horizontal(tau), self.forcing.least_vertical(tau))
         return limit if math.isfinite(limit) else self.thresholds.overturned_tilt
 
     def _motion(self, states: Callable[[Floats], Floats], tau: float) -> tuple[float, float, float]:

@@ -4,13 +4,12 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.errors import UnsupportedError
 
 Floats = npt.NDArray[np.float64]
 
@@ -19,8 +18,7 @@ Floats = npt.NDArray[np.float64]
 RELEASE_MARGIN = 8.0 * float(np.finfo(float).eps)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Push:
+class Push(NamedTuple):
     """What pushes a column off its base at the instant of release, dimensionless.
 
     Parameters
@@ -57,38 +55,87 @@ class Model(ABC):
     A model integrates in its own units: time in units of `time_scale`, accelerations of the base in units of
     `column.gravity`. It never sees the base motion, only the acceleration of the moment.
 
+    Its physics stands in static functions of plain floats that end with the model's `parameters`. Single runs call
+    them, ensembles compile them, so that the equations are written once.
+
     Notes
     -----
-    For developers: a model has a `column` and gives `state_names`, `parameters`, `rates`, `start`, `tilt` and
-    `tilt_rate`; everything below them in this class has a default. Without `rest_energy` a column never comes to
-    rest, without `planar_rates` coplanar motion is integrated in space, without `no_return_tilt` a stated limit
-    tells overturning.
+    For developers: a model has a `column` and gives `state_names`, `parameters`, `rates`, `lean` and `start`;
+    everything below them in this class has a default. Without `rest_energy` a column never comes to rest, without
+    `planar_rates` coplanar motion is integrated in space, without `no_return_tilt` a stated limit tells overturning.
+
+    What ensembles compile must be what Numba can compile: arithmetic, `math`, calls of functions that keep to the
+    same. `rates` and `planar_rates` run several columns at a time where they are free of branches and of `math`'s
+    transcendental functions; `math.sqrt`, `abs`, `min`, `max` and a choice `a if condition else b` are fine.
     """
 
     __slots__ = ()
 
     name: ClassVar[str]
     state_names: ClassVar[tuple[str, ...]]
-    rates: ClassVar[Callable[..., tuple[float, ...]]]
-    """The right-hand side, a static function (state…, ax, ay, az, parameters…) → rates; accelerations in g."""
     column: Column
+
+    rates: ClassVar[Callable[..., tuple[float, ...]]]
+    """(state…, ax, ay, az, parameters…) → rates of the state; accelerations in g."""
+
+    lean: ClassVar[Callable[..., tuple[Any, Any, Any, Any]]]
+    """(state…, parameters…) → the tilt vector [rad] and its rate in the model's time: x, y, vx, vy.
+
+    It is called with floats and with arrays.
+    """
+
+    planar_rates: ClassVar[Callable[..., tuple[float, float]] | None] = None
+    """(tilt, rate, side, horizontal, vertical, parameters…) → the rates of tilt and rate in a vertical plane.
+
+    `side` (±1) is the side of the upright on which the column leans; accelerations in g. `from_plane` goes with it.
+    """
+
+    from_plane: ClassVar[Callable[..., tuple[Any, ...]] | None] = None
+    """(tilt, rate, ux, uy, parameters…) → the state of a motion in the plane along the unit vector (ux, uy).
+
+    It is called with floats and with arrays.
+    """
+
+    rest_energy: ClassVar[Callable[..., float] | None] = None
+    """(|α| [rad], |α̇|, a_z [g], parameters…) → energy above the state of rest without the work of the base.
+
+    In units that make c² its scale.
+    """
+
+    no_return_tilt: ClassVar[Callable[..., float] | None] = None
+    """(sup |a_h|, inf a_z, parameters…) → tilt [rad] beyond which a growing tilt can never come back, or inf.
+
+    Both bounds are those from now on [g].
+    """
+
+    departure: ClassVar[Callable[..., tuple[float, ...]] | None] = None
+    """(push, elapsed, parameters…) → the state a short time after the release by a `Push`."""
+
+    passage: ClassVar[Callable[..., tuple[float, tuple[float, ...]]] | None] = None
+    """(state…, ax, ay, az, parameters…) → duration and end state of a ballistic passage of the upright.
+
+    It is asked for only where the path leads past the upright so closely that its turn cannot be resolved.
+    """
+
+    at_rest: ClassVar[Callable[..., tuple[float, ...]] | None] = None
+    """(state…, parameters…) → the state in which a column that comes to rest stands; None for all zeros."""
 
     @property
     @abstractmethod
     def parameters(self) -> tuple[float, ...]:
-        """The numbers that `rates` takes after the accelerations."""
+        """The numbers that the static functions take at their end."""
 
     @abstractmethod
     def start(self, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, ...]:
-        """Return the state with this tilt vector [rad] and its rate [rad/s]."""
+        """Return the state with this tilt vector [rad] and its rate [rad/s]; called with floats and with arrays."""
 
-    @abstractmethod
     def tilt(self, states: Floats) -> Floats:
         """Return the tilt vectors [rad], shape (2, n), of `states`, shape (number of states, n)."""
+        return np.stack(self.lean(*states, *self.parameters)[:2])
 
-    @abstractmethod
     def tilt_rate(self, states: Floats) -> Floats:
         """Return the rates of the tilt vectors in the model's own time, shape (2, n)."""
+        return np.stack(self.lean(*states, *self.parameters)[2:])
 
     @property
     def time_scale(self) -> float:
@@ -100,84 +147,24 @@ class Model(ABC):
         """The |a_h|/(g + a_z) up to which the column stays on its base, a margin for rounding included."""
         return self.column.slenderness * (1.0 + RELEASE_MARGIN)
 
-    def stands(self, state: tuple[float, ...]) -> bool:
-        """Return whether the column stands on its base in this state: no tilt, and no rate of it."""
-        column = np.array(state)[:, np.newaxis]
-        return not (np.any(self.tilt(column)) or np.any(self.tilt_rate(column)))
-
-    def at_rest(self, state: tuple[float, ...]) -> tuple[float, ...]:
-        """Return the state in which a column that comes to rest from `state` stands; all zeros unless overridden."""
-        return (0.0,) * len(state)
-
     @property
     def comes_to_rest(self) -> bool:
         """Whether friction brings a free column to rest; without friction it never gets there."""
         return False
 
-    def rest_energy(self, tilt: float, speed: float, vertical: float) -> float:
-        """Return the energy above the state of rest, without the work of the base; infinite if unknown.
+    def stands(self, state: tuple[float, ...]) -> bool:
+        """Return whether the column stands on its base in this state: no tilt, and no rate of it."""
+        return not any(self.lean(*state, *self.parameters))
 
-        Parameters
-        ----------
-        tilt, speed
-            |α| [rad] and |α̇| in the model's own time.
-        vertical
-            a_z [g].
+    def standing(self, state: tuple[float, ...]) -> tuple[float, ...]:
+        """Return the state in which a column that comes to rest from `state` stands."""
+        return (0.0,) * len(state) if self.at_rest is None else self.at_rest(*state, *self.parameters)
 
-        Returns
-        -------
-        float
-            Energy in units that make c² its scale.
-        """
-        del tilt, speed, vertical
-        return math.inf
-
-    def no_return_tilt(self, largest_horizontal: float, least_vertical: float) -> float:
-        """Return the tilt [rad] beyond which a tilt that grows can never come back; infinite if none is known.
-
-        Parameters
-        ----------
-        largest_horizontal
-            sup |a_h| from now on [g].
-        least_vertical
-            inf a_z from now on [g].
-        """
-        del largest_horizontal, least_vertical
-        return math.inf
-
-    def depart(self, push: Push, elapsed: float) -> tuple[float, ...] | None:
-        """Return the state a short time `elapsed` after release, or None where release is not modelled."""
-        del push, elapsed
-        return None
-
-    def pass_upright(
-        self, state: tuple[float, ...], accelerations: tuple[float, float, float]
-    ) -> tuple[float, tuple[float, ...]] | None:
-        """Return the duration and the end of a ballistic passage of the upright from `state`, or None if unknown.
-
-        It is asked for only where the path leads past the upright so closely that its turn cannot be resolved.
-        """
-        del state, accelerations
-        return None
-
-    def planar_rates(
-        self, tilt: float, rate: float, side: float, horizontal: float, vertical: float
-    ) -> tuple[float, float] | None:
-        """Return the rates of (`tilt`, `rate`) in a vertical plane on one `side` (±1) of the upright, or None."""
-        del tilt, rate, side, horizontal, vertical
-        return None
-
-    def from_plane(self, planar: Floats, line: tuple[float, float]) -> Floats:
-        """Return the states, shape (number of states, n), of planar states (tilt, rate) along the unit vector.
-
-        Raises
-        ------
-        UnsupportedError
-            If the model gives `planar_rates` without it.
-        """
-        del planar, line
-        message = f"model {self.name} gives planar_rates and must give from_plane with it"
-        raise UnsupportedError(message)
+    def least_safe_tilt(self, largest_horizontal: float, least_vertical: float) -> float:
+        """Return `no_return_tilt` for these bounds [g], infinite where the model has none."""
+        if self.no_return_tilt is None:
+            return math.inf
+        return self.no_return_tilt(largest_horizontal, least_vertical, *self.parameters)
 
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
         """Return what the model tells besides the tilt, by name.

@@ -1,9 +1,9 @@
 """The slender column that cannot turn about the vertical: equations (1) of the source paper."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +23,82 @@ def rates(  # noqa: D103  the public description is Slender's
     weight = 1.0 + az
     lean = weight * (1.0 - c / math.sqrt(x * x + y * y + _TINY))
     return vx, vy, lean * x - eta * vx - ax, lean * y - eta * vy - ay
+
+
+def lean(x: Any, y: Any, vx: Any, vy: Any, *_: float) -> tuple[Any, Any, Any, Any]:
+    """Return the tilt vector and its rate: the state itself."""
+    return x, y, vx, vy
+
+
+def planar_rates(  # noqa: D103
+    tilt: float, rate: float, side: float, horizontal: float, vertical: float, c: float, eta: float
+) -> tuple[float, float]:
+    # (1) in a vertical plane, û = side
+    return rate, (1.0 + vertical) * (tilt - c * side) - eta * rate - horizontal
+
+
+def from_plane(tilt: Any, rate: Any, ux: float, uy: float, *_: float) -> tuple[Any, Any, Any, Any]:
+    """Return the state of a motion along the unit vector (ux, uy)."""
+    return tilt * ux, tilt * uy, rate * ux, rate * uy
+
+
+def rest_energy(tilt: float, speed: float, vertical: float, c: float, *_: float) -> float:
+    """Return ½|α̇|² + c(1 + a_z)|α|, what is left above the state of rest."""
+    return 0.5 * speed * speed + c * (1.0 + vertical) * tilt
+
+
+def no_return_tilt(largest_horizontal: float, least_vertical: float, c: float, *_: float) -> float:
+    """Return c + sup|a_h|/(1 + inf a_z) [rad].
+
+    From (6), Ä ≥ (1 + a_z)(A − c) − |a_h| − ηȦ: beyond this tilt Ȧ ≥ 0 stays so. With 1 + inf a_z ≤ 0 nothing is
+    certain and the answer is infinite.
+    """
+    weight = 1.0 + least_vertical
+    return c + largest_horizontal / weight if weight > 0.0 else math.inf
+
+
+def departure(push: Push, elapsed: float, _c: float, eta: float, *_: float) -> tuple[float, float, float, float]:
+    """Return the state a short time δ = `elapsed` after release, by series about α = 0.
+
+    Along the push α = Fδ²/2 with F = excess + (excess_rate − η excess) δ/3; across it α = qδ³ with
+    q (6 + 2c/F) = |a_h| × turning_rate, which for F → 0 is a lean that follows −a_h.
+    """
+    capacity = push.acceleration - push.excess  # c(1 + a_z)
+    jerk = push.excess_rate - eta * push.excess
+    mean_excess = push.excess + jerk * elapsed / 3.0
+    if mean_excess <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0
+    along = 0.5 * mean_excess * elapsed**2
+    along_rate = push.excess * elapsed + 0.5 * jerk * elapsed**2
+    turn = push.acceleration * push.turning_rate
+    across = turn * elapsed**3 / (6.0 + 2.0 * capacity / mean_excess)
+    across_rate = across / elapsed * (3.0 + jerk * elapsed / 3.0 / mean_excess)
+    ux, uy = push.direction
+    return (
+        along * ux - across * uy,
+        along * uy + across * ux,
+        along_rate * ux - across_rate * uy,
+        along_rate * uy + across_rate * ux,
+    )
+
+
+def passage(
+    x: float, y: float, vx: float, vy: float, ax: float, ay: float, az: float, c: float, eta: float, *_: float
+) -> tuple[float, tuple[float, float, float, float]]:
+    """Return the duration and the end of a straight passage with offset b at speed v, past the upright.
+
+    The force −c û turns by π within b/v; along a straight path its components integrate in closed form: none along
+    the path, −(2cb/v) asinh(l/b) across it, l being the distance to the point of closest approach.
+    """
+    speed = math.hypot(vx, vy)
+    ux, uy = vx / speed, vy / speed
+    ahead, offset = -(x * ux + y * uy), y * ux - x * uy
+    elapsed = 2.0 * ahead / speed
+    kick = -2.0 * c * (1.0 + az) / speed
+    kick *= offset * math.asinh(ahead / abs(offset)) if offset != 0.0 else 0.0
+    jump_x = -kick * uy - (eta * vx + ax) * elapsed
+    jump_y = kick * ux - (eta * vy + ay) * elapsed
+    return elapsed, (x + (vx + 0.5 * jump_x) * elapsed, y + (vy + 0.5 * jump_y) * elapsed, vx + jump_x, vy + jump_y)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +138,14 @@ class Slender(Model):
             raise ParameterError(message)
         object.__setattr__(self, "damping", require_not_negative("damping", self.damping))
 
-    rates: ClassVar[Callable[..., tuple[float, ...]]] = staticmethod(rates)
+    rates = staticmethod(rates)
+    lean = staticmethod(lean)
+    planar_rates = staticmethod(planar_rates)
+    from_plane = staticmethod(from_plane)
+    rest_energy = staticmethod(rest_energy)
+    no_return_tilt = staticmethod(no_return_tilt)
+    departure = staticmethod(departure)
+    passage = staticmethod(passage)
 
     @property
     def damping_coefficient(self) -> float:
@@ -79,93 +162,10 @@ class Slender(Model):
         scale = self.time_scale
         return tilt[0], tilt[1], tilt_rate[0] * scale, tilt_rate[1] * scale
 
-    def tilt(self, states: Floats) -> Floats:
-        """Return the tilt vectors [rad], shape (2, n)."""
-        return states[:2]
-
-    def tilt_rate(self, states: Floats) -> Floats:
-        """Return the dimensionless rates of the tilt vectors, shape (2, n)."""
-        return states[2:]
-
     @property
     def comes_to_rest(self) -> bool:
         """Whether there is friction."""
         return self.damping > 0.0
-
-    def rest_energy(self, tilt: float, speed: float, vertical: float) -> float:
-        """Return ½|α̇|² + c(1 + a_z)|α|, what is left above the state of rest."""
-        return 0.5 * speed * speed + self.column.slenderness * (1.0 + vertical) * tilt
-
-    def no_return_tilt(self, largest_horizontal: float, least_vertical: float) -> float:
-        """Return c + sup|a_h|/(1 + inf a_z) [rad].
-
-        From (6), Ä ≥ (1 + a_z)(A − c) − |a_h| − ηȦ: beyond this tilt Ȧ ≥ 0 stays so. With 1 + inf a_z ≤ 0 nothing
-        is certain and the answer is infinite.
-        """
-        weight = 1.0 + least_vertical
-        return self.column.slenderness + largest_horizontal / weight if weight > 0.0 else math.inf
-
-    def depart(self, push: Push, elapsed: float) -> tuple[float, float, float, float]:
-        """Return the state a short time δ = `elapsed` after release, by series about α = 0.
-
-        Along the push α = Fδ²/2 with F = excess + (excess_rate − η excess) δ/3; across it α = qδ³ with
-        q (6 + 2c/F) = |a_h| × turning_rate, which for F → 0 is a lean that follows −a_h.
-        """
-        c = push.acceleration - push.excess  # c(1 + a_z)
-        jerk = push.excess_rate - self.damping * push.excess
-        mean_excess = push.excess + jerk * elapsed / 3.0
-        if mean_excess <= 0.0:
-            return 0.0, 0.0, 0.0, 0.0
-        along = 0.5 * mean_excess * elapsed**2
-        along_rate = push.excess * elapsed + 0.5 * jerk * elapsed**2
-        turn = push.acceleration * push.turning_rate
-        across = turn * elapsed**3 / (6.0 + 2.0 * c / mean_excess)
-        across_rate = across / elapsed * (3.0 + jerk * elapsed / 3.0 / mean_excess)
-        ux, uy = push.direction
-        return (
-            along * ux - across * uy,
-            along * uy + across * ux,
-            along_rate * ux - across_rate * uy,
-            along_rate * uy + across_rate * ux,
-        )
-
-    def pass_upright(
-        self, state: tuple[float, ...], accelerations: tuple[float, float, float]
-    ) -> tuple[float, tuple[float, float, float, float]]:
-        """Return the duration and the end of a straight passage with offset b at speed v, past the upright.
-
-        The force −c û turns by π within b/v; along a straight path its components integrate in closed form: none
-        along the path, −(2cb/v) asinh(l/b) across it, l being the distance to the point of closest approach.
-        """
-        x, y, vx, vy = state
-        ax, ay, az = accelerations
-        speed = math.hypot(vx, vy)
-        ux, uy = vx / speed, vy / speed
-        ahead, offset = -(x * ux + y * uy), y * ux - x * uy
-        elapsed = 2.0 * ahead / speed
-        kick = -2.0 * self.column.slenderness * (1.0 + az) / speed
-        kick *= offset * math.asinh(ahead / abs(offset)) if offset != 0.0 else 0.0
-        jump_x = -kick * uy - (self.damping * vx + ax) * elapsed
-        jump_y = kick * ux - (self.damping * vy + ay) * elapsed
-        end = (
-            x + (vx + 0.5 * jump_x) * elapsed,
-            y + (vy + 0.5 * jump_y) * elapsed,
-            vx + jump_x,
-            vy + jump_y,
-        )
-        return elapsed, end
-
-    def planar_rates(
-        self, tilt: float, rate: float, side: float, horizontal: float, vertical: float
-    ) -> tuple[float, float]:
-        """Return the rates of (`tilt`, `rate`) in a vertical plane, with û = `side` (±1)."""
-        c, eta = self.column.slenderness, self.damping
-        return rate, (1.0 + vertical) * (tilt - c * side) - eta * rate - horizontal
-
-    def from_plane(self, planar: Floats, line: tuple[float, float]) -> Floats:
-        """Return the states, shape (4, n), of planar states (tilt, rate) along the unit vector `line`."""
-        tilt, rate = planar
-        return np.stack([tilt * line[0], tilt * line[1], rate * line[0], rate * line[1]])
 
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
         """Return energy [J] and angular momentum about the vertical [kg m²/s], and the centre of pressure [m].
