@@ -1,7 +1,7 @@
 """The column: a rigid body of revolution that stands free on its flat circular base."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 from stylobate.errors import ParameterError, require_positive
@@ -176,6 +176,27 @@ class Column:
             transverse_inertia=ratio * (1.0 - ratio),
             axial_inertia=axial_ratio * radius**2,
             gravity=1.0,
+        )
+
+    def with_slenderness(self, slenderness: float) -> Self:
+        """Return this column with the base radius that gives c = r/h = `slenderness`.
+
+        Height of the centre of mass, mass and transverse inertia stay; the axial inertia goes with r².
+        """
+        radius = require_positive("slenderness", slenderness) * self.mass_height
+        return replace(self, radius=radius, axial_inertia=self.axial_inertia * (radius / self.radius) ** 2)
+
+    def resized(self, size: float) -> Self:
+        """Return a column of the same shape and density with all lengths times `size`."""
+        size = require_positive("size", size)
+        return replace(
+            self,
+            radius=size * self.radius,
+            mass_height=size * self.mass_height,
+            mass=size**3 * self.mass,
+            transverse_inertia=size**5 * self.transverse_inertia,
+            axial_inertia=size**5 * self.axial_inertia,
+            height=None if self.height is None else size * self.height,
         )
 
     @property

@@ -10,7 +10,7 @@ from stylobate.engine.course import Course
 from stylobate.engine.forcing import Forcing
 from stylobate.engine.history import history
 from stylobate.engine.moving import Method, Mover
-from stylobate.engine.thresholds import Thresholds, thresholds_of
+from stylobate.engine.thresholds import Thresholds, rest_is_coarse, thresholds_of
 from stylobate.engine.verdict import Verdict, long_term
 from stylobate.engine.watch import Reason, Watch
 from stylobate.errors import (
@@ -178,7 +178,7 @@ def _verdict(model: Model, motion: BaseMotion, course: Course, rules: OutcomeRul
 
 def _is_uncertain(model: Model, forcing: Forcing, course: Course, thresholds: Thresholds) -> bool:
     close = course.least_passage < _CLOSE_PASSAGE * model.column.slenderness
-    coarse = course.released_from_rest and thresholds.rest_is_coarse(model, forcing)
+    coarse = course.released_from_rest and rest_is_coarse(model, forcing, thresholds.rest_energy)
     return close or coarse or course.ended is Reason.FAILED
 
 

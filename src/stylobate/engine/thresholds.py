@@ -3,7 +3,10 @@
 import math
 from dataclasses import dataclass
 
-from stylobate.engine.forcing import Forcing
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.engine.forcing import Floats, Forcing
 from stylobate.errors import require_not_negative, require_positive
 from stylobate.models import Model
 
@@ -32,11 +35,6 @@ class Thresholds:
     tilt_limit: float = math.inf
     overturned_tilt: float = math.pi / 2.0
 
-    def rest_is_coarse(self, model: Model, forcing: Forcing) -> bool:
-        """Return whether rest may be entered between hops so small that they may have grown instead."""
-        hop = hop_energy(model, forcing)
-        return hop is not None and _REST_ENERGY_HOP * hop < self.rest_energy
-
 
 def thresholds_of(model: Model, forcing: Forcing, tilt_limit: float | None, rest_energy: float | None) -> Thresholds:
     """Return the thresholds of a run; a `tilt_limit` [rad] and a `rest_energy` the user gives are checked."""
@@ -47,24 +45,62 @@ def thresholds_of(model: Model, forcing: Forcing, tilt_limit: float | None, rest
 
 
 def _default_rest_energy(model: Model, forcing: Forcing) -> float:
-    frequency = forcing.highest_frequency
-    if frequency == 0.0:
-        return _REST_ENERGY
-    energy = min(_REST_ENERGY, _REST_ENERGY_ROLLING / frequency**2)
-    hop = hop_energy(model, forcing)
-    return energy if hop is None else min(energy, max(_LEAST_REST_ENERGY, _REST_ENERGY_HOP * hop))
+    return float(usual_rest_energy(*_forced(model, forcing)))
 
 
-def hop_energy(model: Model, forcing: Forcing) -> float | None:
-    """Return the energy [c²] that a harmonic peak gives a column it has just released; None if it cannot release it.
+def rest_is_coarse(model: Model, forcing: Forcing, rest_energy: float) -> bool:
+    """Return whether rest may be entered between hops so small that they may have grown instead."""
+    return bool(coarse(rest_energy, *_forced(model, forcing)))
+
+
+def _forced(model: Model, forcing: Forcing) -> tuple[float, float, float, float]:
+    least = forcing.least_vertical(0.0)
+    return forcing.highest_frequency, forcing.largest_horizontal(0.0), least, model.rest_capacity
+
+
+def usual_rest_energy(
+    frequency: npt.ArrayLike, largest: npt.ArrayLike, least_vertical: npt.ArrayLike, capacity: npt.ArrayLike
+) -> Floats:
+    """Return the ε at which rest is entered where nobody asks for another; arguments of any one shape.
+
+    Parameters
+    ----------
+    frequency
+        The highest dimensionless frequency of the base motion; 0 for a base at rest.
+    largest, least_vertical
+        sup |a_h| and inf a_z [g].
+    capacity
+        |a_h|/(1 + a_z) up to which the column stays.
+    """
+    theta = np.asarray(frequency, dtype=float)
+    with np.errstate(divide="ignore"):
+        energy = np.minimum(_REST_ENERGY, _REST_ENERGY_ROLLING / theta**2)
+    hop = hop_energy(frequency, largest, least_vertical, capacity)
+    finest = np.maximum(_LEAST_REST_ENERGY, _REST_ENERGY_HOP * hop)
+    return np.where(np.isnan(hop), energy, np.minimum(energy, finest))
+
+
+def coarse(
+    rest_energy: npt.ArrayLike,
+    frequency: npt.ArrayLike,
+    largest: npt.ArrayLike,
+    least_vertical: npt.ArrayLike,
+    capacity: npt.ArrayLike,
+) -> npt.NDArray[np.bool_]:
+    """Return whether `rest_energy` is above a hundredth of what a column has that was just released."""
+    hop = hop_energy(frequency, largest, least_vertical, capacity)
+    return ~np.isnan(hop) & (_REST_ENERGY_HOP * hop < rest_energy)
+
+
+def hop_energy(
+    frequency: npt.ArrayLike, largest: npt.ArrayLike, least_vertical: npt.ArrayLike, capacity: npt.ArrayLike
+) -> Floats:
+    """Return the energy [c²] that a harmonic peak gives a column it has just released; NaN if it cannot release it.
 
     With |a_h| = c(1 + δ) at the peak the excess lasts 2√(2δ)/θ and leaves the speed (4/3)√2 c δ^{3/2}/θ.
     """
-    weight = 1.0 + forcing.least_vertical(0.0)
-    if weight <= 0.0:
-        return math.inf
-    excess = forcing.largest_horizontal(0.0) / (model.rest_capacity * weight) - 1.0
-    if excess <= 0.0:
-        return None
-    frequency = forcing.highest_frequency
-    return 16.0 / 9.0 * excess**3 / frequency**2 if frequency > 0.0 else math.inf
+    weight = 1.0 + np.asarray(least_vertical, dtype=float)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        excess = np.asarray(largest) / (np.asarray(capacity) * weight) - 1.0
+        energy = 16.0 / 9.0 * excess**3 / np.square(frequency)
+    return np.where(weight <= 0.0, np.inf, np.where(excess > 0.0, energy, np.nan))

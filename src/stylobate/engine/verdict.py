@@ -2,8 +2,10 @@
 
 import math
 from dataclasses import dataclass
+from enum import IntEnum
 
 import numpy as np
+import numpy.typing as npt
 
 from stylobate.engine.forcing import Floats
 from stylobate.engine.trajectory import Trajectory
@@ -26,16 +28,114 @@ class Verdict:
     measures: dict[str, float]
 
 
+class Ground(IntEnum):
+    """On what an outcome rests that is told from the last periods."""
+
+    NO_PERIOD = 0
+    SHORT = 1
+    ROLLS = 2
+    ROCKS = 3
+    SHORT_FOR_MODULATION = 4
+    DRIFTS = 5
+    MODULATED = 6
+    NOT_SETTLED = 7
+    UNSTEADY = 8
+
+
+_VERDICTS = {
+    Ground.NO_PERIOD: (Outcome.STILL_MOVING, "it moved to the end of the run"),
+    Ground.SHORT: (
+        Outcome.STILL_MOVING,
+        "the run is shorter than the {more} periods of the base motion by which a steady motion is told",
+    ),
+    Ground.ROLLS: (Outcome.ROLLING, "it rolled once round in each of the last {n} periods and repeats"),
+    Ground.ROCKS: (Outcome.ROCKING, "it repeats over the last {n} periods without travelling round"),
+    Ground.SHORT_FOR_MODULATION: (
+        Outcome.STILL_MOVING,
+        "the run is shorter than the {twice} periods of the base motion by which modulation is told",
+    ),
+    Ground.DRIFTS: (Outcome.STILL_MOVING, "its last {both} periods are no steady motion"),
+    Ground.MODULATED: (Outcome.MODULATED, "it rolls at the mean rate of the base motion, its tilt modulated"),
+    Ground.NOT_SETTLED: (
+        Outcome.STILL_MOVING,
+        "it rolls at the mean rate of the base motion and has not settled; follow it longer",
+    ),
+    Ground.UNSTEADY: (Outcome.STILL_MOVING, "its last {n} periods are no steady motion"),
+}
+
+
+def outcome_on(ground: Ground) -> Outcome:
+    """Return the outcome that rests on `ground`."""
+    return _VERDICTS[ground][0]
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """What the last n periods of runs show; numbers or arrays of one shape.
+
+    Parameters
+    ----------
+    turned
+        How far the lean travelled round [turns].
+    least_tilt
+        [units of c].
+    repetition
+        The largest difference of states one period apart, over the largest tilt or rate.
+    repetition_before
+        The same over the n periods before; NaN where the run is too short for them.
+    drift
+        Change of the mean lag behind the forcing from those periods to the last [turns].
+    """
+
+    turned: npt.ArrayLike
+    least_tilt: npt.ArrayLike
+    repetition: npt.ArrayLike
+    repetition_before: npt.ArrayLike
+    drift: npt.ArrayLike
+
+
+def grounds(evidence: Evidence, rules: OutcomeRules) -> npt.NDArray[np.int8]:
+    """Return on which `Ground` the outcome of each run rests."""
+    n = rules.periods
+    turned, repetition = np.abs(evidence.turned), np.asarray(evidence.repetition)
+    before = np.asarray(evidence.repetition_before)
+    off = np.abs(turned / n - 1.0)
+    tilted = np.asarray(evidence.least_tilt) > rules.rest_tilt
+    repeats = repetition < rules.repeat_tolerance
+    follows = tilted & (off * n < _LESS_THAN_ONE_TURN) & ~repeats
+    with np.errstate(divide="ignore", invalid="ignore"):
+        settled = np.abs(repetition / before - 1.0) < rules.settled_tolerance
+    chosen = np.select(
+        [
+            repeats & tilted & (off < rules.frequency_tolerance),
+            repeats & (turned < rules.frequency_tolerance * n),
+            follows & np.isnan(before),
+            follows & ~(np.asarray(evidence.drift) / n < rules.frequency_tolerance),
+            follows & settled & (repetition > rules.modulation_floor),
+            follows,
+        ],
+        [
+            Ground.ROLLS,
+            Ground.ROCKS,
+            Ground.SHORT_FOR_MODULATION,
+            Ground.DRIFTS,
+            Ground.MODULATED,
+            Ground.NOT_SETTLED,
+        ],
+        Ground.UNSTEADY,
+    )
+    return chosen.astype(np.int8)
+
+
 def long_term(
     model: Model, trajectory: Trajectory, period: float | None, rules: OutcomeRules, *, planar: bool
 ) -> Verdict:
     """Judge the last periods of a run that neither stands nor overturned; `period` is that of the forcing, or None."""
     n = rules.periods
     if period is None:
-        return Verdict(Outcome.STILL_MOVING, "it moved to the end of the run", {})
+        return _verdict_on(Ground.NO_PERIOD, n, {})
     if trajectory.end < (n + 1) * period:
-        reason = f"the run is shorter than the {n + 1} periods of the base motion by which a steady motion is told"
-        return Verdict(Outcome.STILL_MOVING, reason, {})
+        return _verdict_on(Ground.SHORT, n, {})
     late = _Window.of(model, trajectory, trajectory.end, n, period)
     turned = 0.0 if planar else late.turned
     measures = {
@@ -45,45 +145,21 @@ def long_term(
         "least_tilt_late": late.least_tilt,
         "largest_tilt_late": late.largest_tilt,
     }
-    off = abs(abs(turned) / n - 1.0)
-    tilted = late.least_tilt > rules.rest_tilt * model.column.slenderness
-    if late.repetition < rules.repeat_tolerance:
-        if tilted and off < rules.frequency_tolerance:
-            reason = f"it rolled once round in each of the last {n} periods and repeats"
-            return Verdict(Outcome.ROLLING, reason, measures)
-        if abs(turned) < rules.frequency_tolerance * n:
-            return Verdict(Outcome.ROCKING, f"it repeats over the last {n} periods without travelling round", measures)
-    # The lag of a modulated motion swings to and fro: its mean rate is told from averages over windows.
-    elif tilted and off * n < _LESS_THAN_ONE_TURN:
-        return _modulated(model, trajectory, period, rules, late, measures)
-    return Verdict(Outcome.STILL_MOVING, f"its last {n} periods are no steady motion", measures)
+    repetition_before = drift = math.nan
+    if trajectory.end >= (2 * n + 1) * period:
+        before = _Window.of(model, trajectory, trajectory.end - n * period, n, period)
+        drift = abs(late.mean_lag - before.mean_lag)
+        repetition_before = before.repetition
+        change = abs(late.repetition / before.repetition - 1.0) if before.repetition > 0.0 else 0.0
+        measures |= {"modulation_change": change, "rolling_rate_error": drift / n}
+    tilt = late.least_tilt / model.column.slenderness
+    evidence = Evidence(turned, tilt, late.repetition, repetition_before, drift)
+    return _verdict_on(Ground(int(grounds(evidence, rules))), n, measures)
 
 
-def _modulated(
-    model: Model,
-    trajectory: Trajectory,
-    period: float,
-    rules: OutcomeRules,
-    late: "_Window",
-    measures: dict[str, float],
-) -> Verdict:
-    n = rules.periods
-    if trajectory.end < (2 * n + 1) * period:
-        reason = f"the run is shorter than the {2 * n + 1} periods of the base motion by which modulation is told"
-        return Verdict(Outcome.STILL_MOVING, reason, measures)
-    before = _Window.of(model, trajectory, trajectory.end - n * period, n, period)
-    drift = abs(late.mean_lag - before.mean_lag) / n
-    change = abs(late.repetition / before.repetition - 1.0)
-    measures = measures | {"modulation_change": change, "rolling_rate_error": drift}
-    if not drift < rules.frequency_tolerance:
-        return Verdict(Outcome.STILL_MOVING, f"its last {2 * n} periods are no steady motion", measures)
-    if change < rules.settled_tolerance and late.repetition > rules.modulation_floor:
-        return Verdict(Outcome.MODULATED, "it rolls at the mean rate of the base motion, its tilt modulated", measures)
-    return Verdict(
-        Outcome.STILL_MOVING,
-        "it rolls at the mean rate of the base motion and has not settled; follow it longer",
-        measures,
-    )
+def _verdict_on(ground: Ground, n: int, measures: dict[str, float]) -> Verdict:
+    outcome, reason = _VERDICTS[ground]
+    return Verdict(outcome, reason.format(n=n, more=n + 1, both=2 * n, twice=2 * n + 1), measures)
 
 
 @dataclass(frozen=True, slots=True)
