@@ -15,10 +15,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from stylobate import errors, motions, plots, spec, studies, theory
+    from stylobate import errors, motions, plots, results, spec, studies, theory
     from stylobate.column import Column
-    from stylobate.engine import simulate
-    from stylobate.errors import Outcome
+    from stylobate.engine import simulate, simulate_ensemble, with_parameters
+    from stylobate.errors import Interrupted, Outcome
     from stylobate.models import Model, Slender
     from stylobate.motions import BaseMotion, Harmonic
     from stylobate.plots import plot
@@ -29,6 +29,7 @@ __all__ = [
     "Column",
     "Event",
     "Harmonic",
+    "Interrupted",
     "Model",
     "Outcome",
     "OutcomeRules",
@@ -40,10 +41,13 @@ __all__ = [
     "motions",
     "plot",
     "plots",
+    "results",
     "simulate",
+    "simulate_ensemble",
     "spec",
     "studies",
     "theory",
+    "with_parameters",
 ]
 
 _HOMES = {
@@ -51,6 +55,7 @@ _HOMES = {
     "Column": "column",
     "Event": "results",
     "Harmonic": "motions",
+    "Interrupted": "errors",
     "Model": "models",
     "Outcome": "errors",
     "OutcomeRules": "results",
@@ -59,8 +64,10 @@ _HOMES = {
     "load": "results",
     "plot": "plots",
     "simulate": "engine",
+    "simulate_ensemble": "engine",
+    "with_parameters": "engine",
 }
-_MODULES = ("errors", "motions", "plots", "spec", "studies", "theory")
+_MODULES = ("errors", "motions", "plots", "results", "spec", "studies", "theory")
 
 
 def __getattr__(name: str) -> Any:

@@ -8,12 +8,15 @@
     ├── UnsupportedError               a study asks for what a model lacks
     └── FileError                      a file that cannot be read or written
 
+    Interrupted (KeyboardInterrupt)    Ctrl-C in the middle of many runs; carries what had been computed
+
 Misuse is an exception. What the physics does, numerical failure included, is an `Outcome`.
 """
 
 import math
 from collections.abc import Sequence
 from enum import Enum
+from typing import Any
 
 
 class StylobateError(Exception):
@@ -44,6 +47,20 @@ class UnsupportedError(StylobateError):
 
 class FileError(StylobateError):
     """A file that cannot be read or written; the message names it."""
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C in the middle of many runs.
+
+    Attributes
+    ----------
+    partial
+        The result so far, an xarray.Dataset: outcome −1 and NaN where nothing had been computed.
+    """
+
+    def __init__(self, message: str, partial: Any) -> None:
+        super().__init__(message)
+        self.partial = partial
 
 
 class Outcome(Enum):

@@ -163,7 +163,9 @@ def test_the_data_agree_among_themselves(run):
     for name in set(data.data_vars) - {"resting"}:
         assert data[name].attrs["units"], name
         assert data[name].attrs["long_name"], name
-    assert run.measures["largest_tilt"] == float(data.amplitude.max())
+    # Sought between the samples: above the largest of them, by less than the parabola through 48 samples a swing.
+    largest = float(data.amplitude.max())
+    assert largest <= run.measures["largest_tilt"] <= largest * (1.0 + 0.5 * (math.pi / 48.0) ** 2)
     assert run.measures["turns"] == pytest.approx(float(data.azimuth[-1] - data.azimuth[0]) / (2.0 * math.pi))
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
+from scipy.optimize import minimize_scalar
 
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.trajectory import Trajectory
@@ -90,18 +91,32 @@ def _dataset(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Flo
 
 
 def _measures(model: Model, trajectory: Trajectory, data: xr.Dataset, *, planar: bool) -> dict[str, float]:
-    amplitude, azimuth = data["amplitude"].to_numpy(), data["azimuth"].to_numpy()
-    largest = int(np.argmax(amplitude))
+    amplitude = data["amplitude"].to_numpy()
+    largest, when = _largest_tilt(model, trajectory, amplitude, data["time"].to_numpy() / model.time_scale)
     # In a plane the lean changes sides; the contact point does not travel round the rim.
-    known = azimuth[np.isfinite(azimuth) & (not planar)]
+    moving = [] if planar else [piece.azimuths for piece in trajectory.pieces if piece.azimuths.size]
     return {
-        "largest_tilt": float(amplitude[largest]),
-        "largest_tilt_over_c": float(amplitude[largest]) / model.column.slenderness,
-        "time_of_largest_tilt": float(data["time"][largest]),
+        "largest_tilt": largest,
+        "largest_tilt_over_c": largest / model.column.slenderness,
+        "time_of_largest_tilt": when * model.time_scale,
         "least_tilt": float(amplitude.min()),
-        "turns": float(known[-1] - known[0]) / (2.0 * math.pi) if known.size else 0.0,
+        "turns": float(moving[-1][-1] - moving[0][0]) / (2.0 * math.pi) if moving else 0.0,
         "steps": float(trajectory.steps),
     }
+
+
+def _largest_tilt(model: Model, trajectory: Trajectory, amplitude: Floats, tau: Floats) -> tuple[float, float]:
+    """Return the largest tilt and when it is reached, sought on dense output about the largest sample."""
+    top = int(np.argmax(amplitude))
+    low, high = float(tau[max(top - 1, 0)]), min(float(tau[min(top + 1, tau.size - 1)]), trajectory.end)
+
+    def below(time: float) -> float:
+        return -float(np.hypot(*model.tilt(trajectory.states(np.array([time]))))[0])
+
+    found = minimize_scalar(below, bounds=(low, high), method="bounded", options={"xatol": 1e-9 * (high - low)})
+    if -found.fun > amplitude[top]:
+        return -float(found.fun), float(found.x)
+    return float(amplitude[top]), float(tau[top])
 
 
 def _along_time(values: Floats, units: str, long_name: str) -> xr.Variable:

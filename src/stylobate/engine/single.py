@@ -103,7 +103,7 @@ def simulate(
     >>> sb.simulate(model, shaking, duration=50.0).outcome
     <Outcome.OVERTURNED: 'overturned'>
     """
-    _require_nouns(model, motion, rules)
+    require_nouns(model, motion, rules)
     moved = BASE_AT_REST if motion is None else motion
     start_tilt = _pair("tilt", tilt, "rad")
     if math.hypot(*start_tilt) >= math.pi / 2.0:
@@ -115,7 +115,7 @@ def simulate(
     method = _method(model, moved, rtol, atol, max_steps)
     forcing = Forcing.of(model, moved)
     thresholds = thresholds_of(model, forcing, tilt_limit, rest_energy)
-    _check_motion(forcing, duration)
+    check_motion(moved, duration)
     rules = rules or OutcomeRules()
     mover = Mover(model, forcing, Watch(model, forcing, thresholds), method)
     course = Course(model, forcing, mover, duration / model.time_scale)
@@ -205,9 +205,9 @@ def _method(model: Model, motion: BaseMotion, rtol: float, atol: float | None, m
     )
 
 
-def _check_motion(forcing: Forcing, duration: float) -> None:
-    # A motion of the user's own may break its promises: better told here than by a wrong outcome.
-    motion, time = forcing.motion, np.linspace(0.0, duration, _MOTION_SAMPLES)
+def check_motion(motion: BaseMotion, duration: float) -> None:
+    """Raise ParameterError if `motion` breaks a promise: better told here than by a wrong outcome."""
+    time = np.linspace(0.0, duration, _MOTION_SAMPLES)
     parts = motion.derivative(time, ACCELERATION)
     if len(parts) != _COMPONENTS or any(np.shape(part) != time.shape for part in parts):
         message = f"motion.derivative must return three arrays of the shape of time, got {parts!r}"
@@ -227,7 +227,8 @@ def _pair(name: str, value: Sequence[float], unit: str) -> tuple[float, float]:
     return x, y
 
 
-def _require_nouns(model: Model, motion: BaseMotion | None, rules: OutcomeRules | None) -> None:
+def require_nouns(model: Model, motion: BaseMotion | None, rules: OutcomeRules | None) -> None:
+    """Raise ParameterError if one of these is not what its name says."""
     if not isinstance(model, Model):
         message = f"model must be a model such as Slender(column), got {model!r}"
         raise ParameterError(message)

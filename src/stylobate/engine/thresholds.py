@@ -89,7 +89,7 @@ def coarse(
 ) -> npt.NDArray[np.bool_]:
     """Return whether `rest_energy` is above a hundredth of what a column has that was just released."""
     hop = hop_energy(frequency, largest, least_vertical, capacity)
-    return ~np.isnan(hop) & (_REST_ENERGY_HOP * hop < rest_energy)
+    return ~np.isnan(hop) & (_REST_ENERGY_HOP * hop < np.asarray(rest_energy, dtype=float))
 
 
 def hop_energy(

@@ -16,9 +16,10 @@ from stylobate.models.model import Floats, Model, Output, Push
 _TINY = 1e-300
 
 
-def rates(  # noqa: D103  the public description is Slender's
+def rates(
     x: float, y: float, vx: float, vy: float, ax: float, ay: float, az: float, c: float, eta: float
 ) -> tuple[float, float, float, float]:
+    """Return the right-hand side of (1): rates of tilt vector and tilt rate."""
     # (1): α̈ = (1 + a_z)(α − c û) − η α̇ − a_h, û = α/|α|
     weight = 1.0 + az
     lean = weight * (1.0 - c / math.sqrt(x * x + y * y + _TINY))
@@ -30,10 +31,10 @@ def lean(x: Any, y: Any, vx: Any, vy: Any, *_: float) -> tuple[Any, Any, Any, An
     return x, y, vx, vy
 
 
-def planar_rates(  # noqa: D103
+def planar_rates(
     tilt: float, rate: float, side: float, horizontal: float, vertical: float, c: float, eta: float
 ) -> tuple[float, float]:
-    # (1) in a vertical plane, û = side
+    """Return the right-hand side of (1) in a vertical plane, with û = `side` (±1)."""
     return rate, (1.0 + vertical) * (tilt - c * side) - eta * rate - horizontal
 
 

@@ -1,0 +1,177 @@
+"""Many runs at once: `simulate_ensemble`."""
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import asdict
+from typing import Any
+
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.engine.ensembles.batch import Batch, Plan
+from stylobate.engine.ensembles.broadcasting import AXIS, ArrayLike, Runs, broadcast
+from stylobate.engine.ensembles.motion_columns import MotionPlan
+from stylobate.engine.ensembles.options import Options
+from stylobate.engine.ensembles.pool import Halt, parts_of, run_parts, usual_threads
+from stylobate.engine.ensembles.summaries import QUANTITIES, Arrays, empty, summaries
+from stylobate.engine.parameters import check_names
+from stylobate.engine.single import check_motion, require_nouns
+from stylobate.errors import Interrupted, require_whole
+from stylobate.models import Model
+from stylobate.motions import BASE_AT_REST, BaseMotion
+from stylobate.results import OutcomeRules
+from stylobate.spec import provenance_of_run
+
+
+def simulate_ensemble(
+    model: Model,
+    motion: BaseMotion | None = None,
+    *,
+    tilt: ArrayLike = (0.0, 0.0),
+    tilt_rate: ArrayLike = (0.0, 0.0),
+    duration: ArrayLike,
+    parameters: Mapping[str, ArrayLike] | None = None,
+    rtol: float = 1e-8,
+    atol: float | None = None,
+    tilt_limit: float | None = None,
+    rest_energy: float | None = None,
+    max_steps: int = 200_000,
+    samples: int | None = None,
+    strobes: int = 0,
+    rules: OutcomeRules | None = None,
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> xr.Dataset:
+    """Follow many columns, each from its start to its outcome.
+
+    The runs are integrated as those of `simulate`, by DOP853 with the same events, outcomes and tolerances, many at a
+    time in compiled code. The equations are compiled for the machine when a model first meets a kind of base motion,
+    and kept in the user's cache folder ($STYLOBATE_CACHE names another). A run's result does not depend on the other
+    runs.
+
+    Parameters
+    ----------
+    model
+        The column with its equations of motion.
+    motion
+        The base motion; None is a base at rest.
+    tilt, tilt_rate
+        Starts [rad], [rad/s]: shape (2,) for all, (n, 2) with the dimension `run`, or a DataArray with a dimension
+        "axis" and any others.
+    duration
+        How long to follow them [s]: a number, shape (n,), or a DataArray.
+    parameters
+        Numbers of column, model and motion that differ between the runs, by name, each of the shapes of `duration`;
+        the names are those of `with_parameters`. All arrays are broadcast together by the names of their dimensions.
+    rtol, atol, tilt_limit, rest_energy, max_steps, rules
+        As in `simulate`; the same for all runs.
+    samples
+        Keep histories, at so many equal times over each run.
+    strobes
+        Keep so many of the last states at which the base motion has phase zero (Ωt + start_phase a whole number of
+        turns), one a period.
+    threads
+        Threads to run on; by default all cores.
+    progress
+        Called as `progress(runs done, runs in all)` now and then.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over the dimensions of the arguments: `outcome` (codes, see its `flag_meanings`), when it was decided, the end
+        state, the largest and least tilt, turns of the contact point, and over the last periods mean tilt, phase of
+        the lean to the base acceleration, mean rolling rate and repetition; NaN where a run has none.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range, or two have different lengths along a dimension.
+    UnsupportedError
+        If the model cannot be compiled or the motion lacks a number that is to be changed.
+    Interrupted
+        After Ctrl-C; its `partial` is the Dataset with what had been computed.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> motion = sb.Harmonic.circular(acceleration=0.15, angular_frequency=0.5)
+    >>> runs = sb.simulate_ensemble(model, motion, duration=50.0, parameters={"acceleration": [0.05, 0.15]})
+    >>> [sb.results.outcome_of(code).name for code in runs["outcome"].values]
+    ['AT_REST', 'OVERTURNED']
+    """
+    require_nouns(model, motion, rules)
+    moved = BASE_AT_REST if motion is None else motion
+    changes = dict(parameters or {})
+    check_names(model, changes)
+    options = Options.checked(
+        rtol=rtol,
+        atol=atol,
+        tilt_limit=tilt_limit,
+        rest_energy=rest_energy,
+        max_steps=max_steps,
+        samples=samples,
+        strobes=strobes,
+        rules=rules,
+    )
+    threads = usual_threads() if threads is None else require_whole("threads", threads, least=1)
+    runs = broadcast(tilt, tilt_rate, duration, changes)
+    arrays = empty(options, len(runs))
+    plan = Plan(model, MotionPlan.of(moved, runs.values, runs.duration), options)
+    if plan.motion.terms is None and len(runs):
+        check_motion(moved, float(runs.duration.max()))
+
+    def result() -> xr.Dataset:
+        return _dataset(runs, arrays, _provenance(model, moved, options))
+
+    if _followed(plan, runs, arrays, threads, progress):
+        return result()
+    message = "interrupted; `partial` has what had been computed"
+    raise Interrupted(message, result())
+
+
+def _followed(
+    plan: Plan, runs: Runs, arrays: Arrays, threads: int, progress: Callable[[int, int], None] | None
+) -> bool:
+    """Fill `arrays`; return False after Ctrl-C."""
+    done = 0
+
+    def compute(part: slice, halt: Halt) -> None:
+        batch = Batch.of(plan, runs.part(part))
+        batch.advance(halt)
+        for name, values in summaries(batch).items():
+            arrays[name][part] = values
+
+    def count(part: slice) -> None:
+        nonlocal done
+        done += part.stop - part.start
+        if progress is not None:
+            progress(done, len(runs))
+
+    return run_parts(parts_of(len(runs), threads), compute, threads, count)
+
+
+def _provenance(model: Model, motion: BaseMotion, options: Options) -> dict[str, Any]:
+    kept = asdict(options) | {"samples": options.samples or None}
+    return provenance_of_run(model, motion, **kept)
+
+
+def _dataset(runs: Runs, arrays: Mapping[str, npt.NDArray[Any]], provenance: Mapping[str, Any]) -> xr.Dataset:
+    variables = {
+        name: xr.Variable(
+            (*runs.dims, *QUANTITIES[name].dims),
+            values.reshape(*runs.shape, *values.shape[1:]),
+            dict(QUANTITIES[name].attributes),
+        )
+        for name, values in arrays.items()
+    }
+    coordinates: dict[str, Any] = {AXIS: ["x", "y"]}
+    for name, array in runs.coordinates.items():
+        for label, index in array.coords.items():
+            coordinates.setdefault(str(label), index)
+        # Along a dimension of its own name it is the index, which is there already.
+        if name not in coordinates:
+            coordinates[name] = array.variable
+    return xr.Dataset(
+        variables, coords=coordinates, attrs={"kind": "ensemble", "provenance": json.dumps(dict(provenance))}
+    )

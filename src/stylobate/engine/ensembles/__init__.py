@@ -1,0 +1,1 @@
+"""Ensembles: from arguments of any shape to labelled results, in parts that run side by side."""

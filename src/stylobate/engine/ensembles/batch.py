@@ -1,0 +1,221 @@
+"""A part of an ensemble on its way: the table that kernels read and write, and its passage through them."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.engine.ensembles.broadcasting import Runs
+from stylobate.engine.ensembles.model_columns import ModelColumns
+from stylobate.engine.ensembles.motion_columns import MotionColumns, MotionPlan
+from stylobate.engine.ensembles.options import Options
+from stylobate.engine.lanes.columns import LOG, NOTE, STATE, Log, Setup, Status
+from stylobate.engine.lanes.kernels import Kernel, kernel_of
+from stylobate.engine.lanes.step_source import Shape
+from stylobate.engine.thresholds import usual_rest_energy
+from stylobate.models import Model
+
+Floats = npt.NDArray[np.float64]
+
+WIDTH = 16
+"""Lanes of a kernel: two vectors of AVX-512, whose divisions overlap."""
+
+_ATOL_SHARE = 0.01
+_PARALLEL_ULP = 8.0
+# A motion out of a plane that begins exactly at the upright begins this far from it [units of c], along its speed.
+_FIRST_STEP_OFF = 1e-13
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What is the same for all runs of an ensemble, decided before the first."""
+
+    model: Model
+    motion: MotionPlan
+    options: Options
+
+    def kernel(self, *, planar: bool) -> Kernel:
+        """Return the kernel of motion in a plane, or in space."""
+        shape = Shape(
+            states=len(self.model.state_names),
+            parameters=len(self.model.parameters),
+            planar=planar,
+            forcing=self.motion.source(planar=planar),
+            width=WIDTH,
+        )
+        return kernel_of(type(self.model), shape)
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """Some runs in the units of their models.
+
+    `planar` tells which runs begin in a plane, and when they have run, which ended in one.
+    """
+
+    plan: Plan
+    models: ModelColumns
+    motions: MotionColumns
+    rest_energy: Floats
+    planar: npt.NDArray[np.bool_]
+    table: Floats
+
+    @classmethod
+    def of(cls, plan: Plan, runs: Runs) -> "Batch":
+        """Return these runs, ready to go.
+
+        Raises
+        ------
+        ParameterError
+            If a value is out of range.
+        """
+        models = ModelColumns.of(plan.model, runs.values, runs.tilt, runs.tilt_rate)
+        motions = MotionColumns.of(plan.motion, runs.values, models)
+        energy = _rest_energy(plan.options, models, motions)
+        table = _empty_table(plan, len(runs), motions.breaks.shape[1])
+        _fill_setup(table, plan.options, runs, models, motions, energy)
+        planar = _fill_starts(table, plan.model, runs, models, motions)
+        shape = plan.kernel(planar=False).shape
+        table[:, shape.parameters_at : shape.motion_at] = models.parameters
+        table[:, shape.motion_at : shape.breaks_at] = motions.columns
+        table[:, shape.breaks_at : shape.breaks_at + motions.breaks.shape[1]] = motions.breaks
+        return cls(plan, models, motions, energy, planar, table)
+
+    def log(self, column: Log) -> Floats:
+        """Return what was noted of all runs."""
+        return self.table[:, LOG + column]
+
+    def notes(self, *, strobes: bool) -> Floats:
+        """Return the samples or strobes, shape (n, number, 5): tilt x and y, their rates, time; NaN where none."""
+        options = self.plan.options
+        first = self.plan.kernel(planar=False).shape.breaks_at + self.motions.breaks.shape[1]
+        count = options.strobes if strobes else options.samples
+        first += NOTE * options.samples if strobes else 0
+        return self.table[:, first : first + NOTE * count].reshape(len(self.table), count, NOTE)
+
+    def advance(self, halt: npt.NDArray[np.uint8]) -> bool:
+        """Run to the end; return whether it got there before `halt[0]` was set."""
+        finished = self._through(planar=False, chosen=~self.planar, halt=halt)
+        released = self.log(Log.STATUS) == Status.TO_PLANE
+        self._to_plane(released)
+        self.planar[released] = True
+        return self._through(planar=True, chosen=self.planar, halt=halt) and finished
+
+    def _through(self, *, planar: bool, chosen: npt.NDArray[np.bool_], halt: npt.NDArray[np.uint8]) -> bool:
+        if not chosen.any():
+            return True
+        table = np.ascontiguousarray(self.table[chosen])
+        finished = self.plan.kernel(planar=planar).advance(table, self.plan.motion.pieces, halt)
+        self.table[chosen] = table
+        return finished
+
+    def _to_plane(self, chosen: npt.NDArray[np.bool_]) -> None:
+        """Take the state of these runs from space to tilt and rate along their line."""
+        part = self.table[chosen]
+        states = len(self.plan.model.state_names)
+        leans = self.plan.model.lean(*part[:, STATE : STATE + states].T, *self.models.parameters[chosen].T)
+        line = part[:, Setup.LINE_X], part[:, Setup.LINE_Y]
+        x, y, vx, vy = leans
+        part[:, STATE] = x * line[0] + y * line[1]
+        part[:, STATE + 1] = vx * line[0] + vy * line[1]
+        part[:, LOG + Log.STATUS] = Status.WAITING
+        self.table[chosen] = part
+
+
+def _rest_energy(options: Options, models: ModelColumns, motions: MotionColumns) -> Floats:
+    if options.rest_energy is None:
+        energy = usual_rest_energy(motions.frequency, motions.largest, motions.least_vertical, models.capacity)
+    else:
+        energy = np.full(len(models.capacity), options.rest_energy)
+    return np.where(models.comes_to_rest, energy, 0.0)
+
+
+def _empty_table(plan: Plan, count: int, breaks: int) -> Floats:
+    options = plan.options
+    notes = plan.kernel(planar=False).shape.breaks_at + breaks
+    table = np.zeros((count, notes + NOTE * (options.samples + options.strobes)))
+    table[:, notes:] = np.nan
+    for column in (Log.FIRST_AZIMUTH, Log.LAST_AZIMUTH):
+        table[:, LOG + column] = np.nan
+    table[:, LOG + Log.LEAST_PASSAGE] = np.inf
+    return table
+
+
+def _fill_setup(
+    table: Floats, options: Options, runs: Runs, models: ModelColumns, motions: MotionColumns, energy: Floats
+) -> None:
+    atol = _ATOL_SHARE * options.rtol * models.slenderness if options.atol is None else options.atol
+    with np.errstate(divide="ignore"):
+        # Half the shortest period: no step can miss the forcing.
+        longest = math.pi / motions.frequency
+    columns = {
+        Setup.END: runs.duration / models.time_scale,
+        Setup.RTOL: options.rtol,
+        Setup.ATOL: atol,
+        Setup.MOST_STEPS: options.max_steps,
+        Setup.LONGEST_STEP: longest,
+        Setup.SLENDERNESS: models.slenderness,
+        Setup.CAPACITY: models.capacity,
+        Setup.TILT_LIMIT: math.inf if options.tilt_limit is None else options.tilt_limit,
+        Setup.OVERTURNED_TILT: options.overturned_tilt,
+        Setup.REST_ENERGY: energy,
+        Setup.LARGEST_HORIZONTAL: motions.largest,
+        Setup.LEAST_VERTICAL: motions.least_vertical,
+        Setup.LARGEST_VERTICAL: motions.largest_vertical,
+        Setup.TIME_SCALE: models.time_scale,
+        Setup.FREQUENCY: motions.frequency,
+        Setup.PERIOD: motions.period,
+        Setup.STROBE: (-motions.phase - np.floor(-motions.phase)) * motions.period,
+        Setup.PERIODS: options.rules.periods,
+        Setup.BREAKS: motions.breaks.shape[1],
+        Setup.SAMPLES: options.samples,
+        Setup.STROBES: options.strobes,
+    }
+    for column, values in columns.items():
+        table[:, column] = values
+
+
+def _fill_starts(
+    table: Floats, model: Model, runs: Runs, models: ModelColumns, motions: MotionColumns
+) -> npt.NDArray[np.bool_]:
+    """Set states and lines; return which runs begin in a plane."""
+    states = models.states.copy()
+    rate = runs.tilt_rate * models.time_scale[:, np.newaxis]
+    stands = ~(np.any(runs.tilt, axis=1) | np.any(rate, axis=1))
+    base_line = common_lines(motions.directions)
+    line = common_lines(np.concatenate([runs.tilt[:, np.newaxis], rate[:, np.newaxis], motions.directions], axis=1))
+    planar = np.any(line, axis=1) & (model.planar_rates is not None)
+    table[:, [Setup.LINE_X, Setup.LINE_Y]] = np.where(planar[:, np.newaxis], line, base_line)
+    table[:, LOG + Log.STANDS] = stands
+    upright = ~np.any(runs.tilt, axis=1) & ~stands & ~planar
+    if upright.any():
+        speed = np.hypot(*rate[upright].T)[:, np.newaxis]
+        off = _FIRST_STEP_OFF * models.slenderness[upright, np.newaxis] * rate[upright] / speed
+        moved = replace(runs, tilt=runs.tilt.copy())
+        moved.tilt[upright] = off
+        columns = ModelColumns.of(model, runs.values, moved.tilt, runs.tilt_rate)
+        states[upright] = columns.states[upright]
+    table[:, STATE : STATE + states.shape[1]] = states
+    table[planar, STATE] = np.sum(runs.tilt * line, axis=1)[planar]
+    table[planar, STATE + 1] = np.sum(rate * line, axis=1)[planar]
+    table[:, LOG + Log.TOUCHED_UPRIGHT] = stands
+    return np.asarray(planar)
+
+
+def common_lines(vectors: Floats) -> Floats:
+    """Return for each run the unit vector to which all its `vectors`, shape (n, m, 2), are parallel to 8 ulp.
+
+    Where there is none, or all are zero, it is (0, 0); zero vectors fit any line.
+    """
+    count = vectors.shape[0]
+    if vectors.shape[1] == 0:
+        return np.zeros((count, 2))
+    lengths = np.hypot(vectors[..., 0], vectors[..., 1])
+    longest = np.argmax(lengths, axis=1)
+    length = lengths[np.arange(count), longest]
+    with np.errstate(invalid="ignore"):
+        line = vectors[np.arange(count), longest] / length[:, np.newaxis]
+    aside = np.abs(line[:, np.newaxis, 0] * vectors[..., 1] - line[:, np.newaxis, 1] * vectors[..., 0])
+    fits = np.all(aside <= _PARALLEL_ULP * np.finfo(float).eps * lengths, axis=1) & (length > 0.0)
+    return np.where(fits[:, np.newaxis], line, 0.0)

@@ -1,0 +1,148 @@
+"""Arguments of any shape as flat arrays over the runs, broadcast together by the names of their dimensions."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.errors import ParameterError
+
+Floats = npt.NDArray[np.float64]
+ArrayLike = npt.ArrayLike | xr.DataArray
+
+RUN, AXIS = "run", "axis"
+_TILT_LIMIT = math.pi / 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class Runs:
+    """What differs between the runs, flat, and how it is laid out.
+
+    Parameters
+    ----------
+    dims, shape
+        Of the results.
+    tilt, tilt_rate
+        Starts, shape (n, 2) [rad], [rad/s].
+    duration
+        Shape (n,) [s].
+    values
+        Parameters by name, shape (n,).
+    coordinates
+        What labels the results.
+    """
+
+    dims: tuple[str, ...]
+    shape: tuple[int, ...]
+    tilt: Floats
+    tilt_rate: Floats
+    duration: Floats
+    values: Mapping[str, Floats]
+    coordinates: Mapping[str, xr.DataArray]
+
+    def __len__(self) -> int:
+        return math.prod(self.shape)
+
+    def part(self, chosen: slice) -> "Runs":
+        """Return some of the runs, without layout."""
+        length = len(range(*chosen.indices(len(self))))
+        values = {name: value[chosen] for name, value in self.values.items()}
+        return Runs((RUN,), (length,), self.tilt[chosen], self.tilt_rate[chosen], self.duration[chosen], values, {})
+
+
+def broadcast(tilt: ArrayLike, tilt_rate: ArrayLike, duration: ArrayLike, parameters: Mapping[str, ArrayLike]) -> Runs:
+    """Return the runs that these arguments describe.
+
+    Raises
+    ------
+    ParameterError
+        If one has a wrong shape, is not finite or out of range, or two do not go together.
+    """
+    given = {"tilt": _vectors("tilt", tilt), "tilt_rate": _vectors("tilt_rate", tilt_rate)}
+    given |= {"duration": _numbers("duration", duration)}
+    given |= {name: _numbers(name, value) for name, value in parameters.items()}
+    dims, shape = _common(given)
+    if not dims:
+        dims, shape = (RUN,), (1,)
+    flat = {name: _flat(array, dims, shape) for name, array in given.items()}
+    _check(flat)
+    values = {name: flat[name] for name in parameters}
+    coordinates = {name: array for name, array in given.items() if array.dims and array.dims != (AXIS,)}
+    return Runs(dims, shape, flat["tilt"], flat["tilt_rate"], flat["duration"], values, coordinates)
+
+
+def _numbers(name: str, value: ArrayLike) -> xr.DataArray:
+    if isinstance(value, xr.DataArray):
+        return _as_float(name, value)
+    array = _array(name, value)
+    if array.ndim > 1:
+        message = f"{name} must be a number, a list or a DataArray with named dimensions, got shape {array.shape}"
+        raise ParameterError(message)
+    return xr.DataArray(array, dims=(RUN,) * array.ndim)
+
+
+def _vectors(name: str, value: ArrayLike) -> xr.DataArray:
+    if isinstance(value, xr.DataArray):
+        if value.sizes.get(AXIS) != 2:  # noqa: PLR2004
+            message = f'{name} must have a dimension "{AXIS}" of length 2, got {dict(value.sizes)}'
+            raise ParameterError(message)
+        return _as_float(name, value).drop_vars(AXIS, errors="ignore")
+    array = _array(name, value)
+    if array.ndim not in (1, 2) or array.shape[-1] != 2:  # noqa: PLR2004
+        message = f"{name} must have shape (2,) or (n, 2), got {array.shape}"
+        raise ParameterError(message)
+    return xr.DataArray(array, dims=(*((RUN,) * (array.ndim - 1)), AXIS))
+
+
+def _array(name: str, value: Any) -> Floats:
+    try:
+        return np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        message = f"{name} must be a number or an array of numbers, got {value!r}"
+        raise ParameterError(message) from None
+
+
+def _as_float(name: str, value: xr.DataArray) -> xr.DataArray:
+    return value.copy(data=_array(name, value.to_numpy()))
+
+
+def _common(given: Mapping[str, xr.DataArray]) -> tuple[tuple[str, ...], tuple[int, ...]]:
+    sizes: dict[str, int] = {}
+    first: dict[str, str] = {}
+    for name, array in given.items():
+        for dim, size in array.sizes.items():
+            if dim == AXIS:
+                continue
+            if sizes.setdefault(str(dim), size) != size:
+                message = f"{name} must have {sizes[str(dim)]} values along {dim} as {first[str(dim)]}, got {size}"
+                raise ParameterError(message)
+            first.setdefault(str(dim), name)
+    return tuple(sizes), tuple(sizes.values())
+
+
+def _flat(array: xr.DataArray, dims: tuple[str, ...], shape: tuple[int, ...]) -> Floats:
+    own = [dim for dim in dims if dim in array.dims]
+    tail = (AXIS,) if AXIS in array.dims else ()
+    values = array.transpose(*own, *tail).to_numpy()
+    lengths = [array.sizes[dim] if dim in own else 1 for dim in dims]
+    wide = np.broadcast_to(values.reshape(*lengths, *values.shape[len(own) :]), (*shape, *values.shape[len(own) :]))
+    return wide.reshape(math.prod(shape), *values.shape[len(own) :])
+
+
+def _check(flat: Mapping[str, Floats]) -> None:
+    for name, array in flat.items():
+        broken = ~np.isfinite(array)
+        if broken.any():
+            message = f"{name} must be finite, got {float(array[broken][0])!r}"
+            raise ParameterError(message)
+    tilts = np.hypot(*flat["tilt"].T)
+    if tilts.size and tilts.max() >= _TILT_LIMIT:
+        message = f"tilt must be below π/2 rad in length (angles are in rad, not degrees), got {float(tilts.max())!r}"
+        raise ParameterError(message)
+    if np.any(flat["duration"] <= 0.0):
+        message = f"duration must be positive, got {float(flat['duration'].min())!r} s"
+        raise ParameterError(message)

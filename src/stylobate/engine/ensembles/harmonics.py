@@ -1,0 +1,160 @@
+"""Base motions as sums of harmonic terms, with their numbers changed run by run."""
+
+import cmath
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.motions import BaseMotion, Delayed, Harmonic, Rotated, Scaled, Sum
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Term:
+    """Acceleration Re(amplitude e^{i(ω(t − shift) + start_phase)}) from `onset` on, rising over `ramp` from `shift`.
+
+    Parameters
+    ----------
+    angular_frequency
+        ω [rad/s].
+    amplitude
+        Complex amplitudes along x, y, z [m/s²].
+    start_phase
+        [rad].
+    shift, onset, ramp
+        [s].
+    """
+
+    angular_frequency: float
+    amplitude: tuple[complex, complex, complex]
+    start_phase: float
+    shift: float
+    onset: float
+    ramp: float
+
+
+def terms_of(motion: BaseMotion) -> tuple[Term, ...] | None:
+    """Return the terms of `motion`, or None if it is made of anything but harmonic motion."""
+    if type(motion) is Harmonic:
+        amplitudes = tuple(cmath.rect(a, phase) for a, phase in zip(motion.amplitude, motion.phase, strict=True))
+        x, y, z = amplitudes
+        return (Term(motion.angular_frequency, (x, y, z), motion.start_phase, 0.0, -math.inf, motion.ramp),)
+    if type(motion) is Sum:
+        parts = [terms_of(part) for part in motion.motions]
+        return None if None in parts else tuple(term for part in parts for term in part or ())
+    if type(motion) not in (Scaled, Rotated, Delayed):  # a subclass is another motion
+        return None
+    inner = terms_of(motion.motion)  # type: ignore[attr-defined]
+    return None if inner is None else tuple(_transformed(motion, term) for term in inner)
+
+
+def _transformed(motion: BaseMotion, term: Term) -> Term:
+    x, y, z = term.amplitude
+    match motion:
+        case Scaled():
+            return replace(term, amplitude=(motion.factor * x, motion.factor * y, motion.vertical * z))
+        case Rotated():
+            cos, sin = math.cos(motion.angle), math.sin(motion.angle)
+            return replace(term, amplitude=(cos * x - sin * y, sin * x + cos * y, z))
+        case Delayed():
+            begins = motion.delay if motion.delay > 0.0 else -math.inf
+            return replace(term, shift=term.shift + motion.delay, onset=max(begins, term.onset + motion.delay))
+    raise AssertionError(motion)
+
+
+@dataclass(frozen=True, slots=True)
+class Terms:
+    """The terms of the motions of n runs: arrays of shape (n, terms), amplitudes (n, terms, 3); in SI units."""
+
+    angular_frequency: Floats
+    amplitude: npt.NDArray[np.complex128]
+    start_phase: Floats
+    shift: Floats
+    onset: Floats
+    ramp: Floats
+
+    @classmethod
+    def of(cls, terms: tuple[Term, ...], values: Mapping[str, Floats], count: int, base_acceleration: float) -> "Terms":
+        """Return `terms` for each of `count` runs, with the numbers of `values`, each of shape (count,), changed.
+
+        `base_acceleration` is the largest horizontal one before the change [m/s²].
+        """
+        shape = (count, len(terms))
+
+        def spread(numbers: list[float]) -> Floats:
+            return np.broadcast_to(np.array(numbers, dtype=float), shape).copy()
+
+        frequency = spread([term.angular_frequency for term in terms])
+        amplitude = np.broadcast_to(
+            np.array([term.amplitude for term in terms], dtype=complex).reshape(len(terms), 3), (*shape, 3)
+        ).copy()
+        made = cls(
+            frequency,
+            amplitude,
+            spread([term.start_phase for term in terms]),
+            spread([term.shift for term in terms]),
+            spread([term.onset for term in terms]),
+            spread([term.ramp for term in terms]),
+        )
+        return made._with(values, base_acceleration)
+
+    def _with(self, values: Mapping[str, Floats], base_acceleration: float) -> "Terms":
+        frequency, amplitude, start_phase = self.angular_frequency, self.amplitude, self.start_phase
+        shift, onset = self.shift, self.onset
+        if "angular_frequency" in values:
+            frequency = np.broadcast_to(values["angular_frequency"][:, np.newaxis], frequency.shape)
+        if "start_phase" in values:
+            start_phase = np.broadcast_to(values["start_phase"][:, np.newaxis], frequency.shape)
+        factor = factors(values, base_acceleration)
+        if factor is not None:
+            amplitude = amplitude * factor[:, np.newaxis, np.newaxis]
+        if "rotation" in values:
+            cos, sin = (part(values["rotation"])[:, np.newaxis] for part in (np.cos, np.sin))
+            x, y, z = np.moveaxis(amplitude, -1, 0)
+            amplitude = np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
+        if "delay" in values:
+            delay = values["delay"][:, np.newaxis]
+            shift = shift + delay
+            onset = np.maximum(np.where(delay > 0.0, delay, -np.inf), onset + delay)
+        return Terms(frequency, amplitude, start_phase, shift, onset, self.ramp)
+
+    @property
+    def phase_at_start(self) -> Floats:
+        """Phase of each term at t = 0 [rad], shape (n, terms)."""
+        return self.start_phase - self.angular_frequency * self.shift
+
+    def breaks(self) -> Floats:
+        """Return the times at which the acceleration is not smooth [s], shape (n, 2 terms), increasing; else inf."""
+        ramped = np.where(self.ramp > 0.0, self.shift + self.ramp, np.inf)
+        times = np.concatenate([self.onset, ramped], axis=1)
+        return np.sort(np.where(times > 0.0, times, np.inf), axis=1)
+
+    def columns(self, time_scale: Floats, gravity: Floats, *, windowed: bool) -> Floats:
+        """Return what a kernel reads: in each term turns to a unit of time, amplitudes [g] and phases [turns]."""
+        scale = time_scale[:, np.newaxis]
+        phase = np.angle(self.amplitude) + self.phase_at_start[..., np.newaxis]
+        parts = [self.angular_frequency * scale / (2.0 * math.pi)]
+        for axis in range(3):
+            parts += [np.abs(self.amplitude[..., axis]) / gravity[:, np.newaxis], _turns(phase[..., axis])]
+        if windowed:
+            parts += [self.onset / scale, self.shift / scale, self.ramp / scale]
+        return np.stack(parts, axis=-1).reshape(len(scale), -1)
+
+
+def factors(values: Mapping[str, Floats], base_acceleration: float) -> Floats | None:
+    """Return the factor by which `acceleration` and `scale` multiply the motion of each run, or None for 1."""
+    factor = None
+    if "acceleration" in values:
+        factor = values["acceleration"] / base_acceleration
+    if "scale" in values:
+        factor = values["scale"] if factor is None else factor * values["scale"]
+    return factor
+
+
+def _turns(angle: Floats) -> Floats:
+    turns = angle / (2.0 * math.pi)
+    return turns - np.floor(turns + 0.5)

@@ -1,0 +1,71 @@
+"""What a kernel needs of the model of each run."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.engine.parameters import MOTION_NAMES, changed_model
+from stylobate.models import Model
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class ModelColumns:
+    """Arrays over the runs, of shape (n,) but for `states`, (n, number of states), and `parameters`."""
+
+    time_scale: Floats
+    gravity: Floats
+    slenderness: Floats
+    capacity: Floats
+    comes_to_rest: npt.NDArray[np.bool_]
+    states: Floats
+    parameters: Floats
+
+    @classmethod
+    def of(cls, model: Model, values: Mapping[str, Floats], tilt: Floats, tilt_rate: Floats) -> "ModelColumns":
+        """Return them for runs that start with `tilt` and `tilt_rate`, shape (n, 2), with `values` changed.
+
+        Raises
+        ------
+        ParameterError
+            If a value is out of range.
+        """
+        count = len(tilt)
+        own = {name: value for name, value in values.items() if name not in MOTION_NAMES}
+        numbers = np.empty((4, count))
+        comes_to_rest = np.empty(count, dtype=bool)
+        states = np.empty((count, len(model.state_names)))
+        parameters = np.empty((count, len(model.parameters)))
+        for changed, runs in _distinct(model, own, count):
+            column = changed.column
+            numbers[:, runs] = np.array(
+                [changed.time_scale, column.gravity, column.slenderness, changed.rest_capacity]
+            )[:, np.newaxis]
+            comes_to_rest[runs] = changed.comes_to_rest
+            parameters[runs] = changed.parameters
+            vectors = (*tilt[runs].T, *tilt_rate[runs].T)
+            start = changed.start((vectors[0], vectors[1]), (vectors[2], vectors[3]))
+            for j, part in enumerate(start):
+                states[runs, j] = part
+        time_scale, gravity, slenderness, capacity = numbers
+        return cls(time_scale, gravity, slenderness, capacity, comes_to_rest, states, parameters)
+
+
+def _distinct(
+    model: Model, values: Mapping[str, Floats], count: int
+) -> list[tuple[Model, slice | npt.NDArray[np.int64]]]:
+    """Return the different models, each with the runs that it belongs to."""
+    if not values or count == 0:
+        return [(model, slice(None))]
+    table = np.stack(list(values.values()), axis=1)
+    kinds, which = np.unique(table, axis=0, return_inverse=True)
+    order = np.argsort(which.ravel(), kind="stable")
+    ends = np.cumsum(np.bincount(which.ravel(), minlength=len(kinds)))
+    runs = np.split(order, ends[:-1])
+    return [
+        (changed_model(model, dict(zip(values, kind.tolist(), strict=True))), chosen)
+        for kind, chosen in zip(kinds, runs, strict=True)
+    ]

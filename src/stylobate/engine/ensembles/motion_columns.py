@@ -1,0 +1,165 @@
+"""What a kernel needs of the base motion of each run."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.engine.ensembles.harmonics import Term, Terms, factors, terms_of
+from stylobate.engine.ensembles.model_columns import ModelColumns
+from stylobate.engine.ensembles.polynomials import Table, tabulated
+from stylobate.engine.lanes.forcing_source import ForcingSource, Harmonics, Polynomials
+from stylobate.engine.parameters import harmonic_part, largest_acceleration
+from stylobate.motions import BaseMotion
+
+Floats = npt.NDArray[np.float64]
+
+_NO_PIECES = np.zeros((1, 5))
+
+
+@dataclass(frozen=True, slots=True)
+class MotionPlan:
+    """How an ensemble's base motion is evaluated: decided once, so that all its runs are computed alike.
+
+    `terms` is None for a motion that is tabulated, in `table`.
+    """
+
+    motion: BaseMotion
+    terms: tuple[Term, ...] | None
+    table: Table | None
+    windowed: bool
+    vertical: bool
+    base_acceleration: float
+
+    @classmethod
+    def of(cls, motion: BaseMotion, values: Mapping[str, Floats], duration: Floats) -> "MotionPlan":
+        """Return the plan for runs that change these `values`.
+
+        Raises
+        ------
+        UnsupportedError
+            If the motion lacks a number that is to be changed, or cannot be tabulated.
+        """
+        for name in ("angular_frequency", "start_phase"):
+            if name in values:
+                harmonic_part(motion, name)
+        base = largest_acceleration(motion) if "acceleration" in values else 1.0
+        terms = terms_of(motion)
+        if terms is not None:
+            windowed = "delay" in values or any(term.ramp > 0.0 or term.onset > 0.0 for term in terms)
+            vertical = any(term.amplitude[2] != 0.0 for term in terms)
+            return cls(motion, terms, None, windowed, vertical, base)
+        least_delay = values["delay"].min(initial=0.0) if "delay" in values else 0.0
+        end = float(duration.max(initial=1e-300)) - float(least_delay)
+        vertical = any(bound != 0.0 for bound in motion.vertical_range(0.0))
+        return cls(motion, None, tabulated(motion, end), False, vertical, base)
+
+    def source(self, *, planar: bool) -> ForcingSource:
+        """Return how kernels evaluate it."""
+        components = (*(("ah",) if planar else ("ax", "ay")), *(("az",) if self.vertical else ()))
+        if self.terms is not None:
+            return Harmonics(len(self.terms), self.windowed, components)
+        assert self.table is not None
+        return Polynomials(self.table.degree, components)
+
+    @property
+    def pieces(self) -> Floats:
+        """The table that kernels read; of a harmonic motion, nothing."""
+        return _NO_PIECES if self.table is None else self.table.rows
+
+
+@dataclass(frozen=True, slots=True)
+class MotionColumns:
+    """Arrays over the runs in model units: `directions` (n, vectors, 2), `breaks` (n, b), `columns` (n, m), else (n,).
+
+    `phase` is the phase of the forcing at t = 0 [turns]; `forward` and `backward` are the azimuths [rad] at t = 0 of
+    its parts that turn anticlockwise and clockwise, NaN where it has more than one frequency.
+    """
+
+    columns: Floats
+    breaks: Floats
+    frequency: Floats
+    period: Floats
+    phase: Floats
+    largest: Floats
+    least_vertical: Floats
+    largest_vertical: Floats
+    directions: Floats
+    forward: Floats
+    backward: Floats
+
+    @classmethod
+    def of(cls, plan: MotionPlan, values: Mapping[str, Floats], models: ModelColumns) -> "MotionColumns":
+        """Return them for runs of these `models` that change these `values`."""
+        motion, count = plan.motion, len(models.gravity)
+        factor = factors(values, plan.base_acceleration)
+        factor = np.ones(count) if factor is None else factor
+        per_gravity = factor / models.gravity
+        bounds = [per_gravity * bound for bound in motion.vertical_range(0.0)]
+        rotation = values.get("rotation", np.zeros(count))
+        if plan.terms is not None:
+            terms = Terms.of(plan.terms, values, count, plan.base_acceleration)
+            columns, breaks = terms.columns(models.time_scale, models.gravity, windowed=plan.windowed), terms.breaks()
+            breaks = breaks[:, np.any(np.isfinite(breaks), axis=0)] if plan.windowed else breaks[:, :0]
+            frequency, phase, forward, backward = _single_frequency(terms, motion)
+        else:
+            columns = _table_columns(plan, values, factor, rotation, models)
+            breaks = np.empty((count, 0))
+            frequency = np.full(count, motion.highest_frequency)
+            phase = np.zeros(count)
+            forward = backward = np.full(count, np.nan)
+        return cls(
+            columns=columns,
+            breaks=breaks / models.time_scale[:, np.newaxis],
+            frequency=frequency * models.time_scale,
+            period=_period(motion, values, count) / models.time_scale,
+            phase=phase,
+            largest=np.abs(per_gravity) * motion.largest_horizontal(0.0),
+            least_vertical=np.minimum(*bounds),
+            largest_vertical=np.maximum(*bounds),
+            directions=_directions(motion, factor, rotation),
+            forward=forward,
+            backward=backward,
+        )
+
+
+def _single_frequency(terms: Terms, motion: BaseMotion) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return the highest frequency of each run, its phase at t = 0, and the azimuths of its two circular parts."""
+    count = len(terms.angular_frequency)
+    nothing = np.full(count, np.nan)
+    if terms.angular_frequency.shape[1] == 0:
+        return np.full(count, motion.highest_frequency), np.zeros(count), nothing, nothing
+    frequency = terms.angular_frequency.max(axis=1)
+    if terms.angular_frequency.shape[1] > 1:
+        return frequency, np.zeros(count), nothing, nothing
+    phase = terms.phase_at_start[:, 0]
+    x, y, _ = np.moveaxis(terms.amplitude[:, 0] * np.exp(1j * phase)[:, np.newaxis], -1, 0)
+    forward = np.angle(0.5 * (x + 1j * y))
+    backward = np.angle(0.5 * (x.conj() + 1j * y.conj()))
+    return frequency, phase / (2.0 * math.pi), forward, backward
+
+
+def _period(motion: BaseMotion, values: Mapping[str, Floats], count: int) -> Floats:
+    if "angular_frequency" in values:
+        return 2.0 * math.pi / values["angular_frequency"]
+    return np.full(count, motion.period or 0.0)
+
+
+def _directions(motion: BaseMotion, factor: Floats, rotation: Floats) -> Floats:
+    vectors = np.array(motion.directions(), dtype=float).reshape(-1, 2)
+    cos, sin = np.cos(rotation)[:, np.newaxis], np.sin(rotation)[:, np.newaxis]
+    x, y = vectors[:, 0], vectors[:, 1]
+    turned = np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
+    return np.asarray(factor[:, np.newaxis, np.newaxis] * turned)
+
+
+def _table_columns(
+    plan: MotionPlan, values: Mapping[str, Floats], factor: Floats, rotation: Floats, models: ModelColumns
+) -> Floats:
+    count = len(factor)
+    scaled = factor / models.gravity
+    delay = values.get("delay", np.zeros(count))
+    first, number = np.zeros(count), np.full(count, float(len(plan.pieces)))
+    return np.stack([scaled, np.cos(rotation), np.sin(rotation), scaled, delay, first, number], axis=1)

@@ -1,0 +1,72 @@
+"""The options of an ensemble, checked once."""
+
+from dataclasses import dataclass
+
+from stylobate.engine.thresholds import Thresholds
+from stylobate.errors import (
+    ParameterError,
+    require_not_negative,
+    require_positive,
+    require_whole,
+)
+from stylobate.results import OutcomeRules
+
+_RTOL_RANGE = (1e-13, 1e-2)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """What all runs of an ensemble share; as in `simulate`."""
+
+    rtol: float
+    atol: float | None
+    tilt_limit: float | None
+    rest_energy: float | None
+    max_steps: int
+    samples: int
+    strobes: int
+    rules: OutcomeRules
+
+    @classmethod
+    def checked(
+        cls,
+        *,
+        rtol: float,
+        atol: float | None,
+        tilt_limit: float | None,
+        rest_energy: float | None,
+        max_steps: int,
+        samples: int | None,
+        strobes: int,
+        rules: OutcomeRules | None,
+    ) -> "Options":
+        """Return the options.
+
+        Raises
+        ------
+        ParameterError
+            If one is out of range.
+        """
+        low, high = _RTOL_RANGE
+        rtol = require_positive("rtol", rtol)
+        if not low <= rtol <= high:
+            message = f"rtol must lie between {low!r} and {high!r}, got {rtol!r}"
+            raise ParameterError(message)
+        if rules is not None and not isinstance(rules, OutcomeRules):
+            message = f"rules must be OutcomeRules(...) or None, got {rules!r}"
+            raise ParameterError(message)
+        return cls(
+            rtol=rtol,
+            atol=None if atol is None else require_positive("atol", atol, "rad"),
+            tilt_limit=None if tilt_limit is None else require_positive("tilt_limit", tilt_limit, "rad"),
+            rest_energy=None if rest_energy is None else require_not_negative("rest_energy", rest_energy),
+            max_steps=require_whole("max_steps", max_steps, least=1),
+            samples=0 if samples is None else require_whole("samples", samples, least=2),
+            strobes=require_whole("strobes", strobes, least=0),
+            rules=rules or OutcomeRules(),
+        )
+
+    @property
+    def overturned_tilt(self) -> float:
+        """Tilt that counts as overturned where no criterion proves it [rad]."""
+        return Thresholds(rest_energy=0.0).overturned_tilt

@@ -1,0 +1,98 @@
+"""Any base motion as a table: one polynomial after another between its breaks, to rounding."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from numpy.polynomial import chebyshev
+
+from stylobate.errors import UnsupportedError
+from stylobate.motions import BaseMotion
+from stylobate.motions.base import ACCELERATION
+
+Floats = npt.NDArray[np.float64]
+
+DEGREE = 15
+# Pieces are no longer than half the shortest period, and halved where the polynomials do not get as near as this part
+# of the largest acceleration, so often at most.
+_ACCURACY, _HALVINGS = 1e-11, 12
+_MOST_PIECES = 2_000_000
+# Short of a break, from either side, by this part of the time.
+_ASIDE = 4.0 * float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Pieces of polynomials, a row each.
+
+    A row holds start and end [s]; sup |a_h|, inf and sup a_z from its start on [m/s²]; then for x, y and z the
+    coefficients, lowest power first, in the time from the middle of the piece over half its length.
+    """
+
+    rows: Floats
+    degree: int
+
+
+def tabulated(motion: BaseMotion, end: float) -> Table:
+    """Return the table of `motion` from t = 0 to `end` [s].
+
+    Raises
+    ------
+    UnsupportedError
+        If it is not smooth between its breaks.
+    """
+    frequency = motion.highest_frequency
+    longest = math.pi / frequency if frequency > 0.0 else math.inf
+    edges = [0.0, *(time for time in motion.breaks if 0.0 < time < end)]
+    if len(edges) + end / longest > _MOST_PIECES:
+        message = f"motion is too long to tabulate: {end!r} s in pieces of {longest!r} s; shorten the duration"
+        raise UnsupportedError(message)
+    size = max(motion.largest_horizontal(0.0), *map(abs, motion.vertical_range(0.0)))
+    pieces: list[tuple[float, float, Floats]] = []
+    for low, high in zip(edges, [*edges[1:], math.inf], strict=True):
+        cuts = _cuts(low, high, longest, end)
+        for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
+            pieces += _fitted(motion, a, b, size, _HALVINGS)
+    linear = all(not np.any(coefficients[:, 2:]) for _, _, coefficients in pieces)
+    degree = 1 if linear else DEGREE
+    rows = [
+        [a, b, motion.largest_horizontal(a), *motion.vertical_range(a), *coefficients[:, : degree + 1].ravel()]
+        for a, b, coefficients in pieces
+    ]
+    return Table(np.array(rows), degree)
+
+
+def _cuts(low: float, high: float, longest: float, end: float) -> Floats:
+    """Return where the stretch from a break to the next is cut; the cuts do not depend on `end`, only their number."""
+    if math.isfinite(high):
+        return np.linspace(low, high, max(1, math.ceil((high - low) / longest)) + 1)
+    if math.isinf(longest):
+        return np.array([low, end])
+    return np.asarray(low + longest * np.arange(max(1, math.ceil((end - low) / longest)) + 1), dtype=float)
+
+
+def _fitted(
+    motion: BaseMotion, start: float, end: float, size: float, halvings: int
+) -> list[tuple[float, float, Floats]]:
+    # At the Chebyshev points of both kinds: half of them make the polynomial, the others test it.
+    count = DEGREE + 1
+    points = np.cos(math.pi * np.arange(2 * count + 1) / (2 * count))[::-1]
+    middle, half = 0.5 * (start + end), 0.5 * (end - start)
+    inside = np.clip(middle + half * points, start * (1.0 + _ASIDE), end * (1.0 - _ASIDE))
+    values = np.stack(motion.derivative(inside, ACCELERATION))
+    nodes, tests = slice(1, None, 2), slice(0, None, 2)
+    series = chebyshev.chebfit(points[nodes], values[:, nodes].T, DEGREE)
+    error = np.abs(chebyshev.chebval(points[tests], series) - values[:, tests]).max()
+    if error <= _ACCURACY * size or size == 0.0:
+        series[np.abs(series) < 0.01 * _ACCURACY * size] = 0.0
+        coefficients = np.zeros((3, count))
+        for axis in range(3):
+            powers = chebyshev.cheb2poly(series[:, axis])
+            coefficients[axis, : powers.size] = powers
+        return [(start, end, coefficients)]
+    if halvings == 0:
+        message = f"motion must be smooth between its breaks, but is not near t = {middle!r} s; list the time in breaks"
+        raise UnsupportedError(message)
+    first = _fitted(motion, start, middle, size, halvings - 1)
+    return first + _fitted(motion, middle, end, size, halvings - 1)

@@ -1,0 +1,64 @@
+"""Parts of an ensemble side by side on threads; Ctrl-C stops them within a step."""
+
+import os
+from collections.abc import Callable
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+
+import numpy as np
+import numpy.typing as npt
+
+Halt = npt.NDArray[np.uint8]
+
+# Parts: small enough that all threads end together and progress shows, large enough to fill the lanes.
+_FEWEST, _MOST, _PARTS_PER_THREAD = 256, 4096, 8
+
+
+def parts_of(count: int, threads: int) -> list[slice]:
+    """Return the slices in which `count` runs are computed."""
+    size = min(max(_FEWEST, -(-count // (threads * _PARTS_PER_THREAD))), _MOST)
+    return [slice(start, min(start + size, count)) for start in range(0, count, size)]
+
+
+def usual_threads() -> int:
+    """Return how many threads this process may run at a time."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def run_parts(
+    parts: list[slice],
+    compute: Callable[[slice, Halt], None],
+    threads: int,
+    done: Callable[[slice], None],
+) -> bool:
+    """Call `compute` for each part, and `done` in this thread as each is finished; return False after Ctrl-C.
+
+    `compute` is given a flag that is set when it should stop; what it raises is raised here, once all have stopped.
+    """
+    halt = np.zeros(1, dtype=np.uint8)
+    waiting = iter(parts)
+    with ThreadPoolExecutor(max_workers=threads, thread_name_prefix="stylobate") as pool:
+        running: dict[Future[None], slice] = {}
+
+        def start() -> None:
+            part = next(waiting, None)
+            if part is not None:
+                running[pool.submit(compute, part, halt)] = part
+
+        try:
+            for _ in range(threads):
+                start()
+            while running:
+                # Wakes up now and then: only between its own steps can Python take notice of Ctrl-C.
+                finished, _ = wait(running, timeout=0.1, return_when=FIRST_COMPLETED)
+                for future in finished:
+                    part = running.pop(future)
+                    future.result()
+                    start()
+                    done(part)
+        except KeyboardInterrupt:
+            halt[0] = 1
+            return False
+        except BaseException:
+            halt[0] = 1
+            raise
+    return True

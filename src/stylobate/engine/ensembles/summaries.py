@@ -1,0 +1,251 @@
+"""What is told of each run: from a batch that has run to arrays in SI units."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.engine.ensembles.batch import Batch
+from stylobate.engine.ensembles.options import Options
+from stylobate.engine.lanes.columns import BEFORE, LATE, LOOKS, STATE, Log, Setup, Status, Window
+from stylobate.engine.thresholds import coarse
+from stylobate.engine.verdict import Evidence, Ground, grounds, outcome_on
+from stylobate.errors import Outcome
+from stylobate.results.outcomes import NOT_COMPUTED, code_of, outcome_attributes
+
+Floats = npt.NDArray[np.float64]
+Arrays = dict[str, npt.NDArray[Any]]
+
+# A passage of the upright closer than this part of c is ill-conditioned for every integrator.
+_CLOSE_PASSAGE = 1e-8
+
+_ENDINGS = {
+    Status.RESTED: Outcome.AT_REST,
+    Status.OVERTURNED: Outcome.OVERTURNED,
+    Status.LIMIT: Outcome.LIMIT_REACHED,
+    Status.LIFTED: Outcome.LIFTED_OFF,
+    Status.STEP_LIMIT: Outcome.FAILED,
+    Status.STEP_TOO_SMALL: Outcome.FAILED,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A variable of the results: type, dimensions besides those of the runs, attributes."""
+
+    dtype: type
+    dims: tuple[str, ...]
+    attributes: Mapping[str, Any]
+
+
+def _numbers(long_name: str, units: str, *dims: str) -> Quantity:
+    return Quantity(np.float64, dims, {"long_name": long_name, "units": units})
+
+
+QUANTITIES: Mapping[str, Quantity] = {
+    "outcome": Quantity(np.int8, (), outcome_attributes()),
+    "decided_at": _numbers("time at which the outcome was decided", "s"),
+    "end_time": _numbers("end of the run", "s"),
+    "uncertain": Quantity(np.bool_, (), {"long_name": "a small change could alter the outcome"}),
+    "planar": Quantity(np.bool_, (), {"long_name": "moved in one vertical plane"}),
+    "end_tilt": _numbers("tilt vector at the end", "rad", "axis"),
+    "end_tilt_rate": _numbers("rate of the tilt vector at the end", "rad s-1", "axis"),
+    "direction": _numbers("azimuth in which it overturned", "rad"),
+    "largest_tilt": _numbers("largest tilt", "rad"),
+    "time_of_largest_tilt": _numbers("time of the largest tilt", "s"),
+    "least_tilt": _numbers("least tilt while it moves", "rad"),
+    "turns": _numbers("turns of the contact point", "1"),
+    "mean_tilt": _numbers("mean tilt over the last periods", "rad"),
+    "phase": _numbers("phase of the lean to the base acceleration, over the last periods", "rad"),
+    "mean_rolling_rate": _numbers("mean rolling rate over the last periods", "rad s-1"),
+    "repetition": _numbers("change from period to period, over the last periods", "1"),
+    "releases": Quantity(np.int32, (), {"long_name": "releases from rest"}),
+    "steps": Quantity(np.int32, (), {"long_name": "integration steps"}),
+    "strobe_tilt": _numbers("tilt vector at phase zero of the base motion", "rad", "strobe", "axis"),
+    "strobe_tilt_rate": _numbers("its rate at phase zero of the base motion", "rad s-1", "strobe", "axis"),
+    "sample_time": _numbers("time", "s", "sample"),
+    "sampled_tilt": _numbers("tilt vector", "rad", "sample", "axis"),
+    "sampled_tilt_rate": _numbers("rate of the tilt vector", "rad s-1", "sample", "axis"),
+}
+
+
+def empty(options: Options, count: int) -> Arrays:
+    """Return the results of `count` runs of which none has been computed."""
+    sizes = {"axis": 2, "strobe": options.strobes, "sample": options.samples}
+    arrays: Arrays = {}
+    for name, quantity in QUANTITIES.items():
+        shape = tuple(sizes[dim] for dim in quantity.dims)
+        if 0 not in shape:
+            fill = NOT_COMPUTED if name == "outcome" else np.nan if quantity.dtype is np.float64 else 0
+            arrays[name] = np.full((count, *shape), fill, dtype=quantity.dtype)
+    return arrays
+
+
+def summaries(batch: Batch) -> Arrays:
+    """Return the results of the runs of `batch`; those that have not ended keep what stands for nothing."""
+    arrays = empty(batch.plan.options, len(batch.table))
+    status = batch.log(Log.STATUS)
+    ended = status != Status.WAITING
+    for name, values in _all(batch).items():
+        arrays[name][ended] = values[ended]
+    return arrays
+
+
+def _all(batch: Batch) -> Arrays:
+    scale = batch.models.time_scale
+    tilt, rate = _leans(batch)
+    late = _late(batch)
+    outcome = _outcomes(batch, late)
+    overturned = outcome == code_of(Outcome.OVERTURNED)
+    passage = batch.log(Log.LEAST_PASSAGE)
+    touched = batch.log(Log.TOUCHED_UPRIGHT) > 0.0
+    start = np.hypot(*batch.models.states[:, :2].T) if not touched.all() else np.zeros(len(touched))
+    is_coarse = coarse(
+        batch.rest_energy,
+        batch.motions.frequency,
+        batch.motions.largest,
+        batch.motions.least_vertical,
+        batch.models.capacity,
+    )
+    uncertain = passage < _CLOSE_PASSAGE * batch.models.slenderness
+    uncertain |= (batch.log(Log.RELEASED_FROM_REST) > 0.0) & is_coarse
+    uncertain |= outcome == code_of(Outcome.FAILED)
+    arrays: Arrays = {
+        "outcome": outcome,
+        "decided_at": batch.log(Log.DECIDED) * scale,
+        "end_time": batch.log(Log.TIME) * scale,
+        "uncertain": uncertain,
+        "planar": batch.log(Log.IN_SPACE) == 0.0,
+        "end_tilt": tilt,
+        "end_tilt_rate": rate / scale[:, np.newaxis],
+        "direction": np.where(overturned, np.arctan2(tilt[:, 1], tilt[:, 0]), np.nan),
+        "largest_tilt": batch.log(Log.LARGEST_TILT),
+        "time_of_largest_tilt": batch.log(Log.LARGEST_AT) * scale,
+        "least_tilt": np.where(touched, 0.0, np.minimum(np.minimum(start, passage), np.hypot(*tilt.T))),
+        "turns": _turns(batch),
+        "mean_tilt": late.mean_tilt,
+        "phase": late.phase,
+        "mean_rolling_rate": 2.0 * math.pi * late.turned / (late.span * scale),
+        "repetition": late.repetition,
+        "releases": batch.log(Log.RELEASES),
+        "steps": batch.log(Log.STEPS),
+    }
+    for strobes, names in (
+        (True, ("strobe_tilt", "strobe_tilt_rate")),
+        (False, ("sampled_tilt", "sampled_tilt_rate")),
+    ):
+        notes = batch.notes(strobes=strobes)
+        if notes.shape[1]:
+            arrays[names[0]] = notes[..., :2]
+            arrays[names[1]] = notes[..., 2:4] / scale[:, np.newaxis, np.newaxis]
+        if notes.shape[1] and not strobes:
+            arrays["sample_time"] = notes[..., 4] * scale[:, np.newaxis]
+    return arrays
+
+
+def _leans(batch: Batch) -> tuple[Floats, Floats]:
+    """Return tilt vectors [rad] and their rates in the time of the models, shape (n, 2)."""
+    states = batch.table[:, STATE : STATE + len(batch.plan.model.state_names)].T
+    leans = np.stack(batch.plan.model.lean(*states, *batch.models.parameters.T), axis=-1)
+    line = batch.table[:, [Setup.LINE_X, Setup.LINE_Y]]
+    plane = np.concatenate([states[0][:, np.newaxis] * line, states[1][:, np.newaxis] * line], axis=1)
+    leans = np.where(batch.planar[:, np.newaxis], plane, leans)
+    leans[batch.log(Log.STANDS) > 0.0] = 0.0
+    return leans[:, :2], leans[:, 2:]
+
+
+def _turns(batch: Batch) -> Floats:
+    turns = batch.log(Log.LAST_AZIMUTH) - batch.log(Log.FIRST_AZIMUTH)
+    return np.where(np.isnan(turns), 0.0, turns)
+
+
+@dataclass(frozen=True, slots=True)
+class _Late:
+    """The last periods of each run: NaN where they were not looked at to the end."""
+
+    span: Floats
+    turned: Floats
+    mean_tilt: Floats
+    phase: Floats
+    least_tilt: Floats
+    repetition: Floats
+    repetition_before: Floats
+    drift: Floats
+
+
+def _late(batch: Batch) -> _Late:
+    n = batch.plan.options.rules.periods
+    period, end = batch.motions.period, batch.table[:, Setup.END]
+    seen = (batch.log(Log.STATUS) == Status.STOPPED) & (period > 0.0) & (end >= (n + 1) * period)
+    before = seen & (end >= (2 * n + 1) * period)
+
+    def known(values: Floats, where: npt.NDArray[np.bool_] = seen) -> Floats:
+        return np.where(where, values, np.nan)
+
+    span = known(n * period)
+    turned = _window(batch, LATE, Window.LAST_AZIMUTH) - _window(batch, LATE, Window.FIRST_AZIMUTH)
+    turned = np.where(batch.planar, 0.0, turned)
+    forward = turned >= 0.0
+    lag = np.where(forward, Window.LAG_FORWARD, Window.LAG_BACKWARD)
+    lags = [
+        np.take_along_axis(batch.table, (first + lag)[:, np.newaxis], axis=1)[:, 0] / (n * LOOKS)
+        for first in (LATE, BEFORE)
+    ]
+    parts = {
+        name: batch.log(Log[f"{name}_COS"]) + 1j * batch.log(Log[f"{name}_SIN"]) for name in ("FORWARD", "BACKWARD")
+    }
+    phase = np.where(
+        forward,
+        np.angle(parts["FORWARD"]) - _reference(batch, batch.motions.forward, conjugate=False),
+        -np.angle(parts["BACKWARD"]) - _reference(batch, batch.motions.backward, conjugate=True),
+    )
+    return _Late(
+        span=span,
+        turned=known(turned),
+        mean_tilt=known(batch.log(Log.MEAN_TILT)) / span,
+        phase=known(np.angle(np.exp(1j * phase))),
+        least_tilt=known(batch.log(Log.LATE_LEAST)),
+        repetition=known(_repetition(batch, LATE)),
+        repetition_before=known(_repetition(batch, BEFORE), before),
+        drift=known(np.abs(lags[0] - lags[1]), before),
+    )
+
+
+def _reference(batch: Batch, azimuth: Floats, *, conjugate: bool) -> Floats:
+    """Return the azimuth of the forcing's circular part, measured along the line for motion in a plane."""
+    line = np.arctan2(batch.table[:, Setup.LINE_Y], batch.table[:, Setup.LINE_X])
+    along = azimuth + line if conjugate else azimuth - line
+    return np.where(batch.planar, along, azimuth)
+
+
+def _window(batch: Batch, first: int, column: Window) -> Floats:
+    return batch.table[:, first + column]
+
+
+def _repetition(batch: Batch, first: int) -> Floats:
+    """Return the largest difference of states one period apart, over the largest tilt or rate."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        tilt = _window(batch, first, Window.TILT_CHANGE) / _window(batch, first, Window.TILT_SIZE)
+        rate = _window(batch, first, Window.RATE_CHANGE) / _window(batch, first, Window.RATE_SIZE)
+    return np.fmax(np.nan_to_num(tilt), np.nan_to_num(rate))
+
+
+def _outcomes(batch: Batch, late: _Late) -> npt.NDArray[np.int8]:
+    status = batch.log(Log.STATUS)
+    evidence = Evidence(
+        turned=np.nan_to_num(late.turned),
+        least_tilt=np.nan_to_num(late.least_tilt) / batch.models.slenderness,
+        repetition=np.nan_to_num(late.repetition, nan=np.inf),
+        repetition_before=late.repetition_before,
+        drift=late.drift,
+    )
+    ground = grounds(evidence, batch.plan.options.rules)
+    ground = np.where(np.isnan(late.span), Ground.SHORT, ground)
+    codes = np.array([code_of(outcome_on(kind)) for kind in Ground], dtype=np.int8)[ground]
+    codes = np.where(batch.log(Log.STANDS) > 0.0, code_of(Outcome.AT_REST), codes)
+    for ending, outcome in _ENDINGS.items():
+        codes = np.where(status == ending, code_of(outcome), codes)
+    return codes.astype(np.int8)

@@ -1,0 +1,152 @@
+"""Names for the columns of the table of a batch: what a kernel reads of a run, and what it notes.
+
+The table is one float64 array with a row for each run. A row holds `Setup`, then `Log`, two windows, the looks of a
+period, the state, the model's parameters, the numbers of the base motion, its breaks, samples and strobes.
+"""
+
+from enum import IntEnum, auto
+
+
+class _FromZero(IntEnum):
+    @staticmethod
+    def _generate_next_value_(name: str, start: int, count: int, last_values: list[int]) -> int:
+        del name, start, last_values
+        return count
+
+
+class Setup(_FromZero):
+    """What a kernel is told of a run, in dimensionless time and g."""
+
+    END = auto()
+    """Duration."""
+    RTOL = auto()
+    ATOL = auto()
+    MOST_STEPS = auto()
+    LONGEST_STEP = auto()
+    SLENDERNESS = auto()
+    CAPACITY = auto()
+    """|a_h|/(1 + a_z) up to which the column stays."""
+    TILT_LIMIT = auto()
+    OVERTURNED_TILT = auto()
+    """What counts as overturned where the model proves nothing."""
+    REST_ENERGY = auto()
+    """ε; 0 where the column cannot come to rest."""
+    LARGEST_HORIZONTAL = auto()
+    LEAST_VERTICAL = auto()
+    LARGEST_VERTICAL = auto()
+    TIME_SCALE = auto()
+    """Unit of time [s]."""
+    FREQUENCY = auto()
+    """The highest in the base motion [rad]; 0 for a base at rest."""
+    PERIOD = auto()
+    """Of the base motion; 0 where there is none."""
+    STROBE = auto()
+    """First time at which the base motion has phase zero."""
+    PERIODS = auto()
+    """How many of the last periods the outcome is told by."""
+    BREAKS = auto()
+    SAMPLES = auto()
+    STROBES = auto()
+    """How many columns of breaks, and sets of five columns of samples and strobes, the row of the run has."""
+    LINE_X = auto()
+    LINE_Y = auto()
+    """Unit vector of the line along which the base moves or, in a plane, the column too; 0, 0 without one."""
+
+
+class Log(_FromZero):
+    """What a kernel notes of a run, from which it can also take the run up again; behind the columns of `Setup`."""
+
+    STATUS = auto()
+    TIME = auto()
+    STANDS = auto()
+    """1 while the column stands on its base."""
+    DECIDED = auto()
+    """When what became of it was decided."""
+    STEPS = auto()
+    RELEASES = auto()
+    RESTS = auto()
+    RELEASED_FROM_REST = auto()
+    """1 once it came to rest and was released again."""
+    LARGEST_TILT = auto()
+    LARGEST_AT = auto()
+    LEAST_PASSAGE = auto()
+    """Least tilt where the tilt stopped falling."""
+    FIRST_AZIMUTH = auto()
+    LAST_AZIMUTH = auto()
+    """Of the lean, followed round [turns]; NaN before it leans out of a plane."""
+    IN_SPACE = auto()
+    """1 once it moved out of a plane."""
+    TOUCHED_UPRIGHT = auto()
+    """1 once it passed the upright in a plane, or came to rest."""
+    LEG_ENDS = auto()
+    """When the polynomial ends that describes the base motion now; infinite for harmonic motion."""
+    NEXT_BREAK = auto()
+    BREAKS_AT = auto()
+    NEXT_LOOK = auto()
+    LOOKS_AT = auto()
+    """Index and time of the next look in the last periods, by which the outcome is told."""
+    NEXT_SAMPLE = auto()
+    SAMPLES_AT = auto()
+    NEXT_STROBE = auto()
+    STROBES_AT = auto()
+    LIFTS_AT = auto()
+    """When the base begins to drop away; infinite if never."""
+    WATCHED = auto()
+    """1 in the last periods, in which the following are taken."""
+    LATE_LEAST = auto()
+    """Least tilt in them."""
+    MEAN_TILT = auto()
+    FORWARD_COS = auto()
+    FORWARD_SIN = auto()
+    BACKWARD_COS = auto()
+    BACKWARD_SIN = auto()
+    """Integrals over the last periods: of the tilt, and of its parts that turn with the forcing and against it."""
+
+
+class Window(_FromZero):
+    """What is noted of a window of some periods, at equal looks."""
+
+    TILT_CHANGE = auto()
+    RATE_CHANGE = auto()
+    """Largest difference of a component to one period before."""
+    TILT_SIZE = auto()
+    RATE_SIZE = auto()
+    LAG_FORWARD = auto()
+    LAG_BACKWARD = auto()
+    """Sums of the azimuth behind a forcing that turns anticlockwise or clockwise [turns]."""
+    FIRST_AZIMUTH = auto()
+    LAST_AZIMUTH = auto()
+
+
+LOOKS = 4
+"""Looks to a period in the windows."""
+
+LOG = len(Setup)
+"""First column of the log."""
+BEFORE = LOG + len(Log)
+"""First column of the window before the last one."""
+LATE = BEFORE + len(Window)
+"""First column of the window of the last periods."""
+LAST_LOOKS = LATE + len(Window)
+"""First column of the leans at the looks of the last period."""
+STATE = LAST_LOOKS + 4 * LOOKS
+"""First column of the state."""
+
+NOTE = 5
+"""Columns of a sample or a strobe: tilt x and y, their rates, time."""
+
+
+class Status(_FromZero):
+    """How a run stands with its kernel."""
+
+    WAITING = auto()
+    STOPPED = auto()
+    """Its time was up."""
+    RESTED = auto()
+    OVERTURNED = auto()
+    LIMIT = auto()
+    LIFTED = auto()
+    STEP_LIMIT = auto()
+    STEP_TOO_SMALL = auto()
+    TO_PLANE = auto()
+    """It was released from rest by a motion along a line: the kernel of plane motion takes it on."""

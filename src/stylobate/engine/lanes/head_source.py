@@ -1,0 +1,82 @@
+"""Writes the head of a kernel: constants, and the model's functions as the driver calls them."""
+
+from collections.abc import Mapping
+
+from stylobate.engine.lanes.columns import NOTE, STATE
+from stylobate.engine.lanes.step_source import Shape
+
+OPTIONAL = ("rest_energy", "no_return_tilt", "departure", "passage", "at_rest")
+"""Functions that a model may lack."""
+
+
+def constants_source(shape: Shape, has: Mapping[str, bool], *, to_plane: bool) -> str:
+    """Return the source of the constants; `has` tells which functions the model gives."""
+    values = {
+        "WIDTH": shape.width,
+        "ORDER": shape.order,
+        "PARAMETERS": shape.parameters,
+        "PLANAR": shape.planar,
+        "VERTICAL": "az" in shape.forcing.components,
+        "STATE": STATE,
+        "NOTE": NOTE,
+        "PARAMETERS_AT": shape.parameters_at,
+        "MOTION_AT": shape.motion_at,
+        "BREAKS_AT": shape.breaks_at,
+        "CAN_REST": has["rest_energy"],
+        "CAN_DEPART": has["departure"],
+        "CAN_PASS": has["passage"] and not shape.planar,
+        "CAN_PROVE_NO_RETURN": has["no_return_tilt"],
+        "CAN_GO_TO_PLANE": to_plane,
+        **shape.forcing.constants(shape.rows()),
+    }
+    return "".join(f"{name} = {value!r}\n" for name, value in values.items())
+
+
+def model_source(shape: Shape, has: Mapping[str, bool]) -> str:
+    """Return the source of the functions through which the driver calls the model for one lane."""
+    rows = shape.rows()
+    parameters = [rows.of_lane(f"p{j}") for j in range(shape.parameters)]
+    state, new = ([rows.of_lane(f"{name}{j}") for j in range(shape.order)] for name in ("y", "new"))
+
+    def call(name: str, *arguments: str) -> str:
+        return f"{name}({', '.join([*arguments, *parameters])})"
+
+    nothing = f"({'0.0, ' * shape.order})"
+    definitions = {
+        "row_state(buf, i, row)": "(" + "".join(f"buf[row + {j}, i], " for j in range(shape.order)) + ")",
+        "model_lean(buf, i)": _plane_lean(state) if shape.planar else call("lean", *state),
+        "lean_of_new(buf, i)": _plane_lean(new) if shape.planar else call("lean", *new),
+        "model_rest_energy(buf, i, tilt, speed, az)": call("rest_energy", "tilt", "speed", "az")
+        if has["rest_energy"]
+        else "math.inf",
+        "model_no_return(buf, i, largest, least)": call("no_return_tilt", "largest", "least")
+        if has["no_return_tilt"]
+        else "math.inf",
+        "model_passage(buf, i, ax, ay, az)": call("passage", *state, "ax", "ay", "az")
+        if has["passage"] and not shape.planar
+        else f"(0.0, {nothing})",
+        "model_at_rest(buf, i)": call("at_rest", *state) if has["at_rest"] and not shape.planar else nothing,
+    }
+    if not has["departure"]:
+        definitions["model_departure(buf, i, push, elapsed, ux, uy)"] = nothing
+    elif not shape.planar:
+        definitions["model_departure(buf, i, push, elapsed, ux, uy)"] = call("departure", "push", "elapsed")
+    source = "\n\n".join(f"@part\ndef {name}:\n    return {value}" for name, value in definitions.items()) + "\n"
+    if has["departure"] and shape.planar:
+        source += _plane_departure(call("departure", "push", "elapsed"), parameters)
+    return source
+
+
+def _plane_lean(state: list[str]) -> str:
+    return f"({state[0]}, 0.0, {state[1]}, 0.0)"
+
+
+def _plane_departure(departure: str, parameters: list[str]) -> str:
+    return f"""
+
+@part
+def model_departure(buf, i, push, elapsed, ux, uy):
+    state = {departure}
+    x, y, vx, vy = lean(*state, {", ".join(parameters)})
+    return (x * ux + y * uy, vx * ux + vy * uy)
+"""

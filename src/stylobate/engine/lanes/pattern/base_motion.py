@@ -1,0 +1,138 @@
+"""The base motion in a lane: its leg, and bounds from now on."""
+
+import math
+from typing import TYPE_CHECKING
+
+from stylobate.engine.lanes.arithmetic import part
+from stylobate.engine.lanes.layout import Table
+
+if TYPE_CHECKING:
+    from stylobate.engine.lanes.pattern.head import (
+        CAN_PROVE_NO_RETURN,
+        DEGREE,
+        FIRST_FORCING,
+        FORCING_ROWS,
+        MOTION_AT,
+        PLANAR,
+        TERMS,
+        VERTICAL,
+        WINDOWED,
+        R,
+        model_no_return,
+    )
+
+# --- the kernel's text begins here ---
+
+
+@part
+def set_leg(buf: Table, i: int, table: Table, pieces: Table, t: float) -> None:
+    """Set the rows of the base motion for the leg that begins at `t`."""
+    motion = table[int(buf[R.RUN, i]), MOTION_AT:]
+    buf[R.LEG_ENDS, i] = math.inf
+    if DEGREE >= 0:
+        set_piece(buf, i, motion, pieces, t)
+    else:
+        set_terms(buf, i, motion, t)
+
+
+@part
+def set_terms(buf: Table, i: int, motion: Table, t: float) -> None:
+    columns = 7 + 3 * WINDOWED
+    for term in range(TERMS):
+        source = term * columns
+        row = FIRST_FORCING + term * FORCING_ROWS
+        buf[row, i] = motion[source]
+        if PLANAR:
+            # Both components along the line: a sum of two cosines of one frequency.
+            ux, uy = buf[R.LINE_X, i], buf[R.LINE_Y, i]
+            fx, fy = 2.0 * math.pi * motion[source + 2], 2.0 * math.pi * motion[source + 4]
+            cos = ux * motion[source + 1] * math.cos(fx) + uy * motion[source + 3] * math.cos(fy)
+            sin = ux * motion[source + 1] * math.sin(fx) + uy * motion[source + 3] * math.sin(fy)
+            buf[row + 1, i] = math.hypot(cos, sin)
+            buf[row + 2, i] = math.atan2(sin, cos) / (2.0 * math.pi)
+            row += 3
+        else:
+            for k in range(4):
+                buf[row + 1 + k, i] = motion[source + 1 + k]
+            row += 5
+        if VERTICAL:
+            buf[row, i] = motion[source + 5]
+            buf[row + 1, i] = motion[source + 6]
+            row += 2
+        if WINDOWED:
+            onset, begins, rise = motion[source + 7], motion[source + 8], motion[source + 9]
+            full = 0.0 if t < onset else 0.5 if t < begins + rise else 1.0
+            per_turn = 0.5 / rise if rise > 0.0 else 0.0
+            buf[row, i] = full
+            buf[row + 1, i] = 0.5 if full == 0.5 else 0.0  # noqa: PLR2004
+            buf[row + 2, i] = per_turn
+            buf[row + 3, i] = -per_turn * begins
+
+
+@part
+def set_piece(buf: Table, i: int, motion: Table, pieces: Table, t: float) -> None:
+    """Load the polynomial that holds from `t` on."""
+    factor, cos, sin, vertical, delay = motion[0], motion[1], motion[2], motion[3], motion[4]
+    first, last = int(motion[5]), int(motion[5] + motion[6]) - 1
+    scale = buf[R.TIME_SCALE, i]
+    time = t * scale * (1.0 + 4e-16)  # a leg that begins at a knot has passed it
+    if time < delay:
+        for row in range(FIRST_FORCING, FIRST_FORCING + 2 + (2 - PLANAR + VERTICAL) * FORCING_ROWS):
+            buf[row, i] = 0.0
+        buf[R.LEG_ENDS, i] = delay / scale
+        return
+    low, high = first, last
+    while low < high:  # the last piece that begins at `t` or before
+        middle = (low + high + 1) // 2
+        if pieces[middle, 0] + delay <= time:
+            low = middle
+        else:
+            high = middle - 1
+    start, end = pieces[low, 0], pieces[low, 1]
+    buf[FIRST_FORCING, i] = (0.5 * (start + end) + delay) / scale
+    buf[FIRST_FORCING + 1, i] = 2.0 * scale / (end - start)
+    for k in range(FORCING_ROWS):
+        x, y = pieces[low, 5 + k], pieces[low, 5 + FORCING_ROWS + k]
+        x, y = factor * (cos * x - sin * y), factor * (sin * x + cos * y)
+        row = FIRST_FORCING + 2 + k
+        if PLANAR:
+            buf[row, i] = x * buf[R.LINE_X, i] + y * buf[R.LINE_Y, i]
+        else:
+            buf[row, i] = x
+            row += FORCING_ROWS
+            buf[row, i] = y
+        if VERTICAL:
+            buf[row + FORCING_ROWS, i] = vertical * pieces[low, 5 + 2 * FORCING_ROWS + k]
+    # Bounds from now on replace those of the whole motion.
+    buf[R.LARGEST_HORIZONTAL, i] = abs(factor) * pieces[low, 2]
+    buf[R.LEAST_VERTICAL, i] = min(vertical * pieces[low, 3], vertical * pieces[low, 4])
+    buf[R.LARGEST_VERTICAL, i] = max(vertical * pieces[low, 3], vertical * pieces[low, 4])
+    set_no_return(buf, i)
+    if low < last:
+        buf[R.LEG_ENDS, i] = (end + delay) / scale
+
+
+@part
+def set_no_return(buf: Table, i: int) -> None:
+    bound = math.inf
+    if CAN_PROVE_NO_RETURN:
+        bound = model_no_return(buf, i, buf[R.LARGEST_HORIZONTAL, i], buf[R.LEAST_VERTICAL, i])
+    buf[R.NO_RETURN, i] = bound if bound < math.inf else buf[R.OVERTURNED_TILT, i]
+
+
+@part
+def forcing_rate(buf: Table, i: int) -> float:
+    """Return the largest rate at which the force on a column near rest can change."""
+    vertical = max(abs(buf[R.LEAST_VERTICAL, i]), abs(buf[R.LARGEST_VERTICAL, i]))
+    return buf[R.FREQUENCY, i] * (buf[R.LARGEST_HORIZONTAL, i] + buf[R.SLENDERNESS, i] * vertical)
+
+
+@part
+def least_force(buf: Table, i: int) -> float:
+    """Return the least force that holds a standing column down from now on; below zero where it can be released."""
+    return buf[R.CAPACITY, i] * (1.0 + buf[R.LEAST_VERTICAL, i]) - buf[R.LARGEST_HORIZONTAL, i]
+
+
+@part
+def held_for_good(buf: Table, i: int) -> bool:
+    return least_force(buf, i) >= 0.0 and 1.0 + buf[R.LEAST_VERTICAL, i] > 0.0

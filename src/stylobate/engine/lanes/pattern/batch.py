@@ -1,0 +1,146 @@
+"""A batch of runs through the lanes."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.engine.lanes.arithmetic import kept, part
+from stylobate.engine.lanes.columns import STATE, Status
+from stylobate.engine.lanes.layout import Table
+from stylobate.engine.lanes.pattern.base_motion import set_leg, set_no_return
+from stylobate.engine.lanes.pattern.events import handle
+from stylobate.engine.lanes.pattern.lift_off import find_lift
+from stylobate.engine.lanes.pattern.moving import azimuth_now, set_off
+from stylobate.engine.lanes.pattern.resting import stand
+from stylobate.engine.lanes.pattern.stops import (
+    go_on,
+    meet_stop,
+    next_stop,
+    set_break,
+    set_look,
+    set_sample,
+    set_strobe,
+)
+
+if TYPE_CHECKING:
+    from stylobate.engine.lanes.pattern.head import ORDER, PARAMETERS, PARAMETERS_AT, PLANAR, WIDTH, R, observe, step
+
+# --- the kernel's text begins here ---
+
+# A motion that begins is followed finely up to this tilt [units of c].
+GROWN = 1e-3
+
+
+@part
+def enter(buf: Table, i: int, table: Table, pieces: Table, run: int) -> int:
+    """Take a run into lane `i`; return WAITING when it moves, else the status with which it ends at once."""
+    for column in range(STATE):
+        buf[column, i] = table[run, column]
+    for j in range(ORDER):
+        buf[R.STATE + j, i] = table[run, STATE + j]
+    for j in range(PARAMETERS):
+        buf[R.PARAMETER + j, i] = table[run, PARAMETERS_AT + j]
+    buf[R.RUN, i] = run
+    c, t = buf[R.SLENDERNESS, i], buf[R.TIME, i]
+    buf[R.GROWN, i] = GROWN * c
+    buf[R.REST_TILT, i] = buf[R.REST_ENERGY, i] * c
+    buf[R.PER_TURN, i] = 1.0 / buf[R.PERIOD, i] if buf[R.PERIOD, i] > 0.0 else 0.0
+    set_look(buf, i)
+    set_sample(buf, i)
+    set_strobe(buf, i)
+    set_break(buf, i, table)
+    set_no_return(buf, i)
+    set_leg(buf, i, table, pieces, t)
+    find_lift(buf, i, table, pieces)
+    if buf[R.STANDS, i] > 0.0:
+        return stand(buf, i, table, pieces, t)
+    set_off(buf, i, t, 0.0)
+    while next_stop(buf, i) <= t:
+        status = meet_stop(buf, i, table, pieces, next_stop(buf, i))
+        if status != Status.WAITING:
+            return status
+    go_on(buf, i)
+    return Status.WAITING
+
+
+@part
+def leave(buf: Table, i: int, table: Table, status: int) -> None:
+    """Note the run of lane `i` as it is now."""
+    run = int(buf[R.RUN, i])
+    buf[R.STATUS, i] = status
+    if status not in (Status.RESTED, Status.TO_PLANE):
+        buf[R.DECIDED, i] = buf[R.TIME, i]
+    if not PLANAR and buf[R.STANDS, i] == 0.0 and status != Status.TO_PLANE:
+        buf[R.LAST_AZIMUTH, i] = azimuth_now(buf, i)
+    for column in range(R.STATUS, STATE):
+        table[run, column] = buf[column, i]
+    for j in range(ORDER):
+        table[run, STATE + j] = buf[R.STATE + j, i]
+
+
+@part
+def quiet(buf: Table, i: int) -> None:
+    """Fill an idle lane with numbers that do no harm."""
+    for row in range(len(buf)):
+        buf[row, i] = 0.0
+    for row in (R.STATE, R.TILT, R.X, R.SLENDERNESS, R.SIDE, R.ATOL, R.ATOL_NOW):
+        buf[row, i] = 1.0
+    for row in (R.STOP, R.NO_RETURN, R.TILT_LIMIT, R.LARGEST_TILT):
+        buf[row, i] = 1e300
+    for j in range(PARAMETERS):
+        buf[R.PARAMETER + j, i] = 0.1
+    buf[R.RUN, i] = -1.0
+
+
+@part
+def fill(buf: Table, i: int, table: Table, pieces: Table, waiting: int) -> int:
+    """Take the first run from `waiting` on that does not end at once into lane `i`; return which waits next."""
+    while waiting < len(table):
+        run = waiting
+        waiting += 1
+        if table[run, R.STATUS] == Status.WAITING:
+            status = enter(buf, i, table, pieces, run)
+            if status == Status.WAITING:
+                break
+            leave(buf, i, table, status)
+            quiet(buf, i)
+    return waiting
+
+
+@kept
+def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8]) -> bool:
+    """Run a batch to its end; return whether it got there.
+
+    `table` has a row for each run, see `columns`; `halt[0]` set to 1 from another thread ends the batch early.
+    """
+    flat = np.zeros(R.COUNT * WIDTH)
+    buf = flat.reshape((R.COUNT, WIDTH))
+    waiting, watched = 0, False
+    for i in range(WIDTH):
+        quiet(buf, i)
+        waiting = fill(buf, i, table, pieces, waiting)
+    while True:
+        live = False
+        watched = False
+        for i in range(WIDTH):
+            live = live or buf[R.RUN, i] >= 0.0
+            watched = watched or buf[R.WATCHED, i] > 0.0
+        if not live:
+            return True
+        met = False
+        while not met:
+            step(flat)
+            if watched:
+                observe(flat)
+            for i in range(WIDTH):
+                met = met or buf[R.FLAG, i] > 0.0
+            if halt[0] != 0:
+                return False
+        for i in range(WIDTH):
+            if buf[R.FLAG, i] > 0.0 and buf[R.RUN, i] >= 0.0:
+                status = handle(buf, i, table, pieces)
+                if status != Status.WAITING:
+                    leave(buf, i, table, status)
+                    quiet(buf, i)
+                    waiting = fill(buf, i, table, pieces, waiting)

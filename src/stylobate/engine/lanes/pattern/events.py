@@ -1,0 +1,135 @@
+"""What a lane is stopped for, and dealing with it."""
+
+import math
+from typing import TYPE_CHECKING
+
+from stylobate.engine.lanes.arithmetic import part
+from stylobate.engine.lanes.columns import Status
+from stylobate.engine.lanes.layout import Table
+from stylobate.engine.lanes.pattern.passages import cross_upright, hop, hops
+from stylobate.engine.lanes.pattern.peaks import measure_peak
+from stylobate.engine.lanes.pattern.resting import rest_within_step, settle
+from stylobate.engine.lanes.pattern.stops import go_on, meet_stop
+from stylobate.engine.lanes.roots import first_growth_past, first_return
+
+if TYPE_CHECKING:
+    from stylobate.engine.lanes.pattern.head import CAN_PASS, CAN_REST, PLANAR, R, lean_of_new
+
+# --- the kernel's text begins here ---
+
+# How near an event is met by repeated steps towards it [units of the larger of 1 and the time], and how often.
+AIM = 1e-13
+MOST_AIMS = 4
+
+
+@part
+def event_ahead(buf: Table, i: int) -> float:
+    """Return the step to the first event within a step that was held back."""
+    h = buf[R.HELD_STEP, i]
+    tilt0, radial0 = buf[R.TILT, i], buf[R.RADIAL, i]
+    x1, y1, vx1, vy1 = lean_of_new(buf, i)
+    square0, square1 = tilt0 * tilt0, x1 * x1 + y1 * y1
+    slope0, slope1 = 2.0 * h * radial0, 2.0 * h * (x1 * vx1 + y1 * vy1)
+    found = h
+    if PLANAR:
+        side = buf[R.SIDE, i]
+        found = first_return(
+            h,
+            side * buf[R.STATE, i],
+            side * buf[R.STATE + 1, i],
+            side * buf[R.SLOPE + 1, i],
+            side * buf[R.NEW, i],
+            side * buf[R.NEW + 1, i],
+            side * buf[R.SLOPE_NEW + 1, i],
+        )
+    limit, no_return = buf[R.TILT_LIMIT, i], buf[R.NO_RETURN, i]
+    tilt1 = math.sqrt(square1)
+    if tilt1 > limit:
+        found = min(found, h * first_growth_past(limit * limit, square0, square1, slope0, slope1))
+    if tilt1 > no_return and slope1 > 0.0:
+        found = min(found, h * first_growth_past(no_return * no_return, square0, square1, slope0, slope1))
+    return found
+
+
+@part
+def meets_upright(buf: Table, i: int) -> bool:
+    """Return whether the event that a lane was aimed at is the upright."""
+    return PLANAR and buf[R.TILT, i] < 0.5 * min(buf[R.TILT_LIMIT, i], buf[R.NO_RETURN, i])
+
+
+@part
+def miss(buf: Table, i: int) -> float:
+    """Return the further step to the event at which an aimed step has arrived."""
+    tilt, radial, h = buf[R.TILT, i], buf[R.RADIAL, i], buf[R.MADE, i]
+    bound = min(buf[R.TILT_LIMIT, i], buf[R.NO_RETURN, i])
+    further = 0.0
+    if meets_upright(buf, i):
+        speed = buf[R.STATE + 1, i]
+        further = -buf[R.STATE, i] / speed if speed != 0.0 else 0.0
+    elif buf[R.BY_TILT, i] > 0.0:
+        further = (bound - tilt) * tilt / radial if radial > 0.0 else 0.0
+    elif radial != buf[R.RADIAL_BEFORE, i]:
+        further = -radial * h / (radial - buf[R.RADIAL_BEFORE, i])
+    return min(max(further, -0.5 * abs(h)), 0.5 * abs(h))
+
+
+@part
+def held_back(buf: Table, i: int, table: Table, pieces: Table) -> int:
+    """Aim at the event within the step that was held back."""
+    h = buf[R.TRIED, i]
+    buf[R.HELD_STEP, i] = h
+    ahead = event_ahead(buf, i)
+    if ahead <= 0.0:  # a swing that begins and ends within a part of the step too small to be told
+        buf[R.STATE, i] = 0.0
+        return settle(buf, i, table, pieces, buf[R.TIME, i])
+    # Of the two conditions of overturning, which is met last: tilt, or growth of the tilt.
+    buf[R.BY_TILT, i] = 1.0 if buf[R.TILT, i] < min(buf[R.TILT_LIMIT, i], buf[R.NO_RETURN, i]) else 0.0
+    buf[R.H, i] = ahead
+    buf[R.AIMED, i] = 1.0
+    return Status.WAITING
+
+
+@part
+def arrived(buf: Table, i: int, table: Table, pieces: Table) -> int:
+    """Go nearer to the event that the lane was aimed at, or deal with it."""
+    further = miss(buf, i)
+    if abs(further) > AIM * max(1.0, buf[R.TIME, i]) and buf[R.AIMED, i] < MOST_AIMS:
+        buf[R.H, i] = further
+        buf[R.AIMED, i] += 1.0
+        return Status.WAITING
+    buf[R.AIMED, i] = 0.0
+    if buf[R.TILT, i] > buf[R.LARGEST_TILT, i]:
+        buf[R.LARGEST_TILT, i] = buf[R.TILT, i]
+        buf[R.LARGEST_AT, i] = buf[R.TIME, i]
+    if meets_upright(buf, i):
+        return cross_upright(buf, i, table, pieces)
+    return Status.LIMIT if buf[R.TILT_LIMIT, i] <= buf[R.NO_RETURN, i] else Status.OVERTURNED
+
+
+@part
+def handle(buf: Table, i: int, table: Table, pieces: Table) -> int:
+    """Deal with a lane that needs it; return the status of a run that ends, or WAITING."""
+    if buf[R.HELD, i] > 0.0:
+        return held_back(buf, i, table, pieces)
+    if buf[R.GO, i] == 0.0:
+        return Status.STEP_TOO_SMALL
+    if buf[R.PEAK, i] > 0.0:
+        measure_peak(buf, i)
+    if buf[R.AIMED, i] > 0.0:
+        return arrived(buf, i, table, pieces)
+    if buf[R.STEPS, i] >= buf[R.MOST_STEPS, i]:
+        return Status.STEP_LIMIT
+    if not PLANAR:
+        if CAN_REST and buf[R.REST_ENERGY, i] > 0.0 and buf[R.LOW, i] < buf[R.REST_TILT, i]:
+            rest = rest_within_step(buf, i)
+            if not math.isnan(rest):
+                return settle(buf, i, table, pieces, rest)
+        if CAN_PASS and hops(buf, i):
+            hop(buf, i)
+    t = buf[R.TIME, i]
+    if t >= buf[R.STOP, i]:
+        status = meet_stop(buf, i, table, pieces, t)
+        if status != Status.WAITING:
+            return status
+    go_on(buf, i)
+    return Status.WAITING

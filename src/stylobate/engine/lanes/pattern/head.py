@@ -1,0 +1,42 @@
+"""What the head of a kernel defines, for reading the driver by itself; `kernels` writes the real ones."""
+
+from collections.abc import Callable
+from typing import Any
+
+WIDTH: int
+ORDER: int
+"""Number of equations."""
+PARAMETERS: int
+PLANAR: bool
+VERTICAL: bool
+TERMS: int
+WINDOWED: int
+FIRST_FORCING: int
+FORCING_ROWS: int
+DEGREE: int
+"""Of the polynomials that tabulate the base motion; −1 for harmonic motion."""
+PARAMETERS_AT: int
+MOTION_AT: int
+BREAKS_AT: int
+"""Columns of the table at which the parameters, the numbers of the base motion and its breaks begin."""
+CAN_REST: bool
+CAN_DEPART: bool
+CAN_PASS: bool
+CAN_PROVE_NO_RETURN: bool
+CAN_GO_TO_PLANE: bool
+
+R: Any
+"""Rows of the buffer."""
+
+step: Callable[..., None]
+observe: Callable[..., None]
+accelerations: Callable[..., tuple[float, float, float]]
+rates_at: Callable[..., tuple[float, ...]]
+row_state: Callable[..., tuple[float, ...]]
+model_lean: Callable[..., tuple[float, float, float, float]]
+lean_of_new: Callable[..., tuple[float, float, float, float]]
+model_at_rest: Callable[..., tuple[float, ...]]
+model_departure: Callable[..., tuple[float, ...]]
+model_no_return: Callable[..., float]
+model_passage: Callable[..., tuple[float, tuple[float, ...]]]
+model_rest_energy: Callable[..., float]

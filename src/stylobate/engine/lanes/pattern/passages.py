@@ -1,0 +1,61 @@
+"""Passages of the upright: in a plane, and in closed form out of it."""
+
+import math
+from typing import TYPE_CHECKING
+
+from stylobate.engine.lanes.arithmetic import part
+from stylobate.engine.lanes.columns import Status
+from stylobate.engine.lanes.layout import Table
+from stylobate.engine.lanes.pattern.moving import azimuth_now, set_lean, set_off, set_state
+from stylobate.engine.lanes.pattern.resting import rest_margin, settle
+from stylobate.engine.lanes.pattern.stops import go_on, next_stop
+
+if TYPE_CHECKING:
+    from stylobate.engine.lanes.pattern.head import CAN_REST, R, accelerations, model_passage
+
+# --- the kernel's text begins here ---
+
+# A passage is hopped over from within this distance [units of c] if its offset is below the second number.
+HOP_FROM = 1e-6
+HOP_OFFSET = 1e-9
+
+
+@part
+def cross_upright(buf: Table, i: int, table: Table, pieces: Table) -> int:
+    """Pass the upright in the plane, or come to rest there."""
+    t, speed = buf[R.TIME, i], buf[R.STATE + 1, i]
+    buf[R.TOUCHED_UPRIGHT, i] = 1.0
+    buf[R.STATE, i] = 0.0
+    rests = CAN_REST and buf[R.REST_ENERGY, i] > 0.0 and rest_margin(buf, i, t, 0.0, abs(speed)) > 0.0
+    if speed == 0.0 or rests:
+        return settle(buf, i, table, pieces, t)
+    set_off(buf, i, t, buf[R.HELD_STEP, i])
+    go_on(buf, i)
+    return Status.WAITING
+
+
+@part
+def hops(buf: Table, i: int) -> bool:
+    """Return whether the lane heads past the upright so closely that the passage is made in closed form."""
+    c, speed = buf[R.SLENDERNESS, i], math.hypot(buf[R.VX, i], buf[R.VY, i])
+    near = buf[R.RADIAL, i] < 0.0 and buf[R.TILT, i] < HOP_FROM * min(c, speed)
+    return near and abs(buf[R.MOMENTUM, i]) < HOP_OFFSET * c * speed
+
+
+@part
+def hop(buf: Table, i: int) -> None:
+    """Make the passage, if it ends before the next stop."""
+    t = buf[R.TIME, i]
+    ax, ay, az = accelerations(buf, i, t)
+    elapsed, state = model_passage(buf, i, ax, ay, az)
+    if t + elapsed > next_stop(buf, i):
+        return
+    momentum, speed = buf[R.MOMENTUM, i], math.hypot(buf[R.VX, i], buf[R.VY, i])
+    # Half a turn on the side on which the momentum says it passes.
+    azimuth = azimuth_now(buf, i) + math.copysign(0.5, momentum)
+    set_state(buf, i, state)
+    set_lean(buf, i)
+    buf[R.LEAST_PASSAGE, i] = min(buf[R.LEAST_PASSAGE, i], abs(momentum) / speed)
+    buf[R.LAST_AZIMUTH, i] = azimuth
+    set_off(buf, i, t + elapsed, buf[R.WANTED, i])
+    buf[R.ATOL_NOW, i] = buf[R.ATOL, i]

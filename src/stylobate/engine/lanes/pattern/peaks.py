@@ -1,0 +1,65 @@
+"""The largest tilt within a step."""
+
+import math
+from typing import TYPE_CHECKING
+
+from stylobate.engine.lanes.arithmetic import part
+from stylobate.engine.lanes.layout import Table
+from stylobate.engine.lanes.roots import quintic
+
+if TYPE_CHECKING:
+    from stylobate.engine.lanes.pattern.head import ORDER, R, lean_of_new, row_state
+
+# --- the kernel's text begins here ---
+
+# Time over which accelerations of the lean are told by differences.
+DIFFERENCE = 1e-5
+
+
+@part
+def measure_peak(buf: Table, i: int) -> None:
+    """Measure the largest tilt within the step just made, by quintics through the leans at its ends."""
+    h = buf[R.MADE, i]
+    x0, y0, vx0, vy0, ax0, ay0 = lean_before(buf, i)
+    x1, y1, vx1, vy1, ax1, ay1 = lean_after(buf, i)
+    low, high = 0.0, 1.0
+    tilt = 0.0
+    for _ in range(40):
+        u = 0.5 * (low + high)
+        x, vx = quintic(u, h, x0, vx0, ax0, x1, vx1, ax1)
+        y, vy = quintic(u, h, y0, vy0, ay0, y1, vy1, ay1)
+        tilt = math.hypot(x, y)
+        if x * vx + y * vy > 0.0:
+            low = u
+        else:
+            high = u
+    if tilt > buf[R.LARGEST_TILT, i]:
+        buf[R.LARGEST_TILT, i] = tilt
+        buf[R.LARGEST_AT, i] = buf[R.TIME, i] - h + low * h
+
+
+@part
+def lean_before(buf: Table, i: int) -> tuple[float, float, float, float, float, float]:
+    return lean_and_rates(buf, i, row_state(buf, i, R.LAST_STATE), row_state(buf, i, R.LAST_SLOPE))
+
+
+@part
+def lean_after(buf: Table, i: int) -> tuple[float, float, float, float, float, float]:
+    return lean_and_rates(buf, i, row_state(buf, i, R.STATE), row_state(buf, i, R.SLOPE))
+
+
+@part
+def lean_and_rates(
+    buf: Table, i: int, state: tuple[float, ...], slopes: tuple[float, ...]
+) -> tuple[float, float, float, float, float, float]:
+    """Return the lean, its rate and its acceleration, by differences along the motion; exact where linear."""
+    for j in range(ORDER):
+        buf[R.NEW + j, i] = state[j] + DIFFERENCE * slopes[j]
+    _, _, ahead_x, ahead_y = lean_of_new(buf, i)
+    for j in range(ORDER):
+        buf[R.NEW + j, i] = state[j] - DIFFERENCE * slopes[j]
+    _, _, behind_x, behind_y = lean_of_new(buf, i)
+    for j in range(ORDER):
+        buf[R.NEW + j, i] = state[j]
+    x, y, vx, vy = lean_of_new(buf, i)
+    return x, y, vx, vy, (ahead_x - behind_x) / (2.0 * DIFFERENCE), (ahead_y - behind_y) / (2.0 * DIFFERENCE)

@@ -1,0 +1,85 @@
+"""When the base motion releases a standing column."""
+
+import math
+from typing import TYPE_CHECKING
+
+from stylobate.engine.lanes.arithmetic import part
+from stylobate.engine.lanes.layout import Table
+
+if TYPE_CHECKING:
+    from stylobate.engine.lanes.pattern.head import R, accelerations
+
+# --- the kernel's text begins here ---
+
+# Samples to the shortest period of the base motion, as in the search for single runs.
+SAMPLES_PER_PERIOD = 64
+# What counts as the same moment [samples].
+MOMENT = 1e-6
+
+
+@part
+def excess(buf: Table, i: int, t: float) -> float:
+    ax, ay, az = accelerations(buf, i, t)
+    return math.hypot(ax, ay) - buf[R.CAPACITY, i] * (1.0 + az)
+
+
+@part
+def release_time(buf: Table, i: int, start: float, end: float) -> float:
+    """Return the first time in [start, end) at which the base motion releases a standing column, or infinity."""
+    frequency = buf[R.FREQUENCY, i]
+    spacing = 2.0 * math.pi / (frequency * SAMPLES_PER_PERIOD) if frequency > 0.0 else end - start
+    spacing = min(spacing, 0.5 * (end - start))
+    # An excess that is gone a moment later is the rounding of the instant at which the column came to rest.
+    if excess(buf, i, start) > 0.0:
+        moment = min(start + MOMENT * spacing, end)
+        if excess(buf, i, moment) > 0.0:
+            return start
+        start = moment
+    e1 = excess(buf, i, start)
+    t0, e0, t1 = start, e1, start
+    for k in range(1, math.ceil((end - start) / spacing) + 1):
+        t2 = min(start + k * spacing, end)
+        e2 = excess(buf, i, t2)
+        curvature = e0 - 2.0 * e1 + e2
+        # A peak counts if the parabola through three samples would pass the limit with twice the rise it shows.
+        if k > 1 and e1 >= e0 and e1 >= e2 and curvature < 0.0:
+            rise = -((e2 - e0) ** 2) / (8.0 * curvature)
+            if e1 + 2.0 * rise - curvature > 0.0:
+                top = peak(buf, i, t0, t2)
+                if excess(buf, i, top) > 0.0:
+                    return crossing(buf, i, t0, top)
+        if e2 > 0.0 and t2 < end:
+            return crossing(buf, i, t1, t2)
+        t0, e0, t1, e1 = t1, e1, t2, e2
+    return math.inf
+
+
+@part
+def peak(buf: Table, i: int, low: float, high: float) -> float:
+    """Return where the excess is largest, by golden sections."""
+    golden = 0.6180339887498949
+    a, b = high - golden * (high - low), low + golden * (high - low)
+    ea, eb = excess(buf, i, a), excess(buf, i, b)
+    for _ in range(50):
+        if ea > eb:
+            high, b, eb = b, a, ea
+            a = high - golden * (high - low)
+            ea = excess(buf, i, a)
+        else:
+            low, a, ea = a, b, eb
+            b = low + golden * (high - low)
+            eb = excess(buf, i, b)
+    return a if ea > eb else b
+
+
+@part
+def crossing(buf: Table, i: int, low: float, high: float) -> float:
+    if excess(buf, i, low) >= 0.0:
+        return low
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if excess(buf, i, middle) > 0.0:
+            high = middle
+        else:
+            low = middle
+    return high

@@ -1,0 +1,167 @@
+"""Coming to rest, standing, and departing from rest."""
+
+import math
+from typing import TYPE_CHECKING
+
+from stylobate.engine.lanes.arithmetic import part
+from stylobate.engine.lanes.columns import Status
+from stylobate.engine.lanes.layout import Table
+from stylobate.engine.lanes.pattern.base_motion import forcing_rate, held_for_good, least_force
+from stylobate.engine.lanes.pattern.moving import at_upright, azimuth_now, set_off, set_state
+from stylobate.engine.lanes.pattern.release import release_time
+from stylobate.engine.lanes.pattern.stops import go_on, meet_stop, next_stop
+from stylobate.engine.lanes.roots import cubic
+from stylobate.models.model import Push
+
+if TYPE_CHECKING:
+    from stylobate.engine.lanes.pattern.head import (
+        CAN_DEPART,
+        CAN_GO_TO_PLANE,
+        ORDER,
+        PLANAR,
+        R,
+        accelerations,
+        lean_of_new,
+        model_at_rest,
+        model_departure,
+        model_rest_energy,
+    )
+
+# --- the kernel's text begins here ---
+
+# Time after release, in units of the fastest time scale, at which the departure series hands over.
+DEPARTURE = 1e-3
+# Weight that counts as none.
+RELEASE_MARGIN = 8.0 * 2.220446049250313e-16
+# How small a part of the force on a column near rest may change during one hop: one over this.
+HOPS_APART = 5.0
+
+
+@part
+def rest_margin(buf: Table, i: int, t: float, tilt: float, speed: float) -> float:
+    """Return what is positive where a column of this tilt and speed comes to rest at `t`."""
+    ax, ay, az = accelerations(buf, i, t)
+    energy = model_rest_energy(buf, i, tilt, speed, az)
+    force = least_force(buf, i)
+    if force < 0.0:
+        force = buf[R.CAPACITY, i] * (1.0 + az) - math.hypot(ax, ay)
+    change = 2.0 * math.sqrt(2.0 * max(energy, 0.0)) * forcing_rate(buf, i)
+    limit = buf[R.REST_ENERGY, i] * buf[R.SLENDERNESS, i] ** 2
+    return min(limit - energy, force - math.sqrt(HOPS_APART * change))
+
+
+@part
+def rest_within_step(buf: Table, i: int) -> float:
+    """Return when the column came to rest within the step just made, or NaN."""
+    h = buf[R.MADE, i]
+    start = buf[R.TIME, i] - h
+    before = 0.0
+    for k in range(5):
+        u = 0.25 * k
+        if margin_within_step(buf, i, start, h, u) > 0.0:
+            low, high = before, u
+            for _ in range(40 if k > 0 else 0):
+                middle = 0.5 * (low + high)
+                if margin_within_step(buf, i, start, h, middle) > 0.0:
+                    high = middle
+                else:
+                    low = middle
+            return start + high * h
+        before = u
+    return math.nan
+
+
+@part
+def margin_within_step(buf: Table, i: int, start: float, h: float, u: float) -> float:
+    # The state between the ends of the step, by cubics, in the rows of the new state.
+    for j in range(ORDER):
+        buf[R.NEW + j, i] = cubic(
+            u, buf[R.LAST_STATE + j, i], buf[R.STATE + j, i], h * buf[R.LAST_SLOPE + j, i], h * buf[R.SLOPE + j, i]
+        )
+    x, y, vx, vy = lean_of_new(buf, i)
+    return rest_margin(buf, i, start + u * h, math.hypot(x, y), math.hypot(vx, vy))
+
+
+@part
+def settle(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
+    """Come to rest at `t`; return as `stand` does."""
+    if not PLANAR:
+        buf[R.LAST_AZIMUTH, i] = azimuth_now(buf, i)
+    set_state(buf, i, model_at_rest(buf, i))
+    buf[R.STANDS, i] = 1.0
+    buf[R.RESTS, i] += 1.0
+    buf[R.TOUCHED_UPRIGHT, i] = 1.0
+    return stand(buf, i, table, pieces, t)
+
+
+@part
+def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
+    """Stand from `t` until released; return WAITING when moving again, else the status with which the run ends."""
+    while True:
+        if held_for_good(buf, i):
+            buf[R.DECIDED, i] = t
+            return stand_to_the_end(buf, i, table, pieces, t)
+        stop = next_stop(buf, i)
+        release = release_time(buf, i, t, stop) if stop > t else math.inf
+        if release >= stop:
+            t = stop
+        else:
+            if 1.0 + accelerations(buf, i, release)[2] <= RELEASE_MARGIN:  # not released but lifted
+                buf[R.TIME, i] = release
+                return Status.LIFTED
+            t = depart(buf, i, release) if CAN_DEPART else buf[R.END, i]
+            if t < buf[R.END, i] and not at_upright(buf, i):
+                return take_off(buf, i, table, pieces, t)
+        t = min(t, buf[R.END, i])
+        buf[R.TIME, i] = t
+        while next_stop(buf, i) <= t:
+            status = meet_stop(buf, i, table, pieces, next_stop(buf, i))
+            if status != Status.WAITING:
+                return status
+
+
+@part
+def stand_to_the_end(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
+    """Note the rest of a run that stands for good."""
+    while t < buf[R.END, i]:
+        t = next_stop(buf, i)
+        meet_stop(buf, i, table, pieces, t)
+    buf[R.TIME, i] = t
+    return Status.RESTED
+
+
+@part
+def depart(buf: Table, i: int, release: float) -> float:
+    """Put the state a short time after the release into the buffer, and return that time."""
+    elapsed = DEPARTURE / (1.0 + buf[R.FREQUENCY, i])
+    ax, ay, az = accelerations(buf, i, release)
+    bx, by, bz = accelerations(buf, i, release + elapsed)
+    ux, uy = buf[R.LINE_X, i], buf[R.LINE_Y, i]
+    if PLANAR:
+        ax, ay, bx, by = ax * ux, ax * uy, bx * ux, bx * uy
+    here, there = math.hypot(ax, ay), math.hypot(bx, by)
+    c = buf[R.SLENDERNESS, i]
+    over = max(here - c * (1.0 + az), 0.0)
+    rate = (there - c * (1.0 + bz) - over) / elapsed
+    turning = math.atan2(ax * by - ay * bx, ax * bx + ay * by) / elapsed
+    push = Push((-ax / here, -ay / here), here, over, rate, turning)
+    set_state(buf, i, model_departure(buf, i, push, elapsed, ux, uy))
+    return release + elapsed
+
+
+@part
+def take_off(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
+    """Go on, moving, from the departure at `t`."""
+    # Looks within the departure, which moves the column by the third power of its duration, see it stand.
+    while next_stop(buf, i) <= t:
+        meet_stop(buf, i, table, pieces, next_stop(buf, i))
+    buf[R.RELEASES, i] += 1.0
+    if buf[R.RESTS, i] > 0.0:
+        buf[R.RELEASED_FROM_REST, i] = 1.0
+    buf[R.TIME, i] = t
+    if CAN_GO_TO_PLANE and (buf[R.LINE_X, i] != 0.0 or buf[R.LINE_Y, i] != 0.0):
+        buf[R.STANDS, i] = 0.0
+        return Status.TO_PLANE
+    set_off(buf, i, t, 0.0)
+    go_on(buf, i)
+    return Status.WAITING

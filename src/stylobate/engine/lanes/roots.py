@@ -1,0 +1,106 @@
+"""Where a step of a lane meets an event, told from the values and slopes at its two ends."""
+
+import math
+
+from stylobate.engine.lanes.arithmetic import part
+
+_BISECTIONS = 52
+# A first crossing is sought at fractions of the step that double up to the second number, then at equal steps.
+_FIRST_FRACTION, _EQUAL_FROM = 2.0**-40, 1.0 / 16.0
+
+
+@part
+def cubic(u: float, start: float, end: float, slope: float, end_slope: float) -> float:
+    """Return the cubic on [0, 1] with these values and slopes at its ends."""
+    rise = end - start
+    b = 3.0 * rise - 2.0 * slope - end_slope
+    a = slope + end_slope - 2.0 * rise
+    return start + u * (slope + u * (b + u * a))
+
+
+@part
+def cubic_rate(u: float, start: float, end: float, slope: float, end_slope: float) -> float:
+    """Return the derivative of `cubic`."""
+    rise = end - start
+    b = 3.0 * rise - 2.0 * slope - end_slope
+    a = slope + end_slope - 2.0 * rise
+    return slope + u * (2.0 * b + 3.0 * u * a)
+
+
+@part
+def first_growth_past(bound: float, start: float, end: float, slope: float, end_slope: float) -> float:
+    """Return the u in [0, 1] at which the cubic first lies above `bound` and grows; 1 if only its end does."""
+    before = 0.0
+    for k in range(1, 17):
+        u = k / 16.0
+        if _grows_past(u, bound, start, end, slope, end_slope):
+            low, high = before, u
+            for _ in range(_BISECTIONS):
+                middle = 0.5 * (low + high)
+                if _grows_past(middle, bound, start, end, slope, end_slope):
+                    high = middle
+                else:
+                    low = middle
+            return high
+        before = u
+    return 1.0
+
+
+@part
+def _grows_past(u: float, bound: float, start: float, end: float, slope: float, end_slope: float) -> bool:
+    above = cubic(u, start, end, slope, end_slope) >= bound
+    return above and cubic_rate(u, start, end, slope, end_slope) > 0.0
+
+
+@part
+def quintic(
+    u: float, h: float, x0: float, v0: float, a0: float, x1: float, v1: float, a1: float
+) -> tuple[float, float]:
+    """Return value and slope (to u) at `u` of the quintic on [0, 1] with values, rates and accelerations at both ends.
+
+    Rates and accelerations are those in time, the interval being `h` long.
+    """
+    p1, p2 = v0 * h, 0.5 * a0 * h * h
+    rise, q1, q2 = x1 - x0, v1 * h, 0.5 * a1 * h * h
+    p3 = 10.0 * rise - 6.0 * p1 - 4.0 * q1 - 3.0 * p2 + q2
+    p4 = -15.0 * rise + 8.0 * p1 + 7.0 * q1 + 3.0 * p2 - 2.0 * q2
+    p5 = 6.0 * rise - 3.0 * (p1 + q1) - p2 + q2
+    value = x0 + u * (p1 + u * (p2 + u * (p3 + u * (p4 + u * p5))))
+    return value, p1 + u * (2.0 * p2 + u * (3.0 * p3 + u * (4.0 * p4 + u * 5.0 * p5)))
+
+
+@part
+def first_return(h: float, s0: float, v0: float, a0: float, s1: float, v1: float, a1: float) -> float:
+    """Return the time in (0, h] at which a height s > 0 first falls below zero, 0 if at once, h if not.
+
+    Told from the quintic with the heights, speeds and accelerations at both ends; right at the start it has the
+    relative accuracy of the acceleration there.
+    """
+    before, u = 0.0, _FIRST_FRACTION
+    while quintic(u, h, s0, v0, a0, s1, v1, a1)[0] >= 0.0:
+        if u >= 1.0:
+            return h
+        before = u
+        u = 2.0 * u if u < _EQUAL_FROM else min(1.0, u + _EQUAL_FROM)
+    if before == 0.0:
+        return 0.0
+    low, high = before, u
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        if quintic(middle, h, s0, v0, a0, s1, v1, a1)[0] >= 0.0:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high) * h
+
+
+@part
+def turns_of(x: float, y: float) -> float:
+    """Return the azimuth of (x, y) in turns, −½ to ½."""
+    return math.atan2(y, x) / (2.0 * math.pi)
+
+
+@part
+def nearest_turn(azimuth: float, previous: float) -> float:
+    """Return `azimuth` [turns] plus the whole turns that bring it nearest to the `previous` one; NaN there is none."""
+    return azimuth if math.isnan(previous) else azimuth + math.floor(previous - azimuth + 0.5)

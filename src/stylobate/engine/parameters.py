@@ -1,0 +1,150 @@
+"""Column, model and base motion with some of their numbers changed by name."""
+
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass, replace
+from typing import Any
+
+from stylobate.column import Column
+from stylobate.errors import ParameterError, UnsupportedError, require_finite
+from stylobate.models import Model
+from stylobate.motions import BaseMotion, Harmonic
+from stylobate.motions.combined import Transformed
+
+COLUMN_NAMES = (
+    "radius",
+    "mass_height",
+    "mass",
+    "transverse_inertia",
+    "axial_inertia",
+    "gravity",
+    "slenderness",
+    "size",
+)
+"""Its fields; `slenderness` changes the radius, `size` all lengths at the same density."""
+
+MOTION_NAMES = ("angular_frequency", "start_phase", "acceleration", "scale", "rotation", "delay")
+"""In the order in which they are applied."""
+
+_OF_HARMONICS = ("angular_frequency", "start_phase")
+
+
+def model_names(model: Model) -> tuple[str, ...]:
+    """Return the names of the numbers of `model` itself, the fields of its dataclass."""
+    if not is_dataclass(model):
+        return ()
+    return tuple(field.name for field in fields(model) if field.name != "column" and field.init)
+
+
+def check_names(model: Model, names: Mapping[str, Any]) -> None:
+    """Raise ParameterError if one of the `names` is none that can be changed."""
+    known = (*COLUMN_NAMES, *model_names(model), *MOTION_NAMES)
+    for name in names:
+        if name not in known:
+            message = f"parameters: {name} is not known here; known are {', '.join(known)}"
+            raise ParameterError(message)
+
+
+def with_parameters(model: Model, motion: BaseMotion, **values: float) -> tuple[Model, BaseMotion]:
+    """Return `model` and `motion` with these numbers changed: the objects behind one run of an ensemble.
+
+    Parameters
+    ----------
+    model, motion
+        What is changed; both stay as they are.
+    **values
+        Of the column: radius, mass_height [m], mass [kg], transverse_inertia, axial_inertia [kg m²], gravity [m/s²],
+        slenderness (by its radius), size (all lengths times it). Of the model: its own fields, such as damping. Of the
+        motion: angular_frequency [rad/s], start_phase [rad], acceleration (its largest horizontal one) [m/s²],
+        scale (a factor), rotation [rad] about the vertical, delay [s]; applied in this order.
+
+    Raises
+    ------
+    ParameterError
+        If a name is not known or a value out of range.
+    UnsupportedError
+        If the motion has no such number.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
+    >>> changed, faster = sb.with_parameters(model, motion, damping=0.2, angular_frequency=3.0)
+    >>> changed.damping, faster.angular_frequency
+    (0.2, 3.0)
+    """
+    check_names(model, values)
+    of_motion = {name: values[name] for name in MOTION_NAMES if name in values}
+    of_model = {name: value for name, value in values.items() if name not in of_motion}
+    return changed_model(model, of_model), changed_motion(motion, of_motion)
+
+
+def changed_model(model: Model, values: Mapping[str, float]) -> Model:
+    """Return `model` with these numbers of its column and its own."""
+    if not values:
+        return model
+    own = {name: value for name, value in values.items() if name not in COLUMN_NAMES}
+    of_column = {name: value for name, value in values.items() if name in COLUMN_NAMES}
+    changed: Model = replace(model, column=_changed_column(model.column, of_column), **own)  # type: ignore[type-var]
+    return changed
+
+
+def _changed_column(column: Column, values: Mapping[str, float]) -> Column:
+    own = {name: value for name, value in values.items() if name not in ("slenderness", "size")}
+    column = replace(column, **own)
+    if "slenderness" in values:
+        column = column.with_slenderness(values["slenderness"])
+    return column.resized(values["size"]) if "size" in values else column
+
+
+def changed_motion(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotion:
+    """Return `motion` with these numbers, applied in the order of MOTION_NAMES."""
+    harmonic = {name: values[name] for name in _OF_HARMONICS if name in values}
+    if harmonic:
+        motion = _changed_harmonic(motion, harmonic)
+    if "acceleration" in values:
+        value = require_finite("acceleration", values["acceleration"], "m/s²")
+        motion = motion.scaled(value / largest_acceleration(motion))
+    if "scale" in values:
+        motion = motion.scaled(values["scale"])
+    if "rotation" in values:
+        motion = motion.rotated(values["rotation"])
+    return motion.delayed(values["delay"]) if "delay" in values else motion
+
+
+def largest_acceleration(motion: BaseMotion) -> float:
+    """Return sup |a_h| of `motion`, by which an `acceleration` scales it [m/s²].
+
+    Raises
+    ------
+    UnsupportedError
+        If it has no horizontal acceleration.
+    """
+    largest = motion.largest_horizontal(0.0)
+    if not largest > 0.0:
+        message = f"acceleration cannot be set: the motion has no horizontal acceleration; got {motion!r}"
+        raise UnsupportedError(message)
+    return largest
+
+
+def harmonic_part(motion: BaseMotion, name: str) -> Harmonic:
+    """Return the one harmonic motion of which `motion` is made.
+
+    Raises
+    ------
+    UnsupportedError
+        If there is none, or more than one; `name` is what needs it.
+    """
+    if isinstance(motion, Transformed):
+        return harmonic_part(motion.motion, name)
+    if type(motion) is not Harmonic:
+        message = f"{name} can be changed in a Harmonic motion only; got {motion!r}"
+        raise UnsupportedError(message)
+    return motion
+
+
+def _changed_harmonic(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotion:
+    harmonic_part(motion, next(iter(values)))
+    if isinstance(motion, Transformed):
+        return replace(motion, motion=_changed_harmonic(motion.motion, values))
+    return replace(motion, **values)  # type: ignore[type-var]

@@ -1,0 +1,10 @@
+"""Sweeps: one description of many runs, cut into chunks, computed here or on a cluster, stored and resumed."""
+
+from stylobate.studies.sweeps.dask_executor import Dask
+from stylobate.studies.sweeps.executors import Executor, Threads, executor_from
+from stylobate.studies.sweeps.recipe import RunOptions
+from stylobate.studies.sweeps.running import run_sweep
+from stylobate.studies.sweeps.store import open_sweep
+from stylobate.studies.sweeps.sweep import Sweep
+
+__all__ = ["Dask", "Executor", "RunOptions", "Sweep", "Threads", "executor_from", "open_sweep", "run_sweep"]

@@ -1,0 +1,50 @@
+"""Computing one block of a sweep: what every executor does, wherever it does it."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.engine import simulate_ensemble
+from stylobate.errors import Interrupted
+from stylobate.studies.sweeps.blocks import Block
+from stylobate.studies.sweeps.quantities import Floats
+from stylobate.studies.sweeps.recipe import Recipe
+
+Progress = Callable[[int, int], None]
+Arrays = dict[str, npt.NDArray[Any]]
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One block of runs with the values that vary."""
+
+    block: Block
+    values: Mapping[str, Floats]
+
+
+@dataclass(frozen=True, slots=True)
+class Computed:
+    """The results of a task, flat over its runs; `interrupted` if Ctrl-C came before all were computed."""
+
+    arrays: Arrays
+    interrupted: bool = False
+
+
+def compute(
+    recipe: Recipe, values: Mapping[str, Floats], threads: int | None, progress: Progress | None = None
+) -> Computed:
+    """Return the results of the runs made by `recipe` at these `values`."""
+    arguments = recipe.arguments(values)
+    try:
+        result = simulate_ensemble(recipe.model, recipe.motion, **arguments, threads=threads, progress=progress)
+    except Interrupted as stop:
+        return Computed(_arrays(stop.partial), interrupted=True)
+    return Computed(_arrays(result))
+
+
+def _arrays(result: xr.Dataset) -> Arrays:
+    return {str(name): np.asarray(array.values) for name, array in result.data_vars.items()}

@@ -1,0 +1,165 @@
+"""Blocks computed by Dask workers: on this machine, on a cluster behind a scheduler, or through a client you made."""
+
+import logging
+import signal
+import uuid
+from collections.abc import Generator, Iterable, Iterator
+from concurrent.futures import CancelledError
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from itertools import islice
+from typing import TYPE_CHECKING, Any
+
+from stylobate.errors import ParameterError, StylobateError, UnsupportedError, require_whole
+from stylobate.studies.sweeps.computing import Computed, Progress, Task
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+    from stylobate.studies.sweeps.executors import Work
+
+# So many tasks wait for each thread of the workers, so that none of them is ever idle.
+_AHEAD = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Dask:
+    """Each block a task of Dask distributed, on one thread.
+
+    A block whose worker dies is computed again by another one. With a store the workers write into it themselves, so
+    they must see the same disk; without one the results travel to this process. A script that starts workers on this
+    machine must do so under `if __name__ == "__main__":`, for each worker imports it.
+
+    Parameters
+    ----------
+    address
+        A scheduler that runs, such as "tcp://10.0.0.1:8786". None starts workers on this machine, for this sweep only.
+    workers
+        How many to start on this machine; None for one a core.
+    client
+        A `dask.distributed.Client` to use instead; it is left open.
+
+    Raises
+    ------
+    ParameterError
+        If `workers` is no whole number of at least 1, or is given with an address or a client.
+    """
+
+    address: str | None = None
+    workers: int | None = None
+    client: Any = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        if self.workers is not None:
+            object.__setattr__(self, "workers", require_whole("workers", self.workers, least=1))
+        given = [name for name in ("address", "workers", "client") if getattr(self, name) is not None]
+        if len(given) > 1:
+            message = f"Dask takes one of address, workers and client, got {' and '.join(given)}"
+            raise ParameterError(message)
+
+    def results(
+        self, work: "Work", tasks: Iterable[Task], progress: Progress | None = None
+    ) -> Generator[tuple[Task, Computed], None, None]:
+        """Yield each task with its result, in the order in which they finish.
+
+        Raises
+        ------
+        UnsupportedError
+            If Dask distributed is not installed.
+        StylobateError
+            If no scheduler answers at the address, if it is lost, or if a block killed several workers in a row.
+        """
+        del progress  # a block is short, and its worker elsewhere
+        distributed = _distributed()
+        with ExitStack() as stack:
+            client = self._client(distributed, stack)
+            try:
+                yield from _flow(distributed, client, work, iter(tasks))
+            except (distributed.comm.CommClosedError, CancelledError) as error:
+                message = f"the Dask scheduler was lost; a sweep with a store goes on with resume=True ({error})"
+                raise StylobateError(message) from error
+
+    def _client(self, distributed: "ModuleType", stack: ExitStack) -> Any:
+        if self.client is not None:
+            return self.client
+        if self.address is None:
+            return _local_client(distributed, self.workers, stack)
+        try:
+            return stack.enter_context(distributed.Client(self.address))
+        except (OSError, ValueError) as error:
+            message = f"no Dask scheduler answers at {self.address}: {error}"
+            raise StylobateError(message) from error
+
+
+def _local_client(distributed: Any, workers: int | None, stack: ExitStack) -> Any:
+    """Return a client of workers on this machine, which end with `stack`."""
+
+    class LeavesCtrlC(distributed.WorkerPlugin):  # type: ignore[misc]  # distributed is imported when it is used
+        """Leaves Ctrl-C, which a terminal sends to all processes, to the one that hands out the tasks."""
+
+        def setup(self, worker: object) -> None:
+            del worker
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    cluster = stack.enter_context(
+        distributed.LocalCluster(
+            n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0", silence_logs=logging.ERROR
+        )
+    )
+    client = stack.enter_context(distributed.Client(cluster))
+    client.register_plugin(LeavesCtrlC())
+    return client
+
+
+def _flow(
+    distributed: "ModuleType", client: Any, work: "Work", tasks: Iterator[Task]
+) -> Generator[tuple[Task, Computed], None, None]:
+    """Yield results while a bounded number of tasks is on its way."""
+    sweep = uuid.uuid4().hex
+    waiting: dict[Any, Task] = {}
+
+    def submitted(count: int) -> list[Any]:
+        new = []
+        for task in islice(tasks, count):
+            # A key of its own: Dask must not take an earlier sweep's result for this one's.
+            key = f"stylobate-{sweep}-{task.block.index}"
+            future = client.submit(work, task, threads=1, progress=None, key=key, pure=False)
+            waiting[future] = task
+            new.append(future)
+        return new
+
+    def room() -> int:
+        # Workers may come and go.
+        threads = int(sum(client.nthreads().values()))
+        return _AHEAD * max(1, threads) - len(waiting)
+
+    completed = distributed.as_completed(submitted(room()), raise_errors=False)
+    try:
+        for future in completed:
+            task = waiting.pop(future)
+            yield task, _result(distributed, future, task)
+            for other in submitted(max(0, room())):
+                completed.add(other)
+    finally:
+        client.cancel(list(waiting))
+
+
+def _result(distributed: "ModuleType", future: Any, task: Task) -> Computed:
+    try:
+        result: Computed = future.result()
+    except distributed.KilledWorker as error:
+        message = (
+            f"{error.allowed_failures + 1} workers died on chunk {task.block.index} of {task.block.size} runs; "
+            "give them more memory, or a smaller chunk_size"
+        )
+        raise StylobateError(message) from error
+    return result
+
+
+def _distributed() -> "ModuleType":
+    try:
+        import distributed  # noqa: PLC0415  an extra, loaded when it is used
+    except ImportError:
+        message = 'Dask needs the package dask.distributed: pip install "stylobate[cluster]"'
+        raise UnsupportedError(message) from None
+    return distributed

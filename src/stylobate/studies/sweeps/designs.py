@@ -1,0 +1,243 @@
+"""Designs: which values the runs of a sweep have. A grid, random points in a box, or points that are given."""
+
+import hashlib
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.errors import ParameterError, require_whole
+from stylobate.studies.sweeps.quantities import Floats, checked_values
+
+# Random points are drawn in groups of this many, each from a stream of its own: they do not depend on the blocks.
+_GROUP = 4096
+_LARGEST_SEED = 2**63
+
+
+class Design(Protocol):
+    """The values of the runs of a sweep, an array of `shape` over `dims`."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The quantities that vary."""
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """The names of the dimensions."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Their lengths."""
+
+    def values(self, slices: tuple[slice, ...]) -> dict[str, Floats]:
+        """Return the values of the runs in a piece of the array, flat, in C order."""
+
+    @property
+    def coordinate_dims(self) -> dict[str, str]:
+        """The dimension along which each quantity varies."""
+
+    def coordinates(self, slices: tuple[slice, ...]) -> dict[str, Floats]:
+        """Return the coordinates of a piece of the array, each along its dimension."""
+
+    def describe(self) -> dict[str, Any]:
+        """Return what tells this design from others, as plain values."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Grid:
+    """Every combination of the values of each of `axes`."""
+
+    axes: Mapping[str, Floats]
+
+    @classmethod
+    def of(cls, over: Mapping[str, npt.ArrayLike]) -> "Grid":
+        """Return the grid `over` these values."""
+        _require_names("over", over)
+        return cls({name: checked_values("over", name, values) for name, values in over.items()})
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The quantities that vary."""
+        return tuple(self.axes)
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """One dimension a quantity."""
+        return self.names
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The number of values of each."""
+        return tuple(axis.size for axis in self.axes.values())
+
+    def values(self, slices: tuple[slice, ...]) -> dict[str, Floats]:
+        """Return every combination within the piece, flat, in C order."""
+        parts = [axis[part] for axis, part in zip(self.axes.values(), slices, strict=True)]
+        return {name: mesh.ravel() for name, mesh in zip(self.axes, np.meshgrid(*parts, indexing="ij"), strict=True)}
+
+    @property
+    def coordinate_dims(self) -> dict[str, str]:
+        """Each along its own dimension."""
+        return {name: name for name in self.names}
+
+    def coordinates(self, slices: tuple[slice, ...]) -> dict[str, Floats]:
+        """Return the values along each dimension."""
+        return {name: axis[part] for (name, axis), part in zip(self.axes.items(), slices, strict=True)}
+
+    def describe(self) -> dict[str, Any]:
+        """Return the dimensions in order, and what tells their values from others."""
+        return {"kind": "grid", "dims": list(self.dims), "values": {name: digest(a) for name, a in self.axes.items()}}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Box:
+    """`count` points drawn uniformly between `bounds`; the first ones are the same for every `count`."""
+
+    bounds: Mapping[str, tuple[float, float]]
+    count: int
+    seed: int
+
+    @classmethod
+    def of(cls, over: Mapping[str, Sequence[float]], count: int, seed: int | np.random.Generator) -> "Box":
+        """Return random points in the box `over` these bounds; of a generator one number is drawn, the seed."""
+        _require_names("over", over)
+        bounds = {name: _bounds(name, pair) for name, pair in over.items()}
+        if isinstance(seed, np.random.Generator):
+            seed = int(seed.integers(_LARGEST_SEED))
+        return cls(bounds, require_whole("count", count, least=0), require_whole("seed", seed, least=0))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The quantities that vary."""
+        return tuple(self.bounds)
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """The runs."""
+        return ("run",)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Their number."""
+        return (self.count,)
+
+    def values(self, slices: tuple[slice, ...]) -> dict[str, Floats]:
+        """Return the values of these runs."""
+        (part,) = slices
+        low, high = np.array(list(self.bounds.values())).T
+        first, last = part.start // _GROUP, -(-part.stop // _GROUP)
+        groups = [self._shares(group) for group in range(first, last)]
+        shares = np.concatenate(groups) if groups else np.empty((0, low.size))
+        chosen = shares[part.start - first * _GROUP : part.stop - first * _GROUP]
+        # Weighted so that a bound is met exactly and none is passed.
+        columns = np.clip((1.0 - chosen) * low + chosen * high, low, high).T
+        return {name: np.ascontiguousarray(column) for name, column in zip(self.names, columns, strict=True)}
+
+    def _shares(self, group: int) -> Floats:
+        stream = np.random.SeedSequence(self.seed, spawn_key=(group,))
+        return np.random.Generator(np.random.PCG64(stream)).random((_GROUP, len(self.bounds)))
+
+    @property
+    def coordinate_dims(self) -> dict[str, str]:
+        """All along the runs."""
+        return dict.fromkeys(self.names, "run")
+
+    def coordinates(self, slices: tuple[slice, ...]) -> dict[str, Floats]:
+        """Return the values of these runs."""
+        return self.values(slices)
+
+    def describe(self) -> dict[str, Any]:
+        """Return bounds, number and seed."""
+        bounds = {name: list(pair) for name, pair in self.bounds.items()}
+        return {"kind": "random", "order": list(self.names), "values": bounds, "count": self.count, "seed": self.seed}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Points:
+    """Runs at given values: the i-th of each of `columns`."""
+
+    columns: Mapping[str, Floats]
+
+    @classmethod
+    def of(cls, at: Mapping[str, npt.ArrayLike]) -> "Points":
+        """Return the points `at` these values.
+
+        Raises
+        ------
+        ParameterError
+            If they are not all of one length.
+        """
+        _require_names("at", at)
+        columns = {name: checked_values("at", name, values) for name, values in at.items()}
+        (first, length), *others = [(name, values.size) for name, values in columns.items()]
+        for name, size in others:
+            if size != length:
+                message = f"at[{name!r}] must have as many values as at[{first!r}], {length}, got {size}"
+                raise ParameterError(message)
+        return cls(columns)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The quantities that vary."""
+        return tuple(self.columns)
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """The runs."""
+        return ("run",)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Their number."""
+        return (next(iter(self.columns.values())).size,)
+
+    def values(self, slices: tuple[slice, ...]) -> dict[str, Floats]:
+        """Return the values of these runs."""
+        (part,) = slices
+        return {name: column[part] for name, column in self.columns.items()}
+
+    @property
+    def coordinate_dims(self) -> dict[str, str]:
+        """All along the runs."""
+        return dict.fromkeys(self.names, "run")
+
+    def coordinates(self, slices: tuple[slice, ...]) -> dict[str, Floats]:
+        """Return the values of these runs."""
+        return self.values(slices)
+
+    def describe(self) -> dict[str, Any]:
+        """Return what tells the values from others."""
+        return {"kind": "points", "values": {name: digest(column) for name, column in self.columns.items()}}
+
+
+def whole(design: Design) -> tuple[slice, ...]:
+    """Return the slices of all the runs of `design`."""
+    return tuple(slice(0, length) for length in design.shape)
+
+
+def digest(values: Floats) -> dict[str, Any]:
+    """Return number, ends and SHA-256 of `values`, which stand for them in a description."""
+    ends = {"first": float(values[0]), "last": float(values[-1])} if values.size else {}
+    bits = np.ascontiguousarray(values, dtype="<f8").tobytes()
+    return {"count": int(values.size), **ends, "sha256": hashlib.sha256(bits).hexdigest()}
+
+
+def _require_names(where: str, given: object) -> None:
+    if not isinstance(given, Mapping) or not given:
+        message = f'{where} must name what varies, such as {where}={{"angular_frequency": …}}, got {given!r}'
+        raise ParameterError(message)
+
+
+def _bounds(name: str, pair: Sequence[float]) -> tuple[float, float]:
+    values = checked_values("over", name, pair)
+    if values.size != 2 or not values[0] <= values[1]:  # noqa: PLR2004
+        message = f"over[{name!r}] must be a lower and an upper bound, got {pair!r}"
+        raise ParameterError(message)
+    low, high = (float(value) for value in values)
+    if not math.isfinite(high - low):
+        message = f"over[{name!r}] must be a range of finite width, got {pair!r}"
+        raise ParameterError(message)
+    return low, high

@@ -1,0 +1,103 @@
+"""The layout of a sweep's results: which variables, of which type and size, and what stands where nothing is known."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.engine import simulate_ensemble
+from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.studies.sweeps.blocks import DISK_BLOCK, Block, Blocks
+from stylobate.studies.sweeps.designs import Design, whole
+from stylobate.studies.sweeps.quantities import attributes_of
+
+if TYPE_CHECKING:
+    from stylobate.studies.sweeps.sweep import Sweep
+
+
+# Bytes of a value of a coordinate.
+_FLOAT = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """One result: an array over the runs and, for each run, over `dims` of `shape`."""
+
+    name: str
+    dtype: np.dtype[Any]
+    dims: tuple[str, ...]
+    shape: tuple[int, ...]
+    attributes: Mapping[str, Any]
+
+    @property
+    def fill(self) -> Any:
+        """What stands for a run that has not been computed: −1 for the outcome, NaN, 0 or False."""
+        if self.name == "outcome":
+            return NOT_COMPUTED
+        return self.dtype.type(np.nan if self.dtype.kind == "f" else 0)
+
+    def empty(self, runs: tuple[int, ...]) -> npt.NDArray[Any]:
+        """Return an array for so many runs, nothing computed."""
+        return np.full((*runs, *self.shape), self.fill, self.dtype)
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """The `variables` of a sweep's results, and the `labels` along the dimensions that each run has."""
+
+    variables: tuple[Variable, ...]
+    labels: Mapping[str, list[Any]]
+
+
+def layout_of(sweep: "Sweep") -> Layout:
+    """Return the layout of the results of `sweep`, from an ensemble of no run; mistakes in its options are told.
+
+    Raises
+    ------
+    ParameterError
+        If an option or a name that varies is not what `simulate_ensemble` takes.
+    """
+    nothing = {name: np.empty(0) for name in sweep.design.names}
+    sample = simulate_ensemble(sweep.model, sweep.motion, **sweep.recipe.arguments(nothing))
+    variables = []
+    for name, array in sample.data_vars.items():
+        own = {str(dim): size for dim, size in array.sizes.items() if dim != "run"}
+        variables.append(Variable(str(name), array.dtype, tuple(own), tuple(own.values()), dict(array.attrs)))
+    labels = {str(name): array.values.tolist() for name, array in sample.coords.items() if array.dims == (name,)}
+    return Layout(tuple(variables), {name: values for name, values in labels.items() if name != "run"})
+
+
+def dataset(
+    sweep: "Sweep", layout: Layout, arrays: Mapping[str, npt.NDArray[Any]], attributes: Mapping[str, Any]
+) -> xr.Dataset:
+    """Return `arrays`, each over all runs of the sweep, with their coordinates and attributes."""
+    data = {
+        variable.name: ((*sweep.dims, *variable.dims), arrays[variable.name], dict(variable.attributes))
+        for variable in layout.variables
+    }
+    coordinates = {
+        name: (sweep.design.coordinate_dims[name], values, attributes_of(name))
+        for name, values in sweep.design.coordinates(whole(sweep.design)).items()
+    }
+    return xr.Dataset(data, coords={**coordinates, **layout.labels}, attrs=dict(attributes))
+
+
+def bytes_on_disk(layout: Layout, design: Design, blocks: Blocks) -> int:
+    """Return what the results and coordinates take on disk at most [bytes]: no compression, whole disk blocks."""
+    if not len(blocks):
+        return DISK_BLOCK
+    lengths = (design.shape[design.dims.index(dim)] for dim in design.coordinate_dims.values())
+    return len(blocks) * bytes_of_block(layout, blocks[0]) + sum(_on_disk(_FLOAT * length) for length in lengths)
+
+
+def bytes_of_block(layout: Layout, block: Block) -> int:
+    """Return what one `block` takes on disk at most, its mark included [bytes]."""
+    sizes = (variable.dtype.itemsize * int(np.prod(variable.shape)) * block.size for variable in layout.variables)
+    return DISK_BLOCK + sum(_on_disk(size) for size in sizes)
+
+
+def _on_disk(size: int) -> int:
+    return -(-size // DISK_BLOCK) * DISK_BLOCK

@@ -1,0 +1,89 @@
+"""What a sweep can vary: names, units and the numbers they accept."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.errors import ParameterError
+
+Floats = npt.NDArray[np.float64]
+
+STARTS = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
+"""The components of the start."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Quantity:
+    long_name: str
+    units: str
+    accepts: Callable[[Floats], npt.NDArray[np.bool_]] = np.isfinite
+    demand: str = "be finite"
+
+
+def _positive(long_name: str, units: str) -> _Quantity:
+    return _Quantity(long_name, units, lambda values: np.isfinite(values) & (values > 0.0), "be positive")
+
+
+def _not_negative(long_name: str, units: str) -> _Quantity:
+    return _Quantity(long_name, units, lambda values: np.isfinite(values) & (values >= 0.0), "be zero or positive")
+
+
+_QUANTITIES = {
+    "tilt_x": _Quantity("initial tilt along x", "rad"),
+    "tilt_y": _Quantity("initial tilt along y", "rad"),
+    "tilt_rate_x": _Quantity("initial rate of tilt along x", "rad s-1"),
+    "tilt_rate_y": _Quantity("initial rate of tilt along y", "rad s-1"),
+    "duration": _positive("duration", "s"),
+    "radius": _positive("base radius", "m"),
+    "mass_height": _positive("height of the centre of mass", "m"),
+    "mass": _positive("mass", "kg"),
+    "transverse_inertia": _positive("transverse moment of inertia", "kg m2"),
+    "axial_inertia": _positive("axial moment of inertia", "kg m2"),
+    "gravity": _positive("acceleration of gravity", "m s-2"),
+    "slenderness": _positive("slenderness", "1"),
+    "size": _positive("size, in that of the column given", "1"),
+    "damping": _not_negative("friction", "1"),
+    "acceleration": _not_negative("largest horizontal acceleration of the base", "m s-2"),
+    "scale": _Quantity("factor of the base motion", "1"),
+    "angular_frequency": _positive("angular frequency", "rad s-1"),
+    "start_phase": _Quantity("phase of the base motion at the start", "rad"),
+    "rotation": _Quantity("rotation of the base motion", "rad"),
+    "delay": _Quantity("delay of the base motion", "s"),
+}
+
+# The parameters of a user's own model.
+_ANY = _Quantity("", "")
+
+
+def attributes_of(name: str) -> dict[str, str]:
+    """Return the attributes of a coordinate that holds the quantity `name`."""
+    known = _QUANTITIES.get(name)
+    return {} if known is None else {"long_name": known.long_name, "units": known.units}
+
+
+def checked_values(where: str, name: str, values: npt.ArrayLike) -> Floats:
+    """Return `values` of the quantity `name` as an array, shape (n,).
+
+    Raises
+    ------
+    ParameterError
+        If they are no list of numbers, or one of them is not what the quantity accepts.
+    """
+    try:
+        array = np.array(values, dtype=np.float64)  # a copy: what a sweep describes does not change
+    except (TypeError, ValueError):
+        message = f"{where}[{name!r}] must be a list of numbers, got {values!r}"
+        raise ParameterError(message) from None
+    if array.ndim != 1:
+        message = f"{where}[{name!r}] must be a list of numbers, got an array of shape {array.shape}"
+        raise ParameterError(message)
+    quantity = _QUANTITIES.get(name, _ANY)
+    refused = ~quantity.accepts(array)
+    if refused.any():
+        unit = f" {quantity.units}" if quantity.units not in ("", "1") else ""
+        message = f"{where}[{name!r}] must {quantity.demand}, got {float(array[refused][0])!r}{unit}"
+        raise ParameterError(message)
+    array.setflags(write=False)
+    return array

@@ -1,0 +1,72 @@
+"""The recipe of a run: what all runs of a sweep share, and how a run is made of it and the values that vary."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypedDict
+
+import numpy as np
+
+from stylobate.models import Model
+from stylobate.motions import BaseMotion
+from stylobate.results import OutcomeRules
+from stylobate.studies.sweeps.quantities import STARTS, Floats
+
+
+class RunOptions(TypedDict, total=False):
+    """What all runs of a sweep have in common: the arguments of `simulate_ensemble` of these names."""
+
+    tilt: Sequence[float]
+    tilt_rate: Sequence[float]
+    rtol: float
+    atol: float | None
+    tilt_limit: float | None
+    rest_energy: float | None
+    max_steps: int
+    samples: int | None
+    strobes: int
+    rules: OutcomeRules | None
+
+
+DEFAULTS = RunOptions(
+    tilt=(0.0, 0.0),
+    tilt_rate=(0.0, 0.0),
+    rtol=1e-8,
+    atol=None,
+    tilt_limit=None,
+    rest_energy=None,
+    max_steps=200_000,
+    samples=None,
+    strobes=0,
+    rules=None,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Recipe:
+    """Model, motion and options of every run, and either its `duration` [s] or its number of `periods`, or neither."""
+
+    model: Model
+    motion: BaseMotion
+    duration: float | None
+    periods: float | None
+    options: RunOptions
+
+    def arguments(self, values: Mapping[str, Floats]) -> dict[str, Any]:
+        """Return the keyword arguments of `simulate_ensemble` for runs at these `values`, arrays of one length."""
+        count = next(iter(values.values())).size
+        chosen: dict[str, Any] = {**self.options}
+        for name in ("tilt", "tilt_rate"):
+            x, y = chosen[name]
+            parts = (values.get(f"{name}_x", np.full(count, x)), values.get(f"{name}_y", np.full(count, y)))
+            chosen[name] = np.stack(parts, axis=-1)
+        own = {name: array for name, array in values.items() if name not in STARTS and name != "duration"}
+        return {**chosen, "duration": self._durations(values), "parameters": own}
+
+    def _durations(self, values: Mapping[str, Floats]) -> Floats | float:
+        if self.periods is None:
+            return values["duration"] if self.duration is None else self.duration
+        if "angular_frequency" in values:
+            return np.asarray(self.periods * 2.0 * math.pi / values["angular_frequency"])
+        assert self.motion.period is not None  # a sweep refuses periods of a motion without one
+        return self.periods * self.motion.period

@@ -1,0 +1,41 @@
+"""What differs between the description of a stored sweep and that of the one at hand, in words."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+# So many differences are told; more of them say that it is another sweep altogether.
+_TOLD = 3
+
+
+def differences(stored: Mapping[str, Any], given: Mapping[str, Any]) -> list[str]:
+    """Return one phrase for each of the first differences, the version before all others; none if there is none."""
+    if stored.get("version") != given.get("version"):
+        return [f"it was made by stylobate {stored.get('version')}, this is {given.get('version')}"]
+    before, now = dict(_leaves(stored)), dict(_leaves(given))
+    names = [*now, *(name for name in before if name not in now)]
+    found = [_told(name, before.get(name), now.get(name)) for name in names if before.get(name) != now.get(name)]
+    more = [f"and {len(found) - _TOLD} more differences"] if len(found) > _TOLD else []
+    return [*found[:_TOLD], *more]
+
+
+def _leaves(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    for name, value in values.items():
+        if isinstance(value, Mapping) and "sha256" not in value:
+            # What varies goes by its own name.
+            yield from _leaves(value, "" if name == "values" else f"{prefix}{name}.")
+        else:
+            yield f"{prefix}{name}", value
+
+
+def _told(name: str, before: Any, now: Any) -> str:
+    if name.endswith("_sha256"):
+        return f"{name.removesuffix('_sha256').replace('.', ' ')} changed"
+    told = _shown(before), _shown(now)
+    return f"{name} was {told[0]}, is {told[1]}" if told[0] != told[1] else f"{name} has other values than before"
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, Mapping) and "sha256" in value:
+        ends = f" from {value['first']!r} to {value['last']!r}" if value["count"] else ""
+        return f"{value['count']} values{ends}"
+    return "not given" if value is None else repr(value)

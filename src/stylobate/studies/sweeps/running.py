@@ -1,0 +1,129 @@
+"""`run_sweep`: compute a sweep, or what is missing of it."""
+
+from contextlib import closing
+from pathlib import Path
+
+import xarray as xr
+
+from stylobate.errors import Interrupted, ParameterError, require_whole
+from stylobate.studies.sweeps.blocks import Blocks
+from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.executors import Executor, Threads
+from stylobate.studies.sweeps.layout import layout_of
+from stylobate.studies.sweeps.sinks import InMemory, OnDisk, Sink, tasks_of
+from stylobate.studies.sweeps.store import continue_store, create_store
+from stylobate.studies.sweeps.sweep import Sweep
+
+
+def run_sweep(
+    sweep: Sweep,
+    *,
+    store: str | Path | None = None,
+    executor: Executor | None = None,
+    resume: bool = False,
+    chunk_size: int | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Compute all runs of `sweep`, chunk by chunk.
+
+    Every run is the same, bit for bit on one machine, whatever the chunks and the executor.
+
+    Parameters
+    ----------
+    sweep
+        What to compute.
+    store
+        Folder of a Zarr store to be made, such as "map.zarr"; None keeps the results in memory.
+    executor
+        `Threads()`, the default, or `Dask(…)`.
+    resume
+        Continue the store if it exists: what it holds is not computed again.
+    chunk_size
+        Largest number of runs in a chunk; by default about a 64th of the sweep, between 1024 and 16384.
+    progress
+        Called with the number of runs done and of runs in all.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables of `simulate_ensemble`, over the dimensions of the sweep. From a store they are read when used.
+
+    Raises
+    ------
+    FileError
+        If the store exists and `resume` is not set, belongs to another sweep or version, or does not fit on the disk.
+    ParameterError
+        If an argument is out of range.
+    Interrupted
+        On Ctrl-C; `partial` holds what was computed, and so does the store.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> from stylobate.studies.sweeps import Sweep, run_sweep
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> motion = sb.Harmonic.circular(acceleration=0.15, angular_frequency=0.5)
+    >>> sweep = Sweep.grid(model, motion, over={"acceleration": [0.05, 0.2]}, duration=20.0)
+    >>> run_sweep(sweep)["outcome"].values
+    array([0, 4], dtype=int8)
+    """
+    if not isinstance(sweep, Sweep):
+        message = f"sweep must be a Sweep, such as Sweep.grid(...), got {sweep!r}"
+        raise ParameterError(message)
+    if executor is not None and not hasattr(executor, "results"):
+        message = f"executor must be Threads(...) or Dask(...), got {executor!r}; executor_from reads a text"
+        raise ParameterError(message)
+    if chunk_size is not None:
+        chunk_size = require_whole("chunk_size", chunk_size, least=1)
+    sink = _sink(sweep, None if store is None else Path(store), chunk_size, resume=resume)
+    try:
+        _fill(sink, sweep, executor or Threads(), progress or _silence)
+    except Interrupted:
+        raise
+    except KeyboardInterrupt:
+        raise _interrupted(sink, store) from None
+    return sink.dataset()
+
+
+def _sink(sweep: Sweep, path: Path | None, chunk_size: int | None, *, resume: bool) -> Sink:
+    layout = layout_of(sweep)
+    blocks = Blocks.of(sweep.shape, chunk_size)
+    if path is None:
+        if resume:
+            message = "resume needs the store to continue, got store=None"
+            raise ParameterError(message)
+        return InMemory(sweep, layout, blocks)
+    if resume and path.exists():
+        found, blocks = continue_store(path, sweep, layout, chunk_size)
+        return OnDisk(sweep, layout, blocks, found, frozenset(found.done()))
+    return OnDisk(sweep, layout, blocks, create_store(path, sweep, layout, blocks), frozenset())
+
+
+def _fill(sink: Sink, sweep: Sweep, executor: Executor, progress: Progress) -> None:
+    done, total = sink.runs_done, sweep.runs
+    progress(done, total)
+    if done == total:  # nothing to do, and no workers to be started for it
+        return
+
+    def within(part: int, whole: int) -> None:
+        del whole
+        progress(done + part, total)
+
+    with closing(executor.results(sink.work, tasks_of(sweep, sink.todo), within)) as results:
+        for task, result in results:
+            sink.accept(task, result)
+            if result.interrupted:
+                raise KeyboardInterrupt
+            done += task.block.size
+            progress(done, total)
+
+
+def _interrupted(sink: Sink, store: str | Path | None) -> Interrupted:
+    partial = sink.dataset()
+    computed = int((partial["outcome"] >= 0).sum())
+    remedy = "its result so far is .partial" if store is None else f"resume=True continues {store}"
+    return Interrupted(f"stopped after {computed} of {partial['outcome'].size} runs; {remedy}", partial)
+
+
+def _silence(done: int, total: int) -> None:
+    del done, total

@@ -1,0 +1,156 @@
+"""Where results go: arrays in memory, or a store on disk."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+import xarray as xr
+
+from stylobate.errors import FileError
+from stylobate.studies.sweeps.blocks import Block, Blocks
+from stylobate.studies.sweeps.computing import Arrays, Computed, Progress, Task, compute
+from stylobate.studies.sweeps.executors import Work
+from stylobate.studies.sweeps.layout import Layout, dataset
+from stylobate.studies.sweeps.recipe import Recipe
+from stylobate.studies.sweeps.store import Store, attributes_of_result, open_sweep
+from stylobate.studies.sweeps.sweep import Sweep
+
+
+class Sink(Protocol):
+    """Where the results of a sweep go."""
+
+    @property
+    def todo(self) -> Iterable[Block]:
+        """The blocks that remain to be computed."""
+
+    @property
+    def runs_done(self) -> int:
+        """The runs that need not be computed, at the beginning."""
+
+    @property
+    def work(self) -> Work:
+        """What an executor does with each task."""
+
+    def accept(self, task: Task, result: Computed) -> None:
+        """Take the result of a task."""
+
+    def dataset(self) -> xr.Dataset:
+        """Return all results so far."""
+
+
+@dataclass(frozen=True, slots=True)
+class InMemory:
+    """Results as arrays in this process."""
+
+    sweep: Sweep
+    layout: Layout
+    blocks: Blocks
+    arrays: Arrays = field(init=False)
+
+    def __post_init__(self) -> None:
+        empty = {variable.name: variable.empty(self.sweep.shape) for variable in self.layout.variables}
+        object.__setattr__(self, "arrays", empty)
+
+    @property
+    def todo(self) -> Iterable[Block]:
+        """All blocks."""
+        return self.blocks
+
+    @property
+    def runs_done(self) -> int:
+        """None."""
+        return 0
+
+    @property
+    def work(self) -> Work:
+        """Compute, and return the results."""
+        return _Compute(self.sweep.recipe)
+
+    def accept(self, task: Task, result: Computed) -> None:
+        """Put the results where they belong."""
+        block = task.block
+        for name, values in result.arrays.items():
+            self.arrays[name][block.slices] = values.reshape(*block.shape, *values.shape[1:])
+
+    def dataset(self) -> xr.Dataset:
+        """Return the arrays with their coordinates."""
+        return dataset(self.sweep, self.layout, self.arrays, attributes_of_result(self.sweep))
+
+
+@dataclass(frozen=True, slots=True)
+class OnDisk:
+    """Results in a store, written by whoever computes them."""
+
+    sweep: Sweep
+    layout: Layout
+    blocks: Blocks
+    store: Store
+    done: frozenset[int]
+
+    @property
+    def todo(self) -> Iterator[Block]:
+        """The blocks without the mark "done"."""
+        return (block for block in self.blocks if block.index not in self.done)
+
+    @property
+    def runs_done(self) -> int:
+        """The runs in blocks with the mark."""
+        return sum(self.blocks[index].size for index in self.done)
+
+    @property
+    def work(self) -> Work:
+        """Compute what is missing of a block, and store it."""
+        names = tuple(variable.name for variable in self.layout.variables)
+        return _ComputeAndStore(self.sweep.recipe, Path(self.store.path).absolute(), names)
+
+    def accept(self, task: Task, result: Computed) -> None:
+        """Do nothing: it is stored."""
+
+    def dataset(self) -> xr.Dataset:
+        """Return what the store holds."""
+        return open_sweep(self.store.path)
+
+
+@dataclass(frozen=True, slots=True)
+class _Compute:
+    recipe: Recipe
+
+    def __call__(self, task: Task, *, threads: int | None, progress: Progress | None) -> Computed:
+        return compute(self.recipe, task.values, threads, progress)
+
+
+@dataclass(frozen=True, slots=True)
+class _ComputeAndStore:
+    recipe: Recipe
+    path: Path
+    names: tuple[str, ...]
+
+    def __call__(self, task: Task, *, threads: int | None, progress: Progress | None) -> Computed:
+        try:
+            return self._stored(Store(self.path), task, threads, progress)
+        except OSError as error:
+            message = f"cannot write {self.path}: {error.strerror or error}; resume=True continues it"
+            raise FileError(message) from error
+
+    def _stored(self, store: Store, task: Task, threads: int | None, progress: Progress | None) -> Computed:
+        missing = store.read(task.block, ("outcome",))["outcome"] < 0
+        values = {name: array[missing] for name, array in task.values.items()}
+        result = compute(self.recipe, values, threads, progress)
+        arrays = result.arrays
+        if not missing.all():  # an interrupted task had stored some of its runs
+            arrays = store.read(task.block, self.names)
+            for name, computed in result.arrays.items():
+                arrays[name][missing] = computed
+        try:
+            store.write(task.block, arrays, done=not result.interrupted)
+        except KeyboardInterrupt:  # what is computed is kept first
+            store.write(task.block, arrays, done=not result.interrupted)
+            raise
+        return Computed({}, result.interrupted)
+
+
+def tasks_of(sweep: Sweep, blocks: Iterable[Block]) -> Iterator[Task]:
+    """Yield a task for each of `blocks`, made when it is asked for."""
+    return (Task(block, {n: np.asarray(v) for n, v in sweep.design.values(block.slices).items()}) for block in blocks)

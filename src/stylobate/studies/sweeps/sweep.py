@@ -1,0 +1,203 @@
+"""`Sweep`: one description of many runs."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from typing import Any, Self, Unpack
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.errors import ParameterError, require_positive, require_vector
+from stylobate.models import Model
+from stylobate.motions import BASE_AT_REST, BaseMotion
+from stylobate.results import OutcomeRules
+from stylobate.spec import provenance_of_run
+from stylobate.studies.sweeps.blocks import Blocks
+from stylobate.studies.sweeps.designs import Box, Design, Grid, Points
+from stylobate.studies.sweeps.fingerprint import identity_of
+from stylobate.studies.sweeps.layout import bytes_on_disk, layout_of
+from stylobate.studies.sweeps.recipe import DEFAULTS, Recipe, RunOptions
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Sweep:
+    """Many runs that differ in some quantities: `Sweep.grid`, `Sweep.random` or `Sweep.points`.
+
+    What can vary: the starts tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s]; duration [s]; and every name that
+    `simulate_ensemble` takes as a parameter, such as acceleration [m/s²], angular_frequency [rad/s], damping, size.
+
+    Parameters
+    ----------
+    model, motion
+        What all runs have in common but for what varies.
+    design
+        Which values the runs have.
+    duration
+        How long to follow each run [s] …
+    periods
+        … or for how many periods of its base motion.
+    options
+        Further arguments of `simulate_ensemble`: tilt, tilt_rate, rtol, atol, tilt_limit, rest_energy, max_steps,
+        samples, strobes, rules.
+
+    Raises
+    ------
+    ParameterError
+        If something cannot be swept; the message names it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import stylobate as sb
+    >>> from stylobate.studies.sweeps import Sweep
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> motion = sb.Harmonic.circular(acceleration=0.15, angular_frequency=1.0)
+    >>> over = {"angular_frequency": np.linspace(0.5, 3.0, 26), "acceleration": np.linspace(0.1, 0.4, 31)}
+    >>> sweep = Sweep.grid(model, motion, over=over, periods=20.0)
+    >>> sweep.runs, sweep.dims
+    (806, ('angular_frequency', 'acceleration'))
+    """
+
+    model: Model
+    motion: BaseMotion
+    design: Design
+    duration: float | None = None
+    periods: float | None = None
+    options: RunOptions = field(default_factory=RunOptions)
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.model, Model):
+            message = f"model must be a model such as Slender(column), got {self.model!r}"
+            raise ParameterError(message)
+        if not isinstance(self.motion, BaseMotion):
+            message = f"motion must be a base motion such as Harmonic.circular(...) or None, got {self.motion!r}"
+            raise ParameterError(message)
+        self._check_duration()
+        unknown = [name for name in self.options if name not in DEFAULTS]
+        if unknown:
+            message = f"{unknown[0]} is no option of a sweep; the options are {', '.join(DEFAULTS)}"
+            raise ParameterError(message)
+        options = {**DEFAULTS, **self.options}
+        for name, unit in (("tilt", "rad"), ("tilt_rate", "rad/s")):
+            options[name] = require_vector(name, options[name], 2, unit)  # type: ignore[arg-type]
+        object.__setattr__(self, "options", options)
+
+    @classmethod
+    def grid(
+        cls,
+        model: Model,
+        motion: BaseMotion | None = None,
+        *,
+        over: Mapping[str, npt.ArrayLike],
+        duration: float | None = None,
+        periods: float | None = None,
+        **options: Unpack[RunOptions],
+    ) -> Self:
+        """Return a sweep over every combination of these values; its result has the dimensions of `over`, in order."""
+        return cls(
+            model=model,
+            motion=BASE_AT_REST if motion is None else motion,
+            design=Grid.of(over),
+            duration=duration,
+            periods=periods,
+            options=options,
+        )
+
+    @classmethod
+    def random(
+        cls,
+        model: Model,
+        motion: BaseMotion | None = None,
+        *,
+        over: Mapping[str, Sequence[float]],
+        count: int,
+        seed: int | np.random.Generator,
+        duration: float | None = None,
+        periods: float | None = None,
+        **options: Unpack[RunOptions],
+    ) -> Self:
+        """Return a sweep of `count` runs drawn uniformly between these bounds.
+
+        The same seed gives the same runs however they are chunked, and the first of a longer sweep are those of a
+        shorter one. Of a generator one number is drawn and kept as the seed.
+        """
+        return cls(
+            model=model,
+            motion=BASE_AT_REST if motion is None else motion,
+            design=Box.of(over, count, seed),
+            duration=duration,
+            periods=periods,
+            options=options,
+        )
+
+    @classmethod
+    def points(
+        cls,
+        model: Model,
+        motion: BaseMotion | None = None,
+        *,
+        at: Mapping[str, npt.ArrayLike],
+        duration: float | None = None,
+        periods: float | None = None,
+        **options: Unpack[RunOptions],
+    ) -> Self:
+        """Return a sweep of runs at these values, arrays of one length."""
+        return cls(
+            model=model,
+            motion=BASE_AT_REST if motion is None else motion,
+            design=Points.of(at),
+            duration=duration,
+            periods=periods,
+            options=options,
+        )
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """The dimensions of the result."""
+        return self.design.dims
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Their lengths."""
+        return self.design.shape
+
+    @property
+    def runs(self) -> int:
+        """The number of runs."""
+        return math.prod(self.shape)
+
+    def estimated_bytes(self, chunk_size: int | None = None) -> int:
+        """Return what a store of this sweep will take on disk at most [bytes]: compression is not counted."""
+        return bytes_on_disk(layout_of(self), self.design, Blocks.of(self.shape, chunk_size))
+
+    @property
+    def recipe(self) -> Recipe:
+        """How each run is made, without the values that vary: what a worker needs to know."""
+        return Recipe(self.model, self.motion, self.duration, self.periods, self.options)
+
+    def describe(self) -> dict[str, Any]:
+        """Return everything that tells this sweep from others, its version included, as plain values."""
+        options: dict[str, Any] = {**self.options}
+        options["rules"] = asdict(options["rules"] or OutcomeRules())
+        provenance = provenance_of_run(self.model, self.motion, **options)
+        for name, thing in (("model", self.model), ("motion", self.motion)):
+            if provenance[name].get("kind") == "other":
+                provenance[name] = identity_of(thing)
+        return {**provenance, "duration": self.duration, "periods": self.periods, "design": self.design.describe()}
+
+    def _check_duration(self) -> None:
+        given = [name for name in ("duration", "periods") if getattr(self, name) is not None]
+        if "duration" in self.design.names:
+            given.append("duration among what varies")
+        if len(given) != 1:
+            got = " and ".join(given) or "none of them"
+            message = f"a sweep needs one of duration [s], periods, or a duration that varies; got {got}"
+            raise ParameterError(message)
+        if self.duration is not None:
+            object.__setattr__(self, "duration", require_positive("duration", self.duration, "s"))
+        if self.periods is not None:
+            object.__setattr__(self, "periods", require_positive("periods", self.periods))
+            if "angular_frequency" not in self.design.names and self.motion.period is None:
+                message = f"periods needs a periodic base motion; give duration [s] for {self.motion!r}"
+                raise ParameterError(message)
