@@ -1,17 +1,46 @@
 """Figures from results; nothing is computed here."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import xarray as xr
 from matplotlib.figure import Figure
 
 from stylobate.errors import ParameterError
+from stylobate.plots.basins import plot_basins
+from stylobate.plots.exponent import plot_exponent
+from stylobate.plots.fractions import plot_fractions
+from stylobate.plots.integrity import plot_erosion, plot_integrity
+from stylobate.plots.maps import plot_map
 from stylobate.plots.paper_report import paper_report
 from stylobate.plots.response import plot_response
 from stylobate.plots.runs import plot_runs
 from stylobate.results import Response
 
-__all__ = ["paper_report", "plot", "plot_response", "plot_runs"]
+__all__ = [
+    "paper_report",
+    "plot",
+    "plot_basins",
+    "plot_erosion",
+    "plot_exponent",
+    "plot_fractions",
+    "plot_integrity",
+    "plot_map",
+    "plot_response",
+    "plot_runs",
+]
+
+_BY_KIND: dict[str, Callable[[xr.Dataset], Figure]] = {
+    "response curves": plot_response,
+    "ensemble": plot_map,
+    "sweep": plot_map,
+    "overturning map": plot_map,
+    "attractors": plot_basins,
+    "basins": plot_basins,
+    "basin fractions": plot_fractions,
+    "uncertainty exponent": plot_exponent,
+    "integrity": plot_integrity,
+    "erosion": plot_erosion,
+}
 
 
 def plot(result: Response | xr.Dataset | Sequence[Response], *, labels: Sequence[str] | None = None) -> Figure:
@@ -20,7 +49,9 @@ def plot(result: Response | xr.Dataset | Sequence[Response], *, labels: Sequence
     Parameters
     ----------
     result
-        A run, several runs to compare, or the response curves of `stylobate.studies.response_curves`.
+        A run, several runs to compare, or the result of a study in `stylobate.studies`: response curves, an
+        overturning map, basins, attractors, basin fractions, an uncertainty exponent, integrity or its erosion. A
+        sweep over two dimensions is drawn as a map, finished or not.
     labels
         Names for several runs; by default their outcomes.
 
@@ -36,9 +67,9 @@ def plot(result: Response | xr.Dataset | Sequence[Response], *, labels: Sequence
     """
     if isinstance(result, Response):
         return plot_runs([result], labels)
-    if isinstance(result, xr.Dataset) and result.attrs.get("kind") == "response curves":
-        return plot_response(result)
+    if isinstance(result, xr.Dataset) and result.attrs.get("kind") in _BY_KIND:
+        return _BY_KIND[result.attrs["kind"]](result)
     if isinstance(result, Sequence) and result and all(isinstance(run, Response) for run in result):
         return plot_runs(result, labels)
-    message = f"result must be a run, a sequence of runs or response curves, got {type(result).__name__}"
+    message = f"result must be a run, a sequence of runs or the result of a study, got {type(result).__name__}"
     raise ParameterError(message)

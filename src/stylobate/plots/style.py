@@ -31,6 +31,7 @@ _SETTINGS: dict[Any, Any] = {
     "legend.frameon": False,
     "legend.fontsize": 8.5,
     "savefig.dpi": 180,
+    "hatch.linewidth": 0.55,
 }
 
 

@@ -6,6 +6,7 @@ import logging
 import os
 import re
 import sys
+import tempfile
 import types
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -172,9 +173,9 @@ def _write(path: Path, source: str) -> None:
     # Written aside and moved into place, so that another process never reads half of it.
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        aside = path.with_suffix(f".{os.getpid()}.tmp")
-        aside.write_text(source, encoding="utf-8")
-        aside.replace(path)
+        with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=path.parent, delete=False) as aside:
+            aside.write(source)
+        Path(aside.name).replace(path)
     except OSError as error:
         message = f"cannot keep compiled kernels in {path.parent}: {error}; name another folder in ${_CACHE_VARIABLE}"
         raise UnsupportedError(message) from error

@@ -5,8 +5,10 @@ import math
 from stylobate.engine.lanes.arithmetic import part
 
 _BISECTIONS = 52
-# A first crossing is sought at fractions of the step that double up to the second number, then at equal steps.
-_FIRST_FRACTION, _EQUAL_FROM = 2.0**-40, 1.0 / 16.0
+# A first return is sought from this fraction of the step on, doubled up to the second number, then at equal steps.
+_FIRST_FRACTION, _EQUAL = 2.0**-40, 1.0 / 16.0
+# Relative accuracy of a root.
+_ROOT = 1e-14
 
 
 @part
@@ -76,22 +78,55 @@ def first_return(h: float, s0: float, v0: float, a0: float, s1: float, v1: float
     Told from the quintic with the heights, speeds and accelerations at both ends; right at the start it has the
     relative accuracy of the acceleration there.
     """
-    before, u = 0.0, _FIRST_FRACTION
-    while quintic(u, h, s0, v0, a0, s1, v1, a1)[0] >= 0.0:
+    # From the upright it cannot be back before half the time that speed and acceleration at the start tell.
+    p1, p2 = v0 * h, 0.5 * a0 * h * h
+    u = _EQUAL
+    if s0 == 0.0 and p2 < 0.0:
+        u = min(u, -0.5 * p1 / p2)
+    elif s0 == 0.0:
+        u = _FIRST_FRACTION
+    if u < _FIRST_FRACTION:
+        return 0.0
+    low, low_value = 0.0, s0
+    value = quintic(u, h, s0, v0, a0, s1, v1, a1)[0]
+    while value >= 0.0:
         if u >= 1.0:
             return h
-        before = u
-        u = 2.0 * u if u < _EQUAL_FROM else min(1.0, u + _EQUAL_FROM)
-    if before == 0.0:
-        return 0.0
-    low, high = before, u
+        low, low_value = u, value
+        u = 2.0 * u if u < _EQUAL else min(1.0, u + _EQUAL)
+        value = quintic(u, h, s0, v0, a0, s1, v1, a1)[0]
+    return _falling_root(low, low_value, u, value, h, s0, v0, a0, s1, v1, a1) * h
+
+
+@part
+def _falling_root(
+    low: float,
+    low_value: float,
+    high: float,
+    high_value: float,
+    h: float,
+    s0: float,
+    v0: float,
+    a0: float,
+    s1: float,
+    v1: float,
+    a1: float,
+) -> float:
+    """Return where the quintic falls below zero between `low` and `high`, by Newton's rule kept inside."""
+    u = 0.5 * (low + high) if low_value <= 0.0 else (low_value * high - high_value * low) / (low_value - high_value)
     for _ in range(_BISECTIONS):
-        middle = 0.5 * (low + high)
-        if quintic(middle, h, s0, v0, a0, s1, v1, a1)[0] >= 0.0:
-            low = middle
+        value, slope = quintic(u, h, s0, v0, a0, s1, v1, a1)
+        if value >= 0.0:
+            low = u
         else:
-            high = middle
-    return 0.5 * (low + high) * h
+            high = u
+        closer = u - value / slope if slope < 0.0 else 0.5 * (low + high)
+        if not low < closer < high:
+            closer = 0.5 * (low + high)
+        if abs(closer - u) <= _ROOT * closer:
+            return closer
+        u = closer
+    return u
 
 
 @part

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from stylobate.engine.lanes.arithmetic import part
 from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
+from stylobate.engine.lanes.pattern.moving import set_lean
 from stylobate.engine.lanes.pattern.passages import cross_upright, hop, hops
 from stylobate.engine.lanes.pattern.peaks import measure_peak
 from stylobate.engine.lanes.pattern.resting import rest_within_step, settle
@@ -13,13 +14,13 @@ from stylobate.engine.lanes.pattern.stops import go_on, meet_stop
 from stylobate.engine.lanes.roots import first_growth_past, first_return
 
 if TYPE_CHECKING:
-    from stylobate.engine.lanes.pattern.head import CAN_PASS, CAN_REST, PLANAR, R, lean_of_new
+    from stylobate.engine.lanes.pattern.head import CAN_PASS, CAN_REST, ORDER, PLANAR, R, lean_of_new
 
 # --- the kernel's text begins here ---
 
-# How near an event is met by repeated steps towards it [units of the larger of 1 and the time], and how often.
-AIM = 1e-13
-MOST_AIMS = 4
+# An event is met by repeated steps towards it, so often at most; a further step below the second number, in units of
+# the longest step, is made by a Taylor polynomial, whose error is its third power.
+MOST_AIMS, SHORT_AIM = 6, 1e-6
 
 
 @part
@@ -74,6 +75,17 @@ def miss(buf: Table, i: int) -> float:
 
 
 @part
+def creep(buf: Table, i: int, h: float) -> None:
+    """Go on by a time so short that two terms of the Taylor series tell the state."""
+    for j in range(ORDER):
+        slope = buf[R.SLOPE + j, i]
+        bend = (slope - buf[R.LAST_SLOPE + j, i]) / buf[R.MADE, i]
+        buf[R.STATE + j, i] += h * (slope + 0.5 * h * bend)
+    buf[R.TIME, i] += h
+    set_lean(buf, i)
+
+
+@part
 def held_back(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Aim at the event within the step that was held back."""
     h = buf[R.TRIED, i]
@@ -93,10 +105,12 @@ def held_back(buf: Table, i: int, table: Table, pieces: Table) -> int:
 def arrived(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Go nearer to the event that the lane was aimed at, or deal with it."""
     further = miss(buf, i)
-    if abs(further) > AIM * max(1.0, buf[R.TIME, i]) and buf[R.AIMED, i] < MOST_AIMS:
+    short = abs(further) < SHORT_AIM * min(1.0, buf[R.LONGEST_STEP, i])
+    if not short and buf[R.AIMED, i] < MOST_AIMS:
         buf[R.H, i] = further
         buf[R.AIMED, i] += 1.0
         return Status.WAITING
+    creep(buf, i, further)
     buf[R.AIMED, i] = 0.0
     if buf[R.TILT, i] > buf[R.LARGEST_TILT, i]:
         buf[R.LARGEST_TILT, i] = buf[R.TILT, i]

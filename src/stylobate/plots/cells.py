@@ -1,0 +1,135 @@
+"""Maps of classes: cells filled and textured, with their legend."""
+
+from collections.abc import Sequence
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.patches import Patch, PathPatch
+from matplotlib.path import Path
+from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator, NullFormatter
+
+from stylobate.plots.classes import Look, MapClass
+
+Floats = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.integer]
+
+_TICKS = 7
+_FRAME = "#555555"
+# Values whose ratios are equal to this part, and whose differences are not, are spaced geometrically.
+_EQUAL = 1e-6
+_LEAST_FOR_SPACING = 3
+
+
+def cell_edges(values: npt.ArrayLike) -> Floats:
+    """Return the edges of the cells about increasing `values`: midway between neighbours, the outer ones mirrored.
+
+    Midway in the logarithm where the values are spaced geometrically.
+    """
+    centres = np.asarray(values, dtype=float)
+    if centres.size == 1:
+        half = 0.5 * abs(float(centres[0])) or 0.5
+        return np.array([centres[0] - half, centres[0] + half])
+    if is_geometric(centres):
+        return np.asarray(np.exp(cell_edges(np.log(centres))))
+    middles = (centres[1:] + centres[:-1]) / 2.0
+    return np.concatenate([[2.0 * centres[0] - middles[0]], middles, [2.0 * centres[-1] - middles[-1]]])
+
+
+def is_geometric(values: npt.ArrayLike) -> bool:
+    """Return whether `values` are spaced geometrically."""
+    centres = np.asarray(values, dtype=float)
+    if centres.size < _LEAST_FOR_SPACING or np.any(centres <= 0.0):
+        return False
+    steps, ratios = np.diff(centres), np.diff(np.log(centres))
+    return bool(np.ptp(ratios) <= _EQUAL * abs(ratios.mean()) and np.ptp(steps) > _EQUAL * abs(steps.mean()))
+
+
+def draw_cells(axes: Axes, x: npt.ArrayLike, y: npt.ArrayLike, codes: Integers, classes: Sequence[MapClass]) -> None:
+    """Fill the cells about increasing `x` and `y` with the looks of their classes.
+
+    Parameters
+    ----------
+    codes
+        Shape (y, x).
+    classes
+        What the codes mean; those not among them are left white.
+    """
+    x_edges, y_edges = cell_edges(x), cell_edges(y)
+    places = np.full(codes.shape, -1)
+    for place, one in enumerate(classes):
+        places[codes == one.code] = place
+    colours = ListedColormap([one.look.colour for one in classes])
+    shown = np.ma.masked_less(places, 0)
+    axes.pcolormesh(x_edges, y_edges, shown, cmap=colours, vmin=-0.5, vmax=len(classes) - 0.5, rasterized=True)
+    for place, one in enumerate(classes):
+        if one.look.texture and np.any(places == place):
+            axes.add_patch(_texture(_outline(x_edges, y_edges, places == place), one.look))
+    set_scale(axes, "x", x)
+    set_scale(axes, "y", y)
+    axes.set_xlim(x_edges[0], x_edges[-1])
+    axes.set_ylim(y_edges[0], y_edges[-1])
+    axes.grid(visible=False)
+
+
+def set_scale(axes: Axes, name: Literal["x", "y"], values: npt.ArrayLike) -> None:
+    """Make an axis logarithmic if its `values` are spaced geometrically, and mark it with few plain numbers."""
+    axis = axes.xaxis if name == "x" else axes.yaxis
+    if is_geometric(values):
+        axes.set(**{f"{name}scale": "log"})
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(FormatStrFormatter("%g"))
+        axis.set_minor_formatter(NullFormatter())
+    else:
+        axis.set_major_locator(MaxNLocator(nbins=_TICKS, steps=[1, 2, 2.5, 5, 10]))
+
+
+def _texture(outline: Path, look: Look) -> PathPatch:
+    # The colour of the edge, which has no width, is that of the hatch.
+    return PathPatch(outline, facecolor="none", edgecolor=look.ink, hatch=look.texture, linewidth=0.0)
+
+
+def _outline(x_edges: Floats, y_edges: Floats, inside: npt.NDArray[np.bool_]) -> Path:
+    """Return the cells `inside` as one path: a rectangle for each unbroken run of cells along x."""
+    padded = np.pad(inside, ((0, 0), (1, 1))).astype(np.int8)
+    changes = np.diff(padded, axis=1)
+    rows, starts = np.nonzero(changes == 1)
+    ends = np.nonzero(changes == -1)[1]
+    left, right, low, high = x_edges[starts], x_edges[ends], y_edges[rows], y_edges[rows + 1]
+    corners = np.stack([[left, low], [right, low], [right, high], [left, high], [left, low]])
+    vertices = np.moveaxis(corners, 2, 0).reshape(-1, 2)
+    codes = np.tile([Path.MOVETO, Path.LINETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY], rows.size)
+    return Path(vertices, codes)
+
+
+def fill_options(look: Look) -> dict[str, Any]:
+    """Return the options with which patches and bars show a `look`."""
+    return {
+        "facecolor": look.colour,
+        "edgecolor": look.ink if look.texture else _FRAME,
+        "hatch": look.texture,
+        "linewidth": 0.5,
+    }
+
+
+def class_legend(codes: Integers, classes: Sequence[MapClass], *, computed: int) -> list[Patch]:
+    """Return a patch for each class that occurs in `codes`, named with its share of the runs `computed`.
+
+    What has not been computed is named with its share of all.
+    """
+    entries = []
+    for one in classes:
+        count = int(np.count_nonzero(codes == one.code))
+        if count:
+            total = codes.size if one is classes[-1] else computed
+            entries.append(Patch(label=f"{one.name}  {percent(count, total)}", **fill_options(one.look)))
+    return entries
+
+
+def percent(count: int, total: int) -> str:
+    """Return the share in percent, with a digit more where it is small but not nothing."""
+    share = 100.0 * count / total
+    tiny = 0.05
+    return "< 0.1 %" if 0.0 < share < tiny else f"{share:.1f} %"

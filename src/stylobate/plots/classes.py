@@ -1,0 +1,120 @@
+"""Looks of the classes in maps: a colour and a texture for each outcome and attractor, the same in every figure.
+
+The hues are those of Okabe and Ito's palette for colour-blind readers; the lightness of the usual classes is apart by
+a tenth of its range or more, and textures tell the others apart where print has no colour.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import xarray as xr
+
+from stylobate.errors import Outcome
+from stylobate.results.outcomes import NOT_COMPUTED
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """A fill `colour`, and a `texture` (a hatch of Matplotlib) drawn on it in the colour `ink`."""
+
+    colour: str
+    texture: str = ""
+    ink: str = "#ffffff"
+
+
+# Lightness L* in steps of ten, from standing to falling: 95, 85, 74, 63, 51, 41, then 5.
+_CREAM, _LILAC, _SKY, _AMBER, _SEA, _BLUE, _NIGHT = (
+    "#F6F1DA", "#DAD2E8", "#74C0EA", "#D58900", "#008B65", "#0063A0", "#1B0B16",
+)  # fmt: skip
+_MAUVE, _GREY = "#A4558C", "#767676"
+_DARK_INK, _LILAC_INK = "#333333", "#8E7DA3"
+
+_AT_REST, _ROCKING = Look(_CREAM, ink=_DARK_INK), Look(_SKY, ink=_DARK_INK)
+_ROLLING, _ROLLING_BACK = Look(_AMBER, ink=_DARK_INK), Look(_BLUE, "\\\\\\")
+_MODULATED, _MODULATED_BACK = Look(_SEA, "..."), Look(_SEA, "ooo")
+_APERIODIC = Look(_MAUVE, "---")
+_UNSETTLED, _OVERTURNED = Look(_LILAC, "xx", _LILAC_INK), Look(_NIGHT)
+UNFINISHED = Look("#ffffff", "//////", "#b0b0b0")
+"""What has not been computed: white paper, finely hatched."""
+
+OUTCOME_LOOKS = {
+    Outcome.AT_REST: _AT_REST,
+    Outcome.ROCKING: _ROCKING,
+    Outcome.ROLLING: _ROLLING,
+    Outcome.MODULATED: _MODULATED,
+    Outcome.STILL_MOVING: _UNSETTLED,
+    Outcome.OVERTURNED: _OVERTURNED,
+    Outcome.LIMIT_REACHED: replace(_OVERTURNED, texture="///"),
+    Outcome.LIFTED_OFF: Look(_GREY, "**"),
+    Outcome.FAILED: Look("#ffffff", "xxx", "#D55E00"),
+}
+
+KIND_LOOKS = {
+    "at rest": _AT_REST,
+    "rocking": _ROCKING,
+    "rolling anticlockwise": _ROLLING,
+    "rolling clockwise": _ROLLING_BACK,
+    "modulated anticlockwise": _MODULATED,
+    "modulated clockwise": _MODULATED_BACK,
+    "aperiodic anticlockwise": _APERIODIC,
+    "aperiodic clockwise": replace(_APERIODIC, texture="|||"),
+    "aperiodic": replace(_APERIODIC, texture="+++"),
+    "overturned": _OVERTURNED,
+    "tilt limit reached": OUTCOME_LOOKS[Outcome.LIMIT_REACHED],
+    "lifted off": OUTCOME_LOOKS[Outcome.LIFTED_OFF],
+}
+# Textures of the second, third … attractor of a kind; after the last they begin again.
+_MORE_TEXTURES = ("///", "...", "|||", "---", "ooo", "+++")
+
+UNSETTLED = -2
+"""The label of a run that reached no attractor."""
+
+
+@dataclass(frozen=True, slots=True)
+class MapClass:
+    """A class of a map: its `code` in the array, its `name` and its `look`."""
+
+    code: int
+    name: str
+    look: Look
+
+
+_UNFINISHED_CLASS = MapClass(NOT_COMPUTED, "not computed", UNFINISHED)
+_FROM_STANDING_TO_FALLING = (
+    Outcome.AT_REST,
+    Outcome.ROCKING,
+    Outcome.ROLLING,
+    Outcome.MODULATED,
+    Outcome.STILL_MOVING,
+    Outcome.OVERTURNED,
+    Outcome.LIMIT_REACHED,
+    Outcome.LIFTED_OFF,
+    Outcome.FAILED,
+)
+
+
+def outcome_classes() -> tuple[MapClass, ...]:
+    """Return the classes of outcomes, from standing to falling, the last for what has not been computed."""
+    codes = {outcome: code for code, outcome in enumerate(Outcome)}
+    known = (MapClass(codes[one], one.value, OUTCOME_LOOKS[one]) for one in _FROM_STANDING_TO_FALLING)
+    return (*known, _UNFINISHED_CLASS)
+
+
+def attractor_classes(found: xr.Dataset) -> tuple[MapClass, ...]:
+    """Return the classes of the attractors in a table over `attractor_index`, of unsettled runs, and of no runs."""
+    kinds = [str(kind) for kind in found["attractor_kind"].to_numpy()]
+    names = [str(name) for name in found["attractor_name"].to_numpy()]
+    looks = _looks(kinds)
+    known = (MapClass(code, name, look) for code, (name, look) in enumerate(zip(names, looks, strict=True)))
+    return (*known, MapClass(UNSETTLED, "unsettled", _UNSETTLED), _UNFINISHED_CLASS)
+
+
+def _looks(kinds: Sequence[str]) -> list[Look]:
+    looks = []
+    for place, kind in enumerate(kinds):
+        look, alike = KIND_LOOKS[kind], kinds[:place].count(kind)
+        if alike:
+            others = [texture for texture in _MORE_TEXTURES if texture != look.texture]
+            look = replace(look, texture=others[(alike - 1) % len(others)])
+        looks.append(look)
+    return looks

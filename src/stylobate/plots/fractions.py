@@ -1,0 +1,64 @@
+"""Basin fractions along a parameter: stacked bands that fill the unit height."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from stylobate.plots.cells import fill_options, set_scale
+from stylobate.plots.classes import attractor_classes
+from stylobate.plots.labels import axis_label
+from stylobate.plots.style import BLACK, new_figure, styled
+
+_HEIGHT = 4.2
+# Bands thinner than this part of the height have no bar: it would stand for a line.
+_SEEN = 0.005
+
+
+@styled
+def plot_fractions(found: xr.Dataset) -> Figure:
+    """Return a figure of basin fractions along a parameter, stacked.
+
+    The bar on the upper edge of a band is the interval of that band's own height. Unsettled runs fill what is left to
+    the top; values not computed stay white.
+    """
+    figure = new_figure(_HEIGHT)
+    axes = figure.subplots()
+    (name,) = found["computed"].dims
+    ordered = found.sortby(str(name)).isel({str(name): found.sortby(str(name))["computed"].to_numpy() > 0})
+    x, classes = ordered[str(name)].to_numpy(), attractor_classes(found)[:-1]
+    fraction = ordered["fraction"].transpose(name, "attractor_index").to_numpy()
+    unsettled = ordered["unsettled"].to_numpy() / ordered["computed"].to_numpy()
+    bands = np.column_stack([fraction, unsettled])
+    tops = np.cumsum(bands, axis=1)
+    legend: list[Patch | Line2D] = []
+    for place, one in enumerate(classes):
+        if bands[:, place].any():
+            axes.fill_between(x, tops[:, place] - bands[:, place], tops[:, place], **fill_options(one.look))
+            legend.append(Patch(label=one.name, **fill_options(one.look)))
+    below = fraction - ordered["fraction_low"].transpose(name, "attractor_index").to_numpy()
+    above = ordered["fraction_high"].transpose(name, "attractor_index").to_numpy() - fraction
+    for place in range(fraction.shape[1]):
+        shown = (fraction[:, place] > _SEEN) & (tops[:, place] < 1.0 - _SEEN)
+        spread = np.maximum([below[shown, place], above[shown, place]], 0.0)
+        for colour, width in (("white", 2.6), (BLACK, 1.0)):
+            axes.errorbar(x[shown], tops[shown, place], yerr=spread, ecolor=colour, elinewidth=width, **_BAR)
+    confidence = 100.0 * float(found.attrs["confidence"])
+    legend.append(Line2D([], [], color=BLACK, marker="|", markersize=9, linestyle="none", label=_interval(confidence)))
+    set_scale(axes, "x", x)
+    axes.set(xlim=(x[0], x[-1]) if x.size > 1 else None, ylim=(0.0, 1.0))
+    axes.set_ylabel(f"fraction of {found.attrs['starts']} starts")
+    axes.grid(visible=False)
+    axes.set_xlabel(axis_label(found[str(name)]))
+    figure.legend(handles=legend[::-1], loc="outside right upper")
+    return figure
+
+
+_BAR: dict[str, Any] = {"fmt": "none", "capsize": 0.0, "zorder": 3}
+
+
+def _interval(confidence: float) -> str:
+    return f"{confidence:g} % interval\nof the band below"

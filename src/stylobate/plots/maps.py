@@ -1,0 +1,82 @@
+"""Outcome maps: what becomes of the column over two parameters."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from stylobate.errors import ParameterError
+from stylobate.plots.cells import Integers, class_legend, draw_cells
+from stylobate.plots.classes import MapClass, outcome_classes
+from stylobate.plots.labels import axis_label
+from stylobate.plots.style import BLACK, new_figure, styled
+from stylobate.results.outcomes import NOT_COMPUTED
+
+_PLANE = 2
+_HEIGHT = 4.6
+# A dot on an uncertain run is at most this large, and at least this [points].
+_DOTS = (1.2, 3.6)
+# Width of a map on its page [points].
+_MAP_WIDTH = 330.0
+
+
+@styled
+def plot_map(runs: xr.Dataset) -> Figure:
+    """Return a figure of the outcomes over two parameters.
+
+    Runs that are not computed yet are white, finely hatched. A dot marks an uncertain run: a small change could alter
+    its outcome.
+
+    Parameters
+    ----------
+    runs
+        An overturning map, or any sweep or ensemble over two dimensions, finished or not.
+
+    Raises
+    ------
+    ParameterError
+        If the runs are not over two dimensions.
+    """
+    figure = new_figure(_HEIGHT)
+    axes = figure.subplots()
+    legend = draw_outcomes(axes, runs)
+    figure.legend(handles=legend, loc="outside right upper")
+    return figure
+
+
+def draw_outcomes(axes: Axes, runs: xr.Dataset) -> list[Artist]:
+    """Draw the outcomes of `runs` over their two dimensions and return the legend's entries."""
+    return draw_classes(axes, runs, runs["outcome"], outcome_classes())
+
+
+def draw_classes(axes: Axes, runs: xr.Dataset, codes: xr.DataArray, classes: Sequence[MapClass]) -> list[Artist]:
+    """Draw the `codes` of `runs` over their two dimensions, the first along x, and return the legend's entries."""
+    if codes.ndim != _PLANE or 0 in codes.shape:
+        message = f"a map needs runs over two dimensions, got {dict(codes.sizes)}"
+        raise ParameterError(message)
+    x, y = (str(dim) for dim in codes.dims)
+    ordered = runs.assign(_codes=codes).sortby([x, y]).transpose(y, x, ...)
+    cells: Integers = ordered["_codes"].to_numpy()
+    draw_cells(axes, ordered[x], ordered[y], cells, classes)
+    axes.set_xlabel(axis_label(runs[x]))
+    axes.set_ylabel(axis_label(runs[y]))
+    computed = int(np.count_nonzero(cells != NOT_COMPUTED))
+    entries: list[Artist] = [*class_legend(cells, classes, computed=computed)]
+    return entries + _mark_uncertain(axes, ordered, x, y)
+
+
+def _mark_uncertain(axes: Axes, runs: xr.Dataset, x: str, y: str) -> list[Artist]:
+    if "uncertain" not in runs or not bool(runs["uncertain"].any()):
+        return []
+    known = runs["uncertain"] & (runs["outcome"] != NOT_COMPUTED)
+    rows, columns = np.nonzero(known.transpose(y, x).to_numpy())
+    size = float(np.clip(_MAP_WIDTH / max(runs.sizes[x], runs.sizes[y]) / 2.0, *_DOTS))
+    look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": BLACK, "mew": 0.4, "linestyle": "none"}
+    axes.plot(runs[x].to_numpy()[columns], runs[y].to_numpy()[rows], markersize=size, rasterized=True, **look)
+    told = f"uncertain  {rows.size} run{'s' if rows.size > 1 else ''}"
+    return [Line2D([], [], label=told, markersize=_DOTS[1], **look)]

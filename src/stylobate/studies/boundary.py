@@ -1,0 +1,225 @@
+"""How uncertain the final state is near the boundary of a basin: the uncertainty exponent."""
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Unpack
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.errors import Outcome, ParameterError, require_whole
+from stylobate.models import Model
+from stylobate.motions import BaseMotion
+from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.studies.attractors import USUAL_STROBES
+from stylobate.studies.finding import UNSETTLED, find_attractors
+from stylobate.studies.labelled_sweeps import labelled_sweep
+from stylobate.studies.power_law import fit_power_law
+from stylobate.studies.proportions import require_confidence, wilson_interval
+from stylobate.studies.strobes import AttractorRules, Floats, Integers, OrbitScales
+from stylobate.studies.sweeps import Executor, Sweep
+from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.designs import Box, whole
+from stylobate.studies.sweeps.quantities import attributes_of, checked_values
+from stylobate.studies.sweeps.recipe import RunOptions
+from stylobate.studies.varied import require_starts
+
+# Shifts where nobody names others: this many, geometric, between these parts of the range of the start shifted.
+_USUAL_SHIFTS = np.geomspace(1e-5, 3e-2, 8)
+
+
+def uncertainty_exponent(
+    model: Model,
+    motion: BaseMotion | None = None,
+    *,
+    over: Mapping[str, Sequence[float]],
+    shifted: str,
+    shifts: npt.ArrayLike | None = None,
+    count: int,
+    seed: int = 0,
+    overturning_only: bool = False,
+    duration: float | None = None,
+    periods: float | None = None,
+    attractor_rules: AttractorRules | None = None,
+    confidence: float = 0.95,
+    store: str | Path | None = None,
+    executor: Executor | None = None,
+    resume: bool = False,
+    progress: Progress | None = None,
+    **options: Unpack[RunOptions],
+) -> xr.Dataset:
+    """Return how the share of uncertain starts falls with the error of the start, f(ε) ~ ε^α, and the dimension.
+
+    A random start is uncertain at ε if it comes to another attractor when one of its components is shifted by +ε or
+    −ε. α = 1 is a smooth boundary; the smaller α, the less a better known start helps. The boundary has the dimension
+    D − α within the D starts that vary: McDonald, Grebogi, Ott, Yorke, "Fractal basin boundaries", Physica D 17 (1985).
+    Each ε has starts of its own, so that the shares err independently and the standard error of α is that of the fit
+    (`fit_power_law`).
+
+    Parameters
+    ----------
+    model, motion
+        The column and its base motion.
+    over
+        Range of each start that varies: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s], start_phase [rad].
+    shifted
+        The one among them that is shifted.
+    shifts
+        ε, in its unit, increasing; by default 8 in geometric order between 1e-5 and 3e-2 of its range. Not so small
+        that the integration error (rtol) decides.
+    count, seed
+        Number of starts for each ε, three runs each, and the seed they are drawn with.
+    overturning_only
+        Tell only whether the column overturns: the boundary of the safe starts.
+    duration, periods
+        How long to follow each run [s], or for how many periods of the base motion.
+    attractor_rules
+        When states repeat, and when two orbits are one.
+    confidence
+        Of the intervals of the shares.
+    store, executor, resume, progress
+        As in `run_sweep`.
+    **options
+        What all runs have in common: tilt, tilt_rate, rtol, rules, strobes …
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "uncertainty exponent", over `epsilon`: `uncertain` of `pairs` starts (those left out of which a run is
+        unsettled, failed or not computed), `fraction`, `fraction_low`, `fraction_high`, `fitted` and the `fit`; and
+        `uncertainty_exponent`, its `standard_error`, `boundary_dimension`, `misfit`.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range, or a name in `over` changes the system.
+    """
+    require_starts("over", over)
+    epsilon = _shifts(shifts, over, shifted)
+    base = Box.of(over, epsilon.size * require_whole("count", count, least=1), seed)
+    chosen: RunOptions = {"strobes": 0 if overturning_only else USUAL_STROBES, **options}
+    sweep = Sweep.points(
+        model,
+        motion,
+        at=shifted_starts(base.values(whole(base)), shifted, epsilon),
+        duration=duration,
+        periods=periods,
+        **chosen,
+    )
+
+    tell: Callable[[xr.Dataset], Integers] = overturned_or_not
+    if not overturning_only:
+        rules = attractor_rules or AttractorRules()
+        tell = partial(_attractor_of_each, scales=OrbitScales.of(model, motion), rules=rules)
+    label = partial(
+        _labelled,
+        tell=tell,
+        epsilon=epsilon,
+        shifted=shifted,
+        dimension=len(over),
+        confidence=require_confidence(confidence),
+    )
+    found = labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+    return found.assign_attrs(overturning_only=int(overturning_only))
+
+
+def _labelled(
+    runs: xr.Dataset,
+    tell: Callable[[xr.Dataset], Integers],
+    epsilon: Floats,
+    shifted: str,
+    dimension: int,
+    confidence: float,
+) -> xr.Dataset:
+    found = exponent_of(tell(runs), epsilon, dimension=dimension, confidence=confidence)
+    found["epsilon"].attrs = attributes_of(shifted)
+    return found.assign_attrs({**runs.attrs, **found.attrs, "shifted": shifted})
+
+
+def overturned_or_not(runs: xr.Dataset) -> Integers:
+    """Return 1 for each run that overturned and 0 for the others; UNSETTLED if it failed, NOT_COMPUTED likewise."""
+    codes = runs["outcome"].to_numpy().astype(np.int64)
+    states: Integers = (codes == code_of(Outcome.OVERTURNED)).astype(np.int64)
+    states[codes == code_of(Outcome.FAILED)] = UNSETTLED
+    states[codes == NOT_COMPUTED] = NOT_COMPUTED
+    return states
+
+
+def _attractor_of_each(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules) -> Integers:
+    return find_attractors(runs, scales, rules).labels
+
+
+def shifted_starts(base: Mapping[str, Floats], shifted: str, epsilon: Floats) -> dict[str, Floats]:
+    """Return the `base` starts, and after them all those with `shifted` lowered by ε, then raised by it.
+
+    The starts stand in blocks of one length, one for each ε.
+    """
+    change = np.repeat(epsilon, base[shifted].size // epsilon.size)
+    moved = {shifted: np.concatenate([base[shifted], base[shifted] - change, base[shifted] + change])}
+    return {name: moved[name] if name in moved else np.tile(values, 3) for name, values in base.items()}
+
+
+def exponent_of(
+    states: npt.NDArray[np.integer], epsilon: Floats, *, dimension: int, confidence: float = 0.95
+) -> xr.Dataset:
+    """Return the uncertainty exponent from the final `states` of the runs of `shifted_starts`.
+
+    Parameters
+    ----------
+    states
+        A number for each run that tells its final state, negative where that is not known.
+    epsilon
+        The shifts.
+    dimension
+        Number D of the starts that vary.
+    confidence
+        Of the intervals of the shares.
+    """
+    base, lower, upper = np.reshape(states, (3, epsilon.size, -1))
+    known = (base >= 0) & (lower >= 0) & (upper >= 0)
+    uncertain = np.count_nonzero(known & ((base != lower) | (base != upper)), axis=1)
+    pairs = np.count_nonzero(known, axis=1)
+    low, high = wilson_interval(uncertain, pairs, confidence=confidence)
+    law = fit_power_law(epsilon, uncertain, pairs)
+    interval = f"end of its {100.0 * confidence:g} % interval"
+    return xr.Dataset(
+        {
+            "uncertain": ("epsilon", uncertain, {"units": "1", "long_name": "uncertain starts"}),
+            "pairs": ("epsilon", pairs, {"units": "1", "long_name": "starts told with both shifts"}),
+            "fraction": (
+                "epsilon",
+                np.where(pairs > 0, uncertain / np.maximum(pairs, 1), np.nan),
+                {"units": "1", "long_name": "fraction of uncertain starts"},
+            ),
+            "fraction_low": ("epsilon", low, {"units": "1", "long_name": f"lower {interval}"}),
+            "fraction_high": ("epsilon", high, {"units": "1", "long_name": f"upper {interval}"}),
+            "fitted": ("epsilon", law.used, {"long_name": "used for the fit"}),
+            "fit": ("epsilon", law.at(epsilon), {"units": "1", "long_name": "fraction by the fit"}),
+            "uncertainty_exponent": ((), law.exponent, {"units": "1", "long_name": "uncertainty exponent α"}),
+            "standard_error": ((), law.standard_error, {"units": "1", "long_name": "standard error of α"}),
+            "boundary_dimension": (
+                (),
+                dimension - law.exponent,
+                {"units": "1", "long_name": f"dimension of the boundary within {dimension}"},
+            ),
+            "misfit": ((), law.misfit, {"units": "1", "long_name": "deviance of the fit to a degree of freedom"}),
+        },
+        coords={"epsilon": epsilon},
+        attrs={"kind": "uncertainty exponent", "confidence": confidence},
+    )
+
+
+def _shifts(shifts: npt.ArrayLike | None, over: Mapping[str, Sequence[float]], shifted: str) -> Floats:
+    if shifted not in over:
+        message = f"shifted must be one of {', '.join(over)}, got {shifted!r}"
+        raise ParameterError(message)
+    if shifts is None:
+        low, high = checked_values("over", shifted, over[shifted])[[0, -1]]
+        return np.asarray(_USUAL_SHIFTS * (high - low))
+    epsilon = checked_values("shifts", shifted, shifts)
+    if epsilon.size < 2 or not (epsilon[0] > 0.0 and np.all(np.diff(epsilon) > 0.0)):  # noqa: PLR2004
+        message = f"shifts must be at least two positive numbers, increasing; got {shifts!r}"
+        raise ParameterError(message)
+    return epsilon

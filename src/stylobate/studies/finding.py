@@ -1,0 +1,221 @@
+"""Attractors found in the runs of one column under one base motion, none of them listed in advance."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.errors import Outcome, ParameterError
+from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.studies.strobes import (
+    AttractorRules,
+    Complexes,
+    Floats,
+    Integers,
+    OrbitScales,
+    group_cycles,
+    is_flat,
+    keeps_moving,
+    repeating_periods,
+)
+
+UNSETTLED = -2
+"""The label of a run that has reached no attractor by its end: followed longer it may."""
+
+AT_REST, ROCKING, OVERTURNED = "at rest", "rocking", "overturned"
+ROLLING = {1: "rolling anticlockwise", -1: "rolling clockwise"}
+MODULATED = {1: "modulated anticlockwise", -1: "modulated clockwise"}
+APERIODIC = {1: "aperiodic anticlockwise", -1: "aperiodic clockwise", 0: "aperiodic"}
+ENDINGS = {
+    Outcome.OVERTURNED: OVERTURNED,
+    Outcome.LIMIT_REACHED: "tilt limit reached",
+    Outcome.LIFTED_OFF: "lifted off",
+}
+
+KINDS = (AT_REST, *ROLLING.values(), ROCKING, *MODULATED.values(), *APERIODIC.values(), *ENDINGS.values())
+"""All kinds, in the order in which attractors are listed."""
+
+# Mean turns of the contact point in a forcing period that are told from none, and from one: half a turn in ten.
+_TURNING = 0.05
+# Outcomes of runs that move to their end; a column that stands at the end may rest for a part of each period only.
+_MOVING = (Outcome.ROLLING, Outcome.ROCKING, Outcome.MODULATED, Outcome.STILL_MOVING, Outcome.AT_REST)
+
+
+@dataclass(frozen=True, slots=True)
+class Attractor:
+    """One thing that runs come to.
+
+    Attributes
+    ----------
+    kind
+        What it is, in words.
+    period
+        After how many forcing periods it repeats; 0 where it does not.
+    turns
+        Mean turns of the contact point in a forcing period, anticlockwise positive.
+    mean_tilt
+        Mean tilt over the last periods of its runs [rad]; 0 at rest, NaN where it ends a run.
+    states
+        Dimensionless strobed states (`OrbitScales.states`), shape (period, 2); a single one where it has no period,
+        none where it ends a run.
+    """
+
+    kind: str
+    period: int
+    turns: float
+    mean_tilt: float
+    states: Complexes
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """The `attractors` of some runs, and the place in them of each run: `labels`, of the shape of the runs."""
+
+    attractors: tuple[Attractor, ...]
+    labels: Integers
+
+
+def find_attractors(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules) -> Found:
+    """Return the attractors that `runs` of one column under one base motion have come to, and which run came to which.
+
+    At rest, overturned and what else ends a run is told by the outcome. A run that moves to its end is on a periodic
+    orbit if its strobed states repeat; orbits are told apart by the set of their strobed states. A motion that goes on
+    without repeating is modulated rolling if it turns with the forcing, else aperiodic (quasi-periodic or chaotic),
+    and told by its sense; all others are unsettled. A column that stands at every strobe counts as at rest.
+
+    Parameters
+    ----------
+    runs
+        Result of an ensemble or sweep with strobes.
+    scales
+        Units of the strobed states, and the period of the forcing.
+    rules
+        When states repeat, and when two orbits are one.
+
+    Returns
+    -------
+    Found
+        The attractors in an order that depends on them alone, and labels: UNSETTLED, NOT_COMPUTED, or their place.
+
+    Raises
+    ------
+    ParameterError
+        If the runs were followed without strobes.
+    """
+    if "strobe_tilt" not in runs:
+        message = "runs must have strobed states to tell attractors from; follow them with strobes=32, say"
+        raise ParameterError(message)
+    shape, flat = runs["outcome"].shape, _Flat.of(runs, scales)
+    labels = np.full(flat.outcome.shape, UNSETTLED)
+    labels[flat.outcome == NOT_COMPUTED] = NOT_COMPUTED
+    groups = sorted(_groups(flat, rules), key=lambda group: rank(group[0], rules.match_tolerance))
+    for place, (_, members) in enumerate(groups):
+        labels[members] = place
+    return Found(tuple(attractor for attractor, _ in groups), labels.reshape(shape))
+
+
+@dataclass(frozen=True, slots=True)
+class _Flat:
+    """What tells attractors, flat over the runs: strobed states of shape (n, strobes, 2)."""
+
+    outcome: npt.NDArray[np.int8]
+    strobes: Complexes
+    turns: Floats
+    mean_tilt: Floats
+
+    @classmethod
+    def of(cls, runs: xr.Dataset, scales: OrbitScales) -> "_Flat":
+        """Return the arrays of `runs`."""
+        dims = runs["outcome"].dims
+        vectors = [runs[name].transpose(*dims, "strobe", "axis").to_numpy() for name in _STROBED]
+        count, strobes = runs["outcome"].size, vectors[0].shape[-2]
+        tilt, rate = (vector.reshape(count, strobes, 2) for vector in vectors)
+        return cls(
+            runs["outcome"].to_numpy().ravel(),
+            scales.states(tilt, rate),
+            runs["mean_rolling_rate"].to_numpy().ravel() * (scales.period or 0.0) / (2.0 * np.pi),
+            runs["mean_tilt"].to_numpy().ravel(),
+        )
+
+
+_STROBED = ("strobe_tilt", "strobe_tilt_rate")
+
+
+def _groups(runs: _Flat, rules: AttractorRules) -> Iterator[tuple[Attractor, Integers]]:
+    """Yield each attractor with its runs."""
+    for outcome, kind in ENDINGS.items():
+        if (ended := np.flatnonzero(runs.outcome == code_of(outcome))).size:
+            yield Attractor(kind, 0, 0.0, np.nan, np.empty((0, 2), dtype=complex)), ended
+    moving = np.isin(runs.outcome, [code_of(outcome) for outcome in _MOVING])
+    stands = (runs.outcome == code_of(Outcome.AT_REST)) & ~(np.abs(runs.strobes) > 0.0).any(axis=(1, 2))
+    if stands.any():
+        yield Attractor(AT_REST, 0, 0.0, 0.0, np.zeros((1, 2), dtype=complex)), np.flatnonzero(stands)
+    candidates = np.flatnonzero(moving & ~stands)
+    periods, left = repeating_periods(runs.strobes[candidates], rules)
+    for period in np.unique(periods[periods > 0]):
+        chosen = periods == period
+        yield from _orbits(runs, candidates[chosen], int(period), left[chosen], rules.match_tolerance)
+    yield from _unrepeated(runs, candidates[periods == 0], rules)
+
+
+def _orbits(
+    runs: _Flat, candidates: Integers, period: int, left: Floats, tolerance: float
+) -> Iterator[tuple[Attractor, Integers]]:
+    cycles = runs.strobes[candidates, -period:]
+    groups, leaders = group_cycles(cycles, left, tolerance)
+    for group, leader in enumerate(leaders):
+        members = candidates[groups == group]
+        # An orbit of k periods makes a whole number of turns in them; none where the rate is unknown, or where the
+        # lean only changes sides.
+        mean = 0.0 if is_flat(cycles[leader], tolerance) else _median(runs.turns[members], otherwise=0.0)
+        turns = round(period * mean) / period
+        kind = ROLLING[int(np.sign(turns))] if turns else ROCKING
+        yield Attractor(kind, period, turns, _median(runs.mean_tilt[members]), _ordered(cycles[leader])), members
+
+
+def _unrepeated(runs: _Flat, candidates: Integers, rules: AttractorRules) -> Iterator[tuple[Attractor, Integers]]:
+    told = runs.outcome[candidates] == code_of(Outcome.MODULATED)
+    settled = candidates[told | keeps_moving(runs.strobes[candidates], rules)]
+    turns = runs.turns[settled]
+    senses = np.where(np.abs(turns) > _TURNING, np.sign(turns), 0.0)
+    with_forcing = (np.abs(np.abs(turns) - 1.0) < _TURNING) | (runs.outcome[settled] == code_of(Outcome.MODULATED))
+    for kinds, chosen in ((MODULATED, with_forcing), (APERIODIC, ~with_forcing)):
+        for sense, kind in kinds.items():
+            members = settled[chosen & (senses == sense)]
+            if members.size:
+                # It fills a curve or more: the state that leans farthest stands for it, whatever the order of the runs.
+                last = runs.strobes[members, -1]
+                farthest = last[np.argmax(np.abs(last[:, 0]))]
+                mean = _median(runs.turns[members])
+                yield Attractor(kind, 0, mean, _median(runs.mean_tilt[members]), farthest[np.newaxis]), members
+
+
+def _ordered(cycle: Complexes) -> Complexes:
+    """Return the states of an orbit begun with the one that leans farthest."""
+    return np.roll(cycle, -int(np.argmax(np.abs(cycle[:, 0]))), axis=0)
+
+
+def _median(values: Floats, *, otherwise: float = np.nan) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if known.size else otherwise
+
+
+def rank(attractor: Attractor, tolerance: float) -> tuple[float, ...]:
+    """Return the place of an attractor: by kind and period, then by tilt, the largest first, then by its state.
+
+    Rounded to the `tolerance`, so that two orbits alike but for rounding keep their places.
+    """
+    first = attractor.states[0] if len(attractor.states) else np.zeros(2, dtype=complex)
+    state = np.round(np.array([np.abs(first).max(), *first.real, *first.imag]) / tolerance)
+    return (KINDS.index(attractor.kind), attractor.period, *(-state))
+
+
+def names_of(attractors: Sequence[Attractor]) -> list[str]:
+    """Return a name for each: its kind, its period if longer than the forcing's, and a number where several agree."""
+    plain = [found.kind + (f", period {found.period}" if found.period > 1 else "") for found in attractors]
+    return [
+        f"{name} ({plain[:place].count(name) + 1})" if plain.count(name) > 1 else name
+        for place, name in enumerate(plain)
+    ]

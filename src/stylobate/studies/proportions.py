@@ -1,0 +1,61 @@
+"""Proportions counted in a sample, with the interval they leave open."""
+
+from statistics import NormalDist
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.errors import ParameterError, require_positive
+
+Floats = npt.NDArray[np.float64]
+
+
+def wilson_interval(count: npt.ArrayLike, total: npt.ArrayLike, *, confidence: float = 0.95) -> tuple[Floats, Floats]:
+    """Return the interval that a proportion `count`/`total` leaves open.
+
+    The score interval of Wilson, "Probable inference, the law of succession, and statistical inference", J. Am. Stat.
+    Assoc. 22 (1927). It never leaves 0…1 and stays honest where nothing, or everything, was counted.
+
+    Parameters
+    ----------
+    count, total
+        How many of how many, of any shapes that broadcast.
+    confidence
+        Share of such intervals that hold the true proportion, between 0 and 1.
+
+    Returns
+    -------
+    tuple
+        Lower and upper end; 0 and 1 where `total` is 0.
+
+    Raises
+    ------
+    ParameterError
+        If `confidence` does not lie between 0 and 1.
+
+    Examples
+    --------
+    >>> low, high = wilson_interval(0, 100)
+    >>> float(low), round(float(high), 4)
+    (0.0, 0.037)
+    """
+    z = NormalDist().inv_cdf((1.0 + require_confidence(confidence)) / 2.0)
+    n = np.asarray(total, dtype=float)
+    k, n = np.broadcast_arrays(np.asarray(count, dtype=float), n)
+    some = np.maximum(n, 1.0)
+    share, weight = k / some, z * z / some
+    middle = (share + weight / 2.0) / (1.0 + weight)
+    half = z * np.sqrt(share * (1.0 - share) / some + weight / (4.0 * some)) / (1.0 + weight)
+    # At the ends middle and half are equal but for rounding.
+    low = np.where((n > 0.0) & (k > 0.0), np.maximum(middle - half, 0.0), 0.0)
+    high = np.where((n > 0.0) & (k < n), np.minimum(middle + half, 1.0), 1.0)
+    return low, high
+
+
+def require_confidence(confidence: float) -> float:
+    """Return `confidence`, or raise ParameterError unless it lies between 0 and 1."""
+    value = require_positive("confidence", confidence)
+    if value >= 1.0:
+        message = f"confidence must lie between 0 and 1, got {confidence!r}; 0.95 is usual"
+        raise ParameterError(message)
+    return value

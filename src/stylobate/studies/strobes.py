@@ -1,0 +1,189 @@
+"""Orbits in strobed states: which runs repeat, after how many periods, and which of them are on the same orbit."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.errors import require_positive
+from stylobate.models import Model
+from stylobate.motions import BaseMotion
+
+Complexes = npt.NDArray[np.complex128]
+Floats = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AttractorRules:
+    """When strobed states repeat, when two orbits are one, and when a motion that does not repeat has settled.
+
+    The first two are parts of the tilt c/(1 + θ²) and the tilt rate cθ/(1 + θ²) of free rolling (5) at the forcing
+    frequency θ: the size of the motions in question at every frequency.
+
+    Parameters
+    ----------
+    repeat_tolerance
+        A run repeats every k periods if all its strobed states differ from the last k by less than this.
+    match_tolerance
+        Runs are on the same orbit if their strobed states differ by less than this, and those of one orbit differ by
+        more. Well above `repeat_tolerance`: a run that still creeps is farther from its orbit than it moves while it
+        is watched, and one that spirals in must not pass for an orbit of several periods.
+    settled_tolerance
+        A run that does not repeat is settled if the differences of successive strobed states are as large, in the
+        root mean square, in the second half of the strobes as in the first, to this part.
+
+    Raises
+    ------
+    ParameterError
+        If a tolerance is not positive.
+    """
+
+    repeat_tolerance: float = 1e-3
+    match_tolerance: float = 3e-2
+    settled_tolerance: float = 0.1
+
+    def __post_init__(self) -> None:
+        for name in self.__slots__:
+            object.__setattr__(self, name, require_positive(f"attractor_rules.{name}", getattr(self, name)))
+
+
+@dataclass(frozen=True, slots=True)
+class OrbitScales:
+    """Units in which strobed states are compared: `tilt` [rad], `tilt_rate` [rad/s]; and the forcing's `period` [s]."""
+
+    tilt: float
+    tilt_rate: float
+    period: float | None
+
+    @classmethod
+    def of(cls, model: Model, motion: BaseMotion | None) -> Self:
+        """Return the tilt and rate of free rolling (5) at the frequency of `motion`; c and cω0 where it has none."""
+        c, scale = model.column.slenderness, 1.0 / model.time_scale
+        period = None if motion is None else motion.period
+        if period is None:
+            return cls(c, c * scale, None)
+        theta = 2.0 * np.pi / (period * scale)
+        return cls(c / (1.0 + theta**2), c * theta * scale / (1.0 + theta**2), period)
+
+    def states(self, tilt: Floats, tilt_rate: Floats) -> Complexes:
+        """Return vectors (..., 2) of tilt and rate as dimensionless states (..., 2): tilt and rate, each x + iy."""
+        return np.stack(
+            [
+                (tilt[..., 0] + 1j * tilt[..., 1]) / self.tilt,
+                (tilt_rate[..., 0] + 1j * tilt_rate[..., 1]) / self.tilt_rate,
+            ],
+            axis=-1,
+        )
+
+    def vectors(self, states: Complexes) -> tuple[Floats, Floats]:
+        """Return the vectors of tilt [rad] and rate [rad/s] of dimensionless `states`: the inverse of `states`."""
+        parts = np.stack([states.real, states.imag], axis=-1)
+        return parts[..., 0, :] * self.tilt, parts[..., 1, :] * self.tilt_rate
+
+
+def repeating_periods(strobes: Complexes, rules: AttractorRules) -> tuple[Integers, Floats]:
+    """Return after how many periods strobed states repeat.
+
+    Parameters
+    ----------
+    strobes
+        Dimensionless states of n runs at m successive strobes, shape (n, m, 2), the newest last.
+    rules
+        By how much states may differ from the last ones, and by how much those of an orbit must differ.
+
+    Returns
+    -------
+    tuple
+        The smallest such number up to m/2, shape (n,), 0 where there is none, and the difference that is left.
+    """
+    runs, window = strobes.shape[:2]
+    periods, left = np.zeros(runs, dtype=np.int64), np.full(runs, np.inf)
+    place = np.arange(window) - window
+    for k in range(1, window // 2 + 1):
+        open_runs = periods == 0
+        # The last k states, repeated backwards through the window; NaN (no strobe) never repeats.
+        difference = np.abs(strobes[open_runs] - strobes[open_runs][:, window - k + place % k]).max(axis=(1, 2))
+        repeats = difference < rules.repeat_tolerance
+        for divisor in (d for d in range(1, k) if k % d == 0):
+            cycle = strobes[open_runs][:, -k:]
+            apart = np.abs(cycle - np.roll(cycle, divisor, axis=1)).max(axis=(1, 2))
+            repeats &= apart > rules.match_tolerance
+        found = np.flatnonzero(open_runs)[repeats]
+        periods[found], left[found] = k, difference[repeats]
+    return periods, left
+
+
+def keeps_moving(strobes: Complexes, rules: AttractorRules) -> npt.NDArray[np.bool_]:
+    """Return which motions go on as they are, without repeating: neither dying down nor growing, shape (n,).
+
+    Told from the differences of successive strobed states (`strobes` of shape (n, m, 2)): those of a run that creeps
+    towards an orbit shrink from the first half of the strobes to the second.
+    """
+    steps = np.abs(np.diff(strobes, axis=1)).max(axis=2)
+    half = steps.shape[1] // 2
+    if not half:
+        return np.zeros(len(strobes), dtype=bool)
+    before, after = (np.sqrt(np.mean(part**2, axis=1)) for part in (steps[:, :half], steps[:, -half:]))
+    settled = np.abs(after - before) < rules.settled_tolerance * before
+    return np.asarray(settled & (after > rules.match_tolerance))
+
+
+def is_flat(cycle: Complexes, tolerance: float) -> bool:
+    """Return whether an orbit runs in a vertical plane: no angular momentum about the vertical at any strobe.
+
+    Parameters
+    ----------
+    cycle
+        Dimensionless states, shape (k, 2).
+    tolerance
+        Of the angular momentum, as a part of the largest tilt times the largest rate.
+    """
+    tilt, rate = cycle.T
+    return bool(np.abs(np.imag(np.conj(tilt) * rate)).max() < tolerance * np.abs(tilt).max() * np.abs(rate).max())
+
+
+def cycle_distance(cycles: Complexes, cycle: Complexes) -> Floats:
+    """Return how far orbits of k states are from another, shape (n,), wherever each of them begins.
+
+    Parameters
+    ----------
+    cycles
+        Shape (n, k, 2).
+    cycle
+        Shape (k, 2).
+    """
+    shifted = [np.abs(cycles - np.roll(cycle, shift, axis=0)).max(axis=(1, 2)) for shift in range(len(cycle))]
+    return np.asarray(np.min(shifted, axis=0))
+
+
+def group_cycles(cycles: Complexes, left: Floats, tolerance: float) -> tuple[Integers, Integers]:
+    """Gather orbits of k states into groups.
+
+    Each group has for its leader the run that repeats best among those in no group yet, and holds whatever is closer
+    to it than `tolerance`: the order of the runs does not matter.
+
+    Parameters
+    ----------
+    cycles
+        Shape (n, k, 2).
+    left
+        By how much each misses repeating, shape (n,).
+
+    Returns
+    -------
+    tuple
+        The group of each run, shape (n,), and the leader of each group.
+    """
+    flat = cycles.reshape(len(cycles), -1)
+    # Among equally good runs the state decides, not the order.
+    order = np.lexsort((*flat.real.T, *flat.imag.T, left))
+    groups, leaders = np.full(len(cycles), -1, dtype=np.int64), list[int]()
+    for candidate in order:
+        if groups[candidate] < 0:
+            open_runs = np.flatnonzero(groups < 0)
+            close = cycle_distance(cycles[open_runs], cycles[candidate]) < tolerance
+            groups[open_runs[close]] = len(leaders)
+            leaders.append(int(candidate))
+    return groups, np.array(leaders, dtype=np.int64)

@@ -1,0 +1,44 @@
+"""What studies let vary: the starts of one system, and one parameter."""
+
+from collections.abc import Mapping
+
+import numpy.typing as npt
+
+from stylobate.errors import ParameterError
+from stylobate.studies.sweeps.quantities import STARTS, Floats, checked_values
+
+SYSTEM_STARTS = (*STARTS, "start_phase")
+"""What can differ between runs of one column under one base motion."""
+
+
+def require_starts(where: str, over: Mapping[str, object]) -> None:
+    """Raise ParameterError unless `over` names starts only, which leave column and base motion as they are."""
+    if not isinstance(over, Mapping) or not over:
+        message = f'{where} must name starts, such as {where}={{"tilt_x": …, "tilt_rate_x": …}}; got {over!r}'
+        raise ParameterError(message)
+    for name in over:
+        if name not in SYSTEM_STARTS:
+            message = f"{where} must name starts of one system, {', '.join(SYSTEM_STARTS)}; got {name!r}"
+            raise ParameterError(message)
+
+
+def one_parameter(along: Mapping[str, npt.ArrayLike], over: Mapping[str, object]) -> tuple[str, Floats]:
+    """Return the one name in `along` and its values.
+
+    Raises
+    ------
+    ParameterError
+        If there are more names, or no values, or `over` names it too.
+    """
+    if not isinstance(along, Mapping) or len(along) != 1:
+        message = f'along must name one parameter with its values, such as {{"acceleration": […]}}; got {along!r}'
+        raise ParameterError(message)
+    ((name, given),) = along.items()
+    if name in over:
+        message = f"along and over must differ, got {name!r} in both"
+        raise ParameterError(message)
+    values = checked_values("along", name, given)
+    if not values.size:
+        message = f"along[{name!r}] must have at least one value, got none"
+        raise ParameterError(message)
+    return name, values

@@ -1,0 +1,209 @@
+"""Figures of maps, basins, exponents and integrity show what their results hold, in colour and in grey."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.collections import QuadMesh
+from matplotlib.colors import to_rgb
+from matplotlib.patches import Ellipse, PathPatch
+
+import stylobate as sb
+from stylobate.errors import Outcome, ParameterError
+from stylobate.plots.cells import cell_edges
+from stylobate.plots.classes import KIND_LOOKS, OUTCOME_LOOKS, UNFINISHED
+from stylobate.plots.labels import axis_label
+from stylobate.results.outcomes import code_of
+from stylobate.studies.boundary import exponent_of
+from stylobate.studies.finding import KINDS
+
+MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
+REST, OVERTURNED, ROLLING = (code_of(one) for one in (Outcome.AT_REST, Outcome.OVERTURNED, Outcome.ROLLING))
+
+
+def a_map(codes, uncertain=None, **axes):
+    axes = axes or {
+        "angular_frequency": ("angular_frequency", [1.0, 2.0, 3.0], {"units": "rad s-1"}),
+        "acceleration": ("acceleration", [0.1, 0.2], {"units": "m s-2", "long_name": "largest acceleration"}),
+    }
+    codes = np.array(codes, dtype=np.int8)
+    flags = np.zeros(codes.shape, bool) if uncertain is None else np.array(uncertain)
+    data = {"outcome": (tuple(axes), codes), "uncertain": (tuple(axes), flags)}
+    return xr.Dataset(data, coords=axes, attrs={"kind": "overturning map"})
+
+
+def legend_of(figure):
+    return [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+def lightness(colour):
+    """CIE L* of an sRGB colour: what is left of it in grey print."""
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)]
+    luminance = np.dot([0.2126, 0.7152, 0.0722], linear)
+    return 116.0 * np.cbrt(luminance) - 16.0 if luminance > 0.008856 else 903.3 * luminance
+
+
+@pytest.mark.parametrize("looks", [[*OUTCOME_LOOKS.values(), UNFINISHED], [*KIND_LOOKS.values(), UNFINISHED]])
+def test_classes_differ_in_grey_by_lightness_or_texture(looks):
+    # Steps of 9 in L* are told apart side by side; closer ones need another texture.
+    for first, second in combinations(looks, 2):
+        assert abs(lightness(first.colour) - lightness(second.colour)) > 9.0 or first.texture != second.texture
+
+
+def test_the_usual_outcomes_differ_in_grey_by_lightness_alone():
+    usual = (Outcome.AT_REST, Outcome.STILL_MOVING, Outcome.ROCKING, Outcome.ROLLING, Outcome.MODULATED)
+    levels = [lightness(OUTCOME_LOOKS[one].colour) for one in (*usual, Outcome.OVERTURNED)]
+    assert (np.diff(levels) < -9.0).all()
+
+
+def test_every_outcome_and_kind_has_a_look():
+    assert set(OUTCOME_LOOKS) == set(Outcome)
+    assert set(KIND_LOOKS) == set(KINDS)
+
+
+def test_a_map_shows_each_run_in_its_cell_with_units_and_shares():
+    figure = sb.plot(a_map([[REST, OVERTURNED], [REST, ROLLING], [REST, OVERTURNED]]))
+    axes = figure.axes[0]
+    assert axes.get_xlabel() == "angular frequency [rad/s]"
+    assert axes.get_ylabel() == "largest acceleration [m/s²]"
+    assert legend_of(figure) == ["at rest  50.0 %", "rolling  16.7 %", "overturned  33.3 %"]
+    (mesh,) = [one for one in axes.collections if isinstance(one, QuadMesh)]
+    colours = mesh.to_rgba(mesh.get_array())[..., :3]
+    expected = [
+        [OUTCOME_LOOKS[one].colour for one in row]
+        for row in ([Outcome.AT_REST] * 3, [Outcome.OVERTURNED, Outcome.ROLLING, Outcome.OVERTURNED])
+    ]
+    np.testing.assert_allclose(colours, [[to_rgb(colour) for colour in row] for row in expected], atol=1e-12)
+    np.testing.assert_allclose(mesh.get_coordinates()[0, :, 0], [0.5, 1.5, 2.5, 3.5])
+
+
+def test_an_unfinished_map_is_drawn_with_what_is_missing_hatched_and_named():
+    figure = sb.plot(a_map([[REST, -1], [OVERTURNED, -1], [REST, -1]]))
+    assert legend_of(figure) == ["at rest  66.7 %", "overturned  33.3 %", "not computed  50.0 %"]
+    hatched = [one for one in figure.axes[0].patches if isinstance(one, PathPatch)]
+    assert [one.get_hatch() for one in hatched] == [UNFINISHED.texture]
+    corners = hatched[0].get_path().vertices
+    np.testing.assert_allclose([corners.min(axis=0), corners.max(axis=0)], [[0.5, 0.15], [3.5, 0.25]])
+    figure.canvas.draw()
+
+
+def test_a_map_of_which_nothing_is_computed_is_drawn():
+    figure = sb.plot(a_map(np.full((3, 2), -1)))
+    assert legend_of(figure) == ["not computed  100.0 %"]
+    figure.canvas.draw()
+
+
+def test_uncertain_runs_are_dotted_where_they_are():
+    figure = sb.plot(a_map([[REST, REST]] * 3, uncertain=[[False, False], [False, True], [False, False]]))
+    assert legend_of(figure)[-1] == "uncertain  1 run"
+    np.testing.assert_allclose(figure.axes[0].lines[0].get_xydata(), [[2.0, 0.2]])
+
+
+def test_runs_in_any_order_are_drawn_in_that_of_their_values():
+    given = a_map([[REST, OVERTURNED], [ROLLING, OVERTURNED]], tilt_x=[0.2, 0.1], tilt_y=[0.0, 0.1])
+    first, second = (sb.plot(one).axes[0].collections[0] for one in (given, given.sortby("tilt_x")))
+    np.testing.assert_array_equal(first.get_array(), second.get_array())
+
+
+def test_runs_that_are_over_no_plane_are_refused():
+    with pytest.raises(ParameterError, match="two dimensions"):
+        sb.plot(a_map([REST, REST], tilt_x=[0.1, 0.2]))
+
+
+def test_cells_meet_midway_between_their_values():
+    np.testing.assert_allclose(cell_edges([1.0, 2.0, 4.0, 5.0]), [0.5, 1.5, 3.0, 4.5, 5.5])
+    np.testing.assert_allclose(cell_edges([1.0, 10.0, 100.0]), np.sqrt(10.0) ** np.array([-1.0, 1.0, 3.0, 5.0]))
+    low, high = cell_edges([0.0])
+    assert low < 0.0 < high
+
+
+@pytest.mark.parametrize(
+    ("units", "written"),
+    [("rad s-1", "x [rad/s]"), ("m s-2", "x [m/s²]"), ("kg m2", "x [kg m²]"), ("1", "x"), ("s-1", "x [1/s]")],
+)
+def test_units_are_written_as_one_reads_them(units, written):
+    assert axis_label(xr.DataArray(0.0, attrs={"units": units, "long_name": "x"})) == written
+
+
+@pytest.fixture(scope="module")
+def free_basins():
+    return sb.studies.basins(MODEL, over={"tilt_x": [-0.12, 0.05, 0.12], "tilt_rate_y": [0.0, 0.001]}, duration=200.0)
+
+
+def test_a_map_of_basins_names_and_marks_its_attractors(free_basins):
+    figure = sb.plot(free_basins)
+    assert legend_of(figure) == ["at rest  33.3 %", "overturned  66.7 %", "attractors, at the strobe"]
+    # Overturning has no state.
+    np.testing.assert_array_equal(figure.axes[0].lines[0].get_xydata(), [[0.0, 0.0]])
+
+
+def test_a_sample_is_drawn_as_fractions_with_their_intervals():
+    motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=3.0)
+    start = sb.studies.steady_start(MODEL, motion)
+    over = {"tilt_x": (0.9 * start["tilt"][0], 1.1 * start["tilt"][0])}
+    found = sb.studies.attractors(
+        MODEL, motion, over=over, count=3, tilt=start["tilt"], tilt_rate=start["tilt_rate"], periods=100
+    )
+    bars, orbits = sb.plot(found).axes
+    assert [text.get_text() for text in bars.get_yticklabels()] == ["rolling anticlockwise"]
+    assert bars.patches[0].get_width() == 1.0
+    path = orbits.lines[0].get_xydata()
+    np.testing.assert_allclose(np.hypot(*path.T), found["attractor_largest_tilt"].item(), rtol=1e-5)
+
+
+def test_fractions_along_a_parameter_fill_the_height():
+    box = {"tilt_x": (-0.1, 0.1), "tilt_rate_x": (-0.1, 0.1)}
+    along = {"damping": [0.1, 1.0, 2.0]}
+    found = sb.studies.basin_fractions(MODEL, along=along, over=box, count=8, duration=200.0)
+    figure = sb.plot(found)
+    bands = [one.get_paths()[0].vertices for one in figure.axes[0].collections if one.get_paths()]
+    assert max(band[:, 1].max() for band in bands) == pytest.approx(1.0)
+    assert legend_of(figure)[1:] == ["overturned", "at rest"]
+    assert figure.axes[0].get_xlabel() == "friction"
+
+
+def test_an_exponent_is_drawn_with_counts_limits_and_fit():
+    base = np.zeros((5, 400), dtype=int)
+    lower = (np.arange(400) < np.array([0, 4, 16, 64, 300])[:, np.newaxis]).astype(int)
+    epsilon = np.array([0.01, 0.02, 0.08, 0.32, 0.9])
+    found = exponent_of(np.concatenate([base, lower, base]).ravel(), epsilon, dimension=2)
+    figure = sb.plot(found)
+    names = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert len(names) == 4
+    assert "none found" in names[0] + names[1]
+    assert "dimension of the boundary" in figure.axes[0].get_title(loc="left")
+    empty = sb.plot(exponent_of(np.zeros(30, dtype=int), epsilon, dimension=2))
+    assert "too few" in empty.axes[0].get_title(loc="left")
+    empty.canvas.draw()
+
+
+def test_integrity_is_an_ellipse_through_the_nearest_overturning_start():
+    column = sb.Column.solid(radius=0.5, height=10.0, density=2700.0)
+    model, axis = sb.Slender(column), column.slenderness * np.linspace(-0.93, 0.93, 8)
+    over = {"tilt_x": axis, "tilt_rate_x": column.frequency_scale * axis}
+    found = sb.studies.integrity(model, over=over, duration=20.0)
+    figure = sb.plot(found)
+    ellipse = next(one for one in figure.axes[0].patches if isinstance(one, Ellipse))
+    x, v = found["nearest"].values
+    assert (2.0 * x / ellipse.width) ** 2 + (2.0 * v / ellipse.height) ** 2 == pytest.approx(1.0, rel=1e-12)
+
+
+def test_erosion_tells_bounds_from_distances():
+    dims = ("acceleration",)
+    found = xr.Dataset(
+        {
+            "distance": (dims, [0.9, 0.6, 0.3]),
+            "resolution": (dims, [0.1] * 3),
+            "at_least": (dims, [True, False, False]),
+            "integrity": (dims, [1.0, 0.67, 0.33]),
+        },
+        coords={"acceleration": ("acceleration", [0.1, 0.2, 0.4], {"units": "m s-2"})},
+        attrs={"kind": "erosion"},
+    )
+    figure = sb.plot(found)
+    line, exact, bound = figure.axes[0].lines
+    assert line.get_ydata().tolist() == [0.9, 0.6, 0.3]
+    assert exact.get_xdata().tolist() == [0.2, 0.4]
+    assert bound.get_xdata().tolist() == [0.1]
+    figure.canvas.draw()
