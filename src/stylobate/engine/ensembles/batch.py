@@ -11,7 +11,7 @@ from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.motion_columns import MotionColumns, MotionPlan
 from stylobate.engine.ensembles.options import Options
 from stylobate.engine.lanes.columns import LOG, NOTE, STATE, Log, Setup, Status
-from stylobate.engine.lanes.kernels import Kernel, kernel_of
+from stylobate.engine.lanes.kernels import kernel_of
 from stylobate.engine.lanes.step_source import Shape
 from stylobate.engine.thresholds import usual_rest_energy
 from stylobate.models import Model
@@ -35,16 +35,20 @@ class Plan:
     motion: MotionPlan
     options: Options
 
-    def kernel(self, *, planar: bool) -> Kernel:
-        """Return the kernel of motion in a plane, or in space."""
-        shape = Shape(
+    def shape(self, *, planar: bool) -> Shape:
+        """Return what sets the kernel of motion in a plane, or in space, apart from others."""
+        return Shape(
             states=len(self.model.state_names),
             parameters=len(self.model.parameters),
             planar=planar,
             forcing=self.motion.source(planar=planar),
             width=WIDTH,
         )
-        return kernel_of(type(self.model), shape)
+
+    @property
+    def layout(self) -> Shape:
+        """Where the table of a batch has its columns: the same for both kernels."""
+        return self.shape(planar=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +80,7 @@ class Batch:
         table = _empty_table(plan, len(runs), motions.breaks.shape[1])
         _fill_setup(table, plan.options, runs, models, motions, energy)
         planar = _fill_starts(table, plan.model, runs, models, motions)
-        shape = plan.kernel(planar=False).shape
+        shape = plan.layout
         table[:, shape.parameters_at : shape.motion_at] = models.parameters
         table[:, shape.motion_at : shape.breaks_at] = motions.columns
         table[:, shape.breaks_at : shape.breaks_at + motions.breaks.shape[1]] = motions.breaks
@@ -89,7 +93,7 @@ class Batch:
     def notes(self, *, strobes: bool) -> Floats:
         """Return the samples or strobes, shape (n, number, 5): tilt x and y, their rates, time; NaN where none."""
         options = self.plan.options
-        first = self.plan.kernel(planar=False).shape.breaks_at + self.motions.breaks.shape[1]
+        first = self.plan.layout.breaks_at + self.motions.breaks.shape[1]
         count = options.strobes if strobes else options.samples
         first += NOTE * options.samples if strobes else 0
         return self.table[:, first : first + NOTE * count].reshape(len(self.table), count, NOTE)
@@ -106,7 +110,8 @@ class Batch:
         if not chosen.any():
             return True
         table = np.ascontiguousarray(self.table[chosen])
-        finished = self.plan.kernel(planar=planar).advance(table, self.plan.motion.pieces, halt)
+        kernel = kernel_of(type(self.plan.model), self.plan.shape(planar=planar))
+        finished = kernel.advance(table, self.plan.motion.pieces, halt)
         self.table[chosen] = table
         return finished
 
@@ -133,7 +138,7 @@ def _rest_energy(options: Options, models: ModelColumns, motions: MotionColumns)
 
 def _empty_table(plan: Plan, count: int, breaks: int) -> Floats:
     options = plan.options
-    notes = plan.kernel(planar=False).shape.breaks_at + breaks
+    notes = plan.layout.breaks_at + breaks
     table = np.zeros((count, notes + NOTE * (options.samples + options.strobes)))
     table[:, notes:] = np.nan
     for column in (Log.FIRST_AZIMUTH, Log.LAST_AZIMUTH):

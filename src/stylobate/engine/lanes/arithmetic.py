@@ -30,9 +30,13 @@ def part(function: _F) -> _F:
     return cast("_F", njit(error_model="numpy", nogil=True)(function))
 
 
-def kept(function: _F) -> _F:
-    """Compile a function and all that it calls, and keep the machine code on disk."""
-    return cast("_F", njit(cache=True, error_model="numpy", nogil=True)(function))
+def kept(signature: str) -> Callable[[_F], _F]:
+    """Compile a function and all that it calls for arguments of this type, at once, and keep the machine code."""
+
+    def compiled(function: _F) -> _F:
+        return cast("_F", njit(signature, cache=True, error_model="numpy", nogil=True)(function))
+
+    return compiled
 
 
 @inlined

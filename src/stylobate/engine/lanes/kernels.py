@@ -7,6 +7,7 @@ import os
 import re
 import sys
 import tempfile
+import threading
 import types
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -15,7 +16,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from numba.core.errors import NumbaError
+
 from stylobate.engine.lanes import arithmetic, pattern, roots, step_source
+from stylobate.engine.lanes.apart import compile_apart
 from stylobate.engine.lanes.arithmetic import inlined, part
 from stylobate.engine.lanes.columns import LOOKS, Status, Window
 from stylobate.engine.lanes.head_source import OPTIONAL, constants_source, model_source
@@ -49,9 +53,19 @@ class Kernel:
         return function
 
 
+_compiling = threading.Lock()
+
+
 def kernel_of(model: type[Model], shape: Shape) -> Kernel:
-    """Return the kernel of a class of models for this shape, from memory, from disk or newly compiled."""
-    return _kernel(model, shape)
+    """Return the kernel of a class of models for this shape, from memory, from disk or newly compiled.
+
+    Raises
+    ------
+    UnsupportedError
+        If Numba cannot compile the model, or kernels cannot be kept.
+    """
+    with _compiling:
+        return _kernel(model, shape)
 
 
 @cache
@@ -61,9 +75,18 @@ def _kernel(model: type[Model], shape: Shape) -> Kernel:
     key = _key(source, functions)
     path = cache_folder() / f"{_file_name(model, shape)}_{key}.py"
     if not path.exists():
-        _log.info("compiling the equations of %s for this machine, once; kept in %s", model.name, path.parent)
         _write(path, source)
-    return Kernel(shape, _loaded(path, functions))
+    if not any((path.parent / "__pycache__").glob(f"{path.stem}.*.nbc")):
+        # A warning for whoever has set up no logging: seconds pass, once.
+        _log.warning("compiling %s, %s; kept in %s", model.name, _kind(shape), path.parent)
+        compile_apart(path, functions)  # where that fails, it is compiled here, and what is wrong is told
+    try:
+        return Kernel(shape, load(path, functions))
+    except NumbaError as error:
+        lines = (line.strip() for line in str(error).splitlines())
+        reason = next((line for line in lines if line and not line.startswith("Failed in")), "no reason")
+        message = f"model {model.name} cannot be compiled for ensembles, but simulate can run it: {reason}"
+        raise UnsupportedError(message) from error
 
 
 def kernel_source(model: type[Model], shape: Shape) -> str:
@@ -181,7 +204,8 @@ def _write(path: Path, source: str) -> None:
         raise UnsupportedError(message) from error
 
 
-def _loaded(path: Path, functions: Mapping[str, Callable[..., Any]]) -> types.ModuleType:
+def load(path: Path, functions: Mapping[str, Callable[..., Any]]) -> types.ModuleType:
+    """Return the module of the kernel in the file `path`, with these functions of the model; compiled if it must be."""
     name = f"stylobate_kernels.{path.stem}"
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None

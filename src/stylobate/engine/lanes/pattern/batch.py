@@ -108,7 +108,7 @@ def fill(buf: Table, i: int, table: Table, pieces: Table, waiting: int) -> int:
     return waiting
 
 
-@kept
+@kept("boolean(float64[:, ::1], float64[:, ::1], uint8[::1])")
 def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8]) -> bool:
     """Run a batch to its end; return whether it got there.
 

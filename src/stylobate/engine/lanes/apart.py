@@ -1,0 +1,75 @@
+"""Compiling in a process apart.
+
+Machine code that Numba has just compiled and the same code read back from disk can differ in the last bit: the one is
+linked from parts that were optimised singly. So a kernel is compiled by another process and always read from disk, and
+its numbers are the same in the first process as in every later one.
+"""
+
+import marshal
+import pickle
+import subprocess
+import sys
+import types
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from stylobate.engine.lanes.model_code import called_functions, plain_function
+
+
+@dataclass(frozen=True, slots=True)
+class _Portable:
+    """A function by what it says, for a process that cannot import it: a notebook's, or a script's own."""
+
+    name: str
+    code: bytes
+    values: Mapping[str, Any]
+    modules: Mapping[str, str]
+    called: Mapping[str, "_Portable"]
+
+    @classmethod
+    def of(cls, function: Callable[..., Any]) -> "_Portable":
+        """Return what `function` says."""
+        plain = plain_function(function)
+        called = dict(called_functions(plain))
+        used = {name: plain.__globals__[name] for name in plain.__code__.co_names if name in plain.__globals__}
+        return cls(
+            plain.__name__,
+            marshal.dumps(plain.__code__),
+            {
+                name: value
+                for name, value in used.items()
+                if name not in called and not isinstance(value, types.ModuleType)
+            },
+            {name: value.__name__ for name, value in used.items() if isinstance(value, types.ModuleType)},
+            {name: cls.of(value) for name, value in called.items()},
+        )
+
+    def function(self) -> types.FunctionType:
+        """Return the function."""
+        names: dict[str, Any] = {"__name__": "stylobate_model", "__builtins__": __builtins__, **self.values}
+        names |= {name: sys.modules.get(module) or __import__(module) for name, module in self.modules.items()}
+        names |= {name: portable.function() for name, portable in self.called.items()}
+        return types.FunctionType(marshal.loads(self.code), names, self.name)  # noqa: S302  our own pipe
+
+
+def compile_apart(path: Path, functions: Mapping[str, Callable[..., Any]]) -> bool:
+    """Compile the kernel in the file `path` with these functions of the model; return whether that went well."""
+    try:
+        request = pickle.dumps((path, {name: _Portable.of(function) for name, function in functions.items()}))
+    except (pickle.PicklingError, TypeError, AttributeError, ValueError):
+        return False
+    command = [sys.executable, "-c", "from stylobate.engine.lanes.apart import serve; serve()"]
+    try:
+        return subprocess.run(command, input=request, capture_output=True, check=False).returncode == 0  # noqa: S603
+    except OSError:
+        return False
+
+
+def serve() -> None:
+    """Compile what the parent process asks for."""
+    from stylobate.engine.lanes.kernels import load  # noqa: PLC0415  kernels need this module
+
+    path, portables = pickle.load(sys.stdin.buffer)  # noqa: S301  from our own parent
+    load(path, {name: portable.function() for name, portable in portables.items()})
