@@ -10,7 +10,7 @@ from stylobate.engine.course import Course
 from stylobate.engine.forcing import Forcing
 from stylobate.engine.history import history
 from stylobate.engine.moving import Method, Mover
-from stylobate.engine.thresholds import Thresholds, rest_is_coarse, thresholds_of
+from stylobate.engine.thresholds import Thresholds, is_rest, rest_is_coarse, thresholds_of
 from stylobate.engine.verdict import Verdict, long_term
 from stylobate.engine.watch import Reason, Watch
 from stylobate.errors import (
@@ -119,7 +119,8 @@ def simulate(
     rules = rules or OutcomeRules()
     mover = Mover(model, forcing, Watch(model, forcing, thresholds), method)
     course = Course(model, forcing, mover, duration / model.time_scale)
-    course.follow(model.start(start_tilt, start_rate))
+    at_rest = is_rest(np.array(start_tilt), np.array(start_rate), model.column.slenderness, model.time_scale)
+    course.follow(model.start((0.0, 0.0), (0.0, 0.0)) if at_rest else model.start(start_tilt, start_rate))
     verdict = _verdict(model, moved, course, rules)
     recorded = history(model, moved, course.trajectory, samples, planar=course.planar)
     return Response(

@@ -10,11 +10,23 @@ from stylobate.engine.forcing import Floats, Forcing
 from stylobate.errors import require_not_negative, require_positive
 from stylobate.models import Model
 
+Bools = npt.NDArray[np.bool_]
+
 # The energy of steady rolling at frequency θ is 1.5 c²/θ²; rest is entered below a hundredth of it at most.
 _REST_ENERGY, _REST_ENERGY_ROLLING = 1e-4, 0.015
 # Where the base motion can release the column again, at most a hundredth of the energy it releases it with; not below
 # the last number, which bounds the number of hops to follow.
 _REST_ENERGY_HOP, _LEAST_REST_ENERGY = 0.01, 1e-8
+
+# A start nearer to rest than this, tilt and rate in units of c, is the rounding of one at rest.
+_ROUNDED_REST = 1e-14
+
+
+def is_rest(tilt: Floats, tilt_rate: Floats, slenderness: npt.ArrayLike, time_scale: npt.ArrayLike) -> Bools:
+    """Return whether these starts, shape (..., 2) [rad] and [rad/s], are at rest but for rounding."""
+    size = np.hypot(tilt[..., 0], tilt[..., 1])
+    speed = np.hypot(tilt_rate[..., 0], tilt_rate[..., 1]) * time_scale
+    return np.asarray(np.maximum(size, speed) <= _ROUNDED_REST * np.asarray(slenderness, dtype=float))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

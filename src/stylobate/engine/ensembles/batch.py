@@ -13,7 +13,7 @@ from stylobate.engine.ensembles.options import Options
 from stylobate.engine.lanes.columns import LOG, NOTE, STATE, Log, Setup, Status
 from stylobate.engine.lanes.kernels import kernel_of
 from stylobate.engine.lanes.step_source import Shape
-from stylobate.engine.thresholds import usual_rest_energy
+from stylobate.engine.thresholds import is_rest, usual_rest_energy
 from stylobate.models import Model
 
 Floats = npt.NDArray[np.float64]
@@ -75,6 +75,11 @@ class Batch:
             If a value is out of range.
         """
         models = ModelColumns.of(plan.model, runs.values, runs.tilt, runs.tilt_rate)
+        stands = is_rest(runs.tilt, runs.tilt_rate, models.slenderness, models.time_scale)
+        if np.any(runs.tilt[stands]) or np.any(runs.tilt_rate[stands]):
+            moving = np.where(stands, 0.0, 1.0)[:, np.newaxis]
+            runs = replace(runs, tilt=runs.tilt * moving, tilt_rate=runs.tilt_rate * moving)
+            models = ModelColumns.of(plan.model, runs.values, runs.tilt, runs.tilt_rate)
         motions = MotionColumns.of(plan.motion, runs.values, models)
         energy = _rest_energy(plan.options, models, motions)
         table = _empty_table(plan, len(runs), motions.breaks.shape[1])

@@ -11,13 +11,16 @@ _F = TypeVar("_F", bound=Callable[..., Any])
 # Without "nnan" and "ninf", so that a step that ran into NaN is seen and made smaller.
 _FAST = {"contract", "arcp", "nsz", "afn"}
 
+# Parts of kernels are called from compiled code only: without entries from Python they compile faster.
+_INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
 
 def inlined(function: _F) -> _F:
     """Compile `function` into every place that calls it, so that a loop over lanes can become vector code.
 
     Numba's own division checks would be branches; NumPy's error model leaves them out.
     """
-    return cast("_F", njit(forceinline=True, error_model="numpy", fastmath=_FAST)(function))
+    return cast("_F", njit(forceinline=True, error_model="numpy", fastmath=_FAST, **_INNER)(function))
 
 
 def vectorised(function: _F) -> _F:
@@ -27,7 +30,7 @@ def vectorised(function: _F) -> _F:
 
 def part(function: _F) -> _F:
     """Compile a function that serves one lane at a time, as part of the one that calls it."""
-    return cast("_F", njit(error_model="numpy", nogil=True)(function))
+    return cast("_F", njit(error_model="numpy", nogil=True, **_INNER)(function))
 
 
 def kept(signature: str) -> Callable[[_F], _F]:
