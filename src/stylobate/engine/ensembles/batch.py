@@ -12,7 +12,7 @@ from stylobate.engine.ensembles.motion_columns import MotionColumns, MotionPlan
 from stylobate.engine.ensembles.options import Options
 from stylobate.engine.lanes.columns import LOG, NOTE, STATE, Log, Setup, Status
 from stylobate.engine.lanes.kernels import kernel_of
-from stylobate.engine.lanes.step_source import Shape
+from stylobate.engine.lanes.shape import Shape
 from stylobate.engine.thresholds import is_rest, usual_rest_energy
 from stylobate.models import Model
 

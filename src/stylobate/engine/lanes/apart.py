@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from stylobate.engine.lanes.loading import load
 from stylobate.engine.lanes.model_code import called_functions, plain_function
 
 
@@ -69,7 +70,5 @@ def compile_apart(path: Path, functions: Mapping[str, Callable[..., Any]]) -> bo
 
 def serve() -> None:
     """Compile what the parent process asks for."""
-    from stylobate.engine.lanes.kernels import load  # noqa: PLC0415  kernels need this module
-
     path, portables = pickle.load(sys.stdin.buffer)  # noqa: S301  from our own parent
     load(path, {name: portable.function() for name, portable in portables.items()})

@@ -20,7 +20,8 @@ def inlined(function: _F) -> _F:
 
     Numba's own division checks would be branches; NumPy's error model leaves them out.
     """
-    return cast("_F", njit(forceinline=True, error_model="numpy", fastmath=_FAST, **_INNER)(function))
+    compiled = njit(forceinline=True, error_model="numpy", fastmath=_FAST, **_INNER)  # type: ignore[call-overload]
+    return cast("_F", compiled(function))
 
 
 def vectorised(function: _F) -> _F:
@@ -30,7 +31,8 @@ def vectorised(function: _F) -> _F:
 
 def part(function: _F) -> _F:
     """Compile a function that serves one lane at a time, as part of the one that calls it."""
-    return cast("_F", njit(error_model="numpy", nogil=True, **_INNER)(function))
+    compiled = njit(error_model="numpy", nogil=True, **_INNER)  # type: ignore[call-overload]
+    return cast("_F", compiled(function))
 
 
 def kept(signature: str) -> Callable[[_F], _F]:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from stylobate.engine.lanes.columns import NOTE, STATE
-from stylobate.engine.lanes.step_source import Shape
+from stylobate.engine.lanes.shape import Shape
 
 OPTIONAL = ("rest_energy", "no_return_tilt", "departure", "passage", "at_rest")
 """Functions that a model may lack."""

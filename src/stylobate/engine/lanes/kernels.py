@@ -1,7 +1,6 @@
 """Kernels: compiled once for a model and a kind of base motion, kept on disk, loaded by every later process."""
 
 import hashlib
-import importlib.util
 import logging
 import os
 import re
@@ -18,18 +17,15 @@ from typing import Any
 
 from numba.core.errors import NumbaError
 
-from stylobate.engine.lanes import arithmetic, pattern, roots, step_source
+from stylobate.engine.lanes import arithmetic, pattern, roots
 from stylobate.engine.lanes.apart import compile_apart
-from stylobate.engine.lanes.arithmetic import inlined, part
 from stylobate.engine.lanes.columns import LOOKS, Status, Window
 from stylobate.engine.lanes.head_source import OPTIONAL, constants_source, model_source
-from stylobate.engine.lanes.model_code import fingerprint, for_compiling
-from stylobate.engine.lanes.step_source import (
-    Shape,
-    accelerations_source,
-    observation_source,
-    rates_source,
-)
+from stylobate.engine.lanes.loading import load
+from stylobate.engine.lanes.model_code import fingerprint
+from stylobate.engine.lanes.observation_source import observation_source
+from stylobate.engine.lanes.shape import Shape
+from stylobate.engine.lanes.step_source import accelerations_source, rates_source, step_source
 from stylobate.errors import UnsupportedError
 from stylobate.models import Model
 
@@ -101,7 +97,7 @@ def kernel_source(model: type[Model], shape: Shape) -> str:
             accelerations_source(shape),
             rates_source(shape),
             model_source(shape, has),
-            step_source.step_source(shape),
+            step_source(shape),
             observation_source(shape),
             _driver_text(),
         ]
@@ -202,18 +198,3 @@ def _write(path: Path, source: str) -> None:
     except OSError as error:
         message = f"cannot keep compiled kernels in {path.parent}: {error}; name another folder in ${_CACHE_VARIABLE}"
         raise UnsupportedError(message) from error
-
-
-def load(path: Path, functions: Mapping[str, Callable[..., Any]]) -> types.ModuleType:
-    """Return the module of the kernel in the file `path`, with these functions of the model; compiled if it must be."""
-    name = f"stylobate_kernels.{path.stem}"
-    spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    for function_name, function in functions.items():
-        compiled = for_compiling(function, part if function_name in OPTIONAL else inlined)
-        setattr(module, function_name, compiled)
-    sys.modules[name] = module
-    spec.loader.exec_module(module)
-    return module

@@ -1,0 +1,242 @@
+"""Writes the loops that judge a step: its error, events in it, extremes of the tilt, turning, the next step."""
+
+from collections.abc import Callable
+
+from scipy.integrate import DOP853
+
+from stylobate.engine.lanes.layout import Rows
+from stylobate.engine.lanes.shape import STAGES, Shape
+from stylobate.engine.lanes.stage_source import combination
+
+# Step control as SciPy's: safety 0.9, a step changes by 0.2 to 10, an error below the last number counts as that.
+_SAFETY, _LEAST_FACTOR, _LARGEST_FACTOR, _LEAST_ERROR = 0.9, 0.2, 10.0, 1e-12
+# A step shorter than this part of the time cannot be made.
+_SHORTEST = 2.3e-15
+# Near passages in space: see the engine's mover for single runs.
+_HOP_FROM, _HOP_OFFSET = 1e-6, 1e-9
+# A largest tilt within a step is measured if it may exceed the largest so far by this part.
+_NEW_PEAK = 1e-7
+
+
+def judgement(shape: Shape, rows: Rows) -> list[str]:
+    """Return the loops that accept or reject the step and note what happened in it.
+
+    Each is straight-line code with selects; what one finds goes to the next as numbers 0 and 1 in rows.
+    """
+    # A loop too short would be unrolled before it could become vector code.
+    loops = ((_error, _acceptance), (_extremes, _turning), (_keeping, _next_step, _suspicion))
+    lines: list[str] = []
+    for parts in loops:
+        lines.append("    for i in range(WIDTH):")
+        lines += [f"        {text}" for part in parts for text in part(shape, rows)]
+    return lines
+
+
+def _error(shape: Shape, rows: Rows) -> list[str]:
+    at = rows.at
+    out = ["e5 = 0.0", "e3 = 0.0"]
+    for j in range(shape.order):
+        stages = [at(f"k{s}_{j}") for s in range(STAGES + 1)]
+        out += [
+            f"scale = {at('atol_now')} + {at('rtol')} * max(abs({at(f'y{j}')}), abs({at(f'new{j}')}))",
+            "per_scale = 1.0 / scale",
+            f"q = ({combination(DOP853.E5, stages)}) * per_scale",
+            "e5 = e5 + q * q",
+            f"q = ({combination(DOP853.E3, stages)}) * per_scale",
+            "e3 = e3 + q * q",
+        ]
+    return [
+        *out,
+        "spread = e5 + 0.01 * e3",
+        f"{at('error')} = abs({at('h')}) * e5 / math.sqrt(spread * {float(shape.order)!r} + 1e-300)",
+    ]
+
+
+def _acceptance(shape: Shape, rows: Rows) -> list[str]:
+    """Return what finds the new lean, and whether the step is good, and taken or held back by an event."""
+    at = rows.at
+    new = [at(f"new{j}") for j in range(shape.order)]
+    if shape.planar:
+        lean = [f"x1 = {new[0]}", "y1 = 0.0", f"vx1 = {new[1]}", "vy1 = 0.0"]
+    else:
+        lean = [f"x1, y1, vx1, vy1 = lean({', '.join([*new, *(at(f'p{j}') for j in range(shape.parameters))])})"]
+    return [
+        *lean,
+        "tilt1 = math.sqrt(x1 * x1 + y1 * y1)",
+        "radial1 = x1 * vx1 + y1 * vy1",
+        f"past = min(tilt1 - {at('no_return')}, radial1)",
+        f"past = max(past, tilt1 - {at('tilt_limit')})",
+        *_crossing(shape, rows),
+        f"ok = 1.0 if {at('error')} < 1.0 else 0.0",
+        f"ahead = (1.0 if past > 0.0 else 0.0) * (0.0 if {at('aimed')} > 0.0 else 1.0)",
+        f"{at('ok')} = ok",
+        f"{at('held')} = ok * ahead",
+        f"{at('go')} = ok * (1.0 - ahead)",
+        *(f"{at(f'new_{name}')} = {name}1" for name in ("x", "y", "vx", "vy", "tilt", "radial")),
+    ]
+
+
+def _crossing(shape: Shape, rows: Rows) -> list[str]:
+    if not shape.planar:
+        return []
+    at = rows.at
+    return [
+        f"side = {at('side')}",
+        f"h = {at('h')}",
+        f"s0 = side * {at('x')}",
+        "s1 = side * x1",
+        f"v0 = side * {at('vx')}",
+        "v1 = side * vx1",
+        "_, lowest = turning_point(s0, s1, v0 * h, v1 * h, -1.0)",
+        "lowest = lowest if v0 < 0.0 else s1",
+        "lowest = lowest if v1 > 0.0 else s1",
+        "past = max(past, -min(s1, lowest))",
+    ]
+
+
+def _extremes(shape: Shape, rows: Rows) -> list[str]:
+    """Return what finds the least and the largest tilt within the step, by the cubic of the tilt's square.
+
+    Out of a plane the least tilt of a passage of the upright is kept.
+    """
+    at = rows.at
+    return [
+        f"h = {at('h')}",
+        f"go = {at('go')}",
+        f"tilt0 = {at('tilt')}",
+        f"tilt1 = {at('new_tilt')}",
+        f"radial0 = {at('radial')}",
+        f"radial1 = {at('new_radial')}",
+        "square0 = tilt0 * tilt0",
+        "square1 = tilt1 * tilt1",
+        "slope0 = 2.0 * radial0 * h",
+        "slope1 = 2.0 * radial1 * h",
+        "fell = (1.0 if slope0 < 0.0 else 0.0) * (1.0 if slope1 > 0.0 else 0.0)",
+        "rose = (1.0 if slope0 > 0.0 else 0.0) * (1.0 if slope1 < 0.0 else 0.0)",
+        "share, extreme = turning_point(square0, square1, slope0, slope1, rose - fell)",
+        "extreme = math.sqrt(max(extreme, 0.0))",
+        "low = extreme if fell > 0.0 else min(tilt0, tilt1)",
+        f"{at('low')} = low",
+        # A step towards an event may go beyond it: its ends do not count yet.
+        f"ends = 0.0 if {at('aimed')} > 0.0 else max(tilt0, tilt1)",
+        f"largest = {at('largest_tilt')}",
+        # An extreme that the cubic puts above all others so far is measured by the driver.
+        f"peak = go * rose * (1.0 if 2.0 * extreme - ends > largest * {1.0 + _NEW_PEAK!r} else 0.0)",
+        f"{at('peak')} = peak",
+        "seen = max(ends, extreme * rose) * (1.0 - peak)",
+        "seen = seen if go > 0.0 else 0.0",
+        f"now = {at('time')} + h * (share if rose > 0.0 else (1.0 if tilt1 > tilt0 else 0.0))",
+        f"before = {at('largest_at')}",
+        f"{at('largest_at')} = now if seen > largest else before",
+        f"{at('largest_tilt')} = max(largest, seen)",
+        *(() if shape.planar else _passage(at)),
+    ]
+
+
+def _passage(at: Callable[[str], str]) -> tuple[str, ...]:
+    return (
+        f"passage = {at('least_passage')}",
+        "closer = low if go * fell > 0.0 else passage",
+        f"{at('least_passage')} = min(passage, closer)",
+    )
+
+
+def _turning(shape: Shape, rows: Rows) -> list[str]:
+    if shape.planar:
+        return []
+    at = rows.at
+    return [
+        f"go = {at('go')}",
+        f"x1 = {at('new_x')}",
+        f"y1 = {at('new_y')}",
+        f"momentum0 = {at('momentum')}",
+        f"momentum1 = x1 * {at('new_vy')} - y1 * {at('new_vx')}",
+        f"{at('turns')} = {at('turns')} + go * winding({at('x')}, {at('y')}, x1, y1, momentum0 + momentum1)",
+        f"{at('momentum')} = momentum1 if go > 0.0 else momentum0",
+        # A motion that has grown, or turned back, is followed with the usual tolerance.
+        f"grown = max({at('new_tilt')} - {at('grown')}, -{at('new_radial')}) * go",
+        f"full = {at('atol')}",
+        f"atol = {at('atol_now')}",
+        f"{at('atol_now')} = full if grown > 0.0 else atol",
+    ]
+
+
+def _keeping(shape: Shape, rows: Rows) -> list[str]:
+    at = rows.at
+    out = [f"go = {at('go')}"]
+
+    def keep(target: str, value: str) -> None:
+        # Both are read before the choice: a choice between two addresses would not become vector code.
+        out.extend([f"new = {at(value)}", f"old = {at(target)}", f"{at(target)} = new if go > 0.0 else old"])
+
+    for j in range(shape.order):
+        keep(f"last{j}", f"y{j}")
+        keep(f"last_slope{j}", f"k0_{j}")
+        keep(f"y{j}", f"new{j}")
+        keep(f"k0_{j}", f"k{STAGES}_{j}")
+    for name in ("tilt", "radial", "x", "y", "vx", "vy"):
+        keep(f"{name}_before", name)
+        keep(name, f"new_{name}")
+    return out
+
+
+def _next_step(shape: Shape, rows: Rows) -> list[str]:
+    del shape
+    at = rows.at
+    return [
+        f"h = {at('h')}",
+        f"t = {at('time')}",
+        f"go = {at('go')}",
+        f"ok = {at('ok')}",
+        f"stop = {at('stop')}",
+        "remaining = stop - t",
+        "reached = go * (1.0 if h >= remaining else 0.0)",
+        f"{at('reached')} = reached",
+        f"{at('tried')} = h",
+        f"{at('made')} = h * go",
+        "t1 = t + h * go",
+        "t1 = stop if reached > 0.0 else t1",
+        f"{at('time')} = t1",
+        f"error = {at('error')}",
+        f"error = {_LEAST_ERROR!r} if error < {_LEAST_ERROR!r} else error",
+        f"factor = {_SAFETY!r} / math.sqrt(math.sqrt(math.sqrt(error)))",
+        # Of a step that ran into NaN the factor is NaN, and the least one is taken.
+        f"factor = factor if factor > {_LEAST_FACTOR!r} else {_LEAST_FACTOR!r}",
+        f"most = 1.0 if {at('rejected')} > 0.0 else {_LARGEST_FACTOR!r}",
+        "factor = factor if factor < most else most",
+        f"{at('rejected')} = 1.0 - ok",
+        f"{at('aimed')} = {at('aimed')} * ok",
+        f"wanted = min(h * factor, {at('longest_step')})",
+        f"{at('wanted')} = wanted",
+        f"{at('h')} = min(wanted, {at('stop')} - t1)",
+        f"{at('steps')} = {at('steps')} + go",
+    ]
+
+
+def _suspicion(shape: Shape, rows: Rows) -> list[str]:
+    """Return what marks the lanes that the driver must look at.
+
+    Those held back by an event, at a stop, aimed at an event, out of steps or stuck; in space also those perhaps
+    coming to rest, or so near the upright that they pass it in closed form.
+    """
+    at = rows.at
+    near = ["near = 0.0"]
+    if not shape.planar:
+        c = at("slenderness")
+        near = [
+            f"square = {at('vx')} * {at('vx')} + {at('vy')} * {at('vy')}",
+            f"near = 1.0 if {at('low')} < {at('rest_tilt')} else 0.0",
+            f"inward = 1.0 if {at('radial')} < 0.0 else 0.0",
+            f"tilt = {at('tilt')}",
+            f"close = 1.0 if tilt * tilt < {_HOP_FROM**2!r} * min({c} * {c}, square) else 0.0",
+            f"momentum = {at('momentum')}",
+            f"straight = 1.0 if momentum * momentum < {_HOP_OFFSET**2!r} * {c} * {c} * square else 0.0",
+            "near = near + inward * close * straight",
+        ]
+    return [
+        *near,
+        f"over = 1.0 if {at('steps')} >= {at('most_steps')} else 0.0",
+        f"stuck = 1.0 if abs({at('tried')}) < {_SHORTEST!r} * abs({at('time')}) + 1e-300 else 0.0",
+        f"met = {at('reached')} + {at('aimed')} + {at('peak')} + near + over",
+        f"{at('flag')} = {at('held')} + stuck * {at('rejected')} + {at('go')} * met",
+    ]

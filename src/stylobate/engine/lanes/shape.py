@@ -1,0 +1,80 @@
+"""What sets one kernel apart from another, and the layout of its buffer and table."""
+
+from dataclasses import dataclass
+
+from stylobate.engine.lanes.columns import LOOKS, STATE, Log, Setup, Window
+from stylobate.engine.lanes.forcing_source import ForcingSource
+from stylobate.engine.lanes.layout import Rows
+
+STAGES = 12
+"""Stages of DOP853; one more gives the slope at the end of a step."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """What sets one kernel apart from another.
+
+    Parameters
+    ----------
+    states, parameters
+        How many the model has.
+    planar
+        Whether it integrates motion in a vertical plane, with two states.
+    forcing
+        How the base moves.
+    width
+        Lanes.
+    """
+
+    states: int
+    parameters: int
+    planar: bool
+    forcing: ForcingSource
+    width: int
+
+    @property
+    def parameters_at(self) -> int:
+        """Column of the table at which the model's parameters begin, behind the state."""
+        return STATE + max(self.states, 2)
+
+    @property
+    def motion_at(self) -> int:
+        """Column at which the numbers of the base motion begin."""
+        return self.parameters_at + self.parameters
+
+    @property
+    def breaks_at(self) -> int:
+        """Column at which its breaks begin."""
+        return self.motion_at + self.forcing.columns
+
+    @property
+    def order(self) -> int:
+        """Number of equations."""
+        return 2 if self.planar else self.states
+
+    def rows(self) -> Rows:
+        """Return the layout of the buffer: the tables' columns first, under their names in small letters."""
+        rows = Rows()
+        rows.add(*(column.name.lower() for column in Setup), *(column.name.lower() for column in Log))
+        for window in ("before", "late"):
+            rows.add(*(f"{window}_{column.name.lower()}" for column in Window))
+        rows.add_many("look", 4 * LOOKS)
+        rows.add_many("y", self.order)
+        rows.add(*_LANE_ROWS)
+        rows.add_many("p", self.parameters)
+        self.forcing.reserve(rows)
+        for stage in range(STAGES + 1):
+            rows.add_many(f"k{stage}_", self.order)
+        for name in ("new", "last", "last_slope"):
+            rows.add_many(name, self.order)
+        return rows
+
+
+_LANE_ROWS = (
+    "run", "h", "tried", "held_step", "by_tilt", "stop", "wanted", "made", "aimed", "rejected", "side",
+    "atol_now", "grown", "rest_tilt", "no_return",
+    "tilt", "radial", "momentum", "x", "y", "vx", "vy",
+    "tilt_before", "radial_before", "x_before", "y_before", "vx_before", "vy_before",
+    "turns", "low", "peak", "flag", "error", "ok", "held", "go", "reached",
+    "new_x", "new_y", "new_vx", "new_vy", "new_tilt", "new_radial", "per_turn",
+)  # fmt: skip

@@ -1,0 +1,48 @@
+"""Writes the stages of DOP853 for all lanes, as straight-line source.
+
+E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., section II.5: twelve stages
+of order 8, the error estimated from formulas of orders 5 and 3. Written out, a stage is one loop over lanes on scalar
+locals, which the compiler turns into vector instructions.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+
+from scipy.integrate import DOP853
+
+from stylobate.engine.lanes.layout import Rows
+from stylobate.engine.lanes.shape import STAGES, Shape
+
+
+def vertical(shape: Shape) -> str:
+    """Return the source of the vertical acceleration."""
+    return "az" if "az" in shape.forcing.components else "0.0"
+
+
+def rates_call(shape: Shape, at: Callable[[str], str], state: Sequence[str]) -> str:
+    """Return the call of the model's right-hand side; `at` names a row, `state` are sources of the states."""
+    before = [at("side"), "ah"] if shape.planar else ["ax", "ay"]
+    arguments = [*state, *before, vertical(shape)]
+    return f"rates({', '.join([*arguments, *(at(f'p{j}') for j in range(shape.parameters))])})"
+
+
+def combination(coefficients: Iterable[float], names: Iterable[str]) -> str:
+    """Return the source of a linear combination, terms with coefficient zero left out."""
+    return " + ".join(f"{float(a)!r} * {name}" for a, name in zip(coefficients, names, strict=True) if a != 0.0)
+
+
+def stage_lines(shape: Shape, rows: Rows, stage: int) -> list[str]:
+    """Return the loop of one stage; the last one gives the new state and the slope there."""
+    last = stage == STAGES
+    weights = DOP853.B if last else DOP853.A[stage, :stage]
+    fraction = 1.0 if last else float(DOP853.C[stage])
+    out = ["    for i in range(WIDTH):", f"        h = {rows.at('h')}", f"        t = {rows.at('time')}"]
+    for j in range(shape.order):
+        total = combination(weights, [rows.at(f"k{s}_{j}") for s in range(stage)])
+        out.append(f"        s{j} = {rows.at(f'y{j}')} + h * ({total})")
+    out += [f"        {line}" for line in shape.forcing.lines(rows.at, f"t + {fraction!r} * h")]
+    results = ", ".join(f"r{j}" for j in range(shape.order))
+    out.append(f"        {results} = {rates_call(shape, rows.at, [f's{j}' for j in range(shape.order)])}")
+    out += [f"        {rows.at(f'k{stage}_{j}')} = r{j}" for j in range(shape.order)]
+    if last:
+        out += [f"        {rows.at(f'new{j}')} = s{j}" for j in range(shape.order)]
+    return out
