@@ -15,6 +15,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from llvmlite import binding as llvm
+from numba import config
 from numba.core.errors import NumbaError
 
 from stylobate.engine.lanes import arithmetic, pattern, roots
@@ -72,10 +74,12 @@ def _kernel(model: type[Model], shape: Shape) -> Kernel:
     path = cache_folder() / f"{_file_name(model, shape)}_{key}.py"
     if not path.exists():
         _write(path, source)
-    if not any((path.parent / "__pycache__").glob(f"{path.stem}.*.nbc")):
+    mark = path.with_name(f"{path.stem}.{_machine()}.compiled")
+    if not mark.exists() and not config.DISABLE_JIT:  # type: ignore[attr-defined]
         # A warning for whoever has set up no logging: seconds pass, once.
         _log.warning("compiling %s, %s; kept in %s", model.name, _kind(shape), path.parent)
-        compile_apart(path, functions)  # where that fails, it is compiled here, and what is wrong is told
+        if compile_apart(path, functions):  # where that fails, it is compiled here, and what is wrong is told
+            mark.touch()
     try:
         return Kernel(shape, load(path, functions))
     except NumbaError as error:
@@ -83,6 +87,13 @@ def _kernel(model: type[Model], shape: Shape) -> Kernel:
         reason = next((line for line in lines if line and not line.startswith("Failed in")), "no reason")
         message = f"model {model.name} cannot be compiled for ensembles, but simulate can run it: {reason}"
         raise UnsupportedError(message) from error
+
+
+def _machine() -> str:
+    """Return a digest of what machine code depends on besides its source."""
+    folder = str(config.CACHE_DIR)  # type: ignore[attr-defined]
+    told = [llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten(), folder]
+    return hashlib.sha256("\n".join(told).encode()).hexdigest()[:8]
 
 
 def kernel_source(model: type[Model], shape: Shape) -> str:
