@@ -11,6 +11,10 @@ from sybil import Sybil
 from sybil.parsers.myst import PythonCodeBlockParser, SkipParser
 
 
+# Parts of kernels make sense behind the head that is written for each kernel only.
+collect_ignore_glob = ["src/stylobate/engine/lanes/pattern/*"]
+
+
 def _enter_folder(namespace: dict[str, Any]) -> None:
     namespace["_folder"] = tempfile.TemporaryDirectory(prefix="stylobate-")
     namespace["_home"] = Path.cwd()

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from typing import Any
 
+import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
@@ -80,7 +81,9 @@ def simulate_ensemble(
     xarray.Dataset
         Over the dimensions of the arguments: `outcome` (codes, see its `flag_meanings`), when it was decided, the end
         state, the largest and least tilt, turns of the contact point, and over the last periods mean tilt, phase of
-        the lean to the base acceleration, mean rolling rate and repetition; NaN where a run has none.
+        the lean to the base acceleration, mean rolling rate and repetition; NaN where a run has none. With `strobes`
+        also `strobe_tilt` and `strobe_tilt_rate`, the last strobe last; with `samples` also `sample_time`,
+        `sampled_tilt` and `sampled_tilt_rate`; NaN before the run began and after it ended.
 
     Raises
     ------
@@ -117,12 +120,15 @@ def simulate_ensemble(
     threads = usual_threads() if threads is None else require_whole("threads", threads, least=1)
     runs = broadcast(tilt, tilt_rate, duration, changes)
     arrays = empty(options, len(runs))
+    # What differs between the runs stands in the coordinates.
+    arguments = {"tilt": tilt, "tilt_rate": tilt_rate, "duration": duration, **changes}
+    same = {name: np.asarray(value).tolist() for name, value in arguments.items() if name not in runs.coordinates}
     plan = Plan(model, MotionPlan.of(moved, runs.values, runs.duration), options)
     if plan.motion.terms is None and len(runs):
         check_motion(moved, float(runs.duration.max()))
 
     def result() -> xr.Dataset:
-        return _dataset(runs, arrays, _provenance(model, moved, options))
+        return _dataset(runs, arrays, _provenance(model, moved, options, same))
 
     if _followed(plan, runs, arrays, threads, progress):
         return result()
@@ -151,8 +157,10 @@ def _followed(
     return run_parts(parts_of(len(runs), threads), compute, threads, count)
 
 
-def _provenance(model: Model, motion: BaseMotion, options: Options) -> dict[str, Any]:
-    kept = asdict(options) | {"samples": options.samples or None}
+def _provenance(model: Model, motion: BaseMotion, options: Options, same: Mapping[str, Any]) -> dict[str, Any]:
+    starts = {name: same[name] for name in ("tilt", "tilt_rate", "duration") if name in same}
+    parameters = {name: value for name, value in same.items() if name not in starts}
+    kept = asdict(options) | {"samples": options.samples or None, **starts, "parameters": parameters}
     return provenance_of_run(model, motion, **kept)
 
 

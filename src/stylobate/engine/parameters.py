@@ -54,8 +54,9 @@ def with_parameters(model: Model, motion: BaseMotion, **values: float) -> tuple[
     **values
         Of the column: radius, mass_height [m], mass [kg], transverse_inertia, axial_inertia [kg m²], gravity [m/s²],
         slenderness (by its radius), size (all lengths times it). Of the model: its own fields, such as damping. Of the
-        motion: angular_frequency [rad/s], start_phase [rad], acceleration (its largest horizontal one) [m/s²],
-        scale (a factor), rotation [rad] about the vertical, delay [s]; applied in this order.
+        motion, applied in this order: angular_frequency [rad/s], start_phase [rad], acceleration [m/s²] (its largest
+        horizontal one; of a sum, the sum of those of its parts), scale (a factor), rotation [rad] about the vertical,
+        delay [s].
 
     Raises
     ------

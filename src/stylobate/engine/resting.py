@@ -75,11 +75,14 @@ def departure(model: Model, forcing: Forcing, time: float) -> tuple[float, tuple
         turning_rate=math.atan2(now[0] * later[1] - now[1] * later[0], now[0] * later[0] + now[1] * later[1]) / elapsed,
     )
     if model.departure is None:
-        message = (
-            f"model {model.name} does not say how a column departs from rest: give it `departure`, or start it moving"
-        )
-        raise UnsupportedError(message)
+        raise cannot_depart(model)
     return time + elapsed, model.departure(push, elapsed, *model.parameters)
+
+
+def cannot_depart(model: Model) -> UnsupportedError:
+    """Return what is said of a model that does not tell how a column departs from rest."""
+    message = f"model {model.name} does not say how a column departs from rest: give it `departure`, or start it moving"
+    return UnsupportedError(message)
 
 
 def rest_piece(held: tuple[float, ...], start: float, end: float) -> Piece:

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.engine.forcing import Floats
+from stylobate.engine.lanes.columns import SLACK
 from stylobate.engine.trajectory import Trajectory
 from stylobate.errors import Outcome
 from stylobate.models import Model
@@ -134,7 +135,8 @@ def long_term(
     n = rules.periods
     if period is None:
         return _verdict_on(Ground.NO_PERIOD, n, {})
-    if trajectory.end < (n + 1) * period:
+    end = trajectory.end * (1.0 + SLACK)
+    if end < (n + 1) * period:
         return _verdict_on(Ground.SHORT, n, {})
     late = _Window.of(model, trajectory, trajectory.end, n, period)
     turned = 0.0 if planar else late.turned
@@ -146,7 +148,7 @@ def long_term(
         "largest_tilt_late": late.largest_tilt,
     }
     repetition_before = drift = math.nan
-    if trajectory.end >= (2 * n + 1) * period:
+    if end >= (2 * n + 1) * period:
         before = _Window.of(model, trajectory, trajectory.end - n * period, n, period)
         drift = abs(late.mean_lag - before.mean_lag)
         repetition_before = before.repetition

@@ -13,13 +13,14 @@ from stylobate.engine.ensembles.options import Options
 from stylobate.engine.lanes.columns import LOG, NOTE, STATE, Log, Setup, Status
 from stylobate.engine.lanes.kernels import kernel_of
 from stylobate.engine.lanes.shape import Shape
+from stylobate.engine.resting import cannot_depart
 from stylobate.engine.thresholds import is_rest, usual_rest_energy
 from stylobate.models import Model
 
 Floats = npt.NDArray[np.float64]
 
-WIDTH = 16
-"""Lanes of a kernel: two vectors of AVX-512, whose divisions overlap."""
+WIDTH = 24
+"""Lanes of a kernel: three vectors of AVX-512, whose latencies overlap; the buffer still fits the nearest cache."""
 
 _ATOL_SHARE = 0.01
 _PARALLEL_ULP = 8.0
@@ -121,6 +122,8 @@ class Batch:
         ):  # lanes divide by zero where the result is not used; told without compilation only
             finished = kernel.advance(table, self.plan.motion.pieces, halt)
         self.table[chosen] = table
+        if np.any(self.log(Log.STATUS) == Status.CANNOT_DEPART):
+            raise cannot_depart(self.plan.model)
         return finished
 
     def _to_plane(self, chosen: npt.NDArray[np.bool_]) -> None:
@@ -151,7 +154,8 @@ def _empty_table(plan: Plan, count: int, breaks: int) -> Floats:
     table[:, notes:] = np.nan
     for column in (Log.FIRST_AZIMUTH, Log.LAST_AZIMUTH):
         table[:, LOG + column] = np.nan
-    table[:, LOG + Log.LEAST_PASSAGE] = np.inf
+    for column in (Log.LEAST_TILT, Log.LEAST_PASSAGE):
+        table[:, LOG + column] = np.inf
     return table
 
 

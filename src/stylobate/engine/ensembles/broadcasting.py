@@ -111,6 +111,13 @@ def _as_float(name: str, value: xr.DataArray) -> xr.DataArray:
 
 
 def _common(given: Mapping[str, xr.DataArray]) -> tuple[tuple[str, ...], tuple[int, ...]]:
+    labels: dict[str, tuple[str, xr.DataArray]] = {}
+    for name, array in given.items():
+        for dim in set(array.dims) & set(array.coords):
+            other, index = labels.setdefault(str(dim), (name, array[dim]))
+            if array.sizes[dim] == index.size and not np.array_equal(array[dim].to_numpy(), index.to_numpy()):
+                message = f"{name} must have the same labels along {dim} as {other}; align them first"
+                raise ParameterError(message)
     sizes: dict[str, int] = {}
     first: dict[str, str] = {}
     for name, array in given.items():

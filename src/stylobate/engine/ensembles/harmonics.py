@@ -141,7 +141,8 @@ class Terms:
         for axis in range(3):
             parts += [np.abs(self.amplitude[..., axis]) / gravity[:, np.newaxis], _turns(phase[..., axis])]
         if windowed:
-            parts += [self.onset / scale, self.shift / scale, self.ramp / scale]
+            # The end of the rise is the same number as the break at which the kernel takes the next leg.
+            parts += [self.onset / scale, self.shift / scale, (self.shift + self.ramp) / scale]
         return np.stack(parts, axis=-1).reshape(len(scale), -1)
 
 

@@ -12,6 +12,7 @@ from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.polynomials import Table, tabulated
 from stylobate.engine.lanes.forcing_source import ForcingSource, Harmonics, Polynomials
 from stylobate.engine.parameters import harmonic_part, largest_acceleration
+from stylobate.errors import require_positive
 from stylobate.motions import BaseMotion
 
 Floats = npt.NDArray[np.float64]
@@ -39,12 +40,16 @@ class MotionPlan:
 
         Raises
         ------
+        ParameterError
+            If an angular frequency is not positive.
         UnsupportedError
             If the motion lacks a number that is to be changed, or cannot be tabulated.
         """
         for name in ("angular_frequency", "start_phase"):
             if name in values:
                 harmonic_part(motion, name)
+        if "angular_frequency" in values:
+            require_positive("angular_frequency", values["angular_frequency"].min(initial=1.0), "rad/s")
         base = largest_acceleration(motion) if "acceleration" in values else 1.0
         terms = terms_of(motion)
         if terms is not None:

@@ -54,13 +54,11 @@ def tabulated(motion: BaseMotion, end: float) -> Table:
         cuts = _cuts(low, high, longest, end)
         for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
             pieces += _fitted(motion, a, b, size, _HALVINGS)
-    linear = all(not np.any(coefficients[:, 2:]) for _, _, coefficients in pieces)
-    degree = 1 if linear else DEGREE
     rows = [
-        [a, b, motion.largest_horizontal(a), *motion.vertical_range(a), *coefficients[:, : degree + 1].ravel()]
+        [a, b, motion.largest_horizontal(a), *motion.vertical_range(a), *coefficients.ravel()]
         for a, b, coefficients in pieces
     ]
-    return Table(np.array(rows), degree)
+    return Table(np.array(rows), DEGREE)
 
 
 def _cuts(low: float, high: float, longest: float, end: float) -> Floats:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.ensembles.options import Options
-from stylobate.engine.lanes.columns import BEFORE, LATE, LOOKS, STATE, Log, Setup, Status, Window
+from stylobate.engine.lanes.columns import BEFORE, LATE, LOOKS, SLACK, STATE, Log, Setup, Status, Window
 from stylobate.engine.thresholds import coarse
 from stylobate.engine.verdict import Evidence, Ground, grounds, outcome_on
 from stylobate.errors import Outcome
@@ -102,7 +102,7 @@ def _all(batch: Batch) -> Arrays:
     overturned = outcome == code_of(Outcome.OVERTURNED)
     passage = batch.log(Log.LEAST_PASSAGE)
     touched = batch.log(Log.TOUCHED_UPRIGHT) > 0.0
-    start = np.hypot(*batch.models.states[:, :2].T) if not touched.all() else np.zeros(len(touched))
+    start = np.hypot(*batch.plan.model.lean(*batch.models.states.T, *batch.models.parameters.T)[:2])
     is_coarse = coarse(
         batch.rest_energy,
         batch.motions.frequency,
@@ -124,7 +124,7 @@ def _all(batch: Batch) -> Arrays:
         "direction": np.where(overturned, np.arctan2(tilt[:, 1], tilt[:, 0]), np.nan),
         "largest_tilt": batch.log(Log.LARGEST_TILT),
         "time_of_largest_tilt": batch.log(Log.LARGEST_AT) * scale,
-        "least_tilt": np.where(touched, 0.0, np.minimum(np.minimum(start, passage), np.hypot(*tilt.T))),
+        "least_tilt": np.where(touched, 0.0, np.minimum.reduce([start, batch.log(Log.LEAST_TILT), np.hypot(*tilt.T)])),
         "turns": _turns(batch),
         "mean_tilt": late.mean_tilt,
         "phase": late.phase,
@@ -179,6 +179,7 @@ class _Late:
 def _late(batch: Batch) -> _Late:
     n = batch.plan.options.rules.periods
     period, end = batch.motions.period, batch.table[:, Setup.END]
+    end = end * (1.0 + SLACK)
     seen = (batch.log(Log.STATUS) == Status.STOPPED) & (period > 0.0) & (end >= (n + 1) * period)
     before = seen & (end >= (2 * n + 1) * period)
 
@@ -226,11 +227,16 @@ def _window(batch: Batch, first: int, column: Window) -> Floats:
 
 
 def _repetition(batch: Batch, first: int) -> Floats:
-    """Return the largest difference of states one period apart, over the largest tilt or rate."""
+    """Return the largest difference of states one period apart, over the largest tilt or rate.
+
+    Infinite where the looks saw nothing but a column that stands: what it does between them is not known to repeat.
+    """
+    tilt_size, rate_size = _window(batch, first, Window.TILT_SIZE), _window(batch, first, Window.RATE_SIZE)
     with np.errstate(divide="ignore", invalid="ignore"):
-        tilt = _window(batch, first, Window.TILT_CHANGE) / _window(batch, first, Window.TILT_SIZE)
-        rate = _window(batch, first, Window.RATE_CHANGE) / _window(batch, first, Window.RATE_SIZE)
-    return np.fmax(np.nan_to_num(tilt), np.nan_to_num(rate))
+        tilt = _window(batch, first, Window.TILT_CHANGE) / tilt_size
+        rate = _window(batch, first, Window.RATE_CHANGE) / rate_size
+    found = np.fmax(np.nan_to_num(tilt), np.nan_to_num(rate))
+    return np.where((tilt_size > 0.0) | (rate_size > 0.0), found, np.inf)
 
 
 def _outcomes(batch: Batch, late: _Late) -> npt.NDArray[np.int8]:

@@ -5,8 +5,10 @@ linked from parts that were optimised singly. So a kernel is compiled by another
 its numbers are the same in the first process as in every later one.
 """
 
+import importlib
 import marshal
 import pickle
+import signal
 import subprocess
 import sys
 import types
@@ -16,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from stylobate.engine.lanes.loading import load
-from stylobate.engine.lanes.model_code import called_functions, plain_function
+from stylobate.engine.lanes.model_code import called_functions, plain_function, with_functions
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +36,7 @@ class _Portable:
         """Return what `function` says."""
         plain = plain_function(function)
         called = dict(called_functions(plain))
+        replaced = {name.split(".")[0] for name in called}
         used = {name: plain.__globals__[name] for name in plain.__code__.co_names if name in plain.__globals__}
         return cls(
             plain.__name__,
@@ -41,7 +44,8 @@ class _Portable:
             {
                 name: value
                 for name, value in used.items()
-                if name not in called and not isinstance(value, types.ModuleType)
+                if not (isinstance(value, types.ModuleType) or (name in replaced and isinstance(value, type)))
+                and name not in called
             },
             {name: value.__name__ for name, value in used.items() if isinstance(value, types.ModuleType)},
             {name: cls.of(value) for name, value in called.items()},
@@ -50,22 +54,26 @@ class _Portable:
     def function(self) -> types.FunctionType:
         """Return the function."""
         names: dict[str, Any] = {"__name__": "stylobate_model", "__builtins__": __builtins__, **self.values}
-        names |= {name: sys.modules.get(module) or __import__(module) for name, module in self.modules.items()}
-        names |= {name: portable.function() for name, portable in self.called.items()}
-        return types.FunctionType(marshal.loads(self.code), names, self.name)  # noqa: S302  our own pipe
+        names |= {name: importlib.import_module(module) for name, module in self.modules.items()}
+        code = marshal.loads(self.code)  # noqa: S302  our own pipe
+        called = {name: portable.function() for name, portable in self.called.items()}
+        return types.FunctionType(code, with_functions(names, called, code), self.name)
 
 
 def compile_apart(path: Path, functions: Mapping[str, Callable[..., Any]]) -> bool:
     """Compile the kernel in the file `path` with these functions of the model; return whether that went well."""
     try:
         request = pickle.dumps((path, {name: _Portable.of(function) for name, function in functions.items()}))
-    except (pickle.PicklingError, TypeError, AttributeError, ValueError):
+    except (pickle.PicklingError, TypeError, AttributeError, ValueError, RecursionError):
         return False
     command = [sys.executable, "-c", "from stylobate.engine.lanes.apart import serve; serve()"]
     try:
-        return subprocess.run(command, input=request, capture_output=True, check=False).returncode == 0  # noqa: S603
+        status = subprocess.run(command, input=request, capture_output=True, check=False).returncode  # noqa: S603
     except OSError:
         return False
+    if status == -signal.SIGINT:  # Ctrl-C reaches both
+        raise KeyboardInterrupt
+    return status == 0
 
 
 def serve() -> None:

@@ -69,8 +69,10 @@ class Log(_FromZero):
     """1 once it came to rest and was released again."""
     LARGEST_TILT = auto()
     LARGEST_AT = auto()
+    LEAST_TILT = auto()
+    """Where the tilt stopped falling."""
     LEAST_PASSAGE = auto()
-    """Least tilt where the tilt stopped falling."""
+    """The same out of a plane."""
     FIRST_AZIMUTH = auto()
     LAST_AZIMUTH = auto()
     """Of the lean, followed round [turns]; NaN before it leans out of a plane."""
@@ -118,7 +120,7 @@ class Window(_FromZero):
     LAST_AZIMUTH = auto()
 
 
-LOOKS = 4
+LOOKS = 2
 """Looks to a period in the windows."""
 
 LOG = len(Setup)
@@ -131,6 +133,9 @@ LAST_LOOKS = LATE + len(Window)
 """First column of the leans at the looks of the last period."""
 STATE = LAST_LOOKS + 4 * LOOKS
 """First column of the state."""
+
+SLACK = 1e-12
+"""A run is as long as a number of periods to this part."""
 
 NOTE = 5
 """Columns of a sample or a strobe: tilt x and y, their rates, time."""
@@ -148,5 +153,7 @@ class Status(_FromZero):
     LIFTED = auto()
     STEP_LIMIT = auto()
     STEP_TOO_SMALL = auto()
+    CANNOT_DEPART = auto()
+    """It was released from rest, and its model does not say how it departs."""
     TO_PLANE = auto()
     """It was released from rest by a motion along a line: the kernel of plane motion takes it on."""

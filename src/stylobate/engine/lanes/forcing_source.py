@@ -57,7 +57,7 @@ class Harmonics(ForcingSource):
 
     @property
     def columns(self) -> int:
-        """Of each term the frequency, amplitude and phase along x, y, z; onset, begin and length of its rise."""
+        """Of each term the frequency, amplitude and phase along x, y, z; onset, begin and end of its rise."""
         return self.terms * (7 + 3 * self.windowed)
 
     def reserve(self, rows: Rows) -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from stylobate.engine.lanes.columns import NOTE, STATE
+from stylobate.engine.lanes.columns import NOTE, SLACK, STATE
 from stylobate.engine.lanes.shape import Shape
 
 OPTIONAL = ("rest_energy", "no_return_tilt", "departure", "passage", "at_rest")
@@ -19,6 +19,7 @@ def constants_source(shape: Shape, has: Mapping[str, bool], *, to_plane: bool) -
         "VERTICAL": "az" in shape.forcing.components,
         "STATE": STATE,
         "NOTE": NOTE,
+        "SLACK": SLACK,
         "PARAMETERS_AT": shape.parameters_at,
         "MOTION_AT": shape.motion_at,
         "BREAKS_AT": shape.breaks_at,

@@ -95,33 +95,44 @@ def _crossing(shape: Shape, rows: Rows) -> list[str]:
 
 
 def _extremes(shape: Shape, rows: Rows) -> list[str]:
-    """Return what finds the least and the largest tilt within the step, by the cubic of the tilt's square.
+    """Return what finds the least and the largest tilt within the step.
 
-    Out of a plane the least tilt of a passage of the upright is kept.
+    They are told by a cubic: in a plane of the tilt, which may begin at the upright, else of its square, whose least
+    value at a passage of the upright is kept.
     """
     at = rows.at
+    if shape.planar:
+        followed = [
+            f"start = {at('side')} * {at('x')}",
+            f"end = {at('side')} * {at('new_x')}",
+            f"slope0 = {at('side')} * {at('vx')} * h",
+            f"slope1 = {at('side')} * {at('new_vx')} * h",
+        ]
+    else:
+        followed = [
+            "start = tilt0 * tilt0",
+            "end = tilt1 * tilt1",
+            f"slope0 = 2.0 * {at('radial')} * h",
+            f"slope1 = 2.0 * {at('new_radial')} * h",
+        ]
     return [
         f"h = {at('h')}",
         f"go = {at('go')}",
         f"tilt0 = {at('tilt')}",
         f"tilt1 = {at('new_tilt')}",
-        f"radial0 = {at('radial')}",
-        f"radial1 = {at('new_radial')}",
-        "square0 = tilt0 * tilt0",
-        "square1 = tilt1 * tilt1",
-        "slope0 = 2.0 * radial0 * h",
-        "slope1 = 2.0 * radial1 * h",
+        *followed,
         "fell = (1.0 if slope0 < 0.0 else 0.0) * (1.0 if slope1 > 0.0 else 0.0)",
         "rose = (1.0 if slope0 > 0.0 else 0.0) * (1.0 if slope1 < 0.0 else 0.0)",
-        "share, extreme = turning_point(square0, square1, slope0, slope1, rose - fell)",
-        "extreme = math.sqrt(max(extreme, 0.0))",
+        "share, extreme = turning_point(start, end, slope0, slope1, rose - fell)",
+        "extreme = max(extreme, 0.0)" if shape.planar else "extreme = math.sqrt(max(extreme, 0.0))",
         "low = extreme if fell > 0.0 else min(tilt0, tilt1)",
         f"{at('low')} = low",
         # A step towards an event may go beyond it: its ends do not count yet.
         f"ends = 0.0 if {at('aimed')} > 0.0 else max(tilt0, tilt1)",
         f"largest = {at('largest_tilt')}",
-        # An extreme that the cubic puts above all others so far is measured by the driver.
-        f"peak = go * rose * (1.0 if 2.0 * extreme - ends > largest * {1.0 + _NEW_PEAK!r} else 0.0)",
+        # An extreme that may be above all others so far is measured by the driver, which looks at aimed steps anyway.
+        f"above = max(2.0 * extreme - ends - largest * {1.0 + _NEW_PEAK!r}, {at('aimed')})",
+        "peak = go * rose * (1.0 if above > 0.0 else 0.0)",
         f"{at('peak')} = peak",
         "seen = max(ends, extreme * rose) * (1.0 - peak)",
         "seen = seen if go > 0.0 else 0.0",
@@ -129,15 +140,16 @@ def _extremes(shape: Shape, rows: Rows) -> list[str]:
         f"before = {at('largest_at')}",
         f"{at('largest_at')} = now if seen > largest else before",
         f"{at('largest_tilt')} = max(largest, seen)",
-        *(() if shape.planar else _passage(at)),
+        *_least(at, "least_tilt"),
+        *(() if shape.planar else _least(at, "least_passage")),
     ]
 
 
-def _passage(at: Callable[[str], str]) -> tuple[str, ...]:
+def _least(at: Callable[[str], str], row: str) -> tuple[str, ...]:
     return (
-        f"passage = {at('least_passage')}",
-        "closer = low if go * fell > 0.0 else passage",
-        f"{at('least_passage')} = min(passage, closer)",
+        f"least = {at(row)}",
+        "closer = low if go * fell > 0.0 else least",
+        f"{at(row)} = min(least, closer)",
     )
 
 
@@ -165,18 +177,23 @@ def _keeping(shape: Shape, rows: Rows) -> list[str]:
     at = rows.at
     out = [f"go = {at('go')}"]
 
-    def keep(target: str, value: str) -> None:
-        # Both are read before the choice: a choice between two addresses would not become vector code.
-        out.extend([f"new = {at(value)}", f"old = {at(target)}", f"{at(target)} = new if go > 0.0 else old"])
+    def keep(target: str, value: str, before: str) -> None:
+        # Both are read before the choice: a choice between two addresses would not become vector code. What was
+        # before a step that was not made is never looked at.
+        out.extend(
+            [
+                f"new = {at(value)}",
+                f"old = {at(target)}",
+                f"{at(before)} = old",
+                f"{at(target)} = new if go > 0.0 else old",
+            ]
+        )
 
     for j in range(shape.order):
-        keep(f"last{j}", f"y{j}")
-        keep(f"last_slope{j}", f"k0_{j}")
-        keep(f"y{j}", f"new{j}")
-        keep(f"k0_{j}", f"k{STAGES}_{j}")
+        keep(f"y{j}", f"new{j}", f"last{j}")
+        keep(f"k0_{j}", f"k{STAGES}_{j}", f"last_slope{j}")
     for name in ("tilt", "radial", "x", "y", "vx", "vy"):
-        keep(f"{name}_before", name)
-        keep(name, f"new_{name}")
+        keep(name, f"new_{name}", f"{name}_before")
     return out
 
 

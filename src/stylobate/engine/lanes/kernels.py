@@ -78,15 +78,17 @@ def _kernel(model: type[Model], shape: Shape) -> Kernel:
     if not mark.exists() and not config.DISABLE_JIT:  # type: ignore[attr-defined]
         # A warning for whoever has set up no logging: seconds pass, once.
         _log.warning("compiling %s, %s; kept in %s", model.name, _kind(shape), path.parent)
-        if compile_apart(path, functions):  # where that fails, it is compiled here, and what is wrong is told
-            mark.touch()
+        compile_apart(path, functions)  # where that fails, it is compiled here, and what is wrong is told
     try:
-        return Kernel(shape, load(path, functions))
-    except NumbaError as error:
+        kernel = Kernel(shape, load(path, functions))
+    except (NumbaError, RecursionError) as error:
         lines = (line.strip() for line in str(error).splitlines())
         reason = next((line for line in lines if line and not line.startswith("Failed in")), "no reason")
         message = f"model {model.name} cannot be compiled for ensembles, but simulate can run it: {reason}"
         raise UnsupportedError(message) from error
+    if not config.DISABLE_JIT:  # type: ignore[attr-defined]
+        mark.touch()
+    return kernel
 
 
 def _machine() -> str:

@@ -63,6 +63,7 @@ class Shape:
         rows.add(*_LANE_ROWS)
         rows.add_many("p", self.parameters)
         self.forcing.reserve(rows)
+        rows.add(*(f"end_{name}" for name in self.forcing.components))
         for stage in range(STAGES + 1):
             rows.add_many(f"k{stage}_", self.order)
         for name in ("new", "last", "last_slope"):

@@ -39,7 +39,12 @@ def stage_lines(shape: Shape, rows: Rows, stage: int) -> list[str]:
     for j in range(shape.order):
         total = combination(weights, [rows.at(f"k{s}_{j}") for s in range(stage)])
         out.append(f"        s{j} = {rows.at(f'y{j}')} + h * ({total})")
-    out += [f"        {line}" for line in shape.forcing.lines(rows.at, f"t + {fraction!r} * h")]
+    if last:  # at the time of the stage before
+        out += [f"        {name} = {rows.at(f'end_{name}')}" for name in shape.forcing.components]
+    else:
+        out += [f"        {line}" for line in shape.forcing.lines(rows.at, f"t + {fraction!r} * h")]
+    if stage == STAGES - 1:
+        out += [f"        {rows.at(f'end_{name}')} = {name}" for name in shape.forcing.components]
     results = ", ".join(f"r{j}" for j in range(shape.order))
     out.append(f"        {results} = {rates_call(shape, rows.at, [f's{j}' for j in range(shape.order)])}")
     out += [f"        {rows.at(f'k{stage}_{j}')} = r{j}" for j in range(shape.order)]

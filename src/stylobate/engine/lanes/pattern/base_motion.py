@@ -60,9 +60,9 @@ def set_terms(buf: Table, i: int, motion: Table, t: float) -> None:
             buf[row + 1, i] = motion[source + 6]
             row += 2
         if WINDOWED:
-            onset, begins, rise = motion[source + 7], motion[source + 8], motion[source + 9]
-            full = 0.0 if t < onset else 0.5 if t < begins + rise else 1.0
-            per_turn = 0.5 / rise if rise > 0.0 else 0.0
+            onset, begins, ends = motion[source + 7], motion[source + 8], motion[source + 9]
+            full = 0.0 if t < onset else 0.5 if t < ends else 1.0
+            per_turn = 0.5 / (ends - begins) if ends > begins else 0.0
             buf[row, i] = full
             buf[row + 1, i] = 0.5 if full == 0.5 else 0.0  # noqa: PLR2004
             buf[row + 2, i] = per_turn

@@ -56,6 +56,8 @@ def enter(buf: Table, i: int, table: Table, pieces: Table, run: int) -> int:
     if buf[R.STANDS, i] > 0.0:
         return stand(buf, i, table, pieces, t)
     set_off(buf, i, t, 0.0)
+    if buf[R.TILT, i] > buf[R.TILT_LIMIT, i]:
+        return Status.LIMIT
     while next_stop(buf, i) <= t:
         status = meet_stop(buf, i, table, pieces, next_stop(buf, i))
         if status != Status.WAITING:

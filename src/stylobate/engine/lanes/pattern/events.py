@@ -8,7 +8,7 @@ from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.moving import set_lean
 from stylobate.engine.lanes.pattern.passages import cross_upright, hop, hops
-from stylobate.engine.lanes.pattern.peaks import measure_peak
+from stylobate.engine.lanes.pattern.peaks import measure_peak, take_back
 from stylobate.engine.lanes.pattern.resting import rest_within_step, settle
 from stylobate.engine.lanes.pattern.stops import go_on, meet_stop
 from stylobate.engine.lanes.roots import first_growth_past, first_return
@@ -94,11 +94,17 @@ def held_back(buf: Table, i: int, table: Table, pieces: Table) -> int:
     if ahead <= 0.0:  # a swing that begins and ends within a part of the step too small to be told
         buf[R.STATE, i] = 0.0
         return settle(buf, i, table, pieces, buf[R.TIME, i])
+    aim(buf, i, ahead)
+    return Status.WAITING
+
+
+@part
+def aim(buf: Table, i: int, ahead: float) -> None:
+    """Let the next step end at the event that lies `ahead`."""
     # Of the two conditions of overturning, which is met last: tilt, or growth of the tilt.
     buf[R.BY_TILT, i] = 1.0 if buf[R.TILT, i] < min(buf[R.TILT_LIMIT, i], buf[R.NO_RETURN, i]) else 0.0
     buf[R.H, i] = ahead
     buf[R.AIMED, i] = 1.0
-    return Status.WAITING
 
 
 @part
@@ -128,7 +134,11 @@ def handle(buf: Table, i: int, table: Table, pieces: Table) -> int:
     if buf[R.GO, i] == 0.0:
         return Status.STEP_TOO_SMALL
     if buf[R.PEAK, i] > 0.0:
-        measure_peak(buf, i)
+        ahead = measure_peak(buf, i)
+        if ahead > 0.0 and buf[R.AIMED, i] == 0.0:  # the limit lies between the ends of the step and its peak
+            take_back(buf, i)
+            aim(buf, i, ahead)
+            return Status.WAITING
     if buf[R.AIMED, i] > 0.0:
         return arrived(buf, i, table, pieces)
     if buf[R.STEPS, i] >= buf[R.MOST_STEPS, i]:

@@ -55,7 +55,8 @@ def hop(buf: Table, i: int) -> None:
     azimuth = azimuth_now(buf, i) + math.copysign(0.5, momentum)
     set_state(buf, i, state)
     set_lean(buf, i)
-    buf[R.LEAST_PASSAGE, i] = min(buf[R.LEAST_PASSAGE, i], abs(momentum) / speed)
+    for row in (R.LEAST_PASSAGE, R.LEAST_TILT):
+        buf[row, i] = min(buf[row, i], abs(momentum) / speed)
     buf[R.LAST_AZIMUTH, i] = azimuth
     set_off(buf, i, t + elapsed, buf[R.WANTED, i])
     buf[R.ATOL_NOW, i] = buf[R.ATOL, i]

@@ -3,12 +3,13 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.lanes.arithmetic import part
+from stylobate.engine.lanes.arithmetic import part, winding
 from stylobate.engine.lanes.layout import Table
+from stylobate.engine.lanes.pattern.moving import set_lean
 from stylobate.engine.lanes.roots import quintic
 
 if TYPE_CHECKING:
-    from stylobate.engine.lanes.pattern.head import ORDER, R, lean_of_new, row_state
+    from stylobate.engine.lanes.pattern.head import ORDER, PLANAR, R, lean_of_new, row_state
 
 # --- the kernel's text begins here ---
 
@@ -17,11 +18,15 @@ DIFFERENCE = 1e-5
 
 
 @part
-def measure_peak(buf: Table, i: int) -> None:
-    """Measure the largest tilt within the step just made, by quintics through the leans at its ends."""
+def measure_peak(buf: Table, i: int) -> float:
+    """Measure the largest tilt within the step just made, by quintics through the leans at its ends.
+
+    Return the time into the step at which it passes the tilt limit, or 0: then nothing is noted.
+    """
     h = buf[R.MADE, i]
     x0, y0, vx0, vy0, ax0, ay0 = lean_before(buf, i)
     x1, y1, vx1, vy1, ax1, ay1 = lean_after(buf, i)
+    limit = buf[R.TILT_LIMIT, i]
     low, high = 0.0, 1.0
     tilt = 0.0
     for _ in range(40):
@@ -33,9 +38,35 @@ def measure_peak(buf: Table, i: int) -> None:
             low = u
         else:
             high = u
-    if tilt > buf[R.LARGEST_TILT, i]:
-        buf[R.LARGEST_TILT, i] = tilt
-        buf[R.LARGEST_AT, i] = buf[R.TIME, i] - h + low * h
+    if tilt <= limit:
+        if tilt > buf[R.LARGEST_TILT, i]:
+            buf[R.LARGEST_TILT, i] = tilt
+            buf[R.LARGEST_AT, i] = buf[R.TIME, i] - h + low * h
+        return 0.0
+    low, high = 0.0, high
+    for _ in range(40):
+        u = 0.5 * (low + high)
+        x, _ = quintic(u, h, x0, vx0, ax0, x1, vx1, ax1)
+        y, _ = quintic(u, h, y0, vy0, ay0, y1, vy1, ay1)
+        if math.hypot(x, y) > limit:
+            high = u
+        else:
+            low = u
+    return high * h
+
+
+@part
+def take_back(buf: Table, i: int) -> None:
+    """Return to the beginning of the step just made."""
+    if not PLANAR:
+        x0, y0, x1, y1 = buf[R.X_BEFORE, i], buf[R.Y_BEFORE, i], buf[R.X, i], buf[R.Y, i]
+        momentum = x0 * buf[R.VY_BEFORE, i] - y0 * buf[R.VX_BEFORE, i] + buf[R.MOMENTUM, i]
+        buf[R.TURNS, i] -= winding(x0, y0, x1, y1, momentum)
+    for j in range(ORDER):
+        buf[R.STATE + j, i] = buf[R.LAST_STATE + j, i]
+        buf[R.SLOPE + j, i] = buf[R.LAST_SLOPE + j, i]
+    buf[R.TIME, i] -= buf[R.MADE, i]
+    set_lean(buf, i)
 
 
 @part

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from stylobate.engine.lanes.arithmetic import part
 from stylobate.engine.lanes.layout import Table
+from stylobate.engine.lanes.pattern.base_motion import held_for_good
 
 if TYPE_CHECKING:
     from stylobate.engine.lanes.pattern.head import R, accelerations
@@ -26,6 +27,8 @@ def excess(buf: Table, i: int, t: float) -> float:
 @part
 def release_time(buf: Table, i: int, start: float, end: float) -> float:
     """Return the first time in [start, end) at which the base motion releases a standing column, or infinity."""
+    if held_for_good(buf, i) or end <= start:
+        return math.inf
     frequency = buf[R.FREQUENCY, i]
     spacing = 2.0 * math.pi / (frequency * SAMPLES_PER_PERIOD) if frequency > 0.0 else end - start
     spacing = min(spacing, 0.5 * (end - start))
@@ -48,8 +51,9 @@ def release_time(buf: Table, i: int, start: float, end: float) -> float:
                 top = peak(buf, i, t0, t2)
                 if excess(buf, i, top) > 0.0:
                     return crossing(buf, i, t0, top)
-        if e2 > 0.0 and t2 < end:
-            return crossing(buf, i, t1, t2)
+        if e2 > 0.0:
+            found = crossing(buf, i, t1, t2)
+            return found if found < end else math.inf
         t0, e0, t1, e1 = t1, e1, t2, e2
     return math.inf
 

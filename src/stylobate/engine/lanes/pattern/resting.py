@@ -9,7 +9,7 @@ from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import forcing_rate, held_for_good, least_force
 from stylobate.engine.lanes.pattern.moving import at_upright, azimuth_now, set_off, set_state
 from stylobate.engine.lanes.pattern.release import release_time
-from stylobate.engine.lanes.pattern.stops import go_on, meet_stop, next_stop
+from stylobate.engine.lanes.pattern.stops import go_on, leg_end, meet_stop, next_stop
 from stylobate.engine.lanes.roots import cubic
 from stylobate.models.model import Push
 
@@ -97,27 +97,31 @@ def settle(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
 @part
 def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
     """Stand from `t` until released; return WAITING when moving again, else the status with which the run ends."""
+    release = release_time(buf, i, t, leg_end(buf, i))
     while True:
         if held_for_good(buf, i):
             buf[R.DECIDED, i] = t
             return stand_to_the_end(buf, i, table, pieces, t)
         stop = next_stop(buf, i)
-        release = release_time(buf, i, t, stop) if stop > t else math.inf
-        if release >= stop:
-            t = stop
-        else:
+        t = stop
+        if release < stop:
             if 1.0 + accelerations(buf, i, release)[2] <= RELEASE_MARGIN:  # not released but lifted
                 buf[R.TIME, i] = release
                 return Status.LIFTED
-            t = depart(buf, i, release) if CAN_DEPART else buf[R.END, i]
+            if not CAN_DEPART:
+                return Status.CANNOT_DEPART
+            t = min(depart(buf, i, release), buf[R.END, i])
             if t < buf[R.END, i] and not at_upright(buf, i):
                 return take_off(buf, i, table, pieces, t)
-        t = min(t, buf[R.END, i])
         buf[R.TIME, i] = t
+        # The search is not cut at stops that leave the base motion as it is: what is looked at does not change a run.
+        again = release < stop or t >= leg_end(buf, i)
         while next_stop(buf, i) <= t:
             status = meet_stop(buf, i, table, pieces, next_stop(buf, i))
             if status != Status.WAITING:
                 return status
+        if again:
+            release = release_time(buf, i, t, leg_end(buf, i))
 
 
 @part

@@ -4,7 +4,7 @@ import math
 from typing import TYPE_CHECKING
 
 from stylobate.engine.lanes.arithmetic import part
-from stylobate.engine.lanes.columns import LOOKS, NOTE, Status, Window
+from stylobate.engine.lanes.columns import LOOKS, NOTE, SLACK, Status, Window
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import set_leg
 from stylobate.engine.lanes.pattern.moving import azimuth_now, set_rates
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 def look_count(buf: Table, i: int) -> float:
     """Return the number of the last look: two windows and one period more, one and one more, or −1 for none."""
     end, period, periods = buf[R.END, i], buf[R.PERIOD, i], buf[R.PERIODS, i]
+    end *= 1.0 + SLACK
     if period <= 0.0 or end < (periods + 1) * period:
         return -1.0
     return LOOKS * (2 * periods + 1 if end >= (2 * periods + 1) * period else periods + 1)
@@ -47,11 +48,14 @@ def set_strobe(buf: Table, i: int) -> None:
     """Set the time of the next strobe; those kept are the last ones before the end."""
     buf[R.STROBES_AT, i] = math.inf
     period, end, strobes = buf[R.PERIOD, i], buf[R.END, i], buf[R.STROBES, i]
-    if buf[R.NEXT_STROBE, i] < strobes and period > 0.0:
-        last = math.floor((end - buf[R.STROBE, i]) / period * (1.0 + 1e-14))
-        time = buf[R.STROBE, i] + (last + 1 - strobes + buf[R.NEXT_STROBE, i]) * period
-        if time <= end and time >= 0.0:
-            buf[R.STROBES_AT, i] = time
+    if buf[R.NEXT_STROBE, i] >= strobes or period <= 0.0:
+        return
+    last = math.floor((end * (1.0 + SLACK) - buf[R.STROBE, i]) / period)
+    # Places for strobes before the run began stay empty.
+    buf[R.NEXT_STROBE, i] = max(buf[R.NEXT_STROBE, i], strobes - 1.0 - last)
+    if buf[R.NEXT_STROBE, i] < strobes:
+        number = last + 1.0 - strobes + buf[R.NEXT_STROBE, i]
+        buf[R.STROBES_AT, i] = min(buf[R.STROBE, i] + number * period, end)
 
 
 @part
@@ -63,10 +67,14 @@ def set_break(buf: Table, i: int, table: Table) -> None:
 
 
 @part
+def leg_end(buf: Table, i: int) -> float:
+    """Return until when the base motion is what it is now."""
+    return min(buf[R.END, i], buf[R.LIFTS_AT, i], buf[R.LEG_ENDS, i], buf[R.BREAKS_AT, i])
+
+
+@part
 def next_stop(buf: Table, i: int) -> float:
-    ends = min(buf[R.END, i], buf[R.LIFTS_AT, i])
-    legs = min(buf[R.LEG_ENDS, i], buf[R.BREAKS_AT, i])
-    return min(ends, legs, buf[R.LOOKS_AT, i], buf[R.SAMPLES_AT, i], buf[R.STROBES_AT, i])
+    return min(leg_end(buf, i), buf[R.LOOKS_AT, i], buf[R.SAMPLES_AT, i], buf[R.STROBES_AT, i])
 
 
 @part
