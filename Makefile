@@ -45,8 +45,10 @@ lint: $(VENV)/.core $(VENV)/.lint  ## style, types, import contracts
 docs: $(VENV)/.core $(VENV)/.docs  ## the documentation into docs/_build/html
 	$(BIN)/sphinx-build --fail-on-warning --keep-going docs docs/_build/html
 
-bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks
+bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks, beside the engines that can be installed, into docs/_static
+	-$(BIN)/python -m pip install --quiet --group bench
 	$(BIN)/python -m pytest benchmarks --benchmark-enable --benchmark-only
+	$(BIN)/python -m benchmarks.ensembles
 
 clean:  ## remove what the targets made
 	rm -rf $(VENV) docs/_build stylobate-paper

@@ -10,7 +10,6 @@ from typing import Any
 from sybil import Sybil
 from sybil.parsers.myst import PythonCodeBlockParser, SkipParser
 
-
 # Parts of kernels make sense behind the head that is written for each kernel only.
 collect_ignore_glob = ["src/stylobate/engine/lanes/pattern/*"]
 

@@ -194,7 +194,7 @@ def test_erosion_tells_bounds_from_distances():
     found = xr.Dataset(
         {
             "distance": (dims, [0.9, 0.6, 0.3]),
-            "resolution": (dims, [0.1] * 3),
+            "distance_low": (dims, [0.7, 0.4, 0.1]),
             "at_least": (dims, [True, False, False]),
             "integrity": (dims, [1.0, 0.67, 0.33]),
         },

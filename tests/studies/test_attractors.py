@@ -1,5 +1,7 @@
 """Attractors are found from strobed states, whatever the order of the runs, and named."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -7,8 +9,12 @@ import xarray as xr
 import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
 from stylobate.results.outcomes import code_of
+from stylobate.studies.attractors import shares
 from stylobate.studies.branches import follow_branches
-from stylobate.studies.finding import UNSETTLED, Attractor, find_attractors
+from stylobate.studies.finding import UNSETTLED, Attractor, Found, find_attractors, with_turns
+from stylobate.studies.orbit_paths import turns_of_paths
+from stylobate.studies.proportions import wilson_interval
+from stylobate.studies.strobe_count import with_strobes
 from stylobate.studies.strobes import (
     AttractorRules,
     OrbitScales,
@@ -18,6 +24,7 @@ from stylobate.studies.strobes import (
     keeps_moving,
     repeating_periods,
 )
+from stylobate.studies.sweeps import Sweep
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 MOTION = sb.Harmonic.circular(acceleration=0.065, angular_frequency=np.pi)
@@ -80,6 +87,33 @@ def test_a_torus_goes_on_and_a_spiral_does_not():
     # In the 16 strobes from one half to the other 0.99^16 = 0.85 is left, beyond the tolerance of a tenth.
     assert keeps_moving(strobes, RULES).tolist() == [True, False, False]
     assert not keeps_moving(1e-3 * strobes, RULES).any()
+
+
+def test_chaotic_runs_are_settled_but_for_their_scatter():
+    # The logistic map at 3.9: 32 iterates, whose differences scatter by more than a tenth of their mean.
+    x = np.random.default_rng(1).uniform(0.2, 0.8, 1000)
+    iterates = []
+    for _ in range(200 + STROBES):
+        x = 3.9 * x * (1.0 - x)
+        iterates.append(x)
+    series = np.stack(iterates[-STROBES:], axis=1)
+    moving = keeps_moving(np.stack([series, series], axis=-1).astype(complex), RULES)
+    # Three standard errors leave out 0.3 % of normal means, a few times that with 15 differences to each.
+    assert moving.mean() > 0.98
+
+
+def test_few_strobes_do_not_tell_that_a_motion_goes_on():
+    turns = np.exp(1j * np.sqrt(2.0) * np.arange(STROBES))[:, np.newaxis]
+    torus = (states(1) * turns)[np.newaxis]
+    assert keeps_moving(torus, RULES).all()
+    assert not keeps_moving(torus[:, -30:], RULES).any()
+
+
+@pytest.mark.parametrize("rate", [0.97, 0.9, 0.7, 1.03, 1.3])
+def test_what_shrinks_or_grows_steadily_is_not_settled_at_any_rate(rate):
+    turns = np.exp(1j * np.sqrt(2.0) * np.arange(STROBES)) * rate ** np.arange(STROBES)
+    size = max(1.0, rate**-STROBES)  # large enough not to have died down
+    assert not keeps_moving((size * states(1) * turns[:, np.newaxis])[np.newaxis], RULES).any()
 
 
 def test_an_orbit_in_a_plane_does_not_roll_whatever_its_azimuth_says():
@@ -192,6 +226,54 @@ def test_states_and_vectors_are_inverse():
         np.testing.assert_allclose(back, given, rtol=1e-15)
 
 
+def test_means_over_a_part_of_an_orbit_are_not_taken_for_turns():
+    cycle = states(3)
+    rolling = [Outcome.STILL_MOVING], [repeated(cycle)]
+    # One turn in three periods: the last ten hold three of them, or four if the part left over has one.
+    for mean in (0.3, 0.4):
+        (found,) = find_attractors(runs_of(*rolling, [mean]), SCALES, RULES).attractors
+        assert (found.kind, found.period) == ("rolling anticlockwise", 3)
+        assert np.isnan(found.turns)
+    followed = runs_of(*rolling, [0.4]).assign_attrs(provenance='{"rules": {"periods": 12}}')
+    assert find_attractors(followed, SCALES, RULES).attractors[0].turns == 1.0 / 3.0
+
+
+def path_of(turns, samples=1025):
+    """The path of an orbit that turns so often round the upright."""
+    angle = 2.0 * np.pi * turns * np.linspace(0.0, 1.0, samples)
+    return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+
+
+def test_turns_are_counted_along_the_path_of_an_orbit():
+    orbits = [attractor("rocking", 1.0, period) for period in (3, 7, 0)]
+    paths = xr.Dataset(
+        {"orbit_tilt": (("attractor_index", "orbit_sample", "axis"), np.stack([path_of(n) for n in (-2, 3, 1)]))}
+    )
+    np.testing.assert_array_equal(turns_of_paths(paths, orbits), [-2.0 / 3.0, 3.0 / 7.0, np.nan])
+    through = path_of(0) * np.linspace(-1.0, 1.0, 1025)[:, np.newaxis]
+    assert np.isnan(
+        turns_of_paths(xr.Dataset({"orbit_tilt": (paths["orbit_tilt"].dims, through[np.newaxis])}), orbits[:1])
+    )
+
+
+def test_orbits_whose_turns_become_known_are_named_and_listed_anew():
+    unknown = [replace(attractor("rolling anticlockwise", place, 3), turns=np.nan) for place in (2.0, 1.0)]
+    found, order = with_turns(Found((*unknown,), np.array([0, 1, 1, UNSETTLED])), np.array([0.0, 1.0 / 3.0]), 3e-2)
+    assert [(one.kind, one.turns) for one in found.attractors] == [
+        ("rolling anticlockwise", 1.0 / 3.0),
+        ("rocking", 0.0),
+    ]
+    assert order.tolist() == [1, 0]
+    assert found.labels.tolist() == [1, 0, 0, UNSETTLED]
+
+
+def test_unsettled_runs_widen_the_intervals_of_the_fractions_upwards():
+    labels = np.array([0] * 6 + [1] * 2 + [UNSETTLED] * 2)
+    found = shares(Found((attractor("rocking", 1.0), attractor("rocking", 2.0)), labels), 0.95)
+    np.testing.assert_array_equal(found["fraction_low"], wilson_interval([6, 2], 10)[0])
+    np.testing.assert_array_equal(found["fraction_high"], wilson_interval([8, 4], 10)[1])
+
+
 def attractor(kind, place, period=1):
     return Attractor(kind, period, 0.0, 0.0, np.full((period, 2), place, dtype=complex))
 
@@ -203,10 +285,49 @@ def test_branches_follow_the_nearest_of_a_kind_whatever_their_order():
         [attractor("rocking", 1.4)],
         [attractor("rocking", 1.6), attractor("rocking", 2.8), attractor("rocking", 2.0, period=2)],
     ]
-    branches = follow_branches(along)
+    branches = follow_branches(along, RULES.branch_tolerance)
     assert [one.kind for one in branches.last] == ["rocking", "rocking", "rocking", "overturned"]
     # The second rocking is lost at the third value and found again; two periods are no branch of one.
     assert branches.places == ((0, 1), (1, 0, 3), (0,), (0, 1, 2))
+
+
+def test_an_orbit_that_jumps_too_far_begins_a_branch():
+    along = [[attractor("rocking", 1.0)], [attractor("rocking", 1.4)], [attractor("rocking", 2.0)]]
+    assert follow_branches(along, 0.5).places == ((0,), (0,), (1,))
+    assert follow_branches(along, 0.7).places == ((0,), (0,), (0,))
+
+
+def test_what_has_no_period_is_followed_by_its_kind():
+    wandering = [[attractor("aperiodic", place, 0)] for place in (1.0, -5.0)]
+    assert follow_branches(wandering, 0.5).places == ((0,), (0,))
+
+
+@pytest.mark.parametrize(("periods", "strobes"), [(100.0, 32), (32.0, 32), (25.0, 12), (8.0, 4)])
+def test_short_runs_keep_the_strobes_of_their_second_half(periods, strobes):
+    sweep = Sweep.grid(MODEL, MOTION, over={"tilt_x": [0.01]}, periods=periods)
+    assert with_strobes(sweep, None).options["strobes"] == strobes
+    followed = Sweep.grid(MODEL, MOTION, over={"tilt_x": [0.01]}, duration=periods * MOTION.period)
+    assert with_strobes(followed, None).options["strobes"] == strobes
+
+
+def test_runs_too_short_for_their_strobes_are_refused_before_they_are_computed():
+    over = {"tilt_x": (-0.05, 0.05)}
+    with pytest.raises(ParameterError, match=r"at least 8 periods .*, got 7 \(duration 14 s\); follow them longer"):
+        sb.studies.attractors(MODEL, MOTION, over=over, count=2, periods=7.0)
+    with pytest.raises(ParameterError, match=r"at least 32 periods .*, got 20 .* fewer strobes"):
+        sb.studies.attractors(MODEL, MOTION, over=over, count=2, periods=20.0, strobes=32)
+    along = {"angular_frequency": [np.pi / 4.0, np.pi]}
+    with pytest.raises(ParameterError, match=r"at least 8 periods .*, got 5 "):  # at the lower frequency
+        sb.studies.basin_fractions(MODEL, MOTION, along=along, over=over, count=2, duration=40.0)
+    with pytest.raises(ParameterError, match=r"strobes must be .* at least 2"):
+        sb.studies.attractors(MODEL, MOTION, over=over, count=2, periods=20.0, strobes=1)
+
+
+def test_runs_without_any_full_row_of_strobes_are_refused():
+    gap = repeated(states(1))
+    gap[0] = np.nan
+    with pytest.raises(ParameterError, match="strobes, 32, got shorter ones"):
+        find_attractors(runs_of([Outcome.STILL_MOVING], [gap], [0.0]), SCALES, RULES)
 
 
 @pytest.mark.parametrize("sense", [1, -1])

@@ -1,10 +1,14 @@
 """Basins have the symmetries of the motion, and fractions along a parameter are those of its values."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import stylobate as sb
 from stylobate.errors import Interrupted, ParameterError
+from stylobate.studies.basin_fractions import scales_at
+from stylobate.studies.strobes import OrbitScales
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 STRAIGHT = sb.Harmonic.straight(acceleration=0.04, angular_frequency=1.8)
@@ -66,6 +70,19 @@ def test_strobed_states_are_measured_in_free_rolling_at_the_frequency_of_each_va
     assert all(found["attractor_name"].values.tolist() == ["overturned"] for found in scales)
 
 
+@pytest.mark.parametrize(
+    "motion", [STRAIGHT, STRAIGHT.rotated(0.1), 2.0 * STRAIGHT, STRAIGHT.delayed(0.3)], ids=["itself", "r", "s", "d"]
+)
+def test_the_units_of_strobed_states_are_those_of_the_harmonic_within(motion):
+    for name, value in (("angular_frequency", 3.6), ("slenderness", 0.2), ("size", 4.0), ("damping", 0.3)):
+        assert scales_at(MODEL, motion, name, value) == scales_at(MODEL, STRAIGHT, name, value)
+    assert scales_at(MODEL, motion, "angular_frequency", 3.6).period == pytest.approx(2.0 * np.pi / 3.6, rel=1e-14)
+    assert scales_at(MODEL, motion, "size", 4.0) == OrbitScales.of(
+        replace(MODEL, column=MODEL.column.resized(4.0)), motion
+    )
+    assert scales_at(MODEL, None, "tilt_x", 0.1) == OrbitScales.of(MODEL, None)
+
+
 def test_an_interrupted_study_keeps_and_labels_what_was_computed():
     def stop(done, total):
         del total
@@ -95,7 +112,7 @@ def test_an_interrupted_study_keeps_and_labels_what_was_computed():
     ],
 )
 def test_bad_input_is_named(change, message):
-    arguments = {"over": {"tilt_x": [0.2], "tilt_y": [0.0]}, "duration": 10.0} | change
+    arguments = {"over": {"tilt_x": [0.2], "tilt_y": [0.0]}, "duration": 30.0} | change
     with pytest.raises(ParameterError, match=message):
         sb.studies.basins(MODEL, STRAIGHT, **arguments)
 
@@ -111,4 +128,4 @@ def test_bad_input_is_named(change, message):
 )
 def test_a_parameter_to_go_along_is_one(along, message):
     with pytest.raises(ParameterError, match=message):
-        sb.studies.basin_fractions(MODEL, STRAIGHT, along=along, over=BOX, count=2, duration=1.0)
+        sb.studies.basin_fractions(MODEL, STRAIGHT, along=along, over=BOX, count=2, duration=30.0)

@@ -2,10 +2,13 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import stylobate as sb
-from stylobate.errors import ParameterError
-from stylobate.studies.boundary import exponent_of, shifted_starts
+from stylobate.errors import Outcome, ParameterError
+from stylobate.results.outcomes import code_of
+from stylobate.studies.boundary import exponent_of, overturned_or_not, shifted_starts
+from stylobate.studies.finding import UNSETTLED
 from stylobate.studies.power_law import fit_power_law
 
 SMOOTH = np.geomspace(1e-4, 1e-2, 6)
@@ -68,6 +71,13 @@ def test_starts_that_are_not_told_are_left_out():
     assert (int(found["uncertain"][0]), int(found["pairs"][0])) == (1, 2)
 
 
+def test_only_a_run_that_overturned_or_not_is_told():
+    outcomes = [Outcome.OVERTURNED, Outcome.AT_REST, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED, Outcome.FAILED]
+    codes = np.array([*(code_of(one) for one in outcomes), -1])
+    told = overturned_or_not(xr.Dataset({"outcome": ("run", codes)}))
+    assert told.tolist() == [1, 0, UNSETTLED, UNSETTLED, UNSETTLED, -1]
+
+
 def test_counts_of_nothing_pull_the_fit_as_much_as_they_tell():
     x, total = np.geomspace(1e-4, 1e-1, 7), np.full(7, 2000)
     rng = np.random.default_rng(11)
@@ -117,6 +127,7 @@ def test_the_boundary_of_a_free_column_is_smooth():
         ({"shifts": [0.1]}, "shifts"),
         ({"shifts": [0.2, 0.1]}, "shifts"),
         ({"count": 0}, "count"),
+        ({"overturning_only": True, "tilt_limit": 0.3}, "tilt_limit"),
         ({"over": {"damping": (0.0, 1.0)}}, "damping"),
     ],
 )

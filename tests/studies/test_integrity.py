@@ -26,11 +26,42 @@ def test_a_free_column_without_friction_is_safe_in_a_diamond():
     falls = np.abs(x) + np.abs(v) > 1.0
     np.testing.assert_array_equal(found["outcome"] == OVERTURNED, falls)
     assert float(found["distance"]) == pytest.approx(np.hypot(x, v)[falls].min(), rel=1e-12)
-    # The true distance is √½, within the resolution.
-    assert abs(float(found["distance"]) - np.sqrt(0.5)) < float(found["resolution"])
+    assert float(found["distance_low"]) < np.sqrt(0.5) < float(found["distance_high"]) == float(found["distance"])
     assert float(found["resolution"]) == pytest.approx(0.97 / 17.5 / np.sqrt(2.0), rel=1e-12)
     assert not bool(found["at_least"])
     assert np.abs(found["nearest"].values).sum() > 0.1
+
+
+def test_a_straight_boundary_lies_between_the_ends_of_its_distance():
+    axis = np.linspace(-3.0, 3.0, 41)
+    metric = Metric.of(FREE, {"tilt_x": 0.1 * axis, "tilt_y": 0.1 * axis}, None)
+    x, y = np.meshgrid(axis, axis, indexing="ij")
+    rng = np.random.default_rng(0)
+    excess = []
+    for angle, truth in zip(rng.uniform(0.0, 2.0 * np.pi, 500), rng.uniform(0.5, 2.0, 500), strict=True):
+        codes = np.where(x * np.cos(angle) + y * np.sin(angle) >= truth, OVERTURNED, SAFE)
+        found = distance_to_overturning(grid(codes, tilt_x=axis, tilt_y=axis), metric)
+        assert found["distance_low"] <= truth <= found["distance_high"]
+        excess.append((float(found["distance"]) - truth) / metric.resolution)
+    # Half a diagonal would not do.
+    assert 1.0 < max(excess) < 2.0
+
+
+@pytest.mark.parametrize("outcome", [Outcome.FAILED, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED])
+def test_a_run_that_ends_before_it_is_told_is_not_safe(outcome):
+    axis = 0.1 * np.linspace(-1.0, 1.0, 5)
+    metric = Metric.of(FREE, {"tilt_x": axis}, None)
+    found = distance_to_overturning(grid([OVERTURNED, SAFE, SAFE, code_of(outcome), SAFE], tilt_x=axis), metric)
+    assert bool(found["at_least"])
+    assert float(found["distance"]) == pytest.approx(0.5, rel=1e-12)
+    assert float(found["distance_high"]) == np.inf
+
+
+def test_a_tilt_limit_is_refused():
+    with pytest.raises(ParameterError, match=r"tilt_limit must be left out: .* got 0\.2 rad"):
+        sb.studies.integrity(FREE, over={"tilt_x": [-0.1, 0.1]}, duration=1.0, tilt_limit=0.2)
+    with pytest.raises(ParameterError, match="tilt_limit"):
+        sb.studies.erosion(FREE, along={"damping": [0.1]}, over={"tilt_x": [-0.1, 0.1]}, duration=1.0, tilt_limit=0.2)
 
 
 def test_distances_are_in_c_and_its_rate_whatever_the_column():
@@ -79,6 +110,8 @@ def test_friction_makes_a_free_column_safer():
     assert float(found["integrity"][1]) > 1.0
     assert ((found["integrity_low"] < found["integrity"]) & (found["integrity"] < found["integrity_high"])).all()
     np.testing.assert_allclose(found["integrity"], found["distance"] / found["distance"][0], rtol=1e-15)
+    np.testing.assert_array_equal(found["integrity_low"], found["distance_low"] / found["distance_high"][0])
+    np.testing.assert_array_equal(found["integrity_high"], found["distance_high"] / found["distance_low"][0])
     assert found.attrs["kind"] == "erosion"
 
 

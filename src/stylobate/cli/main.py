@@ -6,12 +6,16 @@ from typing import Annotated
 
 import typer
 
+from stylobate.cli.basin import basin
+from stylobate.cli.many_runs import INTERRUPTED
+from stylobate.cli.map import overturning_map
+from stylobate.cli.options import joined_ranges
 from stylobate.cli.paper import paper
 from stylobate.cli.response import response
 from stylobate.cli.simulate import simulate
 from stylobate.errors import DescriptionError, StylobateError
 
-_BAD_INPUT, _INTERRUPTED = 2, 130
+_BAD_INPUT = 2
 
 # The class of all mistakes on a command line; typer gives it no public name of its own.
 _UsageError: type[Exception] = typer.BadParameter.__mro__[1]
@@ -46,6 +50,8 @@ def _options(
 
 for command in (paper, simulate, response):
     app.command()(command)
+app.command("map")(overturning_map)
+app.command()(basin)
 
 
 def main() -> None:
@@ -55,9 +61,9 @@ def main() -> None:
 
 def run(arguments: Sequence[str]) -> int:
     """Run one command and return its exit status."""
-    arguments = arguments or ["--help"]
+    arguments = joined_ranges(arguments) or ["--help"]
     try:
-        status = typer.main.get_command(app).main(list(arguments), prog_name="stylobate", standalone_mode=False)
+        status = typer.main.get_command(app).main(arguments, prog_name="stylobate", standalone_mode=False)
     except _UsageError as error:
         return _tell([getattr(error, "format_message", error.__str__)()])
     except DescriptionError as error:
@@ -65,8 +71,8 @@ def run(arguments: Sequence[str]) -> int:
     except StylobateError as error:
         return _tell([str(error)])
     except (KeyboardInterrupt, typer.Abort):
-        status = _INTERRUPTED
-    if status == _INTERRUPTED:
+        status = INTERRUPTED
+    if status == INTERRUPTED:
         print("stylobate: interrupted", file=sys.stderr)
     return int(status or 0)
 

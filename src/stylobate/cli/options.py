@@ -1,6 +1,6 @@
 """Options that commands share, and how they join with a TOML file: same names, options win."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -13,7 +13,29 @@ def _option(text: str, panel: str) -> Any:
     return typer.Option(help=text, rich_help_panel=panel, show_default=False)
 
 
-_COLUMN, _MODEL, _MOTION, _OUTPUT = "Column", "Model", "Base motion", "Output"
+def _axis(text: str) -> Any:
+    return typer.Option(help=text, rich_help_panel=_AXES, show_default=False, metavar="NAME FROM TO NUMBER")
+
+
+_AXES = "Axes"
+_RUN, _COLUMN, _MODEL, _MOTION, _OUTPUT = "Run", "Column", "Model", "Base motion", "Output"
+_COMPUTING = "Computing"
+
+_AXIS = tuple[str, float, float, int]
+X = Annotated[_AXIS | None, _axis("what varies along x: name, from, to, how many values")]
+Y = Annotated[_AXIS | None, _axis("what varies along y: name, from, to, how many values")]
+XSpacing = Annotated[str | None, _option("linear (by default) or log", _AXES)]
+YSpacing = Annotated[str | None, _option("linear (by default) or log", _AXES)]
+
+Tilt = Annotated[tuple[float, float] | None, _option("tilt vector at the start [rad]", _RUN)]
+TiltRate = Annotated[tuple[float, float] | None, _option("its rate [rad/s]", _RUN)]
+Duration = Annotated[float | None, _option("how long to follow a run [s]", _RUN)]
+Periods = Annotated[float | None, _option("for how many periods of its base motion, instead of --duration", _RUN)]
+Rtol = Annotated[float | None, _option("relative tolerance, 1e-8 by default", _RUN)]
+TiltLimit = Annotated[float | None, _option("tilt that ends a run [rad]", _RUN)]
+RestEnergy = Annotated[float | None, _option("energy of rest ε, in c²", _RUN)]
+MaxSteps = Annotated[int | None, _option("most integration steps, 200000 by default", _RUN)]
+Samples = Annotated[int | None, _option("number of samples kept", _RUN)]
 
 Shape = Annotated[str | None, _option("solid, hollow, frustum or dimensionless; told from the others", _COLUMN)]
 Radius = Annotated[float | None, _option("base radius [m]", _COLUMN)]
@@ -45,8 +67,29 @@ Ramp = Annotated[float | None, _option("time over which the amplitude rises [s]"
 
 Figure = Annotated[Path | None, _option("draw into this file (.png, .pdf, .svg)", _OUTPUT)]
 Output = Annotated[Path | None, _option("save the result into this netCDF file", _OUTPUT)]
+OutputOrStore = Annotated[
+    Path | None, _option("save the result: a netCDF file (.nc), or a store (.zarr) that --resume can continue", _OUTPUT)
+]
+Resume = Annotated[bool, typer.Option("--resume", help="continue the store of --output", rich_help_panel=_COMPUTING)]
+Executor = Annotated[
+    str | None, _option("threads (by default), dask:// (workers on this machine) or dask://host:port", _COMPUTING)
+]
+ThreadCount = Annotated[int | None, _option("threads to run on; all cores by default", _COMPUTING)]
 Json = Annotated[bool, typer.Option("--json", help="print JSON instead of a table", rich_help_panel=_OUTPUT)]
 
+RUN_NAMES = (
+    "tilt",
+    "tilt_rate",
+    "duration",
+    "periods",
+    "rtol",
+    "tilt_limit",
+    "rest_energy",
+    "max_steps",
+    "samples",
+    "strobes",
+    "confidence",
+)
 _COLUMN_NAMES = ("shape", "radius", "height", "density", "inner_radius", "top_radius", "slenderness", "gravity")
 _MODEL_NAMES = ("damping",)
 _MOTION_NAMES = (
@@ -83,7 +126,11 @@ def overlay(described: Mapping[str, Any], given: Mapping[str, Any], run_names: t
     _section(values, "model", _pick(given, _MODEL_NAMES))
     motion = {**({"kind": given["motion"]} if given.get("motion") else {}), **_pick(given, _MOTION_NAMES)}
     _section(values, "motion", motion, tag="kind")
-    return values | _pick(given, run_names)
+    chosen = _pick(given, run_names)
+    for name, other in (("duration", "periods"), ("periods", "duration")):
+        if name in chosen and other not in chosen:
+            values.pop(other, None)  # how long is said in one way
+    return values | chosen
 
 
 def _column(described: Any, options: dict[str, Any]) -> dict[str, Any]:
@@ -106,6 +153,64 @@ def _column(described: Any, options: dict[str, Any]) -> dict[str, Any]:
 
 def _pick(given: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
     return {name: given[name] for name in names if given.get(name) is not None}
+
+
+def overlay_axes(described: Mapping[str, Any], given: Mapping[str, Any], section: str) -> dict[str, Any]:
+    """Return the values `described` with the axes `given` as options x, y, x_spacing, y_spacing in a table of them.
+
+    Parameters
+    ----------
+    section
+        Name of the table.
+    """
+    values = dict(described)
+    table = values.get(section, {})
+    if not isinstance(table, Mapping):
+        return values
+    table = dict(table)
+    for place in "xy":
+        if given.get(place) is not None:
+            name, first, last, number = given[place]
+            table[place] = {"name": name, "from": first, "to": last, "number": number}
+        spacing = given.get(f"{place}_spacing")
+        if spacing is not None:
+            table[place] = {**table.get(place, {}), "spacing": spacing}
+    return {**values, section: table} if table else values
+
+
+def overlay_sample(described: Mapping[str, Any], given: Mapping[str, Any], section: str) -> dict[str, Any]:
+    """Return the values `described` with the random sample `given` as options random, seed and over in a table."""
+    values, sample = dict(described), _pick(given, ("random", "seed"))
+    ranges = dict(_range(text) for text in given.get("over") or ())
+    table = values.get(section, {})
+    if not (sample or ranges) or not isinstance(table, Mapping):
+        return values
+    if "random" in sample:  # instead of a grid that the file describes
+        table = {name: value for name, value in table.items() if name not in ("x", "y") or given.get(name) is not None}
+    return {**values, section: {**table, **sample, **({"over": ranges} if ranges else {})}}
+
+
+def joined_ranges(arguments: Sequence[str]) -> list[str]:
+    """Return `arguments` with the three values of each option --over as one: typer knows no lists of tuples."""
+    joined: list[str] = []
+    rest = list(arguments)
+    while rest:
+        joined.append(rest.pop(0))
+        if joined[-1] == "--over":
+            joined.append(" ".join(rest[:_RANGE]))
+            del rest[:_RANGE]
+    return joined
+
+
+def _range(text: str) -> tuple[str, list[str]]:
+    name, *bounds = text.split()
+    if len(bounds) != _RANGE - 1:
+        message = f"--over must be followed by a name, its lowest and its highest value; got {text!r}"
+        raise ParameterError(message)
+    return name, bounds
+
+
+_RANGE = 3
 
 
 def _section(values: dict[str, Any], name: str, options: dict[str, Any], tag: str = "") -> None:

@@ -20,18 +20,19 @@ def print_json(values: Any) -> None:
 
 
 def print_table(title: str, rows: Sequence[Sequence[str]], header: Sequence[str] | None = None) -> None:
-    """Print `rows` as a table, on a terminal as wide as it is; plain aligned text where there is none."""
+    """Print `rows` as a table, on a terminal as wide as it is, and below one with a header its title."""
     from rich.console import Console  # noqa: PLC0415  only tables need it
     from rich.table import Table  # noqa: PLC0415
 
-    table = Table(title=None, show_header=header is not None, title_justify="left")
+    table = Table(show_header=header is not None)
     for name in header or [""] * len(rows[0] if rows else ()):
         table.add_column(name, overflow="fold")
     for row in rows:
         table.add_row(*row)
-    table.caption = title if header is not None else None
-    width = None if sys.stdout.isatty() else _PLAIN_WIDTH
-    Console(width=width, markup=False, highlight=False).print(table)
+    console = Console(width=None if sys.stdout.isatty() else _PLAIN_WIDTH, markup=False, highlight=False)
+    console.print(table)
+    if header is not None:
+        console.print(title, soft_wrap=True)
 
 
 def check_writable(*paths: Path | None) -> None:

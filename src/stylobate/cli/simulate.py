@@ -13,33 +13,22 @@ if TYPE_CHECKING:
     from stylobate.models import Model
     from stylobate.results import Response
 
-_RUN = "Run"
-_RUN_NAMES = ("tilt", "tilt_rate", "duration", "rtol", "tilt_limit", "rest_energy", "max_steps", "samples")
-
 Source = Annotated[
     Path | None, typer.Argument(help="TOML description, or a saved run (.nc) to repeat", show_default=False)
 ]
-Tilt = Annotated[tuple[float, float] | None, typer.Option(help="tilt vector at the start [rad]", rich_help_panel=_RUN)]
-TiltRate = Annotated[tuple[float, float] | None, typer.Option(help="its rate [rad/s]", rich_help_panel=_RUN)]
-Duration = Annotated[float | None, typer.Option(help="how long to follow it [s]", rich_help_panel=_RUN)]
-Rtol = Annotated[float | None, typer.Option(help="relative tolerance, 1e-8 by default", rich_help_panel=_RUN)]
-TiltLimit = Annotated[float | None, typer.Option(help="tilt that ends the run [rad]", rich_help_panel=_RUN)]
-RestEnergy = Annotated[float | None, typer.Option(help="energy of rest ε, in c²", rich_help_panel=_RUN)]
-MaxSteps = Annotated[int | None, typer.Option(help="most integration steps, 200000 by default", rich_help_panel=_RUN)]
-Samples = Annotated[int | None, typer.Option(help="number of samples kept", rich_help_panel=_RUN)]
 
 
 def simulate(
     context: typer.Context,
     source: Source = None,
-    tilt: Tilt = None,
-    tilt_rate: TiltRate = None,
-    duration: Duration = None,
-    rtol: Rtol = None,
-    tilt_limit: TiltLimit = None,
-    rest_energy: RestEnergy = None,
-    max_steps: MaxSteps = None,
-    samples: Samples = None,
+    tilt: opt.Tilt = None,
+    tilt_rate: opt.TiltRate = None,
+    duration: opt.Duration = None,
+    rtol: opt.Rtol = None,
+    tilt_limit: opt.TiltLimit = None,
+    rest_energy: opt.RestEnergy = None,
+    max_steps: opt.MaxSteps = None,
+    samples: opt.Samples = None,
     shape: opt.Shape = None,
     radius: opt.Radius = None,
     height: opt.Height = None,
@@ -79,7 +68,7 @@ def simulate(
 
     check_writable(figure, output)
     described = read_source(source)
-    description = spec.SimulationDescription.parse(opt.overlay(described, context.params, _RUN_NAMES))
+    description = spec.SimulationDescription.parse(opt.overlay(described, context.params, opt.RUN_NAMES))
     setup = description.build()
     run = engine.simulate(setup.model, setup.motion, **setup.options)
     if output is not None:

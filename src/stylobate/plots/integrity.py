@@ -36,7 +36,8 @@ def plot_integrity(found: xr.Dataset) -> Figure:
         size = {"width": 2.0 * half[0], "height": 2.0 * half[1]}
         for colour, width in (("white", 3.4), (VERMILION, 1.8)):
             axes.add_patch(Ellipse((centre[0], centre[1]), **size, fill=False, ec=colour, lw=width, ls=line, zorder=3))
-        name = f"distance {'at least ' if bound else ''}{distance:.3g} ± {float(found['resolution']):.2g}"
+        low = float(found["distance_low"])
+        name = f"distance at least {low:.3g}" if bound else f"distance {low:.3g} to {distance:.3g}"
         legend.append(Line2D([], [], color=VERMILION, linewidth=1.8, linestyle=line, label=name))
     for colour, width in (("white", 3.4), (BLACK, 1.6)):
         axes.plot(*centre, marker="+", color=colour, markersize=9, markeredgewidth=width, zorder=4)
@@ -59,9 +60,8 @@ def plot_erosion(found: xr.Dataset) -> Figure:
     (name,) = found["integrity"].dims
     ordered = found.sortby(str(name))
     x, y = ordered[str(name)].to_numpy(), ordered["distance"].to_numpy()
-    spread, bound = ordered["resolution"].to_numpy(), ordered["at_least"].to_numpy()
-    low, high = np.maximum(y - spread, 0.0), y + spread
-    axes.fill_between(x, low, high, color=BLUE, alpha=0.22, linewidth=0.0, label="± half a cell")
+    low, bound = ordered["distance_low"].to_numpy(), ordered["at_least"].to_numpy()
+    axes.fill_between(x, low, y, color=BLUE, alpha=0.22, linewidth=0.0, label="as near as a cell's diagonal")
     axes.plot(x, y, color=BLUE, linewidth=1.6)
     axes.plot(x[~bound], y[~bound], "o", color=BLUE, label="nearest overturning start")
     if bound.any():

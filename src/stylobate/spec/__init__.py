@@ -1,5 +1,7 @@
 """Descriptions: plain values, as in TOML and JSON, and the objects they stand for."""
 
+from stylobate.spec.basin import BasinDescription
+from stylobate.spec.map import MapDescription
 from stylobate.spec.response import ResponseDescription
 from stylobate.spec.simulation import (
     Setup,
@@ -10,6 +12,8 @@ from stylobate.spec.simulation import (
 )
 
 __all__ = [
+    "BasinDescription",
+    "MapDescription",
     "ResponseDescription",
     "Setup",
     "SimulationDescription",

@@ -8,7 +8,7 @@ from stylobate.spec.columns import ColumnDescription
 from stylobate.spec.description import Description
 from stylobate.spec.models import ModelDescription, SlenderModel
 from stylobate.spec.motions import MotionDescription
-from stylobate.spec.simulation import Setup, SimulationDescription, built_parts
+from stylobate.spec.simulation import OF_OTHER_COMMANDS, Setup, SimulationDescription, built_parts
 
 
 class ResponseDescription(Description):
@@ -31,9 +31,9 @@ class ResponseDescription(Description):
         if kind in _WITHOUT_RESPONSE:
             message = f"motion.kind must be a horizontal harmonic motion for response curves, got {kind!r}"
             raise DescriptionError([message])
-        # What a description of a run says besides is of no concern here.
-        of_a_run = set(SimulationDescription.model_fields) - set(cls.model_fields)
-        return super().parse({name: value for name, value in values.items() if name not in of_a_run})
+        # What a description of runs says besides is of no concern here.
+        of_runs = {*SimulationDescription.model_fields, *OF_OTHER_COMMANDS} - set(cls.model_fields)
+        return super().parse({name: value for name, value in values.items() if name not in of_runs})
 
     def build(self) -> Setup:
         """Return model and motion; the options hold the range and number of frequencies.

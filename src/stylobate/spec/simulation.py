@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from pydantic import Field
 
@@ -54,6 +54,11 @@ class SimulationDescription(Description):
     samples: int | None = None
     rules: dict[str, float] = Field(default_factory=dict)
 
+    @classmethod
+    def parse(cls, values: Mapping[str, Any]) -> Self:
+        """Return the description of these `values`; what they say for other commands is of no concern here."""
+        return super().parse({name: value for name, value in values.items() if name not in OF_OTHER_COMMANDS})
+
     def build(self) -> Setup:
         """Return the objects described.
 
@@ -62,22 +67,24 @@ class SimulationDescription(Description):
         DescriptionError
             With one line for each part that cannot be.
         """
-        problems = self._problems_of_the_run()
-        rules = built("rules", lambda: OutcomeRules(**_known_rules(self.rules)), problems)
+        problems = problems_of_the_run(self)
+        rules = built("rules", lambda: built_rules(self.rules), problems)
         model, motion = built_parts(self.column, self.model, self.motion, problems)
         options = self.model_dump(exclude={"column", "model", "motion"}) | {"rules": rules}
         return Setup(model, motion, options)
 
-    def _problems_of_the_run(self) -> list[str]:
-        problems: list[str] = []
-        for name, check in _RUN_CHECKS.items():
-            value = getattr(self, name)
-            try:
-                if value is not None:
-                    check(name, value)
-            except ParameterError as error:
-                problems.append(str(error))
-        return problems
+
+def problems_of_the_run(description: Description) -> list[str]:
+    """Return one line for each number of a run, or of many, that cannot be."""
+    problems: list[str] = []
+    for name, check in _RUN_CHECKS.items():
+        value = getattr(description, name, None)
+        try:
+            if value is not None:
+                check(name, value)
+        except ParameterError as error:
+            problems.append(str(error))
+    return problems
 
 
 def built_parts(
@@ -99,14 +106,26 @@ def built_parts(
     return modelled, moved
 
 
+def _require_share(name: str, value: float) -> None:
+    if not 0.0 < value < 1.0:
+        message = f"{name} must lie between 0 and 1, got {value!r}; 0.95 is usual"
+        raise ParameterError(message)
+
+
+OF_OTHER_COMMANDS = ("map", "basin", "periods", "strobes", "confidence", "angular_frequency_range", "points")
+"""What a description may say that is no argument of a single run."""
+
 _RUN_CHECKS: Mapping[str, Callable[[str, Any], object]] = {
     "duration": lambda name, value: require_positive(name, value, "s"),
+    "periods": require_positive,
     "tilt_limit": lambda name, value: require_positive(name, value, "rad"),
     "rtol": require_positive,
     "atol": lambda name, value: require_positive(name, value, "rad"),
     "rest_energy": require_not_negative,
     "max_steps": lambda name, value: require_whole(name, value, least=1),
     "samples": lambda name, value: require_whole(name, value, least=2),
+    "strobes": lambda name, value: require_whole(name, value, least=2),
+    "confidence": _require_share,
     "tilt": lambda name, value: require_vector(name, value, 2, "rad"),
     "tilt_rate": lambda name, value: require_vector(name, value, 2, "rad/s"),
 }
@@ -130,13 +149,14 @@ def read_description(path: str | Path) -> dict[str, Any]:
         raise FileError(message) from None
 
 
-def _known_rules(rules: Mapping[str, Any]) -> dict[str, Any]:
+def built_rules(rules: Mapping[str, Any]) -> OutcomeRules:
+    """Return the rules with these numbers, or raise ParameterError for one that is not known or cannot be."""
     known = {field.name for field in fields(OutcomeRules)}
     unknown = [name for name in rules if name not in known]
     if unknown:
         message = f"{unknown[0]} is not known here; the rules are {', '.join(sorted(known))}"
         raise ParameterError(message)
-    return dict(rules)
+    return OutcomeRules(**rules)
 
 
 def provenance_of_run(model: Model, motion: BaseMotion, **options: Any) -> dict[str, Any]:
@@ -158,11 +178,16 @@ def description_of(provenance: Mapping[str, Any]) -> SimulationDescription:
     UnsupportedError
         If the run was made with a model or motion that descriptions do not know.
     """
+    refuse_own_classes(provenance)
+    return SimulationDescription.parse({name: value for name, value in provenance.items() if name != "version"})
+
+
+def refuse_own_classes(provenance: Mapping[str, Any]) -> None:
+    """Raise UnsupportedError if a run used a model or motion that descriptions do not know."""
     for name in ("model", "motion"):
         if provenance[name].get("kind") == "other":
             message = f"the run used a {name} of its own, of which only the repr is kept: {provenance[name]['repr']}"
             raise UnsupportedError(message)
-    return SimulationDescription.parse({name: value for name, value in provenance.items() if name != "version"})
 
 
 def _described(describe: Callable[[], Description], thing: object) -> dict[str, Any]:

@@ -11,18 +11,16 @@ import xarray as xr
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 from stylobate.results.outcomes import NOT_COMPUTED
-from stylobate.studies.finding import UNSETTLED, Attractor, Found, find_attractors, names_of
+from stylobate.studies.finding import UNSETTLED, Attractor, Found, find_attractors, names_of, with_turns
 from stylobate.studies.labelled_sweeps import labelled_sweep
-from stylobate.studies.orbit_paths import orbit_paths
+from stylobate.studies.orbit_paths import orbit_paths, turns_of_paths
 from stylobate.studies.proportions import wilson_interval
+from stylobate.studies.strobe_count import with_strobes
 from stylobate.studies.strobes import AttractorRules, OrbitScales
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.recipe import RunOptions
 from stylobate.studies.varied import require_starts
-
-USUAL_STROBES = 32
-"""Strobed states that are kept where nobody asks for another number."""
 
 _TABLE = "attractor_index"
 
@@ -67,7 +65,8 @@ def attractors(
     store, executor, resume, progress
         As in `run_sweep`.
     **options
-        What all runs have in common: tilt, tilt_rate, rtol, rules, strobes (32 by default) …
+        What all runs have in common: tilt, tilt_rate, rtol, rules, strobes (by default 32, or half of what
+        shorter runs hold) …
 
     Returns
     -------
@@ -77,12 +76,14 @@ def attractors(
     Raises
     ------
     ParameterError
-        If an argument is out of range, or a name in `over` changes the system.
+        If an argument is out of range, a name in `over` changes the system, or runs are too short for the strobes.
     """
     require_starts("over", over)
-    chosen: RunOptions = {"strobes": USUAL_STROBES, **options}
-    sweep = Sweep.random(model, motion, over=over, count=count, seed=seed, duration=duration, periods=periods, **chosen)
+    sweep = Sweep.random(
+        model, motion, over=over, count=count, seed=seed, duration=duration, periods=periods, **options
+    )
     label = partial(label_attractors, model=model, motion=motion, rules=attractor_rules, confidence=confidence)
+    sweep = with_strobes(sweep, options.get("strobes"))
     found = labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
     return found.drop_dims("run").assign_attrs(kind="attractors")
 
@@ -113,7 +114,8 @@ def label_attractors(
     rules
         When states repeat, when two orbits are one, when a motion has settled.
     confidence
-        Of the intervals of the fractions (Wilson's). Runs on a grid are taken as if drawn at random, which makes
+        Of the intervals of the fractions (Wilson's), which count none of the unsettled runs to an attractor at their
+        lower end and all at their upper end. Runs on a grid are taken as if drawn at random, which makes
         their intervals too wide rather than too narrow where basins are larger than the cells.
 
     Returns
@@ -121,7 +123,8 @@ def label_attractors(
     xarray.Dataset
         The runs with `attractor`, −2 where unsettled and −1 where not computed, the strobed states left out; and over
         `attractor_index`, by kind and size: `attractor_name`, `attractor_kind`, `attractor_period` [forcing periods,
-        0 for none], `attractor_turns` [a forcing period], mean and largest tilt [rad], its strobed states
+        0 for none], `attractor_turns` [a forcing period; NaN where not
+        known, see `Attractor`], mean and largest tilt [rad], its strobed states
         `attractor_tilt` [rad] and `attractor_tilt_rate` [rad/s] over `orbit_point` (those that lean farthest first),
         `orbit_tilt` along its path, `count`, `fraction` of all runs computed, `fraction_low` and `fraction_high`.
         `unsettled` and `computed` count runs.
@@ -133,10 +136,12 @@ def label_attractors(
     """
     chosen, scales = rules or AttractorRules(), OrbitScales.of(model, motion)
     found = find_attractors(runs, scales, chosen)
+    paths = orbit_paths(model, motion, found.attractors, scales)
+    found, order = with_turns(found, turns_of_paths(paths, found.attractors), chosen.match_tolerance)
     labels = found.labels.astype(np.int16)
     labelled = runs.drop_dims("strobe").assign(attractor=(runs["outcome"].dims, labels, _label_attributes(found)))
     table = xr.merge(
-        [attractor_table(found.attractors, scales), orbit_paths(model, motion, found.attractors, scales)],
+        [attractor_table(found.attractors, scales), paths.isel(attractor_index=order)],
         combine_attrs="drop",
     )
     whole = labelled.merge(table).merge(shares(found, confidence))
@@ -177,11 +182,17 @@ def attractor_table(attractors: Sequence[Attractor], scales: OrbitScales) -> xr.
 
 
 def shares(found: Found, confidence: float) -> xr.Dataset:
-    """Return how many runs came to each attractor, and the fraction with its interval."""
+    """Return how many runs came to each attractor, and the fraction with its interval.
+
+    Where an unsettled run would come to is not known: the lower end counts none of them to the attractor, the upper
+    end all.
+    """
     labels = found.labels.ravel()
     count = np.array([np.count_nonzero(labels == place) for place in range(len(found.attractors))], dtype=np.int64)
     computed = int(np.count_nonzero(labels != NOT_COMPUTED))
-    low, high = wilson_interval(count, computed, confidence=confidence)
+    unsettled = int(np.count_nonzero(labels == UNSETTLED))
+    low, _ = wilson_interval(count, computed, confidence=confidence)
+    _, high = wilson_interval(count + unsettled, computed, confidence=confidence)
     interval = f"end of the {100.0 * confidence:g} % interval of the fraction"
     return xr.Dataset(
         {
@@ -189,7 +200,7 @@ def shares(found: Found, confidence: float) -> xr.Dataset:
             "fraction": (_TABLE, count / max(computed, 1), {"units": "1", "long_name": "fraction of the runs"}),
             "fraction_low": (_TABLE, low, {"units": "1", "long_name": f"lower {interval}"}),
             "fraction_high": (_TABLE, high, {"units": "1", "long_name": f"upper {interval}"}),
-            "unsettled": ((), np.count_nonzero(labels == UNSETTLED), {"units": "1", "long_name": "unsettled runs"}),
+            "unsettled": ((), unsettled, {"units": "1", "long_name": "unsettled runs"}),
             "computed": ((), computed, {"units": "1", "long_name": "runs computed"}),
         }
     )
@@ -201,6 +212,8 @@ def rule_attributes(rules: AttractorRules, confidence: float) -> dict[str, Any]:
         "repeat_tolerance": rules.repeat_tolerance,
         "match_tolerance": rules.match_tolerance,
         "settled_tolerance": rules.settled_tolerance,
+        "sampling_errors": rules.sampling_errors,
+        "branch_tolerance": rules.branch_tolerance,
         "confidence": confidence,
     }
 

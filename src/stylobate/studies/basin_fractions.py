@@ -1,7 +1,6 @@
 """Basin fractions along a parameter: how often random starts come to each attractor."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import fields, replace
 from functools import partial
 from pathlib import Path
 from typing import Unpack
@@ -10,22 +9,24 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from stylobate.engine import with_parameters
 from stylobate.errors import require_whole
 from stylobate.models import Model
-from stylobate.motions import BaseMotion, Harmonic
+from stylobate.motions import BASE_AT_REST, BaseMotion
 from stylobate.results.outcomes import NOT_COMPUTED
-from stylobate.studies.attractors import USUAL_STROBES, attractor_table, rule_attributes
+from stylobate.studies.attractors import attractor_table, rule_attributes
 from stylobate.studies.branches import Branches, follow_branches
 from stylobate.studies.finding import UNSETTLED, Found, find_attractors
 from stylobate.studies.labelled_sweeps import labelled_sweep
 from stylobate.studies.proportions import require_confidence, wilson_interval
+from stylobate.studies.strobe_count import with_strobes
 from stylobate.studies.strobes import AttractorRules, OrbitScales
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.designs import Box, whole
 from stylobate.studies.sweeps.quantities import attributes_of
 from stylobate.studies.sweeps.recipe import RunOptions
-from stylobate.studies.varied import one_parameter, require_starts
+from stylobate.studies.varied import SYSTEM_STARTS, one_parameter, require_starts
 
 
 def basin_fractions(
@@ -49,7 +50,8 @@ def basin_fractions(
     """Return how often random starts come to each attractor, along one parameter.
 
     The starts are the same at every value of the parameter, so that differences between values are those of the basins
-    more than those of the sample. Attractors of successive values are matched by kind, period and nearness.
+    more than those of the sample. Attractors of successive values are matched by kind, period and nearness: an orbit
+    that jumps farther than `branch_tolerance` of the rules is listed as another one.
 
     Parameters
     ----------
@@ -70,32 +72,34 @@ def basin_fractions(
     store, executor, resume, progress
         As in `run_sweep`.
     **options
-        What all runs have in common: tilt, tilt_rate, rtol, rules, strobes (32 by default) …
+        What all runs have in common: tilt, tilt_rate, rtol, rules, strobes (by default 32, or half of what
+        shorter runs hold) …
 
     Returns
     -------
     xarray.Dataset
         Of kind "basin fractions", over the parameter and `attractor_index`: `count`, `fraction` of the runs computed
-        with `fraction_low` and `fraction_high`, `present` where the attractor was found and there `mean_tilt` [rad] of
-        its runs and its strobed states; over the parameter `unsettled` and `computed` count runs.
+        with `fraction_low` and `fraction_high` (none, and all, of the unsettled runs counted to it), `present` where
+        the attractor was found and there `mean_tilt` [rad] of its runs and its strobed states; over the parameter
+        `unsettled` and `computed` count runs.
 
     Raises
     ------
     ParameterError
-        If `along` has not one name, a name in `over` changes the system, or an argument is out of range.
+        If `along` has not one name, a name in `over` changes the system, an argument is out of range, or runs are
+        too short for the strobes.
     """
     require_starts("over", over)
     name, values = one_parameter(along, over)
     starts = Box.of(over, require_whole("count", count, least=1), seed)
     points = {start: np.tile(drawn, values.size) for start, drawn in starts.values(whole(starts)).items()}
-    chosen: RunOptions = {"strobes": USUAL_STROBES, **options}
     sweep = Sweep.points(
         model,
         motion,
         at={name: np.repeat(values, starts.count), **points},
         duration=duration,
         periods=periods,
-        **chosen,
+        **options,
     )
     label = partial(
         fractions_along,
@@ -104,6 +108,7 @@ def basin_fractions(
         rules=attractor_rules or AttractorRules(),
         confidence=require_confidence(confidence),
     )
+    sweep = with_strobes(sweep, options.get("strobes"))
     return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
 
 
@@ -122,7 +127,7 @@ def fractions_along(
     count = runs.sizes["run"] // max(len(scales), 1)
     blocks = [runs.isel(run=slice(i * count, (i + 1) * count)) for i in range(len(scales))]
     found = [find_attractors(block, unit, rules) for block, unit in zip(blocks, scales, strict=True)]
-    branches = follow_branches([one.attractors for one in found])
+    branches = follow_branches([one.attractors for one in found], rules.branch_tolerance)
     values = runs[name].to_numpy()[::count]
     return (
         xr.merge(
@@ -148,7 +153,8 @@ def _fractions(name: str, found: Sequence[Found], branches: Branches, confidence
     unsettled = np.array([np.count_nonzero(one.labels == UNSETTLED) for one in found])
     known = computed[:, np.newaxis] > 0
     total = np.maximum(computed, 1)[:, np.newaxis]
-    low, high = wilson_interval(count, total, confidence=confidence)
+    low, _ = wilson_interval(count, total, confidence=confidence)
+    _, high = wilson_interval(count + unsettled[:, np.newaxis], total, confidence=confidence)
     dims, interval = (name, "attractor_index"), f"end of its {100.0 * confidence:g} % interval"
     return xr.Dataset(
         {
@@ -184,15 +190,6 @@ def _states(name: str, found: Sequence[Found], branches: Branches, scales: Seque
 
 def scales_at(model: Model, motion: BaseMotion | None, name: str, value: float) -> OrbitScales:
     """Return the units of strobed states where the parameter `name` has this `value`."""
-    column = model.column
-    if name == "angular_frequency" and isinstance(motion, Harmonic):
-        return OrbitScales.of(model, replace(motion, angular_frequency=value))
-    if name == "slenderness":
-        changed = column.with_slenderness(value)
-    elif name == "size":
-        changed = column.resized(value)
-    elif name in {field.name for field in fields(column)}:
-        changed = replace(column, **{name: value})
-    else:
+    if name in SYSTEM_STARTS or name == "duration":
         return OrbitScales.of(model, motion)
-    return OrbitScales.of(replace(model, column=changed), motion)  # type: ignore[type-var]
+    return OrbitScales.of(*with_parameters(model, BASE_AT_REST if motion is None else motion, **{name: value}))

@@ -11,8 +11,9 @@ import xarray as xr
 from stylobate.errors import ParameterError
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
-from stylobate.studies.attractors import USUAL_STROBES, label_attractors
+from stylobate.studies.attractors import label_attractors
 from stylobate.studies.labelled_sweeps import labelled_sweep
+from stylobate.studies.strobe_count import with_strobes
 from stylobate.studies.strobes import AttractorRules
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
@@ -59,7 +60,8 @@ def basins(
     store, executor, resume, progress
         As in `run_sweep`.
     **options
-        What all runs have in common: tilt, tilt_rate (the start but for what varies), rtol, rules, strobes …
+        What all runs have in common: tilt, tilt_rate (the start but for what varies), rtol, rules, strobes (by default
+        32, or half of what shorter runs hold) …
 
     Returns
     -------
@@ -70,7 +72,8 @@ def basins(
     Raises
     ------
     ParameterError
-        If an argument is out of range, a name in `over` changes the system, or a grid has not two names.
+        If an argument is out of range, a name in `over` changes the system, a grid has not two names, or runs are too
+        short for the strobes.
 
     Examples
     --------
@@ -81,18 +84,18 @@ def basins(
     (['at rest', 'overturned'], [4, 2])
     """
     require_starts("over", over)
-    chosen: RunOptions = {"strobes": USUAL_STROBES, **options}
     if count is not None:
         ranges: Mapping[str, Sequence[float]] = over  # type: ignore[assignment]  # the sweep tells what is no range
         sweep = Sweep.random(
-            model, motion, over=ranges, count=count, seed=seed, duration=duration, periods=periods, **chosen
+            model, motion, over=ranges, count=count, seed=seed, duration=duration, periods=periods, **options
         )
     elif len(over) == _PLANE:
-        sweep = Sweep.grid(model, motion, over=over, duration=duration, periods=periods, **chosen)
+        sweep = Sweep.grid(model, motion, over=over, duration=duration, periods=periods, **options)
     else:
         message = f"over must name two starts with their values, or give count for random ones; got {', '.join(over)}"
         raise ParameterError(message)
     label = partial(_basins_of, model=model, motion=motion, rules=attractor_rules, confidence=confidence)
+    sweep = with_strobes(sweep, options.get("strobes"))
     return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
 
 

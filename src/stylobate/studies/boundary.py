@@ -13,18 +13,19 @@ from stylobate.errors import Outcome, ParameterError, require_whole
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 from stylobate.results.outcomes import NOT_COMPUTED, code_of
-from stylobate.studies.attractors import USUAL_STROBES
 from stylobate.studies.finding import UNSETTLED, find_attractors
 from stylobate.studies.labelled_sweeps import labelled_sweep
 from stylobate.studies.power_law import fit_power_law
 from stylobate.studies.proportions import require_confidence, wilson_interval
+from stylobate.studies.safe_distance import NOT_TOLD
+from stylobate.studies.strobe_count import with_strobes
 from stylobate.studies.strobes import AttractorRules, Floats, Integers, OrbitScales
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.designs import Box, whole
 from stylobate.studies.sweeps.quantities import attributes_of, checked_values
 from stylobate.studies.sweeps.recipe import RunOptions
-from stylobate.studies.varied import require_starts
+from stylobate.studies.varied import require_no_tilt_limit, require_starts
 
 # Shifts where nobody names others: this many, geometric, between these parts of the range of the start shifted.
 _USUAL_SHIFTS = np.geomspace(1e-5, 3e-2, 8)
@@ -94,23 +95,26 @@ def uncertainty_exponent(
     Raises
     ------
     ParameterError
-        If an argument is out of range, or a name in `over` changes the system.
+        If an argument is out of range, a name in `over` changes the system, runs are too short for the strobes, or
+        `tilt_limit` is given with `overturning_only`: a run stopped there is not known to overturn.
     """
     require_starts("over", over)
     epsilon = _shifts(shifts, over, shifted)
     base = Box.of(over, epsilon.size * require_whole("count", count, least=1), seed)
-    chosen: RunOptions = {"strobes": 0 if overturning_only else USUAL_STROBES, **options}
+    if overturning_only:
+        require_no_tilt_limit(options)
     sweep = Sweep.points(
         model,
         motion,
         at=shifted_starts(base.values(whole(base)), shifted, epsilon),
         duration=duration,
         periods=periods,
-        **chosen,
+        **options,
     )
 
     tell: Callable[[xr.Dataset], Integers] = overturned_or_not
     if not overturning_only:
+        sweep = with_strobes(sweep, options.get("strobes"))
         rules = attractor_rules or AttractorRules()
         tell = partial(_attractor_of_each, scales=OrbitScales.of(model, motion), rules=rules)
     label = partial(
@@ -139,10 +143,13 @@ def _labelled(
 
 
 def overturned_or_not(runs: xr.Dataset) -> Integers:
-    """Return 1 for each run that overturned and 0 for the others; UNSETTLED if it failed, NOT_COMPUTED likewise."""
+    """Return 1 for each run that overturned and 0 for those that did not.
+
+    UNSETTLED where that is not known: the run failed, lifted off or was stopped at a tilt limit; NOT_COMPUTED likewise.
+    """
     codes = runs["outcome"].to_numpy().astype(np.int64)
     states: Integers = (codes == code_of(Outcome.OVERTURNED)).astype(np.int64)
-    states[codes == code_of(Outcome.FAILED)] = UNSETTLED
+    states[np.isin(codes, [code_of(outcome) for outcome in NOT_TOLD])] = UNSETTLED
     states[codes == NOT_COMPUTED] = NOT_COMPUTED
     return states
 

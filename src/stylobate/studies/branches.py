@@ -21,17 +21,20 @@ class Branches:
     places: tuple[tuple[int, ...], ...]
 
 
-def follow_branches(along: Sequence[Sequence[Attractor]]) -> Branches:
+def follow_branches(along: Sequence[Sequence[Attractor]], tolerance: float) -> Branches:
     """Return the branches of the attractors found at successive values of a parameter.
 
     Attractors are matched to branches of the same kind and period as these were last seen, so that the distances of
-    their dimensionless strobed states have the least sum. What is left over begins a branch; a branch that is lost
-    and found again keeps its place.
+    their dimensionless strobed states have the least sum. What is farther from every branch than the `tolerance`, or
+    left over, begins a branch; a branch that is lost and found again keeps its place. Attractors without a period are
+    matched by their kind alone: one strobed state of many does not tell where they are.
 
     Parameters
     ----------
     along
         The attractors at each value, in the order of the parameter.
+    tolerance
+        Largest distance of the dimensionless strobed states of an orbit from those of its branch.
 
     Returns
     -------
@@ -39,7 +42,7 @@ def follow_branches(along: Sequence[Sequence[Attractor]]) -> Branches:
         By kind and period, then in the order of their appearance.
     """
     last: list[Attractor] = []
-    places = [_matched(attractors, last) for attractors in along]
+    places = [_matched(attractors, last, tolerance) for attractors in along]
     order = sorted(range(len(last)), key=lambda branch: (KINDS.index(last[branch].kind), last[branch].period, branch))
     place = {branch: new for new, branch in enumerate(order)}
     return Branches(
@@ -47,10 +50,10 @@ def follow_branches(along: Sequence[Sequence[Attractor]]) -> Branches:
     )
 
 
-def _matched(attractors: Sequence[Attractor], last: list[Attractor]) -> list[int]:
+def _matched(attractors: Sequence[Attractor], last: list[Attractor], tolerance: float) -> list[int]:
     """Return the branch of each of `attractors`, and note them in `last`."""
     chosen = [-1] * len(attractors)
-    distances = np.array([[_distance(found, branch) for branch in last] for found in attractors])
+    distances = np.array([[_distance(found, branch, tolerance) for branch in last] for found in attractors])
     if distances.size:
         for place, branch in zip(*linear_sum_assignment(distances), strict=True):
             if distances[place, branch] < _APART:
@@ -68,7 +71,10 @@ def _matched(attractors: Sequence[Attractor], last: list[Attractor]) -> list[int
 _APART = 1e9
 
 
-def _distance(found: Attractor, branch: Attractor) -> float:
+def _distance(found: Attractor, branch: Attractor, tolerance: float) -> float:
     if (found.kind, found.period) != (branch.kind, branch.period):
         return _APART
-    return float(cycle_distance(found.states[np.newaxis], branch.states)[0]) if len(found.states) else 0.0
+    if not found.period:
+        return 0.0
+    distance = float(cycle_distance(found.states[np.newaxis], branch.states)[0])
+    return distance if distance < tolerance else _APART

@@ -1,13 +1,15 @@
 """Attractors found in the runs of one column under one base motion, none of them listed in advance."""
 
+import json
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
 from stylobate.errors import Outcome, ParameterError
+from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED, code_of
 from stylobate.studies.strobes import (
     AttractorRules,
@@ -54,7 +56,9 @@ class Attractor:
     period
         After how many forcing periods it repeats; 0 where it does not.
     turns
-        Mean turns of the contact point in a forcing period, anticlockwise positive.
+        Mean turns of the contact point in a forcing period, anticlockwise positive. NaN for an orbit whose period does
+        not divide the periods over which the mean rolling rate was taken (`OutcomeRules.periods`): the mean then tells
+        its sense, not its turns.
     mean_tilt
         Mean tilt over the last periods of its runs [rad]; 0 at rest, NaN where it ends a run.
     states
@@ -102,7 +106,7 @@ def find_attractors(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules
     Raises
     ------
     ParameterError
-        If the runs were followed without strobes.
+        If the runs were followed without strobes, or all that move for too short to have them.
     """
     if "strobe_tilt" not in runs:
         message = "runs must have strobed states to tell attractors from; follow them with strobes=32, say"
@@ -110,6 +114,8 @@ def find_attractors(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules
     shape, flat = runs["outcome"].shape, _Flat.of(runs, scales)
     labels = np.full(flat.outcome.shape, UNSETTLED)
     labels[flat.outcome == NOT_COMPUTED] = NOT_COMPUTED
+    if scales.period is not None:
+        flat.require_strobes()
     groups = sorted(_groups(flat, rules), key=lambda group: rank(group[0], rules.match_tolerance))
     for place, (_, members) in enumerate(groups):
         labels[members] = place
@@ -124,6 +130,7 @@ class _Flat:
     strobes: Complexes
     turns: Floats
     mean_tilt: Floats
+    periods_of_mean: int
 
     @classmethod
     def of(cls, runs: xr.Dataset, scales: OrbitScales) -> "_Flat":
@@ -137,7 +144,26 @@ class _Flat:
             scales.states(tilt, rate),
             runs["mean_rolling_rate"].to_numpy().ravel() * (scales.period or 0.0) / (2.0 * np.pi),
             runs["mean_tilt"].to_numpy().ravel(),
+            _periods_of_mean(runs),
         )
+
+    def require_strobes(self) -> None:
+        """Raise ParameterError if there are runs that move to their end and none of them has all its strobes."""
+        outcomes = [code_of(outcome) for outcome in _MOVING if outcome is not Outcome.AT_REST]
+        moving = np.isin(self.outcome, outcomes)
+        if moving.any() and np.isnan(self.strobes[moving]).any(axis=(1, 2)).all():
+            count = self.strobes.shape[1]
+            message = (
+                f"runs must last as many periods of the base motion as they have strobes, {count}, got shorter ones; "
+                "follow them longer or with fewer strobes"
+            )
+            raise ParameterError(message)
+
+
+def _periods_of_mean(runs: xr.Dataset) -> int:
+    """Return over how many of the last periods the mean rolling rate of `runs` was taken."""
+    rules = json.loads(runs.attrs.get("provenance", "{}")).get("rules")
+    return int(rules["periods"]) if isinstance(rules, dict) and "periods" in rules else OutcomeRules().periods
 
 
 _STROBED = ("strobe_tilt", "strobe_tilt_rate")
@@ -170,8 +196,9 @@ def _orbits(
         # An orbit of k periods makes a whole number of turns in them; none where the rate is unknown, or where the
         # lean only changes sides.
         mean = 0.0 if is_flat(cycles[leader], tolerance) else _median(runs.turns[members], otherwise=0.0)
-        turns = round(period * mean) / period
-        kind = ROLLING[int(np.sign(turns))] if turns else ROCKING
+        counted = not mean or runs.periods_of_mean % period == 0  # else a part of the orbit is in the mean once more
+        turns = round(period * mean) / period if counted else np.nan
+        kind = kind_of_orbit(turns if counted else mean * (abs(mean) > _TURNING))
         yield Attractor(kind, period, turns, _median(runs.mean_tilt[members]), _ordered(cycles[leader])), members
 
 
@@ -190,6 +217,30 @@ def _unrepeated(runs: _Flat, candidates: Integers, rules: AttractorRules) -> Ite
                 farthest = last[np.argmax(np.abs(last[:, 0]))]
                 mean = _median(runs.turns[members])
                 yield Attractor(kind, 0, mean, _median(runs.mean_tilt[members]), farthest[np.newaxis]), members
+
+
+def kind_of_orbit(turns: float) -> str:
+    """Return what a periodic orbit is that makes so many turns in a forcing period: rolling, or rocking if none."""
+    return ROLLING[int(np.sign(turns))] if turns else ROCKING
+
+
+def with_turns(found: Found, turns: Floats, tolerance: float) -> tuple[Found, Integers]:
+    """Return `found` with the orbits whose turns were not known as these `turns` show them, and the new order.
+
+    The order has for each place the one that its attractor had before.
+    """
+    told = [
+        replace(one, turns=float(value), kind=kind_of_orbit(value))
+        if np.isnan(one.turns) and np.isfinite(value)
+        else one
+        for one, value in zip(found.attractors, turns, strict=True)
+    ]
+    order = np.array(sorted(range(len(told)), key=lambda place: rank(told[place], tolerance)), dtype=np.int64)
+    place = np.empty_like(order)
+    place[order] = np.arange(order.size)
+    labels, told_runs = found.labels.copy(), found.labels >= 0
+    labels[told_runs] = place[found.labels[told_runs]]
+    return Found(tuple(told[old] for old in order), labels), order
 
 
 def _ordered(cycle: Complexes) -> Complexes:

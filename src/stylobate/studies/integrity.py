@@ -18,7 +18,7 @@ from stylobate.studies.safe_distance import Metric, distance_to_overturning
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.recipe import RunOptions
-from stylobate.studies.varied import SYSTEM_STARTS, one_parameter, require_starts
+from stylobate.studies.varied import SYSTEM_STARTS, one_parameter, require_no_tilt_limit, require_starts
 
 
 def integrity(
@@ -61,17 +61,21 @@ def integrity(
     Returns
     -------
     xarray.Dataset
-        Of kind "integrity": the runs over the grid; `distance`; `resolution`, half the diagonal of the largest cell,
-        by which the boundary may be nearer or farther; `at_least`, true where no overturning start is nearer than the
-        edge of the grid or a start that is not known (failed or not computed), to which the distance then reaches;
-        and the `nearest` overturning start over `start`, NaN where `at_least`.
+        Of kind "integrity": the runs over the grid; `distance`; `resolution`, half the diagonal of the largest cell;
+        `distance_low` and `distance_high`, between which the boundary is: the distance less two resolutions, and the
+        distance itself, which an overturning start proves. The lower end holds for boundaries that are smooth on the
+        scale of the grid; finer tongues may come nearer. `at_least` is true where no overturning start is nearer than
+        the edge of the grid or a start that is not known (failed, lifted off or not computed), to which the distance
+        then reaches, with `distance_high` infinite; and the `nearest` overturning start over `start`, NaN there.
 
     Raises
     ------
     ParameterError
-        If an argument is out of range, a name in `over` changes the system, or the reference lies outside the grid.
+        If an argument is out of range, a name in `over` changes the system, the reference lies outside the grid, or
+        `tilt_limit` is given: a run stopped there is not known to be safe.
     """
     require_starts("over", over)
+    require_no_tilt_limit(options)
     metric = Metric.of(model, over, reference)
     sweep = Sweep.grid(model, motion, over=over, duration=duration, periods=periods, **options)
     label = partial(_integrity_of, metric=metric)
@@ -105,10 +109,10 @@ def erosion(
     Returns
     -------
     xarray.Dataset
-        Of kind "erosion", over the parameter: `distance`, `resolution`, `at_least` and `nearest` as in `integrity`;
-        and `integrity`, the distance over that at the first value, with `integrity_low` and `integrity_high` for
-        distances wrong by the resolution. Where the first distance is an `at_least`, all the ratios are too high: the
-        grid should reach farther.
+        Of kind "erosion", over the parameter: `distance`, `distance_low`, `distance_high`, `resolution`, `at_least`
+        and `nearest` as in `integrity`; and `integrity`, the distance over that at the first value, between
+        `integrity_low` and `integrity_high`, the ratios of the ends of both distances. Where the first distance is an
+        `at_least`, all the ratios are too high and their lower end is 0: the grid should reach farther.
 
     Raises
     ------
@@ -116,6 +120,7 @@ def erosion(
         As in `integrity`; or if `along` has not one name, or one that changes the units of the distance.
     """
     require_starts("over", over)
+    require_no_tilt_limit(options)
     metric = Metric.of(model, over, reference)
     name = _leaves_units(model, one_parameter(along, over)[0])
     sweep = Sweep.grid(model, motion, over={**along, **over}, duration=duration, periods=periods, **options)
@@ -136,16 +141,20 @@ def _erosion_of(runs: xr.Dataset, name: str, metric: Metric) -> xr.Dataset:
 
 
 def _ratios(measured: xr.Dataset) -> dict[str, Any]:
-    distance, resolution = measured["distance"].to_numpy(), measured["resolution"].to_numpy()
+    distance, least, largest = (measured[name].to_numpy() for name in ("distance", "distance_low", "distance_high"))
     first, dim = distance[0], measured["distance"].dims
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.where(first > 0.0, distance / first, np.nan)
-        low = np.maximum(distance - resolution, 0.0) / (first + resolution[0])
-        high = np.where(first > resolution[0], (distance + resolution) / (first - resolution[0]), np.inf)
+        low = np.where(largest[0] > 0.0, least / largest[0], 0.0)
+        high = np.where(least[0] > 0.0, largest / least[0], np.inf)
     return {
         "integrity": (dim, ratio, {"units": "1", "long_name": "integrity"}),
-        "integrity_low": (dim, low, {"units": "1", "long_name": "least integrity within the resolution"}),
-        "integrity_high": (dim, high, {"units": "1", "long_name": "largest integrity within the resolution"}),
+        "integrity_low": (
+            dim,
+            low,
+            {"units": "1", "long_name": "least integrity on a boundary smooth on the scale of the grid"},
+        ),
+        "integrity_high": (dim, high, {"units": "1", "long_name": "largest integrity on such a boundary"}),
     }
 
 

@@ -10,8 +10,10 @@ from stylobate.engine import simulate_ensemble
 from stylobate.models import Model
 from stylobate.motions import BaseMotion, Harmonic
 from stylobate.studies.finding import ENDINGS, Attractor
-from stylobate.studies.strobes import OrbitScales
+from stylobate.studies.strobes import Floats, OrbitScales
 
+# Turn from one sample to the next up to which it is certain to which side it went.
+_LARGEST_TURN = np.pi / 2.0
 # Times along a path, and the forcing periods for which a motion that does not repeat is followed.
 _SAMPLES, _PERIODS_UNREPEATED = 1025, 20
 
@@ -59,6 +61,21 @@ def orbit_paths(
             ),
         }
     )
+
+
+def turns_of_paths(paths: xr.Dataset, attractors: Sequence[Attractor]) -> Floats:
+    """Return how often each orbit turns round the upright in a forcing period, anticlockwise, counted along its path.
+
+    NaN where the attractor has no period or no path, or where the path leads past the upright so closely that its
+    azimuth cannot be followed from sample to sample.
+    """
+    x, y = np.moveaxis(paths["orbit_tilt"].to_numpy(), -1, 0)
+    steps = np.angle((x[:, 1:] + 1j * y[:, 1:]) * (x[:, :-1] - 1j * y[:, :-1]))
+    period = np.array([attractor.period for attractor in attractors], dtype=float)
+    followed = (period > 0.0) & (np.abs(steps).max(axis=1, initial=0.0) < _LARGEST_TURN)
+    turns = np.full(len(attractors), np.nan)
+    turns[followed] = np.round(steps[followed].sum(axis=1) / (2.0 * np.pi)) / period[followed]
+    return turns
 
 
 def _followed(

@@ -14,6 +14,9 @@ from stylobate.results.outcomes import NOT_COMPUTED, code_of
 from stylobate.studies.strobes import Floats
 from stylobate.studies.sweeps.quantities import STARTS, checked_values
 
+NOT_TOLD = (Outcome.FAILED, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED)
+"""Outcomes of runs that end before they show whether the column overturns."""
+
 
 @dataclass(frozen=True, slots=True)
 class Metric:
@@ -79,7 +82,11 @@ class Metric:
 
 
 def distance_to_overturning(outcome: xr.DataArray, metric: Metric) -> xr.Dataset:
-    """Return the distance from the reference to the nearest start that overturned.
+    """Return the distance from the reference to the nearest start of the grid that overturned, and what it leaves open.
+
+    A grid start that overturns at the distance d proves that the boundary is no farther than d. It may be nearer by
+    up to the diagonal of a cell: a boundary that is straight on the scale of the cells, at the distance r, has a grid
+    start behind it within r and a diagonal. Folds and tongues finer than the cells may come nearer still.
 
     Parameters
     ----------
@@ -91,24 +98,32 @@ def distance_to_overturning(outcome: xr.DataArray, metric: Metric) -> xr.Dataset
     Returns
     -------
     xarray.Dataset
-        `distance`, `at_least` (nothing overturned within the known part of the grid, to which the distance reaches),
+        `distance`; `distance_low` and `distance_high`, between which the boundary is; `at_least` (nothing overturned
+        within the known part of the grid, to which the distance reaches: then `distance_high` is infinite);
         `resolution`, and `nearest` over `start`.
     """
     dims = tuple(str(dim) for dim in outcome.dims)
     codes = outcome.to_numpy()
     distances = np.broadcast_to(metric.distances(dims), codes.shape)
     overturned = np.where(codes == code_of(Outcome.OVERTURNED), distances, np.inf)
-    unknown = np.where(np.isin(codes, [NOT_COMPUTED, code_of(Outcome.FAILED)]), distances, np.inf)
+    unknown = np.where(np.isin(codes, [NOT_COMPUTED, *(code_of(one) for one in NOT_TOLD)]), distances, np.inf)
     nearest, known = float(overturned.min(initial=np.inf)), min(float(unknown.min(initial=np.inf)), metric.reach)
     at_least = not nearest <= known
     place = np.unravel_index(int(np.argmin(overturned)), codes.shape) if codes.size else ()
     start = [np.nan if at_least else float(axis[place[dims.index(name)]]) for name, axis in metric.axes.items()]
+    distance, diagonal = min(nearest, known), 2.0 * metric.resolution
     return xr.Dataset(
         {
-            "distance": (
+            "distance": ((), distance, {"units": "1", "long_name": "distance to the nearest overturning start"}),
+            "distance_low": (
                 (),
-                min(nearest, known),
-                {"units": "1", "long_name": "distance to the nearest overturning start"},
+                max(distance - diagonal, 0.0),
+                {"units": "1", "long_name": "least distance of a boundary that is smooth on the scale of the grid"},
+            ),
+            "distance_high": (
+                (),
+                np.inf if at_least else distance,
+                {"units": "1", "long_name": "largest distance of the boundary"},
             ),
             "at_least": ((), at_least, {"long_name": "nothing overturned nearer than this"}),
             "resolution": ((), metric.resolution, {"units": "1", "long_name": "half the diagonal of a cell"}),

@@ -42,3 +42,11 @@ def one_parameter(along: Mapping[str, npt.ArrayLike], over: Mapping[str, object]
         message = f"along[{name!r}] must have at least one value, got none"
         raise ParameterError(message)
     return name, values
+
+
+def require_no_tilt_limit(options: Mapping[str, object]) -> None:
+    """Raise ParameterError if `options` name a tilt limit: a run stopped there is not known to overturn, or not to."""
+    if options.get("tilt_limit") is not None:
+        given = options["tilt_limit"]
+        message = f"tilt_limit must be left out: a run stopped at it is not known to overturn or not; got {given!r} rad"
+        raise ParameterError(message)

@@ -1,6 +1,9 @@
 """A store goes on where it was left, and with no other sweep than its own."""
 
+import importlib
+import linecache
 import shutil
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +15,7 @@ import stylobate as sb
 from stylobate.errors import FileError
 from stylobate.studies.sweeps import Sweep, open_sweep, run_sweep
 from stylobate.studies.sweeps.fingerprint import identity_of
+from stylobate.studies.sweeps.resuming import differences
 
 MODEL = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
 MOTION = sb.Harmonic.circular(acceleration=0.15, angular_frequency=1.0)
@@ -203,10 +207,6 @@ class Sway(sb.BaseMotion):
 @pytest.fixture
 def sway(tmp_path, monkeypatch):
     """Write a module with a motion of its own, and return the class."""
-    import importlib  # noqa: PLC0415
-    import linecache  # noqa: PLC0415
-    import sys  # noqa: PLC0415
-
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
 
@@ -261,3 +261,48 @@ def test_a_sweep_with_a_motion_of_ones_own_goes_on_and_refuses_another_source(sw
     run_sweep(described("0.2 * np.cos(time)"), store=path, resume=True)
     with pytest.raises(FileError, match="motion source changed"):
         run_sweep(described("0.25 * np.cos(time)"), store=path, resume=True)
+
+
+OWN_MODEL = """
+from dataclasses import dataclass
+from stylobate.column import Column
+from stylobate.models import Model
+def force(tilt):
+    return {force}
+def rates(x, y, vx, vy, ax, ay, az, c, eta):
+    return vx, vy, force(x) - eta * vx - ax, force(y) - eta * vy - ay
+def lean(x, y, vx, vy, *_):
+    return x, y, vx, vy
+@dataclass(frozen=True)
+class Spring(Model):
+    column: Column
+    damping: float = 0.0
+    name = "spring"
+    state_names = ("x", "y", "vx", "vy")
+    rates = staticmethod(rates)
+    lean = staticmethod(lean)
+    @property
+    def parameters(self):
+        return self.column.slenderness, self.damping
+    def start(self, tilt, tilt_rate):
+        return (*tilt, *(rate * self.time_scale for rate in tilt_rate))
+"""
+
+
+def test_a_model_of_ones_own_is_told_by_the_functions_of_its_module(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+
+    def described(force):
+        (tmp_path / "springs.py").write_text(OWN_MODEL.format(force=force))
+        monkeypatch.delitem(sys.modules, "springs", raising=False)
+        linecache.clearcache()
+        importlib.invalidate_caches()
+        model = importlib.import_module("springs").Spring(MODEL.column)
+        return Sweep.points(model, MOTION, at={"tilt_x": [0.02]}, duration=1.0).describe()
+
+    first, again, other = (described(force) for force in ("-tilt", "-tilt", "-4.0 * tilt"))
+    monkeypatch.delitem(sys.modules, "springs", raising=False)
+    assert differences(first, again) == []
+    # The source of the class is as before.
+    assert differences(first, other) == ["model equations changed"]

@@ -200,8 +200,8 @@ def _late(batch: Batch) -> _Late:
     }
     phase = np.where(
         forward,
-        np.angle(parts["FORWARD"]) - _reference(batch, batch.motions.forward, conjugate=False),
-        -np.angle(parts["BACKWARD"]) - _reference(batch, batch.motions.backward, conjugate=True),
+        np.angle(parts["FORWARD"]) - _reference(batch, batch.motions.forward),
+        _reference(batch, batch.motions.backward) - np.angle(parts["BACKWARD"]),
     )
     return _Late(
         span=span,
@@ -215,11 +215,10 @@ def _late(batch: Batch) -> _Late:
     )
 
 
-def _reference(batch: Batch, azimuth: Floats, *, conjugate: bool) -> Floats:
-    """Return the azimuth of the forcing's circular part, measured along the line for motion in a plane."""
+def _reference(batch: Batch, azimuth: Floats) -> Floats:
+    """Return the azimuth of a circular part of the forcing, measured along the line for motion in a plane."""
     line = np.arctan2(batch.table[:, Setup.LINE_Y], batch.table[:, Setup.LINE_X])
-    along = azimuth + line if conjugate else azimuth - line
-    return np.where(batch.planar, along, azimuth)
+    return np.where(batch.planar, azimuth - line, azimuth)
 
 
 def _window(batch: Batch, first: int, column: Window) -> Floats:

@@ -136,9 +136,7 @@ def _global_names(code: types.CodeType) -> Iterator[str]:
             name = ""
 
 
-def with_functions(
-    names: Mapping[str, Any], functions: Mapping[str, Function], code: types.CodeType
-) -> dict[str, Any]:
+def with_functions(names: Mapping[str, Any], functions: Mapping[str, Function], code: types.CodeType) -> dict[str, Any]:
     """Return `names` with these functions in their places.
 
     Numba looks into modules, not into classes: for a function called as Class.f, or as module.f, a module takes the

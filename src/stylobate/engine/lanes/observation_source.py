@@ -1,6 +1,18 @@
 """Writes the loop that integrates over the last periods: mean tilt, and the parts that turn with the forcing."""
 
+from collections.abc import Callable
+
 from stylobate.engine.lanes.shape import Shape
+
+
+def _rates_of_tilt(shape: Shape, at: Callable[[str], str]) -> tuple[str, str]:
+    """Return what finds the rates of the tilt at both ends; in a plane it begins at the upright with some speed."""
+    if shape.planar:
+        return f"rate0 = {at('side')} * {at('vx_before')}", f"rate1 = {at('side')} * {at('vx')}"
+    return (
+        f"rate0 = {at('radial_before')} / ({at('tilt_before')} + 1e-300)",
+        f"rate1 = {at('radial')} / ({at('tilt')} + 1e-300)",
+    )
 
 
 def observation_source(shape: Shape) -> str:
@@ -15,8 +27,7 @@ def observation_source(shape: Shape) -> str:
         f"h = {at('made')}",
         f"weight = h * {at('watched')}",
         f"correction = weight * h * {1.0 / 12.0!r}",
-        f"rate0 = {at('radial_before')} / ({at('tilt_before')} + 1e-300)",
-        f"rate1 = {at('radial')} / ({at('tilt')} + 1e-300)",
+        *_rates_of_tilt(shape, at),
         f"{at('mean_tilt')} = {at('mean_tilt')} + 0.5 * weight * ({at('tilt_before')} + {at('tilt')})"
         " + correction * (rate0 - rate1)",
         f"seen = {at('watched')} * abs(h)",

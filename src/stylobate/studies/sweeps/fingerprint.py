@@ -10,23 +10,49 @@ from typing import Any
 
 import numpy as np
 
+from stylobate.engine.lanes.model_code import fingerprint
+from stylobate.models import Model
+
 # Packages whose classes are told by their versions.
 _NOT_ITS_OWN = ("stylobate", "builtins", "abc", "typing", "numpy")
+# The functions of the contract `Model` that ensembles compile and single runs call.
+_STATIC_FUNCTIONS = (
+    "rates",
+    "lean",
+    "planar_rates",
+    "from_plane",
+    "rest_energy",
+    "no_return_tilt",
+    "departure",
+    "passage",
+    "at_rest",
+)
 _ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 
 
 def identity_of(thing: object) -> dict[str, Any]:
     """Return what tells `thing` from others, the same in every process: repr, class, hashes of its state and source.
 
-    The source is that of the classes involved which are not stylobate's own; what those call is not looked at.
+    The source is that of the classes involved which are not stylobate's own; what those call is not looked at, but for
+    a model's static functions: their code and that of the functions they call is its equations.
     """
+    equations = {"equations_sha256": _hash(_equations(thing))} if isinstance(thing, Model) else {}
     return {
         "kind": "other",
         "repr": _stable_repr(thing),
         "class": _name_of(type(thing)),
         "state_sha256": _hash(_state(thing)),
         "source_sha256": _hash(_sources(thing)),
+        **equations,
     }
+
+
+def _equations(model: Model) -> Iterator[str]:
+    """Yield the fingerprints of the static functions in which a model's physics stands."""
+    for name in _STATIC_FUNCTIONS:
+        if (function := getattr(model, name, None)) is not None:
+            yield name
+            yield fingerprint(function)
 
 
 def _state(thing: Any, above: tuple[int, ...] = ()) -> Iterator[str]:

@@ -43,7 +43,7 @@ def measure_peak(buf: Table, i: int) -> float:
             buf[R.LARGEST_TILT, i] = tilt
             buf[R.LARGEST_AT, i] = buf[R.TIME, i] - h + low * h
         return 0.0
-    low, high = 0.0, high
+    low = 0.0
     for _ in range(40):
         u = 0.5 * (low + high)
         x, _ = quintic(u, h, x0, vx0, ax0, x1, vx1, ax1)

@@ -1,0 +1,1 @@
+"""Ensembles beside other solvers: speed, error, cost and memory; run by `make bench`."""

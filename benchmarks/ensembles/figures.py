@@ -1,0 +1,69 @@
+"""The figures of the documentation's page on speed."""
+
+from collections.abc import Mapping, Sequence
+
+from matplotlib.figure import Figure
+
+from stylobate.plots.style import BLUE, GREY, VERMILION, new_figure, styled
+
+from .scaling import Cost
+from .timing import Timing
+
+_TITLES = {"rolling": "rolling: steady motion, 200 periods", "mix": "mix: random starts, most overturn"}
+
+
+@styled
+def engines_figure(names: Mapping[str, str], found: Sequence[Timing], limits: Mapping[str, float]) -> Figure:
+    """Draw trajectories per second as bars on a logarithmic scale, a panel for each workload.
+
+    `limits` are the trajectories per second that the arithmetic peak allows DOP853.
+    """
+    figure = new_figure(2.6)
+    panels = figure.subplots(1, 2, sharey=True, sharex=True)
+    keys = [key for key in names if any(timing.engine == key for timing in found)]
+    for axes, (workload, title) in zip(panels, _TITLES.items(), strict=True):
+        rates = {timing.engine: timing.rate for timing in found if timing.workload == workload}
+        for place, key in enumerate(keys):
+            own = key == "stylobate"
+            axes.barh(place, rates[key], color=VERMILION if own else BLUE, height=0.62)
+            axes.annotate(
+                f"{rates[key]:,.0f}".replace(",", "\u2009"), (rates[key], place), (4, 0),
+                textcoords="offset points", va="center", fontsize=8.5, fontweight="bold" if own else None,
+                bbox={"boxstyle": "square,pad=0.1", "facecolor": "white", "edgecolor": "none"},
+            )  # fmt: skip
+        axes.axvline(limits[workload], color=GREY, linestyle="--", linewidth=1.1, zorder=0)
+        axes.annotate(
+            "DOP853 at the\narithmetic peak", (limits[workload], 0.0), (-4, 0), textcoords="offset points",
+            ha="right", va="center", fontsize=8, color=GREY,
+        )  # fmt: skip
+        axes.set_xscale("log")
+        axes.set_xlim(1.0, 3e6)
+        axes.set_title(title)
+        axes.set_xlabel("trajectories per second, one core")
+        axes.grid(visible=False, axis="y")
+        axes.set_axisbelow(True)
+        axes.tick_params(axis="y", length=0)
+    panels[0].set_yticks(range(len(keys)), [names[key] for key in keys])
+    return figure
+
+
+@styled
+def scaling_figure(found: Sequence[Cost]) -> Figure:
+    """Draw processor time and memory against the number of trajectories, the number on a logarithmic scale."""
+    figure = new_figure(2.8)
+    time_axes, memory_axes = figure.subplots(1, 2)
+    for workload, color, marker in (("rolling", VERMILION, "o"), ("mix", BLUE, "s")):
+        rows = [cost for cost in found if cost.workload == workload]
+        counts = [cost.count for cost in rows]
+        look = {"color": color, "marker": marker, "markersize": 4.5, "label": workload}
+        time_axes.plot(counts, [1e6 * cost.seconds / cost.count for cost in rows], **look)
+        memory_axes.plot(counts, [cost.peak / 1e6 for cost in rows], **look)
+    for axes, title in ((time_axes, "processor time per trajectory, one core"), (memory_axes, "memory of the process")):
+        axes.set_xscale("log")
+        axes.set_xlabel("trajectories")
+        axes.set_title(title)
+        axes.set_ylim(bottom=0.0)
+    time_axes.set_ylabel("µs")
+    memory_axes.set_ylabel("MB, largest")
+    time_axes.legend()
+    return figure

@@ -1,0 +1,80 @@
+"""Processor time and memory of an ensemble against its number of runs; each number in a process of its own."""
+
+import json
+import resource
+import subprocess
+import sys
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from . import ours
+from .one_core import use_one_core
+from .workloads import WORKLOADS
+
+COUNTS = (100, 1_000, 10_000, 100_000, 1_000_000)
+_STATUS, _FORGET = Path("/proc/self/status"), Path("/proc/self/clear_refs")
+
+
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """What an ensemble of `count` runs cost on one core.
+
+    Parameters
+    ----------
+    workload, count
+        What was computed.
+    seconds
+        Processor time.
+    peak
+        Largest memory of the process [bytes].
+    added
+        By how much it exceeded what the process had with the packages loaded and the input made [bytes].
+    """
+
+    workload: str
+    count: int
+    seconds: float
+    peak: int
+    added: int
+
+
+def costs(workload: str, *, largest: int = COUNTS[-1]) -> list[Cost]:
+    """Return the costs for all the counts up to the `largest`."""
+    return [_in_own_process(workload, count) for count in COUNTS if count <= largest]
+
+
+def _in_own_process(workload: str, count: int) -> Cost:
+    command = [sys.executable, "-m", __spec__.name, workload, str(count)]
+    done = subprocess.run(command, check=True, capture_output=True, text=True)  # noqa: S603
+    return Cost(**json.loads(done.stdout))
+
+
+def _measure(workload: str, count: int) -> Cost:
+    use_one_core()
+    runs = WORKLOADS[workload](count)
+    ours.solve(runs.take(slice(0, 64)), threads=1)  # loads the kernel
+    if _FORGET.exists():
+        _FORGET.write_text("5", encoding="ascii")  # the peak so far, of loading
+    before = _memory("VmRSS")
+    seconds = []
+    for _ in range(1 if count >= 100_000 else 5):
+        begun = time.process_time()
+        ours.solve(runs, threads=1)
+        seconds.append(time.process_time() - begun)
+    peak = _memory("VmHWM")
+    return Cost(workload, count, sorted(seconds)[len(seconds) // 2], peak, peak - before)
+
+
+def _memory(field: str) -> int:
+    """Return the memory of this process [bytes]: now (VmRSS) or at most (VmHWM)."""
+    if _STATUS.exists():
+        for line in _STATUS.read_text(encoding="ascii").splitlines():
+            if line.startswith(field):
+                return 1024 * int(line.split()[1])
+    largest = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return largest if sys.platform == "darwin" else 1024 * largest
+
+
+if __name__ == "__main__":
+    print(json.dumps(asdict(_measure(sys.argv[1], int(sys.argv[2])))))

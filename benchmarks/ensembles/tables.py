@@ -1,0 +1,87 @@
+"""The tables of the documentation's page on speed, as Markdown."""
+
+from collections.abc import Mapping, Sequence
+
+from .engines import Engine
+from .scaling import Cost
+from .timing import Timing
+from .workloads import MIX_DISTINCT
+
+
+def engines_table(
+    engines: Sequence[Engine], found: Sequence[Timing], limits: Mapping[str, float], workload: str
+) -> str:
+    """Return one row an engine: speed, its ratio to SciPy's, share of the arithmetic peak, error."""
+    titles = {
+        "rolling": ["trajectories/s", "× SciPy", "share of peak", "largest error"],
+        "mix": ["trajectories/s", "× SciPy", "share of peak", "median error", "other outcome"],
+    }[workload]
+    lines = [f"| {workload}, one core | {' | '.join(titles)} |", "|" + "---|" * (len(titles) + 1)]
+    for engine in engines:
+        if engine.missing:
+            lines.append(
+                f"| {engine.name} | not measured: {', '.join(engine.missing)} not installed |"
+                + " |" * (len(titles) - 1)
+            )
+            continue
+        timing = _of(found, engine.key, workload)
+        cells = [engine.name, _number(timing.rate), _number(timing.rate / _of(found, "scipy", workload).rate)]
+        cells.append(_share(timing.rate / limits[workload]) if engine.dop853 else "–")
+        cells.append(_power(timing.error))
+        if timing.other_outcomes is not None:
+            cells.append(f"{timing.other_outcomes} of {MIX_DISTINCT}")
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def targets_table(found: Sequence[Timing], two_threads: Mapping[str, float] | None) -> str:
+    """Return what was asked of "rolling" on one core with AVX-512, and what is."""
+    ours, scipy = _of(found, "stylobate", "rolling"), _of(found, "scipy", "rolling")
+    heyoka = next((t for t in found if (t.engine, t.workload) == ("heyoka8", "rolling")), None)
+    asked = [
+        ("speed over SciPy's DOP853 loop", "≥ 1500", ours.rate / scipy.rate, 1500.0),
+        ("speed over heyoka's batch of 8", "≥ 2", None if heyoka is None else ours.rate / heyoka.rate, 2.0),
+        ("speed of two threads over one", "≥ 1.8", None if two_threads is None else two_threads["rolling"], 1.8),
+    ]
+    lines = ["| rolling | aim | measured | |", "|---|---|---|---|"]
+    for what, aim, value, least in asked:
+        told = "not measured |" if value is None else f"{_number(value)} | {'met' if value >= least else 'not met'}"
+        lines.append(f"| {what} | {aim} | {told} |")
+    error = f"{_power(ours.error)} against {_power(scipy.error)}"
+    lines.append(
+        f"| error of the end state | no worse than SciPy's | {error} |"
+        f" {'met' if ours.error <= scipy.error else 'not met'} |"
+    )
+    return "\n".join(lines) + "\n"
+
+
+def scaling_table(found: Sequence[Cost]) -> str:
+    """Return one row a number of trajectories."""
+    lines = [
+        "| trajectories | rolling: time [s] | µs each | memory [MB] | mix: time [s] | µs each | memory [MB] |",
+        "|" + "---|" * 7,
+    ]
+    for count in sorted({cost.count for cost in found}):
+        cells = [_number(count)]
+        for workload in ("rolling", "mix"):
+            cost = next(c for c in found if (c.workload, c.count) == (workload, count))
+            cells += [f"{cost.seconds:.3g}", f"{1e6 * cost.seconds / count:.3g}", f"{cost.peak / 1e6:.0f}"]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def _of(found: Sequence[Timing], engine: str, workload: str) -> Timing:
+    return next(timing for timing in found if (timing.engine, timing.workload) == (engine, workload))
+
+
+def _number(value: float) -> str:
+    """Return three digits or all of the integer part, in groups of three."""
+    return f"{value:.3g}" if value < 100.0 else f"{value:,.0f}".replace(",", " ")
+
+
+def _share(value: float) -> str:
+    return f"{100.0 * value:.2g} %"
+
+
+def _power(value: float) -> str:
+    return f"{value:.1e}".replace("e-0", "e-")

@@ -1,0 +1,156 @@
+"""What every engine computes: two sets of runs of equations (1), c = η = 0.1.
+
+The base moves as a_i(τ) = cos_i cos θτ + sin_i sin θτ. A run ends with its duration, or at the tilt of no return
+c + sup|a_h|.
+"""
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import stylobate as sb
+
+Array = npt.NDArray[np.float64]
+
+C = ETA = 0.1
+RTOL, ATOL = 1e-8, 1e-10
+PERIODS = 200
+COLUMN = sb.Column.dimensionless(C)
+"""SI numbers are the dimensionless ones."""
+
+ROLLING_ACCELERATION = 0.065
+MIX_DISTINCT = 512
+MIX_AXIS_RATIO = 0.7
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Workload:
+    """Runs, one a row of every array.
+
+    Parameters
+    ----------
+    name
+        "rolling" or "mix".
+    theta, duration
+        Frequency and length of each run.
+    start
+        x, y, their rates, shape (n, 4).
+    cos, sin
+        Coefficients of the base acceleration along x and y [g], shape (n, 2).
+    no_return
+        Tilt of no return.
+    exact
+        The states at the end, where they are known in closed form.
+    motion, parameters
+        The same base motion as stylobate takes it.
+    """
+
+    name: str
+    theta: Array
+    duration: Array
+    start: Array
+    cos: Array
+    sin: Array
+    no_return: Array
+    exact: Array | None
+    motion: sb.Harmonic
+    parameters: dict[str, Array] = field(repr=False)
+
+    def __len__(self) -> int:
+        return len(self.theta)
+
+    @property
+    def circular(self) -> bool:
+        """Whether the base moves in one and the same circle (a0 cos θτ, a0 sin θτ) in all runs."""
+        return self.name == "rolling"
+
+    def take(self, index: Any) -> "Workload":
+        """Return the runs of this index."""
+        rows = {name: getattr(self, name)[index] for name in ("theta", "duration", "start", "cos", "sin", "no_return")}
+        exact = None if self.exact is None else self.exact[index]
+        return replace(self, **rows, exact=exact, parameters={k: v[index] for k, v in self.parameters.items()})
+
+
+def rolling(count: int) -> Workload:
+    """Return runs on the exact steady rolling under circular motion: θ even on 3…6, in random order (seed 1)."""
+    theta = 3.0 + 3.0 * (np.random.default_rng(1).permutation(count) + 0.5) / count
+    branch = sb.theory.steady_rolling(theta, ROLLING_ACCELERATION, c=C, eta=ETA).upper
+    amplitude, psi = branch.amplitude, branch.phase
+    start = np.stack(
+        [
+            amplitude * np.cos(psi),
+            amplitude * np.sin(psi),
+            -amplitude * theta * np.sin(psi),
+            amplitude * theta * np.cos(psi),
+        ],
+        axis=1,
+    )
+    circle = np.full(count, ROLLING_ACCELERATION)
+    none = np.zeros(count)
+    return Workload(
+        name="rolling",
+        theta=theta,
+        duration=PERIODS * 2.0 * math.pi / theta,
+        start=start,
+        cos=np.stack([circle, none], axis=1),
+        sin=np.stack([none, circle], axis=1),
+        no_return=np.full(count, C + ROLLING_ACCELERATION),
+        exact=start,  # after whole periods it is where it was
+        motion=sb.Harmonic.circular(acceleration=ROLLING_ACCELERATION, angular_frequency=3.0),
+        parameters={"angular_frequency": theta},
+    )
+
+
+def mix(count: int) -> Workload:
+    """Return `count` runs, copies of 512 random ones (seed 2) in random order, so that every engine has the same mix.
+
+    Uniform and independent: start tilt in a disc of radius 0.09, its rate in one of radius 0.1; the base on an ellipse
+    of axis ratio 0.7 with largest acceleration 0.15…0.3, direction of the long axis 0…π, start phase 0…2π, θ = 1…6.
+    The acceleration is always above c: no run comes to rest, which equations (1) by themselves cannot follow.
+    """
+    rng = np.random.default_rng(2)
+    tilt, rate = (_in_disc(rng, radius) for radius in (0.09, 0.1))
+    largest = rng.uniform(0.15, 0.3, MIX_DISTINCT)
+    rotation = rng.uniform(0.0, math.pi, MIX_DISTINCT)
+    phase = rng.uniform(0.0, 2.0 * math.pi, MIX_DISTINCT)
+    theta = rng.uniform(1.0, 6.0, MIX_DISTINCT)
+    # R(rotation) (s cos ξ, q s sin ξ), ξ = θτ + phase
+    long = np.stack([np.cos(rotation), np.sin(rotation)], axis=1) * largest[:, None]
+    short = MIX_AXIS_RATIO * np.stack([-np.sin(rotation), np.cos(rotation)], axis=1) * largest[:, None]
+    cos_phase, sin_phase = np.cos(phase)[:, None], np.sin(phase)[:, None]
+    distinct = Workload(
+        name="mix",
+        theta=theta,
+        duration=PERIODS * 2.0 * math.pi / theta,
+        start=np.concatenate([tilt, rate], axis=1),
+        cos=long * cos_phase + short * sin_phase,
+        sin=short * cos_phase - long * sin_phase,
+        no_return=C + largest,
+        exact=None,
+        motion=sb.Harmonic.elliptic(amplitude=(0.2, 0.2 * MIX_AXIS_RATIO), phase=-math.pi / 2.0, angular_frequency=3.0),
+        parameters={
+            "angular_frequency": theta,
+            "acceleration": largest,
+            "rotation": rotation,
+            "start_phase": phase,
+        },
+    )
+    return distinct.take(mix_order(count))
+
+
+def mix_order(count: int) -> npt.NDArray[np.intp]:
+    """Return which of the distinct runs each run of the mix is; the first 512 are all of them."""
+    rng = np.random.default_rng(3)
+    rounds = -(-count // MIX_DISTINCT)
+    return np.concatenate([rng.permutation(MIX_DISTINCT) for _ in range(rounds)])[:count]
+
+
+WORKLOADS = {"rolling": rolling, "mix": mix}
+
+
+def _in_disc(rng: np.random.Generator, radius: float) -> Array:
+    size, angle = radius * np.sqrt(rng.random(MIX_DISTINCT)), rng.uniform(0.0, 2.0 * math.pi, MIX_DISTINCT)
+    return np.stack([size * np.cos(angle), size * np.sin(angle)], axis=1)

@@ -1,0 +1,127 @@
+"""`stylobate map`: what becomes of the column over two parameters."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from stylobate.cli import options as opt
+from stylobate.cli.many_runs import check_outputs, computed, end, is_to_compute, write
+from stylobate.cli.output import print_json, print_table
+from stylobate.cli.saved import axes_of, open_saved, plain_axes, provenance_of
+from stylobate.cli.source import read_source
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Source = Annotated[
+    Path | None,
+    typer.Argument(
+        help="TOML description, or a saved map (.nc) or store (.zarr) to show or repeat", show_default=False
+    ),
+]
+
+
+def overturning_map(
+    context: typer.Context,
+    source: Source = None,
+    x: opt.X = None,
+    y: opt.Y = None,
+    x_spacing: opt.XSpacing = None,
+    y_spacing: opt.YSpacing = None,
+    tilt: opt.Tilt = None,
+    tilt_rate: opt.TiltRate = None,
+    duration: opt.Duration = None,
+    periods: opt.Periods = None,
+    rtol: opt.Rtol = None,
+    tilt_limit: opt.TiltLimit = None,
+    rest_energy: opt.RestEnergy = None,
+    max_steps: opt.MaxSteps = None,
+    shape: opt.Shape = None,
+    radius: opt.Radius = None,
+    height: opt.Height = None,
+    density: opt.Density = None,
+    inner_radius: opt.InnerRadius = None,
+    top_radius: opt.TopRadius = None,
+    slenderness: opt.Slenderness = None,
+    gravity: opt.Gravity = None,
+    damping: opt.Damping = None,
+    motion: opt.Motion = None,
+    acceleration: opt.Acceleration = None,
+    angular_frequency: opt.AngularFrequency = None,
+    frequency: opt.Frequency = None,
+    amplitude: opt.Amplitude = None,
+    phase: opt.Phase = None,
+    direction: opt.Direction = None,
+    sense: opt.Sense = None,
+    stroke: opt.Stroke = None,
+    diameter: opt.Diameter = None,
+    rpm: opt.Rpm = None,
+    start_phase: opt.StartPhase = None,
+    ramp: opt.Ramp = None,
+    resume: opt.Resume = False,
+    executor: opt.Executor = None,
+    threads: opt.ThreadCount = None,
+    figure: opt.Figure = None,
+    output: opt.OutputOrStore = None,
+    as_json: opt.Json = False,
+) -> None:
+    """Tell what becomes of the column over two parameters: stays, rocks, rolls or overturns.
+
+    A number of column, model, motion or start can vary along each axis: angular-frequency, acceleration, start-phase,
+    damping, size, tilt-x … A saved map is shown; options that change it compute it anew. Examples:
+
+    stylobate map --slenderness 0.1 --damping 0.1 --motion circular --x angular-frequency 0.5 6 100
+    --y acceleration 0.05 0.6 100 --periods 100 --output map.zarr --figure map.png
+
+    stylobate map map.zarr --resume
+    """
+    from stylobate import spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
+    from stylobate.studies.overturning import outcome_shares  # noqa: PLC0415
+
+    given, complete = context.params, True
+    check_outputs(given)
+    saved = open_saved(source)
+    if not is_to_compute(saved, given):
+        assert saved is not None
+        found = outcome_shares(saved)
+    else:
+        if saved is None:
+            described = read_source(source)
+        else:
+            described = spec.MapDescription.of_saved(provenance_of(saved), axes_of(saved)).values()
+        values = opt.overlay_axes(opt.overlay(described, given, opt.RUN_NAMES), given, "map")
+        setup = spec.MapDescription.parse(values).build()
+        found, complete = computed(studies.overturning_map, setup, given, "map")
+    write(found, given)
+    if as_json:
+        print_json(_summary(found))
+    else:
+        _print(found)
+    end(found, given, complete=complete)
+
+
+def _summary(found: "xr.Dataset") -> dict[str, Any]:
+    return {
+        "kind": found.attrs["kind"],
+        **plain_axes(found),
+        "outcomes": {name: {"count": count, "share": share} for name, count, share in _shares(found)},
+        "uncertain": int(found["uncertain"].sum()),
+        "computed": int(found["computed"]),
+        "runs": found["outcome"].size,
+        "provenance": provenance_of(found),
+    }
+
+
+def _shares(found: "xr.Dataset") -> list[tuple[str, int, float]]:
+    table = (found[name].to_numpy() for name in ("outcome_name", "count", "share"))
+    return [(str(name), int(count), float(share)) for name, count, share in zip(*table, strict=True)]
+
+
+def _print(found: "xr.Dataset") -> None:
+    rows = [(name, str(count), f"{100.0 * share:.2f} %") for name, count, share in _shares(found) if count]
+    over = " and ".join(str(dim) for dim in found["outcome"].dims)
+    done, total = int(found["computed"]), found["outcome"].size
+    title = f"{total} runs over {over}" + (f", {done} of them done" if done < total else "")
+    uncertain = int(found["uncertain"].sum())
+    print_table(title + (f"; {uncertain} uncertain" if uncertain else ""), rows, ("outcome", "runs", "share"))

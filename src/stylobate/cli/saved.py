@@ -1,0 +1,87 @@
+"""Results of studies in files: read from netCDF files and stores, written to netCDF files."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from stylobate.errors import FileError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+STORE = ".zarr"
+
+
+def open_saved(source: Path | None) -> "xr.Dataset | None":
+    """Return the runs saved in a netCDF file (.nc) or a store (.zarr), finished or not; None for any other source.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read or holds no runs of a study.
+    """
+    if source is None or source.suffix not in (".nc", STORE):
+        return None
+    if not source.exists():
+        message = f"cannot read {source}: No such file or directory"
+        raise FileError(message)
+    if source.suffix == STORE:
+        from stylobate import studies  # noqa: PLC0415  heavy imports wait until the options are read
+
+        return studies.open_sweep(source, load=True)
+    data = _read(source)
+    if "outcome" not in data.data_vars or "provenance" not in data.attrs:
+        message = f"{source} holds no map or basins saved by stylobate"
+        raise FileError(message)
+    return data
+
+
+def _read(path: Path) -> "xr.Dataset":
+    import xarray as xr  # noqa: PLC0415
+
+    try:
+        with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as stored:
+            return stored.load()
+    except (OSError, ValueError) as error:
+        message = f"cannot read {path}: {getattr(error, 'strerror', None) or error}"
+        raise FileError(message) from None
+
+
+def provenance_of(data: "xr.Dataset") -> dict[str, Any]:
+    """Return what tells how `data` was made."""
+    provenance: dict[str, Any] = json.loads(data.attrs["provenance"])
+    return provenance
+
+
+def axes_of(data: "xr.Dataset") -> dict[str, list[float]]:
+    """Return the values along each dimension of the runs in `data`, by name; none for a random sample."""
+    names = [str(dim) for dim in data["outcome"].dims]
+    return {name: data[name].to_numpy().tolist() for name in names if name in data.coords}
+
+
+def save_dataset(data: "xr.Dataset", path: Path) -> None:
+    """Write `data` into the netCDF file `path`: the whole of it or nothing.
+
+    Raises
+    ------
+    FileError
+        If it cannot be written.
+    """
+    beside = path.with_name(f"{path.name}.part")
+    try:
+        data.to_netcdf(beside, engine="h5netcdf")
+        beside.replace(path)
+    except OSError as error:
+        message = f"cannot write {path}: {error.strerror or error}"
+        raise FileError(message) from None
+
+
+def plain_axes(data: "xr.Dataset") -> Mapping[str, Any]:
+    """Return name, ends and number of the values along each axis, for JSON."""
+    axes = axes_of(data).items()
+    return {
+        place: {"name": name, "from": values[0], "to": values[-1], "number": len(values)}
+        for place, (name, values) in zip("xy", axes, strict=False)
+        if values
+    }

@@ -1,0 +1,36 @@
+"""Saved results, and Ctrl-C in the middle of many runs."""
+
+import signal
+from contextlib import contextmanager
+
+import pytest
+import xarray as xr
+
+from stylobate.cli import many_runs
+
+
+def _saved(path):
+    with xr.open_dataset(path, engine="h5netcdf") as data:
+        return data.load()
+
+
+@pytest.fixture
+def saved():
+    """What a netCDF file holds."""
+    return _saved
+
+
+@pytest.fixture
+def interrupted(monkeypatch):
+    """Ctrl-C as soon as some runs are done; `undo` lifts it."""
+
+    @contextmanager
+    def runs_done(what):
+        def stop(done, total):
+            if 0 < done < total:
+                signal.raise_signal(signal.SIGINT)
+
+        yield stop
+
+    monkeypatch.setattr(many_runs, "runs_done", runs_done)
+    return monkeypatch
