@@ -36,7 +36,7 @@ test: $(VENV)/.core $(VENV)/.test  ## the tests
 test-all: $(VENV)/.core $(VENV)/.test  ## the tests, the slow ones included
 	$(BIN)/python -m pytest -n auto -m ""
 
-lint: $(VENV)/.core $(VENV)/.lint  ## style, types, import contracts
+lint: $(VENV)/.core $(VENV)/.test $(VENV)/.lint  ## style, types, import contracts
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy

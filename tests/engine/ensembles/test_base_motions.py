@@ -1,0 +1,180 @@
+"""Base motions of every kind move the runs of an ensemble as they move a single run."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import stylobate as sb
+from stylobate.engine.ensembles.polynomials import tabulated
+from stylobate.errors import ParameterError, UnsupportedError
+from stylobate.motions import BaseMotion
+
+STONE = sb.Slender(sb.Column.solid(radius=0.5, height=10.0, density=2700.0), damping=0.1)
+ONE = sb.Harmonic.elliptic(amplitude=(0.6, 0.3), phase=1.0, angular_frequency=2.0, start_phase=0.4)
+RAMPED = sb.Harmonic.circular(acceleration=0.7, angular_frequency=2.0, ramp=1.7)
+TWO = ONE + sb.Harmonic.straight(acceleration=0.3, angular_frequency=3.1, direction=1.0)
+LIFTING = sb.Harmonic(amplitude=(0.5, 0.2, 2.0), phase=(0.0, 0.5, 1.0), angular_frequency=2.0)
+START = {"tilt": (0.04, 0.01), "tilt_rate": (-0.01, 0.03), "duration": 8.0, "rtol": 1e-10}
+
+
+def expect_as_alone(runs, outcome_in, end_of, ends_of):
+    data = runs.together()
+    for index in range(len(runs)):
+        single = runs.alone(index)
+        assert outcome_in(data, index) is single.outcome
+        assert bool(data["planar"][index]) is single.planar
+        assert float(data["decided_at"][index]) == pytest.approx(single.decided_at, abs=1e-6)
+        np.testing.assert_allclose(ends_of(data)[index], end_of(single), rtol=0.0, atol=1e-7)
+    return data
+
+
+@pytest.mark.parametrize(
+    "motion",
+    [
+        None,
+        ONE,
+        ONE.rotated(0.7).scaled(1.3),
+        ONE.scaled(-0.8, vertical=0.0),
+        ONE.delayed(-1.3),
+        RAMPED,
+        RAMPED.delayed(0.9),
+        RAMPED.delayed(-0.9),
+        RAMPED.delayed(-0.9).delayed(2.0),
+        RAMPED.delayed(2.0).delayed(-0.9).rotated(1.0),
+        RAMPED.delayed(2.0).delayed(1.1),
+        TWO,
+        TWO.rotated(-0.4).scaled(0.7),
+        LIFTING,
+        LIFTING.scaled(1.2, vertical=-0.4),
+    ],
+    ids=lambda motion: type(motion).__name__,
+)
+def test_harmonic_motions_move_runs_as_they_do_alone(runs_of, outcome_in, end_of, ends_of, motion):
+    expect_as_alone(runs_of(STONE, motion, 1, **START), outcome_in, end_of, ends_of)
+
+
+# The end of the rise is met as a break: to the last bit the same number in the window and among the breaks.
+@settings(max_examples=40)
+@given(delays=st.lists(st.floats(-3.0, 5.0), min_size=1, max_size=20), ramp=st.floats(0.01, 4.0))
+def test_a_rise_ends_wherever_it_began(delays, ramp):
+    motion = sb.Harmonic.circular(acceleration=0.7, angular_frequency=2.0, ramp=ramp)
+    data = sb.simulate_ensemble(STONE, motion, tilt=(0.02, 0.0), duration=10.0, parameters={"delay": delays}, rtol=1e-6)
+    single = sb.simulate(STONE, motion.delayed(delays[0]), tilt=(0.02, 0.0), duration=10.0, samples=2, rtol=1e-6)
+    late = sb.simulate(STONE, motion.delayed(delays[0]), tilt=(0.02, 0.0), duration=10.0, samples=2, rtol=1e-9)
+    spread = np.abs(single.data["tilt"][-1] - late.data["tilt"][-1]).max()
+    assert np.abs(data["end_tilt"][0].to_numpy() - late.data["tilt"].to_numpy()[-1]).max() < 100.0 * spread + 1e-4
+
+
+@dataclass(frozen=True)
+class Burst(BaseMotion):
+    """Two frequencies in a Gaussian envelope, from a jump at its `onset` on; a motion of a user's own."""
+
+    onset: float = 0.0
+    vertical: float = 0.3
+    bend: float = 0.8
+    listed: bool = True
+
+    def derivative(self, time, order):
+        assert order == 2
+        t = np.asarray(time, dtype=float)
+        envelope = np.where(t < self.onset, 0.0, np.exp(-(((t - 3.0) / 4.0) ** 2)))
+        x = envelope * 0.8 * np.cos(2.0 * t)
+        return x, self.bend * envelope * 0.4 * np.sin(3.3 * t), self.vertical * envelope * np.cos(4.0 * t)
+
+    def largest_horizontal(self, since=0.0):
+        late = max(since, 3.0)
+        return 1.2 * math.exp(-(((late - 3.0) / 4.0) ** 2))
+
+    def vertical_range(self, since=0.0):
+        size = self.vertical * math.exp(-(((max(since, 3.0) - 3.0) / 4.0) ** 2))
+        return -size, size
+
+    def directions(self):
+        return ((0.8, 0.0), (0.0, 0.4 * self.bend))
+
+    @property
+    def highest_frequency(self):
+        return 4.0
+
+    @property
+    def breaks(self):
+        return (self.onset,) if self.listed and self.onset > 0.0 else ()
+
+
+@pytest.mark.parametrize("motion", [Burst(), Burst(onset=2.345, vertical=0.0), Burst(onset=0.7)])
+@pytest.mark.parametrize("end", [5.0, 40.0])
+def test_a_tabulated_motion_is_the_motion_to_rounding(motion, end):
+    table = tabulated(motion, end)
+    starts, ends = table.rows[:, 0], table.rows[:, 1]
+    np.testing.assert_array_equal(starts[1:], ends[:-1])
+    assert starts[0] == 0.0
+    assert ends[-1] >= end
+    time = np.random.default_rng(1).uniform(0.0, end, 20_000)
+    rows = table.rows[np.searchsorted(starts, time, side="right") - 1]
+    u = (time - 0.5 * (rows[:, 0] + rows[:, 1])) / (0.5 * (rows[:, 1] - rows[:, 0]))
+    coefficients = rows[:, 5:].reshape(len(time), 3, table.degree + 1)
+    found = np.einsum("nap,np->an", coefficients, u[:, np.newaxis] ** np.arange(table.degree + 1))
+    assert np.abs(found - np.stack(motion.derivative(time, 2))).max() < 1e-10 * motion.largest_horizontal()
+    # Bounds are those from the start of each piece on.
+    np.testing.assert_allclose(table.rows[:, 2], [motion.largest_horizontal(start) for start in starts])
+
+
+@pytest.mark.parametrize(
+    "motion",
+    [Burst(vertical=0.0), Burst(onset=2.345, vertical=0.0), Burst(onset=0.7), Burst(bend=0.0, vertical=0.0)],
+)
+def test_a_motion_of_ones_own_moves_runs_as_it_does_alone(runs_of, outcome_in, end_of, ends_of, motion):
+    values = {"rotation": [0.0, 0.9, -2.0], "scale": [1.0, 1.4, -0.8], "delay": [0.0, 0.63, -0.4]}
+    data = expect_as_alone(runs_of(STONE, motion, 3, **START, parameters=values), outcome_in, end_of, ends_of)
+    assert len(set(data["end_tilt"][:, 0].to_numpy().tolist())) == 3
+
+
+def test_a_motion_of_ones_own_releases_a_column_from_rest(runs_of, outcome_in, end_of, ends_of):
+    still = {"tilt": (0.0, 0.0), "duration": 12.0, "rtol": 1e-10}
+    for motion in (Burst(vertical=0.0), Burst(bend=0.0, vertical=0.0)):
+        runs = runs_of(STONE, motion, 3, **still, parameters={"scale": [1.0, 1.5, 2.0]})
+        data = expect_as_alone(runs, outcome_in, end_of, ends_of)
+        assert int(data["releases"][0]) == 0
+        assert int(data["releases"][2]) >= 1
+
+
+def test_a_jump_that_is_not_listed_is_refused():
+    with pytest.raises(UnsupportedError, match=r"must be smooth between its breaks, but is not near t = 2\.34") as caught:
+        sb.simulate_ensemble(STONE, Burst(onset=2.345, listed=False), **START)
+    assert "\n" not in str(caught.value)
+
+
+class Broken(BaseMotion):
+    """A motion that breaks one of its promises."""
+
+    def __init__(self, values, bound=1.0):
+        self.values, self.bound = values, bound
+
+    def derivative(self, time, order):
+        return tuple(np.full(np.shape(time), value) for value in self.values)
+
+    def largest_horizontal(self, since=0.0):
+        return self.bound
+
+    def vertical_range(self, since=0.0):
+        return 0.0, 0.0
+
+    def directions(self):
+        return ((1.0, 0.0),)
+
+
+@pytest.mark.parametrize(
+    ("motion", "told"),
+    [
+        (Broken((math.nan, 0.0, 0.0)), "finite acceleration"),
+        (Broken((0.5, 0.0)), "three arrays"),
+        (Broken((0.5, 0.0, 0.0), bound=0.1), "largest_horizontal must bound"),
+    ],
+)
+def test_a_motion_that_breaks_its_promises_is_told(motion, told):
+    with pytest.raises(ParameterError, match=told):
+        sb.simulate_ensemble(STONE, motion, tilt=(0.03, 0.0), duration=1.0)
