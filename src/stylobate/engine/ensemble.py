@@ -11,6 +11,7 @@ import xarray as xr
 
 from stylobate.engine.ensembles.batch import Batch, Plan
 from stylobate.engine.ensembles.broadcasting import AXIS, ArrayLike, Runs, broadcast
+from stylobate.engine.ensembles.harmonics import terms_of
 from stylobate.engine.ensembles.motion_columns import MotionPlan
 from stylobate.engine.ensembles.options import Options
 from stylobate.engine.ensembles.pool import Halt, parts_of, run_parts, usual_threads
@@ -123,9 +124,9 @@ def simulate_ensemble(
     # What differs between the runs stands in the coordinates.
     arguments = {"tilt": tilt, "tilt_rate": tilt_rate, "duration": duration, **changes}
     same = {name: np.asarray(value).tolist() for name, value in arguments.items() if name not in runs.coordinates}
-    plan = Plan(model, MotionPlan.of(moved, runs.values, runs.duration), options)
-    if plan.motion.terms is None and len(runs):
+    if terms_of(moved) is None and len(runs):
         check_motion(moved, float(runs.duration.max()))
+    plan = Plan(model, MotionPlan.of(moved, runs.values, runs.duration), options)
 
     def result() -> xr.Dataset:
         return _dataset(runs, arrays, _provenance(model, moved, options, same))

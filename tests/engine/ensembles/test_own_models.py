@@ -1,0 +1,306 @@
+"""Models of a user's own, written in a file of theirs: compiled as they stand, or refused in one line."""
+
+import importlib.util
+import sys
+from itertools import count
+
+import numpy as np
+import pytest
+
+import stylobate as sb
+from stylobate.engine.lanes.model_code import fingerprint
+from stylobate.errors import UnsupportedError
+
+COLUMN = sb.Column.dimensionless(0.1)
+CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
+STRAIGHT = sb.Harmonic.straight(acceleration=0.15, angular_frequency=4.0)
+TURNING = {"tilt": (0.04, 0.0), "tilt_rate": (0.0, 0.07), "duration": 20.0, "rtol": 1e-11}
+FROM_REST = {"tilt": (0.0, 0.0), "duration": 10.0, "rtol": 1e-11}
+
+HEAD = """
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+import stylobate as sb
+"""
+
+# The two models of the page "models".
+DRAGGED = """
+@dataclass(frozen=True, slots=True)
+class Dragged(sb.Model):
+    column: sb.Column
+    drag: float = 0.0
+    name: ClassVar[str] = "dragged"
+    state_names: ClassVar[tuple[str, ...]] = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
+
+    @staticmethod
+    def rates(x, y, vx, vy, ax, ay, az, c, k):
+        lean = (1.0 + az) * (1.0 - c / math.hypot(x, y))
+        drag = RESISTANCE
+        return vx, vy, lean * x - drag * vx - ax, lean * y - drag * vy - ay
+
+    @property
+    def parameters(self):
+        return self.column.slenderness, self.drag
+
+    def start(self, tilt, tilt_rate):
+        scale = self.time_scale
+        return tilt[0], tilt[1], tilt_rate[0] * scale, tilt_rate[1] * scale
+
+    @staticmethod
+    def lean(x, y, vx, vy, *parameters):
+        return x, y, vx, vy
+"""
+SLENDER_DRAGGED = """
+@dataclass(frozen=True, slots=True)
+class SlenderDragged(sb.Slender):
+    drag: float = 0.0
+    name: ClassVar[str] = "slender, dragged"
+
+    @staticmethod
+    def rates(x, y, vx, vy, ax, ay, az, c, eta, k):
+        slowing = eta + k * math.hypot(vx, vy)
+        return sb.Slender.rates(x, y, vx, vy, ax, ay, az, c, slowing)
+
+    @property
+    def parameters(self):
+        return self.column.slenderness, self.damping, self.drag
+
+    @staticmethod
+    def planar_rates(tilt, rate, side, horizontal, vertical, c, eta, k):
+        slowing = eta + k * abs(rate)
+        return rate, (1.0 + vertical) * (tilt - c * side) - slowing * rate - horizontal
+"""
+
+
+@pytest.fixture
+def written(tmp_path, monkeypatch):
+    """Write a module of a user's and import it; returns a function of its text."""
+    number = count()
+
+    def write(text):
+        name = f"of_a_user_{tmp_path.name}_{next(number)}".replace("-", "_")
+        path = tmp_path / f"{name}.py"
+        path.write_text(HEAD + text)
+        spec = importlib.util.spec_from_file_location(name, path)
+        module = importlib.util.module_from_spec(spec)
+        monkeypatch.setitem(sys.modules, name, module)
+        spec.loader.exec_module(module)
+        return module
+
+    return write
+
+
+def dragged(resistance="k * math.hypot(vx, vy)", before=""):
+    return before + DRAGGED.replace("RESISTANCE", resistance)
+
+
+def expect_as_alone(model, motion, **arguments):
+    data = sb.simulate_ensemble(model, motion, **arguments).isel(run=0)
+    single = sb.simulate(model, motion, **arguments, samples=2)
+    assert int(data["outcome"]) == list(sb.Outcome).index(single.outcome)
+    assert bool(data["planar"]) is single.planar
+    assert float(data["decided_at"]) == pytest.approx(single.decided_at, abs=1e-7)
+    np.testing.assert_allclose(data["end_tilt"], single.data["tilt"][-1], rtol=0.0, atol=1e-8)
+    np.testing.assert_allclose(data["end_tilt_rate"], single.data["tilt_rate"][-1], rtol=0.0, atol=1e-8)
+    return data
+
+
+def test_a_model_with_the_required_members_only(written):
+    model = written(dragged()).Dragged(COLUMN, drag=5.0)
+    expect_as_alone(model, CIRCLE, **TURNING)
+    # Its own number differs between runs like any other; without drag it is the slender column without friction.
+    runs = sb.simulate_ensemble(model, CIRCLE, **TURNING, parameters={"drag": [0.0, 5.0]})
+    plain = sb.simulate_ensemble(sb.Slender(COLUMN), CIRCLE, **TURNING)
+    np.testing.assert_allclose(runs["end_tilt"][0], plain["end_tilt"][0], rtol=0.0, atol=1e-9)
+    assert np.abs(runs["end_tilt"][1] - runs["end_tilt"][0]).max() > 1e-4
+    # No proof of overturning: it counts at π/2.
+    fallen = expect_as_alone(model, CIRCLE.scaled(3.0), **{**TURNING, "tilt": (0.09, 0.0)})
+    assert float(fallen["largest_tilt"]) == pytest.approx(np.pi / 2.0, abs=1e-9)
+    with pytest.raises(UnsupportedError, match="does not say how a column departs"):
+        sb.simulate_ensemble(model, CIRCLE.scaled(3.0), duration=5.0)
+
+
+def test_a_model_that_calls_another_models_functions(written):
+    model = written(SLENDER_DRAGGED).SlenderDragged(COLUMN, damping=0.1, drag=5.0)
+    expect_as_alone(model, CIRCLE, **TURNING)
+    pushed = expect_as_alone(model, STRAIGHT, **FROM_REST)
+    assert bool(pushed["planar"])
+    assert int(pushed["releases"]) == 1
+    resting = {"tilt": (0.02, 0.0), "tilt_rate": (0.0, 0.01), "duration": 200.0}
+    at_rest = sb.simulate_ensemble(model, CIRCLE.scaled(0.0), **resting)
+    assert int(at_rest["outcome"][0]) == list(sb.Outcome).index(sb.Outcome.AT_REST)
+
+
+HELPERS = """
+POWER = 1.5
+
+
+class Law:
+    @staticmethod
+    def of(speed, k):
+        return POWER * k * speed
+
+
+def speed_of(vx, vy):
+    return math.sqrt(vx * vx + vy * vy)
+
+
+def resistance(vx, vy, k):
+    return Law.of(speed_of(vx, vy), k)
+"""
+
+
+def test_a_model_whose_functions_call_helpers_and_read_constants_of_their_module(written):
+    text = dragged("resistance(vx, vy, k)", HELPERS)
+    model = written(text).Dragged(COLUMN, drag=5.0)
+    data = expect_as_alone(model, CIRCLE, **TURNING)
+    # A change of the constant is a change of the model, in the next process and in this one.
+    other = written(text.replace("POWER = 1.5", "POWER = 2.5")).Dragged(COLUMN, drag=5.0)
+    changed = expect_as_alone(other, CIRCLE, **TURNING)
+    assert np.abs(changed["end_tilt"] - data["end_tilt"]).max() > 1e-5
+
+
+FURTHER = """
+@dataclass(frozen=True, slots=True)
+class Counted(sb.Slender):
+    name: ClassVar[str] = "slender with its way"
+    state_names: ClassVar[tuple[str, ...]] = ("way", "tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
+    planar_rates: ClassVar = None
+    passage: ClassVar = None
+
+    @staticmethod
+    def rates(way, x, y, vx, vy, ax, ay, az, c, eta):
+        return math.sqrt(vx * vx + vy * vy), *sb.Slender.rates(x, y, vx, vy, ax, ay, az, c, eta)
+
+    def start(self, tilt, tilt_rate):
+        return 0.0 * tilt[0], tilt[0], tilt[1], tilt_rate[0] * self.time_scale, tilt_rate[1] * self.time_scale
+
+    @staticmethod
+    def lean(way, x, y, vx, vy, *_):
+        return x, y, vx, vy
+
+    @staticmethod
+    def at_rest(way, x, y, vx, vy, *_):
+        return way, 0.0, 0.0, 0.0, 0.0
+
+    @staticmethod
+    def departure(push, elapsed, c, eta):
+        return 0.0, *sb.Slender.departure(push, elapsed, c, eta)
+
+    def outputs(self, states, accelerations, resting):
+        return {}
+"""
+
+
+def test_a_model_whose_tilt_is_not_its_first_state(written):
+    model = written(FURTHER).Counted(COLUMN, damping=0.1)
+    data = expect_as_alone(model, CIRCLE, **{**TURNING, "rtol": 1e-10})
+    plain = sb.simulate_ensemble(sb.Slender(COLUMN, damping=0.1), CIRCLE, **TURNING).isel(run=0)
+    for name in ("end_tilt", "largest_tilt", "least_tilt", "turns"):
+        np.testing.assert_allclose(data[name], plain[name], rtol=1e-4, atol=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("resistance", "before", "told"),
+    [
+        ("TABLE['k']", "TABLE = {'k': object()}", "TABLE"),
+        ("deep(k)", "def deep(k):\n    return k if k < 1.0 else deep(k - 1.0)\n", "deep calls itself"),
+        pytest.param("open('k')", "", "open", marks=pytest.mark.slow),
+        pytest.param("k * nothing_here", "", "nothing_here", marks=pytest.mark.slow),
+        pytest.param("'k'", "", "", marks=pytest.mark.slow),
+    ],
+)
+def test_a_model_that_cannot_be_compiled_is_told_in_one_line(written, resistance, before, told):
+    model = written(dragged(resistance, before)).Dragged(COLUMN, drag=5.0)
+    with pytest.raises(UnsupportedError, match=f"model dragged cannot be compiled for ensembles.*{told}") as caught:
+        sb.simulate_ensemble(model, CIRCLE, **TURNING)
+    assert "\n" not in str(caught.value)
+
+
+def test_the_same_text_in_another_file_is_the_same_model(written):
+    one, two = (written(dragged("resistance(vx, vy, k)", HELPERS)).Dragged for _ in range(2))
+    assert fingerprint(one.rates) == fingerprint(two.rates)
+    assert fingerprint(one.lean) == fingerprint(two.lean) != fingerprint(one.rates)
+
+
+BEFORE = """
+K = 2.0
+SMALL = np.float32(1.5)
+WHOLE = np.int64(3)
+PAIR = (1.0, (2.0, 3.0))
+ARRAY = np.arange(3000.0)
+
+
+def make(power):
+    def inner(v, shift=0.25):
+        return v * power + shift
+
+    return inner
+
+
+class Law:
+    factor = 1.0
+
+    @staticmethod
+    def of(v):
+        return v * 7.0
+
+
+def helper(v):
+    return helper_of_helper(v) + Law.of(v)
+
+
+def helper_of_helper(v):
+    return v + 11.0
+
+
+law = make(13.0)
+
+
+def told(v):
+    return K * SMALL * WHOLE * PAIR[1][0] * ARRAY[2] * law(v) + helper(v) + sb.Slender.no_return_tilt(v, v, v)
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("K = 2.0", "K = 2.5"),
+        ("np.float32(1.5)", "np.float32(1.75)"),
+        ("np.int64(3)", "np.int64(4)"),
+        ("(2.0, 3.0)", "(2.0, 3.5)"),
+        ("np.arange(3000.0)", "np.where(np.arange(3000) == 1500, 0.0, np.arange(3000.0))"),
+        ("shift=0.25", "shift=0.5"),
+        ("make(13.0)", "make(17.0)"),
+        ("v * 7.0", "v * 8.0"),
+        ("v + 11.0", "v + 12.0"),
+        ("K * SMALL", "K + SMALL"),
+        ("no_return_tilt(v, v, v)", "no_return_tilt(v, v, K)"),
+    ],
+)
+def test_whatever_changes_what_a_function_computes_changes_its_fingerprint(written, old, new):
+    assert BEFORE.count(old) == 1
+    one, two = written(BEFORE), written(BEFORE.replace(old, new))
+    assert fingerprint(one.told) != fingerprint(two.told)
+    assert fingerprint(one.told) == fingerprint(written(BEFORE).told)
+
+
+def test_a_change_of_another_models_function_changes_the_fingerprint_of_what_calls_it(written, monkeypatch):
+    told = written(BEFORE).told
+    before = fingerprint(told)
+    monkeypatch.setattr(sb.Slender, "no_return_tilt", staticmethod(lambda a, b, c: a + b + c))
+    assert fingerprint(told) != before
+
+
+def test_functions_that_the_user_compiled_already_are_taken_and_told_apart(written):
+    before = "import numba\n\n\n@numba.njit\ndef resistance(vx, vy, k):\n    return k * math.sqrt(vx * vx + vy * vy)\n"
+    one = written(dragged("resistance(vx, vy, k)", before)).Dragged
+    other = written(dragged("resistance(vx, vy, k)", before.replace("return k", "return 2.0 * k"))).Dragged
+    assert fingerprint(one.rates) != fingerprint(other.rates)
+    data = expect_as_alone(one(COLUMN, drag=5.0), CIRCLE, **TURNING)
+    same = sb.simulate_ensemble(written(dragged()).Dragged(COLUMN, drag=5.0), CIRCLE, **TURNING)
+    np.testing.assert_allclose(data["end_tilt"], same["end_tilt"][0], atol=1e-9)
