@@ -77,6 +77,7 @@ class Burst(BaseMotion):
     vertical: float = 0.3
     bend: float = 0.8
     listed: bool = True
+    bounds_fall: bool = False
 
     def derivative(self, time, order):
         t = np.asarray(time, dtype=float)
@@ -87,12 +88,14 @@ class Burst(BaseMotion):
         return x, self.bend * envelope * 0.4 * np.sin(3.3 * t), self.vertical * envelope * np.cos(4.0 * t)
 
     def largest_horizontal(self, since=0.0):
-        late = max(since, 3.0)
-        return 1.2 * math.exp(-(((late - 3.0) / 4.0) ** 2))
+        return 1.2 * self.envelope_from(since)
 
     def vertical_range(self, since=0.0):
-        size = self.vertical * math.exp(-(((max(since, 3.0) - 3.0) / 4.0) ** 2))
+        size = self.vertical * self.envelope_from(since)
         return -size, size
+
+    def envelope_from(self, since):
+        return math.exp(-(((max(since, 3.0) - 3.0) / 4.0) ** 2)) if self.bounds_fall else 1.0
 
     def directions(self):
         return ((0.8, 0.0), (0.0, 0.4 * self.bend))
@@ -106,7 +109,7 @@ class Burst(BaseMotion):
         return (self.onset,) if self.listed and self.onset > 0.0 else ()
 
 
-@pytest.mark.parametrize("motion", [Burst(), Burst(onset=2.345, vertical=0.0), Burst(onset=0.7)])
+@pytest.mark.parametrize("motion", [Burst(), Burst(onset=2.345, vertical=0.0), Burst(onset=0.7, bounds_fall=True)])
 @pytest.mark.parametrize("end", [5.0, 40.0])
 def test_a_tabulated_motion_is_the_motion_to_rounding(motion, end):
     table = tabulated(motion, end)
@@ -141,6 +144,25 @@ def test_a_motion_of_ones_own_releases_a_column_from_rest(runs_of, outcome_in, e
         data = expect_as_alone(runs, outcome_in, end_of, ends_of)
         assert int(data["releases"][0]) == 0
         assert int(data["releases"][2]) >= 1
+
+
+# Bounds that fall are taken anew with each piece of the table: what they prove is told at most a piece later.
+def test_a_motion_that_dies_away_proves_the_same_a_piece_later(runs_of, outcome_in, end_of, ends_of):
+    motion = Burst(vertical=0.0, bounds_fall=True)
+    piece = math.pi / motion.highest_frequency
+    start = np.stack([np.linspace(0.0, 0.12, 13), np.full(13, 0.01)], axis=1)
+    runs = runs_of(STONE, motion, 13, tilt=start, duration=25.0, rtol=1e-10)
+    data = runs.together()
+    outcomes = [outcome_in(data, index) for index in range(13)]
+    assert set(outcomes) == {sb.Outcome.OVERTURNED, sb.Outcome.STILL_MOVING}
+    for index, outcome in enumerate(outcomes):
+        single = runs.alone(index)
+        assert outcome is single.outcome
+        later = float(data["decided_at"][index]) - single.decided_at
+        if outcome is sb.Outcome.OVERTURNED:
+            assert -1e-6 < later < piece
+        else:
+            np.testing.assert_allclose(ends_of(data)[index], end_of(single), rtol=0.0, atol=1e-7)
 
 
 def test_a_jump_that_is_not_listed_is_refused():

@@ -116,8 +116,9 @@ def called_functions(function: types.FunctionType) -> list[tuple[str, Function]]
         value = function.__globals__.get(root)
         for attribute in path:
             value = getattr(value, attribute, None) if isinstance(value, (types.ModuleType, type)) else None
-        if isinstance(value, types.FunctionType) and value.__module__.split(".")[0] not in _KNOWN_TO_NUMBA:
-            found[name] = value
+        plain = getattr(value, "py_func", value)
+        if isinstance(plain, types.FunctionType) and plain.__module__.split(".")[0] not in _KNOWN_TO_NUMBA:
+            found[name] = plain
     return list(found.items())
 
 
