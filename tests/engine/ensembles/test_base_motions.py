@@ -58,7 +58,7 @@ def test_harmonic_motions_move_runs_as_they_do_alone(runs_of, outcome_in, end_of
 
 
 # The end of the rise is met as a break: to the last bit the same number in the window and among the breaks.
-@settings(max_examples=40)
+@settings(max_examples=15)
 @given(delays=st.lists(st.floats(-3.0, 5.0), min_size=1, max_size=20), ramp=st.floats(0.01, 4.0))
 def test_a_rise_ends_wherever_it_began(delays, ramp):
     motion = sb.Harmonic.circular(acceleration=0.7, angular_frequency=2.0, ramp=ramp)

@@ -86,10 +86,10 @@ def test_marginal_releases_overturn_at_the_time_of_single_runs(runs_of):
 def test_friction_brings_columns_to_rest_when_it_does_alone(runs_of, outcome_in, rate, damping):
     model = sb.Slender(COLUMN, damping=damping)
     still = LINE.scaled(0.0)
-    runs = runs_of(model, still, 3, tilt=[(0.01, 0.0), (0.03, 0.0), (0.06, 0.0)], tilt_rate=rate, duration=100.0)
-    data = runs.together(rtol=1e-11)
-    for index in range(3):
-        single = runs.alone(index, rtol=1e-11)
+    runs = runs_of(model, still, 2, tilt=[(0.01, 0.0), (0.05, 0.0)], tilt_rate=rate, duration=100.0)
+    data = runs.together(rtol=1e-10)
+    for index in range(2):
+        single = runs.alone(index, rtol=1e-10)
         assert outcome_in(data, index) is single.outcome is sb.Outcome.AT_REST
         # Seen on cubics between the ends of a step, single runs on polynomials of order 7.
         assert float(data["decided_at"][index]) == pytest.approx(single.decided_at, abs=2e-5)

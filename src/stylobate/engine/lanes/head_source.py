@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 from stylobate.engine.lanes.columns import NOTE, SLACK, STATE
+from stylobate.engine.lanes.observation_source import GROUP
 from stylobate.engine.lanes.shape import Shape
 
 OPTIONAL = ("rest_energy", "no_return_tilt", "departure", "passage", "at_rest")
@@ -13,6 +14,7 @@ def constants_source(shape: Shape, has: Mapping[str, bool], *, to_plane: bool) -
     """Return the source of the constants; `has` tells which functions the model gives."""
     values = {
         "WIDTH": shape.width,
+        "GROUP": GROUP,
         "ORDER": shape.order,
         "PARAMETERS": shape.parameters,
         "PLANAR": shape.planar,

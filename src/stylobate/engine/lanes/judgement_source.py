@@ -34,17 +34,24 @@ def judgement(shape: Shape, rows: Rows) -> list[str]:
 
 def _error(shape: Shape, rows: Rows) -> list[str]:
     at = rows.at
-    out = ["e5 = 0.0", "e3 = 0.0"]
+    out = [
+        "e5 = 0.0",
+        "e3 = 0.0",
+        *(
+            f"scale{j} = {at('atol_now')} + {at('rtol')} * max(abs({at(f'y{j}')}), abs({at(f'new{j}')}))"
+            for j in range(shape.order)
+        ),
+    ]
+    for j in range(0, shape.order, 2):  # one division for two
+        if j + 1 < shape.order:
+            out.append(f"per_both = 1.0 / (scale{j} * scale{j + 1})")
+            out += [f"per_scale{j} = per_both * scale{j + 1}", f"per_scale{j + 1} = per_both * scale{j}"]
+        else:
+            out.append(f"per_scale{j} = 1.0 / scale{j}")
     for j in range(shape.order):
         stages = [at(f"k{s}_{j}") for s in range(STAGES + 1)]
-        out += [
-            f"scale = {at('atol_now')} + {at('rtol')} * max(abs({at(f'y{j}')}), abs({at(f'new{j}')}))",
-            "per_scale = 1.0 / scale",
-            f"q = ({combination(DOP853.E5, stages)}) * per_scale",
-            "e5 = e5 + q * q",
-            f"q = ({combination(DOP853.E3, stages)}) * per_scale",
-            "e3 = e3 + q * q",
-        ]
+        for name, weights in (("e5", DOP853.E5), ("e3", DOP853.E3)):
+            out += [f"q = ({combination(weights, stages)}) * per_scale{j}", f"{name} = {name} + q * q"]
     return [
         *out,
         "spread = e5 + 0.01 * e3",

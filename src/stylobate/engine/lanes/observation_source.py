@@ -4,6 +4,9 @@ from collections.abc import Callable
 
 from stylobate.engine.lanes.shape import Shape
 
+GROUP = 8
+"""Lanes that are observed together, when one of them is watched."""
+
 
 def _rates_of_tilt(shape: Shape, at: Callable[[str], str]) -> tuple[str, str]:
     """Return what finds the rates of the tilt at both ends; in a plane it begins at the upright with some speed."""
@@ -16,7 +19,7 @@ def _rates_of_tilt(shape: Shape, at: Callable[[str], str]) -> tuple[str, str]:
 
 
 def observation_source(shape: Shape) -> str:
-    """Return the source of `observe(buf)`: integrals over the step just made, in the lanes that are watched.
+    """Return the source of `observe(buf)`: integrals over the step just made, in the first lanes of a buffer.
 
     Each is the trapezoidal rule with its end correction, exact for cubics: of the tilt, and of the lean times
     e^{∓2πi t/T}, T being the period of the base motion.
@@ -68,5 +71,6 @@ def observation_source(shape: Shape) -> str:
             f"{at(name)} = {at(name)} + 0.5 * weight * ({values[0]} + {values[1]})"
             f" + correction * ({slopes[0]} - {slopes[1]})"
         )
-    lines = ["@vectorised", "def observe(buf):", "    for i in range(WIDTH):", *(f"        {line}" for line in body)]
+    head = ["@vectorised", "def observe(buf):", f"    for i in range({GROUP}):"]
+    lines = [*head, *(f"        {line}" for line in body)]
     return "\n".join(lines) + "\n"

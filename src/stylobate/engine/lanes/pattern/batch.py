@@ -24,7 +24,17 @@ from stylobate.engine.lanes.pattern.stops import (
 )
 
 if TYPE_CHECKING:
-    from stylobate.engine.lanes.pattern.head import ORDER, PARAMETERS, PARAMETERS_AT, PLANAR, WIDTH, R, observe, step
+    from stylobate.engine.lanes.pattern.head import (
+        GROUP,
+        ORDER,
+        PARAMETERS,
+        PARAMETERS_AT,
+        PLANAR,
+        WIDTH,
+        R,
+        observe,
+        step,
+    )
 
 # --- the kernel's text begins here ---
 
@@ -116,25 +126,30 @@ def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8]) -> bool:
 
     `table` has a row for each run, see `columns`; `halt[0]` set to 1 from another thread ends the batch early.
     """
-    flat = np.zeros(R.COUNT * WIDTH)
+    # Begins at the edge of a cache line: a vector that lies across two costs twice.
+    room = np.zeros(R.COUNT * WIDTH + 8)
+    skipped = (-room.ctypes.data // 8) % 8
+    flat = room[skipped : skipped + R.COUNT * WIDTH]
     buf = flat.reshape((R.COUNT, WIDTH))
-    waiting, watched = 0, False
+    watched = np.zeros(WIDTH // GROUP, dtype=np.bool_)
+    waiting = 0
     for i in range(WIDTH):
         quiet(buf, i)
         waiting = fill(buf, i, table, pieces, waiting)
     while True:
         live = False
-        watched = False
+        watched[:] = False
         for i in range(WIDTH):
             live = live or buf[R.RUN, i] >= 0.0
-            watched = watched or buf[R.WATCHED, i] > 0.0
+            watched[i // GROUP] |= buf[R.WATCHED, i] > 0.0
         if not live:
             return True
         met = False
         while not met:
             step(flat)
-            if watched:
-                observe(flat)
+            for group in range(WIDTH // GROUP):
+                if watched[group]:
+                    observe(flat[group * GROUP :])
             for i in range(WIDTH):
                 met = met or buf[R.FLAG, i] > 0.0
             if halt[0] != 0:

@@ -4,6 +4,8 @@ from collections.abc import Callable
 from typing import Any
 
 WIDTH: int
+GROUP: int
+"""Lanes that are observed together."""
 ORDER: int
 """Number of equations."""
 PARAMETERS: int

@@ -1,0 +1,113 @@
+"""Kernels on disk: compiled once with a word about it, read by every later process, kept apart by what they say."""
+
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import stylobate as sb
+from stylobate.engine.lanes.kernels import cache_folder
+from stylobate.errors import UnsupportedError
+
+CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
+START = {"tilt": (0.04, 0.0), "tilt_rate": (0.0, 0.07), "duration": 20.0}
+
+SCRIPT = """
+import json, sys, time
+import stylobate as sb
+
+model = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
+circle = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
+begun = time.perf_counter()
+data = sb.simulate_ensemble(model, circle, tilt=(0.04, 0.0), tilt_rate=(0.0, 0.07), duration=20.0)
+took = time.perf_counter() - begun
+module = next(value for name, value in sys.modules.items() if name.startswith("stylobate_kernels."))
+stats = module.advance.stats
+print(json.dumps({
+    "took": took,
+    "hits": sum(stats.cache_hits.values()),
+    "misses": sum(stats.cache_misses.values()),
+    "end": data["end_tilt"].values.tobytes().hex(),
+}))
+"""
+
+
+def run(script, folder, **environment):
+    return subprocess.run(
+        [sys.executable, "-c", script],
+        env={**os.environ, "STYLOBATE_CACHE": str(folder), **environment},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+
+
+def test_a_second_process_compiles_nothing_and_computes_the_same_bits(tmp_path):
+    first, second = run(SCRIPT, tmp_path), run(SCRIPT, tmp_path)
+    assert "compiling slender, space motion" in first.stderr
+    assert str(tmp_path) in first.stderr
+    assert len(first.stderr.splitlines()) == 1
+    assert second.stderr == ""
+    one, two = json.loads(first.stdout), json.loads(second.stdout)
+    assert (two["hits"], two["misses"]) == (1, 0)
+    assert two["took"] < 0.25 * one["took"]
+    assert one["end"] == two["end"]
+    assert len(list(tmp_path.glob("*.py"))) == 1
+
+
+def test_a_folder_that_cannot_be_written_is_told_in_one_line(tmp_path, monkeypatch):
+    class Unheard(sb.Slender):
+        pass
+
+    (tmp_path / "file").write_text("in the way")
+    monkeypatch.setenv("STYLOBATE_CACHE", str(tmp_path / "file" / "kernels"))
+    with pytest.raises(
+        UnsupportedError, match=r"cannot keep compiled kernels in .*file.kernels.*\$STYLOBATE_CACHE"
+    ) as caught:
+        sb.simulate_ensemble(Unheard(sb.Column.dimensionless(0.1)), CIRCLE, **START)
+    assert "\n" not in str(caught.value)
+
+
+def test_the_folder_is_that_of_the_variable_or_of_the_users_caches(tmp_path, monkeypatch):
+    monkeypatch.setenv("STYLOBATE_CACHE", str(tmp_path))
+    assert cache_folder() == tmp_path
+    monkeypatch.delenv("STYLOBATE_CACHE")
+    assert cache_folder().name == "stylobate"
+    assert cache_folder().is_absolute()
+
+
+PLAIN = """
+import json
+import numpy as np
+import stylobate as sb
+
+model = sb.Slender(sb.Column.dimensionless(0.1), damping=0.3)
+line = sb.Harmonic.straight(acceleration=0.13, angular_frequency=3.0)
+circle = sb.Harmonic.circular(acceleration=0.13, angular_frequency=2.0)
+found = []
+for motion, energy, tilt, rate in (
+    (circle, None, [(0.04, 0.0), (0.0, 0.0), (0.09, 0.0)], [(0.0, 0.07), (0.0, 0.0), (0.04, 0.0)]),
+    (line, None, [(0.02, 0.0), (0.0, 0.0), (0.02, 0.01)], (0.0, 0.0)),
+    (circle.scaled(0.1), 0.09, [(0.01, 0.0), (0.01, 0.003)], (0.0, 0.0)),
+):
+    options = {"duration": 6.0, "rtol": 1e-9, "samples": 3, "rest_energy": energy}
+    data = sb.simulate_ensemble(model, motion, tilt=tilt, tilt_rate=rate, **options)
+    names = ("outcome", "decided_at", "releases", "end_tilt", "largest_tilt", "turns", "sampled_tilt")
+    found += [np.nan_to_num(data[name].values, nan=-1.0).ravel().tolist() for name in names]
+print(json.dumps(found))
+"""
+
+
+def test_the_same_code_runs_as_plain_python(tmp_path):
+    plain = json.loads(run(PLAIN, tmp_path, NUMBA_DISABLE_JIT="1").stdout)
+    compiled = json.loads(run(PLAIN, cache_folder()).stdout)
+    assert len(plain) == len(compiled) == 21
+    for index, (one, other) in enumerate(zip(plain, compiled, strict=True)):
+        # Roots and sums of plain Python are rounded otherwise: to a few tolerances. When a column came to rest, and how
+        # far round it had got, is read off cubics within a step, to their error.
+        np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-5 if index in {15, 19} else 2e-7)
+    outcomes = {int(code) for values in plain[::7] for code in values}
+    assert len(outcomes) >= 3
