@@ -15,7 +15,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from stylobate import errors, motions, plots, results, spec, studies, theory
+    from stylobate import errors, motions, orbits, plots, results, spec, studies, theory
     from stylobate.column import Column
     from stylobate.engine import simulate, simulate_ensemble, with_parameters
     from stylobate.errors import Interrupted, Outcome
@@ -39,6 +39,7 @@ __all__ = [
     "errors",
     "load",
     "motions",
+    "orbits",
     "plot",
     "plots",
     "results",
@@ -67,7 +68,7 @@ _HOMES = {
     "simulate_ensemble": "engine",
     "with_parameters": "engine",
 }
-_MODULES = ("errors", "motions", "plots", "results", "spec", "studies", "theory")
+_MODULES = ("errors", "motions", "orbits", "plots", "results", "spec", "studies", "theory")
 
 
 def __getattr__(name: str) -> Any:

@@ -6,6 +6,7 @@
     ├── ParameterError (ValueError)    a number or an option that no column, motion or run can have
     │   └── DescriptionError           the same in a TOML or JSON description: one line for each mistake
     ├── UnsupportedError               a study asks for what a model lacks
+    ├── NoOrbitError                   no periodic orbit was reached from a guess
     └── FileError                      a file that cannot be read or written
 
     Interrupted (KeyboardInterrupt)    Ctrl-C in the middle of many runs; carries what had been computed
@@ -43,6 +44,10 @@ class DescriptionError(ParameterError):
 
 class UnsupportedError(StylobateError):
     """A study or run asks for something the model does not provide."""
+
+
+class NoOrbitError(StylobateError):
+    """No periodic orbit was reached from a guess; the message says how the search ended."""
 
 
 class FileError(StylobateError):

@@ -207,3 +207,9 @@ def test_erosion_tells_bounds_from_distances():
     assert exact.get_xdata().tolist() == [0.2, 0.4]
     assert bound.get_xdata().tolist() == [0.1]
     figure.canvas.draw()
+
+
+def test_uncertain_runs_are_only_counted_where_their_dots_would_hide_the_map():
+    figure = sb.plot(a_map([[REST, REST]] * 3, uncertain=[[True, False], [False, True], [False, False]]))
+    assert legend_of(figure)[-1] == "uncertain  2 runs, not marked"
+    assert not figure.axes[0].lines

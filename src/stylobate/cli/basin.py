@@ -119,12 +119,12 @@ def basin(
 def _labelled(saved: "xr.Dataset", source: Path | None, confidence: float | None) -> "xr.Dataset":
     """Return saved basins; the runs of a store with the attractor that each has come to."""
     from stylobate import spec, studies  # noqa: PLC0415
-    from stylobate.studies.proportions import wilson_interval  # noqa: PLC0415
+    from stylobate.studies.proportions import fraction_interval  # noqa: PLC0415
 
     if "attractor_name" in saved:
         if confidence is None:
             return saved
-        low, high = wilson_interval(saved["count"], saved["computed"], confidence=confidence)
+        low, high = fraction_interval(saved["count"], saved["unsettled"], saved["computed"], confidence=confidence)
         ends = {"fraction_low": ("attractor_index", low), "fraction_high": ("attractor_index", high)}
         return saved.assign(ends).assign_attrs(confidence=confidence)
     if "strobe_tilt" not in saved:

@@ -9,6 +9,7 @@ import numpy as np
 from stylobate.engine.forcing import Forcing, common_line
 from stylobate.engine.moving import Leg, Mover
 from stylobate.engine.resting import departure, release_time, rest_piece, stays_for_good
+from stylobate.engine.tolerances import FIRST_STEP_OFF
 from stylobate.engine.trajectory import Piece, Trajectory, nearest_turn
 from stylobate.engine.watch import Reason
 from stylobate.models import Model
@@ -16,9 +17,6 @@ from stylobate.models.model import RELEASE_MARGIN
 from stylobate.results import Event
 
 Line = tuple[float, float]
-
-# A motion out of a plane that begins exactly at the upright begins this far from it [units of c], along its speed.
-_FIRST_STEP_OFF = 1e-13
 
 
 @dataclass(slots=True)
@@ -155,7 +153,7 @@ class Course:
         if np.any(self.model.tilt(column)):
             return state
         rate = self.model.tilt_rate(column)[:, 0]
-        step = _FIRST_STEP_OFF * self.model.column.slenderness / float(np.hypot(*rate))
+        step = FIRST_STEP_OFF * self.model.column.slenderness / float(np.hypot(*rate))
         x, y = (step * float(part) for part in rate)
         scale = self.model.time_scale
         return self.model.start((x, y), (float(rate[0]) / scale, float(rate[1]) / scale))

@@ -6,14 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.engine.tolerances import PARALLEL_ULP
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 from stylobate.motions.base import ACCELERATION
 
 Floats = npt.NDArray[np.float64]
-
-# Vectors count as parallel up to this many units of rounding.
-_PARALLEL_ULP = 8.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +68,6 @@ def common_line(*vectors: tuple[float, float]) -> tuple[float, float] | None:
         return None
     ux, uy = longest[0] / length, longest[1] / length
     for x, y in vectors:
-        if abs(ux * y - uy * x) > _PARALLEL_ULP * np.finfo(float).eps * math.hypot(x, y):
+        if abs(ux * y - uy * x) > PARALLEL_ULP * np.finfo(float).eps * math.hypot(x, y):
             return None
     return ux, uy

@@ -11,14 +11,10 @@ from scipy.optimize import brentq
 
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.steps import Steps, back_at_upright, just_before
+from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET
 from stylobate.engine.trajectory import Piece, unwrapped_azimuths
 from stylobate.engine.watch import Reason, Watch
 from stylobate.models import Model
-
-# A passage is hopped over, in closed form, from within this distance [units of c] if its offset from the upright is
-# below the second number: the straight path is then right to about the product of the two.
-_HOP_FROM = 1e-6
-_HOP_OFFSET = 1e-9
 
 # A motion that begins at a far smaller tilt is followed with a finer tolerance up to this one [units of c].
 _GROWN = 1e-3
@@ -209,7 +205,7 @@ class Mover:
         c, speed = self.model.column.slenderness, math.hypot(vx, vy)
         inward = x * vx + y * vy < 0.0
         return bool(
-            inward and math.hypot(x, y) < _HOP_FROM * min(c, speed) and abs(x * vy - y * vx) < _HOP_OFFSET * c * speed
+            inward and math.hypot(x, y) < HOP_FROM * min(c, speed) and abs(x * vy - y * vx) < HOP_OFFSET * c * speed
         )
 
     def _passage_tilt(self, before: Floats, steps: Steps, after: Floats) -> float:

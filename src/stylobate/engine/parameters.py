@@ -1,8 +1,7 @@
 """Column, model and base motion with some of their numbers changed by name."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
-from typing import Any
 
 from stylobate.column import Column
 from stylobate.errors import ParameterError, UnsupportedError, require_finite
@@ -25,6 +24,9 @@ COLUMN_NAMES = (
 MOTION_NAMES = ("angular_frequency", "start_phase", "acceleration", "scale", "rotation", "delay")
 """In the order in which they are applied."""
 
+ELLIPSE_NAMES = ("amplitude_x", "amplitude_y", "amplitude_z", "phase_difference")
+"""Of one harmonic motion, before all others; ensembles do not vary them."""
+
 _OF_HARMONICS = ("angular_frequency", "start_phase")
 
 
@@ -35,9 +37,9 @@ def model_names(model: Model) -> tuple[str, ...]:
     return tuple(field.name for field in fields(model) if field.name != "column" and field.init)
 
 
-def check_names(model: Model, names: Mapping[str, Any]) -> None:
+def check_names(model: Model, names: Iterable[str], *, ellipse: bool = False) -> None:
     """Raise ParameterError if one of the `names` is none that can be changed."""
-    known = (*COLUMN_NAMES, *model_names(model), *MOTION_NAMES)
+    known = (*COLUMN_NAMES, *model_names(model), *MOTION_NAMES, *(ELLIPSE_NAMES if ellipse else ()))
     for name in names:
         if name not in known:
             message = f"parameters: {name} is not known here; known are {', '.join(known)}"
@@ -56,7 +58,8 @@ def with_parameters(model: Model, motion: BaseMotion, **values: float) -> tuple[
         slenderness (by its radius), size (all lengths times it). Of the model: its own fields, such as damping. Of the
         motion, applied in this order: angular_frequency [rad/s], start_phase [rad], acceleration [m/s²] (its largest
         horizontal one; of a sum, the sum of those of its parts), scale (a factor), rotation [rad] about the vertical,
-        delay [s].
+        delay [s]. Before these, of a harmonic motion: amplitude_x, amplitude_y, amplitude_z [m/s²], phase_difference
+        (phase of y less that of x) [rad].
 
     Raises
     ------
@@ -74,8 +77,8 @@ def with_parameters(model: Model, motion: BaseMotion, **values: float) -> tuple[
     >>> changed.damping, faster.angular_frequency
     (0.2, 3.0)
     """
-    check_names(model, values)
-    of_motion = {name: values[name] for name in MOTION_NAMES if name in values}
+    check_names(model, values, ellipse=True)
+    of_motion = {name: values[name] for name in (*ELLIPSE_NAMES, *MOTION_NAMES) if name in values}
     of_model = {name: value for name, value in values.items() if name not in of_motion}
     return changed_model(model, of_model), changed_motion(motion, of_motion)
 
@@ -99,8 +102,8 @@ def _changed_column(column: Column, values: Mapping[str, float]) -> Column:
 
 
 def changed_motion(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotion:
-    """Return `motion` with these numbers, applied in the order of MOTION_NAMES."""
-    harmonic = {name: values[name] for name in _OF_HARMONICS if name in values}
+    """Return `motion` with these numbers: those of the ellipse, then in the order of MOTION_NAMES."""
+    harmonic = {name: values[name] for name in (*ELLIPSE_NAMES, *_OF_HARMONICS) if name in values}
     if harmonic:
         motion = _changed_harmonic(motion, harmonic)
     if "acceleration" in values:
@@ -148,4 +151,44 @@ def _changed_harmonic(motion: BaseMotion, values: Mapping[str, float]) -> BaseMo
     harmonic_part(motion, next(iter(values)))
     if isinstance(motion, Transformed):
         return replace(motion, motion=_changed_harmonic(motion.motion, values))
-    return replace(motion, **values)  # type: ignore[type-var]
+    assert isinstance(motion, Harmonic)
+    own = {name: value for name, value in values.items() if name in _OF_HARMONICS}
+    x, y, z = (values.get(name, usual) for name, usual in zip(ELLIPSE_NAMES[:3], motion.amplitude, strict=True))
+    first, second, third = motion.phase
+    second = first + values.get("phase_difference", second - first)
+    return replace(motion, amplitude=(x, y, z), phase=(first, second, third), **own)
+
+
+def present_value(model: Model, motion: BaseMotion, name: str) -> float:
+    """Return the number called `name` as it is; of a change, such as `rotation` or `scale`, what changes nothing.
+
+    Raises
+    ------
+    ParameterError
+        If the name is not known.
+    UnsupportedError
+        If the motion has no such number.
+    """
+    check_names(model, [name], ellipse=True)
+    if name in _CHANGES:
+        return _CHANGES[name]
+    if name == "acceleration":
+        return largest_acceleration(motion)
+    return float(getattr(*_holder(model, motion, name)))
+
+
+_CHANGES = {"rotation": 0.0, "delay": 0.0, "scale": 1.0, "size": 1.0}
+
+
+def _holder(model: Model, motion: BaseMotion, name: str) -> tuple[object, str]:
+    """Return the object that holds a number, and what it is called there."""
+    if name in COLUMN_NAMES:
+        return model.column, name
+    if name in model_names(model):
+        return model, name
+    harmonic = harmonic_part(motion, name)
+    if name in _OF_HARMONICS:
+        return harmonic, name
+    x, y, z = harmonic.amplitude
+    first, second, _ = harmonic.phase
+    return SimpleNamespace(**dict(zip(ELLIPSE_NAMES, (x, y, z, second - first), strict=True))), name

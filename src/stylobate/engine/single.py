@@ -11,6 +11,7 @@ from stylobate.engine.forcing import Forcing
 from stylobate.engine.history import history
 from stylobate.engine.moving import Method, Mover
 from stylobate.engine.thresholds import Thresholds, is_rest, rest_is_coarse, thresholds_of
+from stylobate.engine.tolerances import ATOL_SHARE, CLOSE_PASSAGE, RTOL_RANGE
 from stylobate.engine.verdict import Verdict, long_term
 from stylobate.engine.watch import Reason, Watch
 from stylobate.errors import (
@@ -28,11 +29,6 @@ from stylobate.spec import provenance_of_run
 
 # Times at which the promises of a motion are checked before a run.
 _MOTION_SAMPLES, _COMPONENTS = 257, 3
-_RTOL_RANGE = (1e-13, 1e-2)
-# Default absolute tolerance: this part of rtol × c, so that tilts far below c are still resolved.
-_ATOL_SHARE = 0.01
-# A passage of the upright closer than this part of c is ill-conditioned for every integrator.
-_CLOSE_PASSAGE = 1e-8
 
 
 def simulate(
@@ -132,7 +128,7 @@ def simulate(
         data=recorded.data,
         events=tuple(course.events),
         thresholds={
-            "close_passage": _CLOSE_PASSAGE,
+            "close_passage": CLOSE_PASSAGE,
             "no_return_tilt": model.least_safe_tilt(forcing.largest_horizontal(0.0), forcing.least_vertical(0.0)),
             **asdict(thresholds),
             **asdict(rules),
@@ -178,7 +174,7 @@ def _verdict(model: Model, motion: BaseMotion, course: Course, rules: OutcomeRul
 
 
 def _is_uncertain(model: Model, forcing: Forcing, course: Course, thresholds: Thresholds) -> bool:
-    close = course.least_passage < _CLOSE_PASSAGE * model.column.slenderness
+    close = course.least_passage < CLOSE_PASSAGE * model.column.slenderness
     coarse = course.released_from_rest and rest_is_coarse(model, forcing, thresholds.rest_energy)
     return close or coarse or course.ended is Reason.FAILED
 
@@ -192,12 +188,12 @@ def _decided_at(course: Course, verdict: Verdict, duration: float) -> float:
 
 
 def _method(model: Model, motion: BaseMotion, rtol: float, atol: float | None, max_steps: int) -> Method:
-    low, high = _RTOL_RANGE
+    low, high = RTOL_RANGE
     rtol = require_positive("rtol", rtol)
     if not low <= rtol <= high:
         message = f"rtol must lie between {low!r} and {high!r}, got {rtol!r}"
         raise ParameterError(message)
-    atol = _ATOL_SHARE * rtol * model.column.slenderness if atol is None else require_positive("atol", atol, "rad")
+    atol = ATOL_SHARE * rtol * model.column.slenderness if atol is None else require_positive("atol", atol, "rad")
     max_steps = require_whole("max_steps", max_steps, least=1)
     # Half the shortest period: no step can miss the forcing.
     frequency = motion.highest_frequency * model.time_scale

@@ -11,12 +11,11 @@ from scipy.optimize import brentq
 
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.thresholds import Thresholds
+from stylobate.engine.tolerances import HOPS_APART
 from stylobate.models import Model
 
 # Points of each step at which conditions are looked at; a step of the integrator resolves the motion.
 _SAMPLES = 5
-# How small a part of the force on a column near rest may change during one hop: one over this.
-_HOPS_APART = 5.0
 # For lift-off, which depends on the base motion alone and may be short.
 _LIFT_SAMPLES = 65
 
@@ -93,7 +92,7 @@ class Watch:
         change = 2.0 * math.sqrt(2.0 * max(energy, 0.0)) * self._forcing_rate(tau)
         return min(
             self.thresholds.rest_energy * self.model.column.slenderness**2 - energy,
-            force - math.sqrt(_HOPS_APART * change),
+            force - math.sqrt(HOPS_APART * change),
         )
 
     def _rest_energy(self, tilt: float, speed: float, vertical: float) -> float:

@@ -84,6 +84,12 @@ class Model(ABC):
     It is called with floats and with arrays.
     """
 
+    jacobian: ClassVar[Callable[..., tuple[tuple[float, ...], ...]] | None] = None
+    """(state…, ax, ay, az, parameters…) → for each rate its derivatives by state, accelerations and parameters.
+
+    None lets them be derived from `rates`, which can be done unless these choose between cases by a comparison.
+    """
+
     planar_rates: ClassVar[Callable[..., tuple[float, float]] | None] = None
     """(tilt, rate, side, horizontal, vertical, parameters…) → the rates of tilt and rate in a vertical plane.
 

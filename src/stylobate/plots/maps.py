@@ -21,6 +21,8 @@ _PLANE = 2
 _HEIGHT = 4.6
 # A dot on an uncertain run is at most this large, and at least this [points].
 _DOTS = (1.2, 3.6)
+# Where more than this part of all runs is uncertain, dots would hide the map: they are counted only.
+_MOST_MARKED = 0.2
 # Width of a map on its page [points].
 _MAP_WIDTH = 330.0
 
@@ -75,8 +77,10 @@ def _mark_uncertain(axes: Axes, runs: xr.Dataset, x: str, y: str) -> list[Artist
         return []
     known = runs["uncertain"] & (runs["outcome"] != NOT_COMPUTED)
     rows, columns = np.nonzero(known.transpose(y, x).to_numpy())
+    told = f"uncertain  {rows.size} run{'s' if rows.size > 1 else ''}"
+    if rows.size > _MOST_MARKED * known.size:
+        return [Line2D([], [], label=f"{told}, not marked", linestyle="none")]
     size = float(np.clip(_MAP_WIDTH / max(runs.sizes[x], runs.sizes[y]) / 2.0, *_DOTS))
     look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": BLACK, "mew": 0.4, "linestyle": "none"}
     axes.plot(runs[x].to_numpy()[columns], runs[y].to_numpy()[rows], markersize=size, rasterized=True, **look)
-    told = f"uncertain  {rows.size} run{'s' if rows.size > 1 else ''}"
     return [Line2D([], [], label=told, markersize=_DOTS[1], **look)]

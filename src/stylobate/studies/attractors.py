@@ -14,7 +14,7 @@ from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.finding import UNSETTLED, Attractor, Found, find_attractors, names_of, with_turns
 from stylobate.studies.labelled_sweeps import labelled_sweep
 from stylobate.studies.orbit_paths import orbit_paths, turns_of_paths
-from stylobate.studies.proportions import wilson_interval
+from stylobate.studies.proportions import fraction_interval
 from stylobate.studies.strobe_count import with_strobes
 from stylobate.studies.strobes import AttractorRules, OrbitScales
 from stylobate.studies.sweeps import Executor, Sweep
@@ -191,8 +191,7 @@ def shares(found: Found, confidence: float) -> xr.Dataset:
     count = np.array([np.count_nonzero(labels == place) for place in range(len(found.attractors))], dtype=np.int64)
     computed = int(np.count_nonzero(labels != NOT_COMPUTED))
     unsettled = int(np.count_nonzero(labels == UNSETTLED))
-    low, _ = wilson_interval(count, computed, confidence=confidence)
-    _, high = wilson_interval(count + unsettled, computed, confidence=confidence)
+    low, high = fraction_interval(count, unsettled, computed, confidence=confidence)
     interval = f"end of the {100.0 * confidence:g} % interval of the fraction"
     return xr.Dataset(
         {

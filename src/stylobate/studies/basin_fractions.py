@@ -18,7 +18,7 @@ from stylobate.studies.attractors import attractor_table, rule_attributes
 from stylobate.studies.branches import Branches, follow_branches
 from stylobate.studies.finding import UNSETTLED, Found, find_attractors
 from stylobate.studies.labelled_sweeps import labelled_sweep
-from stylobate.studies.proportions import require_confidence, wilson_interval
+from stylobate.studies.proportions import fraction_interval, require_confidence
 from stylobate.studies.strobe_count import with_strobes
 from stylobate.studies.strobes import AttractorRules, OrbitScales
 from stylobate.studies.sweeps import Executor, Sweep
@@ -153,8 +153,7 @@ def _fractions(name: str, found: Sequence[Found], branches: Branches, confidence
     unsettled = np.array([np.count_nonzero(one.labels == UNSETTLED) for one in found])
     known = computed[:, np.newaxis] > 0
     total = np.maximum(computed, 1)[:, np.newaxis]
-    low, _ = wilson_interval(count, total, confidence=confidence)
-    _, high = wilson_interval(count + unsettled[:, np.newaxis], total, confidence=confidence)
+    low, high = fraction_interval(count, unsettled[:, np.newaxis], total, confidence=confidence)
     dims, interval = (name, "attractor_index"), f"end of its {100.0 * confidence:g} % interval"
     return xr.Dataset(
         {

@@ -26,10 +26,14 @@ def labelled_sweep(
     Raises
     ------
     Interrupted
-        On Ctrl-C; its `partial` is labelled likewise.
+        On Ctrl-C; its `partial` is labelled likewise, unless that is what was interrupted.
     """
     try:
         runs = run_sweep(sweep, store=store, executor=executor, resume=resume, progress=progress)
     except Interrupted as stop:
         raise Interrupted(str(stop), label(stop.partial)) from None
-    return label(runs)
+    try:
+        return label(runs)
+    except KeyboardInterrupt:
+        message = "interrupted while the runs were labelled; all of them are kept, without labels"
+        raise Interrupted(message, runs) from None

@@ -59,3 +59,15 @@ def require_confidence(confidence: float) -> float:
         message = f"confidence must lie between 0 and 1, got {confidence!r}; 0.95 is usual"
         raise ParameterError(message)
     return value
+
+
+def fraction_interval(
+    count: npt.ArrayLike, unsettled: npt.ArrayLike, total: npt.ArrayLike, *, confidence: float = 0.95
+) -> tuple[Floats, Floats]:
+    """Return the interval that a fraction leaves open, of runs some of which are still `unsettled`.
+
+    At its lower end none of these is counted, at its upper end all; see `wilson_interval`.
+    """
+    low, _ = wilson_interval(count, total, confidence=confidence)
+    _, high = wilson_interval(np.add(count, unsettled), total, confidence=confidence)
+    return low, high

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.lanes.kernels import cache_folder
+from stylobate.engine.compiling.modules import cache_folder
 from stylobate.errors import UnsupportedError
 
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)

@@ -15,17 +15,13 @@ from stylobate.engine.lanes.kernels import kernel_of
 from stylobate.engine.lanes.shape import Shape
 from stylobate.engine.resting import cannot_depart
 from stylobate.engine.thresholds import is_rest, usual_rest_energy
+from stylobate.engine.tolerances import ATOL_SHARE, FIRST_STEP_OFF, PARALLEL_ULP
 from stylobate.models import Model
 
 Floats = npt.NDArray[np.float64]
 
 WIDTH = 24
 """Lanes of a kernel: three vectors of AVX-512, whose latencies overlap; the buffer still fits the nearest cache."""
-
-_ATOL_SHARE = 0.01
-_PARALLEL_ULP = 8.0
-# A motion out of a plane that begins exactly at the upright begins this far from it [units of c], along its speed.
-_FIRST_STEP_OFF = 1e-13
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +158,7 @@ def _empty_table(plan: Plan, count: int, breaks: int) -> Floats:
 def _fill_setup(
     table: Floats, options: Options, runs: Runs, models: ModelColumns, motions: MotionColumns, energy: Floats
 ) -> None:
-    atol = _ATOL_SHARE * options.rtol * models.slenderness if options.atol is None else options.atol
+    atol = ATOL_SHARE * options.rtol * models.slenderness if options.atol is None else options.atol
     with np.errstate(divide="ignore"):
         # Half the shortest period: no step can miss the forcing.
         longest = math.pi / motions.frequency
@@ -208,7 +204,7 @@ def _fill_starts(
     upright = ~np.any(runs.tilt, axis=1) & ~stands & ~planar
     if upright.any():
         speed = np.hypot(*rate[upright].T)[:, np.newaxis]
-        off = _FIRST_STEP_OFF * models.slenderness[upright, np.newaxis] * rate[upright] / speed
+        off = FIRST_STEP_OFF * models.slenderness[upright, np.newaxis] * rate[upright] / speed
         moved = replace(runs, tilt=runs.tilt.copy())
         moved.tilt[upright] = off
         columns = ModelColumns.of(model, runs.values, moved.tilt, runs.tilt_rate)
@@ -234,5 +230,5 @@ def common_lines(vectors: Floats) -> Floats:
     with np.errstate(invalid="ignore"):
         line = vectors[np.arange(count), longest] / length[:, np.newaxis]
     aside = np.abs(line[:, np.newaxis, 0] * vectors[..., 1] - line[:, np.newaxis, 1] * vectors[..., 0])
-    fits = np.all(aside <= _PARALLEL_ULP * np.finfo(float).eps * lengths, axis=1) & (length > 0.0)
+    fits = np.all(aside <= PARALLEL_ULP * np.finfo(float).eps * lengths, axis=1) & (length > 0.0)
     return np.where(fits[:, np.newaxis], line, 0.0)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from stylobate.engine.thresholds import Thresholds
+from stylobate.engine.tolerances import RTOL_RANGE
 from stylobate.errors import (
     ParameterError,
     require_not_negative,
@@ -10,8 +11,6 @@ from stylobate.errors import (
     require_whole,
 )
 from stylobate.results import OutcomeRules
-
-_RTOL_RANGE = (1e-13, 1e-2)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,7 +46,7 @@ class Options:
         ParameterError
             If one is out of range.
         """
-        low, high = _RTOL_RANGE
+        low, high = RTOL_RANGE
         rtol = require_positive("rtol", rtol)
         if not low <= rtol <= high:
             message = f"rtol must lie between {low!r} and {high!r}, got {rtol!r}"

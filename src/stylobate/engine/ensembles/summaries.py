@@ -12,6 +12,7 @@ from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.ensembles.options import Options
 from stylobate.engine.lanes.columns import BEFORE, LATE, LOOKS, SLACK, STATE, Log, Setup, Status, Window
 from stylobate.engine.thresholds import coarse
+from stylobate.engine.tolerances import CLOSE_PASSAGE
 from stylobate.engine.verdict import Evidence, Ground, grounds, outcome_on
 from stylobate.errors import Outcome
 from stylobate.results.outcomes import NOT_COMPUTED, code_of, outcome_attributes
@@ -19,8 +20,6 @@ from stylobate.results.outcomes import NOT_COMPUTED, code_of, outcome_attributes
 Floats = npt.NDArray[np.float64]
 Arrays = dict[str, npt.NDArray[Any]]
 
-# A passage of the upright closer than this part of c is ill-conditioned for every integrator.
-_CLOSE_PASSAGE = 1e-8
 
 _ENDINGS = {
     Status.RESTED: Outcome.AT_REST,
@@ -110,7 +109,7 @@ def _all(batch: Batch) -> Arrays:
         batch.motions.least_vertical,
         batch.models.capacity,
     )
-    uncertain = passage < _CLOSE_PASSAGE * batch.models.slenderness
+    uncertain = passage < CLOSE_PASSAGE * batch.models.slenderness
     uncertain |= (batch.log(Log.RELEASED_FROM_REST) > 0.0) & is_coarse
     uncertain |= outcome == code_of(Outcome.FAILED)
     arrays: Arrays = {

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from stylobate.engine.lanes.columns import NOTE, SLACK, STATE
 from stylobate.engine.lanes.observation_source import GROUP
 from stylobate.engine.lanes.shape import Shape
+from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET, HOPS_APART
 
 OPTIONAL = ("rest_energy", "no_return_tilt", "departure", "passage", "at_rest")
 """Functions that a model may lack."""
@@ -25,6 +26,9 @@ def constants_source(shape: Shape, has: Mapping[str, bool], *, to_plane: bool) -
         "PARAMETERS_AT": shape.parameters_at,
         "MOTION_AT": shape.motion_at,
         "BREAKS_AT": shape.breaks_at,
+        "HOP_FROM": HOP_FROM,
+        "HOP_OFFSET": HOP_OFFSET,
+        "HOPS_APART": HOPS_APART,
         "CAN_REST": has["rest_energy"],
         "CAN_DEPART": has["departure"],
         "CAN_PASS": has["passage"] and not shape.planar,

@@ -7,13 +7,12 @@ from scipy.integrate import DOP853
 from stylobate.engine.lanes.layout import Rows
 from stylobate.engine.lanes.shape import STAGES, Shape
 from stylobate.engine.lanes.stage_source import combination
+from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET
 
 # Step control as SciPy's: safety 0.9, a step changes by 0.2 to 10, an error below the last number counts as that.
 _SAFETY, _LEAST_FACTOR, _LARGEST_FACTOR, _LEAST_ERROR = 0.9, 0.2, 10.0, 1e-12
 # A step shorter than this part of the time cannot be made.
 _SHORTEST = 2.3e-15
-# Near passages in space: see the engine's mover for single runs.
-_HOP_FROM, _HOP_OFFSET = 1e-6, 1e-9
 # A largest tilt within a step is measured if it may exceed the largest so far by this part.
 _NEW_PEAK = 1e-7
 
@@ -252,9 +251,9 @@ def _suspicion(shape: Shape, rows: Rows) -> list[str]:
             f"near = 1.0 if {at('low')} < {at('rest_tilt')} else 0.0",
             f"inward = 1.0 if {at('radial')} < 0.0 else 0.0",
             f"tilt = {at('tilt')}",
-            f"close = 1.0 if tilt * tilt < {_HOP_FROM**2!r} * min({c} * {c}, square) else 0.0",
+            f"close = 1.0 if tilt * tilt < {HOP_FROM**2!r} * min({c} * {c}, square) else 0.0",
             f"momentum = {at('momentum')}",
-            f"straight = 1.0 if momentum * momentum < {_HOP_OFFSET**2!r} * {c} * {c} * square else 0.0",
+            f"straight = 1.0 if momentum * momentum < {HOP_OFFSET**2!r} * {c} * {c} * square else 0.0",
             "near = near + inward * close * straight",
         ]
     return [

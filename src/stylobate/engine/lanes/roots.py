@@ -2,7 +2,7 @@
 
 import math
 
-from stylobate.engine.lanes.arithmetic import part
+from stylobate.engine.compiling.arithmetic import part
 
 _BISECTIONS = 52
 # A first return is sought from this fraction of the step on, doubled up to the second number, then at equal steps.

@@ -27,6 +27,11 @@ CAN_PASS: bool
 CAN_PROVE_NO_RETURN: bool
 CAN_GO_TO_PLANE: bool
 
+HOP_FROM: float
+HOP_OFFSET: float
+HOPS_APART: float
+"""See `engine.tolerances`."""
+
 R: Any
 """Rows of the buffer."""
 

@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.lanes.arithmetic import part
+from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import set_leg
 from stylobate.engine.lanes.pattern.release import SAMPLES_PER_PERIOD
@@ -45,7 +45,8 @@ def weight(buf: Table, i: int, t: float) -> float:
 
 @part
 def lift_in_leg(buf: Table, i: int, start: float, end: float) -> float:
-    spacing = 2.0 * math.pi / (buf[R.FREQUENCY, i] * SAMPLES_PER_PERIOD)
+    frequency = buf[R.FREQUENCY, i]
+    spacing = 2.0 * math.pi / (frequency * SAMPLES_PER_PERIOD) if frequency > 0.0 else end - start
     t0 = t1 = start
     w0 = w1 = weight(buf, i, start)
     if w0 < 0.0:

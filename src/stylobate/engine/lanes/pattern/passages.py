@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.lanes.arithmetic import part
+from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.moving import azimuth_now, set_lean, set_off, set_state
@@ -11,13 +11,9 @@ from stylobate.engine.lanes.pattern.resting import rest_margin, settle
 from stylobate.engine.lanes.pattern.stops import go_on, next_stop
 
 if TYPE_CHECKING:
-    from stylobate.engine.lanes.pattern.head import CAN_REST, R, accelerations, model_passage
+    from stylobate.engine.lanes.pattern.head import CAN_REST, HOP_FROM, HOP_OFFSET, R, accelerations, model_passage
 
 # --- the kernel's text begins here ---
-
-# A passage is hopped over from within this distance [units of c] if its offset is below the second number.
-HOP_FROM = 1e-6
-HOP_OFFSET = 1e-9
 
 
 @part

@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.lanes.arithmetic import part, winding
+from stylobate.engine.compiling.arithmetic import part, winding
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.moving import set_lean
 from stylobate.engine.lanes.roots import quintic

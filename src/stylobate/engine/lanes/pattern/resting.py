@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.lanes.arithmetic import part
+from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import forcing_rate, held_for_good, least_force
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from stylobate.engine.lanes.pattern.head import (
         CAN_DEPART,
         CAN_GO_TO_PLANE,
+        HOPS_APART,
         ORDER,
         PLANAR,
         R,
@@ -33,8 +34,6 @@ if TYPE_CHECKING:
 DEPARTURE = 1e-3
 # Weight that counts as none.
 RELEASE_MARGIN = 8.0 * 2.220446049250313e-16
-# How small a part of the force on a column near rest may change during one hop: one over this.
-HOPS_APART = 5.0
 
 
 @part

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from stylobate.engine.lanes.arithmetic import part
+from stylobate.engine.compiling.arithmetic import part
 
 Function = Callable[..., Any]
 

@@ -1,4 +1,4 @@
-"""Kernels as modules: read from their files with the functions of a model put in."""
+"""Compiled modules, read from their files with the functions of a model put in."""
 
 import importlib.util
 import sys
@@ -7,20 +7,22 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from stylobate.engine.lanes.arithmetic import inlined, part
-from stylobate.engine.lanes.head_source import OPTIONAL
-from stylobate.engine.lanes.model_code import for_compiling
+from stylobate.engine.compiling.arithmetic import inlined, part
+from stylobate.engine.compiling.model_code import for_compiling
+
+INLINED = ("rates", "lean")
+"""What is called in loops over lanes, which would not become vector code round a call."""
 
 
 def load(path: Path, functions: Mapping[str, Callable[..., Any]]) -> types.ModuleType:
-    """Return the module of the kernel in the file `path`, with these functions of the model; compiled if it must be."""
+    """Return the module in the file `path`, with these functions of the model; compiled if it must be."""
     name = f"stylobate_kernels.{path.stem}"
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     for function_name, function in functions.items():
-        compiled = for_compiling(function, part if function_name in OPTIONAL else inlined)
+        compiled = for_compiling(function, inlined if function_name in INLINED else part)
         setattr(module, function_name, compiled)
     sys.modules[name] = module
     spec.loader.exec_module(module)

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from stylobate.engine.lanes.loading import load
-from stylobate.engine.lanes.model_code import called_functions, plain_function, with_functions
+from stylobate.engine.compiling.loading import load
+from stylobate.engine.compiling.model_code import called_functions, plain_function, with_functions
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +66,7 @@ def compile_apart(path: Path, functions: Mapping[str, Callable[..., Any]]) -> bo
         request = pickle.dumps((path, {name: _Portable.of(function) for name, function in functions.items()}))
     except (pickle.PicklingError, TypeError, AttributeError, ValueError, RecursionError):
         return False
-    command = [sys.executable, "-c", "from stylobate.engine.lanes.apart import serve; serve()"]
+    command = [sys.executable, "-c", "from stylobate.engine.compiling.apart import serve; serve()"]
     try:
         status = subprocess.run(command, input=request, capture_output=True, check=False).returncode  # noqa: S603
     except OSError:

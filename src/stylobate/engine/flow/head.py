@@ -1,0 +1,16 @@
+"""What the head of a flow's module defines, for reading its text by itself; `modules` writes the real one."""
+
+from collections.abc import Callable
+
+ORDER: int
+"""Number of equations."""
+ACCELERATIONS: int
+"""Three of the base in space; along the plane and vertically in a plane."""
+NUMBERS: int
+"""Parameters of the model."""
+PLANAR: bool
+
+rates_into: Callable[..., None]
+jacobian_into: Callable[..., None]
+tilt_squared: Callable[..., tuple[float, float]]
+"""(state, parameters) → the square of the tilt and its rate."""

@@ -1,0 +1,161 @@
+"""Writes and compiles the flow of a model."""
+
+import types
+from collections.abc import Callable
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from stylobate.engine.compiling import arithmetic
+from stylobate.engine.compiling.modules import compiled_module
+from stylobate.engine.flow import tableau
+from stylobate.engine.flow.expressions import Expression, Recording
+from stylobate.engine.flow.recording import recorded
+from stylobate.errors import UnsupportedError
+from stylobate.models import Model
+
+_MARK = "# --- the module's text begins here ---"
+
+_IMPORTS = """\
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.engine.compiling.arithmetic import kept, part, turning_point
+from stylobate.engine.flow.tableau import DOP_A, DOP_C, DOP_E3, DOP_E5, Status
+
+Table = npt.NDArray[np.float64]
+Vector = npt.NDArray[np.float64]
+"""
+
+
+@cache
+def flow_module(model: type[Model], states: int, numbers: int, *, planar: bool) -> types.ModuleType:
+    """Return the compiled flow of a class of models with so many states and parameters, in space or in a plane.
+
+    Raises
+    ------
+    UnsupportedError
+        If the equations cannot be differentiated, or Numba cannot compile them.
+    """
+    rates = model.planar_rates if planar else model.rates
+    if rates is None:
+        message = f"model {model.name} has no equations of motion in a plane"
+        raise UnsupportedError(message)
+    functions: dict[str, Callable[..., Any]] = {"rates": rates} if planar else {"rates": rates, "lean": model.lean}
+    given = None if planar else model.jacobian
+    if given is not None:
+        functions["jacobian"] = given
+    kind = "plane" if planar else "space"
+    order = 2 if planar else states
+    arguments = _Arguments(order, numbers, planar=planar)
+    text = "\n\n".join(
+        [
+            f'"""Written by stylobate {version("stylobate")}: the flow of {model.name} in {kind}."""\n',
+            _IMPORTS,
+            "\n".join(f"{name} = {value}" for name, value in arguments.constants.items()),
+            _rates_source(arguments),
+            _given_jacobian(arguments) if given is not None else _jacobian_source(rates, arguments),
+            _tilt_source(arguments),
+            Path(__file__).with_name("pattern.py").read_text(encoding="utf-8").split(_MARK, 1)[1],
+        ]
+    )
+    return compiled_module(
+        f"{model.name}_flow_{kind}",
+        text,
+        functions,
+        imported=(arithmetic, tableau),
+        told=f"{model.name}, flow in {kind} with its derivatives",
+        of=model.name,
+    )
+
+
+class _Arguments:
+    """What a model's equations are called with, by the names they have in the module."""
+
+    def __init__(self, order: int, numbers: int, *, planar: bool) -> None:
+        self.planar = planar
+        self.states = [f"y{j}" for j in range(order)]
+        self.accelerations = [f"a{j}" for j in range(2 if planar else 3)]
+        self.numbers = [f"p{j}" for j in range(numbers)]
+
+    @property
+    def all(self) -> list[str]:
+        """In the order of the equations."""
+        side = ["side"] if self.planar else []
+        return [*self.states, *side, *self.accelerations, *self.numbers]
+
+    @property
+    def variables(self) -> list[str]:
+        """By which they are differentiated."""
+        return [*self.states, *self.accelerations, *self.numbers]
+
+    @property
+    def constants(self) -> dict[str, int]:
+        """How many of each, and whether motion keeps to a plane."""
+        counts = (len(self.states), len(self.accelerations), len(self.numbers))
+        return dict(zip(("ORDER", "ACCELERATIONS", "NUMBERS", "PLANAR"), (*counts, self.planar), strict=True))
+
+    def unpacked(self) -> list[str]:
+        """Return lines that take them out of vectors."""
+        groups = (("y", self.states), ("push", self.accelerations), ("numbers", self.numbers))
+        return [f"    {name} = {vector}[{j}]" for vector, names in groups for j, name in enumerate(names)]
+
+
+def _rates_source(arguments: _Arguments) -> str:
+    results = ", ".join(f"out[{j}]" for j in range(len(arguments.states)))
+    return "\n".join(
+        [
+            "@part",
+            "def rates_into(y, push, side, numbers, out):",
+            *arguments.unpacked(),
+            f"    {results} = rates({', '.join(arguments.all)})",
+        ]
+    )
+
+
+def _jacobian_source(rates: Callable[..., Any], arguments: _Arguments) -> str:
+    record = Recording()
+    inputs = {name: record.input(name) for name in arguments.all}
+    results = [record.known(result) for result in recorded(rates, tuple(inputs.values()))]
+    variables: list[Expression] = [inputs[name] for name in arguments.variables]
+    table = record.derivatives(results, variables)
+    lines, names = record.source([entry for row in table for entry in row])
+    columns = len(variables)
+    return "\n".join(
+        [
+            "@part",
+            "def jacobian_into(y, push, side, numbers, out):",
+            *arguments.unpacked(),
+            *(f"    {line}" for line in lines),
+            *(f"    out[{k // columns}, {k % columns}] = {name}" for k, name in enumerate(names)),
+        ]
+    )
+
+
+def _given_jacobian(arguments: _Arguments) -> str:
+    rows, columns = range(len(arguments.states)), range(len(arguments.variables))
+    return "\n".join(
+        [
+            "@part",
+            "def jacobian_into(y, push, side, numbers, out):",
+            *arguments.unpacked(),
+            f"    rows = jacobian({', '.join(arguments.all)})",
+            *(f"    out[{i}, {j}] = rows[{i}][{j}]" for i in rows for j in columns),
+        ]
+    )
+
+
+def _tilt_source(arguments: _Arguments) -> str:
+    if arguments.planar:
+        body = ["    return y[0] * y[0], 2.0 * y[0] * y[1]"]
+    else:
+        states = [f"y[{j}]" for j in range(len(arguments.states))]
+        numbers = [f"numbers[{j}]" for j in range(len(arguments.numbers))]
+        body = [
+            f"    x, y1, vx, vy = lean({', '.join([*states, *numbers])})",
+            "    return x * x + y1 * y1, 2.0 * (x * vx + y1 * vy)",
+        ]
+    return "\n".join(["@part", "def tilt_squared(y, numbers):", *body])

@@ -1,0 +1,256 @@
+"""The flow of a model over a part of the base motion's period, with its derivatives: the text of a compiled module.
+
+A module is a copy of what follows the mark, behind a head that defines for one model what is imported from `head`. The
+state of order n is the first column of a matrix of n rows; then come its derivatives by the state at the start, and by
+one number on which the system depends.
+
+DOP853: E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., section II.5.
+"""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.engine.compiling.arithmetic import kept, part, turning_point
+from stylobate.engine.flow.tableau import DOP_A, DOP_C, DOP_E3, DOP_E5, Status
+
+if TYPE_CHECKING:
+    from stylobate.engine.flow.head import (
+        ACCELERATIONS,
+        NUMBERS,
+        ORDER,
+        PLANAR,
+        jacobian_into,
+        rates_into,
+        tilt_squared,
+    )
+
+Table = npt.NDArray[np.float64]
+Vector = npt.NDArray[np.float64]
+
+# --- the module's text begins here ---
+
+# As SciPy's: safety 0.9, a step changes by 0.2 to 10.
+SAFETY, LEAST_FACTOR, LARGEST_FACTOR, LEAST_ERROR = 0.9, 0.2, 10.0, 1e-12
+# In turns of the base motion.
+FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 0.01, 0.125, 1e-13
+MOST_STEPS = 200_000
+# A crossing of the upright is met to this part of the slenderness.
+MET, MOST_TRIES = 1e-15, 60
+
+
+@part
+def accelerations_into(s: float, terms: Table, out: Vector) -> None:
+    """Set the accelerations at `s` turns: in each row of `terms` a multiple of the frequency, then pairs cos, sin."""
+    for k in range(ACCELERATIONS):
+        out[k] = 0.0
+    for term in range(len(terms)):
+        angle = 2.0 * math.pi * terms[term, 0] * s
+        cos, sin = math.cos(angle), math.sin(angle)
+        for k in range(ACCELERATIONS):
+            out[k] += terms[term, 1 + 2 * k] * cos + terms[term, 2 + 2 * k] * sin
+
+
+@part
+def slopes_into(
+    y: Table,
+    s: float,
+    side: float,
+    period: float,
+    terms: Table,
+    numbers: Vector,
+    change: Vector,
+    term_change: Table,
+    work: Table,
+    out: Table,
+) -> None:
+    """Set the rates of state and derivatives to a turn of the base motion.
+
+    `change` holds the changes of the period and of the model's numbers, `term_change` those of the terms.
+    """
+    push, push_change, rates = work[0], work[1], work[2]
+    jacobian = work[3:]
+    accelerations_into(s, terms, push)
+    accelerations_into(s, term_change, push_change)
+    rates_into(y[:, 0], push, side, numbers, rates)
+    jacobian_into(y[:, 0], push, side, numbers, jacobian)
+    for i in range(ORDER):
+        out[i, 0] = period * rates[i]
+        for column in range(1, ORDER + 2):
+            total = 0.0
+            for j in range(ORDER):
+                total += jacobian[i, j] * y[j, column]
+            out[i, column] = period * total
+        total = 0.0
+        for k in range(ACCELERATIONS):
+            total += jacobian[i, ORDER + k] * push_change[k]
+        for k in range(NUMBERS):
+            total += jacobian[i, ORDER + ACCELERATIONS + k] * change[1 + k]
+        out[i, ORDER + 1] += period * total + change[0] * rates[i]
+
+
+@part
+def stages_into(
+    y: Table,
+    s: float,
+    h: float,
+    side: float,
+    period: float,
+    terms: Table,
+    numbers: Vector,
+    change: Vector,
+    term_change: Table,
+    work: Table,
+    k: npt.NDArray[np.float64],
+    new: Table,
+) -> None:
+    """Make a step of length `h` to `new`; `k[0]` holds the slopes at its start, `k[12]` will hold those at its end."""
+    for stage in range(1, 13):
+        for i in range(ORDER):
+            for column in range(ORDER + 2):
+                total = 0.0
+                for before in range(stage):
+                    total += DOP_A[stage, before] * k[before, i, column]
+                new[i, column] = y[i, column] + h * total
+        slopes_into(new, s + DOP_C[stage] * h, side, period, terms, numbers, change, term_change, work, k[stage])
+
+
+@part
+def error_of(y: Table, new: Table, h: float, k: npt.NDArray[np.float64], rtol: float, atol: float) -> float:
+    """Return the error of a step over what is allowed; that of the derivative by a number is not looked at."""
+    e5 = e3 = 0.0
+    for i in range(ORDER):
+        for column in range(ORDER + 1):
+            q5 = q3 = 0.0
+            for stage in range(13):
+                q5 += DOP_E5[stage] * k[stage, i, column]
+                q3 += DOP_E3[stage] * k[stage, i, column]
+            floor = atol if column == 0 else rtol
+            scale = floor + rtol * max(abs(y[i, column]), abs(new[i, column]))
+            e5 += (q5 / scale) ** 2
+            e3 += (q3 / scale) ** 2
+    spread = e5 + 0.01 * e3
+    return abs(h) * e5 / math.sqrt(spread * ORDER * (ORDER + 1)) if spread > 0.0 else 0.0
+
+
+@part
+def note_tilt(y: Table, new: Table, duration: float, numbers: Vector, told: Vector) -> None:
+    """Note the least and the largest tilt of a step, by a cubic through the squares at its ends."""
+    start, slope = tilt_squared(y[:, 0], numbers)
+    end, end_slope = tilt_squared(new[:, 0], numbers)
+    slope, end_slope = slope * duration, end_slope * duration
+    least, largest = min(start, end), max(start, end)
+    if slope * end_slope < 0.0:
+        _, extreme = turning_point(start, end, slope, end_slope, 1.0 if slope > 0.0 else -1.0)
+        least, largest = min(least, extreme), max(largest, extreme)
+    told[0] = min(told[0], math.sqrt(max(least, 0.0)))
+    told[1] = max(told[1], math.sqrt(largest))
+
+
+@part
+def cross(y: Table, s: float, side: float, terms: Table, numbers: Vector, work: Table) -> bool:
+    """Pass the upright in a plane: the acceleration jumps, and derivatives with it (saltation); False if it grazes."""
+    push, before, after = work[0], work[1], work[2]
+    y[0, 0] = 0.0
+    speed = y[1, 0]
+    if speed * side >= 0.0:
+        return False
+    accelerations_into(s, terms, push)
+    rates_into(y[:, 0], push, side, numbers, before)
+    rates_into(y[:, 0], push, -side, numbers, after)
+    jump = (after[1] - before[1]) / speed
+    for column in range(1, ORDER + 2):
+        y[1, column] += jump * y[0, column]
+    return True
+
+
+@kept(
+    "int64(float64[:, ::1], float64, float64, float64, float64[:, ::1], float64[::1], float64[::1], float64[:, ::1], "
+    "float64[::1], float64[::1])"
+)
+def flow(
+    y: Table,
+    begin: float,
+    end: float,
+    period: float,
+    terms: Table,
+    numbers: Vector,
+    change: Vector,
+    term_change: Table,
+    limits: Vector,
+    told: Vector,
+) -> int:
+    """Carry `y` from `begin` to `end` [turns of the base motion]; return how that went.
+
+    `limits`: relative and absolute tolerance, least and largest tilt. `told`: least and largest tilt met, number of
+    steps, side of the upright on which it leans (for motion in a plane).
+    """
+    rtol, atol, least, largest = limits
+    k = np.zeros((13, ORDER, ORDER + 2))
+    work = np.zeros((3 + ORDER, ORDER + ACCELERATIONS + NUMBERS))
+    new = np.zeros((ORDER, ORDER + 2))
+    side = told[3]
+    s, h = begin, min(FIRST_STEP, end - begin)
+    rejected = False
+    tries, low, high = 0, 0.0, 0.0
+    slopes_into(y, s, side, period, terms, numbers, change, term_change, work, k[0])
+    while s < end:
+        if told[2] >= MOST_STEPS or (h < SHORTEST_STEP * max(1.0, abs(s)) and end - s > h):
+            return Status.FAILED
+        last = h >= end - s
+        h = end - s if last else h
+        stages_into(y, s, h, side, period, terms, numbers, change, term_change, work, k, new)
+        error = error_of(y, new, h, k, rtol, atol)
+        if not error < 1.0:
+            if tries > 0:  # a step towards the upright is no longer than one that was good
+                return Status.FAILED
+            h *= max(LEAST_FACTOR, SAFETY / error**0.125) if error < math.inf else LEAST_FACTOR
+            rejected = True
+            continue
+        if PLANAR:
+            aside = side * new[0, 0]
+            crossed = False
+            if tries == 0 and aside < 0.0:
+                low, high = 0.0, h
+                tries = 1
+            elif tries > 0:
+                crossed = abs(aside) < MET or tries >= MOST_TRIES or high - low <= 1e-16 * high
+                if aside >= 0.0:
+                    low = h
+                else:
+                    high = h
+                tries += 1
+            if tries > 0 and not crossed:
+                # Newton's step from the nearer end, else the middle.
+                speed = side * k[12, 0, 0]
+                h = h - aside / speed if speed < 0.0 else 0.5 * (low + high)
+                h = h if low < h < high else 0.5 * (low + high)
+                continue
+            if tries > 0:
+                note_tilt(y, new, period * h, numbers, told)
+                s += h
+                tries = 0
+                y[:, :] = new
+                told[2] += 1
+                if not cross(y, s, side, terms, numbers, work):
+                    return Status.LOST
+                side = told[3] = -side
+                told[0] = 0.0
+                slopes_into(y, s, side, period, terms, numbers, change, term_change, work, k[0])
+                h = FIRST_STEP
+                continue
+        note_tilt(y, new, period * h, numbers, told)
+        s = end if last else s + h
+        told[2] += 1
+        y[:, :] = new
+        k[0] = k[12]
+        factor = min(LARGEST_FACTOR, max(LEAST_FACTOR, SAFETY / max(error, LEAST_ERROR) ** 0.125))
+        h = min(h * (min(factor, 1.0) if rejected else factor), LONGEST_STEP)
+        rejected = False
+        if told[1] > largest:
+            return Status.GONE
+        if told[0] < least and not PLANAR:
+            return Status.LOST
+    return Status.DONE

@@ -1,0 +1,265 @@
+"""A model under a periodic base motion, as the compiled flow takes it: dimensionless, in turns of the base motion."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.engine.ensembles.harmonics import terms_of
+from stylobate.engine.flow.modules import flow_module
+from stylobate.engine.flow.tableau import Status
+from stylobate.engine.forcing import common_line
+from stylobate.engine.parameters import present_value, with_parameters
+from stylobate.errors import UnsupportedError
+from stylobate.models import Model
+from stylobate.motions import BaseMotion
+
+Floats = npt.NDArray[np.float64]
+
+LOST_TILT = 1e-6
+"""Nearer to the upright than this [units of c] the direction of lean is lost, and with it the orbit."""
+
+# A motion that is no sum of harmonic ones is taken by so many samples of a period, and given up if its Fourier series
+# has not fallen below this part of its largest term by half of what they can tell.
+_SAMPLES, _LEFT_OUT = 512, 1e-12
+_HARMONIC = 1e-9
+# Derivatives of the dimensionless numbers by a named parameter, which are closed forms of it: five-point differences
+# with this relative step, right to about 1e-12.
+_STEP = 1e-3
+
+
+@dataclass(frozen=True, slots=True)
+class Numbers:
+    """What the flow depends on: the period, the model's parameters, the harmonic terms of the base motion [g].
+
+    `terms` has a row for each: its multiple of the frequency, then coefficients of cosine and sine along each axis.
+    """
+
+    period: float
+    parameters: Floats
+    terms: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Flow:
+    """How a state was carried: its end, the derivatives of that by the start and by a parameter, and the tilts met."""
+
+    status: Status
+    end: Floats
+    by_start: Floats
+    by_parameter: Floats
+    least_tilt: float
+    largest_tilt: float
+    steps: int
+    side: float
+
+
+@dataclass(frozen=True, slots=True)
+class PeriodicSystem:
+    """A model under a periodic base motion.
+
+    Parameters
+    ----------
+    model, motion
+        The column and its base motion.
+    line
+        Unit vector of the vertical plane to which the motion keeps; None in space.
+    rtol
+        Relative tolerance of the flow; the absolute one is rtol × 0.01 c.
+    """
+
+    model: Model
+    motion: BaseMotion
+    line: tuple[float, float] | None = None
+    rtol: float = 1e-12
+    numbers: Numbers = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "numbers", _numbers(self.model, self.motion, self.line))
+
+    @property
+    def order(self) -> int:
+        """Number of equations."""
+        return 2 if self.planar else len(self.model.state_names)
+
+    @property
+    def planar(self) -> bool:
+        """Whether it moves in a vertical plane."""
+        return self.line is not None
+
+    @property
+    def scale(self) -> float:
+        """The slenderness c, the unit of tilts and their rates."""
+        return self.model.column.slenderness
+
+    @property
+    def safe_tilt(self) -> float:
+        """Tilt beyond which no periodic motion comes back, or a right angle."""
+        gravity = self.model.column.gravity
+        largest = self.motion.largest_horizontal(0.0) / gravity
+        least = self.motion.vertical_range(0.0)[0] / gravity
+        return min(self.model.least_safe_tilt(largest, least), 0.5 * math.pi)
+
+    def changed(self, **values: float) -> Self:
+        """Return the system with these numbers of column, model or motion changed; see `with_parameters`."""
+        model, motion = with_parameters(self.model, self.motion, **values)
+        return replace(self, model=model, motion=motion)
+
+    def value_of(self, name: str) -> float:
+        """Return the present value of a number that `changed` takes."""
+        return present_value(self.model, self.motion, name)
+
+    def derivative(self, name: str) -> Numbers:
+        """Return how the numbers change with the number of column, model or motion called `name`."""
+        at = self.value_of(name)
+        step = _STEP * (abs(at) if at != 0.0 else 1.0)
+        offsets = (-2.0, -1.0, 1.0, 2.0)
+        weights = np.array([1.0, -8.0, 8.0, -1.0]) / (12.0 * step)
+        around = [_changed_numbers(self, name, at + offset * step) for offset in offsets]
+
+        def combined(part: Callable[[Numbers], Any]) -> Any:
+            return sum(weight * part(numbers) for weight, numbers in zip(weights, around, strict=True))
+
+        terms = combined(lambda numbers: numbers.terms)
+        terms[:, 0] = self.numbers.terms[:, 0]
+        return Numbers(
+            float(combined(lambda numbers: numbers.period)), combined(lambda numbers: numbers.parameters), terms
+        )
+
+    def carry(
+        self,
+        state: Floats,
+        begin: float,
+        end: float,
+        *,
+        change: Numbers | None = None,
+        side: float = 0.0,
+        largest_tilt: float | None = None,
+    ) -> Flow:
+        """Carry `state` from `begin` to `end`, in turns of the base motion.
+
+        Parameters
+        ----------
+        state
+            Shape (order,), in units of the model; tilt and rate along the line in a plane.
+        begin, end
+            Phases, in turns.
+        change
+            What the numbers change by along a parameter, see `derivative`.
+        side
+            Side of the upright (±1) on which a motion in a plane begins; by default that of its tilt, or of its rate.
+        largest_tilt
+            Beyond it the motion is given up; the tilt of no return by default.
+        """
+        order, numbers = self.order, self.numbers
+        module = flow_module(
+            type(self.model), len(self.model.state_names), len(self.model.parameters), planar=self.planar
+        )
+        table = np.zeros((order, order + 2))
+        table[:, 0] = state
+        table[:, 1 : order + 1] = np.eye(order)
+        if change is None:
+            change = Numbers(0.0, np.zeros_like(numbers.parameters), np.zeros_like(numbers.terms))
+        limits = np.array(
+            [
+                self.rtol,
+                0.01 * self.rtol * self.scale,
+                LOST_TILT * self.scale,
+                self.safe_tilt if largest_tilt is None else largest_tilt,
+            ]
+        )
+        if self.planar and side == 0.0:
+            side = math.copysign(1.0, state[0] if state[0] != 0.0 else state[1])
+        told = np.array([math.inf, 0.0, 0.0, side])
+        with np.errstate(all="ignore"):
+            status = module.flow(
+                table,
+                begin,
+                end,
+                numbers.period,
+                numbers.terms,
+                numbers.parameters,
+                np.concatenate([[change.period], change.parameters]),
+                change.terms,
+                limits,
+                told,
+            )
+        return Flow(
+            Status(status),
+            table[:, 0].copy(),
+            table[:, 1 : order + 1].copy(),
+            table[:, order + 1].copy(),
+            float(told[0]),
+            float(told[1]),
+            int(told[2]),
+            float(told[3]),
+        )
+
+
+def _changed_numbers(system: PeriodicSystem, name: str, value: float) -> Numbers:
+    return system.changed(**{name: value}).numbers
+
+
+def _numbers(model: Model, motion: BaseMotion, line: tuple[float, float] | None) -> Numbers:
+    period = motion.period
+    if period is None:
+        message = f"periodic orbits need a base motion with a period, got {motion!r}"
+        raise UnsupportedError(message)
+    if motion.breaks:
+        message = (
+            f"periodic orbits need a base motion that is periodic from t = 0, without ramp or delay; got {motion!r}"
+        )
+        raise UnsupportedError(message)
+    gravity = model.column.gravity
+    rows = _harmonic_rows(motion, period)
+    if rows is None:
+        rows = _sampled_rows(motion, period)
+    table = np.array([[multiple, *np.ravel(pairs) / gravity] for multiple, pairs in rows]).reshape(len(rows), 7)
+    if line is not None:
+        along = line[0] * table[:, 1:3] + line[1] * table[:, 3:5]
+        table = np.concatenate([table[:, :1], along, table[:, 5:7]], axis=1)
+    return Numbers(period / model.time_scale, np.array(model.parameters, dtype=float), np.ascontiguousarray(table))
+
+
+def _harmonic_rows(motion: BaseMotion, period: float) -> list[tuple[float, Floats]] | None:
+    """Return multiples of the frequency with coefficients of cosine and sine along x, y, z [m/s²], shape (3, 2)."""
+    terms = terms_of(motion)
+    if terms is None:
+        return None
+    rows = []
+    for term in terms:
+        multiple = term.angular_frequency * period / (2.0 * math.pi)
+        if abs(multiple - round(multiple)) > _HARMONIC * max(multiple, 1.0):
+            return None
+        turned = np.array(term.amplitude) * np.exp(1j * (term.start_phase - term.angular_frequency * term.shift))
+        rows.append((float(round(multiple)), np.stack([turned.real, -turned.imag], axis=-1)))
+    return rows
+
+
+def _sampled_rows(motion: BaseMotion, period: float) -> list[tuple[float, Floats]]:
+    """Return the Fourier series of a motion that is not made of harmonic ones."""
+    time = period * np.arange(_SAMPLES) / _SAMPLES
+    series = np.fft.rfft(motion.acceleration(time), axis=0) / _SAMPLES
+    size = np.abs(series).max(axis=1)
+    if size[_SAMPLES // 4 :].max() > _LEFT_OUT * size.max():
+        message = (
+            "periodic orbits need a smooth base motion: the Fourier series of this one is not below 1e-12 of its "
+            f"largest term after {_SAMPLES // 4}; got {motion!r}"
+        )
+        raise UnsupportedError(message)
+    chosen = np.nonzero(size > 1e-16 * size.max())[0]
+    chosen = chosen[chosen < _SAMPLES // 4]
+    factor = np.where(chosen == 0, 1.0, 2.0)[:, np.newaxis]
+    pairs = np.stack([factor * series[chosen].real, -factor * series[chosen].imag], axis=-1)
+    return [(float(multiple), pair) for multiple, pair in zip(chosen, pairs, strict=True)]
+
+
+def plane_of(model: Model, motion: BaseMotion, state: Floats) -> tuple[float, float] | None:
+    """Return the line along which state and base motion lie, or None if they lie in no vertical plane."""
+    if model.planar_rates is None:
+        return None
+    x, y, vx, vy = (float(number) for number in model.lean(*state, *model.parameters))
+    return common_line((x, y), (vx, vy), *motion.directions())

@@ -1,0 +1,20 @@
+"""Numbers that single runs and ensembles share, so that both decide alike."""
+
+RTOL_RANGE = (1e-13, 1e-2)
+"""Relative tolerances that can be asked for."""
+ATOL_SHARE = 0.01
+"""The usual absolute tolerance is this part of rtol × c."""
+
+PARALLEL_ULP = 8.0
+"""Vectors parallel but for so many units of rounding lie in one plane."""
+FIRST_STEP_OFF = 1e-13
+"""A motion out of a plane that begins exactly at the upright begins this far from it [units of c], along its speed."""
+CLOSE_PASSAGE = 1e-8
+"""A run that passes the upright closer than this [units of c] is uncertain."""
+
+HOP_FROM = 1e-6
+"""Nearer to the upright than this [units of the smaller of c and the speed] …"""
+HOP_OFFSET = 1e-9
+"""… and with the path leading past it at less than this [units of c], it is passed in closed form."""
+HOPS_APART = 5.0
+"""How small a part of the force on a column near rest may change during one hop: one over this."""

@@ -1,0 +1,174 @@
+"""Bifurcations of a family: seen between two points, located on it, told apart."""
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from scipy.optimize import brentq
+
+from stylobate.engine.flow.tableau import Status
+from stylobate.orbits.arclength import Floats, Point, corrected
+from stylobate.orbits.conditions import CONDITIONS
+from stylobate.orbits.normal_forms import (
+    PeriodMap,
+    critical_vectors,
+    neimark_sacker_coefficient,
+    period_doubling_coefficient,
+)
+from stylobate.orbits.orbit import PeriodicOrbit
+from stylobate.orbits.shooting import shots
+
+# Along the family, in its units: the parameter is located better than this times the width of its bounds.
+_LOCATED = 1e-13
+# A multiplier this near to the unit circle is the critical one.
+_CRITICAL = 1e-4
+
+
+class Kind(Enum):
+    """What happens to an orbit as the parameter passes."""
+
+    FOLD = "fold"
+    """Two orbits meet and vanish."""
+    PITCHFORK = "pitchfork"
+    """An orbit loses a symmetry to two orbits that are each other's images."""
+    BRANCH_POINT = "branch point"
+    """Another family crosses this one."""
+    PERIOD_DOUBLING = "period doubling"
+    NEIMARK_SACKER = "Neimark-Sacker"
+    """A modulated motion is born or dies."""
+
+
+@dataclass(frozen=True)
+class Bifurcation:
+    """Where an orbit changes in kind.
+
+    Attributes
+    ----------
+    kind
+        What happens.
+    parameter
+        Value of the family's parameter.
+    orbit
+        The orbit there.
+    multiplier
+        The critical multiplier.
+    coefficient
+        Of the normal form, NaN where it decides nothing: of Neimark-Sacker below zero, of a pitchfork and a period
+        doubling above zero, if what is born is stable where the orbit is not.
+    soft
+        Whether a loss of stability here is soft: stable motions are born beside the orbit. None where nothing is
+        decided: at a fold the loss is always hard.
+    critical_vector
+        Disturbance of the state that neither grows nor decays (its real part), of length 1.
+    point, direction
+        The point of the family, and the sense in which it was passed.
+    """
+
+    kind: Kind
+    parameter: float
+    orbit: PeriodicOrbit
+    multiplier: complex
+    coefficient: float
+    soft: bool | None
+    critical_vector: Floats
+    point: Point
+    direction: Floats
+
+    @property
+    def state(self) -> Floats:
+        """State of the orbit at t = 0, in units of the model."""
+        return self.orbit.state
+
+    def __repr__(self) -> str:
+        """Tell it in one line."""
+        how = {True: ", soft", False: ", hard", None: ""}[self.soft]
+        return f"Bifurcation({self.kind.value} at {self.point.family.name} = {self.parameter:.10g}{how})"
+
+
+def between(first: Point, second: Point, sense: Floats) -> tuple[Bifurcation, ...]:
+    """Return the bifurcations between two points that follow each other, in their order."""
+    found = []
+    ends = {name: (condition(first, sense), condition(second, sense)) for name, condition in CONDITIONS.items()}
+    for name, (before, after) in ends.items():
+        if not before * after < 0.0:
+            continue
+        located = _located(first, second, sense, name)
+        if located is not None:
+            bifurcation = _told(located, sense, name)
+            if bifurcation is not None:
+                found.append(bifurcation)
+    return tuple(sorted(found, key=lambda one: float((one.point.u - first.u) @ sense)))
+
+
+def _located(first: Point, second: Point, sense: Floats, name: str) -> Point | None:
+    condition = CONDITIONS[name]
+    length = float((second.u - first.u) @ sense)
+    points: dict[float, Point] = {0.0: first, length: second}
+
+    def value(at: float) -> float:
+        if at not in points:
+            # Between the two points the family is followed from the chord.
+            guess = first.u + (second.u - first.u) * (at / length)
+            guess = guess + sense * (at - float((guess - first.u) @ sense))
+            found = corrected(first.family, guess, sense)
+            if isinstance(found, Status):
+                raise ArithmeticError
+            points[at] = found[0]
+        return condition(points[at], sense)
+
+    try:
+        root = brentq(value, 0.0, length, xtol=_LOCATED, rtol=8.9e-16)
+        value(root)
+    except (ArithmeticError, ValueError):
+        return None
+    return points[root]
+
+
+def orbit_at(point: Point) -> PeriodicOrbit:
+    """Return the orbit of a point of a family."""
+    family, chain = point.family, point.chain
+    system = family.at(point.value)
+    if family.sense < 0.0:
+        chain = shots(system, np.concatenate([chain.states, -chain.states]), family.periods)
+    return PeriodicOrbit(system.model, system.motion, family.periods, chain, system.line)
+
+
+def _told(point: Point, sense: Floats, name: str) -> Bifurcation | None:
+    """Return the bifurcation at a zero of this condition; None if it is none."""
+    orbit, family = orbit_at(point), point.family
+    values = point.map_multipliers
+    period_map = PeriodMap(orbit.system, orbit.state, family.covered, family.sense)
+    kind, critical, coefficient, soft = _KINDS[name], _CRITICAL_VALUES[name], math.nan, None
+    if name == "Neimark-Sacker":
+        pairs = [m for m in values if m.imag > 0.0 and abs(abs(m) - 1.0) < _CRITICAL]
+        if not pairs:
+            return None  # two reciprocal real multipliers
+        critical = complex(pairs[0])
+        coefficient = neimark_sacker_coefficient(period_map, critical)
+        soft = coefficient < 0.0
+    nearest = complex(values[np.argmin(np.abs(values - critical))])
+    if abs(nearest - critical) > _CRITICAL:
+        return None
+    if name == "period doubling":
+        coefficient = period_doubling_coefficient(period_map)
+        soft = coefficient > 0.0
+        # Half an orbit that doubles is a whole one that loses its symmetry.
+        kind = Kind.PITCHFORK if family.sense < 0.0 else kind
+    vector: Floats = critical_vectors(point.map_derivative, nearest)[0].real
+    multiplier = nearest**2 if family.sense < 0.0 else nearest
+    return Bifurcation(kind, point.value, orbit, multiplier, coefficient, soft, vector, point, sense)
+
+
+_KINDS = {
+    "fold": Kind.FOLD,
+    "branch point": Kind.BRANCH_POINT,
+    "period doubling": Kind.PERIOD_DOUBLING,
+    "Neimark-Sacker": Kind.NEIMARK_SACKER,
+}
+_CRITICAL_VALUES = {
+    "fold": 1.0 + 0.0j,
+    "branch point": 1.0 + 0.0j,
+    "period doubling": -1.0 + 0.0j,
+    "Neimark-Sacker": 0j,
+}

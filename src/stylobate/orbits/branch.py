@@ -1,0 +1,253 @@
+"""Branches: families of periodic orbits with what happens on them."""
+
+import json
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import xarray as xr
+
+from stylobate.engine.flow.tableau import Status
+from stylobate.engine.parameters import present_value
+from stylobate.errors import NoOrbitError, ParameterError
+from stylobate.orbits.arclength import Family, Floats, Point, on_family
+from stylobate.orbits.bifurcations import Bifurcation, between, orbit_at
+from stylobate.orbits.orbit import PeriodicOrbit
+from stylobate.orbits.shooting import arcs_of
+from stylobate.orbits.tracing import End, StepControl, Stretch, trace
+from stylobate.spec import provenance_of_run
+
+_STABLE = 1.0 - 1e-9
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A family of periodic orbits against one parameter.
+
+    Attributes
+    ----------
+    parameter
+        Its name.
+    path
+        The points in their order along the family.
+    bifurcations
+        What was located on it, in the order along the family.
+    ends
+        Why it ends where it begins, and where it ends.
+    """
+
+    parameter: str
+    path: tuple[Point, ...]
+    bifurcations: tuple[Bifurcation, ...]
+    ends: tuple[End, End]
+
+    def orbit(self, index: int) -> PeriodicOrbit:
+        """Return the orbit of a point."""
+        return orbit_at(self.path[index])
+
+    def orbits_at(self, value: float) -> tuple[PeriodicOrbit, ...]:
+        """Return the orbits of the branch at this value of the parameter, in the order along it."""
+        found = []
+        values = np.array([point.value for point in self.path])
+        for index in np.nonzero((values[:-1] - value) * (values[1:] - value) <= 0.0)[0]:
+            first, second = self.path[index], self.path[index + 1]
+            share = (value - first.value) / (second.value - first.value) if second.value != first.value else 0.0
+            guess = first.chain.states + share * (second.chain.states - first.chain.states)
+            point = on_family(first.family, guess, value)
+            if isinstance(point, Point):
+                found.append(orbit_at(point))
+        return tuple(found)
+
+    @cached_property
+    def points(self) -> xr.Dataset:
+        """The points as data over `point`: the parameter, tilts [rad], multipliers, stability, turns a period."""
+        orbits = [orbit_at(point) for point in self.path]
+        multipliers = np.stack([point.multipliers for point in self.path])
+        first = orbits[0]
+        table = {
+            "mean_tilt": ([orbit.mean_tilt for orbit in orbits], "rad", "mean tilt angle"),
+            "least_tilt": ([orbit.least_tilt for orbit in orbits], "rad", "least tilt angle"),
+            "largest_tilt": ([orbit.largest_tilt for orbit in orbits], "rad", "largest tilt angle"),
+            "phase": ([phase_of(orbit) for orbit in orbits], "rad", "phase of the lean to the base acceleration"),
+            "turns": ([orbit.turns for orbit in orbits], "1", "turns of the contact point a period"),
+        }
+        data = {
+            name: ("point", np.array(values), {"units": units, "long_name": long_name})
+            for name, (values, units, long_name) in table.items()
+        }
+        return xr.Dataset(
+            {
+                **data,
+                "stable": ("point", np.abs(multipliers[:, 0]) < _STABLE, {"long_name": "stable"}),
+                "multiplier": (
+                    ("point", "multiplier_index", "part"),
+                    np.stack([multipliers.real, multipliers.imag], axis=-1),
+                    {"units": "1", "long_name": "Floquet multipliers"},
+                ),
+                "tilt": (("point", "axis"), np.stack([orbit.tilt for orbit in orbits]), {"units": "rad"}),
+                "tilt_rate": (("point", "axis"), np.stack([o.tilt_rate for o in orbits]), {"units": "rad s-1"}),
+                **_table_of(self.bifurcations),
+            },
+            coords={
+                self.parameter: ("point", [point.value for point in self.path]),
+                "axis": ["x", "y"],
+                "part": ["real", "imaginary"],
+            },
+            attrs={
+                "kind": "branch",
+                "parameter": self.parameter,
+                "periods": first.periods,
+                "planar": int(first.planar),
+                "ends": json.dumps([end.value for end in self.ends]),
+                "provenance": json.dumps(provenance_of_run(first.model, first.motion)),
+            },
+        )
+
+    def __repr__(self) -> str:
+        """Tell it in one line."""
+        values = [point.value for point in self.path]
+        kinds = ", ".join(f"{one.kind.value} at {one.parameter:.8g}" for one in self.bifurcations)
+        return f"Branch({len(values)} orbits, {self.parameter} {min(values):.6g}…{max(values):.6g}; {kinds})"
+
+
+def _table_of(bifurcations: tuple[Bifurcation, ...]) -> dict[str, tuple[str, list[object]]]:
+    dim = "bifurcation"
+    return {
+        "bifurcation_kind": (dim, [one.kind.value for one in bifurcations]),
+        "bifurcation_parameter": (dim, [one.parameter for one in bifurcations]),
+        "bifurcation_coefficient": (dim, [one.coefficient for one in bifurcations]),
+        "bifurcation_soft": (dim, [{True: 1, False: 0, None: -1}[one.soft] for one in bifurcations]),
+        "bifurcation_mean_tilt": (dim, [one.orbit.mean_tilt for one in bifurcations]),
+        "bifurcation_largest_tilt": (dim, [one.orbit.largest_tilt for one in bifurcations]),
+    }
+
+
+def phase_of(orbit: PeriodicOrbit) -> float:
+    """Return the phase of the part of the lean that turns once a period with the base acceleration [rad].
+
+    NaN where the contact point does not turn so, or no part of the acceleration does.
+    """
+    sense = round(orbit.turns)
+    if abs(sense) != 1 or orbit.planar:
+        return math.nan
+    samples = orbit.path.shape[1]
+    phases = np.arange(samples) / samples * orbit.periods
+    push = orbit.motion.acceleration(phases * orbit.period / orbit.periods)
+    turning = np.exp(-2j * math.pi * sense * phases)
+    lean = np.mean((orbit.path[0] + 1j * orbit.path[1]) * turning)
+    base = np.mean((push[:, 0] + 1j * push[:, 1]) * turning)
+    if abs(base) < 1e-12 * np.abs(push).max():
+        return math.nan
+    return float(sense * np.angle(lean / base))
+
+
+def continue_branch(
+    orbit: PeriodicOrbit,
+    parameter: str,
+    *,
+    bounds: tuple[float, float],
+    both_ways: bool = True,
+    control: StepControl | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Branch:
+    """Follow a periodic orbit over one parameter, through folds, and locate its bifurcations.
+
+    Parameters
+    ----------
+    orbit
+        Where to begin.
+    parameter
+        Name of a number of column, model or motion; see `with_parameters`: angular_frequency, acceleration,
+        amplitude_x, amplitude_y, phase_difference, rotation, damping, slenderness …
+    bounds
+        Between which values it is followed.
+    both_ways
+        Whether it is followed to larger and to smaller values; else to larger ones first only.
+    control
+        Length of steps, and how many points at most each way.
+    progress
+        Called with the parameter of each new point.
+
+    Returns
+    -------
+    Branch
+        `.points` (xarray) and `.bifurcations`.
+
+    Raises
+    ------
+    ParameterError
+        If the orbit does not lie between the bounds, or the parameter is not known.
+
+    Notes
+    -----
+    Predictor along the tangent, Newton's method across it (H. B. Keller's pseudo-arclength); bifurcations are zeros
+    of the conditions in `orbits.conditions`, found on the family by Brent's method.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=2.0)
+    >>> orbit = sb.orbits.periodic_orbit(model, motion)
+    >>> branch = sb.orbits.continue_branch(orbit, "angular_frequency", bounds=(1.2, 2.5))
+    >>> [(one.kind.value, round(one.parameter, 8)) for one in branch.bifurcations]
+    [('Neimark-Sacker', 1.39710759)]
+    """
+    value = present_value(orbit.model, orbit.motion, parameter)
+    low, high = (float(bound) for bound in bounds)
+    if not (math.isfinite(low) and math.isfinite(high) and low <= value <= high and low < high):
+        message = f"bounds must enclose the present {parameter} {value!r}, got {bounds!r}"
+        raise ParameterError(message)
+    start = taken_up(orbit, parameter, value, high - low)
+    if isinstance(start, Status):
+        message = f"the orbit could not be taken up at {parameter} = {value!r}"
+        raise NoOrbitError(message)
+    up = np.zeros_like(start.u)
+    up[-1] = 1.0
+    seen = None if progress is None else (lambda point: progress(point.value))
+    return branch_through(start, up, (low, high), control or StepControl(), seen, both_ways=both_ways)
+
+
+def taken_up(orbit: PeriodicOrbit, parameter: str, value: float, span: float) -> Point | Status:
+    """Return the orbit as a point of its family: by half of it where it has the inversion, which the family keeps."""
+    states = orbit.chain.states
+    if orbit.inversion:
+        family = Family(orbit.system, orbit.periods, parameter, span, sense=-1.0)
+        half = arcs_of(orbit.system, orbit.state, 0.5 * orbit.periods, max(1, len(states) // 2))
+        point = on_family(family, half, value)
+        if isinstance(point, Point):
+            return point
+    return on_family(Family(orbit.system, orbit.periods, parameter, span), states, value)
+
+
+def branch_through(
+    start: Point,
+    direction: Floats,
+    bounds: tuple[float, float],
+    control: StepControl,
+    seen: Callable[[Point], None] | None = None,
+    *,
+    both_ways: bool = True,
+) -> Branch:
+    """Return the branch through a point, followed in the sense of `direction`, and the other way too."""
+    forward = trace(start, direction, bounds, control, seen)
+    if forward.end is End.CLOSED or not both_ways:
+        return _joined(start.family.name, forward, None)
+    return _joined(start.family.name, forward, trace(start, -start.along(direction), bounds, control, seen))
+
+
+def _joined(name: str, forward: Stretch, backward: Stretch | None) -> Branch:
+    points, directions = list(forward.points), list(forward.directions)
+    first_end: End = End.CLOSED if forward.end is End.CLOSED else End.BEGUN
+    if backward is not None:
+        points = [*reversed(backward.points[1:]), *points]
+        directions = [*(-sense for sense in reversed(backward.directions[1:])), *directions]
+        first_end = backward.end
+    found = [
+        bifurcation
+        for first, second, sense in zip(points, points[1:], directions, strict=False)
+        for bifurcation in between(first, second, sense)
+    ]
+    return Branch(name, tuple(points), tuple(found), (first_end, forward.end))

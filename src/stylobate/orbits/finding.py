@@ -1,0 +1,265 @@
+"""Finding periodic orbits: from a guess, from theory, from a run, from many random starts."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate import theory
+from stylobate.engine.flow.periodic import PeriodicSystem, plane_of
+from stylobate.engine.flow.tableau import Status
+from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError, require_positive, require_whole
+from stylobate.models import Model, Slender
+from stylobate.motions import BaseMotion, Harmonic
+from stylobate.orbits.orbit import PeriodicOrbit
+from stylobate.orbits.shooting import Shots, arcs_of, closed, damped, newton_step, shots
+from stylobate.results import Response
+
+Floats = npt.NDArray[np.float64]
+
+_LEAN = 4
+# Two orbits are one if their states differ by less than this part of c, at one of the phases they can share.
+_SAME = 1e-6
+_DEFLATED_STEPS = 40
+_CLOSE = 1e-10
+
+
+def periodic_orbit(
+    model: Model,
+    motion: BaseMotion,
+    *,
+    guess: npt.ArrayLike | Response | None = None,
+    periods: int = 1,
+    arcs: int | None = None,
+    sense: int = 1,
+    rtol: float = 1e-12,
+) -> PeriodicOrbit:
+    """Return the periodic orbit to which Newton's method leads from a guess.
+
+    The flow's derivatives are those of the variational equations, exact but for the tolerance; at the upright, which
+    only motion in a plane can pass, they jump (saltation).
+
+    Parameters
+    ----------
+    model
+        The column; its equations must allow derivatives, see `Model.jacobian`.
+    motion
+        A base motion that is periodic from t = 0.
+    guess
+        Tilt vector [rad] and its rate [rad/s] at t = 0: x, y, ẋ, ẏ. Or a run, which is taken where it last passed the
+        phase of t = 0. Or None for steady rolling by theory, exact for circular motion and averaged else (slender
+        model, harmonic motion).
+    periods
+        Length of the orbit in periods of the base motion.
+    arcs
+        Shots in which it is closed, one a period by default; more for orbits that are very unstable.
+    sense
+        +1 or −1: sense of rolling of the guess by theory.
+    rtol
+        Relative tolerance of the flow.
+
+    Raises
+    ------
+    NoOrbitError
+        If no orbit is reached.
+    ParameterError
+        If an argument is out of range.
+    UnsupportedError
+        If the motion is not periodic, or the model's equations cannot be differentiated.
+
+    Notes
+    -----
+    A guess that lies in the vertical plane of a base motion along a line is taken as one of motion in that plane.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> motion = sb.Harmonic.straight(acceleration=0.04, angular_frequency=2.0)
+    >>> orbit = sb.orbits.periodic_orbit(model, motion)
+    >>> orbit.stable, orbit.turns
+    (True, 1.0)
+    """
+    periods = require_whole("periods", periods, least=1)
+    arcs = periods if arcs is None else require_whole("arcs", arcs, least=1)
+    rtol = require_positive("rtol", rtol)
+    if guess is None:
+        lean = _by_theory(model, motion, sense)
+    elif isinstance(guess, Response):
+        lean = _of_run(guess, motion)
+    else:
+        lean = _checked(guess)
+    state = np.array(model.start(tuple(lean[:2]), tuple(lean[2:])), dtype=float)
+    line = plane_of(model, motion, state)
+    system = PeriodicSystem(model, motion, line, rtol)
+    if line is not None:
+        scaled = lean * np.array([1.0, 1.0, model.time_scale, model.time_scale])
+        state = np.array([scaled[:2] @ line, scaled[2:] @ line])
+    chain = closed(system, arcs_of(system, state, periods, arcs), periods)
+    return PeriodicOrbit(model, motion, periods, chain, line)
+
+
+def periodic_orbits(
+    model: Model,
+    motion: BaseMotion,
+    *,
+    over: Mapping[str, Sequence[float]] | None = None,
+    count: int = 32,
+    seed: int = 0,
+    periods: int = 1,
+    rtol: float = 1e-12,
+) -> tuple[PeriodicOrbit, ...]:
+    """Return the periodic orbits that are found from random starts, stable and unstable, each once.
+
+    Orbits found already are deflated: their neighbourhood repels Newton's method, so that coexisting ones are found
+    (P. E. Farrell, Á. Birkisson, S. W. Funke, "Deflation techniques for finding distinct solutions of nonlinear
+    partial differential equations", SIAM J. Sci. Comput. 37 (2015)).
+
+    Parameters
+    ----------
+    model, motion
+        The column and its periodic base motion.
+    over
+        Ranges of the starts: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s]. By default tilts within c and
+        rates within c at the frequency of the base motion, or c in units of the model if that is larger.
+    count, seed
+        Number of starts and the seed they are drawn with.
+    periods
+        Length of the orbits in periods of the base motion; shorter ones that are found are told with their own.
+    rtol
+        Relative tolerance of the flow.
+
+    Returns
+    -------
+    tuple
+        By length, then by largest tilt. What is not found may still exist: this is a search, not a proof.
+    """
+    periods = require_whole("periods", periods, least=1)
+    count = require_whole("count", count, least=1)
+    system = PeriodicSystem(model, motion, None, require_positive("rtol", rtol))
+    rng = np.random.default_rng(seed)
+    low, high = np.transpose(_ranges(system, over))
+    starts = rng.uniform(low, high, size=(count, _LEAN))
+    found: list[PeriodicOrbit] = []
+    known: list[Floats] = []
+    for lean in starts:
+        state = np.array(model.start(tuple(lean[:2]), tuple(lean[2:])), dtype=float)
+        chain = _deflated(system, state, periods, known)
+        if chain is None:
+            continue
+        orbit = _shortest(PeriodicOrbit(model, motion, periods, chain))
+        found.append(orbit)
+        known.extend(orbit.states(orbit.periods).T)
+    return tuple(sorted(found, key=lambda orbit: (orbit.periods, orbit.largest_tilt)))
+
+
+def _deflated(system: PeriodicSystem, state: Floats, periods: int, known: Sequence[Floats]) -> Shots | None:
+    """Return the orbit to which the deflated method leads, or None."""
+    chain = shots(system, state[np.newaxis], periods)
+    if chain.status is not Status.DONE:
+        return None
+    for _ in range(_DEFLATED_STEPS):
+        step = newton_step(chain)
+        if step is None:
+            return None
+        following = damped(system, chain, _repelled(step, chain.states, known, system.scale), periods)
+        if following is None:
+            return None
+        close = np.abs(step).max() <= _CLOSE * np.abs(chain.states).max()
+        chain = following
+        if close:
+            gaps = [np.abs(chain.states[0] - other).max() for other in known]
+            return None if any(gap <= _SAME * system.scale for gap in gaps) else chain
+    return None
+
+
+def _repelled(step: Floats, states: Floats, known: Sequence[Floats], scale: float) -> Floats:
+    """Return Newton's step for the residual times Π(1 + 1/|x − x_k|²), x in units of c."""
+    if not known:
+        return step
+    apart = (states[0] - np.stack(known)) / scale
+    square = np.sum(apart**2, axis=1) + 1e-300
+    # d ln(1 + 1/s)/ds = −1/(s(s + 1))
+    growth = -2.0 * (apart @ step[0]) / scale / (square * (square + 1.0))
+    factor = 1.0 - float(growth.sum())
+    return step / factor if abs(factor) > 1e-3 else step  # noqa: PLR2004  where it is singular, a plain step
+
+
+def _shortest(orbit: PeriodicOrbit) -> PeriodicOrbit:
+    """Return the orbit with its least period."""
+    for periods in range(1, orbit.periods):
+        if orbit.periods % periods == 0:
+            flow = orbit.system.carry(orbit.state, 0.0, float(periods))
+            if flow.status is Status.DONE and np.abs(flow.end - orbit.state).max() <= _SAME * orbit.system.scale:
+                chain = closed(orbit.system, orbit.state[np.newaxis], periods)
+                return PeriodicOrbit(orbit.model, orbit.motion, periods, chain, orbit.line)
+    return orbit
+
+
+def _ranges(system: PeriodicSystem, over: Mapping[str, Sequence[float]] | None) -> list[tuple[float, float]]:
+    scale, time = system.scale, system.model.time_scale
+    frequency = 2.0 * math.pi / system.numbers.period
+    rate = scale * max(1.0, min(frequency, 1.0 / frequency)) / time
+    ranges = {
+        "tilt_x": (-scale, scale),
+        "tilt_y": (-scale, scale),
+        "tilt_rate_x": (-rate, rate),
+        "tilt_rate_y": (-rate, rate),
+    }
+    for name, values in (over or {}).items():
+        if name not in ranges:
+            message = f"over: {name} is not known here; known are {', '.join(ranges)}"
+            raise ParameterError(message)
+        low, high = (float(value) for value in values)
+        if not (math.isfinite(low) and math.isfinite(high) and low <= high):
+            message = f"over: {name} must be a range low ≤ high, got {tuple(values)!r}"
+            raise ParameterError(message)
+        ranges[name] = (low, high)
+    return list(ranges.values())
+
+
+def _checked(guess: npt.ArrayLike) -> Floats:
+    lean = np.asarray(guess, dtype=float)
+    if lean.shape != (_LEAN,) or not np.all(np.isfinite(lean)):
+        message = f"guess must be four numbers, tilt x, y [rad] and their rates [rad/s], got {guess!r}"
+        raise ParameterError(message)
+    return lean
+
+
+def _of_run(run: Response, motion: BaseMotion) -> Floats:
+    period = motion.period
+    time = run.data["time"].to_numpy()
+    if period is None or time[-1] < period:
+        message = f"guess: the run must last for a period of the base motion at least, it ends at {time[-1]:.6g} s"
+        raise ParameterError(message)
+    whole = math.floor(time[-1] / period * (1.0 + 1e-12)) * period
+    at = run.sample(min(whole, time[-1])) if run.sampler is not None else run.data.interp(time=[whole], method="cubic")
+    return np.concatenate([at["tilt"].to_numpy().ravel(), at["tilt_rate"].to_numpy().ravel()])
+
+
+def _by_theory(model: Model, motion: BaseMotion, sense: int) -> Floats:
+    if type(model) is not Slender or not isinstance(motion, Harmonic) or motion.amplitude[2] != 0.0:
+        message = "guess must be given: theory knows steady rolling of the slender model under Harmonic motion only"
+        raise UnsupportedError(message)
+    if sense not in (1, -1):
+        message = f"sense must be +1 or -1, got {sense!r}"
+        raise ParameterError(message)
+    c, eta, scale = model.column.slenderness, model.damping, model.column.frequency_scale
+    a1, a2 = (amplitude / model.column.gravity for amplitude in motion.amplitude[:2])
+    theta = motion.angular_frequency / scale
+    p, q = theory.circular_components(a1, a2, motion.phase[1] - motion.phase[0])
+    part = p if sense > 0 else q
+    steady = theory.steady_rolling(theta, abs(part), c=c, eta=eta).upper
+    amplitude, psi = float(steady.amplitude), float(steady.phase)
+    if not amplitude > 0.0:
+        message = (
+            f"guess must be given: theory has no steady rolling at angular_frequency {motion.angular_frequency!r} rad/s"
+        )
+        raise NoOrbitError(message)
+    # Sense +1: β = θτ + arg p + ψ; sense −1: β = −θτ + arg q − ψ; the phase of x moves both with time.
+    along = motion.start_phase + motion.phase[0]
+    azimuth = float(np.angle(part)) + sense * (along + psi)
+    x, y = amplitude * math.cos(azimuth), amplitude * math.sin(azimuth)
+    rate = sense * theta * scale
+    return np.array([x, y, -rate * y, rate * x])

@@ -1,0 +1,170 @@
+"""A periodic orbit and what it is like."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.engine.flow.periodic import PeriodicSystem
+from stylobate.models import Model
+from stylobate.motions import BaseMotion
+from stylobate.orbits.shooting import Shots
+
+Floats = npt.NDArray[np.float64]
+Complexes = npt.NDArray[np.complex128]
+
+_SAMPLES = 128
+# An orbit has a symmetry if it is its own image to this part of its size.
+_SAME = 1e-7
+# A multiplier this near to the unit circle cannot be told from one on it.
+_NEUTRAL = 1e-9
+
+
+@dataclass(frozen=True)
+class PeriodicOrbit:
+    """A periodic motion, known to rounding, with its Floquet multipliers.
+
+    Attributes
+    ----------
+    model, motion
+        The column and its base motion.
+    periods
+        Its length, in periods of the base motion.
+    chain
+        The shots of which it is closed, in units of the model.
+    line
+        Unit vector of the vertical plane to which it keeps, or None.
+    """
+
+    model: Model
+    motion: BaseMotion
+    periods: int
+    chain: Shots
+    line: tuple[float, float] | None = None
+
+    @property
+    def state(self) -> Floats:
+        """State at t = 0, in units of the model; tilt and its rate along `line` for an orbit in a plane."""
+        return self.chain.states[0]
+
+    @property
+    def tilt(self) -> Floats:
+        """Tilt vector at t = 0 [rad]."""
+        tilt: Floats = self._lean[:2]
+        return tilt
+
+    @property
+    def tilt_rate(self) -> Floats:
+        """Its rate at t = 0 [rad/s]."""
+        return np.asarray(self._lean[2:] / self.model.time_scale)
+
+    @cached_property
+    def _lean(self) -> Floats:
+        lean: Floats = lean_of(self.system, self.state[:, np.newaxis])[:, 0]
+        return lean
+
+    @property
+    def period(self) -> float:
+        """Its period [s]."""
+        period = self.motion.period
+        assert period is not None
+        return self.periods * period
+
+    @cached_property
+    def system(self) -> PeriodicSystem:
+        """The system of which it is an orbit."""
+        return PeriodicSystem(self.model, self.motion, self.line)
+
+    @cached_property
+    def multipliers(self) -> Complexes:
+        """Floquet multipliers, the largest first; for an orbit in a plane those of disturbances in the plane."""
+        found = np.linalg.eigvals(self.chain.monodromy).astype(complex)
+        return found[np.argsort(-np.abs(found), kind="stable")]
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers lie inside the unit circle; in a plane, whether it is stable in that plane."""
+        return bool(np.abs(self.multipliers[0]) < 1.0 - _NEUTRAL)
+
+    @property
+    def planar(self) -> bool:
+        """Whether it keeps to a vertical plane; disturbances out of it have no multiplier then."""
+        return self.line is not None
+
+    @property
+    def least_tilt(self) -> float:
+        """Least tilt angle [rad]."""
+        return self.chain.least_tilt
+
+    @property
+    def largest_tilt(self) -> float:
+        """Largest tilt angle [rad]."""
+        return self.chain.largest_tilt
+
+    @cached_property
+    def path(self) -> Floats:
+        """Tilt vector [rad] and its rate [rad per unit of the model's time] over the orbit, shape (4, n)."""
+        return lean_of(self.system, self.states(_SAMPLES * self.periods))
+
+    def states(self, count: int) -> Floats:
+        """Return states at `count` equal steps of time over the orbit, shape (order, count), beginning with t = 0."""
+        arcs = len(self.chain.states)
+        phases = self.periods * np.arange(count) / count
+        states = np.empty((self.system.order, count))
+        at, state, side = 0.0, self.state, 0.0
+        for index, phase in enumerate(phases):
+            # Each arc begins anew: what an unstable orbit has drifted off is left behind.
+            arc = int(phase * arcs / self.periods + 1e-12)
+            if arc / arcs * self.periods > at + 1e-12:
+                at, state = arc / arcs * self.periods, self.chain.states[arc]
+            if phase > at:
+                flow = self.system.carry(state, at, float(phase), side=side)
+                at, state, side = float(phase), flow.end, flow.side if self.planar else 0.0
+            states[:, index] = state
+        return states
+
+    @property
+    def mean_tilt(self) -> float:
+        """Mean tilt angle [rad]."""
+        return float(np.hypot(*self.path[:2]).mean())
+
+    @cached_property
+    def turns(self) -> float:
+        """Turns of the contact point round the rim in one period of the base motion, anticlockwise positive.
+
+        In a plane it is 0: the contact point jumps from one side to the other.
+        """
+        if self.planar:
+            return 0.0
+        x, y = self.path[:2]
+        steps = np.angle(np.exp(1j * np.diff(np.append(np.arctan2(y, x), math.atan2(y[0], x[0])))))
+        return float(round(steps.sum() / (2.0 * math.pi))) / self.periods
+
+    @cached_property
+    def inversion(self) -> bool:
+        """Whether half a period later it leans the other way: x(t + nT/2) = −x(t)."""
+        samples = self.path.shape[1]
+        return self._same(-np.roll(self.path, samples // 2, axis=1))
+
+    def _same(self, image: Floats) -> bool:
+        size = np.abs(self.path).max(axis=1, keepdims=True)
+        return bool(np.all(np.abs(self.path - image) <= _SAME * np.where(size > 0.0, size, 1.0)))
+
+    def __repr__(self) -> str:
+        """Tell what it is in one line."""
+        stability = "stable" if self.stable else "unstable"
+        kind = f"period {self.periods}, {self.turns:+.3g} turns a period"
+        return f"PeriodicOrbit({stability}, {kind}, tilt {self.least_tilt:.6g}…{self.largest_tilt:.6g} rad)"
+
+
+def lean_of(system: PeriodicSystem, states: Floats) -> Floats:
+    """Return tilt vectors and rates, shape (4, n), of states, shape (order, n)."""
+    model = system.model
+    if system.line is not None:
+        ux, uy = system.line
+        tilt, rate = states
+        return np.stack([tilt * ux, tilt * uy, rate * ux, rate * uy])
+    lean = model.lean(*states, *model.parameters)
+    return np.stack(np.broadcast_arrays(*lean)).astype(float)

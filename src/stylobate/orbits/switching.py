@@ -1,0 +1,82 @@
+"""From a bifurcation to the family that is born there."""
+
+import numpy as np
+
+from stylobate.engine.flow.tableau import Status
+from stylobate.errors import NoOrbitError, ParameterError
+from stylobate.orbits.arclength import Family, Point, corrected
+from stylobate.orbits.bifurcations import Bifurcation, Kind
+from stylobate.orbits.branch import Branch, branch_through
+from stylobate.orbits.shooting import arcs_of
+from stylobate.orbits.tracing import StepControl
+
+# First step off the old family, in units of c, and how often it is doubled where Newton's method falls back.
+_OFF, _DOUBLINGS = 2e-3, 5
+
+
+def switch_branch(
+    bifurcation: Bifurcation,
+    *,
+    bounds: tuple[float, float],
+    opposite: bool = False,
+    control: StepControl | None = None,
+) -> Branch:
+    """Return the family that crosses or leaves another one at a bifurcation.
+
+    Parameters
+    ----------
+    bifurcation
+        A pitchfork, a period doubling or a branch point of a branch.
+    bounds
+        Between which values of the parameter it is followed, away from the bifurcation.
+    opposite
+        Of a pitchfork: take the mirror image, half a period later, of what is taken else.
+    control
+        As in `continue_branch`.
+
+    Raises
+    ------
+    ParameterError
+        If nothing branches off here as a family of periodic orbits: at a fold, or where a modulated motion is born.
+    NoOrbitError
+        If no orbit of the new family was reached.
+    """
+    point, old = bifurcation.point, bifurcation.point.family
+    if bifurcation.kind in (Kind.FOLD, Kind.NEIMARK_SACKER):
+        message = (
+            f"bifurcation must be a pitchfork, a period doubling or a branch point, got {bifurcation.kind.value}: "
+            "no other family of periodic orbits begins there"
+        )
+        raise ParameterError(message)
+    periods = 2 * old.periods if bifurcation.kind is Kind.PERIOD_DOUBLING else old.periods
+    family = Family(old.at(point.value), periods, old.name, bounds[1] - bounds[0])
+    states = arcs_of(family.system, point.chain.states[0], periods, periods)
+    units = family.units(states.size)
+    sign = -1.0 if opposite else 1.0
+    disturbance = arcs_of_disturbance(family, states, sign * bifurcation.critical_vector)
+    normal = np.append(disturbance.ravel(), 0.0) / units
+    normal /= np.linalg.norm(normal)
+    here = np.append(states.ravel(), point.value) / units
+    off = _OFF
+    for _ in range(_DOUBLINGS):
+        found = corrected(family, here + off * normal, normal)
+        # On the old family the plane across the disturbance is met at no distance from it.
+        if not isinstance(found, Status) and _apart(found[0], here, normal) > 0.5 * off:
+            start = found[0]
+            return branch_through(start, normal, bounds, control or StepControl(), both_ways=False)
+        off *= 2.0
+    message = f"no orbit of the family born at {old.name} = {point.value!r} was reached; give another bifurcation"
+    raise NoOrbitError(message)
+
+
+def _apart(point: Point, here: np.ndarray, normal: np.ndarray) -> float:
+    return float(abs((point.u - here) @ normal))
+
+
+def arcs_of_disturbance(family: Family, states: np.ndarray, vector: np.ndarray) -> np.ndarray:
+    """Return a disturbance of the first state as it is where each arc begins."""
+    carried = [vector]
+    for arc in range(len(states) - 1):
+        begin, end = (family.periods * k / len(states) for k in (arc, arc + 1))
+        carried.append(family.system.carry(states[arc], begin, end).by_start @ carried[-1])
+    return np.stack(carried)

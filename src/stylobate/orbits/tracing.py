@@ -1,0 +1,153 @@
+"""Following a family of periodic orbits by pseudo-arclength."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from stylobate.engine.flow.tableau import Status
+from stylobate.orbits.arclength import Family, Floats, Point, corrected
+
+_EASY, _HARD = 4, 7
+_LONGER, _SHORTER = 1.5, 0.5
+# Two tangents at the ends of a step differ by no more than the angle of this cosine.
+_STRAIGHT = 0.97
+# The family is closed when it comes back this near to its first point [steps].
+_CLOSED = 0.75
+
+
+class End(Enum):
+    """Why a family was followed no further."""
+
+    BOUND = "the parameter reached its bound"
+    LOST = "the orbit comes within 1e-6 c of the upright"
+    GONE = "the orbit leaves for tilts from which no motion returns"
+    CLOSED = "the family is closed"
+    STEPS = "as many points as asked for"
+    SHORT = "the steps became too short"
+    BEGUN = "it was begun here"
+    MERGED = "the orbit has taken back the symmetry that it broke"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StepControl:
+    """How a family is followed.
+
+    Parameters
+    ----------
+    first, least, largest
+        Lengths of a step, in units of c for states and of the width of the bounds for the parameter.
+    most
+        Number of points at most.
+    """
+
+    first: float = 5e-3
+    least: float = 1e-7
+    largest: float = 0.02
+    most: int = 2000
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """Points of a family in their order, the sense in which each was passed, and why it ended."""
+
+    points: tuple[Point, ...]
+    directions: tuple[Floats, ...]
+    end: End
+
+
+def trace(
+    start: Point,
+    direction: Floats,
+    bounds: tuple[float, float],
+    control: StepControl,
+    seen: Callable[[Point], None] | None = None,
+) -> Stretch:
+    """Follow a family from `start` in the sense of `direction` until it ends."""
+    points, directions = [start], [start.along(direction)]
+    broken = _asymmetry(start)
+    for item in _points(start, direction, bounds, control):
+        if isinstance(item, End):
+            return Stretch(tuple(points), tuple(directions), item)
+        point, sense = item
+        before, broken = broken, _asymmetry(point)
+        if float(before @ broken) < 0.0:
+            return Stretch(tuple(points), tuple(directions), End.MERGED)
+        points.append(point)
+        directions.append(sense)
+        if seen is not None:
+            seen(point)
+    return Stretch(tuple(points), tuple(directions), End.STEPS)
+
+
+def _points(
+    start: Point, direction: Floats, bounds: tuple[float, float], control: StepControl
+) -> Iterator[tuple[Point, Floats] | End]:
+    family = start.family
+    low, high = bounds
+    point, sense, length = start, start.along(direction), control.first
+    made = 0
+    while made < control.most:
+        found = corrected(family, point.u + length * sense, sense)
+        if isinstance(found, Status):
+            length *= _SHORTER
+            if length < control.least:
+                yield _why(found)
+                return
+            continue
+        following, steps = found
+        after = following.along(sense)
+        if after @ sense < _STRAIGHT and length > 10.0 * control.least:
+            length *= _SHORTER
+            continue
+        if not low <= following.value <= high:
+            last = _at_bound(family, point, sense, low if following.value < low else high)
+            if last is not None:
+                yield last, last.along(sense)
+            yield End.BOUND
+            return
+        made += 1
+        yield following, after
+        if (
+            made > _FEW
+            and np.linalg.norm(following.u - start.u) < _CLOSED * length
+            and after @ start.along(direction) > 0.0
+        ):
+            yield End.CLOSED
+            return
+        point, sense = following, after
+        if steps <= _EASY:
+            length = min(_LONGER * length, control.largest)
+        elif steps >= _HARD:
+            length *= _SHORTER
+
+
+_FEW = 10
+
+
+def _asymmetry(point: Point) -> Floats:
+    """Return by how much an orbit without the half-period inversion lacks it; zero for one that keeps to it.
+
+    On the family that leaves another one at a pitchfork it changes sign where the two meet: beyond come the mirror
+    images of the orbits before.
+    """
+    family, state = point.family, point.chain.states[0]
+    if family.sense < 0.0:
+        return np.zeros(state.size)
+    flow = family.at(point.value).carry(state, 0.0, 0.5 * family.periods)
+    return np.asarray(state + flow.end)
+
+
+def _at_bound(family: Family, point: Point, sense: Floats, bound: float) -> Point | None:
+    """Return the point at the bound of the parameter, beyond `point`."""
+    missing = bound / family.span - point.u[-1]
+    guess = point.u + sense * missing / sense[-1]
+    normal = np.zeros_like(sense)
+    normal[-1] = 1.0
+    found = corrected(family, guess, normal)
+    return None if isinstance(found, Status) else found[0]
+
+
+def _why(status: Status) -> End:
+    return {Status.LOST: End.LOST, Status.GONE: End.GONE}.get(status, End.SHORT)
