@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
+from types import SimpleNamespace
 
 from stylobate.column import Column
 from stylobate.errors import ParameterError, UnsupportedError, require_finite

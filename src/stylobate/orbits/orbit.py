@@ -47,7 +47,7 @@ class PeriodicOrbit:
     @property
     def state(self) -> Floats:
         """State at t = 0, in units of the model; tilt and its rate along `line` for an orbit in a plane."""
-        return self.chain.states[0]
+        return np.asarray(self.chain.states[0])
 
     @property
     def tilt(self) -> Floats:
