@@ -27,6 +27,7 @@ class End(Enum):
     STEPS = "as many points as asked for"
     SHORT = "the steps became too short"
     BEGUN = "it was begun here"
+    RESONANCE = "the pair of multipliers meets on the real axis"
     MERGED = "the orbit has taken back the symmetry that it broke"
 
 

@@ -1,0 +1,326 @@
+"""Curves of bifurcations in two parameters."""
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.engine.flow.periodic import PeriodicSystem
+from stylobate.engine.flow.tableau import Status
+from stylobate.engine.parameters import present_value
+from stylobate.errors import NoOrbitError, ParameterError, StylobateError
+from stylobate.orbits.bifurcations import Bifurcation, Kind
+from stylobate.orbits.normal_forms import PeriodMap, neimark_sacker_coefficient, period_doubling_coefficient
+from stylobate.orbits.shooting import Shots, shots
+from stylobate.orbits.tracing import End, StepControl
+from stylobate.spec import provenance_of_run
+
+Floats = npt.NDArray[np.float64]
+
+_CLOSE, _MOST_STEPS = 1e-10, 12
+# Step of the differences that tell Newton's method how the condition changes; it moves no solution.
+_STEP = 1e-6
+_LONGER, _SHORTER, _EASY, _HARD, _STRAIGHT = 1.5, 0.5, 4, 7, 0.95
+# A pair of multipliers this near to the real axis is about to leave the circle.
+_REAL = 1e-3
+
+
+def _one(matrix: Floats) -> float:
+    return float(np.linalg.det(matrix - np.eye(len(matrix))))
+
+
+def _minus_one(matrix: Floats) -> float:
+    return float(np.linalg.det(matrix + np.eye(len(matrix))))
+
+
+def _pair(matrix: Floats) -> float:
+    values = np.linalg.eigvals(matrix)
+    first, second = np.triu_indices(len(values), 1)
+    return float(np.prod(values[first] * values[second] - 1.0).real)
+
+
+_CONDITIONS: dict[Kind, Callable[[Floats], float]] = {
+    Kind.FOLD: _one,
+    Kind.PITCHFORK: _minus_one,
+    Kind.PERIOD_DOUBLING: _minus_one,
+    Kind.NEIMARK_SACKER: _pair,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class CurvePoint:
+    """A bifurcation on a curve: both parameters, the shots of its orbit, and the critical eigenvalue of their map."""
+
+    values: tuple[float, float]
+    chain: Shots
+    multiplier: complex
+
+
+@dataclass(frozen=True)
+class BifurcationCurve:
+    """Where a bifurcation lies in the plane of two parameters.
+
+    Attributes
+    ----------
+    kind
+        Of the bifurcation.
+    parameters
+        Names of the two.
+    path
+        The points in their order.
+    ends
+        Why it ends at either end.
+    plane
+        What carries the orbits.
+    """
+
+    kind: Kind
+    parameters: tuple[str, str]
+    path: tuple[CurvePoint, ...]
+    ends: tuple[End, End]
+    plane: "Plane"
+
+    @cached_property
+    def points(self) -> xr.Dataset:
+        """The points as data over `point`: both parameters, tilts [rad], the coefficient of the normal form, its sign.
+
+        `soft` is 1 where a loss of stability is soft, 0 where it is hard, −1 where nothing is decided.
+        """
+        coefficient = np.array([self.plane.coefficient(point) for point in self.path])
+        soft = coefficient < 0.0 if self.kind is Kind.NEIMARK_SACKER else coefficient > 0.0
+        angle = np.abs(np.angle([point.multiplier for point in self.path]))
+        system = self.plane.system
+        return xr.Dataset(
+            {
+                "least_tilt": ("point", [p.chain.least_tilt for p in self.path], {"units": "rad"}),
+                "largest_tilt": ("point", [p.chain.largest_tilt for p in self.path], {"units": "rad"}),
+                "coefficient": ("point", coefficient, {"long_name": "coefficient of the normal form"}),
+                "soft": ("point", np.where(np.isnan(coefficient), -1, soft).astype(np.int8)),
+                "multiplier_angle": ("point", angle, {"units": "rad", "long_name": "angle of the critical eigenvalue"}),
+            },
+            coords={name: ("point", [p.values[k] for p in self.path]) for k, name in enumerate(self.parameters)},
+            attrs={
+                "kind": "bifurcation curve",
+                "bifurcation": self.kind.value,
+                "parameters": json.dumps(self.parameters),
+                "ends": json.dumps([end.value for end in self.ends]),
+                "provenance": json.dumps(provenance_of_run(system.model, system.motion)),
+            },
+        )
+
+    def __repr__(self) -> str:
+        """Tell it in one line."""
+        return f"BifurcationCurve({self.kind.value} over {' and '.join(self.parameters)}, {len(self.path)} points)"
+
+
+def bifurcation_curve(
+    bifurcation: Bifurcation,
+    parameter: str,
+    *,
+    bounds: tuple[tuple[float, float], tuple[float, float]],
+    control: StepControl | None = None,
+) -> BifurcationCurve:
+    """Follow a fold, a pitchfork, a period doubling or a Neimark–Sacker point in a second parameter.
+
+    Parameters
+    ----------
+    bifurcation
+        Where to begin, on a branch over its first parameter.
+    parameter
+        Name of the second parameter.
+    bounds
+        Of the first and of the second parameter.
+    control
+        Length of steps, in units of c for states and of the widths of the bounds, and how many points each way.
+
+    Raises
+    ------
+    ParameterError
+        If the bifurcation is a branch point, the second parameter is the first, or it lies outside the bounds.
+    NoOrbitError
+        If the curve could not be begun.
+
+    Notes
+    -----
+    The orbit's equations and the condition of the bifurcation together, by pseudo-arclength. How the condition changes
+    is taken by differences, which Newton's method bears; the condition itself is met to rounding.
+    """
+    first = bifurcation.point.family.name
+    if bifurcation.kind not in _CONDITIONS:
+        message = f"bifurcation must be no branch point, which a second parameter breaks up; got {bifurcation!r}"
+        raise ParameterError(message)
+    if parameter == first:
+        message = f"parameter must be another than {first}, along which the bifurcation was found"
+        raise ParameterError(message)
+    system = bifurcation.orbit.system
+    at = (bifurcation.parameter, present_value(system.model, system.motion, parameter))
+    for name, value, (low, high) in zip((first, parameter), at, bounds, strict=True):
+        if not low <= value <= high:
+            message = f"bounds must enclose the present {name} {value!r}, got {(low, high)!r}"
+            raise ParameterError(message)
+    family = bifurcation.point.family
+    plane = Plane(
+        system,
+        (first, parameter),
+        family.covered,
+        family.sense,
+        bifurcation.kind,
+        tuple(high - low for low, high in bounds),
+    )
+    guess = np.concatenate([bifurcation.point.chain.states.ravel(), at])
+    start = plane.corrected(guess / plane.units(guess.size - 2), None)
+    if isinstance(start, End):
+        message = f"the curve could not be begun: {start.value}"
+        raise NoOrbitError(message)
+    control = control or StepControl()
+    forward, last = _followed(plane, start, 1.0, bounds, control)
+    if last is End.CLOSED:
+        return BifurcationCurve(bifurcation.kind, plane.names, tuple(forward), (last, last), plane)
+    backward, begin = _followed(plane, start, -1.0, bounds, control)
+    path = (*reversed(backward[1:]), *forward)
+    return BifurcationCurve(bifurcation.kind, plane.names, path, (begin, last), plane)
+
+
+@dataclass(frozen=True)
+class _Step:
+    """A corrected point with what is needed to go on."""
+
+    point: CurvePoint
+    u: Floats
+    tangent: Floats
+    steps: int
+
+
+@dataclass(frozen=True)
+class Plane:
+    """The plane of two parameters, over which orbits of a system are carried."""
+
+    system: PeriodicSystem
+    names: tuple[str, str]
+    covered: float
+    sense: float
+    kind: Kind
+    spans: tuple[float, ...]
+
+    def units(self, count: int) -> Floats:
+        """Return the units of states and parameters."""
+        return np.concatenate([np.full(count, self.system.scale * np.sqrt(count)), self.spans])
+
+    def at(self, values: Floats) -> PeriodicSystem:
+        """Return the system with these values of both parameters."""
+        return self.system.changed(**dict(zip(self.names, map(float, values), strict=True)))
+
+    def coefficient(self, point: CurvePoint) -> float:
+        """Return the coefficient of the normal form, NaN at a fold."""
+        period_map = PeriodMap(self.at(np.array(point.values)), point.chain.states[0], self.covered, self.sense)
+        if self.kind is Kind.FOLD:
+            return float("nan")
+        if self.kind is Kind.NEIMARK_SACKER:
+            return neimark_sacker_coefficient(period_map, point.multiplier)
+        return period_doubling_coefficient(period_map)
+
+    def corrected(self, u: Floats, normal: Floats | None) -> _Step | End:
+        """Return the point of the curve in the plane through `u` across `normal`; nearest to `u` without one."""
+        here = u
+        for steps in range(1, _MOST_STEPS + 1):
+            try:
+                looked = self._looked(here)
+            except StylobateError:
+                return End.SHORT
+            if isinstance(looked, Status):
+                return {Status.LOST: End.LOST, Status.GONE: End.GONE}.get(looked, End.SHORT)
+            residual, jacobian, chain = looked
+            if normal is None:
+                step = np.linalg.lstsq(jacobian, -residual, rcond=None)[0]
+            else:
+                matrix = np.vstack([jacobian, normal])
+                try:
+                    step = np.linalg.solve(matrix, -np.append(residual, normal @ (here - u)))
+                except np.linalg.LinAlgError:
+                    return End.SHORT
+            if not np.all(np.isfinite(step)) or np.abs(step).max() > 1.0:
+                return End.SHORT
+            if np.abs(step).max() < _CLOSE:
+                values = (float(here[-2] * self.spans[0]), float(here[-1] * self.spans[1]))
+                multiplier = self._critical(chain.map_derivative)
+                tangent = np.asarray(np.linalg.svd(jacobian)[2][-1])
+                return _Step(CurvePoint(values, chain, multiplier), here, tangent, steps)
+            here = here + step
+        return End.SHORT
+
+    def _shots(self, here: Floats, name: str | None) -> Shots:
+        units = self.units(here.size - 2)
+        system = self.at(here[-2:] * units[-2:])
+        states = (here[:-2] * units[:-2]).reshape(-1, system.order)
+        change = None if name is None else system.derivative(name)
+        return shots(system, states, self.covered, sense=self.sense, change=change)
+
+    def _looked(self, here: Floats) -> tuple[Floats, Floats, Shots] | Status:
+        units = self.units(here.size - 2)
+        first, second = (self._shots(here, name) for name in self.names)
+        if first.status is not Status.DONE:
+            return first.status
+        scale = self._scale(first.map_derivative)
+        value = _CONDITIONS[self.kind](first.map_derivative) / scale
+        gradient = np.empty(here.size)
+        for k in range(here.size):
+            step = np.zeros(here.size)
+            step[k] = _STEP
+            sides = [self._shots(here + side * step, None) for side in (1.0, -1.0)]
+            up, down = (_CONDITIONS[self.kind](side.map_derivative) / scale for side in sides)
+            gradient[k] = (up - down) / (2.0 * _STEP)
+        jacobian = np.column_stack([first.matrix, first.by_parameter, second.by_parameter]) * units
+        # All rows in units of c.
+        jacobian = np.vstack([jacobian / self.system.scale, gradient])
+        return np.append(first.residual.ravel() / self.system.scale, value), jacobian, first
+
+    def _scale(self, matrix: Floats) -> float:
+        return float(max(1.0, np.abs(np.linalg.eigvals(matrix)).max()))
+
+    def _critical(self, matrix: Floats) -> complex:
+        values = np.linalg.eigvals(matrix)
+        if self.kind is Kind.NEIMARK_SACKER:
+            upper = values[values.imag > 0.0]
+            return complex(upper[np.argmin(np.abs(np.abs(upper) - 1.0))]) if upper.size else complex("nan")
+        wanted = 1.0 if self.kind is Kind.FOLD else -1.0
+        return complex(values[np.argmin(np.abs(values - wanted))])
+
+
+def _followed(
+    plane: Plane,
+    start: _Step,
+    sign: float,
+    bounds: tuple[tuple[float, float], tuple[float, float]],
+    control: StepControl,
+) -> tuple[list[CurvePoint], End]:
+    points, here, length = [start.point], start, control.first
+    sense = sign * start.tangent
+    while len(points) <= control.most:
+        found = plane.corrected(here.u + length * sense, sense)
+        bent = not isinstance(found, End) and abs(found.tangent @ sense) < _STRAIGHT
+        if isinstance(found, End) or bent:
+            length *= _SHORTER
+            if length < control.least:
+                return points, found if isinstance(found, End) else End.SHORT
+            continue
+        outside = [not low <= value <= high for value, (low, high) in zip(found.point.values, bounds, strict=True)]
+        if any(outside):
+            return points, End.BOUND
+        if plane.kind is Kind.NEIMARK_SACKER and not _on_circle(found.point.multiplier):
+            return points, End.RESONANCE
+        points.append(found.point)
+        sense = found.tangent if found.tangent @ sense > 0.0 else -found.tangent
+        if len(points) > 10 and np.linalg.norm(found.u - start.u) < 0.75 * length:  # noqa: PLR2004
+            return points, End.CLOSED
+        here = found
+        length = min(_LONGER * length, control.largest) if found.steps <= _EASY else length
+        length = _SHORTER * length if found.steps >= _HARD else length
+    return points, End.STEPS
+
+
+def _on_circle(multiplier: complex) -> bool:
+    return abs(abs(multiplier) - 1.0) < 1e-6 and abs(multiplier.imag) > _REAL  # noqa: PLR2004
