@@ -5,6 +5,7 @@ from stylobate.orbits.branch import Branch, continue_branch
 from stylobate.orbits.curves import BifurcationCurve, bifurcation_curve
 from stylobate.orbits.finding import periodic_orbit, periodic_orbits
 from stylobate.orbits.orbit import PeriodicOrbit
+from stylobate.orbits.storage import load
 from stylobate.orbits.switching import switch_branch
 from stylobate.orbits.tracing import End, StepControl
 
@@ -18,6 +19,7 @@ __all__ = [
     "StepControl",
     "bifurcation_curve",
     "continue_branch",
+    "load",
     "periodic_orbit",
     "periodic_orbits",
     "switch_branch",

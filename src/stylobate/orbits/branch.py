@@ -5,6 +5,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
@@ -104,6 +105,12 @@ class Branch:
                 "provenance": json.dumps(provenance_of_run(first.model, first.motion)),
             },
         )
+
+    def save(self, path: str | Path) -> Path:
+        """Write it to a netCDF file at `path`; `stylobate.orbits.load` reads it again."""
+        from stylobate.orbits.storage import save  # noqa: PLC0415  storage needs this class
+
+        return save(self, path)
 
     def __repr__(self) -> str:
         """Tell it in one line."""

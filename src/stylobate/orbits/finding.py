@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from stylobate import theory
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of
 from stylobate.engine.flow.tableau import Status
-from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError, require_positive, require_whole
-from stylobate.models import Model, Slender
-from stylobate.motions import BaseMotion, Harmonic
+from stylobate.errors import ParameterError, require_positive, require_whole
+from stylobate.models import Model
+from stylobate.motions import BaseMotion
+from stylobate.orbits.opening import rolling_by_theory
 from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.shooting import Shots, arcs_of, closed, damped, newton_step, shots
 from stylobate.results import Response
@@ -32,7 +32,7 @@ def periodic_orbit(
     guess: npt.ArrayLike | Response | None = None,
     periods: int = 1,
     arcs: int | None = None,
-    sense: int = 1,
+    sense: int | None = None,
     rtol: float = 1e-12,
 ) -> PeriodicOrbit:
     """Return the periodic orbit to which Newton's method leads from a guess.
@@ -48,14 +48,14 @@ def periodic_orbit(
         A base motion that is periodic from t = 0.
     guess
         Tilt vector [rad] and its rate [rad/s] at t = 0: x, y, ẋ, ẏ. Or a run, which is taken where it last passed the
-        phase of t = 0. Or None for steady rolling by theory, exact for circular motion and averaged else (slender
-        model, harmonic motion).
+        phase of t = 0. Or None for steady rolling by theory (slender model, horizontal Harmonic motion): known exactly
+        for one of the two circles of which the motion is made, and followed while the other is added.
     periods
         Length of the orbit in periods of the base motion.
     arcs
         Shots in which it is closed, one a period by default; more for orbits that are very unstable.
     sense
-        +1 or −1: sense of rolling of the guess by theory.
+        +1 or −1: sense of rolling of the guess by theory; by default that of the larger circle.
     rtol
         Relative tolerance of the flow.
 
@@ -85,19 +85,23 @@ def periodic_orbit(
     arcs = periods if arcs is None else require_whole("arcs", arcs, least=1)
     rtol = require_positive("rtol", rtol)
     if guess is None:
-        lean = _by_theory(model, motion, sense)
-    elif isinstance(guess, Response):
-        lean = _of_run(guess, motion)
+        state, line = rolling_by_theory(model, motion, sense), None
     else:
-        lean = _checked(guess)
-    state = np.array(model.start(tuple(lean[:2]), tuple(lean[2:])), dtype=float)
-    line = plane_of(model, motion, state)
+        lean = _of_run(guess, motion) if isinstance(guess, Response) else _checked(guess)
+        state, line = _start(model, motion, lean)
     system = PeriodicSystem(model, motion, line, rtol)
-    if line is not None:
-        scaled = lean * np.array([1.0, 1.0, model.time_scale, model.time_scale])
-        state = np.array([scaled[:2] @ line, scaled[2:] @ line])
     chain = closed(system, arcs_of(system, state, periods, arcs), periods)
     return PeriodicOrbit(model, motion, periods, chain, line)
+
+
+def _start(model: Model, motion: BaseMotion, lean: Floats) -> tuple[Floats, tuple[float, float] | None]:
+    """Return the state in units of the model, along the line of a plane if it and the base motion lie in one."""
+    state = np.array(model.start(tuple(lean[:2]), tuple(lean[2:])), dtype=float)
+    line = plane_of(model, motion, state)
+    if line is None:
+        return state, None
+    scaled = lean * np.array([1.0, 1.0, model.time_scale, model.time_scale])
+    return np.array([scaled[:2] @ line, scaled[2:] @ line]), line
 
 
 def periodic_orbits(
@@ -236,30 +240,3 @@ def _of_run(run: Response, motion: BaseMotion) -> Floats:
     whole = math.floor(time[-1] / period * (1.0 + 1e-12)) * period
     at = run.sample(min(whole, time[-1])) if run.sampler is not None else run.data.interp(time=[whole], method="cubic")
     return np.concatenate([at["tilt"].to_numpy().ravel(), at["tilt_rate"].to_numpy().ravel()])
-
-
-def _by_theory(model: Model, motion: BaseMotion, sense: int) -> Floats:
-    if type(model) is not Slender or not isinstance(motion, Harmonic) or motion.amplitude[2] != 0.0:
-        message = "guess must be given: theory knows steady rolling of the slender model under Harmonic motion only"
-        raise UnsupportedError(message)
-    if sense not in (1, -1):
-        message = f"sense must be +1 or -1, got {sense!r}"
-        raise ParameterError(message)
-    c, eta, scale = model.column.slenderness, model.damping, model.column.frequency_scale
-    a1, a2 = (amplitude / model.column.gravity for amplitude in motion.amplitude[:2])
-    theta = motion.angular_frequency / scale
-    p, q = theory.circular_components(a1, a2, motion.phase[1] - motion.phase[0])
-    part = p if sense > 0 else q
-    steady = theory.steady_rolling(theta, abs(part), c=c, eta=eta).upper
-    amplitude, psi = float(steady.amplitude), float(steady.phase)
-    if not amplitude > 0.0:
-        message = (
-            f"guess must be given: theory has no steady rolling at angular_frequency {motion.angular_frequency!r} rad/s"
-        )
-        raise NoOrbitError(message)
-    # Sense +1: β = θτ + arg p + ψ; sense −1: β = −θτ + arg q − ψ; the phase of x moves both with time.
-    along = motion.start_phase + motion.phase[0]
-    azimuth = float(np.angle(part)) + sense * (along + psi)
-    x, y = amplitude * math.cos(azimuth), amplitude * math.sin(azimuth)
-    rate = sense * theta * scale
-    return np.array([x, y, -rate * y, rate * x])

@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -151,6 +152,12 @@ class PeriodicOrbit:
     def _same(self, image: Floats) -> bool:
         size = np.abs(self.path).max(axis=1, keepdims=True)
         return bool(np.all(np.abs(self.path - image) <= _SAME * np.where(size > 0.0, size, 1.0)))
+
+    def save(self, path: str | Path) -> Path:
+        """Write it to a netCDF file at `path`; `stylobate.orbits.load` reads it again."""
+        from stylobate.orbits.storage import save  # noqa: PLC0415  storage needs this class
+
+        return save(self, path)
 
     def __repr__(self) -> str:
         """Tell what it is in one line."""

@@ -14,7 +14,7 @@ from typing import Any
 
 from llvmlite import binding as llvm
 from numba import config
-from numba.core.errors import NumbaError
+from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
 from stylobate.engine.compiling.apart import compile_apart
 from stylobate.engine.compiling.loading import load
@@ -71,10 +71,10 @@ def compiled_module(
             compile_apart(path, functions)  # where that fails, it is compiled here, and what is wrong is told
         try:
             module = load(path, functions)
-        except (NumbaError, RecursionError) as error:
+        except (NumbaError, UnsupportedBytecodeError, RecursionError) as error:
             lines = (line.strip() for line in str(error).splitlines())
             reason = next((line for line in lines if line and not line.startswith("Failed in")), "no reason")
-            message = f"model {of} cannot be compiled, but simulate can run it: {reason}"
+            message = f"model {of} cannot be compiled; single runs by simulate need no compiling: {reason}"
             raise UnsupportedError(message) from error
         if jit:
             mark.touch()

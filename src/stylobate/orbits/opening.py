@@ -1,0 +1,124 @@
+"""Steady rolling by theory, taken from a circular base motion to an elliptic or a straight one.
+
+An elliptic motion is the sum of two circular ones of opposite sense. Under one of them alone steady rolling is known
+exactly; the other is then added by and by.
+"""
+
+import cmath
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate import theory
+from stylobate.engine.flow.periodic import PeriodicSystem
+from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError
+from stylobate.models import Model, Slender
+from stylobate.motions import BaseMotion, Harmonic
+from stylobate.orbits.orbit import PeriodicOrbit
+from stylobate.orbits.shooting import closed
+
+Floats = npt.NDArray[np.float64]
+
+_FIRST_PART, _LEAST_PART = 0.25, 1e-3
+_NO_PART = 1e-12
+
+
+@dataclass(frozen=True, slots=True)
+class _Circles:
+    """A horizontal harmonic motion x + iy = P e^{iΩt} + Q e^{−iΩt}."""
+
+    forward: complex
+    backward: complex
+    angular_frequency: float
+
+    @classmethod
+    def of(cls, motion: Harmonic) -> "_Circles":
+        x, y = (
+            cmath.rect(amplitude, motion.start_phase + phase)
+            for amplitude, phase in zip(motion.amplitude[:2], motion.phase[:2], strict=True)
+        )
+        return cls(0.5 * (x + 1j * y), 0.5 * (x.conjugate() + 1j * y.conjugate()), motion.angular_frequency)
+
+    def motion(self, part: float, sense: int) -> Harmonic:
+        """Return the motion with the circle against `sense` made smaller to this part."""
+        forward = self.forward * (1.0 if sense > 0 else part)
+        backward = self.backward * (part if sense > 0 else 1.0)
+        x, y = forward + backward.conjugate(), -1j * (forward - backward.conjugate())
+        return Harmonic(
+            amplitude=(abs(x), abs(y), 0.0),
+            phase=(cmath.phase(x), cmath.phase(y), 0.0),
+            angular_frequency=self.angular_frequency,
+        )
+
+
+def rolling_by_theory(model: Model, motion: BaseMotion, sense: int | None) -> Floats:
+    """Return the state at t = 0 of rolling with the base motion in this sense, in units of the model.
+
+    Without a sense it is that of the larger of the two circles, anticlockwise if they are equal.
+
+    Raises
+    ------
+    UnsupportedError
+        If the model is not the slender one or the motion no horizontal Harmonic.
+    NoOrbitError
+        If theory has no such motion, or it is lost on the way to this base motion.
+    """
+    if type(model) is not Slender or not isinstance(motion, Harmonic) or motion.amplitude[2] != 0.0:
+        message = "guess must be given: theory knows steady rolling of the slender model under Harmonic motion only"
+        raise UnsupportedError(message)
+    if sense not in (1, -1, None):
+        message = f"sense must be +1, -1 or None, got {sense!r}"
+        raise ParameterError(message)
+    circles = _Circles.of(motion)
+    if sense is None:
+        larger = abs(circles.backward) > (1.0 + _NO_PART) * abs(circles.forward)
+        sense = -1 if larger else 1
+    along, against = circles.forward, circles.backward
+    if sense < 0:
+        along, against = against, along
+    state = _on_the_circle(model, motion, along, sense)
+    if abs(against) <= _NO_PART * abs(along):
+        return state
+    done, step = 0.0, _FIRST_PART
+    while done < 1.0:
+        part = min(done + step, 1.0)
+        opened = _rolling(model, circles.motion(part, sense), state, sense)
+        if opened is None:
+            step *= 0.5
+            if step < _LEAST_PART:
+                message = (
+                    f"guess must be given: rolling in the sense {sense:+d} is lost when {done:.3g} of the circle "
+                    "against it is added"
+                )
+                raise NoOrbitError(message)
+            continue
+        done, state = part, opened
+    return state
+
+
+def _rolling(model: Model, motion: Harmonic, guess: Floats, sense: int) -> Floats | None:
+    """Return the orbit that Newton's method finds from `guess` if it rolls in this sense, else None."""
+    try:
+        chain = closed(PeriodicSystem(model, motion), guess[np.newaxis], 1)
+    except NoOrbitError:
+        return None
+    return chain.states[0] if PeriodicOrbit(model, motion, 1, chain).turns == sense else None
+
+
+def _on_the_circle(model: Slender, motion: Harmonic, part: complex, sense: int) -> Floats:
+    theta = motion.angular_frequency / model.column.frequency_scale
+    acceleration = abs(part) / model.column.gravity
+    steady = theory.steady_rolling(theta, acceleration, c=model.column.slenderness, eta=model.damping).upper
+    amplitude, psi = float(steady.amplitude), float(steady.phase)
+    if not amplitude > 0.0:
+        message = (
+            "guess must be given: theory has no steady rolling in this sense at angular_frequency = "
+            f"{motion.angular_frequency!r} rad/s"
+        )
+        raise NoOrbitError(message)
+    azimuth = cmath.phase(part) + sense * psi
+    x, y = amplitude * math.cos(azimuth), amplitude * math.sin(azimuth)
+    rate = sense * theta
+    return np.array([x, y, -rate * y, rate * x])

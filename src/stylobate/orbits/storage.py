@@ -1,0 +1,191 @@
+"""Orbits and branches as netCDF files: their states, from which they are shot again when they are read."""
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from stylobate.engine.flow.periodic import PeriodicSystem
+from stylobate.engine.flow.tableau import Status
+from stylobate.errors import FileError, UnsupportedError
+from stylobate.models import Model
+from stylobate.motions import BaseMotion
+from stylobate.orbits.arclength import Family, Point
+from stylobate.orbits.bifurcations import Bifurcation, Kind, orbit_at
+from stylobate.orbits.branch import Branch
+from stylobate.orbits.orbit import PeriodicOrbit
+from stylobate.orbits.shooting import shots
+from stylobate.orbits.tracing import End
+from stylobate.spec import description_of, provenance_of_run
+
+_ORBIT, _BRANCH = "stylobate orbit 1", "stylobate branch 1"
+_SOFT = {True: 1, False: 0, None: -1}
+
+
+def save(found: PeriodicOrbit | Branch, path: str | Path) -> Path:
+    """Write an orbit or a branch to the netCDF file `path`, with its provenance; `load` reads it again.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written.
+    UnsupportedError
+        If model or motion is of a class of your own, which a file cannot hold.
+    """
+    path = Path(path)
+    data = _orbit_data(found) if isinstance(found, PeriodicOrbit) else _branch_data(found)
+    try:
+        data.to_netcdf(path, engine="h5netcdf")
+    except OSError as error:
+        message = f"cannot write {path}: {error.strerror or error}"
+        raise FileError(message) from error
+    return path
+
+
+def load(path: str | Path) -> PeriodicOrbit | Branch:
+    """Return the orbit or branch saved in the netCDF file `path`.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read or holds neither.
+    """
+    try:
+        with xr.open_dataset(path, engine="h5netcdf") as stored:
+            data = stored.load()
+    except (OSError, ValueError) as error:
+        message = f"cannot read {path}: {getattr(error, 'strerror', None) or error}"
+        raise FileError(message) from error
+    written = data.attrs.get("format")
+    if written not in (_ORBIT, _BRANCH):
+        message = f"{path} holds no orbit or branch saved by stylobate: its format is {written!r}"
+        raise FileError(message)
+    try:
+        return _read_orbit(data) if written == _ORBIT else _read_branch(data)
+    except (KeyError, TypeError, ValueError) as error:
+        message = f"{path} is damaged: {error}"
+        raise FileError(message) from error
+
+
+def _attributes(system: PeriodicSystem, format_name: str, periods: int) -> dict[str, Any]:
+    provenance = provenance_of_run(system.model, system.motion)
+    for name in ("model", "motion"):
+        if provenance[name].get("kind") == "other":
+            message = f"an orbit of a {name} of your own cannot be saved: {provenance[name]['repr']}"
+            raise UnsupportedError(message)
+    return {
+        "format": format_name,
+        "periods": periods,
+        "line": np.array(system.line if system.line is not None else (math.nan, math.nan)),
+        "rtol": system.rtol,
+        "provenance": json.dumps(provenance),
+    }
+
+
+def _system(data: xr.Dataset) -> PeriodicSystem:
+    model, motion = _parts(json.loads(data.attrs["provenance"]))
+    x, y = (float(number) for number in data.attrs["line"])
+    return PeriodicSystem(model, motion, None if math.isnan(x) else (x, y), float(data.attrs["rtol"]))
+
+
+def _parts(provenance: dict[str, Any]) -> tuple[Model, BaseMotion]:
+    setup = description_of({**provenance, "duration": 1.0}).build()
+    return setup.model, setup.motion
+
+
+def _orbit_data(orbit: PeriodicOrbit) -> xr.Dataset:
+    states = (("arc", "state"), orbit.chain.states)
+    return xr.Dataset({"states": states}, attrs=_attributes(orbit.system, _ORBIT, orbit.periods))
+
+
+def _read_orbit(data: xr.Dataset) -> PeriodicOrbit:
+    system, periods = _system(data), int(data.attrs["periods"])
+    chain = shots(system, np.ascontiguousarray(data["states"].to_numpy()), periods)
+    if chain.status is not Status.DONE:
+        message = "its orbit cannot be shot again"
+        raise ValueError(message)
+    return PeriodicOrbit(system.model, system.motion, periods, chain, system.line)
+
+
+def _branch_data(branch: Branch) -> xr.Dataset:
+    family, found = branch.path[0].family, branch.bifurcations
+    located = [one.point for one in found]
+    shape = (len(found), *branch.path[0].chain.states.shape)
+    values = {
+        "kind": np.array([one.kind.name for one in found], dtype=str),
+        "value": np.array([one.parameter for one in found], dtype=float),
+        "multiplier_real": np.array([one.multiplier.real for one in found], dtype=float),
+        "multiplier_imaginary": np.array([one.multiplier.imag for one in found], dtype=float),
+        "coefficient": np.array([one.coefficient for one in found], dtype=float),
+        "soft": np.array([_SOFT[one.soft] for one in found], dtype=np.int8),
+    }
+    vectors = {
+        "critical_vector": (family.system.order, [one.critical_vector for one in found]),
+        "direction": (located[0].u.size if located else 0, [one.direction for one in found]),
+    }
+    return xr.Dataset(
+        {
+            "states": (("point", "arc", "state"), np.stack([point.chain.states for point in branch.path])),
+            "value": ("point", [point.value for point in branch.path]),
+            "bifurcation_states": (
+                ("bifurcation", "arc", "state"),
+                np.array([point.chain.states for point in located]).reshape(shape),
+            ),
+            **{f"bifurcation_{name}": ("bifurcation", column) for name, column in values.items()},
+            **{
+                f"bifurcation_{name}": (("bifurcation", f"{name}_entry"), np.array(rows).reshape(len(found), width))
+                for name, (width, rows) in vectors.items()
+            },
+        },
+        attrs={
+            **_attributes(family.system, _BRANCH, family.periods),
+            "parameter": branch.parameter,
+            "span": family.span,
+            "sense": family.sense,
+            "ends": json.dumps([end.name for end in branch.ends]),
+        },
+    )
+
+
+def _read_branch(data: xr.Dataset) -> Branch:
+    name = str(data.attrs["parameter"])
+    family = Family(
+        _system(data), int(data.attrs["periods"]), name, float(data.attrs["span"]), float(data.attrs["sense"])
+    )
+    path = tuple(
+        _shot(family, states, float(value))
+        for states, value in zip(data["states"].to_numpy(), data["value"].to_numpy(), strict=True)
+    )
+    soft = {code: told for told, code in _SOFT.items()}
+    found = []
+    for index in range(data.sizes["bifurcation"]):
+        one = {str(key): data[key][index].to_numpy() for key in data.data_vars if str(key).startswith("bifurcation_")}
+        point = _shot(family, one["bifurcation_states"], float(one["bifurcation_value"]))
+        found.append(
+            Bifurcation(
+                Kind[str(one["bifurcation_kind"])],
+                point.value,
+                orbit_at(point),
+                complex(float(one["bifurcation_multiplier_real"]), float(one["bifurcation_multiplier_imaginary"])),
+                float(one["bifurcation_coefficient"]),
+                soft[int(one["bifurcation_soft"])],
+                one["bifurcation_critical_vector"],
+                point,
+                one["bifurcation_direction"],
+            )
+        )
+    first, last = (End[end] for end in json.loads(data.attrs["ends"]))
+    return Branch(name, path, tuple(found), (first, last))
+
+
+def _shot(family: Family, states: Any, value: float) -> Point:
+    system = family.at(value)
+    change = system.derivative(family.name)
+    chain = shots(system, np.ascontiguousarray(states), family.covered, sense=family.sense, change=change)
+    if chain.status is not Status.DONE:
+        message = f"its orbit at {family.name} = {value!r} cannot be shot again"
+        raise ValueError(message)
+    return Point(family, value, chain)
