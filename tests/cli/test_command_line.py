@@ -96,6 +96,15 @@ def test_response_as_json_has_every_curve(capsys):
             ["angular_frequency_range must rise"],
         ),
         (["simulate", *COLUMN, "--duration", "1", "--figure", "run.xyz"], ["cannot draw into run.xyz"]),
+        (
+            ["simulate", *COLUMN, "--duration", "1", "--output", "run.csv"],
+            ["--output must end with .nc, got 'run.csv'"],
+        ),
+        (["simulate", *COLUMN, "--duration", "1", "--output", "run.zarr"], ["--output must end with .nc, got"]),
+        (
+            ["response", *COLUMN, *MOTION[:4], "--angular-frequency-range", "1", "3", "--output", "response.csv"],
+            ["--output must end with .nc, got 'response.csv'"],
+        ),
         (["nonsense"], ["No such command"]),
         (["simulate", "--nonsense"], ["No such option"]),
     ],

@@ -180,7 +180,8 @@ def test_dask_workers_compute_the_same(tmp_path):
         ),
         ([*MAP, *MORE, "--x", "acceleration", "nan", "1", "2"], ["map.x: from must be finite, got nan", "must differ"]),
         ([*MAP, "--x", "acceleration", "0.1", "one", "2"], ["Invalid value for '--x'"]),
-        ([*MAP, *MORE, "--x", "colour", "0.1", "1", "2"], ["colour is not known here"]),
+        ([*MAP, *MORE, "--x", "colour", "0.1", "1", "2"], ["map.x: colour is not known here; known are tilt_x,"]),
+        ([*MAP, "--output", "map.csv"], ["--output must end with .nc or .zarr, got 'map.csv'"]),
         ([*MAP, "--x-spacing", "cubic"], ["map.x.spacing: input should be 'linear' or 'log', got 'cubic'"]),
         ([*MAP, "--x", "angular-frequency", "0", "6", "3"], ["over['angular_frequency'] must be positive"]),
         ([*MAP, "--resume"], ["--resume needs the store to continue: give --output NAME.zarr"]),
@@ -195,7 +196,10 @@ def test_dask_workers_compute_the_same(tmp_path):
             ["map", *COLUMN, "--motion", "stroke", *AXES, "--duration", "2"],
             ["stroke is missing", "frequency is missing"],
         ),
-        (["map", *COLUMN, "--motion", "rest", *AXES, "--duration", "2"], ["can be changed in a Harmonic motion only"]),
+        (
+            ["map", *COLUMN, "--motion", "rest", *AXES, "--duration", "2"],
+            ["a Harmonic motion only; got a base at rest"],
+        ),
     ],
 )
 def test_bad_input_is_told_one_mistake_a_line(arguments, lines, capsys, tmp_path, monkeypatch):

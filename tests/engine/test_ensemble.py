@@ -187,6 +187,9 @@ def test_dimensions_are_broadcast_by_name():
         ({"parameters": {"angular_frequency": [0.0]}}, "angular_frequency must be positive"),
         ({"parameters": {"radius": [-1.0]}}, "radius must be positive"),
         ({"parameters": {"colour": [1.0]}}, "colour is not known here"),
+        ({"parameters": [1, 2]}, r"parameters must name what differs, .* got \[1, 2\]"),
+        ({"parameters": {"slenderness": 0.1, "radius": 0.2}}, "parameters: slenderness changes the radius"),
+        ({"parameters": {"size": 2.0, "mass_height": 1.0}}, "parameters: size changes the mass_height"),
         ({"threads": 0}, "threads must be a whole number"),
     ],
 )

@@ -80,7 +80,7 @@ def test_a_map_shows_each_run_in_its_cell_with_units_and_shares():
 
 def test_an_unfinished_map_is_drawn_with_what_is_missing_hatched_and_named():
     figure = sb.plot(a_map([[REST, -1], [OVERTURNED, -1], [REST, -1]]))
-    assert legend_of(figure) == ["at rest  66.7 %", "overturned  33.3 %", "not computed  50.0 %"]
+    assert legend_of(figure) == ["at rest  33.3 %", "overturned  16.7 %", "not computed  50.0 %"]
     hatched = [one for one in figure.axes[0].patches if isinstance(one, PathPatch)]
     assert [one.get_hatch() for one in hatched] == [UNFINISHED.texture]
     corners = hatched[0].get_path().vertices
@@ -109,6 +109,11 @@ def test_runs_in_any_order_are_drawn_in_that_of_their_values():
 def test_runs_that_are_over_no_plane_are_refused():
     with pytest.raises(ParameterError, match="two dimensions"):
         sb.plot(a_map([REST, REST], tilt_x=[0.1, 0.2]))
+
+
+def test_a_map_without_runs_says_so():
+    with pytest.raises(ParameterError, match="a map needs runs, and there are none in"):
+        sb.plot(a_map(np.empty((0, 2)), tilt_x=[], tilt_y=[0.0, 0.1]))
 
 
 def test_cells_meet_midway_between_their_values():
@@ -163,6 +168,85 @@ def test_fractions_along_a_parameter_fill_the_height():
     assert figure.axes[0].get_xlabel() == "friction"
 
 
+def a_share(along):
+    """Half of the starts overturn, half come to rest, at each value of friction."""
+    dims, size = ("damping", "attractor_index"), (len(along), 2)
+    attractors = {"attractor_kind": ["at rest", "overturned"], "attractor_name": ["at rest", "overturned"]}
+    return xr.Dataset(
+        {
+            "fraction": (dims, np.full(size, 0.5)),
+            "fraction_low": (dims, np.full(size, 0.4)),
+            "fraction_high": (dims, np.full(size, 0.6)),
+            "computed": ("damping", np.full(len(along), 60)),
+            "unsettled": ("damping", np.zeros(len(along), dtype=int)),
+            **{name: ("attractor_index", values) for name, values in attractors.items()},
+        },
+        coords={"damping": along},
+        attrs={"kind": "basin fractions", "starts": 60, "confidence": 0.95},
+    )
+
+
+def test_fractions_at_a_single_value_are_bars():
+    (axes,) = sb.plot(a_share([0.1])).axes
+    lower, upper = axes.patches
+    assert (lower.get_y(), lower.get_height(), upper.get_y(), upper.get_height()) == (0.0, 0.5, 0.5, 0.5)
+    low, high = axes.get_xlim()
+    assert low < lower.get_x() < 0.1 < lower.get_x() + lower.get_width() < high
+    assert axes.get_xticks().tolist() == [0.1]
+
+
+@pytest.mark.parametrize("along", [[0.1, 0.2, 0.5], [0.01, 0.1, 1.0]])
+def test_the_first_and_last_intervals_of_fractions_have_room(along):
+    low, high = sb.plot(a_share(along)).axes[0].get_xlim()
+    assert 0.0 < low < along[0]
+    assert along[-1] < high
+
+
+def orbits_of_six():
+    """Two rollings on one path, two aperiodic motions, standing, and overturning."""
+    kinds = ["at rest", "rolling anticlockwise", "rolling clockwise", "aperiodic anticlockwise"]
+    kinds += ["aperiodic clockwise", "overturned"]
+    turn = np.linspace(0.0, 2.0 * np.pi, 65)
+    circle = 0.01 * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    paths = np.stack([0.0 * circle, circle, circle[::-1], 3.0 * circle, 4.0 * circle, np.nan * circle])
+    share = ("attractor_index", np.full(6, 1.0 / 6.0))
+    return xr.Dataset(
+        {
+            "attractor_kind": ("attractor_index", kinds),
+            "attractor_name": ("attractor_index", kinds),
+            "attractor_period": ("attractor_index", [0, 1, 1, 0, 0, 0]),
+            "attractor_tilt": (("attractor_index", "orbit_point", "axis"), paths[:, :1]),
+            "orbit_tilt": (("attractor_index", "orbit_sample", "axis"), paths),
+            **dict.fromkeys(("fraction", "fraction_low", "fraction_high"), share),
+            "count": ("attractor_index", np.full(6, 10)),
+            "computed": ((), 60),
+            "unsettled": ((), 0),
+        },
+        coords={"axis": ["x", "y"]},
+        attrs={"kind": "attractors", "confidence": 0.95},
+    )
+
+
+def test_orbits_on_one_path_and_of_one_kind_are_told_apart():
+    figure = sb.plot(orbits_of_six())
+    orbits = figure.axes[1]
+    named = {line.get_label(): line for line in orbits.lines if not line.get_label().startswith("_")}
+    assert list(named) == [text.get_text() for text in orbits.get_legend().get_texts()]
+    assert len(named) == 4
+    assert len({line.get_color() for line in named.values()}) == 4
+    assert named["rolling anticlockwise"].get_linestyle() == named["aperiodic anticlockwise"].get_linestyle() == "-"
+    assert named["rolling clockwise"].get_linestyle() == named["aperiodic clockwise"].get_linestyle() == "--"
+    figure.canvas.draw()
+
+
+def test_only_what_repeats_has_circles_at_the_strobe():
+    circles = [line for line in sb.plot(orbits_of_six()).axes[1].lines if line.get_marker() == "o"]
+    states = [line.get_xydata().round(9).tolist() for line in circles]
+    assert states == [[[0.0, 0.0]], [[0.01, 0.0]], [[0.01, 0.0]]]
+    sizes = [line.get_markersize() for line in circles]
+    assert sizes == sorted(set(sizes), reverse=True)
+
+
 def test_an_exponent_is_drawn_with_counts_limits_and_fit():
     base = np.zeros((5, 400), dtype=int)
     lower = (np.arange(400) < np.array([0, 4, 16, 64, 300])[:, np.newaxis]).astype(int)
@@ -176,6 +260,21 @@ def test_an_exponent_is_drawn_with_counts_limits_and_fit():
     empty = sb.plot(exponent_of(np.zeros(30, dtype=int), epsilon, dimension=2))
     assert "too few" in empty.axes[0].get_title(loc="left")
     empty.canvas.draw()
+
+
+def test_arrows_stand_clear_of_the_bottom_of_the_axes():
+    base = np.zeros((5, 400), dtype=int)
+    lower = (np.arange(400) < np.array([0, 0, 0, 0, 100])[:, np.newaxis]).astype(int)
+    states = np.concatenate([base, lower, base]).ravel()
+    (axes,) = sb.plot(exponent_of(states, np.geomspace(1e-5, 1e-2, 5), dimension=2)).axes
+    (arrows,) = [line for line in axes.lines if line.get_marker() == "v"]
+    assert axes.get_ylim()[0] < 0.5 * arrows.get_ydata().min()
+
+
+def test_an_exponent_says_how_many_starts_it_dropped():
+    states = np.where(np.arange(400) % 5 == 0, -2, 0)
+    figure = sb.plot(exponent_of(np.tile(states, 6), np.array([0.1, 0.2]), dimension=2))
+    assert "dropped: 20 % of 800 starts" in figure.axes[0].get_title(loc="left")
 
 
 def test_integrity_is_an_ellipse_through_the_nearest_overturning_start():

@@ -171,3 +171,23 @@ def test_the_data_agree_among_themselves(run):
 
 def test_a_run_says_what_became_of_the_column(run):
     assert repr(run) == f"Response({run.outcome.name} at {run.decided_at:.6g} s: {run.reason})"
+
+
+def test_the_result_of_a_study_is_told_from_a_run(tmp_path):
+    path = tmp_path / "map.nc"
+    xr.Dataset({"outcome": ("run", [0])}, attrs={"kind": "overturning map"}).to_netcdf(path, engine="h5netcdf")
+    with pytest.raises(FileError, match=r"of kind 'overturning map'; xarray\.open_dataset reads it$"):
+        sb.load(path)
+
+
+def test_codes_are_those_of_outcomes():
+    for code, outcome in enumerate(sb.Outcome):
+        assert sb.results.code_of(outcome) == code
+        assert sb.results.outcome_of(np.int8(code)) is outcome
+    assert sb.results.outcome_of(-1) is None
+    with pytest.raises(ParameterError, match=r"^outcome must be an Outcome such as Outcome\.AT_REST, got 'x'$"):
+        sb.results.code_of("x")
+    with pytest.raises(ParameterError, match="code must be -1 for not computed, or 0 to 8; got 77"):
+        sb.results.outcome_of(77)
+    with pytest.raises(ParameterError, match="code must be a whole number of at least -1, got -2"):
+        sb.results.outcome_of(-2)

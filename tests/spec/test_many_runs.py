@@ -87,6 +87,7 @@ def test_given_points_and_own_models_cannot_be_repeated():
         ({"name": "damping", "from": 0, "to": "inf", "number": 2}, "map.x: to must be finite"),
         ({"name": "damping", "from": 0, "to": 1, "number": 2, "step": 1}, "map.x.step is not known here"),
         ({"name": "damping", "values": [0, float("nan")]}, "map.x: values must be finite, got nan"),
+        ({"name": "damping", "values": []}, "map.x: damping must have at least one value, got none"),
         ("damping", "map.x: input should be"),
     ],
 )

@@ -109,6 +109,8 @@ def test_an_interrupted_study_keeps_and_labels_what_was_computed():
         ({"over": {}}, "over must name starts"),
         ({"over": {"tilt_x": [0.0, 0.1, 0.2]}, "count": 3}, "tilt_x"),
         ({"confidence": 95.0}, "confidence"),
+        ({"over": {"tilt_x": [], "tilt_y": [0.0]}}, r"over\['tilt_x'\] must have at least one value, got none"),
+        ({"over": {"tilt_x": (0.0, 0.1)}, "count": 0}, "count must be a whole number of at least 1"),
     ],
 )
 def test_bad_input_is_named(change, message):
@@ -123,7 +125,7 @@ def test_bad_input_is_named(change, message):
         ({"acceleration": [0.1], "damping": [0.1]}, "along must name one"),
         ({"acceleration": []}, "at least one value"),
         ({"tilt_x": [0.1]}, "along and over must differ"),
-        ({"weight": [0.1]}, "weight"),
+        ({"weight": [0.1]}, "^along: weight is not known here; known are tilt_x, .*duration, .*damping"),
     ],
 )
 def test_a_parameter_to_go_along_is_one(along, message):

@@ -71,6 +71,37 @@ def test_starts_that_are_not_told_are_left_out():
     assert (int(found["uncertain"][0]), int(found["pairs"][0])) == (1, 2)
 
 
+def test_a_start_that_overturned_beside_one_that_did_not_is_uncertain_though_that_is_unsettled():
+    # Six starts at one ε: unsettled beside overturned, twice; all unsettled; settled beside unsettled; told in full;
+    # not computed.
+    states = np.array([2, -2, -2, 0, 0, 2, -2, 2, -2, -2, 0, -1, 2, 2, -2, 0, 0, -1])
+    overturned = np.array([1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, -1, 1, 1, 0, 0, 0, -1])
+    found = exponent_of(states, np.array([0.1]), overturned=overturned, dimension=1)
+    assert [int(found[name][0]) for name in ("uncertain", "pairs", "dropped")] == [2, 3, 2]
+
+
+def test_unsettled_runs_do_not_hide_the_boundary_of_the_safe_starts(caplog):
+    model = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
+    motion = sb.Harmonic.circular(acceleration=0.02, angular_frequency=1.2)
+    arguments = {
+        "over": {"tilt_x": (-0.1, 0.1), "tilt_rate_y": (-0.1, 0.1)},
+        "shifted": "tilt_x",
+        "shifts": [1e-3, 6e-3],
+        "count": 60,
+        "periods": 50,
+    }
+    found = sb.studies.uncertainty_exponent(model, motion, **arguments)
+    dropped, told = int(found["dropped"].sum()), int(found["pairs"].sum())
+    assert dropped > 12  # the runs are too short for many
+    assert f"dropped {dropped} of 120 starts" in caplog.text
+    assert told == 120 - dropped
+    safe = sb.studies.uncertainty_exponent(model, motion, **arguments, overturning_only=True)
+    assert (found["uncertain"] >= safe["uncertain"]).all()
+    assert int(safe["uncertain"].sum()) > 10
+    assert int(safe["dropped"].sum()) == 0
+    assert caplog.text.count("dropped") == 1
+
+
 def test_only_a_run_that_overturned_or_not_is_told():
     outcomes = [Outcome.OVERTURNED, Outcome.AT_REST, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED, Outcome.FAILED]
     codes = np.array([*(code_of(one) for one in outcomes), -1])

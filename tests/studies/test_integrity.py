@@ -119,6 +119,7 @@ def test_friction_makes_a_free_column_safer():
     ("change", "message"),
     [
         ({"over": {"tilt_x": [0.1, 0.0]}}, "increasing"),
+        ({"over": {"tilt_x": [-0.1, 0.1], "start_phase": []}}, "at least one value"),
         ({"over": {"start_phase": [0.1, 0.2]}}, "at least one of tilt_x"),
         ({"over": {"damping": [0.1, 0.2]}}, "damping"),
         ({"reference": {"tilt_x": 0.5}}, "reference"),

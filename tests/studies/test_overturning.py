@@ -52,3 +52,9 @@ def test_shares_are_those_of_the_runs_and_a_start_may_be_given():
 def test_a_map_is_over_two_parameters(over):
     with pytest.raises(ParameterError, match="over must name two"):
         sb.studies.overturning_map(MODEL, CIRCULAR, over=over, duration=1.0)
+
+
+def test_a_map_of_nothing_is_refused():
+    over = {"acceleration": [], "damping": [0.1]}
+    with pytest.raises(ParameterError, match=r"^over\['acceleration'\] must have at least one value, got none$"):
+        sb.studies.overturning_map(MODEL, CIRCULAR, over=over, duration=1.0)

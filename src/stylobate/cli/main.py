@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from stylobate.cli.basin import basin
+from stylobate.cli.boundary import boundary
 from stylobate.cli.many_runs import INTERRUPTED
 from stylobate.cli.map import overturning_map
 from stylobate.cli.options import joined_ranges
@@ -48,7 +49,7 @@ def _options(
     del version
 
 
-for command in (paper, simulate, response):
+for command in (paper, simulate, response, boundary):
     app.command()(command)
 app.command("map")(overturning_map)
 app.command()(basin)

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from stylobate.cli.output import check_writable, save_figure
+from stylobate.cli.output import STORE, check_writable, save_figure
 from stylobate.cli.progress import runs_done
-from stylobate.cli.saved import STORE, save_dataset
+from stylobate.cli.saved import save_dataset
 from stylobate.errors import Interrupted, ParameterError, StylobateError
 
 if TYPE_CHECKING:
@@ -31,9 +31,8 @@ def is_to_compute(saved: "xr.Dataset | None", given: Mapping[str, Any]) -> bool:
 
 
 def check_outputs(given: Mapping[str, Any]) -> None:
-    """Raise FileError now for an output that could not be written when the work is done."""
-    output = given["output"]
-    check_writable(given["figure"], output.parent / f"{output.name}.part" if _is_store(output) else output)
+    """Raise an error now for an output that could not be written when the work is done; see `check_writable`."""
+    check_writable(given["figure"], given["output"], stores=True)
 
 
 def computed(

@@ -78,6 +78,7 @@ def overturning_map(
     """
     from stylobate import spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
     from stylobate.studies.overturning import outcome_shares  # noqa: PLC0415
+    from stylobate.studies.sweeps.quantities import check_quantities  # noqa: PLC0415
 
     given, complete = context.params, True
     check_outputs(given)
@@ -92,6 +93,8 @@ def overturning_map(
             described = spec.MapDescription.of_saved(provenance_of(saved), axes_of(saved)).values()
         values = opt.overlay_axes(opt.overlay(described, given, opt.RUN_NAMES), given, "map")
         setup = spec.MapDescription.parse(values).build()
+        for place, name in zip("xy", setup.options["over"], strict=True):
+            check_quantities(f"map.{place}", setup.model, [name])
         found, complete = computed(studies.overturning_map, setup, given, "map")
     write(found, given)
     if as_json:

@@ -8,10 +8,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stylobate.errors import FileError
+from stylobate.errors import FileError, ParameterError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+NETCDF, STORE = ".nc", ".zarr"
+"""Endings of files and of stores."""
 
 
 def print_json(values: Any) -> None:
@@ -35,9 +39,33 @@ def print_table(title: str, rows: Sequence[Sequence[str]], header: Sequence[str]
         console.print(title, soft_wrap=True)
 
 
-def check_writable(*paths: Path | None) -> None:
-    """Raise FileError now for a path that could not be written when the work is done."""
-    for path in paths:
+def check_writable(figure: Path | None, output: Path | None = None, *, stores: bool = False) -> None:
+    """Raise an error now for a path that could not be written when the work is done.
+
+    Parameters
+    ----------
+    figure
+        A file of any kind.
+    output
+        The data: a netCDF file, or a store where there are `stores`.
+    stores
+        Whether there are.
+
+    Raises
+    ------
+    ParameterError
+        If the ending of `output` is another than that of its format.
+    FileError
+        If there is a folder in its place, or none in which it could be.
+    """
+    if output is not None:
+        endings = (NETCDF, STORE) if stores else (NETCDF,)
+        if output.suffix not in endings:
+            message = f"--output must end with {' or '.join(endings)}, got {str(output)!r}"
+            raise ParameterError(message)
+        if output.suffix == STORE:  # a folder, perhaps one that is to be continued
+            output = output.with_name(f"{output.name}.part")
+    for path in (figure, output):
         if path is None:
             continue
         folder = path.parent

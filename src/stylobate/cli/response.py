@@ -19,6 +19,7 @@ _ROWS = 17
 
 Source = Annotated[Path | None, typer.Argument(help="TOML description", show_default=False)]
 Range = Annotated[tuple[float, float] | None, typer.Option(help="lowest and highest angular frequency [rad/s]")]
+Exact = Annotated[bool, typer.Option("--exact", help="exact periodic orbits instead of theory, with bifurcations")]
 Points = Annotated[int | None, typer.Option(help="number of frequencies, 400 by default")]
 
 
@@ -42,16 +43,21 @@ def response(
     phase: opt.Phase = None,
     direction: opt.Direction = None,
     sense: opt.Sense = None,
+    exact: Exact = False,
     figure: opt.Figure = None,
     output: opt.Output = None,
     as_json: opt.Json = False,
 ) -> None:
     """Show amplitude and phase of steady rolling against the frequency of the base, with their stability.
 
-    Exact for circular motion, averaged for straight and elliptic motion. Example:
+    By theory exact for circular motion and averaged for straight and elliptic motion; with --exact from periodic
+    orbits, with their bifurcations. Examples:
 
     stylobate response --slenderness 0.1 --damping 0.1 --motion circular --acceleration 0.065
     --angular-frequency-range 0.2 4 --figure response.png
+
+    stylobate response --exact --slenderness 0.1 --damping 0.1 --motion straight --acceleration 0.13
+    --angular-frequency-range 0.8 8 --figure exact.png
     """
     from stylobate import plots, spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
 
@@ -59,27 +65,83 @@ def response(
     values = opt.overlay(read_source(source), context.params, _RANGE_NAMES)
     setup = spec.ResponseDescription.parse(values).build()
     low, high = setup.options["range"]
+    if exact:
+        _exact(
+            studies.exact_response(setup.model, setup.motion, angular_frequency=(low, high)), figure, output, as_json
+        )
+        return
     frequencies = np.linspace(low, high, setup.options["points"])
     curves = studies.response_curves(setup.model, setup.motion, angular_frequency=frequencies)
     if output is not None:
-        _save(curves, output)
+        save_curves(curves, output)
     if figure is not None:
         save_figure(plots.plot(curves), figure)
     if as_json:
-        print_json(_plain(curves))
+        print_json(plain_curves(curves))
     else:
         _print(curves)
 
 
-def _save(curves: "xr.Dataset", path: Path) -> None:
+def _exact(curves: "xr.Dataset", figure: Path | None, output: Path | None, as_json: bool) -> None:
+    from stylobate import plots  # noqa: PLC0415
+
+    if output is not None:
+        save_curves(curves, output)
+    if figure is not None:
+        save_figure(plots.plot(curves), figure)
+    if as_json:
+        print_json(plain_curves(curves))
+        return
+    names = curves["branch_name"].to_numpy()
+    rows = [
+        [str(kind), f"{float(at):.9g} rad/s", str(names[branch]), f"{float(tilt):.6g} rad", _SOFTNESS[int(soft)]]
+        for kind, at, branch, tilt, soft in zip(
+            *(
+                curves[f"bifurcation_{name}"].to_numpy()
+                for name in ("kind", "angular_frequency", "branch", "mean_tilt", "soft")
+            ),
+            strict=True,
+        )
+    ]
+    print_table(
+        f"{curves.sizes['point']} exact orbits in {len(names)} families; their bifurcations",
+        rows,
+        ("bifurcation", "Ω", "family", "mean tilt", "loss of stability"),
+    )
+    print_table("where orbits are stable", _stable_ranges(curves), ("family", "Ω", "mean tilt"))
+
+
+_SOFTNESS = {1: "soft", 0: "hard", -1: ""}
+
+
+def _stable_ranges(curves: "xr.Dataset") -> list[list[str]]:
+    """Return the stretches of each family on which orbits are stable, between the points that bound them."""
+    rows = []
+    for index, name in enumerate(curves["branch_name"].to_numpy()):
+        part = curves.isel(point=np.nonzero(curves["branch"].to_numpy() == index)[0])
+        stable = part["stable"].to_numpy()
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], stable, [False]]).astype(int)))
+        for first, last in zip(edges[::2], edges[1::2] - 1, strict=True):
+            # The points next to a stretch are the bifurcations that end it.
+            low, high = max(first - 1, 0), min(last + 1, stable.size - 1)
+            ends = sorted(float(part["angular_frequency"][k]) for k in (low, high))
+            tilts = sorted(float(part["mean_tilt"][k]) for k in (low, high))
+            rows.append([str(name), f"{ends[0]:.6g} to {ends[1]:.6g} rad/s", f"{tilts[0]:.5g} to {tilts[1]:.5g} rad"])
+    return rows
+
+
+def save_curves(curves: "xr.Dataset", path: Path) -> None:
+    """Write curves to a netCDF file, which knows no truth values."""
     try:
-        curves.assign(stable=curves["stable"].astype("int8")).to_netcdf(path, engine="h5netcdf")
+        flags = {name: data.astype("int8") for name, data in curves.data_vars.items() if data.dtype == bool}
+        curves.assign(flags).to_netcdf(path, engine="h5netcdf")
     except OSError as error:
         message = f"cannot write {path}: {error.strerror or error}"
         raise FileError(message) from None
 
 
-def _plain(curves: "xr.Dataset") -> dict[str, Any]:
+def plain_curves(curves: "xr.Dataset") -> dict[str, Any]:
+    """Return curves as plain values."""
     values = {name: curves[name].to_numpy().tolist() for name in (*curves.coords, *curves.data_vars)}
     return {"dims": {str(name): [str(dim) for dim in curves[name].dims] for name in curves.data_vars}} | {
         str(name): value for name, value in values.items()

@@ -5,12 +5,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from stylobate.cli.output import NETCDF, STORE
 from stylobate.errors import FileError
 
 if TYPE_CHECKING:
     import xarray as xr
-
-STORE = ".zarr"
 
 
 def open_saved(source: Path | None) -> "xr.Dataset | None":
@@ -21,7 +20,7 @@ def open_saved(source: Path | None) -> "xr.Dataset | None":
     FileError
         If it cannot be read or holds no runs of a study.
     """
-    if source is None or source.suffix not in (".nc", STORE):
+    if source is None or source.suffix not in (NETCDF, STORE):
         return None
     if not source.exists():
         message = f"cannot read {source}: No such file or directory"

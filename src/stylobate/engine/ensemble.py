@@ -18,7 +18,7 @@ from stylobate.engine.ensembles.pool import Halt, parts_of, run_parts, usual_thr
 from stylobate.engine.ensembles.summaries import QUANTITIES, Arrays, empty, summaries
 from stylobate.engine.parameters import check_names
 from stylobate.engine.single import check_motion, require_nouns
-from stylobate.errors import Interrupted, require_whole
+from stylobate.errors import Interrupted, ParameterError, require_whole
 from stylobate.models import Model
 from stylobate.motions import BASE_AT_REST, BaseMotion
 from stylobate.results import OutcomeRules
@@ -89,7 +89,8 @@ def simulate_ensemble(
     Raises
     ------
     ParameterError
-        If an argument is out of range, or two have different lengths along a dimension.
+        If an argument is out of range, two have different lengths along a dimension, or two of the parameters say
+        contrary things: slenderness changes the radius, size the lengths.
     UnsupportedError
         If the model cannot be compiled or the motion lacks a number that is to be changed.
     Interrupted
@@ -106,7 +107,7 @@ def simulate_ensemble(
     """
     require_nouns(model, motion, rules)
     moved = BASE_AT_REST if motion is None else motion
-    changes = dict(parameters or {})
+    changes = _named(parameters)
     check_names(model, changes)
     options = Options.checked(
         rtol=rtol,
@@ -135,6 +136,13 @@ def simulate_ensemble(
         return result()
     message = "interrupted; `partial` has what had been computed"
     raise Interrupted(message, result())
+
+
+def _named(parameters: Mapping[str, ArrayLike] | None) -> dict[str, ArrayLike]:
+    if parameters is not None and not isinstance(parameters, Mapping):
+        message = f'parameters must name what differs, such as {{"acceleration": […]}}, got {parameters!r}'
+        raise ParameterError(message)
+    return dict(parameters or {})
 
 
 def _followed(

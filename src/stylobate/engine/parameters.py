@@ -8,7 +8,7 @@ from stylobate.column import Column
 from stylobate.errors import ParameterError, UnsupportedError, require_finite
 from stylobate.models import Model
 from stylobate.motions import BaseMotion, Harmonic
-from stylobate.motions.combined import Transformed
+from stylobate.motions.combined import Sum, Transformed
 
 COLUMN_NAMES = (
     "radius",
@@ -30,6 +30,9 @@ ELLIPSE_NAMES = ("amplitude_x", "amplitude_y", "amplitude_z", "phase_difference"
 
 _OF_HARMONICS = ("angular_frequency", "start_phase")
 
+# What a name changes besides itself: with the other it would be said twice, and differently.
+_CONTRARY = {"slenderness": ("radius",), "size": ("radius", "mass_height")}
+
 
 def model_names(model: Model) -> tuple[str, ...]:
     """Return the names of the numbers of `model` itself, the fields of its dataclass."""
@@ -38,13 +41,35 @@ def model_names(model: Model) -> tuple[str, ...]:
     return tuple(field.name for field in fields(model) if field.name != "column" and field.init)
 
 
-def check_names(model: Model, names: Iterable[str], *, ellipse: bool = False) -> None:
-    """Raise ParameterError if one of the `names` is none that can be changed."""
-    known = (*COLUMN_NAMES, *model_names(model), *MOTION_NAMES, *(ELLIPSE_NAMES if ellipse else ()))
+def check_names(
+    model: Model, names: Iterable[str], *, where: str = "parameters", others: Iterable[str] = (), ellipse: bool = False
+) -> None:
+    """Raise ParameterError if one of the `names` is none that can be changed, or two say contrary things.
+
+    Parameters
+    ----------
+    model
+        The model whose numbers are changed.
+    names
+        What is to be changed.
+    where
+        The argument that names them.
+    others
+        What it may name besides parameters, such as components of the start.
+    ellipse
+        Whether it may name those of one harmonic motion.
+    """
+    names = tuple(names)
+    known = (*others, *COLUMN_NAMES, *model_names(model), *MOTION_NAMES, *(ELLIPSE_NAMES if ellipse else ()))
     for name in names:
         if name not in known:
-            message = f"parameters: {name} is not known here; known are {', '.join(known)}"
+            message = f"{where}: {name} is not known here; known are {', '.join(known)}"
             raise ParameterError(message)
+    for name, changed in _CONTRARY.items():
+        for other in changed:
+            if name in names and other in names:
+                message = f"{where}: {name} changes the {other}, which is given too; leave one of them out"
+                raise ParameterError(message)
 
 
 def with_parameters(model: Model, motion: BaseMotion, **values: float) -> tuple[Model, BaseMotion]:
@@ -65,7 +90,8 @@ def with_parameters(model: Model, motion: BaseMotion, **values: float) -> tuple[
     Raises
     ------
     ParameterError
-        If a name is not known or a value out of range.
+        If a name is not known, a value out of range, or two names say contrary things: slenderness changes the radius,
+        size the lengths.
     UnsupportedError
         If the motion has no such number.
 
@@ -78,7 +104,7 @@ def with_parameters(model: Model, motion: BaseMotion, **values: float) -> tuple[
     >>> changed.damping, faster.angular_frequency
     (0.2, 3.0)
     """
-    check_names(model, values, ellipse=True)
+    check_names(model, values, where="with_parameters", ellipse=True)
     of_motion = {name: values[name] for name in (*ELLIPSE_NAMES, *MOTION_NAMES) if name in values}
     of_model = {name: value for name, value in values.items() if name not in of_motion}
     return changed_model(model, of_model), changed_motion(motion, of_motion)
@@ -127,7 +153,7 @@ def largest_acceleration(motion: BaseMotion) -> float:
     """
     largest = motion.largest_horizontal(0.0)
     if not largest > 0.0:
-        message = f"acceleration cannot be set: the motion has no horizontal acceleration; got {motion!r}"
+        message = f"acceleration cannot be changed: the motion has no horizontal acceleration; {_said(motion)}"
         raise UnsupportedError(message)
     return largest
 
@@ -143,9 +169,16 @@ def harmonic_part(motion: BaseMotion, name: str) -> Harmonic:
     if isinstance(motion, Transformed):
         return harmonic_part(motion.motion, name)
     if type(motion) is not Harmonic:
-        message = f"{name} can be changed in a Harmonic motion only; got {motion!r}"
+        message = f"{name} can be changed in a Harmonic motion only; {_said(motion)}"
         raise UnsupportedError(message)
     return motion
+
+
+def _said(motion: BaseMotion) -> str:
+    """Return what was got; where that is a base at rest, with the remedy."""
+    if isinstance(motion, Sum) and not motion.motions:
+        return "got a base at rest; give a base motion, such as a circular one"
+    return f"got {motion!r}"
 
 
 def _changed_harmonic(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotion:
@@ -170,7 +203,7 @@ def present_value(model: Model, motion: BaseMotion, name: str) -> float:
     UnsupportedError
         If the motion has no such number.
     """
-    check_names(model, [name], ellipse=True)
+    check_names(model, [name], where="parameter", ellipse=True)
     if name in _CHANGES:
         return _CHANGES[name]
     if name == "acceleration":

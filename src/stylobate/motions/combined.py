@@ -1,7 +1,8 @@
 """Motions made of motions: sums, and scaled, rotated and delayed copies."""
 
+import cmath
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy.typing as npt
 
 from stylobate.errors import ParameterError, require_finite
 from stylobate.motions.base import ACCELERATION, VELOCITY, BaseMotion, Components
+from stylobate.motions.harmonic import Harmonic
 
 # Frequencies whose ratio is n/d to this relative accuracy, d up to the limit, share a period.
 _RATIO_TOLERANCE = 1e-12
@@ -234,3 +236,26 @@ def _require_motion(name: str, motion: object) -> None:
     if not isinstance(motion, BaseMotion):
         message = f"{name} must be a base motion such as Harmonic.circular(...), got {motion!r}"
         raise ParameterError(message)
+
+
+def as_harmonic(motion: BaseMotion) -> Harmonic | None:
+    """Return `motion` as one Harmonic if it is one that was scaled and turned, else None."""
+    if type(motion) is Harmonic:
+        return motion
+    if type(motion) not in (Scaled, Rotated):
+        return None
+    inner = as_harmonic(motion.motion)  # type: ignore[attr-defined]
+    if inner is None:
+        return None
+    x, y, z = (cmath.rect(a, phase) for a, phase in zip(inner.amplitude, inner.phase, strict=True))
+    if isinstance(motion, Scaled):
+        if motion.factor > 0.0 and motion.vertical > 0.0:  # without rounding of the phases
+            x_size, y_size, z_size = inner.amplitude
+            scaled = (motion.factor * x_size, motion.factor * y_size, motion.vertical * z_size)
+            return replace(inner, amplitude=scaled)
+        x, y, z = motion.factor * x, motion.factor * y, motion.vertical * z
+    elif isinstance(motion, Rotated):
+        cos, sin = math.cos(motion.angle), math.sin(motion.angle)
+        x, y = cos * x - sin * y, sin * x + cos * y
+    phases = (cmath.phase(x), cmath.phase(y), cmath.phase(z))
+    return replace(inner, amplitude=(abs(x), abs(y), abs(z)), phase=phases)

@@ -105,15 +105,15 @@ def corrected(family: Family, u: Floats, normal: Floats) -> tuple[Point, int] | 
     here = u
     for steps in range(1, _MOST_STEPS + 1):
         try:
-            system = family.at(float(here[-1] * units[-1]))
+            value = float(here[-1] * units[-1])
+            system, change = family.at(value), family.system.derivative(family.name, value)
         except StylobateError:  # the parameter has left what can be
             return Status.FAILED
         states = (here[:-1] * units[:-1]).reshape(arcs, order)
-        change = system.derivative(family.name)
         chain = shots(system, states, family.covered, sense=family.sense, change=change)
         if chain.status is not Status.DONE:
             return chain.status
-        point = Point(family, system.value_of(family.name), chain)
+        point = Point(family, value, chain)
         # What is left to the plane is zero but for the first steps.
         matrix = np.vstack([point.jacobian, normal])
         residual = np.append(chain.residual.ravel(), normal @ (here - u))

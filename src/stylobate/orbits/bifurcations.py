@@ -57,8 +57,8 @@ class Bifurcation:
         Of the normal form, NaN where it decides nothing: of Neimark-Sacker below zero, of a pitchfork and a period
         doubling above zero, if what is born is stable where the orbit is not.
     soft
-        Whether a loss of stability here is soft: stable motions are born beside the orbit. None where nothing is
-        decided: at a fold the loss is always hard.
+        Whether a loss of stability here is soft: stable motions are born beside the orbit. None where the orbit is
+        unstable on both sides, and at folds and branch points, where the coefficient decides nothing.
     critical_vector
         Disturbance of the state that neither grows nor decays (its real part), of length 1.
     point, direction
@@ -131,7 +131,7 @@ def orbit_at(point: Point) -> PeriodicOrbit:
     system = family.at(point.value)
     if family.sense < 0.0:
         chain = shots(system, np.concatenate([chain.states, -chain.states]), family.periods)
-    return PeriodicOrbit(system.model, system.motion, family.periods, chain, system.line)
+    return PeriodicOrbit(system.model, system.motion, family.periods, chain, system.line, system.rtol)
 
 
 def _told(point: Point, sense: Floats, name: str) -> Bifurcation | None:
@@ -155,6 +155,8 @@ def _told(point: Point, sense: Floats, name: str) -> Bifurcation | None:
         soft = coefficient > 0.0
         # Half an orbit that doubles is a whole one that loses its symmetry.
         kind = Kind.PITCHFORK if family.sense < 0.0 else kind
+    if np.sum(np.abs(values) > 1.0 + _CRITICAL) > 0:
+        soft = None  # it is unstable on both sides
     vector: Floats = critical_vectors(point.map_derivative, nearest)[0].real
     multiplier = nearest**2 if family.sense < 0.0 else nearest
     return Bifurcation(kind, point.value, orbit, multiplier, coefficient, soft, vector, point, sense)

@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -32,7 +32,7 @@ class Branch:
     parameter
         Its name.
     path
-        The points in their order along the family.
+        The points in their order along the family, those of the bifurcations among them.
     bifurcations
         What was located on it, in the order along the family.
     ends
@@ -50,16 +50,17 @@ class Branch:
 
     def orbits_at(self, value: float) -> tuple[PeriodicOrbit, ...]:
         """Return the orbits of the branch at this value of the parameter, in the order along it."""
-        found = []
+        found = list[tuple[float, Point]]()
         values = np.array([point.value for point in self.path])
-        for index in np.nonzero((values[:-1] - value) * (values[1:] - value) <= 0.0)[0]:
+        for index in np.nonzero((values[:-1] - value) * (values[1:] - value) < 0.0)[0]:
             first, second = self.path[index], self.path[index + 1]
             share = (value - first.value) / (second.value - first.value) if second.value != first.value else 0.0
             guess = first.chain.states + share * (second.chain.states - first.chain.states)
             point = on_family(first.family, guess, value)
             if isinstance(point, Point):
-                found.append(orbit_at(point))
-        return tuple(found)
+                found.append((int(index) + 0.5, point))
+        found += [(float(index), self.path[index]) for index in np.nonzero(values == value)[0]]
+        return tuple(orbit_at(point) for _, point in sorted(found, key=lambda one: one[0]))
 
     @cached_property
     def points(self) -> xr.Dataset:
@@ -203,10 +204,7 @@ def continue_branch(
     [('Neimark-Sacker', 1.39710759)]
     """
     value = present_value(orbit.model, orbit.motion, parameter)
-    low, high = (float(bound) for bound in bounds)
-    if not (math.isfinite(low) and math.isfinite(high) and low <= value <= high and low < high):
-        message = f"bounds must enclose the present {parameter} {value!r}, got {bounds!r}"
-        raise ParameterError(message)
+    low, high = enclosing(bounds, parameter, value)
     start = taken_up(orbit, parameter, value, high - low)
     if isinstance(start, Status):
         message = f"the orbit could not be taken up at {parameter} = {value!r}"
@@ -215,6 +213,18 @@ def continue_branch(
     up[-1] = 1.0
     seen = None if progress is None else (lambda point: progress(point.value))
     return branch_through(start, up, (low, high), control or StepControl(), seen, both_ways=both_ways)
+
+
+def enclosing(bounds: Sequence[float], parameter: str, value: float) -> tuple[float, float]:
+    """Return the bounds, or raise ParameterError unless they are two numbers that enclose `value`."""
+    try:
+        low, high = (float(bound) for bound in bounds)
+    except (TypeError, ValueError):
+        low = high = math.nan
+    if not (-math.inf < low <= value <= high < math.inf and low < high):
+        message = f"bounds must be two numbers that enclose the present {parameter} {value!r}, got {bounds!r}"
+        raise ParameterError(message)
+    return low, high
 
 
 def taken_up(orbit: PeriodicOrbit, parameter: str, value: float, span: float) -> Point | Status:
@@ -252,9 +262,10 @@ def _joined(name: str, forward: Stretch, backward: Stretch | None) -> Branch:
         points = [*reversed(backward.points[1:]), *points]
         directions = [*(-sense for sense in reversed(backward.directions[1:])), *directions]
         first_end = backward.end
-    found = [
-        bifurcation
-        for first, second, sense in zip(points, points[1:], directions, strict=False)
-        for bifurcation in between(first, second, sense)
-    ]
-    return Branch(name, tuple(points), tuple(found), (first_end, forward.end))
+    path, found = points[:1], list[Bifurcation]()
+    for first, second, sense in zip(points, points[1:], directions, strict=False):
+        located = between(first, second, sense)
+        found += located
+        # Where stability changes there is a point of the path.
+        path += [*(one.point for one in located), second]
+    return Branch(name, tuple(path), tuple(found), (first_end, forward.end))

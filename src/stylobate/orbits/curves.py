@@ -9,11 +9,12 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from stylobate.engine.flow.periodic import PeriodicSystem
+from stylobate.engine.flow.periodic import Numbers, PeriodicSystem
 from stylobate.engine.flow.tableau import Status
 from stylobate.engine.parameters import present_value
 from stylobate.errors import NoOrbitError, ParameterError, StylobateError
 from stylobate.orbits.bifurcations import Bifurcation, Kind
+from stylobate.orbits.branch import enclosing
 from stylobate.orbits.normal_forms import PeriodMap, neimark_sacker_coefficient, period_doubling_coefficient
 from stylobate.orbits.shooting import Shots, shots
 from stylobate.orbits.tracing import End, StepControl
@@ -88,10 +89,12 @@ class BifurcationCurve:
     def points(self) -> xr.Dataset:
         """The points as data over `point`: both parameters, tilts [rad], the coefficient of the normal form, its sign.
 
-        `soft` is 1 where a loss of stability is soft, 0 where it is hard, −1 where nothing is decided.
+        `soft` is 1 where a loss of stability is soft, 0 where it is hard, −1 at folds and where the orbit is unstable
+        on both sides.
         """
         coefficient = np.array([self.plane.coefficient(point) for point in self.path])
         soft = coefficient < 0.0 if self.kind is Kind.NEIMARK_SACKER else coefficient > 0.0
+        decided = np.array([_only_critical(point) for point in self.path]) & ~np.isnan(coefficient)
         angle = np.abs(np.angle([point.multiplier for point in self.path]))
         system = self.plane.system
         return xr.Dataset(
@@ -99,7 +102,7 @@ class BifurcationCurve:
                 "least_tilt": ("point", [p.chain.least_tilt for p in self.path], {"units": "rad"}),
                 "largest_tilt": ("point", [p.chain.largest_tilt for p in self.path], {"units": "rad"}),
                 "coefficient": ("point", coefficient, {"long_name": "coefficient of the normal form"}),
-                "soft": ("point", np.where(np.isnan(coefficient), -1, soft).astype(np.int8)),
+                "soft": ("point", np.where(decided, soft, -1).astype(np.int8)),
                 "multiplier_angle": ("point", angle, {"units": "rad", "long_name": "angle of the critical eigenvalue"}),
             },
             coords={name: ("point", [p.values[k] for p in self.path]) for k, name in enumerate(self.parameters)},
@@ -158,10 +161,10 @@ def bifurcation_curve(
         raise ParameterError(message)
     system = bifurcation.orbit.system
     at = (bifurcation.parameter, present_value(system.model, system.motion, parameter))
-    for name, value, (low, high) in zip((first, parameter), at, bounds, strict=True):
-        if not low <= value <= high:
-            message = f"bounds must enclose the present {name} {value!r}, got {(low, high)!r}"
-            raise ParameterError(message)
+    first_bounds, second_bounds = (
+        enclosing(pair, name, value) for pair, name, value in zip(bounds, (first, parameter), at, strict=True)
+    )
+    bounds = (first_bounds, second_bounds)
     family = bifurcation.point.family
     plane = Plane(
         system,
@@ -256,8 +259,14 @@ class Plane:
         units = self.units(here.size - 2)
         system = self.at(here[-2:] * units[-2:])
         states = (here[:-2] * units[:-2]).reshape(-1, system.order)
-        change = None if name is None else system.derivative(name)
+        change = None if name is None else self._derivative(name, here[-2:] * units[-2:])
         return shots(system, states, self.covered, sense=self.sense, change=change)
+
+    def _derivative(self, name: str, values: Floats) -> Numbers:
+        """Return how the numbers change with one parameter, the other as it is."""
+        place = self.names.index(name)
+        other = self.names[1 - place]
+        return self.system.changed(**{other: float(values[1 - place])}).derivative(name, float(values[place]))
 
     def _looked(self, here: Floats) -> tuple[Floats, Floats, Shots] | Status:
         units = self.units(here.size - 2)
@@ -320,6 +329,11 @@ def _followed(
         length = min(_LONGER * length, control.largest) if found.steps <= _EASY else length
         length = _SHORTER * length if found.steps >= _HARD else length
     return points, End.STEPS
+
+
+def _only_critical(point: CurvePoint) -> bool:
+    """Return whether no multiplier lies outside the unit circle."""
+    return bool(np.abs(np.linalg.eigvals(point.chain.map_derivative)).max() < 1.0 + 1e-6)
 
 
 def _on_circle(multiplier: complex) -> bool:

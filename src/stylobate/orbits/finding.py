@@ -11,7 +11,7 @@ from stylobate.engine.flow.tableau import Status
 from stylobate.errors import ParameterError, require_positive, require_whole
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
-from stylobate.orbits.opening import rolling_by_theory
+from stylobate.orbits.opening import require_sense, rolling_by_theory
 from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.shooting import Shots, arcs_of, closed, damped, newton_step, shots
 from stylobate.results import Response
@@ -84,6 +84,7 @@ def periodic_orbit(
     periods = require_whole("periods", periods, least=1)
     arcs = periods if arcs is None else require_whole("arcs", arcs, least=1)
     rtol = require_positive("rtol", rtol)
+    require_sense(sense)
     if guess is None:
         state, line = rolling_by_theory(model, motion, sense), None
     else:
@@ -91,7 +92,7 @@ def periodic_orbit(
         state, line = _start(model, motion, lean)
     system = PeriodicSystem(model, motion, line, rtol)
     chain = closed(system, arcs_of(system, state, periods, arcs), periods)
-    return PeriodicOrbit(model, motion, periods, chain, line)
+    return PeriodicOrbit(model, motion, periods, chain, line, rtol)
 
 
 def _start(model: Model, motion: BaseMotion, lean: Floats) -> tuple[Floats, tuple[float, float] | None]:
@@ -141,20 +142,22 @@ def periodic_orbits(
     """
     periods = require_whole("periods", periods, least=1)
     count = require_whole("count", count, least=1)
-    system = PeriodicSystem(model, motion, None, require_positive("rtol", rtol))
+    rtol = require_positive("rtol", rtol)
+    seed = require_whole("seed", seed, least=0)
+    system = PeriodicSystem(model, motion, None, rtol)
     rng = np.random.default_rng(seed)
     low, high = np.transpose(_ranges(system, over))
     starts = rng.uniform(low, high, size=(count, _LEAN))
     found: list[PeriodicOrbit] = []
     known: list[Floats] = []
-    for lean in starts:
-        state = np.array(model.start(tuple(lean[:2]), tuple(lean[2:])), dtype=float)
-        chain = _deflated(system, state, periods, known)
-        if chain is None:
-            continue
-        orbit = _shortest(PeriodicOrbit(model, motion, periods, chain))
-        found.append(orbit)
-        known.extend(orbit.states(orbit.periods).T)
+    for length in (divisor for divisor in range(1, periods + 1) if periods % divisor == 0):
+        for lean in starts:
+            state = np.array(model.start(tuple(lean[:2]), tuple(lean[2:])), dtype=float)
+            chain = _deflated(system, state, length, known)
+            if chain is not None:
+                orbit = _shortest(PeriodicOrbit(model, motion, length, chain, None, rtol))
+                found.append(orbit)
+                known.extend(orbit.states(orbit.periods).T)
     return tuple(sorted(found, key=lambda orbit: (orbit.periods, orbit.largest_tilt)))
 
 
@@ -197,7 +200,7 @@ def _shortest(orbit: PeriodicOrbit) -> PeriodicOrbit:
             flow = orbit.system.carry(orbit.state, 0.0, float(periods))
             if flow.status is Status.DONE and np.abs(flow.end - orbit.state).max() <= _SAME * orbit.system.scale:
                 chain = closed(orbit.system, orbit.state[np.newaxis], periods)
-                return PeriodicOrbit(orbit.model, orbit.motion, periods, chain, orbit.line)
+                return PeriodicOrbit(orbit.model, orbit.motion, periods, chain, orbit.line, orbit.rtol)
     return orbit
 
 
@@ -215,16 +218,22 @@ def _ranges(system: PeriodicSystem, over: Mapping[str, Sequence[float]] | None) 
         if name not in ranges:
             message = f"over: {name} is not known here; known are {', '.join(ranges)}"
             raise ParameterError(message)
-        low, high = (float(value) for value in values)
+        try:
+            low, high = (float(value) for value in values)
+        except (TypeError, ValueError):
+            low = high = math.nan
         if not (math.isfinite(low) and math.isfinite(high) and low <= high):
-            message = f"over: {name} must be a range low ≤ high, got {tuple(values)!r}"
+            message = f"over: {name} must be a range low ≤ high, got {values!r}"
             raise ParameterError(message)
         ranges[name] = (low, high)
     return list(ranges.values())
 
 
 def _checked(guess: npt.ArrayLike) -> Floats:
-    lean = np.asarray(guess, dtype=float)
+    try:
+        lean = np.asarray(guess, dtype=float)
+    except (TypeError, ValueError):
+        lean = np.empty(0)
     if lean.shape != (_LEAN,) or not np.all(np.isfinite(lean)):
         message = f"guess must be four numbers, tilt x, y [rad] and their rates [rad/s], got {guess!r}"
         raise ParameterError(message)

@@ -18,7 +18,7 @@ Floats = npt.NDArray[Any]
 Complexes = npt.NDArray[Any]
 
 # Of the size of the state.
-_SECOND, _THIRD = 2e-3, 2e-2
+_SECOND, _THIRD = 2e-3, 5e-3
 
 
 @dataclass(frozen=True, slots=True)

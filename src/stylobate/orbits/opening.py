@@ -15,7 +15,7 @@ from stylobate import theory
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError
 from stylobate.models import Model, Slender
-from stylobate.motions import BaseMotion, Harmonic
+from stylobate.motions import BaseMotion, Harmonic, as_harmonic
 from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.shooting import closed
 
@@ -65,20 +65,19 @@ def rolling_by_theory(model: Model, motion: BaseMotion, sense: int | None) -> Fl
     NoOrbitError
         If theory has no such motion, or it is lost on the way to this base motion.
     """
-    if type(model) is not Slender or not isinstance(motion, Harmonic) or motion.amplitude[2] != 0.0:
+    harmonic = as_harmonic(motion)
+    if type(model) is not Slender or harmonic is None or harmonic.amplitude[2] != 0.0:
         message = "guess must be given: theory knows steady rolling of the slender model under Harmonic motion only"
         raise UnsupportedError(message)
-    if sense not in (1, -1, None):
-        message = f"sense must be +1, -1 or None, got {sense!r}"
-        raise ParameterError(message)
-    circles = _Circles.of(motion)
+    require_sense(sense)
+    circles = _Circles.of(harmonic)
     if sense is None:
         larger = abs(circles.backward) > (1.0 + _NO_PART) * abs(circles.forward)
         sense = -1 if larger else 1
     along, against = circles.forward, circles.backward
     if sense < 0:
         along, against = against, along
-    state = _on_the_circle(model, motion, along, sense)
+    state = _on_the_circle(model, harmonic, along, sense)
     if abs(against) <= _NO_PART * abs(along):
         return state
     done, step = 0.0, _FIRST_PART
@@ -96,6 +95,13 @@ def rolling_by_theory(model: Model, motion: BaseMotion, sense: int | None) -> Fl
             continue
         done, state = part, opened
     return state
+
+
+def require_sense(sense: int | None) -> None:
+    """Raise ParameterError unless `sense` is a sense of rolling, or None."""
+    if sense not in (1, -1, None):
+        message = f"sense must be +1, -1 or None, got {sense!r}"
+        raise ParameterError(message)
 
 
 def _rolling(model: Model, motion: Harmonic, guess: Floats, sense: int) -> Floats | None:

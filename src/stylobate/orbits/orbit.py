@@ -37,6 +37,8 @@ class PeriodicOrbit:
         The shots of which it is closed, in units of the model.
     line
         Unit vector of the vertical plane to which it keeps, or None.
+    rtol
+        Relative tolerance of the flow.
     """
 
     model: Model
@@ -44,6 +46,7 @@ class PeriodicOrbit:
     periods: int
     chain: Shots
     line: tuple[float, float] | None = None
+    rtol: float = 1e-12
 
     @property
     def state(self) -> Floats:
@@ -76,7 +79,7 @@ class PeriodicOrbit:
     @cached_property
     def system(self) -> PeriodicSystem:
         """The system of which it is an orbit."""
-        return PeriodicSystem(self.model, self.motion, self.line)
+        return PeriodicSystem(self.model, self.motion, self.line, self.rtol)
 
     @cached_property
     def multipliers(self) -> Complexes:
@@ -112,14 +115,14 @@ class PeriodicOrbit:
     def states(self, count: int) -> Floats:
         """Return states at `count` equal steps of time over the orbit, shape (order, count), beginning with t = 0."""
         arcs = len(self.chain.states)
-        phases = self.periods * np.arange(count) / count
         states = np.empty((self.system.order, count))
         at, state, side = 0.0, self.state, 0.0
-        for index, phase in enumerate(phases):
+        for index, phase in enumerate(self.periods * np.arange(count) / count):
             # Each arc begins anew: what an unstable orbit has drifted off is left behind.
             arc = int(phase * arcs / self.periods + 1e-12)
-            if arc / arcs * self.periods > at + 1e-12:
-                at, state = arc / arcs * self.periods, self.chain.states[arc]
+            begin = arc / arcs * self.periods
+            if begin > at + 1e-12:
+                at, state, side = begin, self.chain.states[arc], 0.0
             if phase > at:
                 flow = self.system.carry(state, at, float(phase), side=side)
                 at, state, side = float(phase), flow.end, flow.side if self.planar else 0.0

@@ -107,7 +107,7 @@ def _read_orbit(data: xr.Dataset) -> PeriodicOrbit:
     if chain.status is not Status.DONE:
         message = "its orbit cannot be shot again"
         raise ValueError(message)
-    return PeriodicOrbit(system.model, system.motion, periods, chain, system.line)
+    return PeriodicOrbit(system.model, system.motion, periods, chain, system.line, system.rtol)
 
 
 def _branch_data(branch: Branch) -> xr.Dataset:
@@ -183,7 +183,7 @@ def _read_branch(data: xr.Dataset) -> Branch:
 
 def _shot(family: Family, states: Any, value: float) -> Point:
     system = family.at(value)
-    change = system.derivative(family.name)
+    change = family.system.derivative(family.name, value)
     chain = shots(system, np.ascontiguousarray(states), family.covered, sense=family.sense, change=change)
     if chain.status is not Status.DONE:
         message = f"its orbit at {family.name} = {value!r} cannot be shot again"

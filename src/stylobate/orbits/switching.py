@@ -6,7 +6,7 @@ from stylobate.engine.flow.tableau import Status
 from stylobate.errors import NoOrbitError, ParameterError
 from stylobate.orbits.arclength import Family, Point, corrected
 from stylobate.orbits.bifurcations import Bifurcation, Kind
-from stylobate.orbits.branch import Branch, branch_through
+from stylobate.orbits.branch import Branch, branch_through, enclosing
 from stylobate.orbits.shooting import arcs_of
 from stylobate.orbits.tracing import StepControl
 
@@ -48,6 +48,7 @@ def switch_branch(
             "no other family of periodic orbits begins there"
         )
         raise ParameterError(message)
+    bounds = enclosing(bounds, old.name, point.value)
     periods = 2 * old.periods if bifurcation.kind is Kind.PERIOD_DOUBLING else old.periods
     family = Family(old.at(point.value), periods, old.name, bounds[1] - bounds[0])
     states = arcs_of(family.system, point.chain.states[0], periods, periods)

@@ -1,7 +1,7 @@
 """Following a family of periodic orbits by pseudo-arclength."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -85,36 +85,23 @@ def trace(
 def _points(
     start: Point, direction: Floats, bounds: tuple[float, float], control: StepControl
 ) -> Iterator[tuple[Point, Floats] | End]:
-    family = start.family
-    low, high = bounds
     point, sense, length = start, start.along(direction), control.first
-    made = 0
-    while made < control.most:
-        found = corrected(family, point.u + length * sense, sense)
-        if isinstance(found, Status):
-            length *= _SHORTER
-            if length < control.least:
-                yield _why(found)
-                return
-            continue
-        following, steps = found
-        after = following.along(sense)
-        if after @ sense < _STRAIGHT and length > 10.0 * control.least:
-            length *= _SHORTER
-            continue
-        if not low <= following.value <= high:
-            last = _at_bound(family, point, sense, low if following.value < low else high)
-            if last is not None:
-                yield last, last.along(sense)
+    low, high = bounds
+    if start.value >= high if sense[-1] > 0.0 else start.value <= low:
+        yield End.BOUND
+        return
+    for made in range(control.most):
+        made_step = _step(point, sense, length, bounds, control.least)
+        if isinstance(made_step, End):
+            yield made_step
+            return
+        following, after, length, steps = made_step
+        yield following, after
+        if following.value in bounds:
             yield End.BOUND
             return
-        made += 1
-        yield following, after
-        if (
-            made > _FEW
-            and np.linalg.norm(following.u - start.u) < _CLOSED * length
-            and after @ start.along(direction) > 0.0
-        ):
+        near = np.linalg.norm(following.u - start.u) < _CLOSED * length
+        if made >= _FEW and near and after @ start.along(direction) > 0.0:
             yield End.CLOSED
             return
         point, sense = following, after
@@ -124,6 +111,33 @@ def _points(
             length *= _SHORTER
 
 
+def _step(
+    point: Point, sense: Floats, length: float, bounds: tuple[float, float], least: float
+) -> tuple[Point, Floats, float, int] | End:
+    """Return the point after a step of `length` or shorter, its tangent, that length and how hard it was.
+
+    The last point lies on the bound of the parameter.
+    """
+    family = point.family
+    while True:
+        guess = point.u + length * sense
+        found = corrected(family, guess, sense)
+        value = guess[-1] * family.span if isinstance(found, Status) else found[0].value
+        if not bounds[0] <= value <= bounds[1]:  # beyond the bound there may be nothing
+            last = _at_bound(family, point, sense, bounds[0] if value < bounds[0] else bounds[1])
+            if last is not None and last.along(sense) @ sense > _STRAIGHT:
+                return last, last.along(sense), length, 0
+        elif not isinstance(found, Status):
+            after = found[0].along(sense)
+            if after @ sense >= _STRAIGHT or length <= _BENT * least:
+                return found[0], after, length, found[1]
+        length *= _SHORTER
+        if length < least:
+            return _why(found) if isinstance(found, Status) else End.SHORT
+
+
+# A step this short is made even where the family bends more than it should.
+_BENT = 10.0
 _FEW = 10
 
 
@@ -147,7 +161,8 @@ def _at_bound(family: Family, point: Point, sense: Floats, bound: float) -> Poin
     normal = np.zeros_like(sense)
     normal[-1] = 1.0
     found = corrected(family, guess, normal)
-    return None if isinstance(found, Status) else found[0]
+    # The value is the bound itself, not what is left of it after scaling.
+    return None if isinstance(found, Status) else replace(found[0], value=bound)
 
 
 def _why(status: Status) -> End:

@@ -7,30 +7,44 @@ from matplotlib.figure import Figure
 
 from stylobate.errors import ParameterError
 from stylobate.plots.basins import plot_basins
+from stylobate.plots.exact_response import plot_exact_response
 from stylobate.plots.exponent import plot_exponent
 from stylobate.plots.fractions import plot_fractions
 from stylobate.plots.integrity import plot_erosion, plot_integrity
+from stylobate.plots.lyapunov import plot_lyapunov
 from stylobate.plots.maps import plot_map
 from stylobate.plots.paper_report import paper_report
 from stylobate.plots.response import plot_response
 from stylobate.plots.runs import plot_runs
+from stylobate.plots.sections import plot_section
+from stylobate.plots.slow_sweep import plot_slow_sweep
+from stylobate.plots.stability_boundary import plot_averaging_map, plot_stability_boundary
 from stylobate.results import Response
 
 __all__ = [
     "paper_report",
     "plot",
+    "plot_averaging_map",
     "plot_basins",
     "plot_erosion",
+    "plot_exact_response",
     "plot_exponent",
     "plot_fractions",
     "plot_integrity",
+    "plot_lyapunov",
     "plot_map",
     "plot_response",
     "plot_runs",
+    "plot_section",
+    "plot_slow_sweep",
+    "plot_stability_boundary",
 ]
 
 _BY_KIND: dict[str, Callable[[xr.Dataset], Figure]] = {
     "response curves": plot_response,
+    "stability boundary": plot_stability_boundary,
+    "averaging map": plot_averaging_map,
+    "exact response": plot_exact_response,
     "ensemble": plot_map,
     "sweep": plot_map,
     "overturning map": plot_map,
@@ -40,6 +54,9 @@ _BY_KIND: dict[str, Callable[[xr.Dataset], Figure]] = {
     "uncertainty exponent": plot_exponent,
     "integrity": plot_integrity,
     "erosion": plot_erosion,
+    "slow sweep": plot_slow_sweep,
+    "Poincaré section": plot_section,
+    "Lyapunov exponents": plot_lyapunov,
 }
 
 
@@ -50,8 +67,9 @@ def plot(result: Response | xr.Dataset | Sequence[Response], *, labels: Sequence
     ----------
     result
         A run, several runs to compare, or the result of a study in `stylobate.studies`: response curves, an
-        overturning map, basins, attractors, basin fractions, an uncertainty exponent, integrity or its erosion. A
-        sweep over two dimensions is drawn as a map, finished or not.
+        overturning map, basins, attractors, basin fractions, an uncertainty exponent, integrity or its erosion, a
+        slow sweep, a Poincaré section, Lyapunov exponents. A sweep over two dimensions is drawn as a map, finished or
+        not.
     labels
         Names for several runs; by default their outcomes.
 

@@ -1,16 +1,19 @@
 """Basins of attraction, attractors and their fractions."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from stylobate.plots.cells import fill_options, percent
-from stylobate.plots.classes import MapClass, attractor_classes
+from stylobate.plots.classes import attractor_classes
 from stylobate.plots.maps import draw_classes
 from stylobate.plots.style import BLACK, GREY, new_figure, styled
 
@@ -19,6 +22,14 @@ _COMPONENTS = {"tilt_x": ("attractor_tilt", "x"), "tilt_y": ("attractor_tilt", "
     "tilt_rate_x": ("attractor_tilt_rate", "x"),
     "tilt_rate_y": ("attractor_tilt_rate", "y"),
 }
+_AT_REST = "at rest"
+# Dashes through whose gaps other lines are seen, and the part of the brightness that tells two of a kind apart.
+_GAPS = (0.0, (3.0, 2.2))
+_DARKER = 0.4
+# Sizes of circles at the strobe [points].
+_LARGEST, _SMALLEST = 8.0, 4.0
+# Height of an entry of the legend below the orbits, and so many entries have room in the least height [inches].
+_ENTRY, _ENTRIES = 0.17, 2
 _MARKER: dict[str, Any] = {"marker": "o", "linestyle": "none", "markerfacecolor": "white", "markeredgecolor": BLACK}
 
 
@@ -26,8 +37,10 @@ _MARKER: dict[str, Any] = {"marker": "o", "linestyle": "none", "markerfacecolor"
 def plot_basins(found: xr.Dataset) -> Figure:
     """Return a figure of basins: on a grid a map of which start leads where, else fractions and orbits.
 
-    On a map circles mark the strobed states of the attractors, at phase zero of the base motion. Error bars are the
-    intervals of the fractions.
+    On a map circles mark the strobed states of the attractors that repeat, at phase zero of the base motion. Error bars
+    are the intervals of the fractions. Of the orbits that repeat, and of those that do not, the first is drawn whole
+    and all others with gaps, through which one on the same path is seen. Circles mark the strobed states of those that
+    repeat; others have no state of their own to mark.
 
     Parameters
     ----------
@@ -37,7 +50,7 @@ def plot_basins(found: xr.Dataset) -> Figure:
     dims = found["attractor"].dims if "attractor" in found else ()
     if len(dims) == 2:  # noqa: PLR2004  a plane
         return _plot_grid(found)
-    figure = new_figure(_TABLE_HEIGHT)
+    figure = new_figure(_TABLE_HEIGHT + _ENTRY * max(found.sizes["attractor_index"] - _ENTRIES, 0))
     bars, orbits = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
     _draw_fractions(bars, found)
     _draw_orbits(orbits, found)
@@ -57,7 +70,8 @@ def _mark_attractors(axes: Axes, found: xr.Dataset) -> list[Artist]:
     dims = [str(dim) for dim in found["attractor"].dims]
     if any(dim not in _COMPONENTS for dim in dims):
         return []
-    x, y = (found[name].sel(axis=axis).to_numpy().ravel() for name, axis in map(_COMPONENTS.__getitem__, dims))
+    marked = found.isel(attractor_index=_has_states(found))
+    x, y = (marked[name].sel(axis=axis).to_numpy().ravel() for name, axis in map(_COMPONENTS.__getitem__, dims))
     inside = np.isfinite(x) & np.isfinite(y)
     if not inside.any():
         return []
@@ -100,25 +114,51 @@ def _runs(found: xr.Dataset) -> str:
 
 
 def _draw_orbits(axes: Axes, found: xr.Dataset) -> None:
-    """Draw the path of each attractor's tilt, with its strobed states."""
-    for place, one in enumerate(attractor_classes(found)[: found.sizes["attractor_index"]]):
-        path = found["orbit_tilt"].isel(attractor_index=place)
+    """Draw the path of each attractor's tilt, with the strobed states of those that repeat."""
+    classes, drawn, marks, used = attractor_classes(found), [0, 0], 0, [BLACK]
+    for place, marked in enumerate(_has_states(found)):
+        one, path = classes[place], found["orbit_tilt"].isel(attractor_index=place)
         strobes = found["attractor_tilt"].isel(attractor_index=place)
-        if bool(path.notnull().all()):
-            _draw_orbit(
-                axes, path.sel(axis="x"), path.sel(axis="y"), one, repeats=bool(found["attractor_period"][place])
-            )
-        axes.plot(strobes.sel(axis="x"), strobes.sel(axis="y"), markersize=5.0, zorder=3, **_MARKER)
+        colour = _colour(one.look.colour, used)
+        if bool(path.notnull().all()) and bool((path != 0.0).any()):
+            repeats = bool(found["attractor_period"][place])
+            gaps = drawn[repeats] > 0
+            _draw_orbit(axes, path.sel(axis="x"), path.sel(axis="y"), colour, repeats=repeats, gaps=gaps)
+            axes.lines[-1].set_label(one.name)
+            used.append(colour)
+            drawn[repeats] += 1
+        if marked:  # smaller ones on top, so that all are seen where they meet
+            look = _MARKER | {"markerfacecolor": colour, "markersize": max(_LARGEST - 2.0 * marks, _SMALLEST)}
+            axes.plot(strobes.sel(axis="x"), strobes.sel(axis="y"), zorder=3, **look)
+            marks += 1
+    if sum(drawn) > 1:
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), borderaxespad=0.0, handlelength=3.2)
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel("tilt α₁ [rad]")
     axes.set_ylabel("tilt α₂ [rad]")
     axes.set_title("orbits, ○ at the strobe")
 
 
-def _draw_orbit(axes: Axes, x: xr.DataArray, y: xr.DataArray, one: MapClass, *, repeats: bool) -> None:
-    if repeats:
-        # A dark edge carries pale colours on white paper.
-        axes.plot(x, y, color=BLACK, linewidth=2.4)
-        axes.plot(x, y, color=one.look.colour, linewidth=1.3)
-    else:
-        axes.plot(x, y, color=one.look.colour, linewidth=0.7, zorder=1.5)
+def _draw_orbit(axes: Axes, x: xr.DataArray, y: xr.DataArray, colour: str, *, repeats: bool, gaps: bool) -> None:
+    """Draw a path; with `gaps` in it, through which another one on the same path is seen."""
+    style: Any = _GAPS if gaps else "-"
+    if not repeats:
+        axes.plot(x, y, color=colour, linewidth=0.7, linestyle=style, zorder=1.5)
+        return
+    if not gaps:  # a dark edge carries pale colours on white paper
+        axes.plot(x, y, color=BLACK, linewidth=2.8)
+    axes.plot(x, y, color=colour, linewidth=1.7, linestyle=style)
+
+
+def _colour(colour: str, used: Sequence[str]) -> str:
+    """Return `colour`, or one nearer to black where it is used already, until it differs from all `used`."""
+    while colour in used and colour != BLACK:
+        red, green, blue = to_rgb(colour)
+        colour = to_hex((_DARKER * red, _DARKER * green, _DARKER * blue))
+    return colour
+
+
+def _has_states(found: xr.Dataset) -> npt.NDArray[np.bool_]:
+    """Return which attractors have strobed states of their own: those that repeat, and standing."""
+    repeats, stands = found["attractor_period"].to_numpy() > 0, found["attractor_kind"].to_numpy() == _AT_REST
+    return np.asarray(repeats | stands, dtype=bool)

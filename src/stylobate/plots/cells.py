@@ -114,17 +114,13 @@ def fill_options(look: Look) -> dict[str, Any]:
     }
 
 
-def class_legend(codes: Integers, classes: Sequence[MapClass], *, computed: int) -> list[Patch]:
-    """Return a patch for each class that occurs in `codes`, named with its share of the runs `computed`.
-
-    What has not been computed is named with its share of all.
-    """
+def class_legend(codes: Integers, classes: Sequence[MapClass]) -> list[Patch]:
+    """Return a patch for each class that occurs in `codes`, named with its share of all runs, computed or not."""
     entries = []
     for one in classes:
         count = int(np.count_nonzero(codes == one.code))
         if count:
-            total = codes.size if one is classes[-1] else computed
-            entries.append(Patch(label=f"{one.name}  {percent(count, total)}", **fill_options(one.look)))
+            entries.append(Patch(label=f"{one.name}  {percent(count, codes.size)}", **fill_options(one.look)))
     return entries
 
 

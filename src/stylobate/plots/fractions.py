@@ -4,25 +4,29 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from stylobate.plots.cells import fill_options, set_scale
-from stylobate.plots.classes import attractor_classes
+from stylobate.plots.cells import Floats, cell_edges, fill_options, is_geometric, set_scale
+from stylobate.plots.classes import Look, attractor_classes
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import BLACK, new_figure, styled
 
 _HEIGHT = 4.2
 # Bands thinner than this part of the height have no bar: it would stand for a line.
 _SEEN = 0.005
+# Room beside the first and last value, in widths of the bands.
+_ROOM = 0.015
 
 
 @styled
 def plot_fractions(found: xr.Dataset) -> Figure:
     """Return a figure of basin fractions along a parameter, stacked.
 
-    The bar on the upper edge of a band is the interval of that band's own height. Unsettled runs fill what is left to
+    A single value has a bar for its bands. The line on the upper edge of a band is the interval of that band's own
+    height. Unsettled runs fill what is left to
     the top; values not computed stay white.
     """
     figure = new_figure(_HEIGHT)
@@ -37,7 +41,7 @@ def plot_fractions(found: xr.Dataset) -> Figure:
     legend: list[Patch | Line2D] = []
     for place, one in enumerate(classes):
         if bands[:, place].any():
-            axes.fill_between(x, tops[:, place] - bands[:, place], tops[:, place], **fill_options(one.look))
+            _draw_band(axes, x, tops[:, place] - bands[:, place], tops[:, place], one.look)
             legend.append(Patch(label=one.name, **fill_options(one.look)))
     below = fraction - ordered["fraction_low"].transpose(name, "attractor_index").to_numpy()
     above = ordered["fraction_high"].transpose(name, "attractor_index").to_numpy() - fraction
@@ -49,12 +53,32 @@ def plot_fractions(found: xr.Dataset) -> Figure:
     confidence = 100.0 * float(found.attrs["confidence"])
     legend.append(Line2D([], [], color=BLACK, marker="|", markersize=9, linestyle="none", label=_interval(confidence)))
     set_scale(axes, "x", x)
-    axes.set(xlim=(x[0], x[-1]) if x.size > 1 else None, ylim=(0.0, 1.0))
+    axes.set(xlim=_limits(x), ylim=(0.0, 1.0))
+    if x.size == 1:
+        axes.set_xticks(x)
     axes.set_ylabel(f"fraction of {found.attrs['starts']} starts")
     axes.grid(visible=False)
     axes.set_xlabel(axis_label(found[str(name)]))
     figure.legend(handles=legend[::-1], loc="outside right upper")
     return figure
+
+
+def _draw_band(axes: Axes, x: Floats, low: Floats, high: Floats, look: Look) -> None:
+    if x.size == 1:
+        axes.bar(x, high - low, width=np.diff(cell_edges(x)), bottom=low, **fill_options(look))
+    else:
+        axes.fill_between(x, low, high, **fill_options(look))
+
+
+def _limits(x: Floats) -> tuple[float, float] | None:
+    """Return the ends of the axis, with room beside the bands for the intervals of the first and last values."""
+    if not x.size:
+        return None
+    geometric, edges = is_geometric(x), cell_edges(x) if x.size == 1 else x[[0, -1]]
+    low, high = np.log(edges) if geometric else edges
+    ends = np.array([low, high]) + _ROOM * (high - low) * np.array([-1.0, 1.0])
+    first, last = np.exp(ends) if geometric else ends
+    return float(first), float(last)
 
 
 _BAR: dict[str, Any] = {"fmt": "none", "capsize": 0.0, "zorder": 3}

@@ -42,7 +42,7 @@ def plot_map(runs: xr.Dataset) -> Figure:
     Raises
     ------
     ParameterError
-        If the runs are not over two dimensions.
+        If the runs are not over two dimensions, or there are none.
     """
     figure = new_figure(_HEIGHT)
     axes = figure.subplots()
@@ -58,7 +58,10 @@ def draw_outcomes(axes: Axes, runs: xr.Dataset) -> list[Artist]:
 
 def draw_classes(axes: Axes, runs: xr.Dataset, codes: xr.DataArray, classes: Sequence[MapClass]) -> list[Artist]:
     """Draw the `codes` of `runs` over their two dimensions, the first along x, and return the legend's entries."""
-    if codes.ndim != _PLANE or 0 in codes.shape:
+    if codes.size == 0:
+        message = f"a map needs runs, and there are none in {dict(codes.sizes)}; give each dimension a value or more"
+        raise ParameterError(message)
+    if codes.ndim != _PLANE:
         message = f"a map needs runs over two dimensions, got {dict(codes.sizes)}"
         raise ParameterError(message)
     x, y = (str(dim) for dim in codes.dims)
@@ -67,8 +70,7 @@ def draw_classes(axes: Axes, runs: xr.Dataset, codes: xr.DataArray, classes: Seq
     draw_cells(axes, ordered[x], ordered[y], cells, classes)
     axes.set_xlabel(axis_label(runs[x]))
     axes.set_ylabel(axis_label(runs[y]))
-    computed = int(np.count_nonzero(cells != NOT_COMPUTED))
-    entries: list[Artist] = [*class_legend(cells, classes, computed=computed)]
+    entries: list[Artist] = [*class_legend(cells, classes)]
     return entries + _mark_uncertain(axes, ordered, x, y)
 
 

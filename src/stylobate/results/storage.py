@@ -61,7 +61,7 @@ def load(path: str | Path) -> Response:
     Raises
     ------
     FileError
-        If the file cannot be read or holds no saved run.
+        If the file cannot be read or holds no saved run; the result of a study is read by `xarray.open_dataset`.
     """
     try:
         with xr.open_dataset(path, engine="h5netcdf") as stored:
@@ -70,6 +70,12 @@ def load(path: str | Path) -> Response:
         message = f"cannot read {path}: {getattr(error, 'strerror', None) or error}"
         raise FileError(message) from error
     attributes: dict[str, Any] = dict(data.attrs)
+    if "format" not in attributes and "kind" in attributes:
+        message = (
+            f"{path} holds no run but the result of a study, of kind {attributes['kind']!r}; "
+            "xarray.open_dataset reads it"
+        )
+        raise FileError(message)
     if attributes.get("format") != _FORMAT:
         message = f"{path} is no run saved by stylobate: its format is {attributes.get('format')!r}, not {_FORMAT!r}"
         raise FileError(message)

@@ -36,12 +36,18 @@ class Axis(Description):
         spaced = {"from": self.first, "to": self.last, "number": self.number}
         missing = [name for name, value in spaced.items() if value is None]
         if self.listed is not None and len(missing) == len(spaced):
-            return np.array([require_finite("values", value) for value in self.listed])
+            return self._listed(self.listed)
         if self.listed is not None or missing:
             got = [name for name, value in {**spaced, "values": self.listed}.items() if value is not None]
             message = f"{self.name} needs from, to and number, or values; got {', '.join(got) or 'none of them'}"
             raise ParameterError(message)
         return self._spaced()
+
+    def _listed(self, values: tuple[float, ...]) -> npt.NDArray[np.float64]:
+        if not values:
+            message = f"{self.name} must have at least one value, got none"
+            raise ParameterError(message)
+        return np.array([require_finite("values", value) for value in values])
 
     def _spaced(self) -> npt.NDArray[np.float64]:
         first, last, number = _known(self.first), _known(self.last), _known(self.number)

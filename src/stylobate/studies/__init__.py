@@ -2,13 +2,19 @@
 
 from stylobate.studies.attractors import attractors, label_attractors
 from stylobate.studies.averaged_motion import averaged_motion
+from stylobate.studies.averaging_map import averaging_map
 from stylobate.studies.basin_fractions import basin_fractions
 from stylobate.studies.basins import basins
 from stylobate.studies.boundary import uncertainty_exponent
+from stylobate.studies.exact_response import exact_response
 from stylobate.studies.integrity import erosion, integrity
+from stylobate.studies.lyapunov import lyapunov_exponents
 from stylobate.studies.overturning import overturning_map
 from stylobate.studies.paper import check_paper
 from stylobate.studies.response_curves import response_curves
+from stylobate.studies.sections import poincare_section
+from stylobate.studies.slow_sweep import slow_sweep
+from stylobate.studies.stability_boundary import stability_boundary
 from stylobate.studies.starts import Start, steady_start
 from stylobate.studies.strobes import AttractorRules
 from stylobate.studies.sweeps import Dask, Sweep, Threads, executor_from, open_sweep, run_sweep
@@ -21,17 +27,23 @@ __all__ = [
     "Threads",
     "attractors",
     "averaged_motion",
+    "averaging_map",
     "basin_fractions",
     "basins",
     "check_paper",
     "erosion",
+    "exact_response",
     "executor_from",
     "integrity",
     "label_attractors",
+    "lyapunov_exponents",
     "open_sweep",
     "overturning_map",
+    "poincare_section",
     "response_curves",
     "run_sweep",
+    "slow_sweep",
+    "stability_boundary",
     "steady_start",
     "uncertainty_exponent",
 ]

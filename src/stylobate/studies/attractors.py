@@ -8,6 +8,7 @@ from typing import Any, Unpack
 import numpy as np
 import xarray as xr
 
+from stylobate.errors import require_whole
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 from stylobate.results.outcomes import NOT_COMPUTED
@@ -80,7 +81,14 @@ def attractors(
     """
     require_starts("over", over)
     sweep = Sweep.random(
-        model, motion, over=over, count=count, seed=seed, duration=duration, periods=periods, **options
+        model,
+        motion,
+        over=over,
+        count=require_whole("count", count, least=1),
+        seed=seed,
+        duration=duration,
+        periods=periods,
+        **options,
     )
     label = partial(label_attractors, model=model, motion=motion, rules=attractor_rules, confidence=confidence)
     sweep = with_strobes(sweep, options.get("strobes"))

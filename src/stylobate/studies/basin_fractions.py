@@ -90,7 +90,7 @@ def basin_fractions(
         too short for the strobes.
     """
     require_starts("over", over)
-    name, values = one_parameter(along, over)
+    name, values = one_parameter(model, along, over)
     starts = Box.of(over, require_whole("count", count, least=1), seed)
     points = {start: np.tile(drawn, values.size) for start, drawn in starts.values(whole(starts)).items()}
     sweep = Sweep.points(

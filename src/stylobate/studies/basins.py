@@ -8,7 +8,7 @@ from typing import Unpack
 import numpy.typing as npt
 import xarray as xr
 
-from stylobate.errors import ParameterError
+from stylobate.errors import ParameterError, require_whole
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 from stylobate.studies.attractors import label_attractors
@@ -18,7 +18,7 @@ from stylobate.studies.strobes import AttractorRules
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.recipe import RunOptions
-from stylobate.studies.varied import require_starts
+from stylobate.studies.varied import require_starts, require_values
 
 _PLANE = 2
 
@@ -72,8 +72,8 @@ def basins(
     Raises
     ------
     ParameterError
-        If an argument is out of range, a name in `over` changes the system, a grid has not two names, or runs are too
-        short for the strobes.
+        If an argument is out of range, a name in `over` changes the system, a grid has not two names with one value
+        or more, or runs are too short for the strobes.
 
     Examples
     --------
@@ -87,9 +87,17 @@ def basins(
     if count is not None:
         ranges: Mapping[str, Sequence[float]] = over  # type: ignore[assignment]  # the sweep tells what is no range
         sweep = Sweep.random(
-            model, motion, over=ranges, count=count, seed=seed, duration=duration, periods=periods, **options
+            model,
+            motion,
+            over=ranges,
+            count=require_whole("count", count, least=1),
+            seed=seed,
+            duration=duration,
+            periods=periods,
+            **options,
         )
     elif len(over) == _PLANE:
+        require_values("over", over)
         sweep = Sweep.grid(model, motion, over=over, duration=duration, periods=periods, **options)
     else:
         message = f"over must name two starts with their values, or give count for random ones; got {', '.join(over)}"

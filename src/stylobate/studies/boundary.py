@@ -1,5 +1,6 @@
 """How uncertain the final state is near the boundary of a basin: the uncertainty exponent."""
 
+import logging
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -29,6 +30,10 @@ from stylobate.studies.varied import require_no_tilt_limit, require_starts
 
 # Shifts where nobody names others: this many, geometric, between these parts of the range of the start shifted.
 _USUAL_SHIFTS = np.geomspace(1e-5, 3e-2, 8)
+# A share of dropped starts above which a warning is due.
+_MANY_DROPPED = 0.1
+
+_log = logging.getLogger("stylobate")
 
 
 def uncertainty_exponent(
@@ -54,8 +59,9 @@ def uncertainty_exponent(
     """Return how the share of uncertain starts falls with the error of the start, f(ε) ~ ε^α, and the dimension.
 
     A random start is uncertain at ε if it comes to another attractor when one of its components is shifted by +ε or
-    −ε. α = 1 is a smooth boundary; the smaller α, the less a better known start helps. The boundary has the dimension
-    D − α within the D starts that vary: McDonald, Grebogi, Ott, Yorke, "Fractal basin boundaries", Physica D 17 (1985).
+    −ε; a run that overturned has come to another one than any that did not, though that be unsettled. α = 1 is a smooth
+    boundary; the smaller α, the less a better known start helps. The boundary has the dimension D − α within the D
+    starts that vary: McDonald, Grebogi, Ott, Yorke, "Fractal basin boundaries", Physica D 17 (1985).
     Each ε has starts of its own, so that the shares err independently and the standard error of α is that of the fit
     (`fit_power_law`).
 
@@ -88,9 +94,10 @@ def uncertainty_exponent(
     Returns
     -------
     xarray.Dataset
-        Of kind "uncertainty exponent", over `epsilon`: `uncertain` of `pairs` starts (those left out of which a run is
-        unsettled, failed or not computed), `fraction`, `fraction_low`, `fraction_high`, `fitted` and the `fit`; and
-        `uncertainty_exponent`, its `standard_error`, `boundary_dimension`, `misfit`.
+        Of kind "uncertainty exponent", over `epsilon`: `uncertain` of `pairs` starts, `fraction`, `fraction_low`,
+        `fraction_high`, `fitted` and the `fit`; `dropped`, the number of starts of which it cannot be told, because a
+        run is unsettled or failed and none differs for certain; and `uncertainty_exponent`, its `standard_error`,
+        `boundary_dimension`, `misfit`. A warning is logged where more than a tenth of the starts is dropped.
 
     Raises
     ------
@@ -126,7 +133,19 @@ def uncertainty_exponent(
         confidence=require_confidence(confidence),
     )
     found = labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+    _warn_of_dropped(found)
     return found.assign_attrs(overturning_only=int(overturning_only))
+
+
+def _warn_of_dropped(found: xr.Dataset) -> None:
+    dropped, told = int(found["dropped"].sum()), int(found["pairs"].sum())
+    if dropped > _MANY_DROPPED * (dropped + told):
+        _log.warning(
+            "uncertainty_exponent dropped %d of %d starts, which do not tell whether they are uncertain; "
+            "follow the runs longer to settle them",
+            dropped,
+            dropped + told,
+        )
 
 
 def _labelled(
@@ -137,7 +156,8 @@ def _labelled(
     dimension: int,
     confidence: float,
 ) -> xr.Dataset:
-    found = exponent_of(tell(runs), epsilon, dimension=dimension, confidence=confidence)
+    overturned = overturned_or_not(runs)
+    found = exponent_of(tell(runs), epsilon, overturned=overturned, dimension=dimension, confidence=confidence)
     found["epsilon"].attrs = attributes_of(shifted)
     return found.assign_attrs({**runs.attrs, **found.attrs, "shifted": shifted})
 
@@ -169,32 +189,45 @@ def shifted_starts(base: Mapping[str, Floats], shifted: str, epsilon: Floats) ->
 
 
 def exponent_of(
-    states: npt.NDArray[np.integer], epsilon: Floats, *, dimension: int, confidence: float = 0.95
+    states: npt.NDArray[np.integer],
+    epsilon: Floats,
+    *,
+    overturned: npt.NDArray[np.integer] | None = None,
+    dimension: int,
+    confidence: float = 0.95,
 ) -> xr.Dataset:
     """Return the uncertainty exponent from the final `states` of the runs of `shifted_starts`.
 
     Parameters
     ----------
     states
-        A number for each run that tells its final state, negative where that is not known.
+        A number for each run that tells its final state, negative where that is not known: NOT_COMPUTED or UNSETTLED.
     epsilon
         The shifts.
+    overturned
+        1 for each run that overturned, 0 for those that did not, negative where that is not known: it may tell apart
+        states that are not known.
     dimension
         Number D of the starts that vary.
     confidence
         Of the intervals of the shares.
     """
-    base, lower, upper = np.reshape(states, (3, epsilon.size, -1))
-    known = (base >= 0) & (lower >= 0) & (upper >= 0)
-    uncertain = np.count_nonzero(known & ((base != lower) | (base != upper)), axis=1)
-    pairs = np.count_nonzero(known, axis=1)
+    differ, agree = _compared(np.reshape(states, (3, epsilon.size, -1)))
+    if overturned is not None:
+        differ |= _compared(np.reshape(overturned, (3, epsilon.size, -1)))[0]
+    computed = (np.reshape(states, (3, epsilon.size, -1)) != NOT_COMPUTED).all(axis=0)
+    one_differs, both_agree = differ.any(axis=0) & computed, agree.all(axis=0)
+    uncertain = np.count_nonzero(one_differs, axis=1)
+    pairs = np.count_nonzero(one_differs | both_agree, axis=1)
+    dropped = np.count_nonzero(computed, axis=1) - pairs
     low, high = wilson_interval(uncertain, pairs, confidence=confidence)
     law = fit_power_law(epsilon, uncertain, pairs)
     interval = f"end of its {100.0 * confidence:g} % interval"
     return xr.Dataset(
         {
             "uncertain": ("epsilon", uncertain, {"units": "1", "long_name": "uncertain starts"}),
-            "pairs": ("epsilon", pairs, {"units": "1", "long_name": "starts told with both shifts"}),
+            "pairs": ("epsilon", pairs, {"units": "1", "long_name": "starts told to be uncertain or not"}),
+            "dropped": ("epsilon", dropped, {"units": "1", "long_name": "starts dropped, of which it cannot be told"}),
             "fraction": (
                 "epsilon",
                 np.where(pairs > 0, uncertain / np.maximum(pairs, 1), np.nan),
@@ -216,6 +249,13 @@ def exponent_of(
         coords={"epsilon": epsilon},
         attrs={"kind": "uncertainty exponent", "confidence": confidence},
     )
+
+
+def _compared(states: npt.NDArray[np.integer]) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+    """Return whether each start differs for certain from that lowered and that raised, and whether it agrees so."""
+    base, shifted = states[:1], states[1:]
+    known = (base >= 0) & (shifted >= 0)
+    return known & (base != shifted), known & (base == shifted)
 
 
 def _shifts(shifts: npt.ArrayLike | None, over: Mapping[str, Sequence[float]], shifted: str) -> Floats:

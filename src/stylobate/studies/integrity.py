@@ -18,7 +18,13 @@ from stylobate.studies.safe_distance import Metric, distance_to_overturning
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.recipe import RunOptions
-from stylobate.studies.varied import SYSTEM_STARTS, one_parameter, require_no_tilt_limit, require_starts
+from stylobate.studies.varied import (
+    SYSTEM_STARTS,
+    one_parameter,
+    require_no_tilt_limit,
+    require_starts,
+    require_values,
+)
 
 
 def integrity(
@@ -75,6 +81,7 @@ def integrity(
         `tilt_limit` is given: a run stopped there is not known to be safe.
     """
     require_starts("over", over)
+    require_values("over", over)
     require_no_tilt_limit(options)
     metric = Metric.of(model, over, reference)
     sweep = Sweep.grid(model, motion, over=over, duration=duration, periods=periods, **options)
@@ -120,9 +127,10 @@ def erosion(
         As in `integrity`; or if `along` has not one name, or one that changes the units of the distance.
     """
     require_starts("over", over)
+    require_values("over", over)
     require_no_tilt_limit(options)
     metric = Metric.of(model, over, reference)
-    name = _leaves_units(model, one_parameter(along, over)[0])
+    name = _leaves_units(model, one_parameter(model, along, over)[0])
     sweep = Sweep.grid(model, motion, over={**along, **over}, duration=duration, periods=periods, **options)
     label = partial(_erosion_of, name=name, metric=metric)
     return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)

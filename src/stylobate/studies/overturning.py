@@ -16,6 +16,7 @@ from stylobate.studies.labelled_sweeps import labelled_sweep
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.recipe import RunOptions
+from stylobate.studies.varied import require_values
 
 _PLANE = 2
 
@@ -59,7 +60,7 @@ def overturning_map(
     Raises
     ------
     ParameterError
-        If `over` has not two names, or an argument is out of range.
+        If `over` has not two names with one value or more, or an argument is out of range.
 
     Examples
     --------
@@ -74,6 +75,7 @@ def overturning_map(
     if not isinstance(over, Mapping) or len(over) != _PLANE:
         message = f'over must name two parameters, such as "angular_frequency" and "acceleration"; got {over!r}'
         raise ParameterError(message)
+    require_values("over", over)
     sweep = Sweep.grid(model, motion, over=over, duration=duration, periods=periods, **options)
     return labelled_sweep(sweep, outcome_shares, store=store, executor=executor, resume=resume, progress=progress)
 

@@ -10,7 +10,7 @@ import xarray as xr
 from stylobate import theory
 from stylobate.errors import ParameterError, UnsupportedError
 from stylobate.models import Model, Slender
-from stylobate.motions import BaseMotion, Harmonic
+from stylobate.motions import BaseMotion, as_harmonic
 from stylobate.spec import provenance_of_run
 
 
@@ -116,14 +116,15 @@ def _frequencies(angular_frequency: npt.ArrayLike) -> npt.NDArray[np.float64]:
 
 
 def _amplitudes(motion: BaseMotion, gravity: float) -> tuple[float, float, float]:
-    if not isinstance(motion, Harmonic):
+    harmonic = as_harmonic(motion)
+    if harmonic is None:
         message = f"motion must be a Harmonic motion, got {motion!r}"
         raise ParameterError(message)
-    a1, a2, a3 = motion.amplitude
+    a1, a2, a3 = harmonic.amplitude
     if a3 != 0.0:
         message = f"motion must be horizontal for the closed form, got a vertical amplitude of {a3!r} m/s²"
         raise ParameterError(message)
     if a1 == a2 == 0.0:
         message = "motion must have a horizontal amplitude above zero, got 0 m/s²"
         raise ParameterError(message)
-    return a1 / gravity, a2 / gravity, motion.phase[1] - motion.phase[0]
+    return a1 / gravity, a2 / gravity, harmonic.phase[1] - harmonic.phase[0]

@@ -5,7 +5,8 @@ from collections.abc import Mapping
 import numpy.typing as npt
 
 from stylobate.errors import ParameterError
-from stylobate.studies.sweeps.quantities import STARTS, Floats, checked_values
+from stylobate.models import Model
+from stylobate.studies.sweeps.quantities import STARTS, Floats, check_quantities, checked_values
 
 SYSTEM_STARTS = (*STARTS, "start_phase")
 """What can differ between runs of one column under one base motion."""
@@ -22,13 +23,19 @@ def require_starts(where: str, over: Mapping[str, object]) -> None:
             raise ParameterError(message)
 
 
-def one_parameter(along: Mapping[str, npt.ArrayLike], over: Mapping[str, object]) -> tuple[str, Floats]:
+def require_values(where: str, over: Mapping[str, npt.ArrayLike]) -> None:
+    """Raise ParameterError if a name in `over` has no values: a study of nothing tells nothing."""
+    for name, values in over.items():
+        _require_some(where, name, checked_values(where, name, values))
+
+
+def one_parameter(model: Model, along: Mapping[str, npt.ArrayLike], over: Mapping[str, object]) -> tuple[str, Floats]:
     """Return the one name in `along` and its values.
 
     Raises
     ------
     ParameterError
-        If there are more names, or no values, or `over` names it too.
+        If there are more names, or no values, or `over` names it too, or it is no quantity that can vary.
     """
     if not isinstance(along, Mapping) or len(along) != 1:
         message = f'along must name one parameter with its values, such as {{"acceleration": […]}}; got {along!r}'
@@ -37,11 +44,17 @@ def one_parameter(along: Mapping[str, npt.ArrayLike], over: Mapping[str, object]
     if name in over:
         message = f"along and over must differ, got {name!r} in both"
         raise ParameterError(message)
+    if name not in SYSTEM_STARTS:
+        check_quantities("along", model, [name])
     values = checked_values("along", name, given)
-    if not values.size:
-        message = f"along[{name!r}] must have at least one value, got none"
-        raise ParameterError(message)
+    _require_some("along", name, values)
     return name, values
+
+
+def _require_some(where: str, name: str, values: Floats) -> None:
+    if not values.size:
+        message = f"{where}[{name!r}] must have at least one value, got none"
+        raise ParameterError(message)
 
 
 def require_no_tilt_limit(options: Mapping[str, object]) -> None:

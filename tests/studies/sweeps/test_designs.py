@@ -112,6 +112,15 @@ def test_periods_follow_a_frequency_that_varies():
         (lambda: Sweep.grid(MODEL, over={"damping": [0.1]}, duration=1.0, tilt=(1,)), "tilt must have 2 numbers"),
         (lambda: Sweep.grid(MODEL, 3, over={"damping": [0.1]}, duration=1.0), "motion must be a base motion"),
         (lambda: Sweep.grid(3, over={"damping": [0.1]}, duration=1.0), "model must be a model"),
+        (
+            lambda: Sweep.grid(MODEL, over={"colour": [0.1]}, duration=1.0),
+            "^over: colour is not known here; known are tilt_x, tilt_y, tilt_rate_x, tilt_rate_y, duration, radius",
+        ),
+        (lambda: Sweep.points(MODEL, at={"colour": [0.1]}, duration=1.0), "^at: colour is not known here"),
+        (
+            lambda: Sweep.grid(MODEL, over={"slenderness": [0.1], "radius": [0.2]}, duration=1.0),
+            "^over: slenderness changes the radius, which is given too; leave one of them out$",
+        ),
     ],
 )
 def test_what_cannot_be_swept_is_named(make, line):

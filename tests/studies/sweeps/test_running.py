@@ -199,7 +199,9 @@ def test_a_text_that_names_no_executor_is_refused(text):
     [
         ({"resume": True}, "resume needs the store"),
         ({"chunk_size": 0}, "chunk_size must be a whole number of at least 1, got 0"),
-        ({"executor": "threads"}, "executor must be Threads"),
+        ({"executor": "dask"}, r"executor must be Threads\(...\) or Dask\(...\), got 'dask'; executor_from\("),
+        ({"store": ""}, "store must name the folder of a store, such as \"map.zarr\", or be None; got ''"),
+        ({"store": 3}, "store must name the folder of a store, .* got 3"),
     ],
 )
 def test_bad_arguments_are_named(points, arguments, line):
@@ -219,9 +221,8 @@ def test_bad_executors_are_named():
 
 
 def test_a_name_that_no_run_knows_is_refused_before_anything_is_written(tmp_path):
-    sweep = Sweep.grid(MODEL, MOTION, over={"colour": [1.0]}, duration=1.0)
-    with pytest.raises(ParameterError, match="colour"):
-        run_sweep(sweep, store=tmp_path / "sweep.zarr")
+    with pytest.raises(ParameterError, match="over: colour is not known here"):
+        run_sweep(Sweep.grid(MODEL, MOTION, over={"colour": [1.0]}, duration=1.0), store=tmp_path / "sweep.zarr")
     assert not list(tmp_path.iterdir())
 
 

@@ -63,12 +63,17 @@ class Expression:
         if isinstance(exponent, Expression):
             message = "an exponent must be a number for its power to be differentiated; use math.exp and math.log"
             raise UnsupportedError(message)
+        if self.operation == "constant":
+            return self.record.known(self.value**exponent)
         if exponent == int(exponent) and 0 <= exponent <= _LARGEST_POWER:
             result: Any = 1.0
             for _ in range(int(exponent)):
                 result = result * self
             return self.record.known(result)
         return self.record.made("power", (self,), float(exponent))
+
+    def __rpow__(self, base: Number) -> Expression:
+        return self.record.applied("exp", self * math.log(base))
 
     def __abs__(self) -> Expression:
         return self.record.applied("fabs", self)
@@ -85,6 +90,23 @@ class Expression:
 
     def __bool__(self) -> bool:
         return self < 0.0
+
+    def __float__(self) -> float:
+        message = (
+            "equations that use a function that cannot be recorded cannot be differentiated automatically; known are "
+            f"{', '.join(FUNCTIONS)} of math; give the model a `jacobian`"
+        )
+        raise UnsupportedError(message)
+
+    def __mod__(self, other: object) -> float:
+        return float(self)
+
+    __rmod__ = __floordiv__ = __rfloordiv__ = __divmod__ = __mod__
+
+    def __floor__(self) -> int:
+        return int(float(self))
+
+    __ceil__ = __trunc__ = __round__ = __floor__
 
 
 _LARGEST_POWER = 8
@@ -203,7 +225,7 @@ class Recording:
         lines: list[str] = []
         for expression in self._in_order(results):
             if expression.operation == "constant":
-                names[id(expression)] = repr(expression.value)
+                names[id(expression)] = _number(expression.value)
             elif expression.operation == "input":
                 names[id(expression)] = expression.name
             else:
@@ -215,6 +237,10 @@ class Recording:
 
 def _is(expression: Expression, value: float) -> bool:
     return expression.operation == "constant" and expression.value == value
+
+
+def _number(value: float) -> str:
+    return repr(value) if math.isfinite(value) else f"math.{value!r}".replace("math.-inf", "-math.inf")
 
 
 _SIGNS = {"add": "+", "subtract": "-", "multiply": "*", "divide": "/"}

@@ -136,17 +136,21 @@ def error_of(y: Table, new: Table, h: float, k: npt.NDArray[np.float64], rtol: f
 
 
 @part
-def note_tilt(y: Table, new: Table, duration: float, numbers: Vector, told: Vector) -> None:
-    """Note the least and the largest tilt of a step, by a cubic through the squares at its ends."""
+def note_tilt(y: Table, new: Table, duration: float, numbers: Vector, told: Vector) -> float:
+    """Note the least and the largest tilt of a step, by a cubic through the squares at its ends.
+
+    Return where in the step the cubic turns, or 0 where it does not.
+    """
     start, slope = tilt_squared(y[:, 0], numbers)
     end, end_slope = tilt_squared(new[:, 0], numbers)
     slope, end_slope = slope * duration, end_slope * duration
-    least, largest = min(start, end), max(start, end)
+    least, largest, at = min(start, end), max(start, end), 0.0
     if slope * end_slope < 0.0:
-        _, extreme = turning_point(start, end, slope, end_slope, 1.0 if slope > 0.0 else -1.0)
+        at, extreme = turning_point(start, end, slope, end_slope, 1.0 if slope > 0.0 else -1.0)
         least, largest = min(least, extreme), max(largest, extreme)
     told[0] = min(told[0], math.sqrt(max(least, 0.0)))
     told[1] = max(told[1], math.sqrt(largest))
+    return at
 
 
 @part
@@ -191,13 +195,15 @@ def flow(
     k = np.zeros((13, ORDER, ORDER + 2))
     work = np.zeros((3 + ORDER, ORDER + ACCELERATIONS + NUMBERS))
     new = np.zeros((ORDER, ORDER + 2))
+    near, middle = np.zeros_like(k), np.zeros_like(new)
     side = told[3]
     s, h = begin, min(FIRST_STEP, end - begin)
     rejected = False
     tries, low, high = 0, 0.0, 0.0
     slopes_into(y, s, side, period, terms, numbers, change, term_change, work, k[0])
     while s < end:
-        if told[2] >= MOST_STEPS or (h < SHORTEST_STEP * max(1.0, abs(s)) and end - s > h):
+        too_short = h < SHORTEST_STEP * max(1.0, abs(s)) and end - s > h
+        if tries == 0 and (too_short or told[2] >= MOST_STEPS):
             return Status.FAILED
         last = h >= end - s
         h = end - s if last else h
@@ -229,7 +235,7 @@ def flow(
                 h = h if low < h < high else 0.5 * (low + high)
                 continue
             if tries > 0:
-                note_tilt(y, new, period * h, numbers, told)
+                told[0] = 0.0
                 s += h
                 tries = 0
                 y[:, :] = new
@@ -237,11 +243,18 @@ def flow(
                 if not cross(y, s, side, terms, numbers, work):
                     return Status.LOST
                 side = told[3] = -side
-                told[0] = 0.0
                 slopes_into(y, s, side, period, terms, numbers, change, term_change, work, k[0])
                 h = FIRST_STEP
                 continue
-        note_tilt(y, new, period * h, numbers, told)
+        least_before, largest_before = told[0], told[1]
+        at = note_tilt(y, new, period * h, numbers, told)
+        if 0.0 < at < 1.0:
+            # The extreme is looked at again from a state near it: a cubic over the whole step is right to 1e-4 only.
+            told[0], told[1] = least_before, largest_before
+            near[0] = k[0]
+            stages_into(y, s, at * h, side, period, terms, numbers, change, term_change, work, near, middle)
+            note_tilt(y, middle, period * at * h, numbers, told)
+            note_tilt(middle, new, period * (1.0 - at) * h, numbers, told)
         s = end if last else s + h
         told[2] += 1
         y[:, :] = new

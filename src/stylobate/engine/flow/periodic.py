@@ -13,7 +13,7 @@ from stylobate.engine.flow.modules import flow_module
 from stylobate.engine.flow.tableau import Status
 from stylobate.engine.forcing import common_line
 from stylobate.engine.parameters import present_value, with_parameters
-from stylobate.errors import UnsupportedError
+from stylobate.errors import StylobateError, UnsupportedError
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 
@@ -27,8 +27,11 @@ LOST_TILT = 1e-6
 _SAMPLES, _LEFT_OUT = 512, 1e-12
 _HARMONIC = 1e-9
 # Derivatives of the dimensionless numbers by a named parameter, which are closed forms of it: five-point differences
-# with this relative step, right to about 1e-12.
+# with this step, of the number itself but for angles, right to about 1e-12.
 _STEP = 1e-3
+_CENTRAL = {-2.0: 1.0, -1.0: -8.0, 1.0: 8.0, 2.0: -1.0}
+_FORWARD = {0.0: -25.0, 1.0: 48.0, 2.0: -36.0, 3.0: 16.0, 4.0: -3.0}
+_ANGLES = ("phase_difference", "rotation", "start_phase")
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,16 +115,19 @@ class PeriodicSystem:
         """Return the present value of a number that `changed` takes."""
         return present_value(self.model, self.motion, name)
 
-    def derivative(self, name: str) -> Numbers:
-        """Return how the numbers change with the number of column, model or motion called `name`."""
-        at = self.value_of(name)
-        step = _STEP * (abs(at) if at != 0.0 else 1.0)
-        offsets = (-2.0, -1.0, 1.0, 2.0)
-        weights = np.array([1.0, -8.0, 8.0, -1.0]) / (12.0 * step)
-        around = [_changed_numbers(self, name, at + offset * step) for offset in offsets]
+    def derivative(self, name: str, at: float | None = None) -> Numbers:
+        """Return how the numbers change with the number called `name`, where it is `at`, by default as it is."""
+        value = self.value_of(name) if at is None else at
+        step = _STEP * (1.0 if name in _ANGLES or value == 0.0 else abs(value))
+        try:
+            around = [self.changed(**{name: value + offset * step}).numbers for offset in _CENTRAL]
+            weights = _CENTRAL.values()
+        except StylobateError:  # at the edge of what can be, such as no friction
+            around = [self.changed(**{name: value + offset * step}).numbers for offset in _FORWARD]
+            weights = _FORWARD.values()
 
         def combined(part: Callable[[Numbers], Any]) -> Any:
-            return sum(weight * part(numbers) for weight, numbers in zip(weights, around, strict=True))
+            return sum(weight * part(numbers) for weight, numbers in zip(weights, around, strict=True)) / (12.0 * step)
 
         terms = combined(lambda numbers: numbers.terms)
         terms[:, 0] = self.numbers.terms[:, 0]
@@ -197,10 +203,6 @@ class PeriodicSystem:
             int(told[2]),
             float(told[3]),
         )
-
-
-def _changed_numbers(system: PeriodicSystem, name: str, value: float) -> Numbers:
-    return system.changed(**{name: value}).numbers
 
 
 def _numbers(model: Model, motion: BaseMotion, line: tuple[float, float] | None) -> Numbers:

@@ -50,6 +50,24 @@ def _recording_function(name: str, usual: Function) -> Function:
     return applied
 
 
+def _power(base: Any, exponent: Any) -> Any:
+    return base**exponent
+
+
+def _logarithm(value: Any, base: Any = math.e) -> Any:
+    if not isinstance(value, Expression):
+        return math.log(value, base) if base != math.e else math.log(value)
+    natural = value.record.applied("log", value)
+    return natural if base == math.e else natural / math.log(base)
+
+
+def _length(*components: Any) -> Any:
+    if not any(isinstance(component, Expression) for component in components):
+        return math.hypot(*components)
+    square = sum(component * component for component in components)
+    return square.record.applied("sqrt", square)
+
+
 def _mathematics(module: types.ModuleType, names: dict[str, str]) -> types.ModuleType:
     made = types.ModuleType(module.__name__)
     vars(made).update(vars(module))
@@ -65,4 +83,6 @@ _MATHEMATICS = {
         np, {name: name for name in FUNCTIONS if hasattr(np, name)} | _NUMPY_NAMES | {"abs": "fabs", "absolute": "fabs"}
     ),
 }
-_BY_FUNCTION = {getattr(math, name): getattr(_MATHEMATICS["math"], name) for name in FUNCTIONS}
+for _module in _MATHEMATICS.values():
+    vars(_module).update(pow=_power, power=_power, log=_logarithm, hypot=_length)
+_BY_FUNCTION = {math.pow: _power} | {getattr(math, name): getattr(_MATHEMATICS["math"], name) for name in FUNCTIONS}

@@ -3,7 +3,7 @@
 import hashlib
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
@@ -19,6 +19,10 @@ _LARGEST_SEED = 2**63
 
 class Design(Protocol):
     """The values of the runs of a sweep, an array of `shape` over `dims`."""
+
+    @property
+    def argument(self) -> str:
+        """The argument that named what varies."""
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -51,6 +55,7 @@ class Grid:
     """Every combination of the values of each of `axes`."""
 
     axes: Mapping[str, Floats]
+    argument: str = field(default="over", init=False)
 
     @classmethod
     def of(cls, over: Mapping[str, npt.ArrayLike]) -> "Grid":
@@ -99,6 +104,7 @@ class Box:
     bounds: Mapping[str, tuple[float, float]]
     count: int
     seed: int
+    argument: str = field(default="over", init=False)
 
     @classmethod
     def of(cls, over: Mapping[str, Sequence[float]], count: int, seed: int | np.random.Generator) -> "Box":
@@ -160,6 +166,7 @@ class Points:
     """Runs at given values: the i-th of each of `columns`."""
 
     columns: Mapping[str, Floats]
+    argument: str = field(default="at", init=False)
 
     @classmethod
     def of(cls, at: Mapping[str, npt.ArrayLike]) -> "Points":

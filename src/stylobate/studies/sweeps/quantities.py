@@ -1,17 +1,22 @@
 """What a sweep can vary: names, units and the numbers they accept."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.engine.parameters import check_names
 from stylobate.errors import ParameterError
+from stylobate.models import Model
 
 Floats = npt.NDArray[np.float64]
 
 STARTS = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
 """The components of the start."""
+
+OF_A_RUN = (*STARTS, "duration")
+"""What can vary besides the parameters of `simulate_ensemble`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,10 +56,17 @@ _QUANTITIES = {
     "start_phase": _Quantity("phase of the base motion at the start", "rad"),
     "rotation": _Quantity("rotation of the base motion", "rad"),
     "delay": _Quantity("delay of the base motion", "s"),
+    **{f"amplitude_{axis}": _Quantity(f"acceleration of the base along {axis}", "m s-2") for axis in "xyz"},
+    "phase_difference": _Quantity("phase of the base along y less that along x", "rad"),
 }
 
 # The parameters of a user's own model.
 _ANY = _Quantity("", "")
+
+
+def check_quantities(where: str, model: Model, names: Iterable[str]) -> None:
+    """Raise ParameterError if one of the `names` in the argument `where` cannot vary, or two say contrary things."""
+    check_names(model, names, where=where, others=OF_A_RUN)
 
 
 def attributes_of(name: str) -> dict[str, str]:

@@ -10,7 +10,7 @@ import numpy as np
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 from stylobate.results import OutcomeRules
-from stylobate.studies.sweeps.quantities import STARTS, Floats
+from stylobate.studies.sweeps.quantities import OF_A_RUN, Floats
 
 
 class RunOptions(TypedDict, total=False):
@@ -60,7 +60,7 @@ class Recipe:
             x, y = chosen[name]
             parts = (values.get(f"{name}_x", np.full(count, x)), values.get(f"{name}_y", np.full(count, y)))
             chosen[name] = np.stack(parts, axis=-1)
-        own = {name: array for name, array in values.items() if name not in STARTS and name != "duration"}
+        own = {name: array for name, array in values.items() if name not in OF_A_RUN}
         return {**chosen, "duration": self._durations(values), "parameters": own}
 
     def _durations(self, values: Mapping[str, Floats]) -> Floats | float:

@@ -71,11 +71,14 @@ def run_sweep(
         message = f"sweep must be a Sweep, such as Sweep.grid(...), got {sweep!r}"
         raise ParameterError(message)
     if executor is not None and not hasattr(executor, "results"):
-        message = f"executor must be Threads(...) or Dask(...), got {executor!r}; executor_from reads a text"
+        message = (
+            f"executor must be Threads(...) or Dask(...), got {executor!r}; "
+            'executor_from("dask://host:port") makes one of a text'
+        )
         raise ParameterError(message)
     if chunk_size is not None:
         chunk_size = require_whole("chunk_size", chunk_size, least=1)
-    sink = _sink(sweep, None if store is None else Path(store), chunk_size, resume=resume)
+    sink = _sink(sweep, _folder(store), chunk_size, resume=resume)
     try:
         _fill(sink, sweep, executor or Threads(), progress or _silence)
     except Interrupted:
@@ -83,6 +86,15 @@ def run_sweep(
     except KeyboardInterrupt:
         raise _interrupted(sink, store) from None
     return sink.dataset()
+
+
+def _folder(store: str | Path | None) -> Path | None:
+    if store is None:
+        return None
+    if not isinstance(store, (str, Path)) or not Path(store).name:
+        message = f'store must name the folder of a store, such as "map.zarr", or be None; got {store!r}'
+        raise ParameterError(message)
+    return Path(store)
 
 
 def _sink(sweep: Sweep, path: Path | None, chunk_size: int | None, *, resume: bool) -> Sink:

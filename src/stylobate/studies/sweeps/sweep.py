@@ -17,6 +17,7 @@ from stylobate.studies.sweeps.blocks import Blocks
 from stylobate.studies.sweeps.designs import Box, Design, Grid, Points
 from stylobate.studies.sweeps.fingerprint import identity_of
 from stylobate.studies.sweeps.layout import bytes_on_disk, layout_of
+from stylobate.studies.sweeps.quantities import check_quantities
 from stylobate.studies.sweeps.recipe import DEFAULTS, Recipe, RunOptions
 
 
@@ -73,6 +74,7 @@ class Sweep:
         if not isinstance(self.motion, BaseMotion):
             message = f"motion must be a base motion such as Harmonic.circular(...) or None, got {self.motion!r}"
             raise ParameterError(message)
+        check_quantities(self.design.argument, self.model, self.design.names)
         self._check_duration()
         unknown = [name for name in self.options if name not in DEFAULTS]
         if unknown:

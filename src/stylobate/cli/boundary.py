@@ -1,0 +1,105 @@
+"""`stylobate boundary`: where rolling loses its stability, over the frequency and a second parameter."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import typer
+
+from stylobate.cli import options as opt
+from stylobate.cli.output import check_writable, print_json, print_table, save_figure
+from stylobate.cli.response import plain_curves, save_curves
+from stylobate.cli.source import read_source
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_ROWS = 9
+
+Source = Annotated[Path | None, typer.Argument(help="TOML description", show_default=False)]
+Frequencies = Annotated[tuple[float, float] | None, typer.Option(help="lowest and highest angular frequency [rad/s]")]
+Parameter = Annotated[str, typer.Option(help="second parameter: acceleration, amplitude-y, damping, slenderness …")]
+Bounds = Annotated[tuple[float, float], typer.Option(help="its lowest and highest value, SI")]
+Exactly = Annotated[
+    list[float] | None,
+    typer.Option("--at", help="value of it at which rolling is looked at first; repeat it, five across by default"),
+]
+
+
+def boundary(
+    context: typer.Context,
+    source: Source = None,
+    *,
+    bounds: Bounds,
+    parameter: Parameter = "acceleration",
+    at: Exactly = None,
+    angular_frequency_range: Frequencies = None,
+    shape: opt.Shape = None,
+    radius: opt.Radius = None,
+    height: opt.Height = None,
+    density: opt.Density = None,
+    inner_radius: opt.InnerRadius = None,
+    top_radius: opt.TopRadius = None,
+    slenderness: opt.Slenderness = None,
+    gravity: opt.Gravity = None,
+    damping: opt.Damping = None,
+    motion: opt.Motion = None,
+    acceleration: opt.Acceleration = None,
+    amplitude: opt.Amplitude = None,
+    phase: opt.Phase = None,
+    direction: opt.Direction = None,
+    sense: opt.Sense = None,
+    figure: opt.Figure = None,
+    output: opt.Output = None,
+    as_json: opt.Json = False,
+) -> None:
+    """Show where exact rolling loses its stability, over the frequency of the base and a second parameter.
+
+    Curves of pitchforks, Neimark–Sacker points and folds, beside the critical frequency of theory. Example:
+
+    stylobate boundary --slenderness 0.1 --damping 0.1 --motion straight --acceleration 0.1
+    --angular-frequency-range 0.5 6 --bounds 0.02 0.4 --figure boundary.png
+    """
+    from stylobate import plots, spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
+
+    check_writable(figure, output)
+    values = opt.overlay(read_source(source), context.params, ("angular_frequency_range",))
+    setup = spec.ResponseDescription.parse(values).build()
+    found = studies.stability_boundary(
+        setup.model,
+        setup.motion,
+        parameter=parameter.replace("-", "_"),
+        bounds=bounds,
+        angular_frequency=setup.options["range"],
+        values=at or None,
+    )
+    if output is not None:
+        save_curves(found, output)
+    if figure is not None:
+        save_figure(plots.plot(found), figure)
+    if as_json:
+        print_json(plain_curves(found))
+    else:
+        _print(found)
+
+
+def _print(found: "xr.Dataset") -> None:
+    parameter = str(found.attrs["parameter"])
+    unit = str(found[parameter].attrs.get("units", "")).replace(" s-2", "/s²").replace(" s-1", "/s")
+    softness = {1: "soft", 0: "hard", -1: ""}
+    rows = []
+    for index, kind in enumerate(found["curve_kind"].to_numpy()):
+        part = found.isel(point=np.nonzero(found["curve"].to_numpy() == index)[0])
+        shown = np.unique(np.linspace(0, part.sizes["point"] - 1, _ROWS).round().astype(int))
+        rows += [
+            [
+                str(kind),
+                f"{float(part['angular_frequency'][k]):.8g} rad/s",
+                f"{float(part[parameter][k]):.6g} {unit}".strip(),
+                softness[int(part["soft"][k])],
+            ]
+            for k in shown
+        ]
+    count = found.sizes["curve_index"]
+    title = f"{count} curve{'s' if count != 1 else ''}, a few points of each"
+    print_table(title, rows, ("bifurcation", "Ω", parameter.replace("_", " "), "loss of stability"))

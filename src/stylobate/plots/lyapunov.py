@@ -1,0 +1,55 @@
+"""Lyapunov exponents: the estimates as they settle."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from stylobate.plots.labels import axis_label
+from stylobate.plots.style import DASHES, GREY, PALETTE, new_figure, styled
+
+_HEIGHT = 3.8
+_DIGITS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+_LARGEST_PLACE = 9
+
+
+@styled
+def plot_lyapunov(found: xr.Dataset) -> Figure:
+    """Return a figure of the Lyapunov exponents against the periods from which they are told, with their errors."""
+    figure = new_figure(_HEIGHT)
+    axes = figure.subplots()
+    axes.axhline(0.0, color=GREY, linewidth=0.9)
+    period = found["period"].to_numpy()
+    for place, number in enumerate(found["exponent"].to_numpy()):
+        one, colour = found.sel(exponent=number), PALETTE[place % len(PALETTE)]
+        value, error = float(one["lyapunov_exponent"]), float(one["error"])
+        dashes = DASHES[place % len(DASHES)]
+        name = f"λ{_lowered(int(number))} {_told(value, error)}"
+        axes.plot(period, one["running"], color=colour, linestyle=dashes, linewidth=1.6, label=name)
+        if np.isfinite(value):
+            axes.axhspan(value - error, value + error, color=colour, alpha=0.15, linewidth=0.0)
+    axes.set_xscale("log")
+    axes.set_xlabel(axis_label(found["period"]))
+    axes.set_ylabel(axis_label(found["running"]))
+    figure.legend(loc="outside right upper")
+    axes.set_title(_title(found))
+    return figure
+
+
+def _title(found: xr.Dataset) -> str:
+    within = ", in its plane" if found.attrs["planar"] else ""
+    if found["lyapunov_exponent"].isnull().any():
+        return f"{found.attrs['ending']} after {int(found['periods_counted'])} periods{within}"
+    total = f"{float(found['lyapunov_exponent'].sum()):.6g}".replace("-", "−")
+    return f"sum {total} /s{within}"
+
+
+def _lowered(number: int) -> str:
+    return str(number).translate(_DIGITS)
+
+
+def _told(value: float, error: float) -> str:
+    """Return the value with as many places as its error has, and that with two digits."""
+    if not np.isfinite(value):
+        return "not told"
+    place = _LARGEST_PLACE if error == 0.0 else int(np.clip(1 - np.floor(np.log10(error)), 0, _LARGEST_PLACE))
+    return f"= {value:.{place}f} ± {error:.{place}f} /s".replace("-", "−")

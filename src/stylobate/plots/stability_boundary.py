@@ -1,0 +1,114 @@
+"""Where rolling loses its stability, and where averaging is wrong about it."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from stylobate.plots.labels import axis_label
+from stylobate.plots.style import GREY, PALETTE, STABLE_WIDTH, new_figure, styled
+
+_DASHED = (0, (4, 2))
+_STYLES = {
+    "pitchfork": (PALETTE[0], "-"),
+    "Neimark-Sacker": (PALETTE[1], "-."),
+    "fold": (PALETTE[2], ":"),
+    "period doubling": (PALETTE[3], "--"),
+}
+_UNDECIDED = "unstable on both sides"
+_NAMES = {"Neimark-Sacker": "Neimark–Sacker"}
+
+
+@styled
+def plot_stability_boundary(boundary: xr.Dataset) -> Figure:
+    """Return a figure of curves of the kind "stability boundary".
+
+    Bold where stability is lost softly, half as bold where it is lost hard, thin where the orbit is unstable on both
+    sides of the curve.
+    """
+    figure = new_figure(4.4)
+    axes = figure.subplots()
+    parameter = boundary[str(boundary.attrs["parameter"])]
+    told: set[str] = set()
+    for index, name in enumerate(boundary["curve_kind"].to_numpy()):
+        part = boundary.isel(point=np.nonzero(boundary["curve"].to_numpy() == index)[0])
+        x, y, soft = (part[key].to_numpy() for key in ("angular_frequency", str(parameter.name), "soft"))
+        colour, line = _STYLES[str(name)]
+        for chosen, how, width in ((soft == 1, "soft", 2.6), (soft == 0, "hard", 1.6), (soft == -1, _UNDECIDED, 0.7)):
+            added = "" if str(name) == "fold" else f", {how}"
+            for first, last in _runs(chosen):
+                label = _NAMES.get(str(name), str(name)) + added
+                axes.plot(
+                    x[first : last + 1],
+                    y[first : last + 1],
+                    color=colour,
+                    linestyle=line,
+                    linewidth=width,
+                    label=None if label in told else label,
+                )
+                told.add(label)
+    if "theory_frequency" in boundary:
+        name = "theory" if bool(boundary["theory_is_exact"]) else "averaged"
+        look: dict[str, Any] = {"color": GREY, "linestyle": _DASHED, "linewidth": STABLE_WIDTH, "label": name}
+        axes.plot(boundary["theory_frequency"].to_numpy(), boundary["theory_parameter"].to_numpy(), **look)
+    axes.set_xlabel("angular frequency of the base [rad/s]")
+    axes.set_ylabel(axis_label(parameter))
+    axes.legend()
+    return figure
+
+
+def _runs(chosen: np.ndarray) -> list[tuple[int, int]]:
+    """Return first and last index of each stretch, each begun at the point before, so that stretches meet."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], chosen, [False]]).astype(int)))
+    return [(max(int(first) - 1, 0), int(last) - 1) for first, last in zip(edges[::2], edges[1::2], strict=True)]
+
+
+_CASES = (
+    ((1, 1), "stable, as averaging says", PALETTE[0]),
+    ((0, 1), "unstable, though averaging says stable", PALETTE[1]),
+    ((1, 0), "stable, though averaging says unstable", PALETTE[2]),
+    ((0, 0), "unstable, as averaging says", "#d9d9d9"),
+    ((-1, None), "exact rolling not found", "white"),
+)
+_LEVELS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
+
+
+@styled
+def plot_averaging_map(found: xr.Dataset) -> Figure:
+    """Return a figure of a map of the kind "averaging map": who is right about stability, and the error of the tilt."""
+    figure = new_figure(5.0)
+    axes = figure.subplots()
+    parameter = str(found.attrs["parameter"])
+    exact, averaged = (
+        found[name].transpose(parameter, "angular_frequency").to_numpy() for name in ("exact", "averaged")
+    )
+    classes = np.full(exact.shape, len(_CASES) - 1)
+    for index, ((true, said), _, _) in enumerate(_CASES[:-1]):
+        classes[(exact == true) & (averaged == said)] = index
+    colours = ListedColormap([colour for _, _, colour in _CASES])
+    x, y = found["angular_frequency"].to_numpy(), found[parameter].to_numpy()
+    axes.pcolormesh(x, y, classes, cmap=colours, vmin=-0.5, vmax=len(_CASES) - 0.5, alpha=0.55, rasterized=True)
+    error = np.abs(found["error"].transpose(parameter, "angular_frequency").to_numpy())
+    _contours(axes, x, y, error)
+    axes.set_xlabel("angular frequency of the base [rad/s]")
+    axes.set_ylabel(axis_label(found[parameter]))
+    handles = [
+        Patch(facecolor=colour, edgecolor="black", linewidth=0.4, alpha=0.55, label=name)
+        for index, (_, name, colour) in enumerate(_CASES)
+        if np.any(classes == index)
+    ]
+    figure.legend(handles=handles, loc="outside upper center", ncols=2, fontsize="small")
+    return figure
+
+
+def _contours(axes: Axes, x: np.ndarray, y: np.ndarray, error: np.ndarray) -> None:
+    """Draw where the mean tilt differs by round percentages from the averaged one."""
+    inside = [level for level in _LEVELS if np.nanmin(error) < level < np.nanmax(error)]
+    if not inside or min(error.shape) < 2:  # noqa: PLR2004
+        return
+    lines = axes.contour(x, y, error, levels=inside, colors="black", linewidths=0.8)
+    axes.clabel(lines, fmt=lambda level: f"{100.0 * level:g} %", fontsize=7)

@@ -1,0 +1,207 @@
+"""Where rolling loses its stability, over the frequency of the base motion and a second parameter."""
+
+import json
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from stylobate.engine import with_parameters
+from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError
+from stylobate.models import Model
+from stylobate.motions import BaseMotion
+from stylobate.orbits import (
+    Bifurcation,
+    BifurcationCurve,
+    Branch,
+    Kind,
+    StepControl,
+    bifurcation_curve,
+    continue_branch,
+)
+from stylobate.spec import provenance_of_run
+from stylobate.studies.first_orbit import first_orbit
+from stylobate.studies.response_curves import response_curves
+from stylobate.studies.sweeps.quantities import attributes_of
+
+_THEORY_POINTS = 201
+# A bifurcation this near to a curve, in parts of the widths of the bounds, lies on it.
+_ON_CURVE = 2e-3
+_FOLLOWED = (Kind.FOLD, Kind.PITCHFORK, Kind.PERIOD_DOUBLING, Kind.NEIMARK_SACKER)
+
+
+def stability_boundary(
+    model: Model,
+    motion: BaseMotion,
+    *,
+    parameter: str = "acceleration",
+    bounds: tuple[float, float],
+    angular_frequency: tuple[float, float],
+    values: Sequence[float] | None = None,
+    sense: int | None = None,
+    control: StepControl | None = None,
+) -> xr.Dataset:
+    """Return the curves on which exact rolling loses its stability, beside the critical frequency of theory.
+
+    At a few values of the parameter rolling is followed over the frequency; from each bifurcation at which it loses
+    its stability a curve is followed in both.
+
+    Parameters
+    ----------
+    model, motion
+        The column and a harmonic base motion.
+    parameter, bounds
+        Name of the second parameter, see `with_parameters`, and its lowest and highest value.
+    angular_frequency
+        Lowest and highest frequency [rad/s].
+    values
+        Values of the parameter at which rolling is followed over the frequency; by default five across the bounds.
+    sense
+        Of rolling, +1 or −1; by default that of the larger circle of the base motion.
+    control
+        Length of steps along the curves.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `point`: `angular_frequency` [rad/s], the parameter, `curve`, `soft` (1 soft, 0 hard, −1 not decided),
+        `coefficient`; over `curve_index`: `curve_kind`, `curve_end`. Over `theory_parameter`: `theory_frequency`
+        [rad/s], the critical frequency (exact for circular motion, averaged else), NaN where there is none.
+
+    Raises
+    ------
+    ParameterError
+        If bounds or values are none.
+    NoOrbitError
+        If rolling was found at none of the values.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=2.0)
+    >>> boundary = sb.studies.stability_boundary(
+    ...     model, motion, bounds=(0.05, 0.08), angular_frequency=(1.0, 3.0), values=[0.065]
+    ... )
+    >>> boundary["curve_kind"].values.tolist()
+    ['Neimark-Sacker']
+    """
+    low, high = _rising("bounds", bounds)
+    frequencies = _rising("angular_frequency", angular_frequency)
+    chosen = np.linspace(low, high, 5) if values is None else np.asarray(values, dtype=float)
+    if chosen.size == 0 or not np.all((chosen >= low) & (chosen <= high)):
+        message = f"values must lie between the bounds {(low, high)!r}, got {values!r}"
+        raise ParameterError(message)
+    curves: list[BifurcationCurve] = []
+    reason: Exception | None = None
+    for value in chosen:
+        try:
+            orbit = first_orbit(*with_parameters(model, motion, **{parameter: float(value)}), frequencies, sense)
+        except NoOrbitError as error:
+            reason = error
+            continue
+        branch = continue_branch(orbit, "angular_frequency", bounds=frequencies)
+        for one in losses(branch):
+            if not any(_on(curve, one, float(value), frequencies, (low, high)) for curve in curves):
+                curves.append(bifurcation_curve(one, parameter, bounds=(frequencies, (low, high)), control=control))
+    if not curves and reason is not None:
+        raise NoOrbitError(str(reason))
+    return (
+        _joined(curves, parameter)
+        .assign(_of_theory(model, motion, parameter, (low, high), sense))
+        .assign_attrs(
+            kind="stability boundary",
+            parameter=parameter,
+            provenance=json.dumps(provenance_of_run(model, motion)),
+        )
+    )
+
+
+def losses(branch: Branch) -> list[Bifurcation]:
+    """Return the bifurcations of a branch at which stability is lost or won."""
+    found = []
+    for one in branch.bifurcations:
+        place = next(index for index, point in enumerate(branch.path) if point is one.point)
+        around = [branch.path[k] for k in (place - 1, place + 1) if 0 <= k < len(branch.path)]
+        stable = [bool(abs(point.multipliers[0]) < 1.0) for point in around]
+        if one.kind in _FOLLOWED and len(set(stable)) > 1:
+            found.append(one)
+    return found
+
+
+def _rising(name: str, ends: tuple[float, float]) -> tuple[float, float]:
+    low, high = (float(end) for end in ends)
+    if not -np.inf < low < high < np.inf:
+        message = f"{name} must rise from one number to another, got {ends!r}"
+        raise ParameterError(message)
+    return low, high
+
+
+def _on(
+    curve: BifurcationCurve,
+    one: Bifurcation,
+    value: float,
+    frequencies: tuple[float, float],
+    bounds: tuple[float, float],
+) -> bool:
+    """Return whether a bifurcation lies on a curve known already."""
+    if curve.kind is not one.kind:
+        return False
+    widths = np.array([frequencies[1] - frequencies[0], bounds[1] - bounds[0]])
+    path = np.array([point.values for point in curve.path]) / widths
+    here = np.array([one.parameter, value]) / widths
+    if len(path) == 1:
+        return bool(np.linalg.norm(path[0] - here) < _ON_CURVE)
+    along = np.diff(path, axis=0)
+    share = np.clip(np.sum((here - path[:-1]) * along, axis=1) / np.sum(along**2, axis=1), 0.0, 1.0)
+    gaps = np.linalg.norm(path[:-1] + share[:, np.newaxis] * along - here, axis=1)
+    return bool(gaps.min() < _ON_CURVE)
+
+
+def _joined(curves: list[BifurcationCurve], parameter: str) -> xr.Dataset:
+    tables = [curve.points for curve in curves]
+
+    def column(name: str) -> np.ndarray:
+        return np.concatenate([table[name].to_numpy() for table in tables]) if tables else np.empty(0)
+
+    lengths = [table.sizes["point"] for table in tables]
+    return xr.Dataset(
+        {
+            "curve": ("point", np.repeat(np.arange(len(tables)), lengths)),
+            "soft": ("point", column("soft"), {"long_name": "1 where the loss is soft, 0 hard, -1 not decided"}),
+            "coefficient": ("point", column("coefficient"), {"long_name": "coefficient of the normal form"}),
+            "least_tilt": ("point", column("least_tilt"), {"units": "rad"}),
+            "largest_tilt": ("point", column("largest_tilt"), {"units": "rad"}),
+            "curve_kind": ("curve_index", [curve.kind.value for curve in curves]),
+            "curve_end": ("curve_index", ["; ".join(end.value for end in curve.ends) for curve in curves]),
+        },
+        coords={
+            "angular_frequency": ("point", column("angular_frequency"), {"units": "rad s-1"}),
+            parameter: ("point", column(parameter), attributes_of(parameter)),
+        },
+    )
+
+
+def _of_theory(
+    model: Model, motion: BaseMotion, parameter: str, bounds: tuple[float, float], sense: int | None
+) -> dict[str, object]:
+    """Return theory's critical frequency over the parameter; nothing where it has none."""
+    values = np.linspace(*bounds, _THEORY_POINTS)
+    critical = np.full(values.size, np.nan)
+    averaged = False
+    for index, value in enumerate(values):
+        try:
+            curves = response_curves(
+                *with_parameters(model, motion, **{parameter: float(value)}), angular_frequency=[1.0]
+            )
+        except (UnsupportedError, ParameterError):
+            continue
+        averaged = averaged or bool(curves.attrs["averaged"])
+        wanted = "clockwise" if sense == -1 else "anticlockwise"
+        name = wanted if wanted in curves["sense"] and sense is not None else str(curves["sense"][0].item())
+        critical[index] = float(curves["critical_frequency"].sel(sense=name))
+    return {
+        "theory_parameter": ("theory_parameter", values),
+        "theory_frequency": ("theory_parameter", critical, {"units": "rad s-1", "long_name": "critical frequency"}),
+        "theory_is_exact": ((), not averaged),
+    }

@@ -1,0 +1,100 @@
+"""Figures of slow sweeps, Poincaré sections and Lyapunov exponents show what their results hold."""
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+
+import stylobate as sb
+from stylobate.errors import Outcome
+from stylobate.plots.style import BLUE, VERMILION
+from stylobate.results.outcomes import NOT_COMPUTED, code_of
+
+MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
+MOTION = sb.Harmonic.circular(acceleration=0.065, angular_frequency=2.0)
+
+
+@pytest.fixture(scope="module")
+def swept():
+    start = sb.studies.steady_start(MODEL, MOTION)
+    values = np.stack([[2.0, 1.9, 1.8, 1.9, 2.0], [2.0, 1.9, 1.0, 0.9, 0.8]], axis=1)
+    return sb.studies.slow_sweep(MODEL, MOTION, values=values, periods_each=60, **start)
+
+
+def texts(legend):
+    return [text.get_text() for text in legend.get_texts()]
+
+
+def test_a_sweep_is_drawn_in_the_directions_in_which_it_went(swept):
+    figure = sb.plot(swept)
+    tilts, turns = figure.axes
+    down, up, other, cross = tilts.lines
+    assert [one.get_marker() for one in (down, up, other, cross)] == ["<", ">", "<", "X"]
+    assert [to_hex(one.get_color()).upper() for one in (down, up, other)] == [BLUE, BLUE, VERMILION]
+    assert down.get_xdata().tolist() == [2.0, 1.9, 1.8]
+    assert up.get_xdata().tolist() == [1.8, 1.9, 2.0]
+    np.testing.assert_array_equal(down.get_ydata(), swept["mean_tilt"].values[:3, 0])
+    assert texts(tilts.get_legend())[:3] == ["sweep 1, downward", "sweep 1, upward", "sweep 2, downward"]
+    assert tilts.get_ylabel() == "tilt [rad]"
+    assert turns.get_xlabel() == "angular frequency [rad/s]"
+    np.testing.assert_array_equal(turns.lines[1].get_ydata(), swept["turns_per_period"].values[2:, 0])
+
+
+def test_a_cross_marks_where_a_column_overturned_at_its_last_tilt(swept):
+    tilts = sb.plot(swept).axes[0]
+    assert swept["outcome"].values[2, 1] == code_of(Outcome.OVERTURNED)
+    np.testing.assert_array_equal(tilts.lines[-1].get_xydata(), [[1.0, swept["mean_tilt"].values[1, 1]]])
+    assert texts(tilts.get_legend())[-1] == "overturned here"
+
+
+def test_a_sweep_of_which_nothing_is_computed_has_an_empty_figure(swept):
+    empty = swept.where(False)
+    empty["outcome"] = swept["outcome"] * 0 + NOT_COMPUTED
+    figure = sb.plot(empty.assign_attrs(swept.attrs))
+    assert not figure.axes[0].lines
+    figure.canvas.draw()
+
+
+def test_a_sweep_of_one_value_is_a_point(swept):
+    figure = sb.plot(swept.isel(step=[0], sweep=[0]))
+    assert figure.axes[0].lines[0].get_xydata().shape == (1, 2)
+    figure.canvas.draw()
+
+
+def test_a_section_shows_the_points_of_each_run_with_units():
+    start = sb.studies.steady_start(MODEL, MOTION)
+    tilt = np.outer([1.0, 1.05], start["tilt"])
+    found = sb.studies.poincare_section(MODEL, MOTION, tilt=tilt, tilt_rate=start["tilt_rate"], periods=50, skip=40)
+    figure = sb.plot(found)
+    first, second = figure.axes
+    assert first.get_xlabel() == "tilt along x [rad]"
+    assert second.get_ylabel() == "rate of tilt along y [rad/s]"
+    for run in range(2):
+        np.testing.assert_array_equal(first.lines[run].get_xydata(), found["section_tilt"].values[run])
+        np.testing.assert_array_equal(second.lines[run].get_xydata(), found["section_tilt_rate"].values[run])
+    assert [one.split(":")[0] for one in texts(figure.legends[0])] == ["run 1", "run 2"]
+    figure.canvas.draw()
+
+
+def test_exponents_are_drawn_as_they_settle_with_their_errors_in_the_legend():
+    start = sb.studies.steady_start(MODEL, MOTION)
+    found = sb.studies.lyapunov_exponents(MODEL, MOTION, **start, periods=50, skip=0)
+    figure = sb.plot(found)
+    (axes,) = figure.axes
+    np.testing.assert_array_equal(axes.lines[1].get_ydata(), found["running"].values[:, 0])
+    assert axes.get_title(loc="left") == "sum −0.2 /s"
+    assert axes.get_ylabel() == "Lyapunov exponent so far [1/s]"
+    names = texts(figure.legends[0])
+    assert len(names) == 4
+    # As many places as the error has, and that with two digits.
+    value, error = (float(part) for part in names[0].replace("−", "-").split("= ")[1].removesuffix(" /s").split(" ± "))
+    assert value == pytest.approx(float(found["lyapunov_exponent"][0]), abs=0.1 * float(found["error"][0]))
+    assert error == pytest.approx(float(found["error"][0]), rel=0.06)
+
+
+def test_exponents_of_a_motion_that_ended_are_not_told():
+    slow = sb.Harmonic.circular(acceleration=0.065, angular_frequency=0.9)
+    found = sb.studies.lyapunov_exponents(MODEL, slow, tilt=(0.08, 0.0), periods=50, skip=0)
+    figure = sb.plot(found)
+    assert figure.axes[0].get_title(loc="left").startswith("overturned after")
+    assert all(name.endswith("not told") for name in texts(figure.legends[0]))
+    figure.canvas.draw()
