@@ -123,8 +123,8 @@ def test_the_three_values_of_a_range_go_together():
         ([*BASIN, *SAMPLE, "--over", "tilt-y", "a", "1"], ["basin.over.tilt-y.0: input should be a valid number"]),
         ([*BASIN, *SAMPLE, "--over", "tilt-y", "1"], ["--over must be followed by a name, its lowest"]),
         ([*BASIN, *SAMPLE, "--over", "tilt-y", "1", "0"], ["over['tilt_y'] must be a lower and an upper bound"]),
-        ([*BASIN, *SAMPLE, "--over", "damping", "0", "1"], ["over must name starts of one system"]),
-        ([*BASIN, "--x", "damping", "0", "1", "3", *GRID[5:]], ["over must name starts of one system"]),
+        ([*BASIN, *SAMPLE, "--over", "damping", "0", "1"], ["basin.over must name starts of one system"]),
+        ([*BASIN, "--x", "damping", "0", "1", "3", *GRID[5:]], ["basin.x must name starts of one system"]),
         (
             [*BASIN, *SAMPLE, "--random", "0", "--seed", "-1", "--confidence", "2", "--strobes", "1"],
             [

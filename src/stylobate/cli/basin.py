@@ -1,5 +1,6 @@
 """`stylobate basin`: which starts lead where."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -107,6 +108,7 @@ def basin(
             described = spec.BasinDescription.of_saved(provenance_of(saved), axes_of(saved)).values()
         values = opt.overlay_axes(opt.overlay(described, given, opt.RUN_NAMES), given, "basin")
         setup = spec.BasinDescription.parse(opt.overlay_sample(values, given, "basin")).build()
+        _check_names(setup.options)
         found, complete = computed(studies.basins, setup, given, "basins")
     write(found, given)
     if as_json:
@@ -114,6 +116,15 @@ def basin(
     else:
         _print(found)
     end(found, given, complete=complete)
+
+
+def _check_names(options: Mapping[str, Any]) -> None:
+    """Raise ParameterError for a name that is no start, by its place on the command line or in the file."""
+    from stylobate.studies.varied import require_starts  # noqa: PLC0415
+
+    places = ["over"] * len(options["over"]) if "count" in options else ["x", "y"]
+    for place, name in zip(places, options["over"], strict=True):
+        require_starts(f"basin.{place}", {name: None})
 
 
 def _labelled(saved: "xr.Dataset", source: Path | None, confidence: float | None) -> "xr.Dataset":

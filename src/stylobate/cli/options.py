@@ -66,7 +66,7 @@ StartPhase = Annotated[float | None, _option("phase at the start [rad]", _MOTION
 Ramp = Annotated[float | None, _option("time over which the amplitude rises [s]", _MOTION)]
 
 Figure = Annotated[Path | None, _option("draw into this file (.png, .pdf, .svg)", _OUTPUT)]
-Output = Annotated[Path | None, _option("save the result into this netCDF file", _OUTPUT)]
+Output = Annotated[Path | None, _option("save the result into this netCDF file (.nc)", _OUTPUT)]
 OutputOrStore = Annotated[
     Path | None, _option("save the result: a netCDF file (.nc), or a store (.zarr) that --resume can continue", _OUTPUT)
 ]

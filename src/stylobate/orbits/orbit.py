@@ -1,6 +1,5 @@
 """A periodic orbit and what it is like."""
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -134,17 +133,13 @@ class PeriodicOrbit:
         """Mean tilt angle [rad]."""
         return float(np.hypot(*self.path[:2]).mean())
 
-    @cached_property
+    @property
     def turns(self) -> float:
         """Turns of the contact point round the rim in one period of the base motion, anticlockwise positive.
 
         In a plane it is 0: the contact point jumps from one side to the other.
         """
-        if self.planar:
-            return 0.0
-        x, y = self.path[:2]
-        steps = np.angle(np.exp(1j * np.diff(np.append(np.arctan2(y, x), math.atan2(y[0], x[0])))))
-        return float(round(steps.sum() / (2.0 * math.pi))) / self.periods
+        return round(self.chain.turns) / self.periods
 
     @cached_property
     def inversion(self) -> bool:

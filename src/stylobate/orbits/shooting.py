@@ -92,6 +92,11 @@ class Shots:
         return self.sense if arc == len(self.flows) - 1 else 1.0
 
     @property
+    def turns(self) -> float:
+        """Turns of the lean about the upright over what is shot."""
+        return sum(flow.turns for flow in self.flows)
+
+    @property
     def least_tilt(self) -> float:
         """Least tilt met."""
         return min(flow.least_tilt for flow in self.flows)

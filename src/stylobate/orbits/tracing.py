@@ -122,6 +122,9 @@ def _step(
     while True:
         guess = point.u + length * sense
         found = corrected(family, guess, sense)
+        # Between orbits that wind differently about the upright lies one that meets it.
+        if not isinstance(found, Status) and abs(found[0].chain.turns - point.chain.turns) > _SAME_TURNS:
+            found = Status.LOST
         value = guess[-1] * family.span if isinstance(found, Status) else found[0].value
         if not bounds[0] <= value <= bounds[1]:  # beyond the bound there may be nothing
             last = _at_bound(family, point, sense, bounds[0] if value < bounds[0] else bounds[1])
@@ -136,6 +139,7 @@ def _step(
             return _why(found) if isinstance(found, Status) else End.SHORT
 
 
+_SAME_TURNS = 0.25
 # A step this short is made even where the family bends more than it should.
 _BENT = 10.0
 _FEW = 10

@@ -51,6 +51,7 @@ def plot_exact_response(curves: xr.Dataset) -> Figure:
 
 def _draw(axes: Axes, part: xr.Dataset, name: str, colour: str, label: str | None) -> None:
     x, y, stable = (part[key].to_numpy() for key in ("angular_frequency", name, "stable"))
+    stable = stable.astype(bool)  # a file holds numbers
     # A bifurcation is a point of the curve that belongs to both sides.
     touching = stable | np.append(stable[1:], False) | np.append(False, stable[:-1])
     axes.plot(x, y, color=colour, linewidth=UNSTABLE_WIDTH)
@@ -60,7 +61,7 @@ def _draw(axes: Axes, part: xr.Dataset, name: str, colour: str, label: str | Non
 
 
 def _shade(axes: Axes, part: xr.Dataset, colour: str) -> None:
-    x, stable = part["angular_frequency"].to_numpy(), part["stable"].to_numpy()
+    x, stable = part["angular_frequency"].to_numpy(), part["stable"].to_numpy().astype(bool)
     low, high = part["least_tilt"].to_numpy(), part["largest_tilt"].to_numpy()
     axes.fill_between(x, low, high, where=stable, color=colour, alpha=0.15, linewidth=0.0)
 
@@ -72,7 +73,7 @@ def _draw_theory(axes: Axes, curves: xr.Dataset, name: str) -> None:
     told = "theory" if bool(curves["averaged_is_exact"]) else "averaged"
     for index in range(curves.sizes["averaged_branch"]):
         y = curves[name][index].to_numpy()
-        stable = curves["averaged_stable"][index].to_numpy()
+        stable = curves["averaged_stable"][index].to_numpy().astype(bool)
         axes.plot(x, y, color=GREY, linewidth=UNSTABLE_WIDTH, linestyle=_DASHED)
         axes.plot(x, np.where(stable, y, np.nan), color=GREY, linewidth=STABLE_WIDTH, linestyle=_DASHED)
     axes.plot([], [], color=GREY, linewidth=STABLE_WIDTH, linestyle=_DASHED, label=told)

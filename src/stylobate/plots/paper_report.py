@@ -8,7 +8,9 @@ from matplotlib.figure import Figure
 
 from stylobate.errors import FileError
 from stylobate.plots import paper
+from stylobate.plots.exact_response import plot_exact_response
 from stylobate.plots.page import Picture, Section, Table, page
+from stylobate.plots.stability_boundary import plot_stability_boundary
 from stylobate.results import Finding, PaperCheck
 
 _TITLE = "A round column on a vibrating base: the source paper reproduced, checked and corrected"
@@ -91,6 +93,20 @@ _PICTURES: tuple[tuple[str, str, Callable[[PaperCheck], Figure], str], ...] = (
         lambda check: paper.averaging(check.data["averaging"]),
         "Full motion (1) and slow flow (10). Above: both start 15 % above the averaged tilt. Below: both start on the "
         "averaged solution, which (10) calls stable; the column overturns.",
+    ),
+    (
+        "exact-response",
+        "Exact periodic orbits",
+        lambda check: plot_exact_response(check.data["exact"]),
+        "Exact rolling under straight-line motion, a1 = 0.13, beside the averaged curves: mean tilt and, shaded, its "
+        "range where stable. At the pitchfork the symmetric orbit gives way to two without the symmetry.",
+    ),
+    (
+        "stability-boundary",
+        "Exact periodic orbits",
+        lambda check: plot_stability_boundary(check.data["boundary"]),
+        "Where rolling under straight-line motion loses its stability, over frequency and amplitude (in these units "
+        "accelerations are in g): exactly, and by averaging.",
     ),
     (
         "backbones",

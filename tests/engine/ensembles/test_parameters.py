@@ -158,3 +158,10 @@ def test_what_no_run_can_have_is_refused_in_one_line_that_names_it(arguments, to
 def test_a_number_that_the_motion_lacks_is_told(motion, values):
     with pytest.raises(UnsupportedError, match=next(iter(values))):
         sb.simulate_ensemble(STONE, motion, duration=1.0, parameters=values)
+
+
+def test_names_that_say_contrary_things_are_refused():
+    with pytest.raises(ParameterError, match="with_parameters: size changes the radius, which"):
+        sb.with_parameters(STONE, SHAKING, size=2.0, radius=0.4)
+    with pytest.raises(ParameterError, match="with_parameters: colour is not known here"):
+        sb.with_parameters(STONE, SHAKING, colour=2.0)

@@ -12,5 +12,5 @@ PLANAR: bool
 
 rates_into: Callable[..., None]
 jacobian_into: Callable[..., None]
-tilt_squared: Callable[..., tuple[float, float]]
-"""(state, parameters) → the square of the tilt and its rate."""
+lean_of: Callable[..., tuple[float, float, float, float]]
+"""(state, parameters) → the tilt vector and its rate."""

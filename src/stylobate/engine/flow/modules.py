@@ -23,7 +23,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.compiling.arithmetic import kept, part, turning_point
+from stylobate.engine.compiling.arithmetic import kept, part, turning_point, winding
 from stylobate.engine.flow.tableau import DOP_A, DOP_C, DOP_E3, DOP_E5, Status
 
 Table = npt.NDArray[np.float64]
@@ -58,7 +58,7 @@ def flow_module(model: type[Model], states: int, numbers: int, *, planar: bool) 
             "\n".join(f"{name} = {value}" for name, value in arguments.constants.items()),
             _rates_source(arguments),
             _given_jacobian(arguments) if given is not None else _jacobian_source(rates, arguments),
-            _tilt_source(arguments),
+            _lean_source(arguments),
             Path(__file__).with_name("pattern.py").read_text(encoding="utf-8").split(_MARK, 1)[1],
         ]
     )
@@ -148,14 +148,11 @@ def _given_jacobian(arguments: _Arguments) -> str:
     )
 
 
-def _tilt_source(arguments: _Arguments) -> str:
+def _lean_source(arguments: _Arguments) -> str:
     if arguments.planar:
-        body = ["    return y[0] * y[0], 2.0 * y[0] * y[1]"]
+        body = "y[0], 0.0, y[1], 0.0"
     else:
         states = [f"y[{j}]" for j in range(len(arguments.states))]
         numbers = [f"numbers[{j}]" for j in range(len(arguments.numbers))]
-        body = [
-            f"    x, y1, vx, vy = lean({', '.join([*states, *numbers])})",
-            "    return x * x + y1 * y1, 2.0 * (x * vx + y1 * vy)",
-        ]
-    return "\n".join(["@part", "def tilt_squared(y, numbers):", *body])
+        body = f"lean({', '.join([*states, *numbers])})"
+    return f"@part\ndef lean_of(y, numbers):\n    return {body}"

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.compiling.arithmetic import kept, part, turning_point
+from stylobate.engine.compiling.arithmetic import kept, part, turning_point, winding
 from stylobate.engine.flow.tableau import DOP_A, DOP_C, DOP_E3, DOP_E5, Status
 
 if TYPE_CHECKING:
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
         ORDER,
         PLANAR,
         jacobian_into,
+        lean_of,
         rates_into,
-        tilt_squared,
     )
 
 Table = npt.NDArray[np.float64]
@@ -141,9 +141,10 @@ def note_tilt(y: Table, new: Table, duration: float, numbers: Vector, told: Vect
 
     Return where in the step the cubic turns, or 0 where it does not.
     """
-    start, slope = tilt_squared(y[:, 0], numbers)
-    end, end_slope = tilt_squared(new[:, 0], numbers)
-    slope, end_slope = slope * duration, end_slope * duration
+    x, z, vx, vz = lean_of(y[:, 0], numbers)
+    start, slope = x * x + z * z, 2.0 * duration * (x * vx + z * vz)
+    x, z, vx, vz = lean_of(new[:, 0], numbers)
+    end, end_slope = x * x + z * z, 2.0 * duration * (x * vx + z * vz)
     least, largest, at = min(start, end), max(start, end), 0.0
     if slope * end_slope < 0.0:
         at, extreme = turning_point(start, end, slope, end_slope, 1.0 if slope > 0.0 else -1.0)
@@ -151,6 +152,14 @@ def note_tilt(y: Table, new: Table, duration: float, numbers: Vector, told: Vect
     told[0] = min(told[0], math.sqrt(max(least, 0.0)))
     told[1] = max(told[1], math.sqrt(largest))
     return at
+
+
+@part
+def note_turning(y: Table, new: Table, numbers: Vector, told: Vector) -> None:
+    """Count how often the lean passes the negative x axis, anticlockwise less clockwise."""
+    x0, y0, vx0, vy0 = lean_of(y[:, 0], numbers)
+    x1, y1, vx1, vy1 = lean_of(new[:, 0], numbers)
+    told[4] += winding(x0, y0, x1, y1, x0 * vy0 - y0 * vx0 + x1 * vy1 - y1 * vx1)
 
 
 @part
@@ -189,7 +198,7 @@ def flow(
     """Carry `y` from `begin` to `end` [turns of the base motion]; return how that went.
 
     `limits`: relative and absolute tolerance, least and largest tilt. `told`: least and largest tilt met, number of
-    steps, side of the upright on which it leans (for motion in a plane).
+    steps, side of the upright on which it leans (for motion in a plane), passages of the negative x axis.
     """
     rtol, atol, least, largest = limits
     k = np.zeros((13, ORDER, ORDER + 2))
@@ -255,6 +264,8 @@ def flow(
             stages_into(y, s, at * h, side, period, terms, numbers, change, term_change, work, near, middle)
             note_tilt(y, middle, period * at * h, numbers, told)
             note_tilt(middle, new, period * (1.0 - at) * h, numbers, told)
+        if not PLANAR:
+            note_turning(y, new, numbers, told)
         s = end if last else s + h
         told[2] += 1
         y[:, :] = new

@@ -48,7 +48,10 @@ class Numbers:
 
 @dataclass(frozen=True, slots=True)
 class Flow:
-    """How a state was carried: its end, the derivatives of that by the start and by a parameter, and the tilts met."""
+    """How a state was carried: its end, the derivatives of that by the start and by a parameter, and what was met.
+
+    `turns` are those of the lean about the upright, 0 in a plane.
+    """
 
     status: Status
     end: Floats
@@ -58,6 +61,7 @@ class Flow:
     largest_tilt: float
     steps: int
     side: float
+    turns: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,7 +183,7 @@ class PeriodicSystem:
         )
         if self.planar and side == 0.0:
             side = math.copysign(1.0, state[0] if state[0] != 0.0 else state[1])
-        told = np.array([math.inf, 0.0, 0.0, side])
+        told = np.array([math.inf, 0.0, 0.0, side, 0.0])
         with np.errstate(all="ignore"):
             status = module.flow(
                 table,
@@ -202,7 +206,15 @@ class PeriodicSystem:
             float(told[1]),
             int(told[2]),
             float(told[3]),
+            float(told[4]) + self._azimuth(table[:, 0]) - self._azimuth(state),
         )
+
+    def _azimuth(self, state: Floats) -> float:
+        """Return the azimuth of the lean [turns], −½ to ½; 0 in a plane."""
+        if self.planar:
+            return 0.0
+        x, y, _, _ = self.model.lean(*state, *self.model.parameters)
+        return math.atan2(float(y), float(x)) / (2.0 * math.pi)
 
 
 def _numbers(model: Model, motion: BaseMotion, line: tuple[float, float] | None) -> Numbers:

@@ -9,6 +9,7 @@ from multiprocessing import get_context
 
 from stylobate.results import PaperCheck, Section
 from stylobate.studies.paper.circular import check_circular
+from stylobate.studies.paper.exact import check_exact
 from stylobate.studies.paper.free import check_free
 from stylobate.studies.paper.modulated import check_modulated
 from stylobate.studies.paper.planar import check_planar
@@ -23,11 +24,12 @@ _SECTIONS: Mapping[str, Callable[[], Section]] = {
     "Circular base motion": check_circular,
     "Below the critical frequency": check_modulated,
     "Straight-line base motion": check_straight,
+    "Exact periodic orbits": check_exact,
     "Motion in a plane": check_planar,
     "The standing column": check_standing,
 }
 # The longest first, so that two processes end together.
-_SLOWEST_FIRST = ("Straight-line base motion", "Below the critical frequency")
+_SLOWEST_FIRST = ("Exact periodic orbits", "Straight-line base motion", "Below the critical frequency")
 
 
 def check_paper(*, workers: int = 1, progress: Callable[[str, int, int], None] | None = None) -> PaperCheck:
