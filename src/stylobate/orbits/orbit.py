@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.engine.flow.periodic import PeriodicSystem
+from stylobate.engine.forcing import common_line
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 from stylobate.orbits.shooting import Shots
@@ -146,6 +147,20 @@ class PeriodicOrbit:
         """Whether half a period later it leans the other way: x(t + nT/2) = −x(t)."""
         samples = self.path.shape[1]
         return self._same(-np.roll(self.path, samples // 2, axis=1))
+
+    @cached_property
+    def reflection(self) -> bool:
+        """Whether half a period later it is its mirror image across the line of a base motion along one.
+
+        That is x(t + nT/2) = −x(t), y(t + nT/2) = y(t), x being along the line; False for other base motions.
+        """
+        line = common_line(*self.motion.directions())
+        if line is None:
+            return False
+        ux, uy = line
+        x, y, vx, vy = np.roll(self.path, self.path.shape[1] // 2, axis=1)
+        along, rate = ux * x + uy * y, ux * vx + uy * vy
+        return self._same(np.stack([x - 2 * ux * along, y - 2 * uy * along, vx - 2 * ux * rate, vy - 2 * uy * rate]))
 
     def _same(self, image: Floats) -> bool:
         size = np.abs(self.path).max(axis=1, keepdims=True)

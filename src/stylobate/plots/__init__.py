@@ -9,6 +9,7 @@ from stylobate.errors import ParameterError
 from stylobate.plots.basins import plot_basins
 from stylobate.plots.exact_response import plot_exact_response
 from stylobate.plots.exponent import plot_exponent
+from stylobate.plots.fates import plot_fates
 from stylobate.plots.fractions import plot_fractions
 from stylobate.plots.integrity import plot_erosion, plot_integrity
 from stylobate.plots.lyapunov import plot_lyapunov
@@ -29,6 +30,7 @@ __all__ = [
     "plot_erosion",
     "plot_exact_response",
     "plot_exponent",
+    "plot_fates",
     "plot_fractions",
     "plot_integrity",
     "plot_lyapunov",
@@ -45,6 +47,7 @@ _BY_KIND: dict[str, Callable[[xr.Dataset], Figure]] = {
     "stability boundary": plot_stability_boundary,
     "averaging map": plot_averaging_map,
     "exact response": plot_exact_response,
+    "fates": plot_fates,
     "ensemble": plot_map,
     "sweep": plot_map,
     "overturning map": plot_map,

@@ -7,6 +7,7 @@ from stylobate.studies.basin_fractions import basin_fractions
 from stylobate.studies.basins import basins
 from stylobate.studies.boundary import uncertainty_exponent
 from stylobate.studies.exact_response import exact_response
+from stylobate.studies.fate import fates
 from stylobate.studies.integrity import erosion, integrity
 from stylobate.studies.lyapunov import lyapunov_exponents
 from stylobate.studies.overturning import overturning_map
@@ -34,6 +35,7 @@ __all__ = [
     "erosion",
     "exact_response",
     "executor_from",
+    "fates",
     "integrity",
     "label_attractors",
     "lyapunov_exponents",
