@@ -1,11 +1,13 @@
-"""Draws the figures of the page "Exact periodic orbits" into docs/_static/orbits; takes half a minute on one core.
+"""Draws the figures of "Exact periodic orbits" and "What exact orbits tell" into docs/_static/orbits.
 
-Run it with `python docs/figures/orbits.py`. The column is that of the paper, c = η = 0.1, in its units.
+Run it with `python docs/figures/orbits.py`; it takes two minutes on one core. The column is that of the paper,
+c = η = 0.1, in its units.
 """
 
 from pathlib import Path
 
 import numpy as np
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -201,8 +203,139 @@ def curves() -> Figure:
     return figure
 
 
+def exact() -> Figure:
+    """Exact frequency response of straight-line motion, a1 = 0.13."""
+    return sb.plot(sb.studies.exact_response(MODEL, line(0.13), angular_frequency=(1.2, 3.0)))
+
+
+def boundary_line() -> Figure:
+    """Boundary of stable rolling, straight-line motion, over frequency and amplitude."""
+    found = sb.studies.stability_boundary(
+        MODEL, line(0.13), bounds=(0.012, 0.4), angular_frequency=(0.7, 4.0), values=[0.13]
+    )
+    return sb.plot(found)
+
+
+def boundary_ellipse() -> Figure:
+    """Boundary of stable rolling as an ellipse opens."""
+    return sb.plot(
+        sb.studies.stability_boundary(
+            MODEL, ellipse(0.04), parameter="amplitude_y", bounds=(0.0, 0.08), angular_frequency=(0.9, 4.0)
+        )
+    )
+
+
+def averaging() -> Figure:
+    """Where averaging is right about straight-line motion."""
+    found = sb.studies.averaging_map(
+        MODEL, line(0.13), values=np.linspace(0.02, 0.4, 77), angular_frequency=np.geomspace(0.8, 8.0, 300)
+    )
+    figure = sb.plot(found)
+    figure.axes[0].set_xscale("log")
+    figure.axes[0].set_xticks([0.8, 1, 2, 4, 8], ["0.8", "1", "2", "4", "8"])
+    figure.axes[0].minorticks_off()
+    return figure
+
+
+def sweeps() -> Figure:
+    """Slow sweeps beside exact families: over the frequency to the end, over the amplitude down and up."""
+    figure = Figure(figsize=(7.4, 4.0), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    symmetric = rolling(line(0.13), (1.4, 8.0))
+    born = sb.orbits.switch_branch(first(symmetric, "pitchfork"), bounds=(1.5, 2.5))
+    draw_family(left, symmetric, BLUE, "symmetric", "largest_tilt")
+    draw_family(left, born, ORANGE, "asymmetric", "largest_tilt")
+    (start,) = symmetric.orbits_at(1.72)
+    values = np.concatenate([np.arange(1.72, 1.6, -0.01), np.arange(1.6, 1.54, -0.002)])
+    swept = sb.studies.slow_sweep(
+        MODEL, start.motion, values=values, tilt=start.tilt, tilt_rate=start.tilt_rate, periods_each=300
+    )
+    draw_sweep(left, swept, down="slow sweep down", up="slow sweep up")
+    left.set_xlim(1.53, 1.73)
+    left.set_ylim(0.6, 1.2)
+    left.set_xlabel("frequency of the base $\\theta = \\Omega/\\omega_0$")
+    left.set_ylabel("largest tilt over $c$")
+
+    start = sb.orbits.periodic_orbit(MODEL, line(0.03, 3.0))
+    family = sb.orbits.continue_branch(start, "acceleration", bounds=(0.004, 0.031))
+    points = family.points
+    draw_family_over(right, points, "acceleration")
+    values = np.append(np.arange(0.03, 0.0079, -0.002), [0.007, 0.0065, 0.006, 0.0055, 0.005])
+    swept = sb.studies.slow_sweep(
+        MODEL,
+        start.motion,
+        parameter="acceleration",
+        values=values,
+        tilt=start.tilt,
+        tilt_rate=start.tilt_rate,
+        back=True,
+    )
+    draw_sweep(right, swept, down="slow sweep down", up="and up again")
+    right.set_ylim(-0.01, 0.2)
+    right.set_ylabel("largest tilt over $c$")
+    right.set_xlabel("amplitude of the base acceleration $a_1$ [g]")
+    for axes in (left, right):
+        axes.legend(fontsize=8, frameon=False, loc="upper right")
+    return figure
+
+
+def draw_family_over(axes: Axes, points: xr.Dataset, name: str) -> None:
+    """Draw the largest tilt of a family over any parameter, stable orbits bold."""
+    x, y, stable = (points[key].to_numpy() for key in (name, "largest_tilt", "stable"))
+    touching = stable | np.append(stable[1:], False) | np.append(False, stable[:-1])
+    axes.plot(x, y / C, color=BLUE, linewidth=1.0, linestyle=(0, (4, 2)))
+    axes.plot(x, np.where(touching, y / C, np.nan), color=BLUE, linewidth=2.6, label="symmetric")
+
+
+def draw_sweep(axes: Axes, swept: xr.Dataset, *, down: str, up: str) -> None:
+    """Draw the largest tilt of a slow sweep, down and up, and a cross where the column overturned."""
+    one = swept.isel(sweep=0)
+    at, tilt = one[str(swept.attrs["parameter"])].to_numpy(), one["largest_tilt"].to_numpy() / C
+    turn = int(np.argmin(at))
+    known = np.isfinite(tilt)
+    axes.plot(
+        at[: turn + 1],
+        tilt[: turn + 1],
+        marker="v",
+        linestyle="none",
+        color="black",
+        markerfacecolor="none",
+        markersize=6,
+        label=down,
+    )
+    if turn < at.size - 1:
+        axes.plot(at[turn + 1 :], tilt[turn + 1 :], marker="^", linestyle="none", color=GREY, markersize=4, label=up)
+    if not known.all():
+        lost = int(np.argmin(known))
+        axes.plot(
+            at[lost], tilt[lost - 1], marker="X", color="black", linestyle="none", markersize=8, label="overturned"
+        )
+
+
+def chaos() -> Figure:
+    """Poincaré sections of modulated and of chaotic rolling, and the largest Lyapunov exponents."""
+    figure = Figure(figsize=(7.4, 3.6), layout="constrained")
+    symmetric = rolling(line(0.13), (1.4, 8.0))
+    born = sb.orbits.switch_branch(first(symmetric, "pitchfork"), bounds=(1.4, 2.5))
+    for axes, value in zip(figure.subplots(1, 2), (1.56, 1.558), strict=True):
+        orbit = born.orbits_at(value)[0]
+        start = {"tilt": 1.0005 * np.array(orbit.tilt), "tilt_rate": orbit.tilt_rate}
+        section = sb.studies.poincare_section(MODEL, orbit.motion, **start, periods=6000, skip=1000)
+        found = sb.studies.lyapunov_exponents(MODEL, orbit.motion, **start, periods=5000, skip=1000, count=1)
+        print(value, float(found["lyapunov_exponent"][0]), float(found["error"][0]), found.attrs["ending"])
+        points = section["section_tilt"].to_numpy()[0] / C
+        axes.plot(*points.T, ".", color=BLUE, markersize=1.6, markeredgewidth=0.0)
+        axes.plot(*(np.array(orbit.tilt) / C), "+", color="black", markersize=8)
+        axes.set_title(f"$\\theta = {value:g}$", fontsize=10)
+        axes.set_xlabel("tilt $\\alpha_1$ over $c$")
+        axes.set_ylabel("tilt $\\alpha_2$ over $c$")
+    return figure
+
+
+DRAWINGS = (response, paths, curves, exact, boundary_line, boundary_ellipse, averaging, sweeps, chaos)
+
 if __name__ == "__main__":
     FOLDER.mkdir(parents=True, exist_ok=True)
-    for draw in (response, paths, curves):
+    for draw in DRAWINGS:
         draw().savefig(FOLDER / f"{draw.__name__}.png", dpi=150)
         print(draw.__name__)

@@ -216,7 +216,7 @@ def test_a_model_whose_tilt_is_not_its_first_state(written):
 )
 def test_a_model_that_cannot_be_compiled_is_told_in_one_line(written, resistance, before, told):
     model = written(dragged(resistance, before)).Dragged(COLUMN, drag=5.0)
-    with pytest.raises(UnsupportedError, match=f"model dragged cannot be compiled for ensembles.*{told}") as caught:
+    with pytest.raises(UnsupportedError, match=f"model dragged cannot be compiled; .*{told}") as caught:
         sb.simulate_ensemble(model, CIRCLE, **TURNING)
     assert "\n" not in str(caught.value)
 

@@ -65,7 +65,7 @@ def test_a_folder_that_cannot_be_written_is_told_in_one_line(tmp_path, monkeypat
     (tmp_path / "file").write_text("in the way")
     monkeypatch.setenv("STYLOBATE_CACHE", str(tmp_path / "file" / "kernels"))
     with pytest.raises(
-        UnsupportedError, match=r"cannot keep compiled kernels in .*file.kernels.*\$STYLOBATE_CACHE"
+        UnsupportedError, match=r"cannot keep compiled code in .*file.kernels.*\$STYLOBATE_CACHE"
     ) as caught:
         sb.simulate_ensemble(Unheard(sb.Column.dimensionless(0.1)), CIRCLE, **START)
     assert "\n" not in str(caught.value)
