@@ -66,32 +66,23 @@ def response(
     setup = spec.ResponseDescription.parse(values).build()
     low, high = setup.options["range"]
     if exact:
-        _exact(
-            studies.exact_response(setup.model, setup.motion, angular_frequency=(low, high)), figure, output, as_json
-        )
-        return
-    frequencies = np.linspace(low, high, setup.options["points"])
-    curves = studies.response_curves(setup.model, setup.motion, angular_frequency=frequencies)
+        curves = studies.exact_response(setup.model, setup.motion, angular_frequency=(low, high))
+    else:
+        frequencies = np.linspace(low, high, setup.options["points"])
+        curves = studies.response_curves(setup.model, setup.motion, angular_frequency=frequencies)
     if output is not None:
         save_curves(curves, output)
     if figure is not None:
         save_figure(plots.plot(curves), figure)
     if as_json:
         print_json(plain_curves(curves))
+    elif exact:
+        _print_exact(curves)
     else:
         _print(curves)
 
 
-def _exact(curves: "xr.Dataset", figure: Path | None, output: Path | None, as_json: bool) -> None:
-    from stylobate import plots  # noqa: PLC0415
-
-    if output is not None:
-        save_curves(curves, output)
-    if figure is not None:
-        save_figure(plots.plot(curves), figure)
-    if as_json:
-        print_json(plain_curves(curves))
-        return
+def _print_exact(curves: "xr.Dataset") -> None:
     names = curves["branch_name"].to_numpy()
     rows = [
         [str(kind), f"{float(at):.9g} rad/s", str(names[branch]), f"{float(tilt):.6g} rad", _SOFTNESS[int(soft)]]

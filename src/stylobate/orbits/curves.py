@@ -318,7 +318,8 @@ def _followed(
             continue
         outside = [not low <= value <= high for value, (low, high) in zip(found.point.values, bounds, strict=True)]
         if any(outside):
-            return points, End.BOUND
+            last = _at_bound(plane, here, found, bounds, outside.index(True))
+            return ([*points, last] if last is not None else points), End.BOUND
         if plane.kind is Kind.NEIMARK_SACKER and not _on_circle(found.point.multiplier):
             return points, End.RESONANCE
         points.append(found.point)
@@ -329,6 +330,20 @@ def _followed(
         length = min(_LONGER * length, control.largest) if found.steps <= _EASY else length
         length = _SHORTER * length if found.steps >= _HARD else length
     return points, End.STEPS
+
+
+def _at_bound(
+    plane: Plane, here: _Step, beyond: _Step, bounds: tuple[tuple[float, float], tuple[float, float]], which: int
+) -> CurvePoint | None:
+    """Return the point of the curve on the bound of one parameter, between two points of it."""
+    low, high = bounds[which]
+    bound = low if beyond.point.values[which] < low else high
+    entry = which - 2  # the parameters are the last two
+    share = (bound / plane.spans[which] - here.u[entry]) / (beyond.u[entry] - here.u[entry])
+    normal = np.zeros_like(here.u)
+    normal[entry] = 1.0
+    found = plane.corrected(here.u + share * (beyond.u - here.u), normal)
+    return None if isinstance(found, End) else found.point
 
 
 def _only_critical(point: CurvePoint) -> bool:

@@ -19,6 +19,7 @@ from stylobate.orbits.branch import Branch
 from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.shooting import shots
 from stylobate.orbits.tracing import End
+from stylobate.results.storage import read_dataset, write_dataset
 from stylobate.spec import description_of, provenance_of_run
 
 _ORBIT, _BRANCH = "stylobate orbit 1", "stylobate branch 1"
@@ -35,14 +36,8 @@ def save(found: PeriodicOrbit | Branch, path: str | Path) -> Path:
     UnsupportedError
         If model or motion is of a class of your own, which a file cannot hold.
     """
-    path = Path(path)
     data = _orbit_data(found) if isinstance(found, PeriodicOrbit) else _branch_data(found)
-    try:
-        data.to_netcdf(path, engine="h5netcdf")
-    except OSError as error:
-        message = f"cannot write {path}: {error.strerror or error}"
-        raise FileError(message) from error
-    return path
+    return write_dataset(data, Path(path))
 
 
 def load(path: str | Path) -> PeriodicOrbit | Branch:
@@ -53,12 +48,7 @@ def load(path: str | Path) -> PeriodicOrbit | Branch:
     FileError
         If the file cannot be read or holds neither.
     """
-    try:
-        with xr.open_dataset(path, engine="h5netcdf") as stored:
-            data = stored.load()
-    except (OSError, ValueError) as error:
-        message = f"cannot read {path}: {getattr(error, 'strerror', None) or error}"
-        raise FileError(message) from error
+    data = read_dataset(path)
     written = data.attrs.get("format")
     if written not in (_ORBIT, _BRANCH):
         message = f"{path} holds no orbit or branch saved by stylobate: its format is {written!r}"

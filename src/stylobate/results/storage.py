@@ -47,12 +47,7 @@ def save_response(response: Response, path: Path) -> Path:
     }
     data = response.data.assign_attrs(attributes)
     data["resting"] = data["resting"].astype(np.int8)
-    try:
-        data.to_netcdf(path, engine="h5netcdf")
-    except OSError as error:
-        message = f"cannot write {path}: {error.strerror or error}"
-        raise FileError(message) from error
-    return path
+    return write_dataset(data, path)
 
 
 def load(path: str | Path) -> Response:
@@ -63,12 +58,7 @@ def load(path: str | Path) -> Response:
     FileError
         If the file cannot be read or holds no saved run; the result of a study is read by `xarray.open_dataset`.
     """
-    try:
-        with xr.open_dataset(path, engine="h5netcdf") as stored:
-            data = stored.load()
-    except (OSError, ValueError) as error:
-        message = f"cannot read {path}: {getattr(error, 'strerror', None) or error}"
-        raise FileError(message) from error
+    data = read_dataset(path)
     attributes: dict[str, Any] = dict(data.attrs)
     if "format" not in attributes and "kind" in attributes:
         message = (
@@ -84,6 +74,38 @@ def load(path: str | Path) -> Response:
     except (KeyError, TypeError, ValueError) as error:
         message = f"{path} is damaged: {error}"
         raise FileError(message) from error
+
+
+def read_dataset(path: str | Path) -> xr.Dataset:
+    """Return what the netCDF file `path` holds, read into memory.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read.
+    """
+    try:
+        with xr.open_dataset(path, engine="h5netcdf") as stored:
+            return stored.load()
+    except (OSError, ValueError) as error:
+        message = f"cannot read {path}: {getattr(error, 'strerror', None) or error}"
+        raise FileError(message) from error
+
+
+def write_dataset(data: xr.Dataset, path: Path) -> Path:
+    """Write `data` to the netCDF file `path` and return the path.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written.
+    """
+    try:
+        data.to_netcdf(path, engine="h5netcdf")
+    except OSError as error:
+        message = f"cannot write {path}: {error.strerror or error}"
+        raise FileError(message) from error
+    return path
 
 
 def _response(data: xr.Dataset, attributes: dict[str, Any]) -> Response:

@@ -133,6 +133,6 @@ def _error(straight: dict[float, Branch]) -> Finding:
         "Averaging is good at high frequency, its small parameters being η/2θ, a1/4θ, μ/2θ, (ω − θ)/2θ.",
         f"The mean tilt of the exact orbit is larger than the averaged one by {100 * small[0]:.2f} % at a1 = 0.04 and "
         f"{100 * large[0]:.2f} % at a1 = 0.13, at θ = 3, and by {100 * small[1]:.2f} % and {100 * large[1]:.2f} % at "
-        f"θ = 6: the error does not fall with θ and grows as the power {order:.2f} of a1/c.",
+        f"θ = 6: the error does not fall with θ; between these amplitudes it grows as the power {order:.2f} of a1/c.",
         judged(abs(small[1] / small[0] - 1.0) < 0.1 and abs(order - 2.0) < 0.2, Verdict.LIMITED),  # noqa: PLR2004
     )
