@@ -19,6 +19,8 @@ Complexes = npt.NDArray[np.complex128]
 _SAMPLES = 128
 # An orbit has a symmetry if it is its own image to this part of its size.
 _SAME = 1e-7
+# A state in a plane this near to the upright [c] is in a passage of it; what is [turns] a little later.
+_PASSING, _LATER = 1e-9, 0.03
 # A multiplier this near to the unit circle cannot be told from one on it.
 _NEUTRAL = 1e-9
 
@@ -84,8 +86,21 @@ class PeriodicOrbit:
     @cached_property
     def multipliers(self) -> Complexes:
         """Floquet multipliers, the largest first; for an orbit in a plane those of disturbances in the plane."""
-        found = np.linalg.eigvals(self.chain.monodromy).astype(complex)
+        found = np.linalg.eigvals(self._monodromy).astype(complex)
         return found[np.argsort(-np.abs(found), kind="stable")]
+
+    @property
+    def _monodromy(self) -> Floats:
+        """Derivative of the state after the orbit by one at its start.
+
+        Where it starts in a passage of the upright, whether that jump counts at the start or at the end is left to
+        rounding: there it is taken from a little later, with the same eigenvalues.
+        """
+        if not self.planar or abs(self.state[0]) > _PASSING * self.system.scale:
+            return self.chain.monodromy
+        before = self.system.carry(self.state, 0.0, _LATER)
+        around = self.system.carry(before.end, _LATER, _LATER + self.periods, side=before.side)
+        return around.by_start
 
     @property
     def stable(self) -> bool:

@@ -163,6 +163,71 @@ def note_turning(y: Table, new: Table, numbers: Vector, told: Vector) -> None:
 
 
 @part
+def note_extremes(
+    y: Table,
+    s: float,
+    h: float,
+    side: float,
+    period: float,
+    terms: Table,
+    numbers: Vector,
+    change: Vector,
+    term_change: Table,
+    work: Table,
+    k: npt.NDArray[np.float64],
+    new: Table,
+    near: npt.NDArray[np.float64],
+    middle: Table,
+    told: Vector,
+) -> None:
+    """Note the extremes of the tilt within a step; `near` and `middle` are room for another one.
+
+    A cubic over the whole step is right to 1e-4 only: an extreme is looked at again from a state near it.
+    """
+    least, largest = told[0], told[1]
+    at = note_tilt(y, new, period * h, numbers, told)
+    if 0.0 < at < 1.0:
+        told[0], told[1] = least, largest
+        near[0] = k[0]
+        stages_into(y, s, at * h, side, period, terms, numbers, change, term_change, work, near, middle)
+        note_tilt(y, middle, period * at * h, numbers, told)
+        note_tilt(middle, new, period * (1.0 - at) * h, numbers, told)
+
+
+@part
+def step_to_upright(
+    y: Table,
+    s: float,
+    h: float,
+    side: float,
+    period: float,
+    terms: Table,
+    numbers: Vector,
+    change: Vector,
+    term_change: Table,
+    work: Table,
+    k: npt.NDArray[np.float64],
+    new: Table,
+) -> float:
+    """Shorten a step that has passed the upright until it ends there; return its length."""
+    low, high = 0.0, h
+    for _ in range(MOST_TRIES):
+        aside = side * new[0, 0]
+        if abs(aside) < MET or high - low <= 1e-16 * high:
+            break
+        if aside >= 0.0:
+            low = h
+        else:
+            high = h
+        # Newton's step, or the middle where it leads out of the bracket.
+        speed = side * k[12, 0, 0]
+        h = h - aside / speed if speed < 0.0 else low
+        h = h if low < h < high else 0.5 * (low + high)
+        stages_into(y, s, h, side, period, terms, numbers, change, term_change, work, k, new)
+    return h
+
+
+@part
 def cross(y: Table, s: float, side: float, terms: Table, numbers: Vector, work: Table) -> bool:
     """Pass the upright in a plane: the acceleration jumps, and derivatives with it (saltation); False if it grazes."""
     push, before, after = work[0], work[1], work[2]
@@ -208,62 +273,34 @@ def flow(
     side = told[3]
     s, h = begin, min(FIRST_STEP, end - begin)
     rejected = False
-    tries, low, high = 0, 0.0, 0.0
     slopes_into(y, s, side, period, terms, numbers, change, term_change, work, k[0])
     while s < end:
         too_short = h < SHORTEST_STEP * max(1.0, abs(s)) and end - s > h
-        if tries == 0 and (too_short or told[2] >= MOST_STEPS):
+        if too_short or told[2] >= MOST_STEPS:
             return Status.FAILED
         last = h >= end - s
         h = end - s if last else h
         stages_into(y, s, h, side, period, terms, numbers, change, term_change, work, k, new)
         error = error_of(y, new, h, k, rtol, atol)
         if not error < 1.0:
-            if tries > 0:  # a step towards the upright is no longer than one that was good
-                return Status.FAILED
             h *= max(LEAST_FACTOR, SAFETY / error**0.125) if error < math.inf else LEAST_FACTOR
             rejected = True
             continue
-        if PLANAR:
-            aside = side * new[0, 0]
-            crossed = False
-            if tries == 0 and aside < 0.0:
-                low, high = 0.0, h
-                tries = 1
-            elif tries > 0:
-                crossed = abs(aside) < MET or tries >= MOST_TRIES or high - low <= 1e-16 * high
-                if aside >= 0.0:
-                    low = h
-                else:
-                    high = h
-                tries += 1
-            if tries > 0 and not crossed:
-                # Newton's step from the nearer end, else the middle.
-                speed = side * k[12, 0, 0]
-                h = h - aside / speed if speed < 0.0 else 0.5 * (low + high)
-                h = h if low < h < high else 0.5 * (low + high)
-                continue
-            if tries > 0:
-                told[0] = 0.0
-                s += h
-                tries = 0
-                y[:, :] = new
-                told[2] += 1
-                if not cross(y, s, side, terms, numbers, work):
-                    return Status.LOST
-                side = told[3] = -side
-                slopes_into(y, s, side, period, terms, numbers, change, term_change, work, k[0])
-                h = FIRST_STEP
-                continue
-        least_before, largest_before = told[0], told[1]
-        at = note_tilt(y, new, period * h, numbers, told)
-        if 0.0 < at < 1.0:
-            # The extreme is looked at again from a state near it: a cubic over the whole step is right to 1e-4 only.
-            told[0], told[1] = least_before, largest_before
-            near[0] = k[0]
-            stages_into(y, s, at * h, side, period, terms, numbers, change, term_change, work, near, middle)
-            note_tilt(y, middle, period * at * h, numbers, told)
-            note_tilt(middle, new, period * (1.0 - at) * h, numbers, told)
+        passed = PLANAR and side * new[0, 0] < 0.0
+        if passed:
+            h = step_to_upright(y, s, h, side, period, terms, numbers, change, term_change, work, k, new)
+        note_extremes(y, s, h, side, period, terms, numbers, change, term_change, work, k, new, near, middle, told)
+        if passed:
+            told[0] = 0.0
+            told[2] += 1
+            s += h
+            y[:, :] = new
+            if not cross(y, s, side, terms, numbers, work):
+                return Status.LOST
+            side = told[3] = -side
+            slopes_into(y, s, side, period, terms, numbers, change, term_change, work, k[0])
+            h = FIRST_STEP
+            continue
         if not PLANAR:
             note_turning(y, new, numbers, told)
         s = end if last else s + h
