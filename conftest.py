@@ -11,7 +11,7 @@ from sybil import Sybil
 from sybil.parsers.myst import PythonCodeBlockParser, SkipParser
 
 # Parts of kernels make sense behind the head that is written for each kernel only.
-collect_ignore_glob = ["src/stylobate/engine/lanes/pattern/*"]
+collect_ignore_glob = ["src/stylobate/engine/lanes/pattern/*", "src/stylobate/engine/flow/pattern.py"]
 
 
 def _enter_folder(namespace: dict[str, Any]) -> None:
