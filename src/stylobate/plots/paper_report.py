@@ -113,7 +113,7 @@ _PICTURES: tuple[tuple[str, str, Callable[[PaperCheck], Figure], str], ...] = (
         "Motion in a plane",
         lambda check: paper.backbones(check.data["backbones"]),
         "Two curves that look alike and are not: free rolling (5) and free rocking (3), each with a forced response "
-        "that hugs it. Rocking is shown stable or not within its plane; out of it, it is always unstable.",
+        "that hugs it. Rocking is shown stable or not within its plane; whether it keeps to it is conclusion 5.",
     ),
     (
         "planar-kick",
