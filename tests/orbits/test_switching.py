@@ -171,3 +171,17 @@ def test_bounds_must_enclose_the_bifurcation(straight_branches, bounds):
     with pytest.raises(ParameterError, match="bounds") as told:
         switch_branch(pitchfork, bounds=bounds)
     assert "\n" not in str(told.value)
+
+
+def test_a_family_ends_where_its_path_meets_the_upright():
+    """Beyond, the lean would wind about the upright another number of times: no path leads there but through it."""
+    model = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
+    motion = sb.Harmonic.straight(acceleration=0.13, angular_frequency=3.0)
+    rolling = sb.orbits.continue_branch(sb.orbits.periodic_orbit(model, motion), "angular_frequency", bounds=(1.2, 4.0))
+    family = sb.orbits.switch_branch(rolling.bifurcations[-1], bounds=(0.8, 4.0))
+    assert family.ends[1] is sb.orbits.End.LOST
+    points = family.points
+    assert set(points["turns"].values) == {1.0}
+    assert float(points["angular_frequency"][-1]) == pytest.approx(0.9787, abs=1e-3)
+    # Its least tilt falls towards nothing as the end comes near.
+    assert float(points["least_tilt"][-1]) < 0.05 * float(points["least_tilt"].max())
