@@ -50,6 +50,7 @@ def basin(
     periods: opt.Periods = None,
     strobes: Strobes = None,
     confidence: Confidence = None,
+    method: opt.Method = None,
     rtol: opt.Rtol = None,
     tilt_limit: opt.TiltLimit = None,
     rest_energy: opt.RestEnergy = None,

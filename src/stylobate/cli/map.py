@@ -33,6 +33,7 @@ def overturning_map(
     tilt_rate: opt.TiltRate = None,
     duration: opt.Duration = None,
     periods: opt.Periods = None,
+    method: opt.Method = None,
     rtol: opt.Rtol = None,
     tilt_limit: opt.TiltLimit = None,
     rest_energy: opt.RestEnergy = None,

@@ -35,6 +35,7 @@ Rtol = Annotated[float | None, _option("relative tolerance, 1e-8 by default", _R
 TiltLimit = Annotated[float | None, _option("tilt that ends a run [rad]", _RUN)]
 RestEnergy = Annotated[float | None, _option("energy of rest ε, in c²", _RUN)]
 MaxSteps = Annotated[int | None, _option("most integration steps, 200000 by default", _RUN)]
+Method = Annotated[str | None, _option("dop853 (by default), or taylor: faster for columns that roll steadily", _RUN)]
 Samples = Annotated[int | None, _option("number of samples kept", _RUN)]
 
 Shape = Annotated[str | None, _option("solid, hollow, frustum or dimensionless; told from the others", _COLUMN)]
@@ -82,6 +83,7 @@ RUN_NAMES = (
     "tilt_rate",
     "duration",
     "periods",
+    "method",
     "rtol",
     "tilt_limit",
     "rest_energy",

@@ -33,6 +33,7 @@ def simulate_ensemble(
     tilt_rate: ArrayLike = (0.0, 0.0),
     duration: ArrayLike,
     parameters: Mapping[str, ArrayLike] | None = None,
+    method: str = "dop853",
     rtol: float = 1e-8,
     atol: float | None = None,
     tilt_limit: float | None = None,
@@ -46,8 +47,8 @@ def simulate_ensemble(
 ) -> xr.Dataset:
     """Follow many columns, each from its start to its outcome.
 
-    The runs are integrated as those of `simulate`, by DOP853 with the same events, outcomes and tolerances, many at a
-    time in compiled code. The equations are compiled for the machine when a model first meets a kind of base motion,
+    The runs are integrated as those of `simulate`, with the same events, outcomes and tolerances, many at a time in
+    compiled code. The equations are compiled for the machine when a model first meets a kind of base motion,
     and kept in the user's cache folder ($STYLOBATE_CACHE names another). A run's result does not depend on the other
     runs.
 
@@ -65,6 +66,10 @@ def simulate_ensemble(
     parameters
         Numbers of column, model and motion that differ between the runs, by name, each of the shapes of `duration`;
         the names are those of `with_parameters`. All arrays are broadcast together by the names of their dimensions.
+    method
+        How motion in space is integrated: "dop853" as in `simulate`, or "taylor" by Taylor series of order 16, with
+        which a column that rolls steadily takes a third of the steps. Runs that pass near the upright, and so most
+        maps, are faster by the former.
     rtol, atol, tilt_limit, rest_energy, max_steps, rules
         As in `simulate`; the same for all runs.
     samples
@@ -110,6 +115,7 @@ def simulate_ensemble(
     changes = _named(parameters)
     check_names(model, changes)
     options = Options.checked(
+        method=method,
         rtol=rtol,
         atol=atol,
         tilt_limit=tilt_limit,

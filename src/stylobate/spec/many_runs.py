@@ -1,7 +1,7 @@
 """What descriptions of many runs share: a column, its model, a base motion, a start, how long and how closely."""
 
 from collections.abc import Mapping
-from typing import Any, Self
+from typing import Any, Literal, Self
 
 from pydantic import Field
 
@@ -32,6 +32,7 @@ class ManyRuns(Description):
     tilt_rate: tuple[float, float] = (0.0, 0.0)
     duration: float | None = None
     periods: float | None = None
+    method: Literal["dop853", "taylor"] = "dop853"
     rtol: float = 1e-8
     atol: float | None = None
     tilt_limit: float | None = None
@@ -72,7 +73,10 @@ class ManyRuns(Description):
         return [f"duration [s], periods or a duration that varies is needed, one of them; got {got}"]
 
 
-_SHARED = ("tilt", "tilt_rate", "duration", "periods", "rtol", "atol", "tilt_limit", "rest_energy", "max_steps")
+_SHARED = (
+    *("tilt", "tilt_rate", "duration", "periods"),
+    *("method", "rtol", "atol", "tilt_limit", "rest_energy", "max_steps"),
+)
 
 
 def with_numbers_that_vary(values: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, Any]:

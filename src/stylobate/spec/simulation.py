@@ -112,7 +112,7 @@ def _require_share(name: str, value: float) -> None:
         raise ParameterError(message)
 
 
-OF_OTHER_COMMANDS = ("map", "basin", "periods", "strobes", "confidence", "angular_frequency_range", "points")
+OF_OTHER_COMMANDS = ("map", "basin", "periods", "method", "strobes", "confidence", "angular_frequency_range", "points")
 """What a description may say that is no argument of a single run."""
 
 _RUN_CHECKS: Mapping[str, Callable[[str, Any], object]] = {

@@ -11,6 +11,7 @@ from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.motion_columns import MotionColumns, MotionPlan
 from stylobate.engine.ensembles.options import Options
 from stylobate.engine.lanes.columns import LOG, NOTE, STATE, Log, Setup, Status
+from stylobate.engine.lanes.expansion import series_integrals
 from stylobate.engine.lanes.kernels import kernel_of
 from stylobate.engine.lanes.shape import Shape
 from stylobate.engine.resting import cannot_depart
@@ -34,12 +35,17 @@ class Plan:
 
     def shape(self, *, planar: bool) -> Shape:
         """Return what sets the kernel of motion in a plane, or in space, apart from others."""
+        states, parameters = len(self.model.state_names), len(self.model.parameters)
+        forcing = self.motion.source(planar=planar)
+        by_series = self.options.method == "taylor" and not planar  # in a plane the equations are linear between events
+        vertical = "az" in forcing.components
         return Shape(
-            states=len(self.model.state_names),
-            parameters=len(self.model.parameters),
+            states=states,
+            parameters=parameters,
             planar=planar,
-            forcing=self.motion.source(planar=planar),
+            forcing=forcing,
             width=WIDTH,
+            series=series_integrals(type(self.model), states, parameters, vertical=vertical) if by_series else (),
         )
 
     @property

@@ -12,11 +12,15 @@ from stylobate.errors import (
 )
 from stylobate.results import OutcomeRules
 
+METHODS = ("dop853", "taylor")
+"""Methods of integration of an ensemble."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Options:
     """What all runs of an ensemble share; as in `simulate`."""
 
+    method: str
     rtol: float
     atol: float | None
     tilt_limit: float | None
@@ -30,6 +34,7 @@ class Options:
     def checked(
         cls,
         *,
+        method: str = "dop853",
         rtol: float,
         atol: float | None,
         tilt_limit: float | None,
@@ -46,6 +51,9 @@ class Options:
         ParameterError
             If one is out of range.
         """
+        if method not in METHODS:
+            message = f"method must be one of {', '.join(map(repr, METHODS))}, got {method!r}"
+            raise ParameterError(message)
         low, high = RTOL_RANGE
         rtol = require_positive("rtol", rtol)
         if not low <= rtol <= high:
@@ -55,6 +63,7 @@ class Options:
             message = f"rules must be OutcomeRules(...) or None, got {rules!r}"
             raise ParameterError(message)
         return cls(
+            method=method,
             rtol=rtol,
             atol=None if atol is None else require_positive("atol", atol, "rad"),
             tilt_limit=None if tilt_limit is None else require_positive("tilt_limit", tilt_limit, "rad"),

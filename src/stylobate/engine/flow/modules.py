@@ -9,9 +9,9 @@ from typing import Any
 
 from stylobate.engine.compiling import arithmetic
 from stylobate.engine.compiling.modules import compiled_module
+from stylobate.engine.equations.expressions import Expression, Recording
+from stylobate.engine.equations.recording import recorded
 from stylobate.engine.flow import tableau
-from stylobate.engine.flow.expressions import Expression, Recording
-from stylobate.engine.flow.recording import recorded
 from stylobate.errors import UnsupportedError
 from stylobate.models import Model
 

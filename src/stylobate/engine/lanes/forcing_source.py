@@ -24,6 +24,9 @@ class ForcingSource(Protocol):
     def lines(self, at: Callable[[str], str], time: str) -> list[str]:
         """Return assignments of the accelerations [g] at the time that the expression gives; `at` names a row."""
 
+    def series_lines(self, at: Callable[[str], str], order: int) -> list[str]:
+        """Return assignments of the Taylor coefficients `ax_0`, `ax_1` … below `order` about the time `t`."""
+
     def constants(self, rows: Rows) -> dict[str, int]:
         """Return what the driver must know to fill the rows."""
 
@@ -89,6 +92,38 @@ class Harmonics(ForcingSource):
                 out.append(f"{component} = {value}" if term == 0 else f"{component} = {component} + {value}")
         return out or [f"{component} = 0.0" for component in self.components]
 
+    def series_lines(self, at: Callable[[str], str], order: int) -> list[str]:
+        """Return the series of each wave: f″ = −ω²f gives every second coefficient from the one before."""
+        out = []
+        waves = [wave for term in range(self.terms) for wave in self._waves(at, term)]
+        for number, (turns, phase, factor, term) in enumerate(waves):
+            out += [f"turns = {turns}", "omega = 6.283185307179586 * turns", "square = -omega * omega"]
+            out += [f"per{k} = square * {1.0 / (k * (k - 1))!r}" for k in range(2, order)]
+            for component in self.components:
+                out += [
+                    f"angle = turns * t + {phase} + {at(f'{component}_phase{term}')}",
+                    f"size = {factor}{at(f'{component}_amplitude{term}')}",
+                    "wave0 = size * cos_turns(angle)",
+                    "wave1 = -omega * size * cos_turns(angle - 0.25)",
+                    *(f"wave{k} = per{k} * wave{k - 2}" for k in range(2, order)),
+                ]
+                for k in range(order):
+                    name = f"{component}_{k}"
+                    out.append(f"{name} = wave{k}" if number == 0 else f"{name} = {name} + wave{k}")
+        return out or [f"{component}_{k} = 0.0" for component in self.components for k in range(order)]
+
+    def _waves(self, at: Callable[[str], str], term: int) -> list[tuple[str, str, str, int]]:
+        """Return frequency, phase and factor of the plain waves of a term: one that rises is the sum of three."""
+        turns = at(f"turns{term}")
+        if not self.windowed:
+            return [(turns, "0.0", "", term)]
+        full, depth, rate, phase = (at(f"{name}{term}") for name in ("full", "depth", "window_turns", "window_phase"))
+        return [
+            (turns, "0.0", f"{full} * ", term),
+            (f"{turns} + {rate}", phase, f"-0.5 * {depth} * ", term),
+            (f"{turns} - {rate}", f"(-{phase})", f"-0.5 * {depth} * ", term),
+        ]
+
     def constants(self, rows: Rows) -> dict[str, int]:
         """Return the number of terms, and how their rows lie."""
         return {
@@ -133,6 +168,19 @@ class Polynomials(ForcingSource):
             out += [
                 f"{component} = {component} * u + {at(f'{component}{power}')}" for power in reversed(range(self.degree))
             ]
+        return out
+
+    def series_lines(self, at: Callable[[str], str], order: int) -> list[str]:
+        """Return the polynomials expanded anew about the time `t`, by repeated synthetic division."""
+        last = self.degree
+        out = [f"u = (t - {at('middle')}) * {at('per_half')}", f"power1 = {at('per_half')}"]
+        out += [f"power{k} = power{k - 1} * power1" for k in range(2, last + 1)]
+        for component in self.components:
+            out += [f"b{power} = {at(f'{component}{power}')}" for power in range(last + 1)]
+            out += [f"b{j} = b{j} + u * b{j + 1}" for k in range(last) for j in range(last - 1, k - 1, -1)]
+            out.append(f"{component}_0 = b0")
+            out += [f"{component}_{k} = b{k} * power{k}" for k in range(1, min(last + 1, order))]
+            out += [f"{component}_{k} = 0.0" for k in range(last + 1, order)]
         return out
 
     def constants(self, rows: Rows) -> dict[str, int]:

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 
 from stylobate.engine.lanes.columns import NOTE, SLACK, STATE
-from stylobate.engine.lanes.observation_source import GROUP
-from stylobate.engine.lanes.shape import Shape
+from stylobate.engine.lanes.series_source import polynomial, state_polynomial
+from stylobate.engine.lanes.shape import SERIES_ORDER, Shape
 from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET, HOPS_APART
 
 OPTIONAL = ("rest_energy", "no_return_tilt", "departure", "passage", "at_rest")
@@ -15,10 +15,10 @@ def constants_source(shape: Shape, has: Mapping[str, bool], *, to_plane: bool) -
     """Return the source of the constants; `has` tells which functions the model gives."""
     values = {
         "WIDTH": shape.width,
-        "GROUP": GROUP,
         "ORDER": shape.order,
         "PARAMETERS": shape.parameters,
         "PLANAR": shape.planar,
+        "SERIES": SERIES_ORDER if shape.series else 0,
         "VERTICAL": "az" in shape.forcing.components,
         "STATE": STATE,
         "NOTE": NOTE,
@@ -51,6 +51,7 @@ def model_source(shape: Shape, has: Mapping[str, bool]) -> str:
     nothing = f"({'0.0, ' * shape.order})"
     definitions = {
         "row_state(buf, i, row)": "(" + "".join(f"buf[row + {j}, i], " for j in range(shape.order)) + ")",
+        "series_within(buf, i, elapsed)": _series_within(shape),
         "model_lean(buf, i)": _plane_lean(state) if shape.planar else call("lean", *state),
         "lean_of_new(buf, i)": _plane_lean(new) if shape.planar else call("lean", *new),
         "model_rest_energy(buf, i, tilt, speed, az)": call("rest_energy", "tilt", "speed", "az")
@@ -72,6 +73,15 @@ def model_source(shape: Shape, has: Mapping[str, bool]) -> str:
     if has["departure"] and shape.planar:
         source += _plane_departure(call("departure", "push", "elapsed"), parameters)
     return source
+
+
+def _series_within(shape: Shape) -> str:
+    """Return the state at a time since the step just made began."""
+    if not shape.series:
+        return f"({'0.0, ' * shape.order})"
+    at = shape.rows().of_lane
+    polynomials = (polynomial(state_polynomial(shape, at, j), "elapsed") for j in range(shape.order))
+    return f"({', '.join(polynomials)})"
 
 
 def _plane_lean(state: list[str]) -> str:

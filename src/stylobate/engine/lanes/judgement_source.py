@@ -5,7 +5,8 @@ from collections.abc import Callable
 from scipy.integrate import DOP853
 
 from stylobate.engine.lanes.layout import Rows
-from stylobate.engine.lanes.shape import STAGES, Shape
+from stylobate.engine.lanes.series_source import polynomial, wanted_lines
+from stylobate.engine.lanes.shape import SERIES_ORDER, STAGES, Shape
 from stylobate.engine.lanes.stage_source import combination
 from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET
 
@@ -33,6 +34,8 @@ def judgement(shape: Shape, rows: Rows) -> list[str]:
 
 def _error(shape: Shape, rows: Rows) -> list[str]:
     at = rows.at
+    if shape.series:  # told with the step
+        return []
     out = [
         "e5 = 0.0",
         "e3 = 0.0",
@@ -101,12 +104,46 @@ def _crossing(shape: Shape, rows: Rows) -> list[str]:
 
 
 def _extremes(shape: Shape, rows: Rows) -> list[str]:
-    """Return what finds the least and the largest tilt within the step.
+    """Return what notes the least and the largest tilt within the step.
 
-    They are told by a cubic: in a plane of the tilt, which may begin at the upright, else of its square, whose least
-    value at a passage of the upright is kept.
+    They are told of the square of the tilt, whose least value at a passage of the upright is kept; in a plane of the
+    tilt itself, which may begin at the upright.
     """
     at = rows.at
+    return [
+        f"h = {at('h')}",
+        f"go = {at('go')}",
+        f"tilt0 = {at('tilt')}",
+        f"tilt1 = {at('new_tilt')}",
+        *(_by_series(at) if shape.series else _by_cubic(shape, at)),
+        "low = lowest if fell > 0.0 else min(tilt0, tilt1)",
+        f"{at('low')} = low",
+        # A step towards an event may go beyond it: its ends do not count yet.
+        f"ends = 0.0 if {at('aimed')} > 0.0 else max(tilt0, tilt1)",
+        f"largest = {at('largest_tilt')}",
+        # An extreme that may be above all others so far is measured by the driver, which looks at aimed steps anyway.
+        "highest = highest if rose > 0.0 else 0.0",
+        f"above = max(2.0 * highest - ends - largest * {1.0 + _NEW_PEAK!r}, {at('aimed')})",
+        "peak = go * rose * (1.0 if above > 0.0 else 0.0)",
+        f"{at('peak')} = peak",
+        "seen = max(ends, highest) * (1.0 - peak)",
+        "seen = seen if go > 0.0 else 0.0",
+        f"now = {at('time')} + h * (share if rose > 0.0 else (1.0 if tilt1 > tilt0 else 0.0))",
+        f"before = {at('largest_at')}",
+        f"{at('largest_at')} = now if seen > largest else before",
+        f"{at('largest_tilt')} = max(largest, seen)",
+        *_least(at, "least_tilt"),
+        *(() if shape.planar else _least(at, "least_passage")),
+    ]
+
+
+# Whether a function falls and then rises between two places with these slopes, or the other way round.
+_FELL = "(1.0 if {} < 0.0 else 0.0) * (1.0 if {} > 0.0 else 0.0)"
+_ROSE = "(1.0 if {} > 0.0 else 0.0) * (1.0 if {} < 0.0 else 0.0)"
+
+
+def _by_cubic(shape: Shape, at: Callable[[str], str]) -> list[str]:
+    """Return what finds the one extreme of a cubic: `fell` and `lowest`, or `rose`, `highest` and its `share` of it."""
     if shape.planar:
         followed = [
             f"start = {at('side')} * {at('x')}",
@@ -122,33 +159,52 @@ def _extremes(shape: Shape, rows: Rows) -> list[str]:
             f"slope1 = 2.0 * {at('new_radial')} * h",
         ]
     return [
-        f"h = {at('h')}",
-        f"go = {at('go')}",
-        f"tilt0 = {at('tilt')}",
-        f"tilt1 = {at('new_tilt')}",
         *followed,
-        "fell = (1.0 if slope0 < 0.0 else 0.0) * (1.0 if slope1 > 0.0 else 0.0)",
-        "rose = (1.0 if slope0 > 0.0 else 0.0) * (1.0 if slope1 < 0.0 else 0.0)",
-        "share, extreme = turning_point(start, end, slope0, slope1, rose - fell)",
-        "extreme = max(extreme, 0.0)" if shape.planar else "extreme = math.sqrt(max(extreme, 0.0))",
-        "low = extreme if fell > 0.0 else min(tilt0, tilt1)",
-        f"{at('low')} = low",
-        # A step towards an event may go beyond it: its ends do not count yet.
-        f"ends = 0.0 if {at('aimed')} > 0.0 else max(tilt0, tilt1)",
-        f"largest = {at('largest_tilt')}",
-        # An extreme that may be above all others so far is measured by the driver, which looks at aimed steps anyway.
-        f"above = max(2.0 * extreme - ends - largest * {1.0 + _NEW_PEAK!r}, {at('aimed')})",
-        "peak = go * rose * (1.0 if above > 0.0 else 0.0)",
-        f"{at('peak')} = peak",
-        "seen = max(ends, extreme * rose) * (1.0 - peak)",
-        "seen = seen if go > 0.0 else 0.0",
-        f"now = {at('time')} + h * (share if rose > 0.0 else (1.0 if tilt1 > tilt0 else 0.0))",
-        f"before = {at('largest_at')}",
-        f"{at('largest_at')} = now if seen > largest else before",
-        f"{at('largest_tilt')} = max(largest, seen)",
-        *_least(at, "least_tilt"),
-        *(() if shape.planar else _least(at, "least_passage")),
+        f"fell = {_FELL.format('slope0', 'slope1')}",
+        f"rose = {_ROSE.format('slope0', 'slope1')}",
+        "share, highest = turning_point(start, end, slope0, slope1, rose - fell)",
+        "highest = max(highest, 0.0)" if shape.planar else "highest = math.sqrt(max(highest, 0.0))",
+        "lowest = highest",
     ]
+
+
+def _by_series(at: Callable[[str], str]) -> list[str]:
+    """Return the same for a step by series, which may be long: cubics over its halves tell places, the series values.
+
+    In each half there is one extreme at most; of two lows or two highs the first is taken.
+    """
+    *lower, last = (at(f"square{k}") for k in range(SERIES_ORDER + 1))
+    out = ["half = 0.5 * h", f"square1 = {last}", "slope1 = 0.0"]
+    for coefficient in reversed(lower):
+        out += ["slope1 = slope1 * half + square1", f"square1 = square1 * half + {coefficient}"]
+    out += [
+        "slope1 = slope1 * half",
+        "square0 = tilt0 * tilt0",
+        "square2 = tilt1 * tilt1",
+        f"slope0 = 2.0 * {at('radial')} * half",
+        f"slope2 = 2.0 * {at('new_radial')} * half",
+    ]
+    for name, pattern, value, place, sign in (
+        ("fell", _FELL, "lowest", "at_low", -1.0),
+        ("rose", _ROSE, "highest", "share", 1.0),
+    ):
+        out += [
+            f"early = {pattern.format('slope0', 'slope1')}",
+            f"{name} = max(early, {pattern.format('slope1', 'slope2')})",
+            *(f"{end} = {a} if early > 0.0 else {b}" for end, a, b in _HALVES),
+            f"{place}, _ = turning_point(start, end, slope, end_slope, {sign!r})",
+            f"{place} = 0.5 * ({place} + (0.0 if early > 0.0 else 1.0))",
+            f"{value} = math.sqrt(max({polynomial([*lower, last], f'({place} * h)')}, 0.0))",
+        ]
+    return out
+
+
+_HALVES = (
+    ("start", "square0", "square1"),
+    ("end", "square1", "square2"),
+    ("slope", "slope0", "slope1"),
+    ("end_slope", "slope1", "slope2"),
+)
 
 
 def _least(at: Callable[[str], str], row: str) -> tuple[str, ...]:
@@ -183,28 +239,24 @@ def _keeping(shape: Shape, rows: Rows) -> list[str]:
     at = rows.at
     out = [f"go = {at('go')}"]
 
-    def keep(target: str, value: str, before: str) -> None:
+    def keep(target: str, value: str, before: str | None = None) -> None:
         # Both are read before the choice: a choice between two addresses would not become vector code. What was
         # before a step that was not made is never looked at.
-        out.extend(
-            [
-                f"new = {at(value)}",
-                f"old = {at(target)}",
-                f"{at(before)} = old",
-                f"{at(target)} = new if go > 0.0 else old",
-            ]
-        )
+        out.extend([f"new = {at(value)}", f"old = {at(target)}"])
+        if before is not None:
+            out.append(f"{at(before)} = old")
+        out.append(f"{at(target)} = new if go > 0.0 else old")
 
     for j in range(shape.order):
         keep(f"y{j}", f"new{j}", f"last{j}")
-        keep(f"k0_{j}", f"k{STAGES}_{j}", f"last_slope{j}")
+        if not shape.series:
+            keep(f"k0_{j}", f"k{STAGES}_{j}", f"last_slope{j}")
     for name in ("tilt", "radial", "x", "y", "vx", "vy"):
-        keep(name, f"new_{name}", f"{name}_before")
+        keep(name, f"new_{name}")
     return out
 
 
 def _next_step(shape: Shape, rows: Rows) -> list[str]:
-    del shape
     at = rows.at
     return [
         f"h = {at('h')}",
@@ -220,6 +272,19 @@ def _next_step(shape: Shape, rows: Rows) -> list[str]:
         "t1 = t + h * go",
         "t1 = stop if reached > 0.0 else t1",
         f"{at('time')} = t1",
+        *(wanted_lines(rows) if shape.series else _wanted(rows)),
+        f"{at('rejected')} = 1.0 - ok",
+        f"{at('aimed')} = {at('aimed')} * ok",
+        f"{at('wanted')} = wanted",
+        f"{at('h')} = min(wanted, {at('stop')} - t1)",
+        f"{at('steps')} = {at('steps')} + go",
+    ]
+
+
+def _wanted(rows: Rows) -> list[str]:
+    """Return what chooses the next step from the error of this one, before stops cut it."""
+    at = rows.at
+    return [
         f"error = {at('error')}",
         f"error = {_LEAST_ERROR!r} if error < {_LEAST_ERROR!r} else error",
         f"factor = {_SAFETY!r} / math.sqrt(math.sqrt(math.sqrt(error)))",
@@ -227,12 +292,7 @@ def _next_step(shape: Shape, rows: Rows) -> list[str]:
         f"factor = factor if factor > {_LEAST_FACTOR!r} else {_LEAST_FACTOR!r}",
         f"most = 1.0 if {at('rejected')} > 0.0 else {_LARGEST_FACTOR!r}",
         "factor = factor if factor < most else most",
-        f"{at('rejected')} = 1.0 - ok",
-        f"{at('aimed')} = {at('aimed')} * ok",
         f"wanted = min(h * factor, {at('longest_step')})",
-        f"{at('wanted')} = wanted",
-        f"{at('h')} = min(wanted, {at('stop')} - t1)",
-        f"{at('steps')} = {at('steps')} + go",
     ]
 
 

@@ -15,7 +15,7 @@ from stylobate.engine.lanes import pattern, roots
 from stylobate.engine.lanes.columns import LOOKS, Status, Window
 from stylobate.engine.lanes.head_source import OPTIONAL, constants_source, model_source
 from stylobate.engine.lanes.observation_source import observation_source
-from stylobate.engine.lanes.shape import Shape
+from stylobate.engine.lanes.shape import STAGES, Shape
 from stylobate.engine.lanes.step_source import accelerations_source, rates_source, step_source
 from stylobate.models import Model
 
@@ -68,7 +68,7 @@ def kernel_source(model: type[Model], shape: Shape) -> str:
             accelerations_source(shape),
             rates_source(shape),
             model_source(shape, has),
-            step_source(shape),
+            step_source(model, shape),
             observation_source(shape),
             _driver_text(),
         ]
@@ -107,17 +107,18 @@ def _with_numbers(text: str, shape: Shape) -> str:
     rows = shape.rows()
     special = {
         "STATE": rows["y0"],
-        "SLOPE": rows["k0_0"],
         "NEW": rows["new0"],
-        "SLOPE_NEW": rows["k12_0"],
         "LAST_STATE": rows["last0"],
-        "LAST_SLOPE": rows["last_slope0"],
         "BEFORE": rows["before_tilt_change"],
         "LATE": rows["late_tilt_change"],
         "LOOK": rows["look0"],
         "PARAMETER": rows["p0"] if shape.parameters else 0,
         "COUNT": len(rows),
     }
+
+    slopes = {"SLOPE": "k0_0", "SLOPE_NEW": f"k{STAGES}_0", "LAST_SLOPE": "last_slope0"}
+    # Steps by series have no slopes; what reads them is left out by the compiler.
+    special |= {name: 0 if shape.series else rows[row] for name, row in slopes.items()}
 
     def number(match: re.Match[str]) -> str:
         table, name = match.groups()

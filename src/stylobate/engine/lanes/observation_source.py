@@ -1,76 +1,88 @@
-"""Writes the loop that integrates over the last periods: mean tilt, and the parts that turn with the forcing."""
+"""Writes what integrates over the last periods: mean tilt, and the parts that turn with the forcing.
 
-from collections.abc import Callable
+Few lanes are in their last periods at one time. Each is observed by itself, the loop running over the nodes of Gauss's
+rule within its step instead of over lanes.
+"""
 
-from stylobate.engine.lanes.shape import Shape
+import numpy as np
 
-GROUP = 8
-"""Lanes that are observed together, when one of them is watched."""
+from stylobate.engine.lanes.layout import Rows
+from stylobate.engine.lanes.series_source import polynomial, state_polynomial
+from stylobate.engine.lanes.shape import NODES, OBSERVED, SERIES_ORDER, Shape
 
-
-def _rates_of_tilt(shape: Shape, at: Callable[[str], str]) -> tuple[str, str]:
-    """Return what finds the rates of the tilt at both ends; in a plane it begins at the upright with some speed."""
-    if shape.planar:
-        return f"rate0 = {at('side')} * {at('vx_before')}", f"rate1 = {at('side')} * {at('vx')}"
-    return (
-        f"rate0 = {at('radial_before')} / ({at('tilt_before')} + 1e-300)",
-        f"rate1 = {at('radial')} / ({at('tilt')} + 1e-300)",
-    )
+_PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(NODES)  # on −1 … 1
+# What turns with the forcing and against it: row, component along the cosine, along the sine, and the sign of that.
+_TURNING = (
+    ("forward_cos", "x", "y", "+"),
+    ("forward_sin", "y", "x", "-"),
+    ("backward_cos", "x", "y", "-"),
+    ("backward_sin", "y", "x", "+"),
+)
 
 
 def observation_source(shape: Shape) -> str:
-    """Return the source of `observe(buf)`: integrals over the step just made, in the first lanes of a buffer.
+    """Return the source of `observe(buf, i)`: integrals over the step just made in lane `i`.
 
-    Each is the trapezoidal rule with its end correction, exact for cubics: of the tilt, and of the lean times
-    e^{∓2πi t/T}, T being the period of the base motion.
+    They are those of the tilt, and of the lean times e^{∓2πi t/T}, T being the period of the base motion.
     """
     rows = shape.rows()
     at = rows.at
-    body = [
-        f"h = {at('made')}",
-        f"weight = h * {at('watched')}",
-        f"correction = weight * h * {1.0 / 12.0!r}",
-        *_rates_of_tilt(shape, at),
-        f"{at('mean_tilt')} = {at('mean_tilt')} + 0.5 * weight * ({at('tilt_before')} + {at('tilt')})"
-        " + correction * (rate0 - rate1)",
-        f"seen = {at('watched')} * abs(h)",
-        f"least = {at('late_least')}",
-        f"low = {at('low')}",
-        f"{at('late_least')} = min(least, low if seen > 0.0 else least)",
-        f"w = {at('per_turn')}",
-        f"turns1 = w * {at('time')}",
-        "turns0 = turns1 - w * h",
-        "cos0 = cos_turns(turns0)",
-        "sin0 = cos_turns(turns0 - 0.25)",
-        "cos1 = cos_turns(turns1)",
-        "sin1 = cos_turns(turns1 - 0.25)",
-        "w = 6.283185307179586 * w",
+    # Sums would have to be taken in order: products are kept, and added afterwards.
+    kept = {name: f"buf[{rows[f'node_{name}']} * WIDTH + node]" for name in OBSERVED}
+    lines = [
+        "@vectorised",
+        "def observe(buf, i):",
+        f"    h = {at('made')}",
+        f"    w = {at('per_turn')}",
+        f"    start = w * ({at('time')} - h)",
+        *(f"    p{j} = {at(f'p{j}')}" for j in range(shape.parameters)),
+        *(f"    {line}" for line in _terms_of_step(shape, rows)),
+        f"    for node in range({NODES}):",
+        "        u = PLACES[node]",
+        *(f"        s{j} = {_state_within(shape, j)}" for j in range(shape.order)),
+        f"        x, y, _, _ = {_lean(shape)}",
+        "        turns = start + w * (u * h)",
+        "        cos = cos_turns(turns)",
+        "        sin = cos_turns(turns - 0.25)",
+        "        weight = h * WEIGHTS[node]",
+        f"        {kept['mean_tilt']} = weight * math.sqrt(x * x + y * y)",
+        *(f"        {kept[name]} = weight * ({a} * cos {sign} {b} * sin)" for name, a, b, sign in _TURNING),
+        f"    for node in range({NODES}):",
+        *(f"        {at(name)} += {kept[name]}" for name in OBSERVED),
+        f"    {at('late_least')} = min({at('late_least')}, {at('low')})",
     ]
-    for end, source in (("0", "_before"), ("1", "")):
-        x, y = ("x_before", "y_before") if source else ("x", "y")
-        vx, vy = f"vx{source}", f"vy{source}"
-        body += [
-            f"x{end} = {at(x)}",
-            f"y{end} = {at(y)}",
-            # Rates of x and y in a frame that turns with the forcing, and in one that turns against it.
-            f"fx{end} = {at(vx)} + w * y{end}",
-            f"fy{end} = {at(vy)} - w * x{end}",
-            f"bx{end} = {at(vx)} - w * y{end}",
-            f"by{end} = {at(vy)} + w * x{end}",
+    tables = f"PLACES = np.array({(0.5 + 0.5 * _PLACES).tolist()})\nWEIGHTS = np.array({(0.5 * _WEIGHTS).tolist()})\n\n"
+    return tables + "\n".join(lines) + "\n"
+
+
+def _terms_of_step(shape: Shape, rows: Rows) -> list[str]:
+    """Return the coefficients, in the part `u` of the step, of the polynomials that tell its states."""
+    at = rows.at
+    if shape.series:
+        out = [f"power{k} = {f'power{k - 1} * h' if k > 1 else 'h'}" for k in range(1, SERIES_ORDER + 2)]
+        for j in range(shape.order):
+            start, *terms = state_polynomial(shape, at, j)
+            out += [f"t{j}_0 = {start}", *(f"t{j}_{k} = power{k} * ({term})" for k, term in enumerate(terms, 1))]
+        return out
+    out = []
+    for j in range(shape.order):  # cubics
+        out += [
+            f"t{j}_0 = {at(f'last{j}')}",
+            f"t{j}_1 = h * {at(f'last_slope{j}')}",
+            f"rise = {at(f'y{j}')} - t{j}_0",
+            f"end = h * {at(f'k0_{j}')}",
+            f"t{j}_2 = 3.0 * rise - 2.0 * t{j}_1 - end",
+            f"t{j}_3 = t{j}_1 + end - 2.0 * rise",
         ]
-    for name, x, y, sign in (
-        ("forward_cos", "x", "y", "+"),
-        ("forward_sin", "y", "x", "-"),
-        ("backward_cos", "x", "y", "-"),
-        ("backward_sin", "y", "x", "+"),
-    ):
-        frame = name[0]
-        values = [f"({x}{e} * cos{e} {sign} {y}{e} * sin{e})" for e in "01"]
-        slopes = [f"({frame}{x}{e} * cos{e} {sign} {frame}{y}{e} * sin{e})" for e in "01"]
-        body.append(
-            f"{at(name)} = {at(name)} + 0.5 * weight * ({values[0]} + {values[1]})"
-            f" + correction * ({slopes[0]} - {slopes[1]})"
-        )
-    head = ["@vectorised", "def observe(buf):", f"    for i in range({GROUP}):"]
-    lines = [*head, *(f"        {line}" for line in body)]
-    return "\n".join(lines) + "\n"
+    return out
+
+
+def _state_within(shape: Shape, j: int) -> str:
+    degree = shape.degree(j) if shape.series and j in shape.expanded else SERIES_ORDER if shape.series else 3
+    return polynomial([f"t{j}_{k}" for k in range(degree + 1)], "u")
+
+
+def _lean(shape: Shape) -> str:
+    if shape.planar:
+        return "s0, 0.0, s1, 0.0"
+    return f"lean({', '.join([*(f's{j}' for j in range(shape.order)), *(f'p{j}' for j in range(shape.parameters))])})"

@@ -9,6 +9,12 @@ from stylobate.engine.lanes.layout import Rows
 STAGES = 12
 """Stages of DOP853; one more gives the slope at the end of a step."""
 
+SERIES_ORDER = 16
+"""Order of Taylor series."""
+
+NODES = 8
+"""Places within a step at which it is observed."""
+
 
 @dataclass(frozen=True, slots=True)
 class Shape:
@@ -24,6 +30,9 @@ class Shape:
         How the base moves.
     width
         Lanes.
+    series
+        Where steps are made by Taylor series: of each state the one whose rate it is, or itself. Empty where they are
+        made by DOP853.
     """
 
     states: int
@@ -31,6 +40,7 @@ class Shape:
     planar: bool
     forcing: ForcingSource
     width: int
+    series: tuple[int, ...] = ()
 
     @property
     def parameters_at(self) -> int:
@@ -52,6 +62,20 @@ class Shape:
         """Number of equations."""
         return 2 if self.planar else self.states
 
+    @property
+    def expanded(self) -> list[int]:
+        """The states whose Taylor coefficients are kept: all that are not the rate of another."""
+        return [j for j, integral in enumerate(self.series) if integral == j]
+
+    @property
+    def paired(self) -> set[int]:
+        """Those whose rate is a state too."""
+        return {integral for j, integral in enumerate(self.series) if integral != j}
+
+    def degree(self, j: int) -> int:
+        """Return the degree of the polynomial that an expanded state is told by."""
+        return SERIES_ORDER + (j in self.paired)
+
     def rows(self) -> Rows:
         """Return the layout of the buffer: the tables' columns first, under their names in small letters."""
         rows = Rows()
@@ -64,18 +88,28 @@ class Shape:
         rows.add_many("p", self.parameters)
         self.forcing.reserve(rows)
         rows.add(*(f"end_{name}" for name in self.forcing.components))
-        for stage in range(STAGES + 1):
-            rows.add_many(f"k{stage}_", self.order)
-        for name in ("new", "last", "last_slope"):
+        for name in ("new", "last"):
             rows.add_many(name, self.order)
+        if self.series:
+            rows.add("proposed")
+            rows.add_many("square", SERIES_ORDER + 1)
+            for j in self.expanded:
+                rows.add(*(f"c{k}_{j}" for k in range(1, self.degree(j) + 1)))
+        else:
+            for stage in range(STAGES + 1):
+                rows.add_many(f"k{stage}_", self.order)
+            rows.add_many("last_slope", self.order)
+        rows.add(*(f"node_{name}" for name in OBSERVED))
         return rows
 
+
+OBSERVED = ("mean_tilt", "forward_cos", "forward_sin", "backward_cos", "backward_sin")
+"""Rows of the integrals over the last periods."""
 
 _LANE_ROWS = (
     "run", "h", "tried", "held_step", "by_tilt", "stop", "wanted", "made", "aimed", "rejected", "side",
     "atol_now", "grown", "rest_tilt", "no_return",
     "tilt", "radial", "momentum", "x", "y", "vx", "vy",
-    "tilt_before", "radial_before", "x_before", "y_before", "vx_before", "vy_before",
     "turns", "low", "peak", "flag", "error", "ok", "held", "go", "reached",
     "new_x", "new_y", "new_vx", "new_vy", "new_tilt", "new_radial", "per_turn",
 )  # fmt: skip

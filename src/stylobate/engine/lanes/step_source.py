@@ -1,16 +1,22 @@
 """Writes the functions of a kernel that integrate: a step of all lanes, and the equations of one lane."""
 
+from stylobate.engine.lanes.expansion import expansion_of
 from stylobate.engine.lanes.judgement_source import judgement
+from stylobate.engine.lanes.series_source import series_lines
 from stylobate.engine.lanes.shape import STAGES, Shape
 from stylobate.engine.lanes.stage_source import rates_call, stage_lines, vertical
+from stylobate.models import Model
 
 
-def step_source(shape: Shape) -> str:
+def step_source(model: type[Model], shape: Shape) -> str:
     """Return the source of `step(buf)`, one attempt at a step in every lane."""
     rows = shape.rows()
     lines = ["@vectorised", "def step(buf):"]
-    for stage in range(1, STAGES + 1):
-        lines += stage_lines(shape, rows, stage)
+    if shape.series:
+        lines += series_lines(shape, rows, expansion_of(model, shape))
+    else:
+        for stage in range(1, STAGES + 1):
+            lines += stage_lines(shape, rows, stage)
     lines += judgement(shape, rows)
     return "\n".join(lines) + "\n"
 

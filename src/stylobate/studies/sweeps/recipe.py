@@ -18,6 +18,7 @@ class RunOptions(TypedDict, total=False):
 
     tilt: Sequence[float]
     tilt_rate: Sequence[float]
+    method: str
     rtol: float
     atol: float | None
     tilt_limit: float | None
@@ -31,6 +32,7 @@ class RunOptions(TypedDict, total=False):
 DEFAULTS = RunOptions(
     tilt=(0.0, 0.0),
     tilt_rate=(0.0, 0.0),
+    method="dop853",
     rtol=1e-8,
     atol=None,
     tilt_limit=None,

@@ -9,6 +9,7 @@ polynomials of the base motion.
 ORDER = (
     "base_motion",
     "moving",
+    "within",
     "stops",
     "release",
     "resting",

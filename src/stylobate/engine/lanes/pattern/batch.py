@@ -25,7 +25,6 @@ from stylobate.engine.lanes.pattern.stops import (
 
 if TYPE_CHECKING:
     from stylobate.engine.lanes.pattern.head import (
-        GROUP,
         ORDER,
         PARAMETERS,
         PARAMETERS_AT,
@@ -131,26 +130,22 @@ def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8]) -> bool:
     skipped = (-room.ctypes.data // 8) % 8
     flat = room[skipped : skipped + R.COUNT * WIDTH]
     buf = flat.reshape((R.COUNT, WIDTH))
-    watched = np.zeros(WIDTH // GROUP, dtype=np.bool_)
     waiting = 0
     for i in range(WIDTH):
         quiet(buf, i)
         waiting = fill(buf, i, table, pieces, waiting)
     while True:
         live = False
-        watched[:] = False
         for i in range(WIDTH):
             live = live or buf[R.RUN, i] >= 0.0
-            watched[i // GROUP] |= buf[R.WATCHED, i] > 0.0
         if not live:
             return True
         met = False
         while not met:
             step(flat)
-            for group in range(WIDTH // GROUP):
-                if watched[group]:
-                    observe(flat[group * GROUP :])
             for i in range(WIDTH):
+                if buf[R.WATCHED, i] > 0.0 and buf[R.GO, i] > 0.0:
+                    observe(flat, i)
                 met = met or buf[R.FLAG, i] > 0.0
             if halt[0] != 0:
                 return False

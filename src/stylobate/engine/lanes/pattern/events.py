@@ -6,15 +6,16 @@ from typing import TYPE_CHECKING
 from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
-from stylobate.engine.lanes.pattern.moving import set_lean
+from stylobate.engine.lanes.pattern.moving import set_lean, set_state
 from stylobate.engine.lanes.pattern.passages import cross_upright, hop, hops
 from stylobate.engine.lanes.pattern.peaks import measure_peak, take_back
 from stylobate.engine.lanes.pattern.resting import rest_within_step, settle
 from stylobate.engine.lanes.pattern.stops import go_on, meet_stop
+from stylobate.engine.lanes.pattern.within import set_within
 from stylobate.engine.lanes.roots import first_growth_past, first_return
 
 if TYPE_CHECKING:
-    from stylobate.engine.lanes.pattern.head import CAN_PASS, CAN_REST, ORDER, PLANAR, R, lean_of_new
+    from stylobate.engine.lanes.pattern.head import CAN_PASS, CAN_REST, ORDER, PLANAR, SERIES, R, lean_of_new, row_state
 
 # --- the kernel's text begins here ---
 
@@ -69,15 +70,21 @@ def miss(buf: Table, i: int) -> float:
         further = -buf[R.STATE, i] / speed if speed != 0.0 else 0.0
     elif buf[R.BY_TILT, i] > 0.0:
         further = (bound - tilt) * tilt / radial if radial > 0.0 else 0.0
-    elif radial != buf[R.RADIAL_BEFORE, i]:
-        further = -radial * h / (radial - buf[R.RADIAL_BEFORE, i])
+    else:
+        set_within(buf, i, 0.0)
+        x, y, vx, vy = lean_of_new(buf, i)
+        before = x * vx + y * vy
+        further = -radial * h / (radial - before) if radial != before else 0.0
     return min(max(further, -0.5 * abs(h)), 0.5 * abs(h))
 
 
 @part
 def creep(buf: Table, i: int, h: float) -> None:
-    """Go on by a time so short that two terms of the Taylor series tell the state."""
-    for j in range(ORDER):
+    """Go on by a time so short that the step's series, or two terms of another, tells the state."""
+    if SERIES:
+        set_within(buf, i, buf[R.MADE, i] + h)
+        set_state(buf, i, row_state(buf, i, R.NEW))
+    for j in range(0 if SERIES else ORDER):
         slope = buf[R.SLOPE + j, i]
         bend = (slope - buf[R.LAST_SLOPE + j, i]) / buf[R.MADE, i]
         buf[R.STATE + j, i] += h * (slope + 0.5 * h * bend)

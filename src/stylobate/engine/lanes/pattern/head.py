@@ -4,12 +4,12 @@ from collections.abc import Callable
 from typing import Any
 
 WIDTH: int
-GROUP: int
-"""Lanes that are observed together."""
 ORDER: int
 """Number of equations."""
 PARAMETERS: int
 PLANAR: bool
+SERIES: int
+"""Order of the series by which steps are made; 0 where they are made by stages."""
 VERTICAL: bool
 TERMS: int
 WINDOWED: int
@@ -39,6 +39,7 @@ step: Callable[..., None]
 observe: Callable[..., None]
 accelerations: Callable[..., tuple[float, float, float]]
 rates_at: Callable[..., tuple[float, ...]]
+series_within: Callable[..., tuple[float, ...]]
 row_state: Callable[..., tuple[float, ...]]
 model_lean: Callable[..., tuple[float, float, float, float]]
 lean_of_new: Callable[..., tuple[float, float, float, float]]

@@ -8,7 +8,7 @@ from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.roots import nearest_turn, turns_of
 
 if TYPE_CHECKING:
-    from stylobate.engine.lanes.pattern.head import ORDER, PLANAR, R, model_lean, rates_at, row_state
+    from stylobate.engine.lanes.pattern.head import ORDER, PLANAR, SERIES, R, model_lean, rates_at, row_state
 
 # --- the kernel's text begins here ---
 
@@ -37,6 +37,9 @@ def set_lean(buf: Table, i: int) -> None:
 
 @part
 def set_rates(buf: Table, i: int, t: float) -> None:
+    """Set the slopes at the beginning of a step, where steps begin with them."""
+    if SERIES:
+        return
     slopes = rates_at(buf, i, t, row_state(buf, i, R.STATE))
     for j in range(ORDER):
         buf[R.SLOPE + j, i] = slopes[j]
@@ -86,20 +89,21 @@ def first_step(buf: Table, i: int, t: float) -> float:
     """Return a first step (Hairer, Nørsett, Wanner, section II.4)."""
     atol, rtol = buf[R.ATOL_NOW, i], buf[R.RTOL, i]
     longest = min(buf[R.LONGEST_STEP, i], buf[R.END, i] - t)
+    slopes = rates_at(buf, i, t, row_state(buf, i, R.STATE))
     d0 = d1 = d2 = 0.0
     for j in range(ORDER):
         scale = atol + rtol * abs(buf[R.STATE + j, i])
         d0 += (buf[R.STATE + j, i] / scale) ** 2 / ORDER
-        d1 += (buf[R.SLOPE + j, i] / scale) ** 2 / ORDER
+        d1 += (slopes[j] / scale) ** 2 / ORDER
     d0, d1 = math.sqrt(d0), math.sqrt(d1)
     h = 1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1  # noqa: PLR2004  numbers of the reference
     h = min(h, longest)
     for j in range(ORDER):
-        buf[R.NEW + j, i] = buf[R.STATE + j, i] + h * buf[R.SLOPE + j, i]
-    slopes = rates_at(buf, i, t + h, row_state(buf, i, R.NEW))
+        buf[R.NEW + j, i] = buf[R.STATE + j, i] + h * slopes[j]
+    ahead = rates_at(buf, i, t + h, row_state(buf, i, R.NEW))
     for j in range(ORDER):
         scale = atol + rtol * abs(buf[R.STATE + j, i])
-        d2 += ((slopes[j] - buf[R.SLOPE + j, i]) / scale) ** 2 / ORDER
+        d2 += ((ahead[j] - slopes[j]) / scale) ** 2 / ORDER
     d2 = math.sqrt(d2) / h if h > 0.0 else 0.0
     still = d1 <= 1e-15 and d2 <= 1e-15  # noqa: PLR2004
     other = max(1e-6, h * 1e-3) if still else (0.01 / max(d1, d2)) ** 0.125

@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 from stylobate.engine.compiling.arithmetic import part, winding
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.moving import set_lean
+from stylobate.engine.lanes.pattern.within import set_within
 from stylobate.engine.lanes.roots import quintic
 
 if TYPE_CHECKING:
-    from stylobate.engine.lanes.pattern.head import ORDER, PLANAR, R, lean_of_new, row_state
+    from stylobate.engine.lanes.pattern.head import ORDER, PLANAR, SERIES, R, lean_of_new, row_state
 
 # --- the kernel's text begins here ---
 
@@ -19,20 +20,20 @@ DIFFERENCE = 1e-5
 
 @part
 def measure_peak(buf: Table, i: int) -> float:
-    """Measure the largest tilt within the step just made, by quintics through the leans at its ends.
+    """Measure the largest tilt within the step just made.
 
     Return the time into the step at which it passes the tilt limit, or 0: then nothing is noted.
     """
     h = buf[R.MADE, i]
-    x0, y0, vx0, vy0, ax0, ay0 = lean_before(buf, i)
-    x1, y1, vx1, vy1, ax1, ay1 = lean_after(buf, i)
+    before = after = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    if not SERIES:
+        before, after = lean_before(buf, i), lean_after(buf, i)
     limit = buf[R.TILT_LIMIT, i]
     low, high = 0.0, 1.0
     tilt = 0.0
     for _ in range(40):
         u = 0.5 * (low + high)
-        x, vx = quintic(u, h, x0, vx0, ax0, x1, vx1, ax1)
-        y, vy = quintic(u, h, y0, vy0, ay0, y1, vy1, ay1)
+        x, y, vx, vy = lean_within(buf, i, u, before, after)
         tilt = math.hypot(x, y)
         if x * vx + y * vy > 0.0:
             low = u
@@ -46,8 +47,7 @@ def measure_peak(buf: Table, i: int) -> float:
     low = 0.0
     for _ in range(40):
         u = 0.5 * (low + high)
-        x, _ = quintic(u, h, x0, vx0, ax0, x1, vx1, ax1)
-        y, _ = quintic(u, h, y0, vy0, ay0, y1, vy1, ay1)
+        x, y, _, _ = lean_within(buf, i, u, before, after)
         if math.hypot(x, y) > limit:
             high = u
         else:
@@ -58,15 +58,15 @@ def measure_peak(buf: Table, i: int) -> float:
 @part
 def take_back(buf: Table, i: int) -> None:
     """Return to the beginning of the step just made."""
-    if not PLANAR:
-        x0, y0, x1, y1 = buf[R.X_BEFORE, i], buf[R.Y_BEFORE, i], buf[R.X, i], buf[R.Y, i]
-        momentum = x0 * buf[R.VY_BEFORE, i] - y0 * buf[R.VX_BEFORE, i] + buf[R.MOMENTUM, i]
-        buf[R.TURNS, i] -= winding(x0, y0, x1, y1, momentum)
+    x1, y1, momentum1 = buf[R.X, i], buf[R.Y, i], buf[R.MOMENTUM, i]
     for j in range(ORDER):
         buf[R.STATE + j, i] = buf[R.LAST_STATE + j, i]
-        buf[R.SLOPE + j, i] = buf[R.LAST_SLOPE + j, i]
+        if not SERIES:
+            buf[R.SLOPE + j, i] = buf[R.LAST_SLOPE + j, i]
     buf[R.TIME, i] -= buf[R.MADE, i]
     set_lean(buf, i)
+    if not PLANAR:
+        buf[R.TURNS, i] -= winding(buf[R.X, i], buf[R.Y, i], x1, y1, buf[R.MOMENTUM, i] + momentum1)
 
 
 @part
@@ -94,3 +94,23 @@ def lean_and_rates(
         buf[R.NEW + j, i] = state[j]
     x, y, vx, vy = lean_of_new(buf, i)
     return x, y, vx, vy, (ahead_x - behind_x) / (2.0 * DIFFERENCE), (ahead_y - behind_y) / (2.0 * DIFFERENCE)
+
+
+@part
+def lean_within(
+    buf: Table,
+    i: int,
+    u: float,
+    before: tuple[float, float, float, float, float, float],
+    after: tuple[float, float, float, float, float, float],
+) -> tuple[float, float, float, float]:
+    """Return the lean and its rate at the part `u` of the step: by its series, or quintics through both its ends."""
+    if SERIES:
+        set_within(buf, i, u * buf[R.MADE, i])
+        return lean_of_new(buf, i)
+    h = buf[R.MADE, i]
+    x0, y0, vx0, vy0, ax0, ay0 = before
+    x1, y1, vx1, vy1, ax1, ay1 = after
+    x, x_rate = quintic(u, h, x0, vx0, ax0, x1, vx1, ax1)
+    y, y_rate = quintic(u, h, y0, vy0, ay0, y1, vy1, ay1)
+    return x, y, x_rate, y_rate

@@ -10,7 +10,7 @@ from stylobate.engine.lanes.pattern.base_motion import forcing_rate, held_for_go
 from stylobate.engine.lanes.pattern.moving import at_upright, azimuth_now, set_off, set_state
 from stylobate.engine.lanes.pattern.release import release_time
 from stylobate.engine.lanes.pattern.stops import go_on, leg_end, meet_stop, next_stop
-from stylobate.engine.lanes.roots import cubic
+from stylobate.engine.lanes.pattern.within import set_within
 from stylobate.models.model import Push
 
 if TYPE_CHECKING:
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
         CAN_DEPART,
         CAN_GO_TO_PLANE,
         HOPS_APART,
-        ORDER,
         PLANAR,
         R,
         accelerations,
@@ -72,11 +71,7 @@ def rest_within_step(buf: Table, i: int) -> float:
 
 @part
 def margin_within_step(buf: Table, i: int, start: float, h: float, u: float) -> float:
-    # The state between the ends of the step, by cubics, in the rows of the new state.
-    for j in range(ORDER):
-        buf[R.NEW + j, i] = cubic(
-            u, buf[R.LAST_STATE + j, i], buf[R.STATE + j, i], h * buf[R.LAST_SLOPE + j, i], h * buf[R.SLOPE + j, i]
-        )
+    set_within(buf, i, u * h)
     x, y, vx, vy = lean_of_new(buf, i)
     return rest_margin(buf, i, start + u * h, math.hypot(x, y), math.hypot(vx, vy))
 

@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import stylobate as sb
-from stylobate.engine.flow.expressions import FUNCTIONS, Recording
+from stylobate.engine.equations.expressions import FUNCTIONS, Recording
+from stylobate.engine.equations.recording import recorded
 from stylobate.engine.flow.periodic import PeriodicSystem
-from stylobate.engine.flow.recording import recorded
 from stylobate.errors import UnsupportedError
 
 COLUMN = sb.Column.dimensionless(0.1)

@@ -187,7 +187,7 @@ class Recording:
         columns = []
         for wanted in by:
             found: dict[int, Expression] = {}
-            for expression in self._in_order(results):
+            for expression in self.in_order(results):
                 found[id(expression)] = self._derivative(expression, wanted, found)
             columns.append([found[id(result)] for result in results])
         return [[column[row] for column in columns] for row in range(len(results))]
@@ -204,7 +204,7 @@ class Recording:
             total = total + change * partial
         return total
 
-    def _in_order(self, results: Sequence[Expression]) -> list[Expression]:
+    def in_order(self, results: Sequence[Expression]) -> list[Expression]:
         """Return all expressions behind `results`, operands first."""
         ordered: dict[int, Expression] = {}
         waiting = [(result, False) for result in reversed(results)]
@@ -223,9 +223,9 @@ class Recording:
         """Return lines of source that compute `results`, and what they are called there."""
         names: dict[int, str] = {}
         lines: list[str] = []
-        for expression in self._in_order(results):
+        for expression in self.in_order(results):
             if expression.operation == "constant":
-                names[id(expression)] = _number(expression.value)
+                names[id(expression)] = number_source(expression.value)
             elif expression.operation == "input":
                 names[id(expression)] = expression.name
             else:
@@ -239,7 +239,8 @@ def _is(expression: Expression, value: float) -> bool:
     return expression.operation == "constant" and expression.value == value
 
 
-def _number(value: float) -> str:
+def number_source(value: float) -> str:
+    """Return a number as it stands in source."""
     return repr(value) if math.isfinite(value) else f"math.{value!r}".replace("math.-inf", "-math.inf")
 
 

@@ -1,0 +1,1 @@
+"""A model's equations as expressions: recorded from its functions, differentiated, expanded in series."""
