@@ -61,7 +61,7 @@ def _write(folder, engines, found, two_threads, costs, results) -> None:
 
     # Accepted steps of our own runs, made without events and summaries at the arithmetic peak.
     per_second = results["peak"] / results["flops of a step"]
-    limits = {timing.workload: per_second / timing.steps for timing in found if timing.engine == "stylobate"}
+    limits = {timing.workload: per_second / timing.steps for timing in found if timing.engine == "dop853"}
     machine, versions = results["machine"], results["versions"]
     about = (
         f"{machine['cores']} cores, {machine['instructions']}; arithmetic peak of one core, measured: "

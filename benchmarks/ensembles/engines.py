@@ -12,6 +12,9 @@ from .workloads import MIX_DISTINCT, Workload
 Solve = Callable[[Workload], Answer]
 
 
+_OWN_COUNTS = {"rolling": 16384, "mix": 128 * MIX_DISTINCT}
+
+
 @dataclass(frozen=True, slots=True)
 class Engine:
     """One engine.
@@ -66,5 +69,8 @@ def all_engines() -> list[Engine]:
             )
             for width in (8, 16)
         ),
-        Engine(ours.NAME, "stylobate", ours.prepare, {"rolling": 16384, "mix": 128 * MIX_DISTINCT}, dop853=True),
+        *(
+            Engine(name, method, partial(ours.prepare, method=method), _OWN_COUNTS, dop853=method == "dop853")
+            for method, name in ours.NAMES.items()
+        ),
     ]

@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 
 from stylobate.plots.style import BLUE, GREY, VERMILION, new_figure, styled
 
+from .ours import NAMES
 from .scaling import Cost
 from .timing import Timing
 
@@ -24,7 +25,7 @@ def engines_figure(names: Mapping[str, str], found: Sequence[Timing], limits: Ma
     for axes, (workload, title) in zip(panels, _TITLES.items(), strict=True):
         rates = {timing.engine: timing.rate for timing in found if timing.workload == workload}
         for place, key in enumerate(keys):
-            own = key == "stylobate"
+            own = key in NAMES
             axes.barh(place, rates[key], color=VERMILION if own else BLUE, height=0.62)
             axes.annotate(
                 f"{rates[key]:,.0f}".replace(",", "\u2009"), (rates[key], place), (4, 0),

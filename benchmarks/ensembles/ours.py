@@ -11,17 +11,17 @@ from stylobate.results.outcomes import code_of
 from .answers import Answer
 from .workloads import ATOL, COLUMN, ETA, RTOL, Workload
 
-NAME = "stylobate"
+NAMES = {"dop853": "stylobate, DOP853", "taylor": "stylobate, Taylor"}
 MODEL = sb.Slender(COLUMN, damping=ETA)
 
 
-def prepare(workload: Workload, *, threads: int = 1) -> Callable[[Workload], Answer]:
-    """Return what computes a workload of this kind."""
+def prepare(workload: Workload, *, method: str) -> Callable[[Workload], Answer]:
+    """Return what computes a workload of this kind by this method."""
     del workload
-    return partial(solve, threads=threads)
+    return partial(solve, threads=1, method=method)
 
 
-def solve(workload: Workload, *, threads: int) -> Answer:
+def solve(workload: Workload, *, threads: int, method: str = "dop853") -> Answer:
     """Follow every run of the workload."""
     data = sb.simulate_ensemble(
         MODEL,
@@ -30,6 +30,7 @@ def solve(workload: Workload, *, threads: int) -> Answer:
         tilt_rate=workload.start[:, 2:],
         duration=workload.duration,
         parameters=workload.parameters,
+        method=method,
         rtol=RTOL,
         atol=ATOL,
         threads=threads,
