@@ -14,6 +14,12 @@ from stylobate.theory.critical import (
     crossing_frequency,
 )
 from stylobate.theory.free_motion import FreeMotion, free_motion
+from stylobate.theory.free_twist import (
+    FreeTwistRolling,
+    free_twist_jacobian,
+    free_twist_rates,
+    free_twist_rolling,
+)
 from stylobate.theory.high_frequency import HighFrequencyRolling, high_frequency_rates, high_frequency_rolling
 from stylobate.theory.lyapunov import first_lyapunov_coefficient
 from stylobate.theory.modulated import ModulatedRolling, modulated_rolling
@@ -31,6 +37,7 @@ from stylobate.theory.stability import hurwitz_coefficients
 __all__ = [
     "AveragedRolling",
     "FreeMotion",
+    "FreeTwistRolling",
     "HighFrequencyRolling",
     "ModulatedRolling",
     "PlanarForcedResponse",
@@ -45,6 +52,9 @@ __all__ = [
     "crossing_frequency",
     "first_lyapunov_coefficient",
     "free_motion",
+    "free_twist_jacobian",
+    "free_twist_rates",
+    "free_twist_rolling",
     "high_frequency_rates",
     "high_frequency_rolling",
     "hurwitz_coefficients",

@@ -103,20 +103,28 @@ def steady_rolling(theta: Real, a0: Real, *, c: Real, eta: Real) -> SteadyRollin
     theta, a, c, eta = np.broadcast_arrays(
         positive("theta", theta), not_negative("a0", a0) / positive("c", c), positive("c", c), not_negative("eta", eta)
     )
-    k = 1.0 + theta**2
-    drag = eta * theta
+    k, drag = 1.0 + theta**2, eta * theta
+    upper, lower, root = rolling_amplitudes(k, drag, a)
     d = k**2 + drag**2
-    # a²D − η²θ² as a product, or the folds would be lost in rounding
-    square = (a * np.sqrt(d) - drag) * (a * np.sqrt(d) + drag)
-    root = np.sqrt(np.where(square >= 0.0, square, np.nan))
-    upper = (k + root) / d  # (8), in units of c
-    lower = (1.0 - a) * (1.0 + a) / (d * upper)
-    lower = np.where(lower > 0.0, lower, np.nan)
     return SteadyRolling(
         upper=_branch(theta, c, eta, upper, root, (k * root - drag**2) / d),
         lower=_branch(theta, c, eta, lower, -root, -(k * root + drag**2) / d),
         azimuth_offset=np.zeros_like(a),
     )
+
+
+def rolling_amplitudes(k: FloatArray, drag: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the roots A of (kA − 1)² + (drag A)² = a², upper and lower, and √(a²D − drag²) with D = k² + drag².
+
+    Only positive ones; NaN for the others. All in units of c.
+    """
+    d = k**2 + drag**2
+    # a²D − η²θ² as a product, or the folds would be lost in rounding
+    square = (a * np.sqrt(d) - drag) * (a * np.sqrt(d) + drag)
+    root = np.sqrt(np.where(square >= 0.0, square, np.nan))
+    upper = (k + root) / d  # (8)
+    lower = (1.0 - a) * (1.0 + a) / (d * upper)
+    return upper, np.where(lower > 0.0, lower, np.nan), root
 
 
 def _branch(

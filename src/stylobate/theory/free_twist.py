@@ -1,0 +1,303 @@
+"""Steady rolling of a slender column whose twist is free: nothing but friction keeps it from spinning about its axis.
+
+The paper forbids rotation about the vertical. A column that may turn lags behind the base by its friction, the lag
+leaves a part of the base acceleration across its lean, and that part spins the column up, until the spin friction ζ
+balances it. The equations are those of rolling without slip in the limit of small tilts, seen from the frame that turns
+with the base.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stylobate.errors import ParameterError
+from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, not_negative, positive
+from stylobate.theory.rolling import rolling_amplitudes
+from stylobate.theory.rotating_frame import rotating_frame_jacobian
+
+_STATES = 5
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FreeTwistRolling:
+    """Steady rolling with free twist, arrays of one shape; NaN (and False) where there is none.
+
+    Parameters
+    ----------
+    amplitude
+        Tilt angle A [rad].
+    phase
+        Phase ψ by which the contact point leads the base acceleration [rad].
+    spin
+        Axial angular velocity σ, in units of ω0.
+    friction_moment
+        Moment about the vertical that the spin friction takes up, over m g r; with infinite `zeta` the one that the
+        paper's assumption needs.
+    exists
+        Whether there is such a solution.
+    stable
+        Whether all deviations decay; without friction, whether none grows.
+    eigenvalues
+        The five eigenvalues of the Jacobian, complex, along a last axis of length 5. For infinite `zeta` the spin
+        follows at once: the four of the paper's column, and −∞.
+    """
+
+    amplitude: FloatArray
+    phase: FloatArray
+    spin: FloatArray
+    friction_moment: FloatArray
+    exists: BoolArray
+    stable: BoolArray
+    eigenvalues: ComplexArray
+
+
+def free_twist_rolling(
+    theta: Real,
+    a0: Real,
+    *,
+    c: Real,
+    eta: Real,
+    zeta: Real,
+    inertia_ratio: Real = 0.75,
+    axial_ratio: Real = 0.5,
+) -> FreeTwistRolling:
+    """Steady rolling on a base that moves in a circle, upper branch, where the column may turn about its axis.
+
+    Parameters
+    ----------
+    theta
+        Excitation frequency θ, positive.
+    a0
+        Acceleration amplitude of the base [g].
+    c
+        Slenderness.
+    eta
+        Viscous friction η, a couple against the rate of tilt.
+    zeta
+        Spin friction ζ, a moment about the vertical that lets a free spin decay at the rate ζω0. Infinite, it forbids
+        the twist, as the paper does. Zero, with friction η, it leaves no steady rolling.
+    inertia_ratio
+        κ = m h²/J0; ¾ for a solid cylinder, as by default.
+    axial_ratio
+        i_a = I_a/(m r²); ½ for a solid cylinder.
+
+    Returns
+    -------
+    FreeTwistRolling
+        Arrays of the broadcast shape, for the base acceleration a0 (cos θτ, sin θτ).
+
+    Raises
+    ------
+    ParameterError
+        If `theta`, `c`, `inertia_ratio` or `axial_ratio` is not positive, `inertia_ratio` is 1 or more, or another is
+        negative.
+
+    See Also
+    --------
+    steady_rolling : the same without twist.
+
+    Notes
+    -----
+    With D = 1 + i_a − κ, the three balances, along the lean, across it and about the axis, give
+
+        a0 cos ψ = A(1 + θ²(1 + η/(ζD))) − c,   a0 sin ψ = ηθA,   σ = −ηθA/(cζκD):
+
+    the paper's solution (8) with θ² replaced by θ²(1 + η/(ζD)) in the first. The column rolls at a smaller tilt, spins
+    against its rolling, and the contact bears the moment m r a_n about the vertical, a_n = g ηθA being the base
+    acceleration across the lean. At η = ζ = 0 the spin is arbitrary, and taken as 0.
+
+    Examples
+    --------
+    >>> rolling = free_twist_rolling(3.0, 0.065, c=0.1, eta=0.1, zeta=[0.1, 1.0, float("inf")])
+    >>> print(rolling.amplitude.round(7), rolling.spin.round(5))
+    [0.0074982 0.0147187 0.0164812] [-0.39991 -0.0785   0.     ]
+    """
+    numbers = _checked(theta, a0, c, eta, zeta, inertia_ratio, axial_ratio)
+    theta, a0, c, eta, zeta, ratio, axial = numbers
+    freedom = 1.0 + axial - ratio  # D
+    with np.errstate(divide="ignore", invalid="ignore"):
+        lag = np.where(eta > 0.0, eta / (zeta * freedom), 0.0)
+    exists = np.isfinite(lag)
+    k, drag = 1.0 + theta**2 * (1.0 + np.where(exists, lag, 0.0)), eta * theta
+    scaled, _, _ = rolling_amplitudes(k, drag, a0 / c)
+    scaled = np.where(exists, scaled, np.nan)
+    exists = np.isfinite(scaled)
+    phase = np.arctan2(drag * scaled, k * scaled - 1.0)
+    spin = np.where(exists, -lag * theta * scaled / ratio + 0.0, np.nan)
+    state = np.stack([np.zeros_like(scaled), theta, c * scaled, phase, spin])
+    eigenvalues = _eigenvalues(state, exists, numbers)
+    growth = np.where(exists, eigenvalues.real.max(axis=-1), np.nan)
+    scale = np.abs(np.where(np.isfinite(eigenvalues), eigenvalues, 0.0)).max(axis=-1)
+    with np.errstate(invalid="ignore"):
+        stable = np.where(eta > 0.0, growth < 0.0, growth <= _NEUTRAL * scale)
+    return FreeTwistRolling(
+        amplitude=c * scaled,
+        phase=phase,
+        spin=spin,
+        friction_moment=c * drag * scaled,
+        exists=exists,
+        stable=stable & exists,
+        eigenvalues=eigenvalues,
+    )
+
+
+# Eigenvalues with no more than this real part, of the largest one, count as imaginary where there is no friction.
+_NEUTRAL = 1e-7
+
+
+def free_twist_rates(
+    state: Real,
+    theta: Real,
+    a0: Real,
+    *,
+    c: Real,
+    eta: Real,
+    zeta: Real,
+    inertia_ratio: Real = 0.75,
+    axial_ratio: Real = 0.5,
+) -> FloatArray:
+    """Right-hand side of rolling with free twist on a circularly moving base, in the frame that turns with it.
+
+    Parameters
+    ----------
+    state
+        Tilt rate μ, rolling rate ω, tilt angle A > 0 [rad], phase ψ = β − θτ and spin σ [ω0], along the first axis:
+        shape (5, ...).
+    theta, a0, c, eta, zeta, inertia_ratio, axial_ratio
+        As for `free_twist_rolling`; `zeta` finite.
+
+    Returns
+    -------
+    numpy.ndarray
+        Rates of the state in the same order, shape (5, ...). Nothing is checked but the length of the first axis.
+
+    Raises
+    ------
+    ParameterError
+        If the first axis of `state` does not have five entries.
+
+    Notes
+    -----
+    With D = 1 + i_a − κ:
+
+        Ä = A(1 + ω²) − c − ηȦ − a0 cos ψ − cκσω
+        Aω̇ = −2Ȧω − η(1 + i_a)Aω/D + a0 sin ψ i_a/D − cκζσ
+        σ̇ = −a0 sin ψ (1 − κ)/(cκD) − ηAω/(cD) − ζσ
+    """
+    mu, omega, tilt, psi, spin = _components(state)
+    a, slender, friction, decay, kappa, i_a = _arrays(a0, c, eta, zeta, inertia_ratio, axial_ratio)
+    push, drive = a * np.cos(psi), a * np.sin(psi)
+    freedom = 1.0 + i_a - kappa
+    across = (
+        -2.0 * mu * omega
+        + (drive * i_a - friction * (1.0 + i_a) * tilt * omega) / freedom
+        - slender * kappa * decay * spin
+    )
+    rates = (
+        tilt * (1.0 + omega**2) - slender - friction * mu - push - slender * kappa * spin * omega,
+        across / tilt,
+        mu,
+        omega - np.asarray(theta, dtype=np.float64),
+        -(drive * (1.0 - kappa) / kappa + friction * tilt * omega) / (slender * freedom) - decay * spin,
+    )
+    return np.stack(np.broadcast_arrays(*rates))
+
+
+def free_twist_jacobian(
+    state: Real, a0: Real, *, c: Real, eta: Real, zeta: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
+) -> FloatArray:
+    """Jacobian of `free_twist_rates` with respect to its state, at any state.
+
+    Parameters
+    ----------
+    state, a0, c, eta, zeta, inertia_ratio, axial_ratio
+        As for `free_twist_rates`.
+
+    Returns
+    -------
+    numpy.ndarray
+        Matrices along the last two axes, shape (..., 5, 5). θ does not enter.
+
+    Raises
+    ------
+    ParameterError
+        If the first axis of `state` does not have five entries.
+    """
+    mu, omega, tilt, psi, spin = _components(state)
+    a, slender, friction, decay, kappa, i_a = _arrays(a0, c, eta, zeta, inertia_ratio, axial_ratio)
+    push, drive = a * np.cos(psi), a * np.sin(psi)
+    freedom = 1.0 + i_a - kappa
+    drag = friction * (1.0 + i_a) / freedom
+    by_tilt = (2.0 * mu * omega - drive * i_a / freedom + slender * kappa * decay * spin) / tilt**2
+    rows = (
+        (-friction, 2.0 * tilt * omega - slender * kappa * spin, 1.0 + omega**2, drive, -slender * kappa * omega),
+        (
+            -2.0 * omega / tilt,
+            -2.0 * mu / tilt - drag,
+            by_tilt,
+            push * i_a / (freedom * tilt),
+            -slender * kappa * decay / tilt,
+        ),
+        (1.0, 0.0, 0.0, 0.0, 0.0),
+        (0.0, 1.0, 0.0, 0.0, 0.0),
+        (
+            0.0,
+            -friction * tilt / (slender * freedom),
+            -friction * omega / (slender * freedom),
+            -push * (1.0 - kappa) / (slender * kappa * freedom),
+            -decay,
+        ),
+    )
+    entries = np.broadcast_arrays(*(entry for row in rows for entry in row))
+    matrices = np.stack(entries, axis=-1)
+    return matrices.reshape(*matrices.shape[:-1], _STATES, _STATES)
+
+
+def _checked(theta: Real, a0: Real, c: Real, eta: Real, zeta: Real, ratio: Real, axial: Real) -> tuple[FloatArray, ...]:
+    kappa = positive("inertia_ratio", ratio)
+    if np.any(kappa >= 1.0):
+        message = f"inertia_ratio = m h²/J0 must be below 1, got {np.max(kappa)!r}"
+        raise ParameterError(message)
+    free = np.asarray(zeta, dtype=np.float64)
+    not_negative("zeta", np.where(np.isposinf(free), 0.0, free))
+    arrays = (
+        positive("theta", theta),
+        not_negative("a0", a0),
+        positive("c", c),
+        not_negative("eta", eta),
+        free,
+        kappa,
+        positive("axial_ratio", axial),
+    )
+    return tuple(np.broadcast_arrays(*arrays))
+
+
+def _eigenvalues(state: FloatArray, exists: BoolArray, numbers: tuple[FloatArray, ...]) -> ComplexArray:
+    """Return the eigenvalues where there is a solution, NaN elsewhere; −∞ for a spin that follows at once."""
+    _, a0, c, eta, zeta, ratio, axial = numbers
+    out = np.full((*exists.shape, _STATES), np.nan, dtype=np.complex128)
+    held = np.isinf(zeta)
+    free = exists & ~held
+    if free.any():
+        same = {"c": c, "eta": eta, "zeta": zeta, "inertia_ratio": ratio, "axial_ratio": axial}
+        chosen = {name: values[free] for name, values in same.items()}
+        out[free] = np.linalg.eigvals(free_twist_jacobian(state[:, free], a0[free], **chosen))
+    fixed = exists & held
+    if fixed.any():
+        mu, omega, tilt, psi, _ = (part[fixed] for part in state)
+        from_paper = rotating_frame_jacobian(np.stack([mu, omega, tilt, psi]), a0[fixed], eta=eta[fixed])
+        out[fixed, : _STATES - 1] = np.linalg.eigvals(from_paper)
+        out[fixed, _STATES - 1] = -np.inf
+    return out
+
+
+def _arrays(*values: Real) -> tuple[FloatArray, ...]:
+    return tuple(np.asarray(value, dtype=np.float64) for value in values)
+
+
+def _components(state: Real) -> tuple[FloatArray, ...]:
+    array = np.asarray(state, dtype=np.float64)
+    if array.ndim == 0 or len(array) != _STATES:
+        message = f"state must have the five entries (μ, ω, A, ψ, σ) along its first axis, got the shape {array.shape}"
+        raise ParameterError(message)
+    return tuple(array)
