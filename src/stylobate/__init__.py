@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from stylobate.column import Column
     from stylobate.engine import simulate, simulate_ensemble, with_parameters
     from stylobate.errors import Interrupted, Outcome
-    from stylobate.models import Model, Slender
+    from stylobate.models import Model, Slender, SlenderRolling
     from stylobate.motions import BaseMotion, Harmonic
     from stylobate.plots import plot
     from stylobate.results import Event, OutcomeRules, Response, load
@@ -35,6 +35,7 @@ __all__ = [
     "OutcomeRules",
     "Response",
     "Slender",
+    "SlenderRolling",
     "__version__",
     "errors",
     "load",
@@ -62,6 +63,7 @@ _HOMES = {
     "OutcomeRules": "results",
     "Response": "results",
     "Slender": "models",
+    "SlenderRolling": "models",
     "load": "results",
     "plot": "plots",
     "simulate": "engine",

@@ -2,5 +2,6 @@
 
 from stylobate.models.model import Model, Output, Push
 from stylobate.models.slender import Slender
+from stylobate.models.slender_rolling import SlenderRolling
 
-__all__ = ["Model", "Output", "Push", "Slender"]
+__all__ = ["Model", "Output", "Push", "Slender", "SlenderRolling"]

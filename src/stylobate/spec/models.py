@@ -1,12 +1,12 @@
 """Descriptions of models, told apart by their `kind`."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Discriminator, Tag
 
 from stylobate.column import Column
 from stylobate.errors import UnsupportedError
-from stylobate.models import Model, Slender
+from stylobate.models import Model, Slender, SlenderRolling
 from stylobate.spec.description import Description
 
 
@@ -21,8 +21,30 @@ class SlenderModel(Description):
         return Slender(column, damping=self.damping)
 
 
-# One kind so far: the discriminator is there for those to come.
-ModelDescription = Annotated[SlenderModel, Field()]
+class SlenderRollingModel(Description):
+    """The slender column that rolls and may turn; `spin_friction` is the dimensionless ζ."""
+
+    kind: Literal["slender_rolling"] = "slender_rolling"
+    damping: float = 0.0
+    spin_friction: float = 0.0
+    couples: Literal["contact", "isotropic"] = "contact"
+
+    def build(self, column: Column) -> Model:
+        """Return the model of `column`."""
+        return SlenderRolling(column, damping=self.damping, spin_friction=self.spin_friction, couples=self.couples)
+
+
+def _kind(described: Any) -> str:
+    """Return the kind of a model that is described by plain values or an object; the slender one where none is told."""
+    if isinstance(described, dict):
+        return str(described.get("kind", "slender"))
+    return str(getattr(described, "kind", ""))
+
+
+ModelDescription = Annotated[
+    Annotated[SlenderModel, Tag("slender")] | Annotated[SlenderRollingModel, Tag("slender_rolling")],
+    Discriminator(_kind),
+]
 
 
 def describe_model(model: Model) -> Description:
@@ -35,5 +57,7 @@ def describe_model(model: Model) -> Description:
     """
     if type(model) is Slender:  # a subclass is another model
         return SlenderModel(damping=model.damping)
+    if type(model) is SlenderRolling:
+        return SlenderRollingModel(damping=model.damping, spin_friction=model.spin_friction, couples=model.couples)
     message = f"a model of class {type(model).__name__} has no description; results keep its repr only"
     raise UnsupportedError(message)
