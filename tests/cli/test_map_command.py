@@ -144,6 +144,25 @@ def test_another_sweep_does_not_go_on_with_a_store(tmp_path, capsys):
     assert "rtol was 1e-08, is 1e-06" in capsys.readouterr().err
 
 
+def test_the_method_is_that_of_the_option_and_told_with_the_map(tmp_path, capsys, saved):
+    path = tmp_path / "map.nc"
+    assert run([*MAP, "--method", "taylor", "--output", str(path), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["provenance"]["method"] == "taylor"
+    data = saved(path)
+    found = sb.studies.overturning_map(MODEL, CIRCLE, over=OVER, periods=12.0, method="taylor")
+    xr.testing.assert_equal(data, found)
+    # Steps of another kind, not a name only.
+    usual = sb.studies.overturning_map(MODEL, CIRCLE, over=OVER, periods=12.0)
+    assert (data["steps"] != usual["steps"]).any()
+
+
+def test_a_map_by_another_method_does_not_go_on_with_a_store(tmp_path, capsys):
+    store = tmp_path / "map.zarr"
+    assert run([*MAP, "--output", str(store)]) == 0
+    assert run([*MAP, "--method", "taylor", "--output", str(store), "--resume"]) == 2
+    assert "method was 'dop853', is 'taylor'" in capsys.readouterr().err
+
+
 def test_the_number_of_threads_changes_nothing(tmp_path, saved):
     for name, more in (("one.nc", ["--threads", "1"]), ("all.nc", ["--executor", "threads"])):
         assert run([*MAP, *more, "--output", str(tmp_path / name)]) == 0
@@ -184,6 +203,7 @@ def test_dask_workers_compute_the_same(tmp_path):
         ([*MAP, "--output", "map.csv"], ["--output must end with .nc or .zarr, got 'map.csv'"]),
         ([*MAP, "--x-spacing", "cubic"], ["map.x.spacing: input should be 'linear' or 'log', got 'cubic'"]),
         ([*MAP, "--x", "angular-frequency", "0", "6", "3"], ["over['angular_frequency'] must be positive"]),
+        ([*MAP, "--method", "rk4"], ["method: input should be 'dop853' or 'taylor', got 'rk4'"]),
         ([*MAP, "--resume"], ["--resume needs the store to continue: give --output NAME.zarr"]),
         ([*MAP, "--executor", "slurm"], ['executor must be "threads"']),
         ([*MAP, "--executor", "dask://h:1", "--threads", "2"], ["--threads is for this process"]),

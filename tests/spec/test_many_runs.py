@@ -45,11 +45,15 @@ def test_descriptions_are_plain_values_and_come_back():
 
 
 def test_one_file_serves_all_commands():
-    both = {**MAP, **BASIN, "samples": 5, "points": 3, "strobes": 8, "confidence": 0.9}
+    both = {**MAP, **BASIN, "samples": 5, "points": 3, "strobes": 8, "confidence": 0.9, "method": "taylor"}
     del both["periods"]
     assert SimulationDescription.parse(both).build().options["duration"] == 9.0
     assert "strobes" not in MapDescription.parse(both).build().options
     assert BasinDescription.parse(both).build().options["strobes"] == 8
+    # A single run has one method only.
+    assert "method" not in SimulationDescription.parse(both).build().options
+    assert MapDescription.parse(both).build().options["method"] == "taylor"
+    assert BasinDescription.parse(both).build().options["method"] == "taylor"
 
 
 @pytest.mark.parametrize(
@@ -57,13 +61,20 @@ def test_one_file_serves_all_commands():
     [(MapDescription, MAP), (BasinDescription, {**BASIN, "duration": 60.0})],
 )
 def test_a_saved_result_tells_what_repeats_it(kind, values):
-    setup = kind.parse({**values, "rules": {"periods": 5}}).build()
+    setup = kind.parse({**values, "rules": {"periods": 5}, "method": "taylor"}).build()
     study = sb.studies.overturning_map if kind is MapDescription else sb.studies.basins
     found = study(setup.model, setup.motion, **setup.options)
     axes = {str(dim): found[dim].values.tolist() for dim in found["outcome"].dims if dim in found.coords}
     again = kind.of_saved(json.loads(found.attrs["provenance"]), axes).build()
     repeated = study(again.model, again.motion, **again.options)
     assert repeated.attrs["provenance"] == found.attrs["provenance"]
+
+
+@pytest.mark.parametrize("method", ["rk4", 5])
+def test_a_description_with_another_method_is_refused(method):
+    with pytest.raises(DescriptionError) as caught:
+        MapDescription.parse({**MAP, "method": method})
+    assert caught.value.problems == (f"method: input should be 'dop853' or 'taylor', got {method!r}",)
 
 
 def test_given_points_and_own_models_cannot_be_repeated():

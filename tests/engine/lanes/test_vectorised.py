@@ -2,6 +2,7 @@
 
 import collections
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from stylobate.engine.lanes.kernels import kernel_of
 
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=3.0)
 OPTIONS = Options.checked(
+    method="dop853",
     rtol=1e-8,
     atol=None,
     tilt_limit=None,
@@ -46,30 +48,59 @@ def arithmetic_of(function):
     return counts, registers
 
 
-@pytest.fixture(scope="module", params=["step", "observe"])
-def loop(request):
-    return request.param
+def called_by(function):
+    """Return the names of what lies outside a compiled function and is called by it, or by what Python calls."""
+    (assembly,) = function.inspect_asm().values()
+    return set(re.findall(r"movabsq\s+\$([A-Za-z_]\w*)", assembly))
 
 
-@pytest.mark.parametrize("planar", [False, True], ids=["space", "plane"])
-@pytest.mark.parametrize(
-    "motion",
-    [
-        pytest.param(CIRCLE, id="harmonic"),
-        pytest.param(CIRCLE.delayed(1.0), id="windowed", marks=pytest.mark.slow),
-        pytest.param(CIRCLE + CIRCLE.rotated(1.0), id="two terms", marks=pytest.mark.slow),
-    ],
-)
-def test_steps_and_their_observation_work_on_all_lanes_at_once(loop, motion, planar):
-    plan = Plan(sb.Slender(sb.Column.dimensionless(0.1)), MotionPlan.of(motion, {}, np.ones(1)), OPTIONS)
+MATHEMATICS = {"sin", "cos", "tan", "exp", "log", "pow", "sqrt", "hypot", "atan2", "fmin", "fmax", "floor", "rint"}
+
+MOTIONS = {
+    "harmonic": CIRCLE,
+    "windowed": CIRCLE.delayed(1.0),
+    "two terms": CIRCLE + CIRCLE.rotated(1.0),
+    "vertical": sb.Harmonic(amplitude=(0.065, 0.065, 0.2), phase=(0.0, 1.0, 2.0), angular_frequency=3.0),
+}
+# In a plane both methods make the same steps.
+KERNELS = [
+    pytest.param(motion, method, planar, marks=[] if motion == "harmonic" else pytest.mark.slow)
+    for motion in MOTIONS
+    for method, planar in (("dop853", False), ("dop853", True), ("taylor", False))
+]
+
+
+def kernel_for(motion, method, planar):
+    """Return the module of a kernel and a buffer for it."""
+    options = replace(OPTIONS, method=method)
+    plan = Plan(sb.Slender(sb.Column.dimensionless(0.1)), MotionPlan.of(MOTIONS[motion], {}, np.ones(1)), options)
     shape = plan.shape(planar=planar)
-    kernel = kernel_of(sb.Slender, shape)
-    function = getattr(kernel.module, loop)
-    function(np.ones(len(shape.rows()) * shape.width))
-    counts, registers = arithmetic_of(function)
+    return kernel_of(sb.Slender, shape).module, np.ones(len(shape.rows()) * shape.width)
+
+
+@pytest.mark.parametrize(("motion", "method", "planar"), KERNELS)
+def test_steps_work_on_all_lanes_at_once(motion, method, planar):
+    kernel, buf = kernel_for(motion, method, planar)
+    kernel.step(buf)
+    counts, registers = arithmetic_of(kernel.step)
     assert counts["pd"] > 100
     assert counts["sd"] == 0, counts
     assert registers["ymm"] + registers["zmm"] > registers["xmm"]
+
+
+# What tells the polynomials of a step, and the sums, belong to one lane: scalar. Between them stands a loop over the
+# nodes; in it two cosines, the root and four integrands take more than this many instructions, whatever the model.
+INSTRUCTIONS_AT_NODES = 40
+
+
+@pytest.mark.parametrize(("motion", "method", "planar"), KERNELS)
+def test_observation_works_on_all_nodes_at_once(motion, method, planar):
+    kernel, buf = kernel_for(motion, method, planar)
+    kernel.observe(buf, 0)
+    counts, registers = arithmetic_of(kernel.observe)
+    assert counts["pd"] >= INSTRUCTIONS_AT_NODES, counts
+    assert registers["ymm"] + registers["zmm"] >= INSTRUCTIONS_AT_NODES, registers
+    assert not called_by(kernel.observe) & MATHEMATICS
 
 
 def test_a_loop_with_a_branch_would_be_seen():
@@ -84,3 +115,4 @@ def test_a_loop_with_a_branch_would_be_seen():
     slow(np.ones(8))
     counts, _ = arithmetic_of(slow)
     assert counts["sd"] > 0
+    assert "sin" in called_by(slow)

@@ -82,6 +82,7 @@ def changed(**changes):
         (changed(duration=20.0), "duration was 10.0, is 20.0"),
         (changed(duration=None, periods=3.0), "duration was 10.0, is not given; periods was not given, is 3.0"),
         (changed(options={"rtol": 1e-6}), "rtol was 1e-08, is 1e-06"),
+        (changed(options={"method": "taylor"}), "method was 'dop853', is 'taylor'"),
         (changed(options={"rules": sb.OutcomeRules(periods=4)}), "rules.periods was 10, is 4"),
         (changed(model=replace(MODEL, damping=0.2)), "model.damping was 0.1, is 0.2"),
         (changed(motion=replace(MOTION, angular_frequency=2.0)), "motion.angular_frequency was 1.0, is 2.0"),

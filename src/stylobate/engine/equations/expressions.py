@@ -230,7 +230,7 @@ class Recording:
                 names[id(expression)] = expression.name
             else:
                 name = f"v{len(lines)}"
-                lines.append(f"{name} = {_text(expression, [names[id(o)] for o in expression.operands])}")
+                lines.append(f"{name} = {operation_source(expression, [names[id(o)] for o in expression.operands])}")
                 names[id(expression)] = name
         return lines, [names[id(result)] for result in results]
 
@@ -247,7 +247,8 @@ def number_source(value: float) -> str:
 _SIGNS = {"add": "+", "subtract": "-", "multiply": "*", "divide": "/"}
 
 
-def _text(expression: Expression, operands: list[str]) -> str:
+def operation_source(expression: Expression, operands: list[str]) -> str:
+    """Return an operation as it stands in source, its operands being these."""
     if expression.operation in _SIGNS:
         # A negative number in brackets: -x ** 2 and 1 - -x read badly.
         left, right = (f"({o})" if o.startswith("-") else o for o in operands)

@@ -7,10 +7,10 @@ for the numerical integration of ODEs by means of high-order Taylor methods", Ex
 
 from collections.abc import Collection, Iterable, Sequence
 
-from stylobate.engine.equations.expressions import Expression, Recording, number_source
+from stylobate.engine.equations.expressions import Expression, Recording, number_source, operation_source
 from stylobate.errors import UnsupportedError
 
-_LINEAR = ("input", "constant", "add", "subtract")
+_KNOWN = ("input", "constant", "add", "subtract", "multiply", "divide", "sqrt")
 
 
 class Series:
@@ -44,7 +44,7 @@ class Series:
         for expression in self._expressions:
             if expression.name in moving or any(self._moves(operand) for operand in expression.operands):
                 self._moving.add(id(expression))
-            if expression.operation not in (*_LINEAR, "multiply", "divide", "sqrt"):
+            if self._moves(expression) and expression.operation not in _KNOWN:
                 message = f"no recurrence is known here for the Taylor coefficients of {expression.operation}"
                 raise UnsupportedError(message)
             self._names[id(expression)] = expression.name or f"v{len(self._names)}"
@@ -90,8 +90,10 @@ class Series:
             text = self._product(expression, k)
         elif operation == "divide":
             before, text = self._quotient(expression, k)
-        else:
+        elif operation == "sqrt" and self._moves(expression):
             before, text = self._root(expression, k)
+        else:  # a function of what is fixed
+            text = operation_source(expression, [str(self._of(operand, 0)) for operand in expression.operands])
         if text is None or text.removeprefix("-").replace("_", "").isalnum():  # zero, or another, or its negative
             text = f"({text})" if text and text.startswith("-") else text
             self._aliases[key, k] = text
@@ -132,8 +134,6 @@ class Series:
         # r² = s: r_k = (s_k − Σ_{0 < j < k} r_j r_{k−j})/(2 r_0)
         (under,) = root.operands
         first = f"math.sqrt({self._of(under, 0)})"
-        if not self._moves(root):
-            return [], first
         name = self._coefficient(id(root), 0)
         if k == 0:
             lines, per = self._reciprocal(root)
