@@ -68,8 +68,8 @@ def simulate_ensemble(
         the names are those of `with_parameters`. All arrays are broadcast together by the names of their dimensions.
     method
         How motion in space is integrated: "dop853" as in `simulate`, or "taylor" by Taylor series of order 16, with
-        which a column that rolls steadily takes less than half of the steps. Runs that pass near the upright, and so most
-        maps, are faster by the former.
+        which a column that rolls steadily takes less than half of the steps. Runs that pass near the upright, and so
+        most maps, are faster by the former.
     rtol, atol, tilt_limit, rest_energy, max_steps, rules
         As in `simulate`; the same for all runs.
     samples
