@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from stylobate.column import Column
 from stylobate.errors import ParameterError, require_not_negative
+from stylobate.models.contact import contact_outputs
 from stylobate.models.model import Floats, Model, Output, Push
 
 # Keeps 1/|α| finite at the upright itself, far below any tilt that is resolved.
@@ -169,11 +170,12 @@ class Slender(Model):
         return self.damping > 0.0
 
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
-        """Return energy [J] and angular momentum about the vertical [kg m²/s], and the centre of pressure [m].
+        """Return energy [J], angular momentum about the vertical [kg m²/s], and what the contact bears.
 
         Energy is ½|α̇|² + cA − ½A² in units of J0 ω0², 0 at rest; angular momentum A²β̇ in units of J0 ω0: the two
-        integrals of free motion (page "theory", free vibration). The centre of pressure lies at −h a_h/(1 + a_z)
-        from the axis while the column stands, at the contact point of the rim while it leans.
+        integrals of free motion (page "theory", free vibration). The centre of pressure [m] lies at −h a_h/(1 + a_z)
+        from the axis while the column stands, at the contact point of the rim while it leans. Normal force [N],
+        friction over it, and moment about the vertical over normal force and radius: see `contact_outputs`.
         """
         x, y, vx, vy = states
         column = self.column
@@ -190,4 +192,5 @@ class Slender(Model):
             "energy": Output(energy * unit * column.frequency_scale, "J", "energy above rest"),
             "angular_momentum": Output(momentum * unit, "kg m2 s-1", "angular momentum about the vertical"),
             "centre_of_pressure": Output(pressure.T, "m", "centre of pressure from the axis"),
+            **contact_outputs(self, states, accelerations, resting),
         }

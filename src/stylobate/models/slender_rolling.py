@@ -11,6 +11,7 @@ import numpy.typing as npt
 from stylobate.column import Column
 from stylobate.errors import ParameterError, require_not_negative
 from stylobate.models import slender
+from stylobate.models.contact import contact_outputs
 from stylobate.models.model import Floats, Model, Output, Push
 
 # As in the slender model: keeps 1/|α| finite at the upright itself.
@@ -243,10 +244,16 @@ class SlenderRolling(Model):
         return self.damping > 0.0
 
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
-        """Return the spin [rad/s], and of the slender model the centre of pressure [m]."""
-        plain = slender.Slender(self.column, damping=self.damping).outputs(states[:4], accelerations, resting)
-        spin = states[4] / self.time_scale
+        """Return the spin [rad/s], the centre of pressure [m] as of the slender model, and what the contact bears.
+
+        Its moment about the vertical is that of the spin friction.
+        """
+        column, spin = self.column, states[4]
+        plain = slender.Slender(column, damping=self.damping).outputs(states[:4], accelerations, resting)
+        ratio, axial = column.inertia_ratio, column.axial_ratio
+        moment = self.spin_friction * (1.0 + axial - ratio) * ratio * column.slenderness * spin
         return {
-            "spin": Output(spin, "rad s-1", "angular velocity about the axis"),
+            "spin": Output(spin / self.time_scale, "rad s-1", "angular velocity about the axis"),
             "centre_of_pressure": plain["centre_of_pressure"],
+            **contact_outputs(self, states, accelerations, resting, moment),
         }

@@ -1,0 +1,64 @@
+"""What the contact must bear, against closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+
+import stylobate as sb
+
+C, ETA, A0, THETA = 0.1, 0.1, 0.065, 3.0
+COLUMN = sb.Column.dimensionless(C)
+CIRCLE = sb.Harmonic.circular(acceleration=A0, angular_frequency=THETA)
+
+
+def rolling(model, branch, spin=None):
+    """A run that begins on steady rolling, by dense output over the last period."""
+    size, psi = float(branch.amplitude), float(branch.phase)
+    lean = size * np.array([math.cos(psi), math.sin(psi)])
+    run = sb.simulate(
+        model, CIRCLE, tilt=lean, tilt_rate=(-THETA * lean[1], THETA * lean[0]), duration=320.0 * CIRCLE.period
+    )  # fmt: skip
+    return run.data.isel(time=slice(-50, None))
+
+
+def needed(branch):
+    """|a_h + κα̈| on steady rolling, and ηθA."""
+    size, psi = float(branch.amplitude), float(branch.phase)
+    friction = abs(A0 - 0.75 * THETA**2 * size * np.exp(1j * psi))
+    return friction, ETA * THETA * size
+
+
+def test_steady_rolling_that_cannot_turn_needs_what_theory_says():
+    branch = sb.theory.steady_rolling(THETA, A0, c=C, eta=ETA).upper
+    found = rolling(sb.Slender(COLUMN, damping=ETA), branch)
+    friction, moment = needed(branch)
+    # The share (1 − κ) of a_n, and of the friction couple its reaction κ: together a_n = ηθA.
+    np.testing.assert_allclose(found["friction_demand"], friction, rtol=1e-6)
+    np.testing.assert_allclose(found["pivoting_demand"], moment, rtol=1e-6)
+    free = sb.theory.free_twist_rolling(THETA, A0, c=C, eta=ETA, zeta=math.inf)
+    assert float(free.friction_moment) == pytest.approx(moment, rel=1e-12)
+
+
+def test_with_a_free_twist_the_spin_friction_gives_the_moment():
+    branch = sb.theory.free_twist_rolling(THETA, A0, c=C, eta=ETA, zeta=0.1)
+    found = rolling(sb.SlenderRolling(COLUMN, damping=ETA, spin_friction=0.1), branch)
+    friction, _ = needed(branch)
+    np.testing.assert_allclose(found["friction_demand"], friction, rtol=1e-4)
+    np.testing.assert_allclose(found["pivoting_demand"], float(branch.friction_moment), rtol=1e-4)
+
+
+def test_a_standing_column_needs_what_the_base_demands():
+    both = sb.Harmonic(amplitude=(0.05, 0.0, 0.3), phase=(0.0, 0.0, 0.4), angular_frequency=2.0)
+    data = sb.simulate(sb.Slender(COLUMN, damping=ETA), both, duration=10.0).data
+    assert bool(data["resting"].all())
+    base = data["base_acceleration"].to_numpy().T
+    np.testing.assert_allclose(data["friction_demand"], np.abs(base[0]) / (1.0 + base[2]), atol=1e-15)
+    np.testing.assert_allclose(data["normal_force"], COLUMN.mass * COLUMN.gravity * (1.0 + base[2]), rtol=1e-14)
+    np.testing.assert_array_equal(data["pivoting_demand"], 0.0)
+
+
+def test_free_rocking_needs_friction_kappa_c_near_the_upright():
+    run = sb.simulate(sb.Slender(COLUMN), tilt=(1e-4, 0.0), tilt_rate=(0.0, 0.0), duration=0.02)
+    np.testing.assert_allclose(run.data["friction_demand"], 0.75 * C, rtol=2e-3)
+    np.testing.assert_allclose(run.data["pivoting_demand"], 0.0, atol=1e-15)
