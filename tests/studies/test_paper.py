@@ -5,11 +5,11 @@ import pytest
 
 from stylobate import theory
 from stylobate.results import Verdict
-from stylobate.studies.paper import circular, free, modulated, planar, standing, straight
+from stylobate.studies.paper import circular, free, modulated, planar, standing, straight, twist
 
 
 @pytest.mark.parametrize(
-    "check", [free.check_free, circular.check_circular, standing.check_standing, planar.check_planar]
+    "check", [free.check_free, circular.check_circular, standing.check_standing, planar.check_planar, twist.check_twist]
 )
 def test_every_finding_is_confirmed(check):
     section = check()

@@ -74,6 +74,13 @@ _PICTURES: tuple[tuple[str, str, Callable[[PaperCheck], Figure], str], ...] = (
         "Modulated rolling, stable, below θ* = 1.3971 at a0 = 0.065: limit cycles of (7).",
     ),
     (
+        "free-twist",
+        "A column that may turn",
+        lambda check: paper.twist(check.data["twist"]),
+        "Steady rolling of a solid cylinder that may turn about its axis, a0 = 0.065, for several spin frictions ζ: it "
+        "leans less the less friction there is, and spins against its rolling. Bold: stable.",
+    ),
+    (
         "figure-2-straight",
         "Straight-line base motion",
         lambda check: paper.figure_2(check.data["response"], check.data["straight"]),

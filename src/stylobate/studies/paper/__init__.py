@@ -15,6 +15,7 @@ from stylobate.studies.paper.modulated import check_modulated
 from stylobate.studies.paper.planar import check_planar
 from stylobate.studies.paper.standing import check_standing
 from stylobate.studies.paper.straight import check_straight
+from stylobate.studies.paper.twist import check_twist
 
 __all__ = ["check_paper"]
 
@@ -23,6 +24,7 @@ _SECTIONS: Mapping[str, Callable[[], Section]] = {
     "Free vibration": check_free,
     "Circular base motion": check_circular,
     "Below the critical frequency": check_modulated,
+    "A column that may turn": check_twist,
     "Straight-line base motion": check_straight,
     "Exact periodic orbits": check_exact,
     "Motion in a plane": check_planar,
