@@ -86,6 +86,39 @@ def test_a_branch_does_not_depend_on_its_steps(straight_branches, largest):
         np.testing.assert_allclose(one.state, other.state, rtol=0.0, atol=1e-11)
 
 
+@pytest.mark.parametrize("theta", [2.0, 3.0])
+def test_with_the_acceleration_circular_rolling_ends_at_the_upright(theta):
+    """On the lower arm A → 0 as a0 → c; nothing of the other arm is followed again from there."""
+    branch = continue_branch(circular_orbit(theta), "acceleration", bounds=(0.001, 0.3))
+    assert branch.ends == (End.LOST, End.BOUND)
+    points = branch.points
+    a0, tilt = points["acceleration"].to_numpy(), points["mean_tilt"].to_numpy()
+    (fold,) = (one for one in branch.bifurcations if one.kind is Kind.FOLD)
+    at = int(np.argmin(a0))
+    assert a0[at] == fold.parameter
+    assert np.all(np.diff(a0[: at + 1]) < 0.0)
+    assert np.all(np.diff(a0[at:]) > 0.0)
+    rolling = sb.theory.steady_rolling(theta, a0, c=C, eta=0.1)
+    # The tilt goes with the square root of the distance from the fold: two on either side of it are left out.
+    for part, expected in ((slice(0, at - 2), rolling.lower), (slice(at + 3, None), rolling.upper)):
+        np.testing.assert_allclose(tilt[part], expected.amplitude[part], rtol=0.0, atol=1e-10)
+        # On the point of bifurcation itself, where it is among them, nothing is decided.
+        away = ~np.isin(a0[part], [one.parameter for one in branch.bifurcations])
+        np.testing.assert_array_equal(points["stable"][part][away], expected.stable[part][away])
+    # By the closed form the tilt at the end is (c − a0) / (1 + θ²) but for friction.
+    assert tilt[0] < 1e-4 * C
+    assert a0[0] == pytest.approx(C, rel=1e-3)
+    assert len(branch.orbits_at(0.2)) == 1
+    assert sum(one.kind is Kind.NEIMARK_SACKER for one in branch.bifurcations) <= 1
+
+
+def test_a_step_that_ends_farther_off_than_it_is_long_is_not_made():
+    branch = continue_branch(circular_orbit(2.0), "acceleration", bounds=(0.001, 0.3))
+    u = np.array([point.u for point in branch.path])
+    # Half the largest step along the tangent, and as much as that across it.
+    assert np.linalg.norm(np.diff(u, axis=0), axis=1).max() <= 1.5 * StepControl().largest
+
+
 PARAMETERS = [
     ("amplitude_x", (0.06, 0.1), 0.09),
     ("amplitude_y", (0.03, 0.06), 0.05),

@@ -146,8 +146,15 @@ def test_orbit_and_multipliers_do_not_depend_on_the_number_of_arcs(arcs, periods
     usual = periodic_orbit(MODEL, STRAIGHT)
     orbit = periodic_orbit(MODEL, STRAIGHT, periods=periods, arcs=arcs)
     np.testing.assert_allclose(orbit.state, usual.state, rtol=0.0, atol=1e-12)
-    assert distance_of_sets(orbit.multipliers, usual.multipliers**periods) < 1e-9
-    np.testing.assert_allclose(orbit.path[:, :128], usual.path, rtol=0.0, atol=1e-11)
+    assert distance_of_sets(orbit.multipliers, usual.multipliers) < 1e-9
+    np.testing.assert_allclose(orbit.path, usual.path, rtol=0.0, atol=1e-11)
+
+
+@pytest.mark.parametrize("periods", [2, 3, 4])
+def test_an_orbit_is_told_with_its_least_period(periods):
+    usual, orbit = periodic_orbit(MODEL, STRAIGHT), periodic_orbit(MODEL, STRAIGHT, periods=periods)
+    assert (orbit.periods, orbit.period) == (1, usual.period)
+    np.testing.assert_allclose(orbit.state, usual.state, rtol=0.0, atol=1e-12)
 
 
 def test_derivatives_of_a_chain_equal_differences_of_its_residual():
@@ -174,7 +181,7 @@ def test_derivatives_of_a_chain_equal_differences_of_its_residual():
 
 # In a plane.
 
-PLANAR = [(theta, a1, eta) for theta in (1.5, 3.0, 6.0) for a1 in (0.04, 0.13, 0.3) for eta in (0.05, 0.1, 0.4)]
+PLANAR = [(theta, a1, eta) for theta in (1.5, 3.0, 6.0) for a1 in (0.04, 0.13, 0.3) for eta in (0.0, 0.05, 0.1, 0.4)]
 
 
 def planar_case(theta, a1, expected, *, later, eta=ETA):
@@ -268,6 +275,21 @@ def test_a_search_finds_both_senses_and_unstable_orbits_each_once():
     assert any(np.allclose(orbit.state, expected.state, rtol=0.0, atol=1e-11) for orbit in orbits)
 
 
+@pytest.mark.parametrize("direction", [0.0, 0.7])
+def test_under_a_motion_along_a_line_a_search_finds_the_mirror_image_of_each_orbit(direction):
+    """The reflection in the plane of the base motion maps orbits to orbits, with the same multipliers."""
+    motion = sb.Harmonic.straight(acceleration=0.04, angular_frequency=2.0, direction=direction)
+    orbits = periodic_orbits(MODEL, motion, count=12)
+    assert any(orbit.turns == 1.0 for orbit in orbits)
+    cos, sin = math.cos(2.0 * direction), math.sin(2.0 * direction)
+    reflection = np.kron(np.eye(2), [[cos, sin], [sin, -cos]])
+    for orbit in orbits:
+        (image,) = (one for one in orbits if np.allclose(one.state, reflection @ orbit.state, rtol=0.0, atol=1e-11))
+        assert image.turns == -orbit.turns
+        # Beside a large multiplier the least ones have its rounding.
+        assert distance_of_sets(image.multipliers, orbit.multipliers) < 1e-9 * abs(orbit.multipliers[0])
+
+
 def test_a_search_gives_the_same_for_the_same_seed():
     first, second = (periodic_orbits(MODEL, STRAIGHT, count=8, seed=3) for _ in range(2))
     assert len(first) == len(second)
@@ -302,10 +324,11 @@ def test_a_search_over_two_periods_finds_what_one_over_one_period_finds():
     assert sorted(stable) == sorted(orbit.turns for orbit in twice if orbit.stable)
 
 
-def test_a_search_keeps_to_its_ranges():
+def test_a_search_begins_in_its_ranges():
+    """One start, beside rolling anticlockwise: that and its mirror image."""
     over = {"tilt_x": (0.01, 0.02), "tilt_y": (-0.001, 0.001), "tilt_rate_x": (0.0, 0.0), "tilt_rate_y": (0.03, 0.05)}
     orbits = periodic_orbits(MODEL, STRAIGHT, over=over, count=1)
-    assert [orbit.turns for orbit in orbits] == [1.0]
+    assert [orbit.turns for orbit in orbits] == [1.0, -1.0]
 
 
 # Bad input.

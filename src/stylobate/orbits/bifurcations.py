@@ -16,7 +16,7 @@ from stylobate.orbits.normal_forms import (
     neimark_sacker_coefficient,
     period_doubling_coefficient,
 )
-from stylobate.orbits.orbit import PeriodicOrbit
+from stylobate.orbits.orbit import PeriodicOrbit, without_friction
 from stylobate.orbits.shooting import shots
 
 # Along the family, in its units: the parameter is located better than this times the width of its bounds.
@@ -36,7 +36,7 @@ class Kind(Enum):
     """Another family crosses this one."""
     PERIOD_DOUBLING = "period doubling"
     NEIMARK_SACKER = "Neimark-Sacker"
-    """A modulated motion is born or dies."""
+    """A modulated motion is born or dies; not looked for without friction, where pairs stay on the unit circle."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Bifurcation:
         doubling above zero, if what is born is stable where the orbit is not.
     soft
         Whether a loss of stability here is soft: stable motions are born beside the orbit. None where the orbit is
-        unstable on both sides, and at folds and branch points, where the coefficient decides nothing.
+        unstable on both sides, at folds and branch points, and without friction: there the coefficient decides nothing.
     critical_vector
         Disturbance of the state that neither grows nor decays (its real part), of length 1.
     point, direction
@@ -89,7 +89,11 @@ class Bifurcation:
 def between(first: Point, second: Point, sense: Floats) -> tuple[Bifurcation, ...]:
     """Return the bifurcations between two points that follow each other, in their order."""
     found = []
-    ends = {name: (condition(first, sense), condition(second, sense)) for name, condition in CONDITIONS.items()}
+    conditions = dict(CONDITIONS)
+    if without_friction(first.multipliers) or without_friction(second.multipliers):
+        # There 1/μ goes with each multiplier μ: Π(μ_i μ_j − 1) is zero, and its sign that of rounding.
+        del conditions["Neimark-Sacker"]
+    ends = {name: (condition(first, sense), condition(second, sense)) for name, condition in conditions.items()}
     for name, (before, after) in ends.items():
         if not before * after < 0.0:
             continue
@@ -151,10 +155,11 @@ def _told(point: Point, sense: Floats, name: str) -> Bifurcation | None:
     if abs(nearest - critical) > _CRITICAL:
         return None
     if name == "period doubling":
-        coefficient = period_doubling_coefficient(period_map)
-        soft = coefficient > 0.0
         # Half an orbit that doubles is a whole one that loses its symmetry.
         kind = Kind.PITCHFORK if family.sense < 0.0 else kind
+        if not without_friction(point.multipliers):
+            coefficient = period_doubling_coefficient(period_map)
+            soft = coefficient > 0.0
     if np.sum(np.abs(values) > 1.0 + _CRITICAL) > 0:
         soft = None  # it is unstable on both sides
     vector: Floats = critical_vectors(point.map_derivative, nearest)[0].real

@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -12,15 +12,14 @@ import xarray as xr
 
 from stylobate.engine.flow.tableau import Status
 from stylobate.engine.parameters import present_value
-from stylobate.errors import NoOrbitError, ParameterError
+from stylobate.errors import NoOrbitError, ParameterError, require_finite
 from stylobate.orbits.arclength import Family, Floats, Point, on_family
+from stylobate.orbits.arguments import control_of, enclosing, require_followed, require_orbit
 from stylobate.orbits.bifurcations import Bifurcation, between, orbit_at
-from stylobate.orbits.orbit import PeriodicOrbit
-from stylobate.orbits.shooting import arcs_of
+from stylobate.orbits.orbit import PeriodicOrbit, is_stable
+from stylobate.orbits.shooting import WHY_LOST, arcs_of
 from stylobate.orbits.tracing import End, StepControl, Stretch, trace
 from stylobate.spec import provenance_of_run
-
-_STABLE = 1.0 - 1e-9
 
 
 @dataclass(frozen=True)
@@ -45,11 +44,28 @@ class Branch:
     ends: tuple[End, End]
 
     def orbit(self, index: int) -> PeriodicOrbit:
-        """Return the orbit of a point."""
+        """Return the orbit of a point; negative numbers count from the end.
+
+        Raises
+        ------
+        ParameterError
+            If the branch has no such point.
+        """
+        count = len(self.path)
+        if not isinstance(index, (int, np.integer)) or not -count <= index < count:
+            message = f"index must be a whole number from {-count} to {count - 1}, got {index!r}"
+            raise ParameterError(message)
         return orbit_at(self.path[index])
 
     def orbits_at(self, value: float) -> tuple[PeriodicOrbit, ...]:
-        """Return the orbits of the branch at this value of the parameter, in the order along it."""
+        """Return the orbits of the branch at this value of the parameter, in the order along it.
+
+        Raises
+        ------
+        ParameterError
+            If the value is no finite number.
+        """
+        value = require_finite("value", value)
         found = list[tuple[float, Point]]()
         values = np.array([point.value for point in self.path])
         for index in np.nonzero((values[:-1] - value) * (values[1:] - value) < 0.0)[0]:
@@ -82,7 +98,7 @@ class Branch:
         return xr.Dataset(
             {
                 **data,
-                "stable": ("point", np.abs(multipliers[:, 0]) < _STABLE, {"long_name": "stable"}),
+                "stable": ("point", [is_stable(one) for one in multipliers], {"long_name": "stable"}),
                 "multiplier": (
                     ("point", "multiplier_index", "part"),
                     np.stack([multipliers.real, multipliers.imag], axis=-1),
@@ -186,7 +202,8 @@ def continue_branch(
     Raises
     ------
     ParameterError
-        If the orbit does not lie between the bounds, or the parameter is not known.
+        If the orbit does not lie between the bounds, these cannot be, or the parameter is not known, or is `delay`,
+        which changes no orbit.
 
     Notes
     -----
@@ -203,28 +220,19 @@ def continue_branch(
     >>> [(one.kind.value, round(one.parameter, 8)) for one in branch.bifurcations]
     [('Neimark-Sacker', 1.39710759)]
     """
+    require_orbit(orbit)
+    require_followed(parameter)
+    control = control_of(control)
     value = present_value(orbit.model, orbit.motion, parameter)
-    low, high = enclosing(bounds, parameter, value)
+    low, high = enclosing(orbit.system, bounds, parameter, value)
     start = taken_up(orbit, parameter, value, high - low)
     if isinstance(start, Status):
-        message = f"the orbit could not be taken up at {parameter} = {value!r}"
+        message = f"the orbit could not be taken up at {parameter} = {value!r}: {WHY_LOST[start]}"
         raise NoOrbitError(message)
     up = np.zeros_like(start.u)
     up[-1] = 1.0
     seen = None if progress is None else (lambda point: progress(point.value))
-    return branch_through(start, up, (low, high), control or StepControl(), seen, both_ways=both_ways)
-
-
-def enclosing(bounds: Sequence[float], parameter: str, value: float) -> tuple[float, float]:
-    """Return the bounds, or raise ParameterError unless they are two numbers that enclose `value`."""
-    try:
-        low, high = (float(bound) for bound in bounds)
-    except (TypeError, ValueError):
-        low = high = math.nan
-    if not (-math.inf < low <= value <= high < math.inf and low < high):
-        message = f"bounds must be two numbers that enclose the present {parameter} {value!r}, got {bounds!r}"
-        raise ParameterError(message)
-    return low, high
+    return branch_through(start, up, (low, high), control, seen, both_ways=both_ways)
 
 
 def taken_up(orbit: PeriodicOrbit, parameter: str, value: float, span: float) -> Point | Status:

@@ -1,9 +1,10 @@
 """Curves of bifurcations in two parameters."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -13,11 +14,11 @@ from stylobate.engine.flow.periodic import Numbers, PeriodicSystem
 from stylobate.engine.flow.tableau import Status
 from stylobate.engine.parameters import present_value
 from stylobate.errors import NoOrbitError, ParameterError, StylobateError
+from stylobate.orbits.arguments import control_of, enclosing, require_bifurcation, require_followed
 from stylobate.orbits.bifurcations import Bifurcation, Kind
-from stylobate.orbits.branch import enclosing
 from stylobate.orbits.normal_forms import PeriodMap, neimark_sacker_coefficient, period_doubling_coefficient
 from stylobate.orbits.shooting import Shots, shots
-from stylobate.orbits.tracing import End, StepControl
+from stylobate.orbits.tracing import ASTRAY, End, StepControl
 from stylobate.spec import provenance_of_run
 
 Floats = npt.NDArray[np.float64]
@@ -115,6 +116,12 @@ class BifurcationCurve:
             },
         )
 
+    def save(self, path: str | Path) -> Path:
+        """Write it to a netCDF file at `path`; `stylobate.orbits.load` reads it again."""
+        from stylobate.orbits.storage import save  # noqa: PLC0415  storage needs this class
+
+        return save(self, path)
+
     def __repr__(self) -> str:
         """Tell it in one line."""
         return f"BifurcationCurve({self.kind.value} over {' and '.join(self.parameters)}, {len(self.path)} points)"
@@ -152,6 +159,9 @@ def bifurcation_curve(
     The orbit's equations and the condition of the bifurcation together, by pseudo-arclength. How the condition changes
     is taken by differences, which Newton's method bears; the condition itself is met to rounding.
     """
+    require_bifurcation(bifurcation)
+    require_followed(parameter)
+    control = control_of(control)
     first = bifurcation.point.family.name
     if bifurcation.kind not in _CONDITIONS:
         message = f"bifurcation must be no branch point, which a second parameter breaks up; got {bifurcation!r}"
@@ -161,8 +171,9 @@ def bifurcation_curve(
         raise ParameterError(message)
     system = bifurcation.orbit.system
     at = (bifurcation.parameter, present_value(system.model, system.motion, parameter))
+    pairs = _pairs(bounds)
     first_bounds, second_bounds = (
-        enclosing(pair, name, value) for pair, name, value in zip(bounds, (first, parameter), at, strict=True)
+        enclosing(system, pair, name, value) for pair, name, value in zip(pairs, (first, parameter), at, strict=True)
     )
     bounds = (first_bounds, second_bounds)
     family = bifurcation.point.family
@@ -179,13 +190,21 @@ def bifurcation_curve(
     if isinstance(start, End):
         message = f"the curve could not be begun: {start.value}"
         raise NoOrbitError(message)
-    control = control or StepControl()
     forward, last = _followed(plane, start, 1.0, bounds, control)
     if last is End.CLOSED:
         return BifurcationCurve(bifurcation.kind, plane.names, tuple(forward), (last, last), plane)
     backward, begin = _followed(plane, start, -1.0, bounds, control)
     path = (*reversed(backward[1:]), *forward)
     return BifurcationCurve(bifurcation.kind, plane.names, path, (begin, last), plane)
+
+
+def _pairs(bounds: tuple[tuple[float, float], tuple[float, float]]) -> tuple[Sequence[float], Sequence[float]]:
+    try:
+        first, second = bounds
+    except (TypeError, ValueError):
+        message = f"bounds must be two pairs of numbers, of the first and of the second parameter; got {bounds!r}"
+        raise ParameterError(message) from None
+    return first, second
 
 
 @dataclass(frozen=True)
@@ -306,10 +325,14 @@ def _followed(
     bounds: tuple[tuple[float, float], tuple[float, float]],
     control: StepControl,
 ) -> tuple[list[CurvePoint], End]:
-    points, here, length = [start.point], start, control.first
+    points, here, length = [start.point], start, min(control.first, control.largest)
     sense = sign * start.tangent
     while len(points) <= control.most:
-        found = plane.corrected(here.u + length * sense, sense)
+        guess = here.u + length * sense
+        found = plane.corrected(guess, sense)
+        # Farther off lies another curve, on which Newton's method has come by chance.
+        if not isinstance(found, End) and np.linalg.norm(found.u - guess) > ASTRAY * length:
+            found = End.SHORT
         bent = not isinstance(found, End) and abs(found.tangent @ sense) < _STRAIGHT
         if isinstance(found, End) or bent:
             length *= _SHORTER

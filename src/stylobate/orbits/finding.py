@@ -2,15 +2,18 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.flow.periodic import PeriodicSystem, plane_of
+from stylobate.engine.flow.periodic import PeriodicSystem, plane_of, require_periodic
 from stylobate.engine.flow.tableau import Status
-from stylobate.errors import ParameterError, require_positive, require_whole
+from stylobate.engine.forcing import common_line
+from stylobate.errors import NoOrbitError, ParameterError, require_positive, require_whole
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
+from stylobate.orbits.arguments import require_subject
 from stylobate.orbits.opening import require_sense, rolling_by_theory
 from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.shooting import Shots, arcs_of, closed, damped, newton_step, shots
@@ -23,6 +26,8 @@ _LEAN = 4
 _SAME = 1e-6
 _DEFLATED_STEPS = 40
 _CLOSE = 1e-10
+# Tilt and tilt rate below this part of c are none.
+_STANDING = 1e-12
 
 
 def periodic_orbit(
@@ -51,7 +56,7 @@ def periodic_orbit(
         phase of t = 0. Or None for steady rolling by theory (slender model, horizontal Harmonic motion): known exactly
         for one of the two circles of which the motion is made, and followed while the other is added.
     periods
-        Length of the orbit in periods of the base motion.
+        Length of the orbit in periods of the base motion; a shorter one to which it leads is told with its own.
     arcs
         Shots in which it is closed, one a period by default; more for orbits that are very unstable.
     sense
@@ -85,14 +90,28 @@ def periodic_orbit(
     arcs = periods if arcs is None else require_whole("arcs", arcs, least=1)
     rtol = require_positive("rtol", rtol)
     require_sense(sense)
+    require_subject(model, motion)
+    require_periodic(motion)
     if guess is None:
         state, line = rolling_by_theory(model, motion, sense), None
     else:
         lean = _of_run(guess, motion) if isinstance(guess, Response) else _checked(guess)
+        _require_moving(model, lean)
         state, line = _start(model, motion, lean)
     system = PeriodicSystem(model, motion, line, rtol)
     chain = closed(system, arcs_of(system, state, periods, arcs), periods)
-    return PeriodicOrbit(model, motion, periods, chain, line, rtol)
+    return _shortest(PeriodicOrbit(model, motion, periods, chain, line, rtol))
+
+
+def _require_moving(model: Model, lean: Floats) -> None:
+    """Raise NoOrbitError if the column is upright there and does not move."""
+    size = np.hypot(*lean[:2]), np.hypot(*lean[2:]) * model.time_scale
+    if max(size) < _STANDING * model.column.slenderness:
+        message = (
+            "no periodic orbit was reached: at the guess the column stands upright and does not move, which is no "
+            "orbit; give a tilt, or a tilt rate, of the motion that is sought, or a run that still moves"
+        )
+        raise NoOrbitError(message)
 
 
 def _start(model: Model, motion: BaseMotion, lean: Floats) -> tuple[Floats, tuple[float, float] | None]:
@@ -119,7 +138,8 @@ def periodic_orbits(
 
     Orbits found already are deflated: their neighbourhood repels Newton's method, so that coexisting ones are found
     (P. E. Farrell, Á. Birkisson, S. W. Funke, "Deflation techniques for finding distinct solutions of nonlinear
-    partial differential equations", SIAM J. Sci. Comput. 37 (2015)).
+    partial differential equations", SIAM J. Sci. Comput. 37 (2015)). Under a base motion along a line the mirror image
+    of an orbit is one too, and given with it.
 
     Parameters
     ----------
@@ -140,6 +160,7 @@ def periodic_orbits(
     tuple
         By length, then by largest tilt. What is not found may still exist: this is a search, not a proof.
     """
+    require_subject(model, motion)
     periods = require_whole("periods", periods, least=1)
     count = require_whole("count", count, least=1)
     rtol = require_positive("rtol", rtol)
@@ -154,11 +175,16 @@ def periodic_orbits(
         for lean in starts:
             state = np.array(model.start(tuple(lean[:2]), tuple(lean[2:])), dtype=float)
             chain = _deflated(system, state, length, known)
-            if chain is not None:
-                orbit = _shortest(PeriodicOrbit(model, motion, length, chain, None, rtol))
-                found.append(orbit)
-                known.extend(orbit.states(orbit.periods).T)
-    return tuple(sorted(found, key=lambda orbit: (orbit.periods, orbit.largest_tilt)))
+            if chain is None:
+                continue
+            orbit = _shortest(PeriodicOrbit(model, motion, length, chain, None, rtol))
+            for one in (orbit, _mirrored(orbit)):
+                if one is not None and not _is_known(one.state, known, system.scale):
+                    found.append(one)
+                    known.extend(one.states(one.periods).T)
+    # Images have the same tilts but for rounding: they stay in the order in which they were found.
+    same = _SAME * system.scale
+    return tuple(sorted(found, key=lambda orbit: (orbit.periods, round(orbit.largest_tilt / same))))
 
 
 def _deflated(system: PeriodicSystem, state: Floats, periods: int, known: Sequence[Floats]) -> Shots | None:
@@ -176,9 +202,28 @@ def _deflated(system: PeriodicSystem, state: Floats, periods: int, known: Sequen
         close = np.abs(step).max() <= _CLOSE * np.abs(chain.states).max()
         chain = following
         if close:
-            gaps = [np.abs(chain.states[0] - other).max() for other in known]
-            return None if any(gap <= _SAME * system.scale for gap in gaps) else chain
+            return None if _is_known(chain.states[0], known, system.scale) else chain
     return None
+
+
+def _is_known(state: Floats, known: Sequence[Floats], scale: float) -> bool:
+    return any(np.abs(state - other).max() <= _SAME * scale for other in known)
+
+
+def _mirrored(orbit: PeriodicOrbit) -> PeriodicOrbit | None:
+    """Return the mirror image of an orbit under a base motion along a line; None under another, or if it is none."""
+    line = common_line(*orbit.motion.directions())
+    if line is None:
+        return None
+    # Twice the part along the line, less the whole.
+    tilt, rate = (2.0 * (vector @ line) * np.array(line) - vector for vector in (orbit.tilt, orbit.tilt_rate))
+    state = np.array(orbit.model.start(tuple(tilt), tuple(rate)), dtype=float)
+    try:
+        guess = arcs_of(orbit.system, state, orbit.periods, len(orbit.chain.states))
+        chain = closed(orbit.system, guess, orbit.periods)
+    except NoOrbitError:
+        return None
+    return replace(orbit, chain=chain)
 
 
 def _repelled(step: Floats, states: Floats, known: Sequence[Floats], scale: float) -> Floats:
@@ -199,8 +244,9 @@ def _shortest(orbit: PeriodicOrbit) -> PeriodicOrbit:
         if orbit.periods % periods == 0:
             flow = orbit.system.carry(orbit.state, 0.0, float(periods))
             if flow.status is Status.DONE and np.abs(flow.end - orbit.state).max() <= _SAME * orbit.system.scale:
-                chain = closed(orbit.system, orbit.state[np.newaxis], periods)
-                return PeriodicOrbit(orbit.model, orbit.motion, periods, chain, orbit.line, orbit.rtol)
+                arcs = max(1, round(len(orbit.chain.states) * periods / orbit.periods))
+                chain = closed(orbit.system, arcs_of(orbit.system, orbit.state, periods, arcs), periods)
+                return replace(orbit, periods=periods, chain=chain)
     return orbit
 
 

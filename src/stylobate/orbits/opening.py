@@ -67,7 +67,10 @@ def rolling_by_theory(model: Model, motion: BaseMotion, sense: int | None) -> Fl
     """
     harmonic = as_harmonic(motion)
     if type(model) is not Slender or harmonic is None or harmonic.amplitude[2] != 0.0:
-        message = "guess must be given: theory knows steady rolling of the slender model under Harmonic motion only"
+        message = (
+            "guess must be given: theory knows steady rolling of the slender model under horizontal Harmonic motion "
+            f"only, got {model.name} under {motion!r}"
+        )
         raise UnsupportedError(message)
     require_sense(sense)
     circles = _Circles.of(harmonic)

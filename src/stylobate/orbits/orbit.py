@@ -23,6 +23,25 @@ _SAME = 1e-7
 _PASSING, _LATER = 1e-9, 0.03
 # A multiplier this near to the unit circle cannot be told from one on it.
 _NEUTRAL = 1e-9
+# Rounding of the product of all multipliers, as measured without friction, is this times the square of the largest;
+# beyond the last number it tells nothing about friction.
+_ROUNDING, _UNTOLD = 1e-14, 0.1
+
+
+def without_friction(multipliers: Complexes) -> bool:
+    """Return whether volumes of states keep their size: the product of all multipliers is 1.
+
+    Each of them is told to 1e-9, and a large one leaves its rounding in the least.
+    """
+    rounding = _ROUNDING * float(np.abs(multipliers).max()) ** 2
+    allowed = len(multipliers) * _NEUTRAL + min(rounding, _UNTOLD)
+    return bool(abs(np.prod(multipliers) - 1.0) <= allowed)
+
+
+def is_stable(multipliers: Complexes) -> bool:
+    """Return whether all multipliers lie inside the unit circle; without friction, whether none lies outside it."""
+    margin = _NEUTRAL if without_friction(multipliers) else -_NEUTRAL
+    return bool(np.abs(multipliers).max() < 1.0 + margin)
 
 
 @dataclass(frozen=True)
@@ -104,8 +123,12 @@ class PeriodicOrbit:
 
     @property
     def stable(self) -> bool:
-        """Whether all multipliers lie inside the unit circle; in a plane, whether it is stable in that plane."""
-        return bool(np.abs(self.multipliers[0]) < 1.0 - _NEUTRAL)
+        """Whether all multipliers lie inside the unit circle; in a plane, whether it is stable in that plane.
+
+        Without friction nothing decays: their product is 1, and True then means neutrally stable, that none lies
+        outside the unit circle by more than 1e-9, to which they are known.
+        """
+        return is_stable(self.multipliers)
 
     @property
     def planar(self) -> bool:

@@ -18,7 +18,7 @@ _MOST_STEPS, _MOST_HALVINGS = 25, 8
 # A step may make the residual grow by this much: far from an orbit Newton's way is not monotonic.
 _GROWTH = 2.0
 
-_WHY_LOST = {
+WHY_LOST = {
     Status.LOST: "it comes within 1e-6 c of the upright, where its direction is lost",
     Status.GONE: "it leaves for tilts from which no motion returns",
     Status.FAILED: "it cannot be followed with the wanted tolerance",
@@ -179,7 +179,7 @@ def chain_status(system: PeriodicSystem, chain: Shots, step: Floats, periods: in
 
 
 def _lost(what: str, status: Status) -> str:
-    return f"no periodic orbit was reached: {what} fails because {_WHY_LOST[status]}; try another guess"
+    return f"no periodic orbit was reached: {what} fails because {WHY_LOST[status]}; try another guess"
 
 
 def arcs_of(system: PeriodicSystem, state: Floats, periods: float, arcs: int) -> Floats:

@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -10,54 +11,105 @@ import xarray as xr
 
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.engine.flow.tableau import Status
-from stylobate.errors import FileError, UnsupportedError
+from stylobate.errors import FileError, ParameterError, UnsupportedError
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 from stylobate.orbits.arclength import Family, Point
 from stylobate.orbits.bifurcations import Bifurcation, Kind, orbit_at
 from stylobate.orbits.branch import Branch
+from stylobate.orbits.curves import BifurcationCurve, CurvePoint, Plane
 from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.shooting import shots
 from stylobate.orbits.tracing import End
 from stylobate.results.storage import read_dataset, write_dataset
 from stylobate.spec import description_of, provenance_of_run
 
-_ORBIT, _BRANCH = "stylobate orbit 1", "stylobate branch 1"
+_ORBIT, _BRANCH, _CURVE = "stylobate orbit 1", "stylobate branch 1", "stylobate bifurcation curve 1"
+_SUFFIX = ".nc"
+# So HDF5 calls a file that is none of its own.
+_SIGNATURE = "signature not found"
 _SOFT = {True: 1, False: 0, None: -1}
 
 
-def save(found: PeriodicOrbit | Branch, path: str | Path) -> Path:
-    """Write an orbit or a branch to the netCDF file `path`, with its provenance; `load` reads it again.
+def save(found: PeriodicOrbit | Branch | BifurcationCurve, path: str | Path) -> Path:
+    """Write an orbit, a branch or a curve to the netCDF file `path`, with its provenance; `load` reads it again.
 
     Raises
     ------
+    ParameterError
+        If the path does not end in .nc.
     FileError
         If the file cannot be written.
     UnsupportedError
         If model or motion is of a class of your own, which a file cannot hold.
     """
-    data = _orbit_data(found) if isinstance(found, PeriodicOrbit) else _branch_data(found)
-    return write_dataset(data, Path(path))
+    path = _path(path)
+    if path.suffix != _SUFFIX:
+        message = f"path must end in {_SUFFIX}, which is what is written; got {str(path)!r}"
+        raise ParameterError(message)
+    if not path.parent.is_dir():
+        message = f"cannot write {path}: there is no folder {path.parent}"
+        raise FileError(message)
+    if isinstance(found, PeriodicOrbit):
+        data = _orbit_data(found)
+    else:
+        data = _branch_data(found) if isinstance(found, Branch) else _curve_data(found)
+    return write_dataset(data, path)
 
 
-def load(path: str | Path) -> PeriodicOrbit | Branch:
-    """Return the orbit or branch saved in the netCDF file `path`.
+def load(path: str | Path) -> PeriodicOrbit | Branch | BifurcationCurve:
+    """Return the orbit, branch or curve saved in the netCDF file `path`.
 
     Raises
     ------
     FileError
-        If the file cannot be read or holds neither.
+        If the file cannot be read or holds none of them.
     """
-    data = read_dataset(path)
-    written = data.attrs.get("format")
-    if written not in (_ORBIT, _BRANCH):
-        message = f"{path} holds no orbit or branch saved by stylobate: its format is {written!r}"
+    path = _path(path)
+    data = _stored(path)
+    read = _READERS.get(str(data.attrs.get("format")))
+    if read is None:
+        message = f"{path} holds no orbit, branch or curve saved by stylobate, but {_content(data)}"
         raise FileError(message)
     try:
-        return _read_orbit(data) if written == _ORBIT else _read_branch(data)
+        return read(data)
     except (KeyError, TypeError, ValueError) as error:
         message = f"{path} is damaged: {error}"
         raise FileError(message) from error
+
+
+def _path(path: str | Path) -> Path:
+    try:
+        return Path(path)
+    except TypeError:
+        message = f"path must be the name of a file, got {path!r}"
+        raise ParameterError(message) from None
+
+
+def _stored(path: Path) -> xr.Dataset:
+    """Return what a file holds; where it cannot be read, say what it is in place of what HDF5 says."""
+    if path.is_dir():
+        message = f"cannot read {path}: it is a folder; give the file that was saved"
+        raise FileError(message)
+    if not path.exists():
+        message = f"cannot read {path}: there is no such file"
+        raise FileError(message)
+    try:
+        return read_dataset(path)
+    except FileError as error:
+        if _SIGNATURE not in str(error):
+            raise
+        message = f"cannot read {path}: it is no netCDF file"
+        raise FileError(message) from error
+
+
+def _content(data: xr.Dataset) -> str:
+    written, kind = data.attrs.get("format"), data.attrs.get("kind")
+    if written is not None and str(written).startswith("stylobate response"):
+        return "a run; stylobate.load reads it"
+    if kind is not None:
+        return f"a table of kind {kind!r}; xarray.open_dataset reads it"
+    return "other data; xarray.open_dataset reads them"
 
 
 def _attributes(system: PeriodicSystem, format_name: str, periods: int) -> dict[str, Any]:
@@ -179,3 +231,48 @@ def _shot(family: Family, states: Any, value: float) -> Point:
         message = f"its orbit at {family.name} = {value!r} cannot be shot again"
         raise ValueError(message)
     return Point(family, value, chain)
+
+
+def _curve_data(curve: BifurcationCurve) -> xr.Dataset:
+    plane, critical = curve.plane, np.array([point.multiplier for point in curve.path])
+    return xr.Dataset(
+        {
+            "states": (("point", "arc", "state"), np.stack([point.chain.states for point in curve.path])),
+            "values": (("point", "parameter"), np.array([point.values for point in curve.path])),
+            "multiplier": (("point", "part"), np.stack([critical.real, critical.imag], axis=-1)),
+        },
+        attrs={
+            **_attributes(plane.system, _CURVE, 1),
+            "bifurcation": curve.kind.name,
+            "parameters": json.dumps(curve.parameters),
+            "spans": np.array(plane.spans),
+            "covered": plane.covered,
+            "sense": plane.sense,
+            "ends": json.dumps([end.name for end in curve.ends]),
+        },
+    )
+
+
+def _read_curve(data: xr.Dataset) -> BifurcationCurve:
+    kind = Kind[str(data.attrs["bifurcation"])]
+    first, second = (str(name) for name in json.loads(data.attrs["parameters"]))
+    spans = tuple(float(span) for span in data.attrs["spans"])
+    covered, sense = (float(data.attrs[name]) for name in ("covered", "sense"))
+    plane = Plane(_system(data), (first, second), covered, sense, kind, spans)
+    path = []
+    columns = (data[name].to_numpy() for name in ("states", "values", "multiplier"))
+    for states, values, (real, imaginary) in zip(*columns, strict=True):
+        chain = shots(plane.at(values), np.ascontiguousarray(states), covered, sense=sense)
+        if chain.status is not Status.DONE:
+            message = f"its orbit at {first} = {values[0]!r}, {second} = {values[1]!r} cannot be shot again"
+            raise ValueError(message)
+        path.append(CurvePoint((float(values[0]), float(values[1])), chain, complex(real, imaginary)))
+    begin, end = (End[name] for name in json.loads(data.attrs["ends"]))
+    return BifurcationCurve(kind, (first, second), tuple(path), (begin, end), plane)
+
+
+_READERS: dict[str, Callable[[xr.Dataset], PeriodicOrbit | Branch | BifurcationCurve]] = {
+    _ORBIT: _read_orbit,
+    _BRANCH: _read_branch,
+    _CURVE: _read_curve,
+}

@@ -5,8 +5,9 @@ import numpy as np
 from stylobate.engine.flow.tableau import Status
 from stylobate.errors import NoOrbitError, ParameterError
 from stylobate.orbits.arclength import Family, Point, corrected
+from stylobate.orbits.arguments import control_of, enclosing, require_bifurcation
 from stylobate.orbits.bifurcations import Bifurcation, Kind
-from stylobate.orbits.branch import Branch, branch_through, enclosing
+from stylobate.orbits.branch import Branch, branch_through
 from stylobate.orbits.shooting import arcs_of
 from stylobate.orbits.tracing import StepControl
 
@@ -41,6 +42,8 @@ def switch_branch(
     NoOrbitError
         If no orbit of the new family was reached.
     """
+    require_bifurcation(bifurcation)
+    control = control_of(control)
     point, old = bifurcation.point, bifurcation.point.family
     if bifurcation.kind in (Kind.FOLD, Kind.NEIMARK_SACKER):
         message = (
@@ -48,7 +51,7 @@ def switch_branch(
             "no other family of periodic orbits begins there"
         )
         raise ParameterError(message)
-    bounds = enclosing(bounds, old.name, point.value)
+    bounds = enclosing(old.system, bounds, old.name, point.value)
     periods = 2 * old.periods if bifurcation.kind is Kind.PERIOD_DOUBLING else old.periods
     family = Family(old.at(point.value), periods, old.name, bounds[1] - bounds[0])
     states = arcs_of(family.system, point.chain.states[0], periods, periods)
@@ -64,7 +67,7 @@ def switch_branch(
         # On the old family the plane across the disturbance is met at no distance from it.
         if not isinstance(found, Status) and _apart(found[0], here, normal) > 0.5 * off:
             start = found[0]
-            return branch_through(start, normal, bounds, control or StepControl(), both_ways=False)
+            return branch_through(start, normal, bounds, control, both_ways=False)
         off *= 2.0
     message = f"no orbit of the family born at {old.name} = {point.value!r} was reached; give another bifurcation"
     raise NoOrbitError(message)

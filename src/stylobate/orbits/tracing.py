@@ -7,12 +7,16 @@ from enum import Enum
 import numpy as np
 
 from stylobate.engine.flow.tableau import Status
+from stylobate.errors import ParameterError, require_positive, require_whole
 from stylobate.orbits.arclength import Family, Floats, Point, corrected
 
 _EASY, _HARD = 4, 7
 _LONGER, _SHORTER = 1.5, 0.5
 # Two tangents at the ends of a step differ by no more than the angle of this cosine.
 _STRAIGHT = 0.97
+# A corrected point is no farther from the predicted one than this part of the step: half of that is what a family can
+# bend off it while its tangent turns no more than that.
+ASTRAY = 0.5
 # The family is closed when it comes back this near to its first point [steps].
 _CLOSED = 0.75
 
@@ -38,15 +42,30 @@ class StepControl:
     Parameters
     ----------
     first, least, largest
-        Lengths of a step, in units of c for states and of the width of the bounds for the parameter.
+        Lengths of a step, in units of c for states and of the width of the bounds for the parameter. The first one is
+        no longer than the largest.
     most
         Number of points at most.
+
+    Raises
+    ------
+    ParameterError
+        If a length is not positive, `most` no whole number above zero, or the least length above another one.
     """
 
     first: float = 5e-3
     least: float = 1e-7
     largest: float = 0.02
     most: int = 2000
+
+    def __post_init__(self) -> None:
+        for name in ("first", "least", "largest"):
+            require_positive(name, getattr(self, name))
+        require_whole("most", self.most, least=1)
+        for name in ("first", "largest"):
+            if self.least > getattr(self, name):
+                message = f"least must not be above {name}, {getattr(self, name)!r}; got {self.least!r}"
+                raise ParameterError(message)
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +104,7 @@ def trace(
 def _points(
     start: Point, direction: Floats, bounds: tuple[float, float], control: StepControl
 ) -> Iterator[tuple[Point, Floats] | End]:
-    point, sense, length = start, start.along(direction), control.first
+    point, sense, length = start, start.along(direction), min(control.first, control.largest)
     low, high = bounds
     if start.value >= high if sense[-1] > 0.0 else start.value <= low:
         yield End.BOUND
@@ -122,6 +141,9 @@ def _step(
     while True:
         guess = point.u + length * sense
         found = corrected(family, guess, sense)
+        # Farther off lies another family, on which Newton's method has come by chance.
+        if not isinstance(found, Status) and np.linalg.norm(found[0].u - guess) > ASTRAY * length:
+            found = Status.FAILED
         # Between orbits that wind differently about the upright lies one that meets it.
         if not isinstance(found, Status) and abs(found[0].chain.turns - point.chain.turns) > _SAME_TURNS:
             found = Status.LOST
@@ -165,6 +187,8 @@ def _at_bound(family: Family, point: Point, sense: Floats, bound: float) -> Poin
     normal = np.zeros_like(sense)
     normal[-1] = 1.0
     found = corrected(family, guess, normal)
+    if not isinstance(found, Status) and np.linalg.norm(found[0].u - guess) > ASTRAY * np.linalg.norm(guess - point.u):
+        return None
     # The value is the bound itself, not what is left of it after scaling.
     return None if isinstance(found, Status) else replace(found[0], value=bound)
 

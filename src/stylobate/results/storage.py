@@ -11,6 +11,7 @@ from stylobate.errors import FileError, Outcome
 from stylobate.results.response import Event, Response
 
 _FORMAT = "stylobate response 1"
+_OF_ORBITS = ("orbit", "branch", "bifurcation")
 _OWN_ATTRIBUTES = (
     "format",
     "outcome",
@@ -66,6 +67,12 @@ def load(path: str | Path) -> Response:
             "xarray.open_dataset reads it"
         )
         raise FileError(message)
+    kind = str(attributes.get("format", "")).removeprefix("stylobate ").partition(" ")[0]
+    if kind in _OF_ORBITS:
+        message = (
+            f"{path} holds no run but what stylobate.orbits saved, of kind {kind!r}; stylobate.orbits.load reads it"
+        )
+        raise FileError(message)
     if attributes.get("format") != _FORMAT:
         message = f"{path} is no run saved by stylobate: its format is {attributes.get('format')!r}, not {_FORMAT!r}"
         raise FileError(message)
@@ -84,6 +91,9 @@ def read_dataset(path: str | Path) -> xr.Dataset:
     FileError
         If the file cannot be read.
     """
+    if not Path(path).is_file():
+        message = f"cannot read {path}: {'it is a folder' if Path(path).is_dir() else 'there is no such file'}"
+        raise FileError(message)
     try:
         with xr.open_dataset(path, engine="h5netcdf") as stored:
             return stored.load()

@@ -70,17 +70,26 @@ KERNELS = [
 ]
 
 
-def kernel_for(motion, method, planar):
+def kernel_for(motion, method, planar, model=sb.Slender):
     """Return the module of a kernel and a buffer for it."""
     options = replace(OPTIONS, method=method)
-    plan = Plan(sb.Slender(sb.Column.dimensionless(0.1)), MotionPlan.of(MOTIONS[motion], {}, np.ones(1)), options)
+    plan = Plan(model(sb.Column.dimensionless(0.1)), MotionPlan.of(MOTIONS[motion], {}, np.ones(1)), options)
     shape = plan.shape(planar=planar)
-    return kernel_of(sb.Slender, shape).module, np.ones(len(shape.rows()) * shape.width)
+    return kernel_of(model, shape).module, np.ones(len(shape.rows()) * shape.width)
 
 
-@pytest.mark.parametrize(("motion", "method", "planar"), KERNELS)
-def test_steps_work_on_all_lanes_at_once(motion, method, planar):
-    kernel, buf = kernel_for(motion, method, planar)
+@pytest.mark.parametrize(
+    ("motion", "method", "planar", "model"),
+    [
+        *(pytest.param(*kernel.values, sb.Slender, marks=kernel.marks) for kernel in KERNELS),
+        *(
+            pytest.param("harmonic", method, False, sb.SlenderRolling, marks=pytest.mark.slow)
+            for method in ("dop853", "taylor")
+        ),
+    ],
+)
+def test_steps_work_on_all_lanes_at_once(motion, method, planar, model):
+    kernel, buf = kernel_for(motion, method, planar, model)
     kernel.step(buf)
     counts, registers = arithmetic_of(kernel.step)
     assert counts["pd"] > 100

@@ -217,7 +217,14 @@ class PeriodicSystem:
         return math.atan2(float(y), float(x)) / (2.0 * math.pi)
 
 
-def _numbers(model: Model, motion: BaseMotion, line: tuple[float, float] | None) -> Numbers:
+def require_periodic(motion: BaseMotion) -> float:
+    """Return the period of a base motion [s].
+
+    Raises
+    ------
+    UnsupportedError
+        If it has none, or is not periodic from t = 0.
+    """
     period = motion.period
     if period is None:
         message = f"periodic orbits need a base motion with a period, got {motion!r}"
@@ -227,6 +234,11 @@ def _numbers(model: Model, motion: BaseMotion, line: tuple[float, float] | None)
             f"periodic orbits need a base motion that is periodic from t = 0, without ramp or delay; got {motion!r}"
         )
         raise UnsupportedError(message)
+    return period
+
+
+def _numbers(model: Model, motion: BaseMotion, line: tuple[float, float] | None) -> Numbers:
+    period = require_periodic(motion)
     gravity = model.column.gravity
     rows = _harmonic_rows(motion, period)
     if rows is None:

@@ -52,9 +52,10 @@ def _run_from_paper(zeta: float, periods: float) -> Response:
     motion = Harmonic.circular(acceleration=_A0, angular_frequency=_THETA)
     model = SlenderRolling(Column.dimensionless(_C), damping=DAMPING, spin_friction=zeta)
     branch = theory.steady_rolling(_THETA, _A0, c=_C, eta=DAMPING).upper
-    lean = float(branch.amplitude) * np.array([math.cos(float(branch.phase)), math.sin(float(branch.phase))])
-    rate = _THETA * np.array([-lean[1], lean[0]])
-    return simulate(model, motion, tilt=lean, tilt_rate=rate, duration=periods * motion.period, rest_energy=0.0)
+    size, psi = float(branch.amplitude), float(branch.phase)
+    x, y = size * math.cos(psi), size * math.sin(psi)
+    rate = (-_THETA * y, _THETA * x)
+    return simulate(model, motion, tilt=(x, y), tilt_rate=rate, duration=periods * motion.period, rest_energy=0.0)
 
 
 def _needed() -> Finding:
