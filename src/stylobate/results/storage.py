@@ -70,7 +70,7 @@ def load(path: str | Path) -> Response:
     kind = str(attributes.get("format", "")).removeprefix("stylobate ").partition(" ")[0]
     if kind in _OF_ORBITS:
         message = (
-            f"{path} holds no run but what stylobate.orbits saved, of kind {kind!r}; stylobate.orbits.load reads it"
+            f"{path} holds no run but, of stylobate.orbits, an object of kind {kind!r}; stylobate.orbits.load reads it"
         )
         raise FileError(message)
     if attributes.get("format") != _FORMAT:
