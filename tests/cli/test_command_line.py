@@ -13,6 +13,7 @@ from stylobate.cli.main import run
 
 COLUMN = ["--slenderness", "0.1", "--damping", "0.1"]
 MOTION = ["--motion", "circular", "--acceleration", "0.065", "--angular-frequency", "1.8"]
+WEAK = ["--motion", "straight", "--acceleration", "0.001"]
 START = ["--tilt", "0.04", "0", "--tilt-rate", "0", "0.07", "--duration", "20"]
 
 
@@ -105,6 +106,24 @@ def test_response_as_json_has_every_curve(capsys):
             ["response", *COLUMN, *MOTION[:4], "--angular-frequency-range", "1", "3", "--output", "response.csv"],
             ["--output must end with .nc, got 'response.csv'"],
         ),
+        (
+            ["response", *COLUMN, *MOTION[:4], "--angular-frequency-range", "-1", "3"],
+            ["angular_frequency_range must rise from above zero, got -1.0 to 3.0 rad/s"],
+        ),
+        (["response", *COLUMN, *MOTION[:4]], ["angular_frequency_range is missing"]),
+        (["boundary", *COLUMN, *MOTION[:4], "--bounds", "0.1", "0.2"], ["angular_frequency_range is missing"]),
+        (
+            ["response", "--exact", *COLUMN, *MOTION[:4], "--angular-frequency-range", "1", "3", "--points", "50"],
+            ["--points counts the frequencies of theory"],
+        ),
+        (
+            ["response", *COLUMN, *MOTION[:4], "--angular-frequency-range", "1", "3", "--figure", "x.bmp"],
+            ["cannot draw into x.bmp: --figure must end with .png, .pdf or .svg"],
+        ),
+        (
+            ["response", "--exact", *COLUMN, *WEAK, "--angular-frequency-range", "1", "2"],
+            ["no orbit was found between 1.0 and 2.0 rad/s to begin with: theory has no steady rolling"],
+        ),
         (["nonsense"], ["No such command"]),
         (["simulate", "--nonsense"], ["No such option"]),
     ],
@@ -176,3 +195,34 @@ def test_another_shape_or_kind_on_the_command_line_replaces_that_of_the_file(tmp
     told = json.loads(capsys.readouterr().out)["provenance"]
     assert told["column"]["radius"] == pytest.approx(0.15)
     assert told["motion"]["angular_frequency"] == pytest.approx(4.0 * np.pi)
+
+
+def test_an_empty_boundary_is_told_in_words(capsys):
+    arguments = ["--motion", "straight", "--acceleration", "0.1", "--angular-frequency-range", "2", "2.5"]
+    assert run(["boundary", *COLUMN, *arguments, "--bounds", "0.1", "0.12", "--at", "0.11"]) == 0
+    assert capsys.readouterr().out == (
+        "no loss of stability was found: rolling is stable wherever it was found "
+        "from 2 to 2.5 rad/s and acceleration 0.1 to 0.12\n"
+    )
+
+
+def test_the_table_of_stable_orbits_begins_and_ends_at_bifurcations(capsys):
+    arguments = ["--motion", "straight", "--acceleration", "0.13", "--angular-frequency-range", "1.2", "3"]
+    assert run(["response", "--exact", *COLUMN, *arguments]) == 0
+    told = capsys.readouterr().out
+    for ends in ("1.62045 to 3 rad/s", "1.57112 to 1.62045 rad/s", "1.53333 to 1.53998 rad/s"):
+        assert ends in told
+
+
+def test_without_friction_the_table_says_neutrally_stable(capsys):
+    arguments = ["--motion", "straight", "--acceleration", "0.04", "--angular-frequency-range", "2.9", "3.1"]
+    assert run(["response", "--exact", "--slenderness", "0.1", *arguments]) == 0
+    assert "where orbits are neutrally stable" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("command", ["response", "boundary"])
+def test_help_offers_the_motions_that_have_their_options(command, capsys):
+    assert run([command, "--help"]) == 0
+    told = capsys.readouterr().out
+    assert "circular, straight or elliptic" in " ".join(told.split())
+    assert not any(kind in told for kind in ("stroke", "orbit;", "vertical"))

@@ -1,4 +1,4 @@
-"""Figures of slow sweeps, Poincaré sections and Lyapunov exponents show what their results hold."""
+"""Figures of responses, boundaries, sweeps, sections and exponents show what their results hold."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from matplotlib.colors import to_hex
 
 import stylobate as sb
 from stylobate.errors import Outcome
-from stylobate.plots.style import BLUE, VERMILION
+from stylobate.plots.style import BLUE, STABLE_WIDTH, VERMILION
 from stylobate.results.outcomes import NOT_COMPUTED, code_of
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
@@ -97,4 +97,83 @@ def test_exponents_of_a_motion_that_ended_are_not_told():
     figure = sb.plot(found)
     assert figure.axes[0].get_title(loc="left").startswith("overturned after")
     assert all(name.endswith("not told") for name in texts(figure.legends[0]))
+    figure.canvas.draw()
+
+
+def test_a_section_without_points_says_so():
+    slow = sb.Harmonic.circular(acceleration=0.065, angular_frequency=0.9)
+    found = sb.studies.poincare_section(MODEL, slow, tilt=(0.08, 0.0), periods=60, skip=40)
+    figure = sb.plot(found)
+    assert [[text.get_text() for text in axes.texts] for axes in figure.axes] == [
+        ["no points: the motion ended before"],
+        ["no points: the motion ended before"],
+    ]
+
+
+@pytest.mark.parametrize("skip", [0, 3])
+def test_the_periods_that_were_skipped_count_until_a_motion_ends(skip):
+    # It rolls for a few periods before it leaves.
+    slow = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.3)
+    start = sb.studies.steady_start(MODEL, slow)
+    found = sb.studies.lyapunov_exponents(
+        MODEL, slow, tilt=np.multiply(1.001, start["tilt"]), tilt_rate=start["tilt_rate"], periods=80, skip=skip
+    )
+    lasted = int(found["periods_counted"]) + found.attrs["periods_skipped"]
+    assert lasted > 3
+    assert found.attrs["periods_skipped"] == skip
+    title = sb.plot(found).axes[0].get_title(loc="left")
+    assert title == f"overturned after {lasted} whole periods"
+
+
+LINE = sb.Harmonic.straight(acceleration=0.13, angular_frequency=3.0)
+
+
+def bold(axes):
+    return [line for line in axes.lines if line.get_linewidth() == STABLE_WIDTH and line.get_xdata().size]
+
+
+def test_bold_lines_and_bands_end_at_the_bifurcations():
+    curves = sb.studies.exact_response(MODEL, LINE, angular_frequency=(1.2, 3.0))
+    pitchfork, doubling, other, torus = curves["bifurcation_angular_frequency"].values
+    tilt = sb.plot(curves).axes[0]
+    rolling, asymmetric = (line for line in bold(tilt) if line.get_linestyle() == "-")
+    drawn = rolling.get_xdata()[np.isfinite(rolling.get_ydata())]
+    assert (drawn.min(), drawn.max()) == (pitchfork, 3.0)
+    drawn = asymmetric.get_xdata()[np.isfinite(asymmetric.get_ydata())]
+    assert {pitchfork, doubling, other, torus} <= set(drawn)
+    assert not np.any((drawn > other) & (drawn < doubling))
+    ends = np.sort([edge for band in tilt.collections for path in band.get_paths() for edge in ends_of(path)])
+    np.testing.assert_allclose(ends, np.sort([pitchfork, 3.0, pitchfork, doubling, other, torus]))
+
+
+def ends_of(path):
+    return path.vertices[:, 0].min(), path.vertices[:, 0].max()
+
+
+def test_rocking_is_called_stable_in_its_plane():
+    orbit = sb.orbits.periodic_orbit(MODEL, LINE, guess=[0.02523651, 0.0, -0.00401839, 0.0])
+    curves = sb.studies.exact_response(MODEL, LINE, angular_frequency=(2.9, 3.1), orbit=orbit, generations=0)
+    figure = sb.plot(curves)
+    (axes,) = figure.axes  # rocking has no phase
+    assert "bold: stable in the plane" in texts(axes.get_legend())
+    figure.canvas.draw()
+
+
+def test_without_friction_stable_is_called_neutrally_stable():
+    model = sb.Slender(sb.Column.dimensionless(0.1), damping=0.0)
+    line = sb.Harmonic.straight(acceleration=0.04, angular_frequency=3.0)
+    curves = sb.studies.exact_response(model, line, angular_frequency=(2.9, 3.1), generations=0)
+    assert "bold: neutrally stable" in texts(sb.plot(curves).axes[0].get_legend())
+    compared = sb.studies.averaging_map(model, line, values=[0.04, 0.05], angular_frequency=[2.9, 3.1])
+    assert texts(sb.plot(compared).legends[0]) == ["neutrally stable, as averaging says"]
+
+
+def test_a_boundary_shows_nothing_outside_the_range_and_says_where_there_is_none():
+    found = sb.studies.stability_boundary(MODEL, LINE, bounds=(0.1, 0.12), angular_frequency=(2.0, 2.5), values=[0.11])
+    figure = sb.plot(found)
+    (axes,) = figure.axes
+    assert (axes.get_xlim(), axes.get_ylim()) == ((2.0, 2.5), (0.1, 0.12))
+    # The averaged critical frequency lies far below.
+    assert not axes.lines
+    assert axes.get_title(loc="left") == "no loss of stability: exact rolling is stable here"
     figure.canvas.draw()

@@ -58,7 +58,9 @@ def test_what_is_born_at_a_pitchfork_begins_at_the_orbit_that_bears_it(straight)
     # The first orbit lies 0.002 c off in state, hence nearer than that squared in the parameter.
     assert float(born["angular_frequency"][0]) == pytest.approx(1.620453934, abs=1e-4)
     assert float(born["mean_tilt"][0]) == pytest.approx(float(straight["bifurcation_mean_tilt"][1]), rel=1e-3)
-    assert bool(born["stable"][0])
+    assert float(born["angular_frequency"][0]) == float(straight["bifurcation_angular_frequency"][1])
+    assert not bool(born["stable"][0])
+    assert bool(born["stable"][1])
     assert int(straight["bifurcation_soft"][1]) == 1
 
 
@@ -105,3 +107,97 @@ def test_where_nothing_rolls_it_is_told():
     motion = sb.Harmonic.circular(acceleration=0.01, angular_frequency=1.0)
     with pytest.raises(NoOrbitError, match="no orbit was found between"):
         sb.studies.exact_response(model, motion, angular_frequency=(0.6, 1.6))
+
+
+def test_an_orbit_of_another_base_motion_or_column_is_refused():
+    weak = sb.Harmonic.straight(acceleration=0.04, angular_frequency=2.5)
+    with pytest.raises(ParameterError, match="orbit must be one under"):
+        sb.studies.exact_response(
+            MODEL, LINE, angular_frequency=(2.0, 3.0), orbit=sb.orbits.periodic_orbit(MODEL, weak)
+        )
+    other = sb.Slender(sb.Column.dimensionless(C), damping=0.12)
+    with pytest.raises(ParameterError, match="orbit must be one of the model"):
+        sb.studies.exact_response(
+            MODEL, LINE, angular_frequency=(2.0, 3.0), orbit=sb.orbits.periodic_orbit(other, LINE)
+        )
+
+
+def test_an_orbit_outside_the_range_is_refused():
+    orbit = sb.orbits.periodic_orbit(MODEL, LINE)
+    with pytest.raises(ParameterError, match="angular_frequency must enclose that of the orbit"):
+        sb.studies.exact_response(MODEL, LINE, angular_frequency=(2.0, 2.5), orbit=orbit)
+
+
+def test_an_orbit_at_another_frequency_begins_the_same_family():
+    at = sb.Harmonic.straight(acceleration=0.13, angular_frequency=2.5)
+    own = sb.studies.exact_response(
+        MODEL, LINE, angular_frequency=(2.4, 2.6), orbit=sb.orbits.periodic_orbit(MODEL, at), generations=0
+    )
+    assert float(own["mean_tilt"].sel(point=0)) == pytest.approx(
+        sb.orbits.periodic_orbit(MODEL, sb.Harmonic.straight(acceleration=0.13, angular_frequency=2.4)).mean_tilt,
+        rel=1e-9,
+    )
+
+
+@pytest.fixture(scope="module")
+def wide():
+    return sb.studies.exact_response(MODEL, LINE, angular_frequency=(1.2, 3.0))
+
+
+def test_stability_is_known_on_either_side_of_every_bifurcation(wide):
+    for index in range(wide.sizes["branch_index"]):
+        part = family(wide, index)
+        located = np.isin(part["angular_frequency"], wide["bifurcation_angular_frequency"])
+        assert not np.any(located[1:] & located[:-1])
+    asymmetric = family(wide, 1)
+    window = (asymmetric["angular_frequency"] > 1.5334) & (asymmetric["angular_frequency"] < 1.5399)
+    # Between the Neimark-Sacker point and the doubling, where steps of this range leave no orbit.
+    assert bool(asymmetric["stable"][window].all())
+    assert window.any()
+    assert not bool(asymmetric["stable"][asymmetric["angular_frequency"] < 1.5333].any())
+
+
+def test_each_family_is_followed_once_and_along_its_length_once():
+    curves = sb.studies.exact_response(MODEL, LINE, angular_frequency=(1.4, 2.0), generations=2)
+    assert curves["branch_periods"].values.tolist() == [1, 1, 2]
+    assert curves.sizes["bifurcation"] == 7
+    assert np.unique(curves["bifurcation_angular_frequency"].values.round(8)).size == 7
+    # The doubled orbits reach from one doubling of the asymmetric ones to the other.
+    ends = family(curves, 2)["angular_frequency"].values[[0, -1]]
+    doublings = curves["bifurcation_angular_frequency"].values[1:3]
+    np.testing.assert_array_equal(ends, doublings)
+
+
+def test_rocking_has_no_averaged_rolling_beside_it():
+    orbit = sb.orbits.periodic_orbit(MODEL, LINE, guess=[0.02523651, 0.0, -0.00401839, 0.0])
+    curves = sb.studies.exact_response(MODEL, LINE, angular_frequency=(2.5, 4.0), orbit=orbit, generations=0)
+    assert curves.attrs["planar"] == 1
+    assert not [name for name in curves if str(name).startswith("averaged")]
+
+
+def test_every_number_has_its_unit(wide):
+    for name in ("mean_tilt", "least_tilt", "largest_tilt", "phase", "tilt", "bifurcation_mean_tilt"):
+        assert wide[name].attrs["units"] == "rad"
+    for name in ("angular_frequency", "bifurcation_angular_frequency"):
+        assert wide[name].attrs["units"] == "rad s-1"
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"angular_frequency": np.linspace(1.0, 2.0, 5)}, "angular_frequency must be two numbers"),
+        ({"angular_frequency": (1.0, 2.0), "generations": -1}, "generations must be a whole number of at least 0"),
+        ({"angular_frequency": (1.0, 2.0), "orbit": 3}, "orbit must be a PeriodicOrbit"),
+    ],
+)
+def test_bad_input_is_told_in_one_line(options, told):
+    with pytest.raises(ParameterError, match=told) as error:
+        sb.studies.exact_response(MODEL, LINE, **options)
+    assert "\n" not in str(error.value)
+
+
+def test_a_range_without_rolling_asks_for_no_guess():
+    weak = sb.Harmonic.straight(acceleration=0.001, angular_frequency=3.0)
+    with pytest.raises(NoOrbitError, match="make the acceleration larger") as error:
+        sb.studies.exact_response(MODEL, weak, angular_frequency=(1.0, 2.0))
+    assert "guess" not in str(error.value)

@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_hex
 
 import stylobate as sb
 from stylobate.errors import ParameterError
+from stylobate.plots.classes import KIND_LOOKS
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 
@@ -47,3 +49,29 @@ def test_the_figure_names_every_fate(pitchfork):
 def test_bad_input_is_refused(pitchfork, options):
     with pytest.raises(ParameterError):
         sb.studies.fates(pitchfork, **options)
+
+
+def test_a_branch_is_no_bifurcation():
+    orbit = sb.orbits.periodic_orbit(MODEL, sb.Harmonic.straight(acceleration=0.13, angular_frequency=3.0))
+    branch = sb.orbits.continue_branch(orbit, "angular_frequency", bounds=(2.9, 3.1))
+    with pytest.raises(ParameterError, match="bifurcation must be one of a branch"):
+        sb.studies.fates(branch, values=[1.6])
+
+
+def test_the_bifurcation_is_drawn_between_the_bars_on_either_side(pitchfork):
+    found = sb.studies.fates(pitchfork, values=[1.7, 1.63, 1.6], count=2, periods=50.0)
+    (axes,) = sb.plot(found).axes
+    (line,) = axes.lines
+    height = line.get_ydata()[0]
+    bars = [(patch.get_y(), patch.get_y() + patch.get_height()) for patch in axes.patches]
+    assert not any(low <= height <= high for low, high in bars)
+    # Of 1.6, 1.63 and 1.7 the first alone lies below 1.6205.
+    assert height == 0.5
+
+
+def test_a_fate_has_the_colour_that_it_has_in_maps(pitchfork):
+    found = sb.studies.fates(pitchfork, values=[1.63, 1.568], count=4, periods=400.0)
+    (axes,) = sb.plot(found).axes
+    drawn = {bars.get_label(): to_hex(bars.patches[0].get_facecolor()) for bars in axes.containers}
+    rolling = KIND_LOOKS["rolling anticlockwise"].colour.lower()
+    assert drawn == {"rolling anticlockwise": rolling, "rolling anticlockwise, period 2": rolling}

@@ -92,3 +92,9 @@ def test_what_cannot_be_is_refused():
         section_of(circular(1.8), periods=5, skip=6)
     with pytest.raises(UnsupportedError, match="without ramp"):
         sb.studies.poincare_section(MODEL, circular(1.8, ramp=3.0), tilt=(0.03, 0.0))
+
+
+def test_a_base_motion_that_is_none_is_told():
+    model = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
+    with pytest.raises(ParameterError, match="motion must be a periodic base motion"):
+        sb.studies.poincare_section(model, None, tilt=(0.01, 0.0))

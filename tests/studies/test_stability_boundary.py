@@ -94,9 +94,62 @@ def test_averaging_errs_the_more_the_larger_the_acceleration():
         ({"bounds": (0.1, 0.2), "values": [0.3]}, "values must lie between the bounds"),
         ({"bounds": (0.1, 0.2), "values": []}, "values must lie between the bounds"),
         ({"bounds": (0.1, 0.2), "parameter": "colour"}, "colour"),
+        ({"bounds": (-0.1, 0.2)}, "bounds must not be negative for acceleration"),
+        ({"bounds": (0.1, 0.2), "angular_frequency": (0.0, 3.0)}, "angular_frequency must rise from above zero"),
+        ({"bounds": (0.0, 0.2), "parameter": "damping"}, "damping must be positive"),
     ],
 )
 def test_bad_input_is_told_in_one_line(options, told):
     with pytest.raises(ParameterError, match=told) as error:
-        sb.studies.stability_boundary(MODEL, CIRCLE, angular_frequency=(1.0, 3.0), **options)
+        sb.studies.stability_boundary(MODEL, CIRCLE, **{"angular_frequency": (1.0, 3.0), **options})
     assert "\n" not in str(error.value)
+
+
+def test_a_curve_begun_on_a_bound_is_followed_once():
+    # The first of the default values is the bound itself.
+    found = sb.studies.stability_boundary(MODEL, LINE, bounds=(0.1, 0.2), angular_frequency=(1.0, 3.0))
+    assert found["curve_kind"].values.tolist() == ["pitchfork"]
+
+
+def test_a_curve_that_bends_much_over_wide_bounds_is_followed_once():
+    found = sb.studies.stability_boundary(
+        MODEL, LINE, bounds=(0.005, 0.4), angular_frequency=(0.4, 6.0), values=[0.10375, 0.2025, 0.4]
+    )
+    assert found["curve_kind"].values.tolist() == ["pitchfork"]
+
+
+def test_without_a_loss_of_stability_it_is_told_how_rolling_is():
+    above, below = (
+        sb.studies.stability_boundary(MODEL, LINE, bounds=(0.1, 0.12), angular_frequency=range_, values=[0.11])
+        for range_ in ((2.0, 2.5), (1.1, 1.3))
+    )
+    assert above.sizes["curve_index"] == below.sizes["curve_index"] == 0
+    assert (above.attrs["rolling"], below.attrs["rolling"]) == ("stable", "unstable")
+
+
+def test_without_friction_nothing_is_decided():
+    model = sb.Slender(sb.Column.dimensionless(C), damping=0.0)
+    with pytest.raises(ParameterError, match="damping must be above zero"):
+        sb.studies.stability_boundary(model, LINE, bounds=(0.1, 0.2), angular_frequency=(1.0, 3.0))
+
+
+def test_without_friction_exact_rolling_is_neutrally_stable_where_averaging_says_so():
+    model = sb.Slender(sb.Column.dimensionless(C), damping=0.0)
+    found = sb.studies.averaging_map(model, LINE, values=[0.04], angular_frequency=[2.0, 3.0, 4.0])
+    assert found.attrs["friction"] == 0
+    np.testing.assert_array_equal(found["averaged"], 1)
+    np.testing.assert_array_equal(found["exact"], 1)
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"values": [0.1], "angular_frequency": [3.0, 1.0]}, "must be two or more frequencies that rise"),
+        ({"values": [], "angular_frequency": [1.0, 3.0]}, "values must hold"),
+        ({"values": [-0.1, 0.1], "angular_frequency": [1.0, 3.0]}, "values must not be negative"),
+    ],
+)
+def test_a_map_that_cannot_be_is_told_in_one_line(options, told):
+    with pytest.raises(ParameterError, match=told) as error:
+        sb.studies.averaging_map(MODEL, LINE, **options)
+    assert "bounds" not in str(error.value)

@@ -43,7 +43,7 @@ def boundary(
     slenderness: opt.Slenderness = None,
     gravity: opt.Gravity = None,
     damping: opt.Damping = None,
-    motion: opt.Motion = None,
+    motion: opt.HarmonicMotion = None,
     acceleration: opt.Acceleration = None,
     amplitude: opt.Amplitude = None,
     phase: opt.Phase = None,
@@ -83,6 +83,16 @@ def boundary(
         _print(found)
 
 
+def _without_curves(found: "xr.Dataset") -> str:
+    (low, high), (least, most) = found.attrs["angular_frequency_range"], found.attrs["bounds"]
+    name = str(found.attrs["parameter"]).replace("_", " ")
+    how = found.attrs["rolling"]
+    return (
+        f"no loss of stability was found: rolling is {how} wherever it was found from {low:.6g} to {high:.6g} rad/s "
+        f"and {name} {least:.6g} to {most:.6g}"
+    )
+
+
 def _print(found: "xr.Dataset") -> None:
     parameter = str(found.attrs["parameter"])
     unit = str(found[parameter].attrs.get("units", "")).replace(" s-2", "/s²").replace(" s-1", "/s")
@@ -101,5 +111,8 @@ def _print(found: "xr.Dataset") -> None:
             for k in shown
         ]
     count = found.sizes["curve_index"]
+    if not count:
+        print(_without_curves(found))
+        return
     title = f"{count} curve{'s' if count != 1 else ''}, a few points of each"
     print_table(title, rows, ("bifurcation", "Ω", parameter.replace("_", " "), "loss of stability"))

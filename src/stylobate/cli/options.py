@@ -53,6 +53,7 @@ Motion = Annotated[
     str | None,
     _option("rest, circular, straight, elliptic, vertical, stroke or orbit; a file knows more kinds", _MOTION),
 ]
+HarmonicMotion = Annotated[str | None, _option("circular, straight or elliptic; a file knows more kinds", _MOTION)]
 Acceleration = Annotated[float | None, _option("acceleration amplitude [m/s²]", _MOTION)]
 AngularFrequency = Annotated[float | None, _option("angular frequency [rad/s]", _MOTION)]
 Frequency = Annotated[float | None, _option("frequency of a stroke [Hz]", _MOTION)]

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 NETCDF, STORE = ".nc", ".zarr"
 """Endings of files and of stores."""
+FIGURES = (".png", ".pdf", ".svg")
+"""Endings of figures."""
 
 
 def print_json(values: Any) -> None:
@@ -45,7 +47,7 @@ def check_writable(figure: Path | None, output: Path | None = None, *, stores: b
     Parameters
     ----------
     figure
-        A file of any kind.
+        A file whose ending names a format for figures.
     output
         The data: a netCDF file, or a store where there are `stores`.
     stores
@@ -54,10 +56,13 @@ def check_writable(figure: Path | None, output: Path | None = None, *, stores: b
     Raises
     ------
     ParameterError
-        If the ending of `output` is another than that of its format.
+        If an ending is another than that of the format.
     FileError
         If there is a folder in its place, or none in which it could be.
     """
+    if figure is not None and figure.suffix.lower() not in FIGURES:
+        message = f"cannot draw into {figure}: --figure must end with {', '.join(FIGURES[:-1])} or {FIGURES[-1]}"
+        raise ParameterError(message)
     if output is not None:
         endings = (NETCDF, STORE) if stores else (NETCDF,)
         if output.suffix not in endings:

@@ -9,7 +9,7 @@ import typer
 from stylobate.cli import options as opt
 from stylobate.cli.output import check_writable, print_json, print_table, save_figure
 from stylobate.cli.source import read_source
-from stylobate.errors import FileError
+from stylobate.errors import FileError, ParameterError
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,7 +37,7 @@ def response(
     slenderness: opt.Slenderness = None,
     gravity: opt.Gravity = None,
     damping: opt.Damping = None,
-    motion: opt.Motion = None,
+    motion: opt.HarmonicMotion = None,
     acceleration: opt.Acceleration = None,
     amplitude: opt.Amplitude = None,
     phase: opt.Phase = None,
@@ -62,6 +62,9 @@ def response(
     from stylobate import plots, spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
 
     check_writable(figure, output)
+    if exact and points is not None:
+        message = "--points counts the frequencies of theory; leave it out with --exact, which chooses its own steps"
+        raise ParameterError(message)
     values = opt.overlay(read_source(source), context.params, _RANGE_NAMES)
     setup = spec.ResponseDescription.parse(values).build()
     low, high = setup.options["range"]
@@ -83,6 +86,8 @@ def response(
 
 
 def _print_exact(curves: "xr.Dataset") -> None:
+    from stylobate.plots.exact_response import stability_of  # noqa: PLC0415  heavy, as above
+
     names = curves["branch_name"].to_numpy()
     rows = [
         [str(kind), f"{float(at):.9g} rad/s", str(names[branch]), f"{float(tilt):.6g} rad", _SOFTNESS[int(soft)]]
@@ -99,7 +104,7 @@ def _print_exact(curves: "xr.Dataset") -> None:
         rows,
         ("bifurcation", "Ω", "family", "mean tilt", "loss of stability"),
     )
-    print_table("where orbits are stable", _stable_ranges(curves), ("family", "Ω", "mean tilt"))
+    print_table(f"where orbits are {stability_of(curves)}", _stable_ranges(curves), ("family", "Ω", "mean tilt"))
 
 
 _SOFTNESS = {1: "soft", 0: "hard", -1: ""}

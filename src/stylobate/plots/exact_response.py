@@ -1,6 +1,7 @@
 """Frequency response of exact periodic orbits, beside that of theory."""
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -8,6 +9,7 @@ from matplotlib.figure import Figure
 from stylobate.plots.style import GREY, PALETTE, STABLE_WIDTH, UNSTABLE_WIDTH, new_figure, styled
 
 _DASHED = (0, (4, 2))
+_HEIGHT, _HEIGHT_OF_ONE = 6.6, 4.4
 BIFURCATION_MARKS = {
     "fold": ("s", "fold"),
     "pitchfork": ("D", "pitchfork"),
@@ -25,45 +27,58 @@ def plot_exact_response(curves: xr.Dataset) -> Figure:
     """Return a figure of `curves` of the kind "exact response": mean tilt with its range above, phase below.
 
     Stable orbits are bold, unstable ones thin; a shade from the least to the largest tilt shows how far stable ones
-    swing. Theory's curves are dashed, in grey. Bifurcations are marked: black where stability is lost softly, white
-    where it is lost hard, grey where the orbit is unstable on both sides.
+    swing. Of orbits that have no phase there is no panel below. Theory's curves are dashed, in grey. Bifurcations are
+    marked: black where stability is lost softly, white where it is lost hard, grey where that is not decided.
     """
-    figure = new_figure(6.6)
-    tilt, phase = figure.subplots(2, 1, sharex=True)
-    _draw_theory(tilt, curves, "averaged_amplitude")
-    _draw_theory(phase, curves, "averaged_phase")
+    phased = bool(np.isfinite(curves["phase"]).any())
+    figure = new_figure(_HEIGHT if phased else _HEIGHT_OF_ONE)
+    panels = figure.subplots(1 + phased, 1, sharex=True, squeeze=False)[:, 0]
+    tilt, quantities = panels[0], ("mean_tilt", "phase")
+    for axes, name in zip(panels, ("averaged_amplitude", "averaged_phase"), strict=False):
+        _draw_theory(axes, curves, name)
     for index in range(curves.sizes["branch_index"]):
         part = curves.isel(point=np.nonzero(curves["branch"].to_numpy() == index)[0])
         colour = PALETTE[index % len(PALETTE)]
         name = str(curves["branch_name"][index].item())
-        _draw(tilt, part, "mean_tilt", colour, name)
-        _draw(phase, part, "phase", colour, None)
+        for axes, quantity in zip(panels, quantities, strict=False):
+            _draw(axes, part, quantity, colour, name if axes is tilt else None)
         _shade(tilt, part, colour)
     _mark(tilt, curves)
+    if curves["stable"].any():
+        tilt.plot([], [], color="black", linewidth=STABLE_WIDTH, label=f"bold: {stability_of(curves)}")
     tilt.set_ylabel("mean tilt A [rad]")
     tilt.set_ylim(bottom=0.0)
-    phase.set_ylabel("phase ψ [rad]")
-    phase.set_xlabel("angular frequency of the base [rad/s]")
-    phase.set_yticks([0.0, np.pi / 2.0, np.pi], ["0", "π/2", "π"])
+    panels[-1].set_xlabel("angular frequency of the base [rad/s]")
+    if phased:
+        panels[1].set_ylabel("phase ψ [rad]")
+        panels[1].set_yticks([0.0, np.pi / 2.0, np.pi], ["0", "π/2", "π"])
     tilt.legend(fontsize="small")
     return figure
 
 
+def stability_of(found: xr.Dataset) -> str:
+    """Return what "stable" means in a result: neutrally without friction, in their plane of orbits that keep to one."""
+    neutral = "" if found.attrs.get("friction", 1) else "neutrally "
+    return f"{neutral}stable{' in the plane' if found.attrs.get('planar', 0) else ''}"
+
+
 def _draw(axes: Axes, part: xr.Dataset, name: str, colour: str, label: str | None) -> None:
-    x, y, stable = (part[key].to_numpy() for key in ("angular_frequency", name, "stable"))
-    stable = stable.astype(bool)  # a file holds numbers
-    # A bifurcation is a point of the curve that belongs to both sides.
-    touching = stable | np.append(stable[1:], False) | np.append(False, stable[:-1])
+    x, y, touching = part["angular_frequency"].to_numpy(), part[name].to_numpy(), _touching(part)
     axes.plot(x, y, color=colour, linewidth=UNSTABLE_WIDTH)
     axes.plot(x, np.where(touching, y, np.nan), color=colour, linewidth=STABLE_WIDTH)
     if label is not None:
-        axes.plot([], [], color=colour, linewidth=STABLE_WIDTH if stable.any() else UNSTABLE_WIDTH, label=label)
+        axes.plot([], [], color=colour, linewidth=STABLE_WIDTH if touching.any() else UNSTABLE_WIDTH, label=label)
 
 
 def _shade(axes: Axes, part: xr.Dataset, colour: str) -> None:
-    x, stable = part["angular_frequency"].to_numpy(), part["stable"].to_numpy().astype(bool)
-    low, high = part["least_tilt"].to_numpy(), part["largest_tilt"].to_numpy()
-    axes.fill_between(x, low, high, where=stable, color=colour, alpha=0.15, linewidth=0.0)
+    x, low, high = (part[name].to_numpy() for name in ("angular_frequency", "least_tilt", "largest_tilt"))
+    axes.fill_between(x, low, high, where=_touching(part), color=colour, alpha=0.15, linewidth=0.0)
+
+
+def _touching(part: xr.Dataset) -> npt.NDArray[np.bool_]:
+    """Return which points are stable or next to a stable one: a bifurcation belongs to both sides."""
+    stable = part["stable"].to_numpy().astype(bool)  # a file holds numbers
+    return np.asarray(stable | np.append(stable[1:], False) | np.append(False, stable[:-1]))
 
 
 def _draw_theory(axes: Axes, curves: xr.Dataset, name: str) -> None:

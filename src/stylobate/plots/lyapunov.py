@@ -38,7 +38,8 @@ def plot_lyapunov(found: xr.Dataset) -> Figure:
 def _title(found: xr.Dataset) -> str:
     within = ", in its plane" if found.attrs["planar"] else ""
     if found["lyapunov_exponent"].isnull().any():
-        return f"{found.attrs['ending']} after {int(found['periods_counted'])} periods{within}"
+        lasted = int(found["periods_counted"]) + int(found.attrs.get("periods_skipped", 0))
+        return f"{found.attrs['ending']} after {lasted} whole periods{within}"
     total = f"{float(found['lyapunov_exponent'].sum()):.6g}".replace("-", "−")
     return f"sum {total} /s{within}"
 

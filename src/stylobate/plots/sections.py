@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from stylobate.plots.style import PALETTE, new_figure, styled
+from stylobate.plots.style import GREY, PALETTE, new_figure, styled
 from stylobate.results.outcomes import outcome_of
 
 _HEIGHT = 3.9
@@ -12,6 +12,7 @@ _QUANTITIES = (("section_tilt", "tilt", "rad"), ("section_tilt_rate", "rate of t
 # Points are drawn the smaller the more there are [points].
 _LARGEST, _LEAST, _AREA = 4.5, 1.4, 60.0
 _MOST_NAMED = 7
+_NOTHING = "no points: the motion ended before"
 
 
 @styled
@@ -37,6 +38,8 @@ def plot_section(found: xr.Dataset) -> Figure:
             )
         axes.set(xlabel=f"{label} along x [{unit}]", ylabel=f"{label} along y [{unit}]")
         axes.set_aspect("equal", adjustable="datalim")
+        if not np.isfinite(runs[name]).any():
+            axes.text(0.5, 0.5, _NOTHING, transform=axes.transAxes, ha="center", va="center", color=GREY)
     if count <= _MOST_NAMED:
         for each in range(count):
             outcome = outcome_of(int(runs["outcome"].isel(each=each)))

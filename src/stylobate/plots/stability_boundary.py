@@ -28,7 +28,7 @@ def plot_stability_boundary(boundary: xr.Dataset) -> Figure:
     """Return a figure of curves of the kind "stability boundary".
 
     Bold where stability is lost softly, half as bold where it is lost hard, thin where the orbit is unstable on both
-    sides of the curve.
+    sides of the curve. Where there is no curve a note tells how rolling is.
     """
     figure = new_figure(4.4)
     axes = figure.subplots()
@@ -54,11 +54,27 @@ def plot_stability_boundary(boundary: xr.Dataset) -> Figure:
     if "theory_frequency" in boundary:
         name = "theory" if bool(boundary["theory_is_exact"]) else "averaged"
         look: dict[str, Any] = {"color": GREY, "linestyle": _DASHED, "linewidth": STABLE_WIDTH, "label": name}
-        axes.plot(boundary["theory_frequency"].to_numpy(), boundary["theory_parameter"].to_numpy(), **look)
+        x, y = _inside(boundary)
+        if np.isfinite(x).any():
+            axes.plot(x, y, **look)
     axes.set_xlabel("angular frequency of the base [rad/s]")
     axes.set_ylabel(axis_label(parameter))
-    axes.legend()
+    for limit, name in ((axes.set_xlim, "angular_frequency_range"), (axes.set_ylim, "bounds")):
+        if name in boundary.attrs:
+            limit(*(float(end) for end in boundary.attrs[name]))
+    if not boundary.sizes["curve_index"]:
+        axes.set_title(f"no loss of stability: exact rolling is {boundary.attrs['rolling']} here")
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend()
     return figure
+
+
+def _inside(boundary: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """Return theory's curve; NaN beyond the frequencies asked for, but for the points next to them."""
+    x, y = boundary["theory_frequency"].to_numpy(), boundary["theory_parameter"].to_numpy()
+    low, high = boundary.attrs.get("angular_frequency_range", (-np.inf, np.inf))
+    inside = np.concatenate([[False], (x >= low) & (x <= high), [False]])
+    return np.where(inside[:-2] | inside[1:-1] | inside[2:], x, np.nan), y
 
 
 def _runs(chosen: np.ndarray) -> list[tuple[int, int]]:
@@ -83,6 +99,7 @@ def plot_averaging_map(found: xr.Dataset) -> Figure:
     figure = new_figure(5.0)
     axes = figure.subplots()
     parameter = str(found.attrs["parameter"])
+    neutral = "" if found.attrs.get("friction", 1) else "neutrally "
     exact, averaged = (
         found[name].transpose(parameter, "angular_frequency").to_numpy() for name in ("exact", "averaged")
     )
@@ -97,12 +114,16 @@ def plot_averaging_map(found: xr.Dataset) -> Figure:
     axes.set_xlabel("angular frequency of the base [rad/s]")
     axes.set_ylabel(axis_label(found[parameter]))
     handles = [
-        Patch(facecolor=colour, edgecolor="black", linewidth=0.4, alpha=0.55, label=name)
+        Patch(facecolor=colour, edgecolor="black", linewidth=0.4, alpha=0.55, label=_called(name, neutral))
         for index, (_, name, colour) in enumerate(_CASES)
         if np.any(classes == index)
     ]
     figure.legend(handles=handles, loc="outside upper center", ncols=2, fontsize="small")
     return figure
+
+
+def _called(name: str, neutral: str) -> str:
+    return f"{neutral}{name}" if name.startswith("stable") else name
 
 
 def _contours(axes: Axes, x: np.ndarray, y: np.ndarray, error: np.ndarray) -> None:

@@ -10,7 +10,7 @@ from stylobate.errors import DescriptionError, ParameterError
 _T = TypeVar("_T")
 
 # Fields whose value is one of several descriptions, told apart by a tag; so is each element of a list.
-_UNION_FIELDS = ("column", "motion")
+_UNION_FIELDS = ("column", "model", "motion")
 
 
 class Description(BaseModel):

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Tag
+from pydantic import BeforeValidator, Field
 
 from stylobate.column import Column
 from stylobate.errors import UnsupportedError
@@ -34,16 +34,13 @@ class SlenderRollingModel(Description):
         return SlenderRolling(column, damping=self.damping, spin_friction=self.spin_friction, couples=self.couples)
 
 
-def _kind(described: Any) -> str:
-    """Return the kind of a model that is described by plain values or an object; the slender one where none is told."""
-    if isinstance(described, dict):
-        return str(described.get("kind", "slender"))
-    return str(getattr(described, "kind", ""))
+def _with_kind(described: Any) -> Any:
+    """Return the values of a model with its kind; it is the slender one where none is told."""
+    return {"kind": "slender", **described} if isinstance(described, dict) else described
 
 
 ModelDescription = Annotated[
-    Annotated[SlenderModel, Tag("slender")] | Annotated[SlenderRollingModel, Tag("slender_rolling")],
-    Discriminator(_kind),
+    Annotated[SlenderModel | SlenderRollingModel, Field(discriminator="kind")], BeforeValidator(_with_kind)
 ]
 
 

@@ -1,5 +1,6 @@
 """The description of response curves: a column, its model, a harmonic motion and a range of frequencies."""
 
+import math
 from collections.abc import Mapping
 from typing import Any, Self
 
@@ -23,9 +24,10 @@ class ResponseDescription(Description):
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
         """Return the description of these `values`; the frequency of the motion is taken from the range."""
-        motion, frequencies = values.get("motion"), values.get("angular_frequency_range")
-        if isinstance(motion, Mapping) and isinstance(frequencies, (list, tuple)) and frequencies:
-            given = {"angular_frequency": frequencies[0]} if motion.get("kind") in _BY_ACCELERATION else {}
+        motion = values.get("motion")
+        if isinstance(motion, Mapping) and motion.get("kind") in _BY_ACCELERATION:
+            # A mistake in the range is one mistake: the motion is built with a frequency that can be.
+            given = {"angular_frequency": _possible(values.get("angular_frequency_range"))}
             values = {**values, "motion": {**given, **motion}}
         kind = motion.get("kind") if isinstance(motion, Mapping) else None
         if kind in _WITHOUT_RESPONSE:
@@ -51,6 +53,12 @@ class ResponseDescription(Description):
             problems.append(f"points must be at least 2, got {self.points!r}")
         model, motion = built_parts(self.column, self.model, self.motion, problems)
         return Setup(model, motion, {"range": self.angular_frequency_range, "points": self.points})
+
+
+def _possible(frequencies: Any) -> float:
+    """Return the first frequency that is above zero of what is given as a range; of none, 1 rad/s."""
+    given = frequencies if isinstance(frequencies, (list, tuple)) else ()
+    return next((float(one) for one in given if isinstance(one, (int, float)) and 0.0 < one < math.inf), 1.0)
 
 
 _BY_ACCELERATION = ("circular", "straight", "elliptic")

@@ -12,8 +12,11 @@ from stylobate.errors import NoOrbitError
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 from stylobate.orbits import Branch, continue_branch
+from stylobate.orbits.arguments import require_subject
 from stylobate.spec import provenance_of_run
+from stylobate.studies.families import told_between_bifurcations
 from stylobate.studies.first_orbit import first_orbit
+from stylobate.studies.ranges import require_rising_frequencies, require_values
 from stylobate.studies.response_curves import response_curves
 from stylobate.studies.sweeps.quantities import attributes_of
 
@@ -53,13 +56,19 @@ def averaging_map(
     xarray.Dataset
         Over the parameter and `angular_frequency`: `exact` and `averaged` (1 stable, 0 unstable, −1 no such rolling),
         `error`, the mean tilt of the exact orbit over the averaged one less 1, and `swing`, its largest tilt over the
-        averaged one.
+        averaged one. Without friction stable means neutrally stable.
+
+    Raises
+    ------
+    ParameterError
+        If values are none, or negative where none can be, or the frequencies do not rise from above zero.
     """
-    frequencies = np.asarray(angular_frequency, dtype=float)
-    shape = (len(values), frequencies.size)
+    require_subject(model, motion)
+    frequencies, chosen = require_rising_frequencies(angular_frequency), require_values(values, parameter)
+    shape = (chosen.size, frequencies.size)
     exact, averaged = (np.full(shape, _NONE, dtype=np.int8) for _ in range(2))
     error, swing = np.full(shape, np.nan), np.full(shape, np.nan)
-    for row, value in enumerate(values):
+    for row, value in enumerate(chosen):
         changed = with_parameters(model, motion, **{parameter: float(value)})
         theory = response_curves(*changed, angular_frequency=frequencies)
         wanted = "clockwise" if sense == -1 else "anticlockwise"
@@ -73,7 +82,7 @@ def averaging_map(
             of_theory = response_curves(*changed, angular_frequency=at)["amplitude"].sel(sense=name, branch="upper")
             exact[row], error[row], swing[row] = _at(branch, of_theory.to_numpy(), frequencies)
         if progress is not None:
-            progress(row + 1, len(values))
+            progress(row + 1, chosen.size)
     dims = (parameter, "angular_frequency")
     states = {"long_name": "1 stable, 0 unstable, -1 no such rolling"}
     return xr.Dataset(
@@ -84,12 +93,13 @@ def averaging_map(
             "swing": (dims, swing, {"units": "1", "long_name": "largest exact tilt over averaged tilt"}),
         },
         coords={
-            parameter: (parameter, np.asarray(values, dtype=float), attributes_of(parameter)),
+            parameter: (parameter, chosen, attributes_of(parameter)),
             "angular_frequency": ("angular_frequency", frequencies, {"units": "rad s-1"}),
         },
         attrs={
             "kind": "averaging map",
             "parameter": parameter,
+            "friction": int(model.comes_to_rest),
             "provenance": json.dumps(provenance_of_run(model, motion)),
         },
     )
@@ -101,7 +111,7 @@ def _followed(model: Model, motion: BaseMotion, frequencies: Floats, sense: int 
         orbit = first_orbit(model, motion, bounds, sense)
     except NoOrbitError:
         return None
-    return continue_branch(orbit, "angular_frequency", bounds=bounds)
+    return told_between_bifurcations(continue_branch(orbit, "angular_frequency", bounds=bounds))
 
 
 def _at(branch: Branch, amplitude: Floats, frequencies: Floats) -> tuple[npt.NDArray[np.int8], Floats, Floats]:

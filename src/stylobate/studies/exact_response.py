@@ -1,21 +1,28 @@
 """Frequency response with exact periodic orbits, beside that of theory."""
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import xarray as xr
 
-from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError
+from stylobate.engine import with_parameters
+from stylobate.engine.parameters import present_value
+from stylobate.errors import ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
-from stylobate.orbits import Branch, Kind, PeriodicOrbit, StepControl, continue_branch, switch_branch
+from stylobate.orbits import PeriodicOrbit, StepControl, continue_branch
+from stylobate.orbits.arguments import require_orbit, require_subject
 from stylobate.spec import provenance_of_run
+from stylobate.studies.families import Followed, born, told_between_bifurcations
 from stylobate.studies.first_orbit import first_orbit
+from stylobate.studies.ranges import require_frequencies
 from stylobate.studies.response_curves import response_curves
 
 _AVERAGED_POINTS = 400
-_BORN = (Kind.PITCHFORK, Kind.PERIOD_DOUBLING, Kind.BRANCH_POINT)
+# Two base motions, or two models, are one if their numbers agree to this part of the largest.
+_SAME, _PHASES = 1e-9, 16
+_BIFURCATION_UNITS = {"angular_frequency": "rad s-1", "mean_tilt": "rad", "largest_tilt": "rad"}
 
 
 def exact_response(
@@ -38,7 +45,8 @@ def exact_response(
     angular_frequency
         Lowest and highest frequency [rad/s].
     orbit
-        Where to begin; by default rolling by theory, at the highest frequency at which it is found.
+        Where to begin: of this model under this motion at a frequency of the range. By default rolling by theory, at
+        the highest frequency at which it is found.
     sense
         Of rolling, +1 or −1, for the orbit by theory.
     generations
@@ -51,15 +59,17 @@ def exact_response(
     Returns
     -------
     xarray.Dataset
-        Over `point`: `angular_frequency`, `mean_tilt`, `least_tilt`, `largest_tilt`, `phase` [rad], `stable`,
-        multipliers, and `branch`, the family of each. Over `branch_index`: name, length in periods, ends. Over
-        `bifurcation`: kind, frequency, branch, mean tilt, coefficient, and `bifurcation_soft` (1 soft, 0 hard, −1 not
-        decided). Where theory knows rolling, its curves over `averaged_frequency`, exact for circular motion.
+        Over `point`: `angular_frequency`, `mean_tilt`, `least_tilt`, `largest_tilt`, `phase` [rad], `stable` (of an
+        orbit in a plane, in that plane; without friction, neutrally), multipliers, and `branch`, the family of each. A
+        bifurcation is a point of its family, at which it is not called stable. Over `branch_index`: name, length in
+        periods, ends. Over `bifurcation`: kind, frequency, branch, mean tilt, coefficient, and `bifurcation_soft` (1
+        soft, 0 hard, −1 not decided). For rolling that theory knows, its curves over `averaged_frequency`, exact for
+        circular motion.
 
     Raises
     ------
     ParameterError
-        If the range is none.
+        If the range is none, or `orbit` is one of another model or base motion.
     NoOrbitError
         If no orbit was found to begin with.
 
@@ -72,47 +82,56 @@ def exact_response(
     >>> curves["bifurcation_kind"].item(), round(curves["bifurcation_angular_frequency"].item(), 6)
     ('pitchfork', 1.087672)
     """
-    low, high = (float(number) for number in angular_frequency)
-    if not 0.0 < low < high < np.inf:
-        message = f"angular_frequency must rise from above zero, got {low!r} to {high!r} rad/s"
-        raise ParameterError(message)
+    low, high = require_frequencies(angular_frequency)
+    generations = require_whole("generations", generations, least=0)
+    require_subject(model, motion)
     if orbit is None:
         orbit = first_orbit(model, motion, (low, high), sense)
+    else:
+        _require_of(orbit, model, motion, (low, high))
     main = continue_branch(orbit, "angular_frequency", bounds=(low, high), control=control, progress=progress)
-    families = [("rolling" if orbit.turns != 0.0 else "periodic", main)]
-    families += list(_born(main, (low, high), generations, control))
+    families = [Followed("rolling" if orbit.turns != 0.0 else "periodic", main)]
+    families += list(born(main, (low, high), generations, control))
     found = _joined(families)
-    found = found.assign(_by_theory(model, motion, low, high, 1 if orbit.turns >= 0.0 else -1))
+    if orbit.turns != 0.0:
+        found = found.assign(_by_theory(model, motion, low, high, 1 if orbit.turns > 0.0 else -1))
     return found.assign_attrs(
         kind="exact response",
         sense=float(orbit.turns),
+        planar=int(orbit.planar),
+        friction=int(model.comes_to_rest),
         provenance=json.dumps(provenance_of_run(model, orbit.motion)),
     )
 
 
-def _born(
-    branch: Branch, bounds: tuple[float, float], generations: int, control: StepControl | None
-) -> Iterator[tuple[str, Branch]]:
-    """Follow what is born on a branch, once for each pair of mirror images."""
-    if generations <= 0:
-        return
-    for one in branch.bifurcations:
-        if one.kind not in _BORN:
-            continue
-        try:
-            family = switch_branch(one, bounds=bounds, control=control)
-        except NoOrbitError:
-            continue
-        periods = family.path[0].family.periods
-        name = "asymmetric" if one.kind is Kind.PITCHFORK else f"period {periods}"
-        yield f"{name}, from {one.parameter:.6g} rad/s", family
-        yield from _born(family, bounds, generations - 1, control)
+def _require_of(orbit: PeriodicOrbit, model: Model, motion: BaseMotion, bounds: tuple[float, float]) -> None:
+    """Raise ParameterError unless it is an orbit of this model under this motion, but for a frequency in the bounds."""
+    require_orbit(orbit)
+    numbers, own = ((*one.parameters, one.column.slenderness, one.time_scale) for one in (model, orbit.model))
+    if type(orbit.model) is not type(model) or not np.allclose(own, numbers, rtol=_SAME, atol=0.0):
+        message = f"orbit must be one of the model {model!r}, got one of {orbit.model!r}"
+        raise ParameterError(message)
+    frequency = present_value(orbit.model, orbit.motion, "angular_frequency")
+    if not bounds[0] <= frequency <= bounds[1]:
+        message = f"angular_frequency must enclose that of the orbit, {frequency!r} rad/s, got {bounds!r}"
+        raise ParameterError(message)
+    _, at = with_parameters(model, motion, angular_frequency=frequency)
+    times = np.arange(_PHASES) / _PHASES * float(orbit.motion.period or 1.0)
+    wanted, given = (one.acceleration(times) for one in (at, orbit.motion))
+    if np.abs(wanted - given).max() > _SAME * np.abs(wanted).max():
+        message = f"orbit must be one under {motion!r} at whatever frequency, got one under {orbit.motion!r}"
+        raise ParameterError(message)
 
 
-def _joined(families: list[tuple[str, Branch]]) -> xr.Dataset:
+def _joined(families: Sequence[Followed]) -> xr.Dataset:
     points, tables = [], []
-    for index, (_, branch) in enumerate(families):
+    places = [one.parameter for family in families for one in family.branch.bifurcations]
+    for index, family in enumerate(families):
+        branch = told_between_bifurcations(family.branch)
         data = branch.points
+        # What is on a bifurcation is told by rounding alone.
+        located = np.isin([point.value for point in branch.path], places)
+        data["stable"] = data["stable"] & ~xr.DataArray(located, dims="point")
         table = data[[name for name in data.data_vars if str(name).startswith("bifurcation_")]]
         table = table.rename(bifurcation_parameter="bifurcation_angular_frequency")
         tables.append(table.assign(bifurcation_branch=("bifurcation", [index] * table.sizes["bifurcation"])))
@@ -126,12 +145,15 @@ def _joined(families: list[tuple[str, Branch]]) -> xr.Dataset:
     )
     for name, column in bifurcations.data_vars.items():
         joined[name] = ("bifurcation", column.to_numpy(), column.attrs)
-    joined["bifurcation_angular_frequency"].attrs["units"] = "rad s-1"
+    for name, variable in points[0].data_vars.items():
+        joined[name].attrs.update(variable.attrs)
+    for name, units in _BIFURCATION_UNITS.items():
+        joined[f"bifurcation_{name}"].attrs["units"] = units
     joined["angular_frequency"].attrs["units"] = "rad s-1"
     return joined.assign(
-        branch_name=("branch_index", [name for name, _ in families]),
-        branch_periods=("branch_index", [branch.path[0].family.periods for _, branch in families]),
-        branch_end=("branch_index", ["; ".join(end.value for end in branch.ends) for _, branch in families]),
+        branch_name=("branch_index", [one.name for one in families]),
+        branch_periods=("branch_index", [one.branch.path[0].family.periods for one in families]),
+        branch_end=("branch_index", ["; ".join(end.value for end in one.branch.ends) for one in families]),
     )
 
 

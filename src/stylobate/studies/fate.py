@@ -9,6 +9,7 @@ import xarray as xr
 from stylobate.engine import simulate_ensemble
 from stylobate.errors import ParameterError, require_positive, require_whole
 from stylobate.orbits import Bifurcation
+from stylobate.orbits.arguments import require_bifurcation
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.spec import provenance_of_run
 from stylobate.studies.attractors import label_attractors
@@ -57,6 +58,7 @@ def fates(
     ParameterError
         If values or numbers are out of range.
     """
+    require_bifurcation(bifurcation)
     chosen = np.asarray(values, dtype=float)
     if chosen.ndim != 1 or chosen.size == 0 or not np.all(np.isfinite(chosen)):
         message = f"values must be a list of numbers, got {values!r}"

@@ -3,12 +3,14 @@
 import numpy as np
 
 from stylobate.engine import with_parameters
-from stylobate.errors import NoOrbitError
+from stylobate.errors import NoOrbitError, UnsupportedError
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 from stylobate.orbits import PeriodicOrbit, periodic_orbit
 
 _TRIES = 24
+# What a search from a guess asks for, and a range of frequencies does not.
+_ASKED = "guess must be given: "
 
 
 def first_orbit(
@@ -20,6 +22,8 @@ def first_orbit(
     ------
     NoOrbitError
         If it is found at none that was tried.
+    UnsupportedError
+        If theory knows no rolling of this model under this motion.
     """
     low, high = angular_frequency
     reason: Exception | None = None
@@ -29,5 +33,15 @@ def first_orbit(
             return periodic_orbit(*changed, sense=sense)
         except NoOrbitError as error:
             reason = error
-    message = f"no orbit was found between {low!r} and {high!r} rad/s to begin with: {reason}"
+        except UnsupportedError as error:
+            message = f"no orbit is known to begin with: {_told(error)}"
+            raise UnsupportedError(message) from None
+    message = (
+        f"no orbit was found between {low!r} and {high!r} rad/s to begin with: {_told(reason)}; widen the range, or "
+        "make the acceleration larger"
+    )
     raise NoOrbitError(message)
+
+
+def _told(reason: Exception | None) -> str:
+    return str(reason).removeprefix(_ASKED)

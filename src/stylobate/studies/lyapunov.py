@@ -12,6 +12,7 @@ from stylobate.engine.flow.tableau import Status
 from stylobate.errors import ParameterError, require_positive, require_vector, require_whole
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
+from stylobate.orbits.arguments import require_subject
 from stylobate.spec import provenance_of_run
 
 Floats = npt.NDArray[np.float64]
@@ -68,7 +69,7 @@ def lyapunov_exponents(
         Of kind "Lyapunov exponents", over `exponent`: `lyapunov_exponent` [1/s] and `per_period`, with their errors
         `error` [1/s] and `per_period_error`, see below. Over `period` (counted) and `exponent`: `running` [1/s], the
         estimate from the periods up to there. `periods_counted`, less than asked for where the motion ended; then the
-        exponents are NaN and `attrs["ending"]` tells why.
+        exponents are NaN and `attrs["ending"]` tells why; `attrs["periods_skipped"]` is how many went before them.
 
     Raises
     ------
@@ -95,6 +96,7 @@ def lyapunov_exponents(
     >>> round(float(found["lyapunov_exponent"].sum()), 8)  # −2η, the rate at which volumes shrink
     -0.2
     """
+    require_subject(model, motion)
     blocks = require_whole("blocks", blocks, least=_LEAST_BLOCKS)
     periods = require_whole("periods", periods, least=blocks)
     skip = require_whole("skip", skip, least=0)
@@ -102,8 +104,10 @@ def lyapunov_exponents(
         require_vector(name, np.ravel(value).tolist(), 2) for name, value in (("tilt", tilt), ("tilt_rate", tilt_rate))
     ]
     course = _start(model, motion, start[0], start[1], count, require_positive("rtol", rtol))
-    for _ in range(skip):
+    skipped = 0
+    while course.status is Status.DONE and skipped < skip:
         course = course.following()
+        skipped += course.status is Status.DONE
     growths: list[Floats] = []
     while course.status is Status.DONE and len(growths) < periods:
         course = course.following()
@@ -115,6 +119,7 @@ def lyapunov_exponents(
     return found.assign_attrs(
         kind="Lyapunov exponents",
         ending=_ENDINGS[course.status],
+        periods_skipped=skipped,
         planar=int(course.system.planar),
         provenance=json.dumps(provenance_of_run(model, motion, **kept)),
     )

@@ -11,6 +11,7 @@ from stylobate.engine.ensembles.broadcasting import ArrayLike
 from stylobate.errors import ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
+from stylobate.orbits.arguments import require_subject
 
 _FOLLOWED = ("outcome", "decided_at", "uncertain")
 
@@ -71,6 +72,7 @@ def poincare_section(
     >>> bool(section["section_tilt"].std("period").max() < 1e-8)
     True
     """
+    require_subject(model, motion)
     skip = require_whole("skip", skip, least=0)
     periods = require_whole("periods", periods, least=1)
     if skip > periods:

@@ -13,6 +13,7 @@ from stylobate.engine import simulate_ensemble, with_parameters
 from stylobate.errors import Interrupted, Outcome, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
+from stylobate.orbits.arguments import require_subject
 from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED, code_of, outcome_attributes
 from stylobate.spec import provenance_of_run
@@ -117,6 +118,7 @@ def slow_sweep(
     >>> [sb.results.outcome_of(code).name for code in sweep["outcome"].values[:, 0]]
     ['ROLLING', 'ROLLING', 'MODULATED', 'OVERTURNED']
     """
+    require_subject(model, motion)
     held = rules or OutcomeRules(periods=_PERIODS_LOOKED_AT)
     watched = 2 * held.periods + 1
     steps, starts = _together(parameter, values, tilt, tilt_rate)

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stylobate.engine import with_parameters
-from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError
+from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError, require_positive
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 from stylobate.orbits import (
@@ -19,14 +19,20 @@ from stylobate.orbits import (
     bifurcation_curve,
     continue_branch,
 )
+from stylobate.orbits.arguments import require_subject
+from stylobate.orbits.orbit import is_stable
 from stylobate.spec import provenance_of_run
+from stylobate.studies.families import told_between_bifurcations
 from stylobate.studies.first_orbit import first_orbit
+from stylobate.studies.ranges import require_bounds, require_frequencies
 from stylobate.studies.response_curves import response_curves
 from stylobate.studies.sweeps.quantities import attributes_of
 
 _THEORY_POINTS = 201
 # A bifurcation this near to a curve, in parts of the widths of the bounds, lies on it.
 _ON_CURVE = 2e-3
+# A curve bends off the chord of two of its points by less than this part of the chord.
+_BENT = 0.05
 _FOLLOWED = (Kind.FOLD, Kind.PITCHFORK, Kind.PERIOD_DOUBLING, Kind.NEIMARK_SACKER)
 
 
@@ -67,11 +73,12 @@ def stability_boundary(
         Over `point`: `angular_frequency` [rad/s], the parameter, `curve`, `soft` (1 soft, 0 hard, −1 not decided),
         `coefficient`; over `curve_index`: `curve_kind`, `curve_end`. Over `theory_parameter`: `theory_frequency`
         [rad/s], the critical frequency (exact for circular motion, averaged else), NaN where there is none.
+        `attrs["rolling"]` tells how rolling was wherever it was looked at: "stable", "unstable", "stable or unstable".
 
     Raises
     ------
     ParameterError
-        If bounds or values are none.
+        If bounds or values are none, or there is no friction, without which nothing decays.
     NoOrbitError
         If rolling was found at none of the values.
 
@@ -86,13 +93,16 @@ def stability_boundary(
     >>> boundary["curve_kind"].values.tolist()
     ['Neimark-Sacker']
     """
-    low, high = _rising("bounds", bounds)
-    frequencies = _rising("angular_frequency", angular_frequency)
+    require_subject(model, motion)
+    low, high = require_bounds(bounds, parameter)
+    frequencies = require_frequencies(angular_frequency)
+    _require_friction(model, parameter, low)
     chosen = np.linspace(low, high, 5) if values is None else np.asarray(values, dtype=float)
     if chosen.size == 0 or not np.all((chosen >= low) & (chosen <= high)):
         message = f"values must lie between the bounds {(low, high)!r}, got {values!r}"
         raise ParameterError(message)
     curves: list[BifurcationCurve] = []
+    looked_at: set[bool] = set()
     reason: Exception | None = None
     for value in chosen:
         try:
@@ -100,11 +110,12 @@ def stability_boundary(
         except NoOrbitError as error:
             reason = error
             continue
-        branch = continue_branch(orbit, "angular_frequency", bounds=frequencies)
+        branch = told_between_bifurcations(continue_branch(orbit, "angular_frequency", bounds=frequencies))
+        looked_at |= {is_stable(point.multipliers) for point in branch.path}
         for one in losses(branch):
             if not any(_on(curve, one, float(value), frequencies, (low, high)) for curve in curves):
                 curves.append(bifurcation_curve(one, parameter, bounds=(frequencies, (low, high)), control=control))
-    if not curves and reason is not None:
+    if not looked_at and reason is not None:
         raise NoOrbitError(str(reason))
     return (
         _joined(curves, parameter)
@@ -112,6 +123,9 @@ def stability_boundary(
         .assign_attrs(
             kind="stability boundary",
             parameter=parameter,
+            bounds=[low, high],
+            angular_frequency_range=list(frequencies),
+            rolling=_everywhere(looked_at),
             provenance=json.dumps(provenance_of_run(model, motion)),
         )
     )
@@ -123,18 +137,27 @@ def losses(branch: Branch) -> list[Bifurcation]:
     for one in branch.bifurcations:
         place = next(index for index, point in enumerate(branch.path) if point is one.point)
         around = [branch.path[k] for k in (place - 1, place + 1) if 0 <= k < len(branch.path)]
-        stable = [bool(abs(point.multipliers[0]) < 1.0) for point in around]
+        stable = [is_stable(point.multipliers) for point in around]
         if one.kind in _FOLLOWED and len(set(stable)) > 1:
             found.append(one)
     return found
 
 
-def _rising(name: str, ends: tuple[float, float]) -> tuple[float, float]:
-    low, high = (float(end) for end in ends)
-    if not -np.inf < low < high < np.inf:
-        message = f"{name} must rise from one number to another, got {ends!r}"
+def _require_friction(model: Model, parameter: str, least: float) -> None:
+    """Raise ParameterError without friction: orbits are neutrally stable then at best, and nothing is decided."""
+    if parameter == "damping":
+        require_positive("bounds: damping", least)
+    elif not model.comes_to_rest:
+        message = (
+            "damping must be above zero, got 0.0: without friction no motion decays, rolling is neutrally stable at "
+            "best, and where it is lost is not decided"
+        )
         raise ParameterError(message)
-    return low, high
+
+
+def _everywhere(stable: set[bool]) -> str:
+    """Return how rolling was wherever it was looked at."""
+    return " or ".join(name for name, seen in (("stable", True), ("unstable", False)) if seen in stable)
 
 
 def _on(
@@ -153,9 +176,11 @@ def _on(
     if len(path) == 1:
         return bool(np.linalg.norm(path[0] - here) < _ON_CURVE)
     along = np.diff(path, axis=0)
-    share = np.clip(np.sum((here - path[:-1]) * along, axis=1) / np.sum(along**2, axis=1), 0.0, 1.0)
-    gaps = np.linalg.norm(path[:-1] + share[:, np.newaxis] * along - here, axis=1)
-    return bool(gaps.min() < _ON_CURVE)
+    squares = np.sum(along**2, axis=1)
+    # A curve begun on the bound of a parameter may have a point twice: a chord of no length.
+    share = np.sum((here - path[:-1]) * along, axis=1) / np.where(squares > 0.0, squares, 1.0)
+    gaps = np.linalg.norm(path[:-1] + np.clip(share, 0.0, 1.0)[:, np.newaxis] * along - here, axis=1)
+    return bool(np.any(gaps < _ON_CURVE + _BENT * np.sqrt(squares)))
 
 
 def _joined(curves: list[BifurcationCurve], parameter: str) -> xr.Dataset:

@@ -1,0 +1,141 @@
+"""Families of orbits as they are drawn: each followed once, and told between its bifurcations."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from stylobate.engine.flow.tableau import Status
+from stylobate.errors import NoOrbitError
+from stylobate.orbits import Bifurcation, Branch, End, Kind, StepControl, switch_branch
+from stylobate.orbits.arclength import Family, Point, corrected
+from stylobate.orbits.bifurcations import orbit_at
+from stylobate.orbits.shooting import arcs_of, shots
+
+_BORN = (Kind.PITCHFORK, Kind.PERIOD_DOUBLING, Kind.BRANCH_POINT)
+# Two orbits are images of each other if their tilts agree to this part of c, and what their multipliers add up to to
+# this part of it: orbits are known far better, and others differ by far more.
+_ALIKE, _ALIKE_MULTIPLIERS = 1e-6, 1e-3
+# By so many points a family is known that begins at a bifurcation.
+_PROBED = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Followed:
+    """A family with its name."""
+
+    name: str
+    branch: Branch
+
+
+def born(
+    branch: Branch, bounds: tuple[float, float], generations: int, control: StepControl | None
+) -> Iterator[Followed]:
+    """Follow what is born on a branch, once for each pair of images, and once what begins and ends on the branch."""
+    if generations <= 0:
+        return
+    siblings: list[Branch] = []
+    for one in branch.bifurcations:
+        if one.kind not in _BORN:
+            continue
+        try:
+            probe = switch_branch(one, bounds=bounds, control=replace(control or StepControl(), most=_PROBED))
+            if any(_meet(probe, other) for other in siblings):
+                continue
+            whole = switch_branch(one, bounds=bounds, control=control)
+        except NoOrbitError:
+            continue
+        siblings.append(whole)
+        family = _from_birth_to_death(whole, one, branch.bifurcations)
+        name = "asymmetric" if one.kind is Kind.PITCHFORK else f"period {family.path[0].family.periods}"
+        yield Followed(f"{name}, from {one.parameter:.6g} rad/s", family)
+        yield from born(family, bounds, generations - 1, control)
+
+
+def told_between_bifurcations(branch: Branch) -> Branch:
+    """Return the branch with an orbit more between any two bifurcations that have none between them.
+
+    Stability changes at bifurcations only: with an orbit between each two, it is known all along.
+    """
+    located = {id(one.point) for one in branch.bifurcations}
+    path = list(branch.path[:1])
+    for first, second in pairwise(branch.path):
+        if id(first) in located and id(second) in located:
+            middle = _middle(first, second)
+            path += [] if middle is None else [middle]
+        path.append(second)
+    return replace(branch, path=tuple(path))
+
+
+def _middle(first: Point, second: Point) -> Point | None:
+    chord = second.u - first.u
+    length = float(np.linalg.norm(chord))
+    if length == 0.0:
+        return None
+    found = corrected(first.family, first.u + 0.5 * chord, chord / length)
+    return None if isinstance(found, Status) else found[0]
+
+
+def _meet(probe: Branch, other: Branch) -> bool:
+    """Return whether an orbit of one family is one of the other, a whole or half number of periods later, or mirrored.
+
+    Such images have the same tilts and multipliers.
+    """
+    if probe.path[0].family.periods != other.path[0].family.periods:
+        return False
+    for index, point in enumerate(probe.path):
+        orbit = probe.orbit(index)
+        scale = orbit.system.scale
+        for candidate in other.orbits_at(point.value):
+            tilts = (candidate.least_tilt - orbit.least_tilt, candidate.largest_tilt - orbit.largest_tilt)
+            traces = complex(candidate.multipliers.sum()), complex(orbit.multipliers.sum())
+            same = abs(traces[0] - traces[1]) <= _ALIKE_MULTIPLIERS * max(1.0, abs(traces[1]))
+            if same and max(map(abs, tilts)) <= _ALIKE * scale:
+                return True
+    return False
+
+
+def _from_birth_to_death(family: Branch, birth: Bifurcation, known: tuple[Bifurcation, ...]) -> Branch:
+    """Return a family from the orbit that bears it to that into which it goes, if it does.
+
+    Beyond an orbit of half its length, a family goes on with the same orbits, begun half their length later.
+    """
+    path, found, ends = list(family.path), family.bifurcations, family.ends
+    death: tuple[Point, ...] = ()
+    gaps = [_halves_apart(point) for point in path] if birth.kind is Kind.PERIOD_DOUBLING else []
+    last = next((k for k, (one, after) in enumerate(pairwise(gaps)) if float(one @ after) < 0.0), None)
+    if last is not None:
+        path = path[: last + 1]
+        inside = {id(point) for point in path}
+        found = tuple(one for one in found if id(one.point) in inside)
+        ends = (End.BEGUN, End.MERGED)
+    if ends[1] is End.MERGED:
+        death = _at(_nearest(path[-1], [one for one in known if one.kind is birth.kind]), family)
+    return replace(family, path=(*_at(birth, family), *path, *death), bifurcations=found, ends=ends)
+
+
+def _nearest(point: Point, known: list[Bifurcation]) -> Bifurcation:
+    family = point.family
+
+    def distance(one: Bifurcation) -> float:
+        states = np.abs(one.state - point.chain.states[0]).max() / family.system.scale
+        return float(states + abs(one.parameter - point.value) / family.span)
+
+    return min(known, key=distance)
+
+
+def _halves_apart(point: Point) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    """Return by how much an orbit differs from itself half its length later; zero for one of half the length."""
+    states = point.chain.states
+    return np.asarray(states[0] - states[len(states) // 2])
+
+
+def _at(bifurcation: Bifurcation, of: Branch) -> tuple[Point, ...]:
+    """Return the orbit of a bifurcation as a point of the family that is born there; nothing if it cannot be."""
+    family: Family = of.path[0].family
+    system = family.at(bifurcation.parameter)
+    states = arcs_of(system, orbit_at(bifurcation.point).state, family.periods, len(of.path[0].chain.states))
+    change = family.system.derivative(family.name, bifurcation.parameter)
+    chain = shots(system, states, family.covered, sense=family.sense, change=change)
+    return (Point(family, bifurcation.parameter, chain),) if chain.status is Status.DONE else ()
