@@ -211,7 +211,7 @@ def exact() -> Figure:
 def boundary_line() -> Figure:
     """Boundary of stable rolling, straight-line motion, over frequency and amplitude."""
     found = sb.studies.stability_boundary(
-        MODEL, line(0.13), bounds=(0.012, 0.4), angular_frequency=(0.7, 4.0), values=[0.13]
+        MODEL, line(0.13), bounds=(0.012, 0.4), angular_frequency=(0.7, 2.8), values=[0.13]
     )
     return sb.plot(found)
 
@@ -220,7 +220,7 @@ def boundary_ellipse() -> Figure:
     """Boundary of stable rolling as an ellipse opens."""
     return sb.plot(
         sb.studies.stability_boundary(
-            MODEL, ellipse(0.04), parameter="amplitude_y", bounds=(0.0, 0.08), angular_frequency=(0.9, 4.0)
+            MODEL, ellipse(0.04), parameter="amplitude_y", bounds=(0.0, 0.08), angular_frequency=(0.9, 1.7)
         )
     )
 
