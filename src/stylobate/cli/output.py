@@ -71,13 +71,17 @@ def check_writable(figure: Path | None, output: Path | None = None, *, stores: b
         if output.suffix == STORE:  # a folder, perhaps one that is to be continued
             output = output.with_name(f"{output.name}.part")
     for path in (figure, output):
-        if path is None:
-            continue
-        folder = path.parent
-        if path.is_dir() or not folder.is_dir() or not os.access(path if path.exists() else folder, os.W_OK):
-            reason = "it is a folder" if path.is_dir() else f"{folder} is no folder one can write into"
-            message = f"cannot write {path}: {reason}"
-            raise FileError(message)
+        if path is not None:
+            check_place(path)
+
+
+def check_place(path: Path) -> None:
+    """Raise FileError if there is a folder in the place of this file, or none in which it could be."""
+    folder = path.parent
+    if path.is_dir() or not folder.is_dir() or not os.access(path if path.exists() else folder, os.W_OK):
+        reason = "it is a folder" if path.is_dir() else f"{folder} is no folder one can write into"
+        message = f"cannot write {path}: {reason}"
+        raise FileError(message)
 
 
 def save_figure(figure: "Figure", path: Path) -> None:

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from stylobate.cli.output import check_writable, print_json, print_table
+from stylobate.cli.output import check_place, print_json, print_table
 
 Folder = Annotated[Path, typer.Option(help="where to write figures, data and report.html")]
 Workers = Annotated[int | None, typer.Option(help="processes to use; all cores by default", show_default=False, min=1)]
@@ -25,7 +25,7 @@ def paper(folder: Folder = Path("stylobate-paper"), workers: Workers = None, as_
     from stylobate import plots, studies  # noqa: PLC0415
     from stylobate.results import Verdict  # noqa: PLC0415
 
-    check_writable(folder / "report.html" if folder.exists() else folder)
+    check_place(folder / "report.html" if folder.exists() else folder)
     with Progress(console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("checking the paper", total=None)
 
