@@ -102,7 +102,7 @@ def test_steps_work_on_all_lanes_at_once(motion, method, planar, model):
 INSTRUCTIONS_AT_NODES = 40
 
 
-@pytest.mark.parametrize(("motion", "method", "planar"), KERNELS)
+@pytest.mark.parametrize(("motion", "method", "planar"), [kernel for kernel in KERNELS if kernel.values[1] == "taylor"])
 def test_observation_works_on_all_nodes_at_once(motion, method, planar):
     kernel, buf = kernel_for(motion, method, planar)
     kernel.observe(buf, 0)
