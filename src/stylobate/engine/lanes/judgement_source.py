@@ -7,7 +7,7 @@ from scipy.integrate import DOP853
 from stylobate.engine.lanes.layout import Rows
 from stylobate.engine.lanes.series_source import polynomial, wanted_lines
 from stylobate.engine.lanes.shape import SERIES_ORDER, STAGES, Shape
-from stylobate.engine.lanes.stage_source import combination
+from stylobate.engine.lanes.stage_source import combination, reciprocal_scales
 from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET
 
 # Step control as SciPy's: safety 0.9, a step changes by 0.2 to 10, an error below the last number counts as that.
@@ -44,12 +44,7 @@ def _error(shape: Shape, rows: Rows) -> list[str]:
             for j in range(shape.order)
         ),
     ]
-    for j in range(0, shape.order, 2):  # one division for two
-        if j + 1 < shape.order:
-            out.append(f"per_both = 1.0 / (scale{j} * scale{j + 1})")
-            out += [f"per_scale{j} = per_both * scale{j + 1}", f"per_scale{j + 1} = per_both * scale{j}"]
-        else:
-            out.append(f"per_scale{j} = 1.0 / scale{j}")
+    out += reciprocal_scales(shape.order)
     for j in range(shape.order):
         stages = [at(f"k{s}_{j}") for s in range(STAGES + 1)]
         for name, weights in (("e5", DOP853.E5), ("e3", DOP853.E3)):

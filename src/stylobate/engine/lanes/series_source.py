@@ -10,7 +10,7 @@ from collections.abc import Callable
 from stylobate.engine.lanes.expansion import Expansion
 from stylobate.engine.lanes.layout import Rows
 from stylobate.engine.lanes.shape import SERIES_ORDER, Shape
-from stylobate.engine.lanes.stage_source import rates_call
+from stylobate.engine.lanes.stage_source import rates_call, reciprocal_scales
 
 # The last two terms together may be as large as the tolerance over this.
 _CAUTION = 1.0
@@ -85,12 +85,7 @@ def _length(shape: Shape, rows: Rows) -> list[str]:
     out += ["before = power8 * power4 * power2 * base", "full = before * base", "size = 0.0"]
     for j in range(shape.order):
         out.append(f"scale{j} = {at('atol_now')} + {at('rtol')} * abs(s{j}_0)")
-    for j in range(0, shape.order, 2):  # one division for two
-        if j + 1 < shape.order:
-            out.append(f"both = 1.0 / (scale{j} * scale{j + 1})")
-            out += [f"per_scale{j} = both * scale{j + 1}", f"per_scale{j + 1} = both * scale{j}"]
-        else:
-            out.append(f"per_scale{j} = 1.0 / scale{j}")
+    out += reciprocal_scales(shape.order)
     for j in range(shape.order):
         terms = f"abs(s{j}_{last - 1}) * before + abs(s{j}_{last}) * full"
         out.append(f"size = size + ({terms}) * per_scale{j}")

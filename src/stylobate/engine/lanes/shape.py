@@ -91,7 +91,7 @@ class Shape:
         for name in ("new", "last"):
             rows.add_many(name, self.order)
         if self.series:
-            rows.add("proposed")
+            rows.add("proposed", *(f"node_{name}" for name in OBSERVED))
             rows.add_many("square", SERIES_ORDER + 1)
             for j in self.expanded:
                 rows.add(*(f"c{k}_{j}" for k in range(1, self.degree(j) + 1)))
@@ -99,7 +99,6 @@ class Shape:
             for stage in range(STAGES + 1):
                 rows.add_many(f"k{stage}_", self.order)
             rows.add_many("last_slope", self.order)
-        rows.add(*(f"node_{name}" for name in OBSERVED))
         return rows
 
 

@@ -30,6 +30,18 @@ def combination(coefficients: Iterable[float], names: Iterable[str]) -> str:
     return " + ".join(f"{float(a)!r} * {name}" for a, name in zip(coefficients, names, strict=True) if a != 0.0)
 
 
+def reciprocal_scales(order: int) -> list[str]:
+    """Return what finds 1/scale of each state, by one division for two of them."""
+    out = []
+    for j in range(0, order, 2):
+        if j + 1 < order:
+            out.append(f"per_both = 1.0 / (scale{j} * scale{j + 1})")
+            out += [f"per_scale{j} = per_both * scale{j + 1}", f"per_scale{j + 1} = per_both * scale{j}"]
+        else:
+            out.append(f"per_scale{j} = 1.0 / scale{j}")
+    return out
+
+
 def stage_lines(shape: Shape, rows: Rows, stage: int) -> list[str]:
     """Return the loop of one stage; the last one gives the new state and the slope there."""
     last = stage == STAGES
