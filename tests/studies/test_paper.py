@@ -28,6 +28,14 @@ def test_a_wrong_theory_is_not_confirmed(monkeypatch):
     assert circular._friction_free_limit().verdict is Verdict.NOT_CONFIRMED
 
 
+@pytest.mark.parametrize("finding", [twist._stability, twist._weak_friction, twist._upper_frequency])
+def test_boundaries_of_another_column_with_a_free_twist_are_not_confirmed(monkeypatch, finding):
+    for name in ("free_twist_critical_frequency", "free_twist_upper_frequency"):
+        right = getattr(theory, name)
+        monkeypatch.setattr(theory, name, lambda a0, right=right, **column: 0.9 * right(a0, **column))
+    assert finding().verdict is Verdict.NOT_CONFIRMED
+
+
 def test_curves_of_figure_2_lie_on_their_sides_of_the_backbone():
     data = circular.response_data()
     lower, upper = data["amplitude"].sel(branch="lower"), data["amplitude"].sel(branch="upper")
@@ -43,6 +51,18 @@ def test_stable_parts_of_figure_2_begin_at_the_critical_frequencies():
         first = float(data["theta"][int(np.argmax(stable.to_numpy()))])
         assert abs(first - float(theory.critical_frequency(a0, c=0.1, eta=0.1))) <= spacing
         assert not bool(data["stable"].sel(a0=a0, branch="lower").any())
+
+
+def test_curves_of_the_critical_frequency_meet_in_their_limits():
+    data = twist.boundary_data()
+    least = float(data["eta"][0])
+    # Proportional to η there, by a factor below 20 (ζ = 1) and to 1/ζ for smaller ones.
+    weak = data["by_friction"].isel(eta=0).sel(zeta=[1.0, 0.3, 0.1, 0.03])
+    assert bool((abs(weak - data.attrs["weak_limit"]) < 20.0 * least / weak["zeta"]).all())
+    strong = data["by_spin_friction"].isel(spin_friction=-1)
+    assert bool((abs(strong - data.attrs["without"]) < 0.2 / float(data["spin_friction"][-1])).all())
+    rising = data["by_amplitude"].diff("a0")
+    assert bool(((rising > 0.0) | rising.isnull()).all())
 
 
 def test_the_averaged_solution_fails_where_its_amplitude_is_large():

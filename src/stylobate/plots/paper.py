@@ -181,28 +181,6 @@ def modulated(data: xr.Dataset) -> Figure:
 
 
 @styled
-def twist(data: xr.Dataset) -> Figure:
-    """Return steady rolling with a free twist: tilt and spin against frequency, for several spin frictions."""
-    figure = new_figure(3.6)
-    tilt, spin = figure.subplots(1, 2)
-    for k, zeta in enumerate(data["zeta"].to_numpy()):
-        part = data.sel(zeta=zeta)
-        stable = part["stable"]
-        name = "no twist" if np.isinf(zeta) else f"ζ = {zeta:g}"
-        draw_branch(tilt, data["theta"], part["amplitude"], stable, color=PALETTE[k])
-        draw_branch(spin, data["theta"], part["spin"], stable, color=PALETTE[k])
-        tilt.plot([], [], color=PALETTE[k], linewidth=STABLE_WIDTH, label=name)
-    tilt.set_ylabel("tilt A [rad]")
-    spin.set_ylabel("spin σ [ω₀]")
-    for axes in (tilt, spin):
-        axes.set_xlabel("frequency θ")
-        axes.set_xlim(float(data["theta"][0]), float(data["theta"][-1]))
-    tilt.set_ylim(0.0, None)
-    tilt.legend(title="bold: stable", ncols=1)
-    return figure
-
-
-@styled
 def runaway(data: xr.Dataset) -> Figure:
     """Return the azimuth of free motions that begin ever closer to a plane, and one of the paths."""
     figure = new_figure(3.8)

@@ -7,7 +7,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from stylobate.errors import FileError
-from stylobate.plots import paper
+from stylobate.plots import paper, paper_twist
 from stylobate.plots.exact_response import plot_exact_response
 from stylobate.plots.page import Picture, Section, Table, page
 from stylobate.plots.stability_boundary import plot_stability_boundary
@@ -34,6 +34,8 @@ _SYMBOLS = Table(
         ("a0; a1, a2", "amplitude of circular base motion; amplitudes along the two axes"),
         ("ψ", "phase by which the contact point leads the base acceleration"),
         ("η", "viscous friction"),
+        ("κ = mh²/J₀, i_a = I_a/(mr²); D", "ratios of inertia, I_a about the axis; 1 + i_a − κ"),
+        ("σ, ζ", "spin about the axis, and the friction it meets"),
         ("A₊, A₋; θ*", "upper and lower branch of steady rolling; frequency above which the upper one is stable"),
     ),
 )
@@ -76,9 +78,17 @@ _PICTURES: tuple[tuple[str, str, Callable[[PaperCheck], Figure], str], ...] = (
     (
         "free-twist",
         "A column that may turn",
-        lambda check: paper.twist(check.data["twist"]),
+        lambda check: paper_twist.twist(check.data["twist"]),
         "Steady rolling of a solid cylinder that may turn about its axis, a0 = 0.065, for several spin frictions ζ: it "
         "leans less the less friction there is, and spins against its rolling. Bold: stable.",
+    ),
+    (
+        "free-twist-boundary",
+        "A column that may turn",
+        lambda check: paper_twist.twist_boundary(check.data["twist_boundary"]),
+        "The frequency θ* above which steady rolling with a free twist is stable, against amplitude, spin friction ζ "
+        "(grey: no twist) and friction η (dot: its limit η → 0 at every finite ζ), and for columns with "
+        "i_a < 2κ − 1 = ½ the one above which it is unstable again (dots: limit ζ → 0).",
     ),
     (
         "figure-2-straight",

@@ -1,4 +1,4 @@
-"""Closed forms of the slender column: what theory says before anything is integrated.
+"""Closed forms of the slender column and of rigid ones: what theory says before anything is integrated.
 
 Everything here is dimensionless as in the equations (1) to (11): angles in rad, the time τ = ω0 t, frequencies in units
 of ω0, accelerations in g, c the slenderness and η the friction. Arguments are numbers or arrays that broadcast; a
@@ -13,16 +13,24 @@ from stylobate.theory.critical import (
     critical_frequency_frictionless,
     crossing_frequency,
 )
+from stylobate.theory.finite_tilt import FiniteTiltRolling
 from stylobate.theory.free_motion import FreeMotion, free_motion
+from stylobate.theory.free_rolling import FreeRolling, free_rolling, free_rolling_spin
 from stylobate.theory.free_twist import (
     FreeTwistRolling,
     free_twist_jacobian,
     free_twist_rates,
     free_twist_rolling,
 )
+from stylobate.theory.free_twist_boundary import free_twist_critical_frequency, free_twist_upper_frequency
+from stylobate.theory.free_twist_stability import free_twist_hurwitz_coefficients
+from stylobate.theory.full_rolling import full_rolling
+from stylobate.theory.full_rolling_rates import full_rolling_rates
 from stylobate.theory.high_frequency import HighFrequencyRolling, high_frequency_rates, high_frequency_rolling
+from stylobate.theory.impact import block_restitution, equivalent_viscous_friction, housner_restitution
 from stylobate.theory.lyapunov import first_lyapunov_coefficient
 from stylobate.theory.modulated import ModulatedRolling, modulated_rolling
+from stylobate.theory.near_upright import angle_of_turn, required_friction
 from stylobate.theory.planar_forced import (
     PlanarForcedResponse,
     PlanarOrbit,
@@ -33,10 +41,13 @@ from stylobate.theory.planar_free import planar_free_motion, planar_free_period
 from stylobate.theory.rolling import RollingBranch, SteadyRolling, rolling_gap, steady_rolling
 from stylobate.theory.rotating_frame import rotating_frame_jacobian, rotating_frame_rates
 from stylobate.theory.stability import hurwitz_coefficients
+from stylobate.theory.wobbling import wobbling_rates, wobbling_rolling
 
 __all__ = [
     "AveragedRolling",
+    "FiniteTiltRolling",
     "FreeMotion",
+    "FreeRolling",
     "FreeTwistRolling",
     "HighFrequencyRolling",
     "ModulatedRolling",
@@ -44,19 +55,30 @@ __all__ = [
     "PlanarOrbit",
     "RollingBranch",
     "SteadyRolling",
+    "angle_of_turn",
     "averaged_rolling",
+    "block_restitution",
     "circular_components",
     "critical_amplitude",
     "critical_frequency",
     "critical_frequency_frictionless",
     "crossing_frequency",
+    "equivalent_viscous_friction",
     "first_lyapunov_coefficient",
     "free_motion",
+    "free_rolling",
+    "free_rolling_spin",
+    "free_twist_critical_frequency",
+    "free_twist_hurwitz_coefficients",
     "free_twist_jacobian",
     "free_twist_rates",
     "free_twist_rolling",
+    "free_twist_upper_frequency",
+    "full_rolling",
+    "full_rolling_rates",
     "high_frequency_rates",
     "high_frequency_rolling",
+    "housner_restitution",
     "hurwitz_coefficients",
     "modulated_rolling",
     "planar_backbone",
@@ -64,9 +86,12 @@ __all__ = [
     "planar_free_motion",
     "planar_free_period",
     "planar_kick_slope",
+    "required_friction",
     "rolling_backbone",
     "rolling_gap",
     "rotating_frame_jacobian",
     "rotating_frame_rates",
     "steady_rolling",
+    "wobbling_rates",
+    "wobbling_rolling",
 ]

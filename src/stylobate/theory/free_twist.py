@@ -112,7 +112,7 @@ def free_twist_rolling(
     >>> print(rolling.amplitude.round(7), rolling.spin.round(5))
     [0.0074982 0.0147187 0.0164812] [-0.39991 -0.0785   0.     ]
     """
-    numbers = _checked(theta, a0, c, eta, zeta, inertia_ratio, axial_ratio)
+    numbers = checked_numbers(theta, a0, c, eta, zeta, inertia_ratio, axial_ratio)
     theta, a0, c, eta, zeta, ratio, axial = numbers
     freedom = 1.0 + axial - ratio  # D
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -253,7 +253,10 @@ def free_twist_jacobian(
     return matrices.reshape(*matrices.shape[:-1], _STATES, _STATES)
 
 
-def _checked(theta: Real, a0: Real, c: Real, eta: Real, zeta: Real, ratio: Real, axial: Real) -> tuple[FloatArray, ...]:
+def checked_numbers(
+    theta: Real, a0: Real, c: Real, eta: Real, zeta: Real, ratio: Real, axial: Real
+) -> tuple[FloatArray, ...]:
+    """Return the arguments of `free_twist_rolling` as arrays of one shape, or raise ParameterError."""
     kappa = positive("inertia_ratio", ratio)
     if np.any(kappa >= 1.0):
         message = f"inertia_ratio = m h²/J0 must be below 1, got {np.max(kappa)!r}"

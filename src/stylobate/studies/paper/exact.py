@@ -30,9 +30,9 @@ def check_exact() -> Section:
         ),
         "boundary": stability_boundary(
             paper_model(),
-            Harmonic.straight(acceleration=AMPLITUDES[1], angular_frequency=3.0),
+            Harmonic.straight(acceleration=AMPLITUDES[1], angular_frequency=2.0),
             bounds=(0.012, 0.3),
-            angular_frequency=(0.6, 4.0),
+            angular_frequency=(0.7, 2.4),
             values=[AMPLITUDES[1]],
         ),
     }

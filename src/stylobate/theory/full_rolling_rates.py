@@ -1,0 +1,138 @@
+"""Rolling of a rigid column without slip, at any tilt and with free twist, seen from the frame of a turning base."""
+
+import numpy as np
+
+from stylobate.errors import ParameterError
+from stylobate.theory.arguments import FloatArray, Real
+from stylobate.theory.rigid_body import Numbers, RigidBody
+
+STATES = 5
+
+
+def full_rolling_rates(
+    state: Real,
+    theta: Real,
+    a0: Real,
+    *,
+    c: Real,
+    eta: Real,
+    zeta: Real,
+    inertia_ratio: Real = 0.75,
+    axial_ratio: Real = 0.5,
+) -> FloatArray:
+    """Right-hand side of rolling without slip at finite tilt on a circularly moving base, in the frame of the motion.
+
+    Parameters
+    ----------
+    state
+        Tilt rate μ, rolling rate ω = β̇, tilt angle A > 0 [rad], phase ψ = β − θτ and axial angular velocity σ [ω0],
+        along the first axis: shape (5, ...).
+    theta
+        Excitation frequency θ.
+    a0
+        Acceleration amplitude of the base [g].
+    c
+        Slenderness.
+    eta
+        Viscous friction η, a couple against the rate of tilt.
+    zeta
+        Spin friction ζ, a moment against rotation about the vertical. Infinite, it forbids that; the state must then
+        have σ cos A + ω sin²A = 0.
+    inertia_ratio
+        κ = m h²/J0; ¾ for a slender solid cylinder, as by default.
+    axial_ratio
+        i_a = I_a/(m r²); ½ for a solid cylinder.
+
+    Returns
+    -------
+    numpy.ndarray
+        Rates of the state in the same order, shape (5, ...). Nothing is checked but the length of the first axis. Not
+        defined at A = 0.
+
+    Raises
+    ------
+    ParameterError
+        If the first axis of `state` does not have five entries.
+
+    See Also
+    --------
+    free_twist_rates : the limit of small tilts.
+
+    Notes
+    -----
+    Over J0, with s = sin A, w1 = −ωs, p = cos A + cs, D = 1 + i_a − κ, and the couples M1 = −ηw1 − Ms and M3 = M cos A,
+    M = −ζκc²D(σ cos A − w1 s) being the moment of the spin friction:
+
+        T = [κμ((I_a/I_t)σ − cw1) − a0 sin ψ − (κ/I_t)M1 − (κc/I_a)M3] I_t i_a/D
+        ẇ1 = ωμ cos A − (I_a/I_t)μσ + (T + M1)/I_t
+        σ̇ = (cT + M3)/I_a
+        K μ̇ = s − c cos A − p a0 cos ψ − κpω(cσ + w1) + I_t ω²s cos A − I_a ωsσ − ημ
+
+    T is the force of the contact across the lean, over m g.
+    """
+    state = np.asarray(state, dtype=np.float64)
+    if state.ndim == 0 or len(state) != STATES:
+        message = f"state must have the five entries (μ, ω, A, ψ, σ) along its first axis, got the shape {state.shape}"
+        raise ParameterError(message)
+    theta, a0, c, eta, zeta, kappa, axial = (
+        np.asarray(value, dtype=np.float64) for value in (theta, a0, c, eta, zeta, inertia_ratio, axial_ratio)
+    )
+    body = RigidBody(c=c, kappa=kappa, axial_ratio=axial)
+    return np.asarray(rates(state, theta, a0, eta, zeta, body), dtype=np.float64)
+
+
+def rates(
+    state: Numbers, theta: FloatArray, a0: FloatArray, eta: FloatArray, zeta: FloatArray, body: RigidBody
+) -> Numbers:
+    """Return `full_rolling_rates` of a real or complex state."""
+    mu, omega, tilt, psi, spin = state
+    s, cosine, height = np.sin(tilt), np.cos(tilt), body.height(tilt)
+    w1 = -omega * s
+    push, drive = a0 * np.cos(psi), a0 * np.sin(psi)
+    moment = _vertical_moment(mu, w1, spin, tilt, drive, eta, zeta, body)
+    w1_rate, spin_rate = _turning(mu, w1, spin, tilt, drive, eta, moment, body)
+    tilting = (
+        body.overhang(tilt)
+        - height * push
+        - body.kappa * height * omega * (body.c * spin + w1)
+        + body.transverse * omega**2 * s * cosine
+        - body.axial * omega * s * spin
+        - eta * mu
+    ) / body.rim
+    rolling = -(w1_rate + omega * mu * cosine) / s
+    return np.stack(np.broadcast_arrays(tilting, rolling, mu, omega - theta, spin_rate))
+
+
+def _turning(
+    mu: Numbers, w1: Numbers, spin: Numbers, tilt: Numbers, drive: Numbers, eta: FloatArray, moment: Numbers,
+    body: RigidBody,
+) -> tuple[Numbers, Numbers]:  # fmt: skip
+    """Return ẇ1 and σ̇ under a moment about the vertical."""
+    s, cosine = np.sin(tilt), np.cos(tilt)
+    m1, m3 = -eta * w1 - moment * s, moment * cosine
+    inertia = body.axial / body.transverse
+    gyroscopic = body.kappa * mu * (inertia * spin - body.c * w1)
+    couples = body.kappa * (m1 / body.transverse + body.c * m3 / body.axial)
+    force = (gyroscopic - drive - couples) * body.transverse * body.axial_ratio / body.freedom  # T
+    w1_rate = -w1 * mu * cosine / s - inertia * mu * spin + (force + m1) / body.transverse
+    return w1_rate, (body.c * force + m3) / body.axial
+
+
+def _vertical_moment(
+    mu: Numbers, w1: Numbers, spin: Numbers, tilt: Numbers, drive: Numbers, eta: FloatArray, zeta: FloatArray,
+    body: RigidBody,
+) -> Numbers:  # fmt: skip
+    """Return the moment of the spin friction or, where that is infinite, the one that keeps ω·Z as it is."""
+    s, cosine = np.sin(tilt), np.cos(tilt)
+    held = np.isinf(zeta)
+    coefficient = np.where(held, 0.0, zeta) * body.kappa * body.c**2 * body.freedom
+    moment: Numbers = -coefficient * (spin * cosine - w1 * s)
+    if not held.any():
+        return moment
+
+    def vertical(trial: Numbers) -> Numbers:  # (ω·Z)˙, linear in the moment
+        w1_rate, spin_rate = _turning(mu, w1, spin, tilt, drive, eta, trial, body)
+        return np.asarray(spin_rate * cosine - w1_rate * s - mu * (spin * s + w1 * cosine))
+
+    without = vertical(np.zeros_like(moment))
+    return np.asarray(np.where(held, without / (without - vertical(np.ones_like(moment))), moment))

@@ -1,0 +1,197 @@
+"""Steady rolling of a rigid column that only tilts, at any tilt: the paper's column without the small angles.
+
+Rotation about the vertical is forbidden as ω·(e3 + Z) = 0, for the axis e3 and the vertical Z: the column gets from
+upright to where it is by a turn about a horizontal line. The circle on which the base stood stays where it was.
+"""
+
+import numpy as np
+
+from stylobate.errors import ParameterError
+from stylobate.theory.arguments import FloatArray, Real, not_negative, positive
+from stylobate.theory.finite_tilt import (
+    FiniteTiltRolling,
+    eigenvalues,
+    no_deviation_grows,
+    on_branches,
+    steady_tilts,
+)
+from stylobate.theory.rigid_body import Numbers, RigidBody
+from stylobate.theory.zeros import Rows
+
+_STATES = 4
+
+
+def wobbling_rolling(
+    theta: Real, a0: Real, *, c: Real, eta: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
+) -> FiniteTiltRolling:
+    r"""All steady rolling of a column that only tilts, on a base that moves in a circle, at any tilt.
+
+    Parameters
+    ----------
+    theta
+        Excitation frequency θ, positive.
+    a0
+        Acceleration amplitude of the base [g].
+    c
+        Slenderness.
+    eta
+        Viscous friction η, a couple against the rate of tilt.
+    inertia_ratio
+        κ = m h²/J0; ¾ for a slender solid cylinder, as by default.
+    axial_ratio
+        i_a = I_a/(m r²); ½ for a solid cylinder.
+
+    Returns
+    -------
+    FiniteTiltRolling
+        All branches with a tilt below π/2, for the base acceleration a0 (cos θτ, sin θτ), four eigenvalues each.
+
+    Raises
+    ------
+    ParameterError
+        If `theta` or a number of the body is not positive, no body has these numbers, or another argument is negative.
+
+    See Also
+    --------
+    steady_rolling : the limit of small tilts.
+    full_rolling : the same with free twist.
+    wobbling_rates : the equations.
+
+    Notes
+    -----
+    Of the balances along and across the lean, with P = sin A + c(1 − cos A), p = dP/dA and
+    M = κP² + (1 − κ) sin²A + κ i_a c²(1 − cos A)²,
+
+        p a0 cos ψ = ½θ² dM/dA + sin A − c cos A,   P a0 sin ψ = ηθ sin²A,
+
+    the paper's solution (8) is the limit; its amplitudes differ by a part of the order c². Wobbling spins the column
+    about its axis, at w3 = −θ(1 − cos A), but not about the vertical.
+
+    Examples
+    --------
+    >>> rolling = wobbling_rolling([1.3, 1.5], 0.065, c=0.1, eta=0.1)
+    >>> print(rolling.amplitude.round(6), rolling.stable, sep="\n")
+    [[0.012976 0.061037]
+     [0.010745 0.050536]]
+    [[False False]
+     [False  True]]
+    """
+    body = RigidBody.checked(c, inertia_ratio, axial_ratio)
+    numbers = np.broadcast_arrays(
+        positive("theta", theta),
+        not_negative("a0", a0),
+        not_negative("eta", eta),
+        body.c,
+        body.kappa,
+        body.axial_ratio,
+    )
+    shape = numbers[0].shape
+    return _branches(shape, *(number.ravel() for number in numbers))
+
+
+def wobbling_rates(
+    state: Real,
+    theta: Real,
+    a0: Real,
+    *,
+    c: Real,
+    eta: Real,
+    inertia_ratio: Real = 0.75,
+    axial_ratio: Real = 0.5,
+) -> FloatArray:
+    """Right-hand side of pure tilting at finite tilt on a circularly moving base, in the frame that turns with it.
+
+    Parameters
+    ----------
+    state
+        Tilt rate μ, rolling rate ω = β̇, tilt angle A > 0 [rad] and phase ψ = β − θτ, along the first axis: shape
+        (4, ...).
+    theta, a0, c, eta, inertia_ratio, axial_ratio
+        As for `wobbling_rolling`.
+
+    Returns
+    -------
+    numpy.ndarray
+        Rates of the state in the same order, shape (4, ...). Nothing is checked but the length of the first axis. Not
+        defined at A = 0.
+
+    Raises
+    ------
+    ParameterError
+        If the first axis of `state` does not have four entries.
+
+    See Also
+    --------
+    rotating_frame_rates : the limit of small tilts, (7).
+
+    Notes
+    -----
+    Lagrange's equations over J0, in the notation of `wobbling_rolling`:
+
+        K μ̇ = ½ω² dM/dA + sin A − c cos A − p a0 cos ψ − ημ
+        M ω̇ = −μω dM/dA + P a0 sin ψ − ηω sin²A
+    """
+    state = np.asarray(state, dtype=np.float64)
+    if state.ndim == 0 or len(state) != _STATES:
+        message = f"state must have the four entries (μ, ω, A, ψ) along its first axis, got the shape {state.shape}"
+        raise ParameterError(message)
+    theta, a0, c, eta, kappa, axial = (
+        np.asarray(value, dtype=np.float64) for value in (theta, a0, c, eta, inertia_ratio, axial_ratio)
+    )
+    body = RigidBody(c=c, kappa=kappa, axial_ratio=axial)
+    return np.asarray(_rates(state, theta, a0, eta, body), dtype=np.float64)
+
+
+def _rates(state: Numbers, theta: FloatArray, a0: FloatArray, eta: FloatArray, body: RigidBody) -> Numbers:
+    mu, omega, tilt, psi = state
+    inertia, slope = _about_vertical(tilt, body)
+    tilting = 0.5 * slope * omega**2 + body.overhang(tilt) - body.height(tilt) * a0 * np.cos(psi) - eta * mu
+    rolling = body.reach(tilt) * a0 * np.sin(psi) - slope * mu * omega - eta * np.sin(tilt) ** 2 * omega
+    return np.stack(np.broadcast_arrays(tilting / body.rim, rolling / inertia, mu, omega - theta))
+
+
+def _about_vertical(tilt: Numbers, body: RigidBody) -> tuple[Numbers, Numbers]:
+    """Return M, the moment of inertia of a change of azimuth, and dM/dA."""
+    s, fall, reach = np.sin(tilt), 1.0 - np.cos(tilt), body.reach(tilt)
+    inertia = body.kappa * reach**2 + body.transverse * s**2 + body.axial * fall**2
+    slope = body.kappa * reach * body.height(tilt) + body.transverse * s * np.cos(tilt) + body.axial * fall * s
+    return inertia, 2.0 * slope
+
+
+def _branches(
+    shape: tuple[int, ...],
+    theta: FloatArray,
+    a0: FloatArray,
+    eta: FloatArray,
+    c: FloatArray,
+    kappa: FloatArray,
+    axial_ratio: FloatArray,
+) -> FiniteTiltRolling:
+    bodies = RigidBody(c=c, kappa=kappa, axial_ratio=axial_ratio)
+
+    def balance(tilt: FloatArray, rows: Rows) -> tuple[FloatArray, FloatArray]:
+        body, rate = bodies[rows], theta[rows]
+        _, slope = _about_vertical(tilt, body)
+        along = (0.5 * slope * rate**2 + body.overhang(tilt)) / body.height(tilt)
+        return along, eta[rows] * rate * np.sin(tilt) ** 2 / body.reach(tilt)
+
+    tilts = steady_tilts(balance, a0, c / (1.0 + theta**2), eta == 0.0)
+    exists = np.isfinite(tilts)
+    rows, tilt = np.nonzero(exists)[0], tilts[exists]
+    along, across = balance(tilt, rows)
+    phase, body = np.arctan2(across, along), bodies[rows]
+    moved = -kappa[rows] * theta[rows] ** 2 * body.reach(tilt)
+    state = np.stack([np.zeros_like(tilt), theta[rows], tilt, phase])
+    growth = eigenvalues(lambda x: _rates(x, theta[rows], a0[rows], eta[rows], body), state)
+    stable = np.zeros(exists.shape, dtype=np.bool_)
+    stable[exists] = no_deviation_grows(growth, eta[rows])
+    return FiniteTiltRolling(
+        amplitude=on_branches(shape, exists, tilt),
+        phase=on_branches(shape, exists, phase),
+        spin=on_branches(shape, exists, -theta[rows] * (1.0 - np.cos(tilt))),
+        friction_demand=on_branches(shape, exists, np.hypot(along + moved, across)),
+        friction_moment=on_branches(shape, exists, across),
+        exists=exists.reshape(*shape, -1),
+        stable=stable.reshape(*shape, -1),
+        eigenvalues=on_branches(shape, exists, growth),
+    )
