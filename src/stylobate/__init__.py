@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from stylobate.column import Column
     from stylobate.engine import simulate, simulate_ensemble, with_parameters
     from stylobate.errors import Interrupted, Outcome
-    from stylobate.models import Model, Slender, SlenderRolling
+    from stylobate.models import Model, PlanarRocking, Rolling, Slender, SlenderRolling, Wobbling
     from stylobate.motions import BaseMotion, Harmonic
     from stylobate.plots import plot
     from stylobate.results import Event, OutcomeRules, Response, load
@@ -33,9 +33,12 @@ __all__ = [
     "Model",
     "Outcome",
     "OutcomeRules",
+    "PlanarRocking",
     "Response",
+    "Rolling",
     "Slender",
     "SlenderRolling",
+    "Wobbling",
     "__version__",
     "errors",
     "load",
@@ -61,9 +64,12 @@ _HOMES = {
     "Model": "models",
     "Outcome": "errors",
     "OutcomeRules": "results",
+    "PlanarRocking": "models",
     "Response": "results",
+    "Rolling": "models",
     "Slender": "models",
     "SlenderRolling": "models",
+    "Wobbling": "models",
     "load": "results",
     "plot": "plots",
     "simulate": "engine",

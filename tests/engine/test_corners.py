@@ -102,7 +102,7 @@ def test_a_subclass_is_not_described_as_its_base():
         spec.description_of(run.provenance)
 
 
-def _counted_rates(x, y, vx, vy, turned, ax, ay, az, c, eta):
+def _counted_rates(x, y, vx, vy, turned, ax, ay, az, c, eta, _kappa):
     lean = (1.0 + az) * (1.0 - c / math.sqrt(x * x + y * y + 1e-300))
     return vx, vy, lean * x - eta * vx - ax, lean * y - eta * vy - ay, math.hypot(vx, vy)
 
@@ -126,6 +126,7 @@ class Counted(sb.Slender):
         return 0.0, 0.0, 0.0, 0.0, way
 
     planar_rates: ClassVar = None
+    contact: ClassVar = None
 
     def outputs(self, states, accelerations, resting):
         return {}

@@ -251,7 +251,7 @@ class Dragged(sb.Slender):
     planar_rates = None
 
     @staticmethod
-    def rates(x, y, vx, vy, ax, ay, az, c, eta):
+    def rates(x, y, vx, vy, ax, ay, az, c, eta, _kappa):
         lean = (1.0 + az) * (1.0 - c / math.sqrt(x * x + y * y + 1e-300))
         drag = slowing(vx, vy, eta)
         return vx, vy, lean * x - drag * vx - ax, lean * y - drag * vy - ay

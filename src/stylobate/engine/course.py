@@ -56,7 +56,7 @@ class Course:
     @property
     def trajectory(self) -> Trajectory:
         """What has been computed, as one function of time."""
-        return Trajectory(self.pieces, len(self.model.state_names))
+        return Trajectory(self.pieces, len(self.model.state_names) + len(self.model.carried_names))
 
     @property
     def stands(self) -> bool:
@@ -93,7 +93,8 @@ class Course:
             self.ended = Reason.LIFTED
             self._note("lifted", release)
             return None
-        later, state = departure(self.model, self.forcing, release)
+        later, moving = departure(self.model, self.forcing, release)
+        state = *moving, *held[len(moving) :]
         if later >= self.stop:
             self._add(rest_piece(held, start, self.stop))
             return None
@@ -108,24 +109,40 @@ class Course:
         line = common_line(
             (float(tilt[0]), float(tilt[1])), (float(rate[0]), float(rate[1])), *self.forcing.motion.directions()
         )
-        if line is not None and self.model.planar_rates is not None:
-            return self._move_in_plane((float(tilt @ line), float(rate @ line)), line)
+        index = self.model.spin_state
+        if line is not None and self.model.planar_rates is not None and (index is None or state[index] == 0.0):
+            return self._move_in_plane((float(tilt @ line), float(rate @ line)), line, state)
         self.planar = False
         return self._move_in_space(state)
 
-    def _move_in_plane(self, state: tuple[float, ...], line: Line) -> tuple[float, ...] | None:
-        upright = self.model.standing((0.0,) * len(self.model.state_names))
+    def _move_in_plane(
+        self, state: tuple[float, ...], line: Line, begun: tuple[float, ...]
+    ) -> tuple[float, ...] | None:
+        order = len(self.model.state_names)
+        carried = begun[order:]
+        upright = self.model.standing((*(0.0,) * order, *carried))
         while self._time < self.stop:
             if state == (0.0, 0.0):
                 return upright
-            leg = self.mover.in_plane(self._time, (state[0], state[1]), self._next_stop(), line, self._budget())
+            start = (state[0], state[1])
+            leg = self.mover.in_plane(self._time, start, self._next_stop(), line, carried, self._budget())
             self._take(leg)
             if leg.reason is Reason.RESTED:
                 return upright
             if leg.reason not in (Reason.CROSSED, Reason.STOP):
                 return None
             state = leg.state
+            if leg.reason is Reason.CROSSED and self.model.loss_tilt > 0.0:
+                state = self._struck_in_plane(leg.state, line)
         return None
+
+    def _struck_in_plane(self, state: tuple[float, ...], line: Line) -> tuple[float, float]:
+        """Return tilt and rate after a passage of the upright with loss."""
+        model = self.model
+        assert model.from_plane is not None
+        struck = self.mover.struck(model.from_plane(state[0], state[1], *line, *model.parameters))
+        _, _, vx, vy = model.lean(*struck, *model.parameters)
+        return state[0], float(vx * line[0] + vy * line[1])
 
     def _move_in_space(self, state: tuple[float, ...]) -> tuple[float, ...] | None:
         state = self._off_the_upright(state)
@@ -142,9 +159,9 @@ class Course:
                     leg = hop
             if leg.reason is Reason.RESTED:
                 return self.model.standing(leg.state)
-            if leg.reason not in (Reason.CROSSED, Reason.STOP):
+            if leg.reason not in (Reason.CROSSED, Reason.STOP, Reason.STRUCK):
                 return None
-            state = leg.state
+            state = self.mover.struck(leg.state) if leg.reason is Reason.STRUCK else leg.state
         return None
 
     def _off_the_upright(self, state: tuple[float, ...]) -> tuple[float, ...]:
@@ -156,7 +173,11 @@ class Course:
         step = FIRST_STEP_OFF * self.model.column.slenderness / float(np.hypot(*rate))
         x, y = (step * float(part) for part in rate)
         scale = self.model.time_scale
-        return self.model.start((x, y), (float(rate[0]) / scale, float(rate[1]) / scale))
+        moved = list(state)
+        begun = self.model.start((x, y), (float(rate[0]) / scale, float(rate[1]) / scale))
+        index = self.model.spin_state
+        moved[: len(begun)] = [value if j != index else state[j] for j, value in enumerate(begun)]
+        return tuple(moved)
 
     def _take(self, leg: Leg) -> None:
         if leg.piece is not None:
@@ -164,7 +185,7 @@ class Course:
         self.least_passage = min(self.least_passage, leg.least_tilt)
         if leg.reason is Reason.RESTED:
             self._note("rest", self._time)
-        elif leg.reason not in (Reason.CROSSED, Reason.STOP):
+        elif leg.reason not in (Reason.CROSSED, Reason.STOP, Reason.STRUCK):
             self.ended, self.failure = leg.reason, leg.failure
             self._note(leg.reason.name.lower(), self._time)
 

@@ -18,7 +18,7 @@ from stylobate.engine.ensembles.pool import Halt, parts_of, run_parts, usual_thr
 from stylobate.engine.ensembles.summaries import QUANTITIES, Arrays, empty, summaries
 from stylobate.engine.parameters import check_names
 from stylobate.engine.single import check_motion, require_nouns
-from stylobate.errors import Interrupted, ParameterError, require_whole
+from stylobate.errors import Interrupted, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.motions import BASE_AT_REST, BaseMotion
 from stylobate.results import OutcomeRules
@@ -31,6 +31,7 @@ def simulate_ensemble(
     *,
     tilt: ArrayLike = (0.0, 0.0),
     tilt_rate: ArrayLike = (0.0, 0.0),
+    spin: ArrayLike = 0.0,
     duration: ArrayLike,
     parameters: Mapping[str, ArrayLike] | None = None,
     method: str = "dop853",
@@ -42,6 +43,7 @@ def simulate_ensemble(
     samples: int | None = None,
     strobes: int = 0,
     rules: OutcomeRules | None = None,
+    demands: bool = False,
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> xr.Dataset:
@@ -61,6 +63,8 @@ def simulate_ensemble(
     tilt, tilt_rate
         Starts [rad], [rad/s]: shape (2,) for all, (n, 2) with the dimension `run`, or a DataArray with a dimension
         "axis" and any others.
+    spin
+        Angular velocity about the axis at the start [rad/s], of models that know it; of the shapes of `duration`.
     duration
         How long to follow them [s]: a number, shape (n,), or a DataArray.
     parameters
@@ -77,6 +81,8 @@ def simulate_ensemble(
     strobes
         Keep so many of the last states at which the base motion has phase zero (Ωt + start_phase a whole number of
         turns), one a period.
+    demands
+        Follow what the contact must bear too, for which steps take about a fifth longer.
     threads
         Threads to run on; by default all cores.
     progress
@@ -89,7 +95,9 @@ def simulate_ensemble(
         state, the largest and least tilt, turns of the contact point, and over the last periods mean tilt, phase of
         the lean to the base acceleration, mean rolling rate and repetition; NaN where a run has none. With `strobes`
         also `strobe_tilt` and `strobe_tilt_rate`, the last strobe last; with `samples` also `sample_time`,
-        `sampled_tilt` and `sampled_tilt_rate`; NaN before the run began and after it ended.
+        `sampled_tilt` and `sampled_tilt_rate`; NaN before the run began and after it ended. Of models with a spin also
+        `end_spin`. With `demands` the `largest_friction_demand`, `largest_pivoting_demand` and `least_normal_force`
+        (over the weight) while the column moves, told within each step by a parabola through three values.
 
     Raises
     ------
@@ -124,12 +132,16 @@ def simulate_ensemble(
         samples=samples,
         strobes=strobes,
         rules=rules,
+        demands=demands,
     )
+    if demands and model.contact is None:
+        message = f"model {model.name} does not tell what its contact bears: give it `contact`, or leave out demands"
+        raise UnsupportedError(message)
     threads = usual_threads() if threads is None else require_whole("threads", threads, least=1)
-    runs = broadcast(tilt, tilt_rate, duration, changes)
-    arrays = empty(options, len(runs))
+    runs = broadcast(tilt, tilt_rate, spin, duration, changes)
+    arrays = empty(model, options, len(runs))
     # What differs between the runs stands in the coordinates.
-    arguments = {"tilt": tilt, "tilt_rate": tilt_rate, "duration": duration, **changes}
+    arguments = {"tilt": tilt, "tilt_rate": tilt_rate, "spin": spin, "duration": duration, **changes}
     same = {name: np.asarray(value).tolist() for name, value in arguments.items() if name not in runs.coordinates}
     if terms_of(moved) is None and len(runs):
         check_motion(moved, float(runs.duration.max()))
@@ -173,7 +185,7 @@ def _followed(
 
 
 def _provenance(model: Model, motion: BaseMotion, options: Options, same: Mapping[str, Any]) -> dict[str, Any]:
-    starts = {name: same[name] for name in ("tilt", "tilt_rate", "duration") if name in same}
+    starts = {name: same[name] for name in ("tilt", "tilt_rate", "spin", "duration") if name in same}
     parameters = {name: value for name, value in same.items() if name not in starts}
     kept = asdict(options) | {"samples": options.samples or None, **starts, "parameters": parameters}
     return provenance_of_run(model, motion, **kept)

@@ -9,6 +9,7 @@ import numpy.typing as npt
 import xarray as xr
 from scipy.optimize import minimize_scalar
 
+from stylobate.engine.demands import Demands
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.trajectory import Trajectory
 from stylobate.errors import ParameterError
@@ -22,14 +23,23 @@ _FEWEST, _MOST = 1001, 50_001
 
 @dataclass(frozen=True, slots=True)
 class Recorded:
-    """The samples of a run, its summary numbers, and the means to take samples at other times."""
+    """The samples of a run, its summary numbers, warnings, and the means to take samples at other times."""
 
     data: xr.Dataset
     measures: dict[str, float]
+    warnings: tuple[str, ...]
     sampler: Callable[[npt.ArrayLike], xr.Dataset]
 
 
-def history(model: Model, motion: BaseMotion, trajectory: Trajectory, samples: int | None, *, planar: bool) -> Recorded:
+def history(
+    model: Model,
+    motion: BaseMotion,
+    trajectory: Trajectory,
+    samples: int | None,
+    *,
+    planar: bool,
+    friction_coefficient: float | None,
+) -> Recorded:
     """Return the samples of a run at equal steps, `samples` of them or enough to draw every swing."""
     end = trajectory.end * model.time_scale
     count = _default_count(model, motion, trajectory.end) if samples is None else samples
@@ -45,7 +55,9 @@ def history(model: Model, motion: BaseMotion, trajectory: Trajectory, samples: i
     # What is measured does not depend on how many samples are kept.
     usual = _default_count(model, motion, trajectory.end)
     seen = data if count == usual else sampler(np.linspace(0.0, end, usual))
-    return Recorded(data, _measures(model, trajectory, seen, planar=planar), sampler)
+    demands = Demands.of(model, Forcing.of(model, motion), trajectory, seen, friction_coefficient)
+    measures = _measures(model, trajectory, seen, planar=planar) | demands.measures
+    return Recorded(data, measures, demands.warnings, sampler)
 
 
 def _dataset(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Floats) -> xr.Dataset:

@@ -22,6 +22,9 @@ _GROWN = 1e-3
 # Passages of the upright closer than this are measured [units of c].
 _PASSAGE = 0.1
 
+# A least tilt so early in a step [of its length] is the one at which the step begins.
+_PASSED = 1e-6
+
 # The contact point is followed in turns of at most this angle [rad], each step cut into at most so many parts.
 _NODE_TURN, _MOST_PARTS = 0.5, 64
 
@@ -67,13 +70,8 @@ class Mover:
         A motion that `begins`, perhaps at a tilt far below the absolute tolerance, is followed with a finer one while
         it grows; the leg ends where it has grown, or first turns back.
         """
-        rates, parameters, forcing, last = self.model.rates, self.model.parameters, self.forcing, just_before(stop)
-
-        def derivative(tau: float, y: Floats) -> Floats:
-            return np.array(rates(*y.tolist(), *forcing.at(min(tau, last)), *parameters))
-
         atol = self._beginning_atol(state) if begins else self.method.atol
-        solver = self._solver(derivative, start, state, stop, atol)
+        solver = self._solver(self._derivative(just_before(stop)), start, state, stop, atol)
         steps = Steps(start)
         least = math.inf
         while solver.status == "running":
@@ -91,10 +89,13 @@ class Mover:
             if failure is not None:
                 return self._space_leg(steps, solver.y, azimuth, Reason.FAILED, least, failure)
             dense = steps.add(solver)
-            least = min(least, self._passage_tilt(before, steps, solver.y))
-            event = self.watch.first_event(steps.times[-2], solver.t, dense)
-            if event is not None:
-                time, reason = event
+            passage = self._passage(before, steps, solver.y)
+            least = min(least, passage[1])
+            events = [self.watch.first_event(steps.times[-2], solver.t, dense)]
+            events.append((passage[0], Reason.STRUCK) if self._loses_at(passage, steps) else None)
+            found = [event for event in events if event is not None]
+            if found:
+                time, reason = min(found, key=lambda event: event[0])
                 steps.cut(time)
                 return self._space_leg(steps, dense(time), azimuth, reason, least)
             if atol < self.method.atol and self._has_grown(solver.y):
@@ -103,13 +104,36 @@ class Mover:
                 return self._space_leg(steps, solver.y, azimuth, Reason.CROSSED, least)
         return self._space_leg(steps, solver.y, azimuth, Reason.STOP, least)
 
+    def _derivative(self, last: float) -> Callable[[float, Floats], Floats]:
+        """Return the rates of the states and of what is carried along; the base moves as just before `last`."""
+        rates, carried_rates, parameters = self.model.rates, self.model.carried_rates, self.model.parameters
+        forcing, order = self.forcing, len(self.model.state_names)
+
+        def derivative(tau: float, y: Floats) -> Floats:
+            state = y.tolist()[:order]
+            moving = rates(*state, *forcing.at(min(tau, last)), *parameters)
+            return np.array(moving if carried_rates is None else (*moving, *carried_rates(*state, *parameters)))
+
+        return derivative
+
+    def struck(self, state: tuple[float, ...]) -> tuple[float, ...]:
+        """Return the state after a passage of the upright with the loss that the model tells."""
+        assert self.model.struck is not None
+        moving, carried = state[: len(self.model.state_names)], state[len(self.model.state_names) :]
+        return *self.model.struck(*moving, *self.model.parameters), *carried
+
     def over_the_upright(self, start: float, state: tuple[float, ...], stop: float, azimuth: float) -> Leg | None:
         """Hop over the upright by the model's law of passage, where it has one and gets there before `stop`."""
         if self.model.passage is None:
             return None
-        elapsed, end_state = self.model.passage(*state, *self.forcing.at(start), *self.model.parameters)
+        moving, carried = state[: len(self.model.state_names)], state[len(self.model.state_names) :]
+        elapsed, end_state = self.model.passage(*moving, *self.forcing.at(start), *self.model.parameters)
         if start + elapsed > stop:
             return None
+        if self.model.carried_rates is not None:
+            rates = self.model.carried_rates(*moving, *self.model.parameters)
+            carried = tuple(value + rate * elapsed for value, rate in zip(carried, rates, strict=True))
+        end_state = *end_state, *carried
         ends = np.array([state, end_state]).T
 
         def states(tau: Floats) -> Floats:
@@ -126,12 +150,22 @@ class Mover:
             azimuths=unwrapped_azimuths(self.model.tilt(ends), azimuth),
         )
         (x, y), (vx, vy) = self.model.tilt(ends)[:, 0], self.model.tilt_rate(ends)[:, 0]
-        return Leg(piece, end_state, Reason.STOP, abs(x * vy - y * vx) / math.hypot(vx, vy))
+        reason = Reason.STRUCK if self.model.loss_tilt > 0.0 else Reason.STOP
+        return Leg(piece, end_state, reason, abs(x * vy - y * vx) / math.hypot(vx, vy))
 
     def in_plane(
-        self, start: float, state: tuple[float, float], stop: float, line: tuple[float, float], budget: int
+        self,
+        start: float,
+        state: tuple[float, float],
+        stop: float,
+        line: tuple[float, float],
+        carried: tuple[float, ...],
+        budget: int,
     ) -> Leg:
-        """Advance a motion in the plane along `line`; `state` is (tilt, rate) along it, on one side of the upright."""
+        """Advance a motion in the plane along `line`; `state` is (tilt, rate) along it, on one side of the upright.
+
+        What is `carried` along does not change in it.
+        """
         planar_rates, parameters, forcing = self.model.planar_rates, self.model.parameters, self.forcing
         assert planar_rates is not None
         side, last = math.copysign(1.0, state[0] if state[0] != 0.0 else state[1]), just_before(stop)
@@ -143,9 +177,10 @@ class Mover:
         atol = min(self.method.atol, self.method.rtol * abs(state[0])) if state[0] != 0.0 else self.method.atol
         solver = self._solver(derivative, start, state, stop, atol)
         steps = Steps(start)
+        plane = _Plane(self.model, line, carried)
 
         def leg(end: Floats, reason: Reason, failure: str = "") -> Leg:
-            return self._planar_leg(steps, end, reason, line, side, failure)
+            return self._planar_leg(steps, end, reason, plane, side, failure)
 
         while solver.status == "running":
             if len(steps.dense) >= budget:
@@ -165,7 +200,7 @@ class Mover:
                 if back == began:
                     return leg(np.zeros(2), Reason.CROSSED)
             end = solver.t if back is None else back
-            event = self.watch.first_event(began, end, partial(self._from_plane, dense, line), rests=False)
+            event = self.watch.first_event(began, end, partial(plane.states, dense), rests=False)
             if event is not None:
                 time, reason = event
                 steps.cut(time)
@@ -175,10 +210,6 @@ class Mover:
                 rests = self.watch.is_rest(back, 0.0, abs(speed))
                 return leg(np.array([0.0, speed]), Reason.RESTED if rests else Reason.CROSSED)
         return leg(solver.y, Reason.STOP)
-
-    def _from_plane(self, dense: Callable[[Floats], Floats], line: tuple[float, float], tau: Floats) -> Floats:
-        assert self.model.from_plane is not None
-        return np.stack(self.model.from_plane(*dense(tau), *line, *self.model.parameters))
 
     def _solver(
         self,
@@ -208,16 +239,24 @@ class Mover:
             inward and math.hypot(x, y) < HOP_FROM * min(c, speed) and abs(x * vy - y * vx) < HOP_OFFSET * c * speed
         )
 
-    def _passage_tilt(self, before: Floats, steps: Steps, after: Floats) -> float:
-        # Least tilt where it stops falling and grows within the last step; infinite if it does not, or stays wide.
+    def _passage(self, before: Floats, steps: Steps, after: Floats) -> tuple[float, float]:
+        # When within the last step the tilt stops falling and grows, and how small it is then; both infinite if it does
+        # not, or stays wide.
         (tilt, radial), (_, radial_after) = self._radial(before), self._radial(after)
-        if not (radial < 0.0 < radial_after and tilt < _PASSAGE * self.model.column.slenderness):
-            return math.inf
+        wide = tilt >= _PASSAGE * self.model.column.slenderness and self.model.loss_tilt == 0.0
+        if wide or not radial < 0.0 < radial_after:
+            return math.inf, math.inf
         dense = steps.dense[-1]
-        nearest = brentq(
-            lambda tau: self._radial(dense(tau))[1], steps.times[-2], steps.times[-1], xtol=1e-300, rtol=1e-15
+        nearest = float(
+            brentq(lambda tau: self._radial(dense(tau))[1], steps.times[-2], steps.times[-1], xtol=1e-300, rtol=1e-15)
         )
-        return self._radial(dense(nearest))[0]
+        return nearest, self._radial(dense(nearest))[0]
+
+    def _loses_at(self, passage: tuple[float, float], steps: Steps) -> bool:
+        """Return whether a passage within the last step costs energy; one just passed is not passed again."""
+        time, tilt = passage
+        new = len(steps.dense) > 1 or time - steps.times[-2] > _PASSED * (steps.times[-1] - steps.times[-2])
+        return tilt < self.model.loss_tilt and new
 
     def _radial(self, state: Floats) -> tuple[float, float]:
         """Return |α| and α·α̇ of one state."""
@@ -255,19 +294,33 @@ class Mover:
         between = np.repeat(times[:-1], parts) + share * np.repeat(np.diff(times) / parts, parts)
         return np.append(between, times[-1])
 
-    def _planar_leg(
-        self, steps: Steps, end: Floats, reason: Reason, line: tuple[float, float], side: float, failure: str
-    ) -> Leg:
+    def _planar_leg(self, steps: Steps, end: Floats, reason: Reason, plane: "_Plane", side: float, failure: str) -> Leg:
         if not steps.dense:
             return Leg(None, (float(end[0]), float(end[1])), reason, math.inf, failure)
         solution = OdeSolution(steps.times, steps.dense)
         piece = Piece(
             steps.times[0],
             steps.times[-1],
-            partial(self._from_plane, solution, line),
+            partial(plane.states, solution),
             resting=False,
             nodes=np.array(steps.times[:1]),
-            azimuths=np.array([math.atan2(side * line[1], side * line[0])]),
+            azimuths=np.array([math.atan2(side * plane.line[1], side * plane.line[0])]),
             steps=len(steps.dense),
         )
         return Leg(piece, (float(end[0]), float(end[1])), reason, math.inf, failure)
+
+
+@dataclass(frozen=True, slots=True)
+class _Plane:
+    """The vertical plane along `line`, in which a model moves; what is `carried` along stays as it is."""
+
+    model: Model
+    line: tuple[float, float]
+    carried: tuple[float, ...]
+
+    def states(self, dense: Callable[[Floats], Floats], tau: Floats) -> Floats:
+        """Return the states, shape (number of states, n), of the tilt and its rate that `dense` gives."""
+        assert self.model.from_plane is not None
+        moving = np.stack(self.model.from_plane(*dense(tau), *self.line, *self.model.parameters))
+        held = np.repeat(np.array(self.carried)[:, np.newaxis], moving.shape[1], axis=1)
+        return np.concatenate([moving, held])

@@ -208,7 +208,11 @@ def present_value(model: Model, motion: BaseMotion, name: str) -> float:
         return _CHANGES[name]
     if name == "acceleration":
         return largest_acceleration(motion)
-    return float(getattr(*_holder(model, motion, name)))
+    value = getattr(*_holder(model, motion, name))
+    if value is None:
+        message = f"parameter {name} has no value in model {model.name}; give it one"
+        raise ParameterError(message)
+    return float(value)
 
 
 _CHANGES = {"rotation": 0.0, "delay": 0.0, "scale": 1.0, "size": 1.0}

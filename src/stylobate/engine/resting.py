@@ -18,7 +18,7 @@ _BLOCK = 4096
 _MOMENT = 1e-6
 
 # Time after release, in units of the fastest time scale, at which the departure series hands over to the integrator:
-# its error there is of the order of the fifth power.
+# its error there is of the order of the fourth power.
 _DEPARTURE = 1e-3
 
 

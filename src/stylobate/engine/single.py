@@ -10,6 +10,7 @@ from stylobate.engine.course import Course
 from stylobate.engine.forcing import Forcing
 from stylobate.engine.history import history
 from stylobate.engine.moving import Method, Mover
+from stylobate.engine.starts import Turning, require_plane
 from stylobate.engine.thresholds import Thresholds, is_rest, rest_is_coarse, thresholds_of
 from stylobate.engine.tolerances import ATOL_SHARE, CLOSE_PASSAGE, RTOL_RANGE
 from stylobate.engine.verdict import Verdict, long_term
@@ -37,7 +38,11 @@ def simulate(
     *,
     tilt: Sequence[float] = (0.0, 0.0),
     tilt_rate: Sequence[float] = (0.0, 0.0),
+    spin: float = 0.0,
+    twist: float = 0.0,
+    position: Sequence[float] = (0.0, 0.0),
     duration: float,
+    friction_coefficient: float | None = None,
     rtol: float = 1e-8,
     atol: float | None = None,
     tilt_limit: float | None = None,
@@ -62,8 +67,14 @@ def simulate(
         Tilt vector at t = 0: where the column leans, its length the tilt angle [rad].
     tilt_rate
         Its rate [rad/s].
+    spin, twist
+        Angular velocity about its axis [rad/s] and angle of turn about it [rad], of models that know them.
+    position
+        Centre of the footprint circle in the frame of the base [m], of models that carry it along.
     duration
         How long to follow it [s].
+    friction_coefficient
+        Of the contact: where more friction is needed the result warns. No model here slips for it.
     rtol, atol
         Local error tolerances of the integrator, relative and absolute [rad]; `atol` is 0.01 rtol c by default.
     tilt_limit
@@ -106,6 +117,10 @@ def simulate(
         message = f"tilt must be below π/2 rad in length (angles are in rad, not degrees), got {start_tilt!r}"
         raise ParameterError(message)
     start_rate = _pair("tilt_rate", tilt_rate, "rad/s")
+    at_rest = bool(is_rest(np.array(start_tilt), np.array(start_rate), model.column.slenderness, model.time_scale))
+    turning = Turning.checked(model, spin, twist, position, standing=at_rest)
+    if friction_coefficient is not None:
+        friction_coefficient = require_positive("friction_coefficient", friction_coefficient)
     duration = require_positive("duration", duration, "s")
     samples = None if samples is None else require_whole("samples", samples, least=2)
     method = _method(model, moved, rtol, atol, max_steps)
@@ -115,10 +130,18 @@ def simulate(
     rules = rules or OutcomeRules()
     mover = Mover(model, forcing, Watch(model, forcing, thresholds), method)
     course = Course(model, forcing, mover, duration / model.time_scale)
-    at_rest = is_rest(np.array(start_tilt), np.array(start_rate), model.column.slenderness, model.time_scale)
-    course.follow(model.start((0.0, 0.0), (0.0, 0.0)) if at_rest else model.start(start_tilt, start_rate))
+    begun = model.start((0.0, 0.0), (0.0, 0.0)) if at_rest else model.start(start_tilt, start_rate)
+    require_plane(model, moved, start_tilt, start_rate)
+    course.follow(turning.added_to(model, begun))
     verdict = _verdict(model, moved, course, rules)
-    recorded = history(model, moved, course.trajectory, samples, planar=course.planar)
+    recorded = history(
+        model,
+        moved,
+        course.trajectory,
+        samples,
+        planar=course.planar,
+        friction_coefficient=friction_coefficient,
+    )
     return Response(
         outcome=verdict.outcome,
         reason=verdict.reason,
@@ -127,8 +150,10 @@ def simulate(
         planar=course.planar,
         data=recorded.data,
         events=tuple(course.events),
+        warnings=recorded.warnings,
         thresholds={
             "close_passage": CLOSE_PASSAGE,
+            "passage_tilt": model.loss_tilt,
             "no_return_tilt": model.least_safe_tilt(forcing.largest_horizontal(0.0), forcing.least_vertical(0.0)),
             **asdict(thresholds),
             **asdict(rules),
@@ -139,7 +164,9 @@ def simulate(
             moved,
             tilt=start_tilt,
             tilt_rate=start_rate,
+            **turning.values(),
             duration=duration,
+            friction_coefficient=friction_coefficient,
             rtol=method.rtol,
             atol=method.atol,
             tilt_limit=None if tilt_limit is None else thresholds.tilt_limit,

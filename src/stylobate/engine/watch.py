@@ -31,6 +31,8 @@ class Reason(Enum):
     LIFTED = auto()
     CROSSED = auto()
     """The upright was passed in a plane, or came so near that it is passed in closed form."""
+    STRUCK = auto()
+    """The upright was passed so closely, out of a plane, that the passage costs energy."""
     FAILED = auto()
 
 

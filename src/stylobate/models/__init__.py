@@ -1,7 +1,10 @@
 """Equations of motion, one file for each level of the ladder of models."""
 
 from stylobate.models.model import Model, Output, Push
+from stylobate.models.planar_rocking import PlanarRocking
+from stylobate.models.rolling import Rolling
 from stylobate.models.slender import Slender
 from stylobate.models.slender_rolling import SlenderRolling
+from stylobate.models.wobbling import Wobbling
 
-__all__ = ["Model", "Output", "Push", "Slender", "SlenderRolling"]
+__all__ = ["Model", "Output", "PlanarRocking", "Push", "Rolling", "Slender", "SlenderRolling", "Wobbling"]

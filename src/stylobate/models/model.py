@@ -84,6 +84,30 @@ class Model(ABC):
     It is called with floats and with arrays.
     """
 
+    spin_state: ClassVar[int | None] = None
+    """Which state is the spin, the angular velocity about the axis in the model's time; None for a model without."""
+
+    planar_only: ClassVar[bool] = False
+    """Whether the model knows motion in a vertical plane only, by `planar_rates`."""
+
+    carried_names: ClassVar[tuple[str, ...]] = ()
+    """What a single run carries along: it follows from the states and acts on nothing; such as twist and footprint.
+
+    The first is the twist [rad]; then come x and y of the centre of the footprint circle [base radii].
+    """
+
+    carried_rates: ClassVar[Callable[..., tuple[float, ...]] | None] = None
+    """(state…, parameters…) → the rates of what is carried along."""
+
+    contact: ClassVar[Callable[..., tuple[float, float, float]] | None] = None
+    """(state…, ax, ay, az, parameters…) → what the contact bears: N/(m g), |T|/(m g), |M_z|/(m g r).
+
+    The normal force, the friction force, and the moment about the vertical, of a column that moves.
+    """
+
+    struck: ClassVar[Callable[..., tuple[float, ...]] | None] = None
+    """(state…, parameters…) → the state after a passage of the upright below `loss_tilt`, with its loss."""
+
     jacobian: ClassVar[Callable[..., tuple[tuple[float, ...], ...]] | None] = None
     """(state…, ax, ay, az, parameters…) → for each rate its derivatives by state, accelerations and parameters.
 
@@ -137,11 +161,11 @@ class Model(ABC):
 
     def tilt(self, states: Floats) -> Floats:
         """Return the tilt vectors [rad], shape (2, n), of `states`, shape (number of states, n)."""
-        return np.stack(self.lean(*states, *self.parameters)[:2])
+        return np.stack(self.lean(*states[: len(self.state_names)], *self.parameters)[:2])
 
     def tilt_rate(self, states: Floats) -> Floats:
         """Return the rates of the tilt vectors in the model's own time, shape (2, n)."""
-        return np.stack(self.lean(*states, *self.parameters)[2:])
+        return np.stack(self.lean(*states[: len(self.state_names)], *self.parameters)[2:])
 
     @property
     def time_scale(self) -> float:
@@ -158,13 +182,20 @@ class Model(ABC):
         """Whether friction brings a free column to rest; without friction it never gets there."""
         return False
 
+    @property
+    def loss_tilt(self) -> float:
+        """Least tilt below which a passage of the upright loses energy, as `struck` tells [rad]; 0 where none does."""
+        return 0.0
+
     def stands(self, state: tuple[float, ...]) -> bool:
         """Return whether the column stands on its base in this state: no tilt, and no rate of it."""
-        return not any(self.lean(*state, *self.parameters))
+        return not any(self.lean(*state[: len(self.state_names)], *self.parameters))
 
     def standing(self, state: tuple[float, ...]) -> tuple[float, ...]:
-        """Return the state in which a column that comes to rest from `state` stands."""
-        return (0.0,) * len(state) if self.at_rest is None else self.at_rest(*state, *self.parameters)
+        """Return the state in which a column that comes to rest from `state` stands; what is carried stays."""
+        moving, carried = state[: len(self.state_names)], state[len(self.state_names) :]
+        still = (0.0,) * len(moving) if self.at_rest is None else self.at_rest(*moving, *self.parameters)
+        return *still, *carried
 
     def least_safe_tilt(self, largest_horizontal: float, least_vertical: float) -> float:
         """Return `no_return_tilt` for these bounds [g], infinite where the model has none."""
@@ -178,7 +209,7 @@ class Model(ABC):
         Parameters
         ----------
         states
-            Shape (number of states, n).
+            Shape (number of states, n); behind them what is carried along.
         accelerations
             ax, ay, az [g], shape (3, n).
         resting

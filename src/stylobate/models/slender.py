@@ -9,16 +9,18 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.errors import ParameterError, require_not_negative
-from stylobate.models.contact import contact_outputs
+from stylobate.models.checks import require_column, require_frictions
+from stylobate.models.contact import contact_outputs, path_outputs
+from stylobate.models.departing import departing_lean
 from stylobate.models.model import Floats, Model, Output, Push
+from stylobate.models.passing import past_the_upright
 
 # Keeps 1/|α| finite at the upright itself, far below any tilt that is resolved.
 _TINY = 1e-300
 
 
 def rates(
-    x: float, y: float, vx: float, vy: float, ax: float, ay: float, az: float, c: float, eta: float
+    x: float, y: float, vx: float, vy: float, ax: float, ay: float, az: float, c: float, eta: float, _kappa: float
 ) -> tuple[float, float, float, float]:
     """Return the right-hand side of (1): rates of tilt vector and tilt rate."""
     # (1): α̈ = (1 + a_z)(α − c û) − η α̇ − a_h, û = α/|α|
@@ -33,7 +35,7 @@ def lean(x: Any, y: Any, vx: Any, vy: Any, *_: float) -> tuple[Any, Any, Any, An
 
 
 def planar_rates(
-    tilt: float, rate: float, side: float, horizontal: float, vertical: float, c: float, eta: float
+    tilt: float, rate: float, side: float, horizontal: float, vertical: float, c: float, eta: float, *_: float
 ) -> tuple[float, float]:
     """Return the right-hand side of (1) in a vertical plane, with û = `side` (±1)."""
     return rate, (1.0 + vertical) * (tilt - c * side) - eta * rate - horizontal
@@ -59,48 +61,26 @@ def no_return_tilt(largest_horizontal: float, least_vertical: float, c: float, *
     return c + largest_horizontal / weight if weight > 0.0 else math.inf
 
 
-def departure(push: Push, elapsed: float, _c: float, eta: float, *_: float) -> tuple[float, float, float, float]:
-    """Return the state a short time δ = `elapsed` after release, by series about α = 0.
+def contact(
+    x: float, y: float, vx: float, vy: float, ax: float, ay: float, az: float, c: float, eta: float, kappa: float
+) -> tuple[float, float, float]:
+    """Return N = 1 + a_z, |T| = |a_h + κα̈| and, what holds the column from turning, |M_z| = |T_n|, to leading order."""
+    _, _, bx, by = rates(x, y, vx, vy, ax, ay, az, c, eta, kappa)
+    tx, ty = ax + kappa * bx, ay + kappa * by
+    across = (x * ty - y * tx) / math.sqrt(x * x + y * y + _TINY)
+    return 1.0 + az, math.sqrt(tx * tx + ty * ty), abs(across)
 
-    Along the push α = Fδ²/2 with F = excess + (excess_rate − η excess) δ/3; across it α = qδ³ with
-    q (6 + 2c/F) = |a_h| × turning_rate, which for F → 0 is a lean that follows −a_h.
-    """
-    capacity = push.acceleration - push.excess  # c(1 + a_z)
-    jerk = push.excess_rate - eta * push.excess
-    mean_excess = push.excess + jerk * elapsed / 3.0
-    if mean_excess <= 0.0:
-        return 0.0, 0.0, 0.0, 0.0
-    along = 0.5 * mean_excess * elapsed**2
-    along_rate = push.excess * elapsed + 0.5 * jerk * elapsed**2
-    turn = push.acceleration * push.turning_rate
-    across = turn * elapsed**3 / (6.0 + 2.0 * capacity / mean_excess)
-    across_rate = across / elapsed * (3.0 + jerk * elapsed / 3.0 / mean_excess)
-    ux, uy = push.direction
-    return (
-        along * ux - across * uy,
-        along * uy + across * ux,
-        along_rate * ux - across_rate * uy,
-        along_rate * uy + across_rate * ux,
-    )
+
+def departure(push: Push, elapsed: float, _c: float, eta: float, *_: float) -> tuple[float, float, float, float]:
+    """Return the state a short time after release."""
+    return departing_lean(push, elapsed, eta, 1.0, 1.0)[:4]
 
 
 def passage(
     x: float, y: float, vx: float, vy: float, ax: float, ay: float, az: float, c: float, eta: float, *_: float
 ) -> tuple[float, tuple[float, float, float, float]]:
-    """Return the duration and the end of a straight passage with offset b at speed v, past the upright.
-
-    The force −c û turns by π within b/v; along a straight path its components integrate in closed form: none along
-    the path, −(2cb/v) asinh(l/b) across it, l being the distance to the point of closest approach.
-    """
-    speed = math.hypot(vx, vy)
-    ux, uy = vx / speed, vy / speed
-    ahead, offset = -(x * ux + y * uy), y * ux - x * uy
-    elapsed = 2.0 * ahead / speed
-    kick = -2.0 * c * (1.0 + az) / speed
-    kick *= offset * math.asinh(ahead / abs(offset)) if offset != 0.0 else 0.0
-    jump_x = -kick * uy - (eta * vx + ax) * elapsed
-    jump_y = kick * ux - (eta * vy + ay) * elapsed
-    return elapsed, (x + (vx + 0.5 * jump_x) * elapsed, y + (vy + 0.5 * jump_y) * elapsed, vx + jump_x, vy + jump_y)
+    """Return the duration and the end of a passage straight past the upright."""
+    return past_the_upright((x, y, vx, vy), (-ax, -ay), c * (1.0 + az), 0.0, eta, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,13 +115,12 @@ class Slender(Model):
     state_names: ClassVar[tuple[str, ...]] = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
 
     def __post_init__(self) -> None:
-        if not isinstance(self.column, Column):
-            message = f"column must be a Column, such as Column.solid(...), got {self.column!r}"
-            raise ParameterError(message)
-        object.__setattr__(self, "damping", require_not_negative("damping", self.damping))
+        require_column(self.column)
+        require_frictions(self, "damping")
 
     rates = staticmethod(rates)
     lean = staticmethod(lean)
+    contact = staticmethod(contact)
     planar_rates = staticmethod(planar_rates)
     from_plane = staticmethod(from_plane)
     rest_energy = staticmethod(rest_energy)
@@ -155,9 +134,9 @@ class Slender(Model):
         return self.damping * self.column.frequency_scale * self.column.base_inertia
 
     @property
-    def parameters(self) -> tuple[float, float]:
-        """c and η."""
-        return self.column.slenderness, self.damping
+    def parameters(self) -> tuple[float, float, float]:
+        """c, η and κ."""
+        return self.column.slenderness, self.damping, self.column.inertia_ratio
 
     def start(self, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, float, float, float]:
         """Return the state with this tilt vector [rad] and its rate [rad/s]."""
@@ -192,5 +171,6 @@ class Slender(Model):
             "energy": Output(energy * unit * column.frequency_scale, "J", "energy above rest"),
             "angular_momentum": Output(momentum * unit, "kg m2 s-1", "angular momentum about the vertical"),
             "centre_of_pressure": Output(pressure.T, "m", "centre of pressure from the axis"),
+            **path_outputs(self, states, np.zeros((states.shape[1], 2))),
             **contact_outputs(self, states, accelerations, resting),
         }

@@ -9,10 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.errors import ParameterError, require_not_negative
+from stylobate.errors import ParameterError
 from stylobate.models import slender
-from stylobate.models.contact import contact_outputs
+from stylobate.models.checks import require_column, require_frictions
+from stylobate.models.contact import contact_outputs, path_outputs
+from stylobate.models.departing import departing_lean
 from stylobate.models.model import Floats, Model, Output, Push
+from stylobate.models.passing import past_the_upright
 
 # As in the slender model: keeps 1/|α| finite at the upright itself.
 _TINY = 1e-300
@@ -82,37 +85,46 @@ def rest_energy(tilt: float, speed: float, vertical: float, c: float, *_: float)
     return 0.5 * speed * speed + c * (1.0 + vertical) * tilt
 
 
+def contact(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    spin: float,
+    ax: float,
+    ay: float,
+    az: float,
+    c: float,
+    eta: float,
+    zeta: float,
+    kappa: float,
+    axial: float,
+    couples: float,
+) -> tuple[float, float, float]:
+    """Return N = 1 + a_z, |T| = |a_h + κα̈| and, of the spin friction, |M_z|, to leading order."""
+    _, _, bx, by, _ = rates(x, y, vx, vy, spin, ax, ay, az, c, eta, zeta, kappa, axial, couples)
+    tx, ty = ax + kappa * bx, ay + kappa * by
+    moment = zeta * (1.0 + axial - kappa) * kappa * c * spin
+    return 1.0 + az, math.sqrt(tx * tx + ty * ty), abs(moment)
+
+
+def carried_rates(x: float, y: float, _vx: float, _vy: float, spin: float, *_: float) -> tuple[float, float, float]:
+    """Return χ̇ = w3 and, in radii, the rate −χ̇ n of the centre of the footprint circle, to leading order."""
+    tilt = math.sqrt(x * x + y * y + _TINY)
+    return spin, spin * y / tilt, -spin * x / tilt
+
+
 def departure(
     push: Push, elapsed: float, c: float, eta: float, _zeta: float, kappa: float, axial: float, *_: float
 ) -> tuple[float, float, float, float, float]:
-    """Return the state a short time δ = `elapsed` after release, by series about α = 0.
+    """Return the state a short time δ after release, its spin −½|a_h| β (1 − κ)δ²/(cκD).
 
-    Along the push as in the slender model. Across it the lean is qδ³ with q (6 + 2c/F − 2|a_h|(1 − κ)/(DF)) =
-    |a_h| × turning_rate × i_a/D, and the spin −½|a_h|(turning_rate − 2q/F)(1 − κ)δ²/(cκD).
+    β is the rate at which the push turns ahead of the lean.
     """
     freedom = 1.0 + axial - kappa
-    capacity = push.acceleration - push.excess  # c(1 + a_z)
-    jerk = push.excess_rate - eta * push.excess
-    mean_excess = push.excess + jerk * elapsed / 3.0
-    if mean_excess <= 0.0:
-        return 0.0, 0.0, 0.0, 0.0, 0.0
-    along = 0.5 * mean_excess * elapsed**2
-    along_rate = push.excess * elapsed + 0.5 * jerk * elapsed**2
-    given = (1.0 - kappa) / freedom
-    stiffness = 6.0 + 2.0 * (capacity - push.acceleration * given) / mean_excess
-    turn = push.acceleration * push.turning_rate * axial / freedom
-    across = turn * elapsed**3 / stiffness
-    across_rate = across / elapsed * (3.0 + jerk * elapsed / 3.0 / mean_excess)
-    behind = push.turning_rate - 2.0 * across / (mean_excess * elapsed**3)
-    spin = -0.5 * push.acceleration * behind * elapsed**2 * given / (c * kappa)
-    ux, uy = push.direction
-    return (
-        along * ux - across * uy,
-        along * uy + across * ux,
-        along_rate * ux - across_rate * uy,
-        along_rate * uy + across_rate * ux,
-        spin,
-    )
+    x, y, vx, vy, ahead = departing_lean(push, elapsed, eta, 1.0, axial / freedom)
+    spin = -0.5 * push.acceleration * ahead * elapsed**2 * (1.0 - kappa) / (freedom * c * kappa)
+    return x, y, vx, vy, spin
 
 
 def passage(
@@ -131,35 +143,17 @@ def passage(
     axial: float,
     *_: float,
 ) -> tuple[float, tuple[float, float, float, float, float]]:
-    """Return the duration and the end of a passage with offset b at speed v, past the upright.
-
-    The path is straight but for what happens near the upright, while the azimuth makes its half turn: however small the
-    offset, the gyroscopic couple of the spin turns the path there by 2 atan(cκσ/v). To this come the kick
-    −(2cb/v) asinh(l/b) of the slender model, and what friction and base do meanwhile, half of it before the turn.
-    """
+    """Return the duration and the end of a passage of the upright, on which the spin turns the path."""
     speed = math.hypot(vx, vy)
     ux, uy = vx / speed, vy / speed
-    ahead, offset = -(x * ux + y * uy), y * ux - x * uy
-    elapsed = 2.0 * ahead / speed
-    across = (ay * ux - ax * uy) * (1.0 - kappa) / (1.0 + axial - kappa)
-    jump_x = -0.5 * (eta * vx + ax + across * uy) * elapsed
-    jump_y = -0.5 * (eta * vy + ay - across * ux) * elapsed
-    # The state on the other side of a straight passage, turned about the upright.
-    tangent = c * kappa * spin / speed if offset != 0.0 else 0.0
-    cos, sin = (1.0 - tangent * tangent) / (1.0 + tangent * tangent), 2.0 * tangent / (1.0 + tangent * tangent)
-    kick = -2.0 * c * (1.0 + az) / speed * (offset * math.asinh(ahead / abs(offset)) if offset != 0.0 else 0.0)
-    out_x, out_y = ahead * ux - offset * uy, ahead * uy + offset * ux
-    way_x, way_y = vx + jump_x - kick * uy, vy + jump_y + kick * ux
-    way_x, way_y = cos * way_x - sin * way_y + jump_x, sin * way_x + cos * way_y + jump_y
-    shift = 0.5 * elapsed
-    end = (
-        cos * out_x - sin * out_y + jump_x * shift,
-        sin * out_x + cos * out_y + jump_y * shift,
-        way_x,
-        way_y,
-        spin * math.exp(-zeta * elapsed),
-    )
-    return elapsed, end
+    freedom, sideways = 1.0 + axial - kappa, ay * ux - ax * uy
+    along, across = ax * ux + ay * uy, sideways * axial / freedom
+    push = (across * uy - along * ux, -across * ux - along * uy)
+    # The base spins it up until it turns, and down as much behind.
+    gained = sideways * (1.0 - kappa) / (c * kappa * freedom) * (x * ux + y * uy) / speed
+    gyration = c * kappa * (spin + gained)
+    elapsed, end = past_the_upright((x, y, vx, vy), push, c * (1.0 + az), gyration, eta, 1.0)
+    return elapsed, (*end, spin * math.exp(-zeta * elapsed))
 
 
 @dataclass(frozen=True, slots=True)
@@ -205,19 +199,20 @@ class SlenderRolling(Model):
 
     name: ClassVar[str] = "slender rolling"
     state_names: ClassVar[tuple[str, ...]] = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y", "spin")
+    spin_state: ClassVar[int | None] = 4
+    carried_names: ClassVar[tuple[str, ...]] = ("twist", "footprint_x", "footprint_y")
 
     def __post_init__(self) -> None:
-        if not isinstance(self.column, Column):
-            message = f"column must be a Column, such as Column.solid(...), got {self.column!r}"
-            raise ParameterError(message)
-        for name in ("damping", "spin_friction"):
-            object.__setattr__(self, name, require_not_negative(name, getattr(self, name)))
+        require_column(self.column)
+        require_frictions(self, "damping", "spin_friction")
         if self.couples not in get_args(Couples):
             message = f"couples must be 'contact' or 'isotropic', got {self.couples!r}"
             raise ParameterError(message)
 
     rates = staticmethod(rates)
     lean = staticmethod(lean)
+    contact = staticmethod(contact)
+    carried_rates = staticmethod(carried_rates)
     planar_rates = staticmethod(planar_rates)
     from_plane = staticmethod(from_plane)
     rest_energy = staticmethod(rest_energy)
@@ -244,16 +239,17 @@ class SlenderRolling(Model):
         return self.damping > 0.0
 
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
-        """Return the spin [rad/s], the centre of pressure [m] as of the slender model, and what the contact bears.
+        """Return spin, twist and footprint, the path of the contact point, and what the contact bears.
 
-        Its moment about the vertical is that of the spin friction.
+        The centre of pressure is as of the slender model; the moment about the vertical is that of the spin friction.
         """
-        column, spin = self.column, states[4]
+        column, scale = self.column, self.time_scale
+        spin, twist = states[4:6]
         plain = slender.Slender(column, damping=self.damping).outputs(states[:4], accelerations, resting)
-        ratio, axial = column.inertia_ratio, column.axial_ratio
-        moment = self.spin_friction * (1.0 + axial - ratio) * ratio * column.slenderness * spin
         return {
-            "spin": Output(spin / self.time_scale, "rad s-1", "angular velocity about the axis"),
+            "spin": Output(spin / scale, "rad s-1", "angular velocity about the axis"),
+            "twist": Output(twist, "rad", "angle of turn about the axis"),
             "centre_of_pressure": plain["centre_of_pressure"],
-            **contact_outputs(self, states, accelerations, resting, moment),
+            **path_outputs(self, states, column.radius * states[6:8].T),
+            **contact_outputs(self, states, accelerations, resting),
         }

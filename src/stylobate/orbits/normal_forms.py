@@ -36,7 +36,7 @@ class PeriodMap:
         flow = self.system.carry(start, 0.0, float(self.periods), largest_tilt=np.pi)
         if flow.status is not Status.DONE:
             return np.full((self.system.order, self.system.order), np.nan)
-        return self.sense * flow.by_start
+        return self.system.image(self.sense)[:, np.newaxis] * flow.by_start
 
     def _step(self, direction: Floats, share: float) -> float:
         size = np.abs(self.state).max() / self.system.scale

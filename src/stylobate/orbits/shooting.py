@@ -19,7 +19,7 @@ _MOST_STEPS, _MOST_HALVINGS = 25, 8
 _GROWTH = 2.0
 
 WHY_LOST = {
-    Status.LOST: "it comes within 1e-6 c of the upright, where its direction is lost",
+    Status.LOST: "it comes within 1e-6 c of the upright, where its direction is lost, or so near that it loses energy",
     Status.GONE: "it leaves for tilts from which no motion returns",
     Status.FAILED: "it cannot be followed with the wanted tolerance",
 }
@@ -29,13 +29,13 @@ WHY_LOST = {
 class Shots:
     """A closed chain of arcs: states where arcs begin, shape (arcs, order), and how each arc was carried.
 
-    With `sense` −1 it covers half an orbit that is its own image under x(t + nT/2) = −x(t): the last arc ends at the
-    opposite of the first state.
+    With a `factor` other than ones it covers half an orbit that is its own image under x(t + nT/2) = −x(t), x being the
+    lean: the last arc ends at the opposite of the first state, which the factor makes of it.
     """
 
     states: Floats
     flows: tuple[Flow, ...]
-    sense: float = 1.0
+    factor: Floats
 
     @property
     def status(self) -> Status:
@@ -46,7 +46,7 @@ class Shots:
     def residual(self) -> Floats:
         """Where each arc ends less where the next begins, shape (arcs, order)."""
         ends = np.stack([flow.end for flow in self.flows])
-        ends[-1] *= self.sense
+        ends[-1] *= self.factor
         return ends - np.roll(self.states, -1, axis=0)
 
     @property
@@ -56,7 +56,7 @@ class Shots:
         matrix = np.zeros((arcs * order, arcs * order))
         for arc, flow in enumerate(self.flows):
             rows = slice(arc * order, (arc + 1) * order)
-            matrix[rows, rows] += self._sign(arc) * flow.by_start
+            matrix[rows, rows] += self._factor(arc)[:, np.newaxis] * flow.by_start
             after = (arc + 1) % arcs * order
             matrix[rows, after : after + order] -= np.eye(order)
         return matrix
@@ -64,15 +64,15 @@ class Shots:
     @property
     def by_parameter(self) -> Floats:
         """Derivative of the residual by the parameter, shape (arcs × order,)."""
-        return np.concatenate([self._sign(arc) * flow.by_parameter for arc, flow in enumerate(self.flows)])
+        return np.concatenate([self._factor(arc) * flow.by_parameter for arc, flow in enumerate(self.flows)])
 
     @property
     def map_derivative(self) -> Floats:
         """Derivative of the closed map, of which the first state is a fixed point."""
-        product = self.sense * np.eye(self.states.shape[1])
+        product = np.eye(self.states.shape[1])
         for flow in self.flows:
             product = flow.by_start @ product
-        return product
+        return self.factor[:, np.newaxis] * product
 
     @property
     def map_sensitivity(self) -> Floats:
@@ -80,16 +80,16 @@ class Shots:
         total = np.zeros(self.states.shape[1])
         for flow in self.flows:
             total = flow.by_start @ total + flow.by_parameter
-        return self.sense * total
+        return self.factor * total
 
     @property
     def monodromy(self) -> Floats:
         """Derivative of the state after the whole orbit by the one at its start."""
         once = self.map_derivative
-        return once @ once if self.sense < 0.0 else once
+        return once @ once if np.any(self.factor < 0.0) else once
 
-    def _sign(self, arc: int) -> float:
-        return self.sense if arc == len(self.flows) - 1 else 1.0
+    def _factor(self, arc: int) -> Floats:
+        return self.factor if arc == len(self.flows) - 1 else np.ones_like(self.factor)
 
     @property
     def turns(self) -> float:
@@ -110,7 +110,10 @@ class Shots:
 def shots(
     system: PeriodicSystem, states: Floats, periods: float, *, sense: float = 1.0, change: Numbers | None = None
 ) -> Shots:
-    """Carry each of `states`, shape (arcs, order), over its arc of `periods` periods of the base motion."""
+    """Carry each of `states`, shape (arcs, order), over its arc of `periods` periods of the base motion.
+
+    With `sense` −1 they close at the opposite of the first state.
+    """
     arcs = len(states)
     ends = [periods * arc / arcs for arc in range(arcs + 1)]
     side, flows = 0.0, []
@@ -121,7 +124,7 @@ def shots(
             # The others are not looked at; their numbers stand in so that the chain is whole.
             flows.extend([flow] * (arcs - arc - 1))
             break
-    return Shots(states, tuple(flows), sense)
+    return Shots(states, tuple(flows), system.image(sense))
 
 
 def closed(system: PeriodicSystem, guess: Floats, periods: int) -> Shots:

@@ -177,7 +177,7 @@ def _asymmetry(point: Point) -> Floats:
     if family.sense < 0.0:
         return np.zeros(state.size)
     flow = family.at(point.value).carry(state, 0.0, 0.5 * family.periods)
-    return np.asarray(state + flow.end)
+    return np.asarray(state - family.system.image(-1.0) * flow.end)
 
 
 def _at_bound(family: Family, point: Point, sense: Floats, bound: float) -> Point | None:

@@ -49,9 +49,12 @@ class Response:
         The numbers that decided, by name.
     measures
         Summary numbers, by name: largest and least tilt, turns of the contact point, steps, and for periodic base
-        motion the mean rolling rate and the repetition of the last periods.
+        motion the mean rolling rate and the repetition of the last periods; largest demands on the contact.
     provenance
         Everything needed to run it again: version, column, model, motion, start, tolerances.
+    warnings
+        A line for each thing that the contact would not have borne although the model assumes it: lifting off, and
+        slipping where a friction coefficient is given.
     """
 
     outcome: Outcome
@@ -64,6 +67,7 @@ class Response:
     thresholds: Mapping[str, float]
     measures: Mapping[str, float]
     provenance: Mapping[str, Any]
+    warnings: tuple[str, ...] = ()
     sampler: Callable[[npt.ArrayLike], xr.Dataset] | None = field(default=None, repr=False, compare=False)
 
     def sample(self, time: npt.ArrayLike) -> xr.Dataset:

@@ -23,6 +23,7 @@ _OWN_ATTRIBUTES = (
     "thresholds",
     "measures",
     "provenance",
+    "warnings",
 )
 
 
@@ -45,6 +46,7 @@ def save_response(response: Response, path: Path) -> Path:
         "thresholds": json.dumps(dict(response.thresholds)),
         "measures": json.dumps(dict(response.measures)),
         "provenance": json.dumps(dict(response.provenance)),
+        "warnings": json.dumps(list(response.warnings)),
     }
     data = response.data.assign_attrs(attributes)
     data["resting"] = data["resting"].astype(np.int8)
@@ -132,4 +134,5 @@ def _response(data: xr.Dataset, attributes: dict[str, Any]) -> Response:
         thresholds=json.loads(attributes["thresholds"]),
         measures=json.loads(attributes["measures"]),
         provenance=json.loads(attributes["provenance"]),
+        warnings=tuple(json.loads(attributes.get("warnings", "[]"))),
     )

@@ -30,6 +30,7 @@ class ManyRuns(Description):
     motion: MotionDescription = RestMotion(kind="rest")
     tilt: tuple[float, float] = (0.0, 0.0)
     tilt_rate: tuple[float, float] = (0.0, 0.0)
+    spin: float = 0.0
     duration: float | None = None
     periods: float | None = None
     method: Literal["dop853", "taylor"] = "dop853"
@@ -38,12 +39,13 @@ class ManyRuns(Description):
     tilt_limit: float | None = None
     rest_energy: float | None = None
     max_steps: int = 200_000
+    demands: bool = False
     rules: dict[str, float] = Field(default_factory=dict)
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
         """Return the description of these `values`; what they say for other commands is of no concern here."""
-        of_others = {*OF_OTHER_COMMANDS, "samples"} - set(cls.model_fields)
+        of_others = {*OF_OTHER_COMMANDS, *_OF_A_SINGLE_RUN} - set(cls.model_fields)
         return super().parse({name: value for name, value in values.items() if name not in of_others})
 
     def values(self) -> dict[str, Any]:
@@ -73,9 +75,12 @@ class ManyRuns(Description):
         return [f"duration [s], periods or a duration that varies is needed, one of them; got {got}"]
 
 
+_OF_A_SINGLE_RUN = ("samples", "twist", "position", "friction_coefficient")
+"""What changes what is told of a run, and no outcome."""
+
 _SHARED = (
-    *("tilt", "tilt_rate", "duration", "periods"),
-    *("method", "rtol", "atol", "tilt_limit", "rest_energy", "max_steps"),
+    *("tilt", "tilt_rate", "spin", "duration", "periods"),
+    *("method", "rtol", "atol", "tilt_limit", "rest_energy", "max_steps", "demands"),
 )
 
 

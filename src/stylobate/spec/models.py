@@ -1,12 +1,13 @@
 """Descriptions of models, told apart by their `kind`."""
 
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
 from stylobate.column import Column
 from stylobate.errors import UnsupportedError
-from stylobate.models import Model, Slender, SlenderRolling
+from stylobate.models import Model, PlanarRocking, Rolling, Slender, SlenderRolling, Wobbling
 from stylobate.spec.description import Description
 
 
@@ -34,14 +35,73 @@ class SlenderRollingModel(Description):
         return SlenderRolling(column, damping=self.damping, spin_friction=self.spin_friction, couples=self.couples)
 
 
+class WobblingModel(Description):
+    """The column at finite tilt that cannot turn."""
+
+    kind: Literal["wobbling"] = "wobbling"
+    damping: float = 0.0
+    rolling_resistance: float = 0.0
+    restitution: float = 1.0
+    passage_tilt: float | None = None
+    constraint: Literal["pure_tilt", "rubber"] = "pure_tilt"
+
+    def build(self, column: Column) -> Model:
+        """Return the model of `column`."""
+        return Wobbling(column, **self.model_dump(exclude={"kind"}))
+
+
+class RollingModel(Description):
+    """The column at finite tilt that rolls and may turn."""
+
+    kind: Literal["rolling"] = "rolling"
+    damping: float = 0.0
+    spin_friction: float = 0.0
+    rolling_resistance: float = 0.0
+    restitution: float = 1.0
+    passage_tilt: float | None = None
+
+    def build(self, column: Column) -> Model:
+        """Return the model of `column`."""
+        return Rolling(column, **self.model_dump(exclude={"kind"}))
+
+
+class PlanarRockingModel(Description):
+    """The column that rocks in a vertical plane; `restitution` is Housner's where it is not given."""
+
+    kind: Literal["planar_rocking"] = "planar_rocking"
+    damping: float = 0.0
+    rolling_resistance: float = 0.0
+    restitution: float | None = None
+
+    def build(self, column: Column) -> Model:
+        """Return the model of `column`."""
+        return PlanarRocking(column, **self.model_dump(exclude={"kind"}))
+
+
 def _with_kind(described: Any) -> Any:
     """Return the values of a model with its kind; it is the slender one where none is told."""
     return {"kind": "slender", **described} if isinstance(described, dict) else described
 
 
 ModelDescription = Annotated[
-    Annotated[SlenderModel | SlenderRollingModel, Field(discriminator="kind")], BeforeValidator(_with_kind)
+    Annotated[
+        SlenderModel | SlenderRollingModel | WobblingModel | RollingModel | PlanarRockingModel,
+        Field(discriminator="kind"),
+    ],
+    BeforeValidator(_with_kind),
 ]
+
+
+def known_values(described: Mapping[str, Any], kind: str) -> dict[str, Any]:
+    """Return those of the `described` values of a model that one of this `kind` knows, all if there is no such kind."""
+    one = _BY_KIND.get(kind)
+    return {name: value for name, value in described.items() if one is None or name in one.model_fields}
+
+
+def default_values(kind: str) -> dict[str, Any]:
+    """Return what a description of this `kind` has where nothing is given; nothing if there is no such kind."""
+    one = _BY_KIND.get(kind)
+    return {} if one is None else one().model_dump()
 
 
 def describe_model(model: Model) -> Description:
@@ -52,9 +112,19 @@ def describe_model(model: Model) -> Description:
     UnsupportedError
         If the model is of a class that descriptions do not know.
     """
-    if type(model) is Slender:  # a subclass is another model
-        return SlenderModel(damping=model.damping)
-    if type(model) is SlenderRolling:
-        return SlenderRollingModel(damping=model.damping, spin_friction=model.spin_friction, couples=model.couples)
+    described = _DESCRIPTIONS.get(type(model))  # a subclass is another model
+    if described is not None:
+        return described(**{name: getattr(model, name) for name in described.model_fields if name != "kind"})
     message = f"a model of class {type(model).__name__} has no description; results keep its repr only"
     raise UnsupportedError(message)
+
+
+_DESCRIPTIONS: Mapping[type[Model], type[Description]] = {
+    Slender: SlenderModel,
+    SlenderRolling: SlenderRollingModel,
+    Wobbling: WobblingModel,
+    Rolling: RollingModel,
+    PlanarRocking: PlanarRockingModel,
+}
+
+_BY_KIND: Mapping[str, type[Description]] = {one.model_fields["kind"].default: one for one in _DESCRIPTIONS.values()}

@@ -14,6 +14,7 @@ from stylobate.errors import (
     FileError,
     ParameterError,
     UnsupportedError,
+    require_finite,
     require_not_negative,
     require_positive,
     require_vector,
@@ -45,7 +46,11 @@ class SimulationDescription(Description):
     motion: MotionDescription = RestMotion(kind="rest")
     tilt: tuple[float, float] = (0.0, 0.0)
     tilt_rate: tuple[float, float] = (0.0, 0.0)
+    spin: float = 0.0
+    twist: float = 0.0
+    position: tuple[float, float] = (0.0, 0.0)
     duration: float
+    friction_coefficient: float | None = None
     rtol: float = 1e-8
     atol: float | None = None
     tilt_limit: float | None = None
@@ -112,7 +117,9 @@ def _require_share(name: str, value: float) -> None:
         raise ParameterError(message)
 
 
-OF_OTHER_COMMANDS = ("map", "basin", "periods", "method", "strobes", "confidence", "angular_frequency_range", "points")
+OF_OTHER_COMMANDS = (
+    *("map", "basin", "ladder", "periods", "method", "strobes", "confidence", "angular_frequency_range", "points"),
+)
 """What a description may say that is no argument of a single run."""
 
 _RUN_CHECKS: Mapping[str, Callable[[str, Any], object]] = {
@@ -122,6 +129,10 @@ _RUN_CHECKS: Mapping[str, Callable[[str, Any], object]] = {
     "rtol": require_positive,
     "atol": lambda name, value: require_positive(name, value, "rad"),
     "rest_energy": require_not_negative,
+    "friction_coefficient": require_positive,
+    "spin": lambda name, value: require_finite(name, value, "rad/s"),
+    "twist": lambda name, value: require_finite(name, value, "rad"),
+    "position": lambda name, value: require_vector(name, value, 2, "m"),
     "max_steps": lambda name, value: require_whole(name, value, least=1),
     "samples": lambda name, value: require_whole(name, value, least=2),
     "strobes": lambda name, value: require_whole(name, value, least=2),

@@ -113,7 +113,7 @@ class Poisoned(sb.Slender):
     """Its rates are no number beyond a tilt."""
 
     @staticmethod
-    def rates(x, y, vx, vy, ax, ay, az, c, eta):
+    def rates(x, y, vx, vy, ax, ay, az, c, eta, _kappa):
         broken = math.nan if x * x + y * y > 0.0025 else 0.0
         return vx, vy, x + broken, y + broken
 

@@ -171,10 +171,11 @@ class Counted(sb.Slender):
     state_names: ClassVar[tuple[str, ...]] = ("way", "tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
     planar_rates: ClassVar = None
     passage: ClassVar = None
+    contact: ClassVar = None
 
     @staticmethod
-    def rates(way, x, y, vx, vy, ax, ay, az, c, eta):
-        return math.sqrt(vx * vx + vy * vy), *sb.Slender.rates(x, y, vx, vy, ax, ay, az, c, eta)
+    def rates(way, x, y, vx, vy, ax, ay, az, c, eta, kappa):
+        return math.sqrt(vx * vx + vy * vy), *sb.Slender.rates(x, y, vx, vy, ax, ay, az, c, eta, kappa)
 
     def start(self, tilt, tilt_rate):
         return 0.0 * tilt[0], tilt[0], tilt[1], tilt_rate[0] * self.time_scale, tilt_rate[1] * self.time_scale
@@ -188,8 +189,8 @@ class Counted(sb.Slender):
         return way, 0.0, 0.0, 0.0, 0.0
 
     @staticmethod
-    def departure(push, elapsed, c, eta):
-        return 0.0, *sb.Slender.departure(push, elapsed, c, eta)
+    def departure(push, elapsed, c, eta, kappa):
+        return 0.0, *sb.Slender.departure(push, elapsed, c, eta, kappa)
 
     def outputs(self, states, accelerations, resting):
         return {}

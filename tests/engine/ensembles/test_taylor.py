@@ -454,7 +454,7 @@ class Comparing(Spatial):
     name = "comparing"
 
     @staticmethod
-    def rates(x, y, vx, vy, ax, ay, az, c, eta):
+    def rates(x, y, vx, vy, ax, ay, az, c, eta, _kappa):
         lean = 1.0 - c / math.sqrt(x * x + y * y) if x != 0.0 else 0.0
         return vx, vy, lean * x - eta * vx - ax, lean * y - eta * vy - ay
 
@@ -463,7 +463,7 @@ class Waving(Spatial):
     name = "waving"
 
     @staticmethod
-    def rates(x, y, vx, vy, ax, ay, az, c, eta):
+    def rates(x, y, vx, vy, ax, ay, az, c, eta, _kappa):
         lean = 1.0 - c / math.sqrt(x * x + y * y)
         return vx, vy, lean * math.sin(x) - eta * vx - ax, lean * math.sin(y) - eta * vy - ay
 
@@ -489,7 +489,7 @@ class Chained(Spatial):
     passage = None
 
     @staticmethod
-    def rates(vx, x, vy, y, ax, ay, az, c, eta):
+    def rates(vx, x, vy, y, ax, ay, az, c, eta, _kappa):
         return -x - eta * vx - ax, vx, -y - eta * vy - ay, vy
 
     @staticmethod

@@ -206,7 +206,7 @@ def unit(x, y):
     return x / length, y / length
 
 
-def helped_rates(x, y, vx, vy, ax, ay, az, c, eta):
+def helped_rates(x, y, vx, vy, ax, ay, az, c, eta, _kappa):
     ux, uy = unit(x, y)
     weight = 1.0 + az
     return vx, vy, weight * (x - c * ux) - eta * vx - ax, weight * (y - c * uy) - eta * vy - ay
@@ -216,7 +216,7 @@ class Helped(Plain):
     rates = staticmethod(helped_rates)
 
 
-def choosing_rates(x, y, vx, vy, ax, ay, az, c, eta):
+def choosing_rates(x, y, vx, vy, ax, ay, az, c, eta, _kappa):
     length = math.hypot(x, y)
     lean = (1.0 + az) * (1.0 - c / length) if length > 0.0 else 0.0
     return vx, vy, lean * x - eta * vx - ax, lean * y - eta * vy - ay
@@ -227,17 +227,17 @@ class Choosing(Plain):
     rates = staticmethod(choosing_rates)
 
 
-def own_jacobian(x, y, vx, vy, ax, ay, az, c, eta):
+def own_jacobian(x, y, vx, vy, ax, ay, az, c, eta, _kappa):
     """Derivatives of (1), by hand."""
     length = math.hypot(x, y)
     weight, ux, uy = 1.0 + az, x / length, y / length
     stiff, cross = weight * (1.0 - c / length), weight * c / length
     gx, gy = x - c * ux, y - c * uy
     return (
-        (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (stiff + cross * ux * ux, cross * ux * uy, -eta, 0.0, -1.0, 0.0, gx, -weight * ux, -vx),
-        (cross * ux * uy, stiff + cross * uy * uy, 0.0, -eta, 0.0, -1.0, gy, -weight * uy, -vy),
+        (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        (stiff + cross * ux * ux, cross * ux * uy, -eta, 0.0, -1.0, 0.0, gx, -weight * ux, -vx, 0.0),
+        (cross * ux * uy, stiff + cross * uy * uy, 0.0, -eta, 0.0, -1.0, gy, -weight * uy, -vy, 0.0),
     )
 
 
@@ -248,7 +248,7 @@ class Told(Choosing):
 
 @pytest.mark.parametrize("model_type", [sb.Slender, Helped])
 def test_the_derivatives_of_1_are_those_by_hand(model_type):
-    at = (*STATE, 0.03, -0.04, 0.2, 0.1, 0.15)
+    at = (*STATE, 0.03, -0.04, 0.2, 0.1, 0.15, 0.75)
     by_hand = own_jacobian(*at)
     for row, expected in enumerate(by_hand):
         _, found = derivatives(model_type.rates, at, row)

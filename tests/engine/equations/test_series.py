@@ -349,7 +349,7 @@ def test_steady_rolling_has_the_coefficients_of_cosines(theta, azimuth, sense):
         cosine(sense * theta * amplitude, theta, lead),
     ]
     pushes = {"ax": cosine(a0, theta, azimuth), "ay": cosine(sense * a0, theta, azimuth - math.pi / 2.0)}
-    found, square = expanded(sb.Slender, [one[0] for one in exact], (C, ETA), pushes)
+    found, square = expanded(sb.Slender, [one[0] for one in exact], (C, ETA, 0.75), pushes)
     # x² + y² is a sum of terms of size A² (2θ)^k/k! that cancel; what is lost there the equations carry on, with c/A.
     allowed = EPS * (1.0 + theta) * (amplitude + C) * exponential(2.0 * theta + C / amplitude)
     assert np.all(np.abs(found - exact) <= allowed)
@@ -364,7 +364,8 @@ def test_free_motion_in_a_plane_has_the_coefficients_of_hyperbolic_functions(x, 
     parts = [x - C if k % 2 == 0 else v / weight for k in range(COUNT)]
     exact = np.array(parts) * weight ** np.arange(COUNT) * exponential(1.0)
     exact[0] = x
-    found, square = expanded(sb.Slender, [x, 0.0, v, 0.0], (C, 0.0), {"ax": [], "ay": [], "az": [az]}, vertical=True)
+    pushes = {"ax": [], "ay": [], "az": [az]}
+    found, square = expanded(sb.Slender, [x, 0.0, v, 0.0], (C, 0.0, 0.75), pushes, vertical=True)
     np.testing.assert_array_equal(found[[1, 3]], 0.0)
     # In x/√(x²) a series stands below the line: what rounding leaves there grows with it, twice.
     known_x = Known.of(exact)
@@ -376,7 +377,7 @@ def test_free_motion_in_a_plane_has_the_coefficients_of_hyperbolic_functions(x, 
 
 
 def test_the_rates_of_the_slender_column_are_states_and_told_by_one_series_each():
-    assert series_integrals(sb.Slender, 4, 2, vertical=False) == (0, 1, 0, 1)
+    assert series_integrals(sb.Slender, 4, 3, vertical=False) == (0, 1, 0, 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -388,20 +389,20 @@ class Own(sb.Slender):
 
 class Comparing(Own):
     @staticmethod
-    def rates(x, y, vx, vy, ax, ay, az, c, eta):
+    def rates(x, y, vx, vy, ax, ay, az, c, eta, _kappa):
         return vx, vy, x if x > c else -x, y
 
 
 class Waving(Own):
     @staticmethod
-    def rates(x, y, vx, vy, ax, ay, az, c, eta):
+    def rates(x, y, vx, vy, ax, ay, az, c, eta, _kappa):
         return vx, vy, math.sin(x) - ax, math.sin(y) - ay
 
 
 @pytest.mark.parametrize("model", [Comparing, Waving])
 def test_a_model_without_series_is_refused_in_one_line_that_tells_what_to_do(model):
     with pytest.raises(UnsupportedError, match=r"model own .* method='dop853'") as told:
-        series_integrals(model, 4, 2, vertical=False)
+        series_integrals(model, 4, 3, vertical=False)
     assert "\n" not in str(told.value)
 
 
@@ -409,7 +410,7 @@ class Chained(Own):
     """Its third state is the rate of the second, and that of the first: no series tells two others."""
 
     @staticmethod
-    def rates(x, y, vx, vy, ax, ay, az, c, eta):
+    def rates(x, y, vx, vy, ax, ay, az, c, eta, _kappa):
         return y, vx, -y, -vy
 
     @staticmethod
@@ -419,7 +420,7 @@ class Chained(Own):
 
 def test_states_that_are_rates_of_rates_keep_their_own_series():
     # y″ = −y and x′ = y: x = sin, y = cos, vx = −sin from x = vx = 0, y = 1; the last one decays.
-    found, square = expanded(Chained, [0.0, 1.0, 0.0, 1.0], (C, ETA), {"ax": [], "ay": []})
+    found, square = expanded(Chained, [0.0, 1.0, 0.0, 1.0], (C, ETA, 0.75), {"ax": [], "ay": []})
     decay = exponential(-1.0)
     exact = [cosine(1.0, 1.0, -math.pi / 2.0), cosine(1.0, 1.0, 0.0), cosine(1.0, 1.0, math.pi / 2.0), decay]
     assert np.all(np.abs(found - exact) < COUNT * EPS * exponential(1.0))

@@ -123,8 +123,8 @@ def test_derivatives_of_the_terms_by_angles_equal_closed_forms(phase):
 def test_derivatives_of_period_and_numbers_equal_closed_forms():
     system = PeriodicSystem(MODEL, CIRCLE)
     assert system.derivative("angular_frequency").period == pytest.approx(-2.0 * math.pi / 1.8**2, rel=1e-11)
-    np.testing.assert_allclose(system.derivative("damping").parameters, [0.0, 1.0], atol=1e-11)
-    np.testing.assert_allclose(system.derivative("slenderness").parameters, [1.0, 0.0], atol=1e-11)
+    np.testing.assert_allclose(system.derivative("damping").parameters, [0.0, 1.0, 0.0], atol=1e-11)
+    np.testing.assert_allclose(system.derivative("slenderness").parameters, [1.0, 0.0, 0.0], atol=1e-11)
     np.testing.assert_allclose(
         system.derivative("acceleration").terms[:, 1:], system.numbers.terms[:, 1:] / 0.065, atol=1e-11
     )
@@ -132,7 +132,7 @@ def test_derivatives_of_period_and_numbers_equal_closed_forms():
 
 def test_without_friction_there_is_a_derivative_by_friction():
     system = PeriodicSystem(replace(MODEL, damping=0.0), CIRCLE)
-    np.testing.assert_allclose(system.derivative("damping").parameters, [0.0, 1.0], atol=1e-11)
+    np.testing.assert_allclose(system.derivative("damping").parameters, [0.0, 1.0, 0.0], atol=1e-11)
 
 
 @pytest.mark.parametrize("begin", [0.0, 0.3])

@@ -15,6 +15,7 @@ from stylobate.engine.lanes.expansion import series_integrals
 from stylobate.engine.lanes.kernels import kernel_of
 from stylobate.engine.lanes.shape import Shape
 from stylobate.engine.resting import cannot_depart
+from stylobate.engine.starts import out_of_plane, refuse_spin
 from stylobate.engine.thresholds import is_rest, usual_rest_energy
 from stylobate.engine.tolerances import ATOL_SHARE, FIRST_STEP_OFF, PARALLEL_ULP
 from stylobate.models import Model
@@ -46,6 +47,7 @@ class Plan:
             forcing=forcing,
             width=WIDTH,
             series=series_integrals(type(self.model), states, parameters, vertical=vertical) if by_series else (),
+            demands=self.options.demands,
         )
 
     @property
@@ -77,12 +79,12 @@ class Batch:
         ParameterError
             If a value is out of range.
         """
-        models = ModelColumns.of(plan.model, runs.values, runs.tilt, runs.tilt_rate)
+        models = ModelColumns.of(plan.model, runs.values, runs.tilt, runs.tilt_rate, runs.spin)
         stands = is_rest(runs.tilt, runs.tilt_rate, models.slenderness, models.time_scale)
         if np.any(runs.tilt[stands]) or np.any(runs.tilt_rate[stands]):
             moving = np.where(stands, 0.0, 1.0)[:, np.newaxis]
             runs = replace(runs, tilt=runs.tilt * moving, tilt_rate=runs.tilt_rate * moving)
-            models = ModelColumns.of(plan.model, runs.values, runs.tilt, runs.tilt_rate)
+            models = ModelColumns.of(plan.model, runs.values, runs.tilt, runs.tilt_rate, runs.spin)
         motions = MotionColumns.of(plan.motion, runs.values, models)
         energy = _rest_energy(plan.options, models, motions)
         table = _empty_table(plan, len(runs), motions.breaks.shape[1])
@@ -156,7 +158,7 @@ def _empty_table(plan: Plan, count: int, breaks: int) -> Floats:
     table[:, notes:] = np.nan
     for column in (Log.FIRST_AZIMUTH, Log.LAST_AZIMUTH):
         table[:, LOG + column] = np.nan
-    for column in (Log.LEAST_TILT, Log.LEAST_PASSAGE):
+    for column in (Log.LEAST_TILT, Log.LEAST_PASSAGE, Log.NORMAL):
         table[:, LOG + column] = np.inf
     return table
 
@@ -190,6 +192,7 @@ def _fill_setup(
         Setup.BREAKS: motions.breaks.shape[1],
         Setup.SAMPLES: options.samples,
         Setup.STROBES: options.strobes,
+        Setup.PASSAGE_TILT: models.loss_tilt,
     }
     for column, values in columns.items():
         table[:, column] = values
@@ -204,7 +207,8 @@ def _fill_starts(
     stands = ~(np.any(runs.tilt, axis=1) | np.any(rate, axis=1))
     base_line = common_lines(motions.directions)
     line = common_lines(np.concatenate([runs.tilt[:, np.newaxis], rate[:, np.newaxis], motions.directions], axis=1))
-    planar = np.any(line, axis=1) & (model.planar_rates is not None)
+    planar = np.any(line, axis=1) & (model.planar_rates is not None) & (runs.spin == 0.0)
+    _check_starts(model, runs, stands, planar)
     table[:, [Setup.LINE_X, Setup.LINE_Y]] = np.where(planar[:, np.newaxis], line, base_line)
     table[:, LOG + Log.STANDS] = stands
     upright = ~np.any(runs.tilt, axis=1) & ~stands & ~planar
@@ -213,13 +217,24 @@ def _fill_starts(
         off = FIRST_STEP_OFF * models.slenderness[upright, np.newaxis] * rate[upright] / speed
         moved = replace(runs, tilt=runs.tilt.copy())
         moved.tilt[upright] = off
-        columns = ModelColumns.of(model, runs.values, moved.tilt, runs.tilt_rate)
+        columns = ModelColumns.of(model, runs.values, moved.tilt, runs.tilt_rate, runs.spin)
         states[upright] = columns.states[upright]
     table[:, STATE : STATE + states.shape[1]] = states
     table[planar, STATE] = np.sum(runs.tilt * line, axis=1)[planar]
     table[planar, STATE + 1] = np.sum(rate * line, axis=1)[planar]
     table[:, LOG + Log.TOUCHED_UPRIGHT] = stands
     return np.asarray(planar)
+
+
+def _check_starts(model: Model, runs: Runs, stands: npt.NDArray[np.bool_], planar: npt.NDArray[np.bool_]) -> None:
+    """Raise ParameterError for a start with a spin that cannot be, or out of the plane that the model needs."""
+    spinning = runs.spin != 0.0
+    if spinning.any():
+        refuse_spin(model, float(runs.spin[spinning][0]), standing=bool(np.any(spinning & stands)))
+    aside = ~planar & ~stands
+    if model.planar_only and aside.any():
+        tilt, rate = runs.tilt[aside][0].tolist(), runs.tilt_rate[aside][0].tolist()
+        raise out_of_plane(model, tilt, rate)
 
 
 def common_lines(vectors: Floats) -> Floats:

@@ -28,6 +28,8 @@ class Runs:
         Of the results.
     tilt, tilt_rate
         Starts, shape (n, 2) [rad], [rad/s].
+    spin
+        Angular velocity about the axis at the start, shape (n,) [rad/s].
     duration
         Shape (n,) [s].
     values
@@ -40,6 +42,7 @@ class Runs:
     shape: tuple[int, ...]
     tilt: Floats
     tilt_rate: Floats
+    spin: Floats
     duration: Floats
     values: Mapping[str, Floats]
     coordinates: Mapping[str, xr.DataArray]
@@ -51,10 +54,13 @@ class Runs:
         """Return some of the runs, without layout."""
         length = len(range(*chosen.indices(len(self))))
         values = {name: value[chosen] for name, value in self.values.items()}
-        return Runs((RUN,), (length,), self.tilt[chosen], self.tilt_rate[chosen], self.duration[chosen], values, {})
+        starts = (self.tilt[chosen], self.tilt_rate[chosen], self.spin[chosen], self.duration[chosen])
+        return Runs((RUN,), (length,), *starts, values, {})
 
 
-def broadcast(tilt: ArrayLike, tilt_rate: ArrayLike, duration: ArrayLike, parameters: Mapping[str, ArrayLike]) -> Runs:
+def broadcast(
+    tilt: ArrayLike, tilt_rate: ArrayLike, spin: ArrayLike, duration: ArrayLike, parameters: Mapping[str, ArrayLike]
+) -> Runs:
     """Return the runs that these arguments describe.
 
     Raises
@@ -63,7 +69,7 @@ def broadcast(tilt: ArrayLike, tilt_rate: ArrayLike, duration: ArrayLike, parame
         If one has a wrong shape, is not finite or out of range, or two do not go together.
     """
     given = {"tilt": _vectors("tilt", tilt), "tilt_rate": _vectors("tilt_rate", tilt_rate)}
-    given |= {"duration": _numbers("duration", duration)}
+    given |= {"spin": _numbers("spin", spin), "duration": _numbers("duration", duration)}
     given |= {name: _numbers(name, value) for name, value in parameters.items()}
     dims, shape = _common(given)
     if not dims:
@@ -72,7 +78,7 @@ def broadcast(tilt: ArrayLike, tilt_rate: ArrayLike, duration: ArrayLike, parame
     _check(flat)
     values = {name: flat[name] for name in parameters}
     coordinates = {name: array for name, array in given.items() if array.dims and array.dims != (AXIS,)}
-    return Runs(dims, shape, flat["tilt"], flat["tilt_rate"], flat["duration"], values, coordinates)
+    return Runs(dims, shape, flat["tilt"], flat["tilt_rate"], flat["spin"], flat["duration"], values, coordinates)
 
 
 def _numbers(name: str, value: ArrayLike) -> xr.DataArray:

@@ -21,12 +21,15 @@ class ModelColumns:
     slenderness: Floats
     capacity: Floats
     comes_to_rest: npt.NDArray[np.bool_]
+    loss_tilt: Floats
     states: Floats
     parameters: Floats
 
     @classmethod
-    def of(cls, model: Model, values: Mapping[str, Floats], tilt: Floats, tilt_rate: Floats) -> "ModelColumns":
-        """Return them for runs that start with `tilt` and `tilt_rate`, shape (n, 2), with `values` changed.
+    def of(
+        cls, model: Model, values: Mapping[str, Floats], tilt: Floats, tilt_rate: Floats, spin: Floats
+    ) -> "ModelColumns":
+        """Return them for runs that start with `tilt` and `tilt_rate`, shape (n, 2), and `spin`, `values` changed.
 
         Raises
         ------
@@ -35,14 +38,14 @@ class ModelColumns:
         """
         count = len(tilt)
         own = {name: value for name, value in values.items() if name not in MOTION_NAMES}
-        numbers = np.empty((4, count))
+        numbers = np.empty((5, count))
         comes_to_rest = np.empty(count, dtype=bool)
         states = np.empty((count, len(model.state_names)))
         parameters = np.empty((count, len(model.parameters)))
         for changed, runs in _distinct(model, own, count):
             column = changed.column
             numbers[:, runs] = np.array(
-                [changed.time_scale, column.gravity, column.slenderness, changed.rest_capacity]
+                [changed.time_scale, column.gravity, column.slenderness, changed.rest_capacity, changed.loss_tilt]
             )[:, np.newaxis]
             comes_to_rest[runs] = changed.comes_to_rest
             parameters[runs] = changed.parameters
@@ -50,8 +53,10 @@ class ModelColumns:
             start = changed.start((vectors[0], vectors[1]), (vectors[2], vectors[3]))
             for j, part in enumerate(start):
                 states[runs, j] = part
-        time_scale, gravity, slenderness, capacity = numbers
-        return cls(time_scale, gravity, slenderness, capacity, comes_to_rest, states, parameters)
+            if model.spin_state is not None:
+                states[runs, model.spin_state] = spin[runs] * changed.time_scale
+        time_scale, gravity, slenderness, capacity, loss_tilt = numbers
+        return cls(time_scale, gravity, slenderness, capacity, comes_to_rest, loss_tilt, states, parameters)
 
 
 def _distinct(

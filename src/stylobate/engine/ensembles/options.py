@@ -29,6 +29,7 @@ class Options:
     samples: int
     strobes: int
     rules: OutcomeRules
+    demands: bool
 
     @classmethod
     def checked(
@@ -43,6 +44,7 @@ class Options:
         samples: int | None,
         strobes: int,
         rules: OutcomeRules | None,
+        demands: bool = False,
     ) -> "Options":
         """Return the options.
 
@@ -72,6 +74,7 @@ class Options:
             samples=0 if samples is None else require_whole("samples", samples, least=2),
             strobes=require_whole("strobes", strobes, least=0),
             rules=rules or OutcomeRules(),
+            demands=bool(demands),
         )
 
     @property

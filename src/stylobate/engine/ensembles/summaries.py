@@ -15,6 +15,7 @@ from stylobate.engine.thresholds import coarse
 from stylobate.engine.tolerances import CLOSE_PASSAGE
 from stylobate.engine.verdict import Evidence, Ground, grounds, outcome_on
 from stylobate.errors import Outcome
+from stylobate.models import Model
 from stylobate.results.outcomes import NOT_COMPUTED, code_of, outcome_attributes
 
 Floats = npt.NDArray[np.float64]
@@ -61,6 +62,10 @@ QUANTITIES: Mapping[str, Quantity] = {
     "phase": _numbers("phase of the lean to the base acceleration, over the last periods", "rad"),
     "mean_rolling_rate": _numbers("mean rolling rate over the last periods", "rad s-1"),
     "repetition": _numbers("change from period to period, over the last periods", "1"),
+    "end_spin": _numbers("angular velocity about the axis at the end", "rad s-1"),
+    "largest_friction_demand": _numbers("largest friction force over normal force", "1"),
+    "largest_pivoting_demand": _numbers("largest moment about the vertical over normal force and radius", "1"),
+    "least_normal_force": _numbers("least normal force over weight", "1"),
     "releases": Quantity(np.int32, (), {"long_name": "releases from rest"}),
     "steps": Quantity(np.int32, (), {"long_name": "integration steps"}),
     "strobe_tilt": _numbers("tilt vector at phase zero of the base motion", "rad", "strobe", "axis"),
@@ -71,11 +76,17 @@ QUANTITIES: Mapping[str, Quantity] = {
 }
 
 
-def empty(options: Options, count: int) -> Arrays:
+_DEMANDS = ("largest_friction_demand", "largest_pivoting_demand", "least_normal_force")
+
+
+def empty(model: Model, options: Options, count: int) -> Arrays:
     """Return the results of `count` runs of which none has been computed."""
     sizes = {"axis": 2, "strobe": options.strobes, "sample": options.samples}
     arrays: Arrays = {}
+    left_out = {*(() if options.demands else _DEMANDS), *(("end_spin",) if model.spin_state is None else ())}
     for name, quantity in QUANTITIES.items():
+        if name in left_out:
+            continue
         shape = tuple(sizes[dim] for dim in quantity.dims)
         if 0 not in shape:
             fill = NOT_COMPUTED if name == "outcome" else np.nan if quantity.dtype is np.float64 else 0
@@ -85,7 +96,7 @@ def empty(options: Options, count: int) -> Arrays:
 
 def summaries(batch: Batch) -> Arrays:
     """Return the results of the runs of `batch`; those that have not ended keep what stands for nothing."""
-    arrays = empty(batch.plan.options, len(batch.table))
+    arrays = empty(batch.plan.model, batch.plan.options, len(batch.table))
     status = batch.log(Log.STATUS)
     ended = status != Status.WAITING
     for name, values in _all(batch).items():
@@ -132,6 +143,12 @@ def _all(batch: Batch) -> Arrays:
         "releases": batch.log(Log.RELEASES),
         "steps": batch.log(Log.STEPS),
     }
+    if batch.plan.options.demands:
+        arrays |= _demands(batch)
+    index = batch.plan.model.spin_state
+    if index is not None:
+        spin = np.where(batch.planar | (batch.log(Log.STANDS) > 0.0), 0.0, batch.table[:, STATE + index])
+        arrays["end_spin"] = spin / scale
     for strobes, names in (
         (True, ("strobe_tilt", "strobe_tilt_rate")),
         (False, ("sampled_tilt", "sampled_tilt_rate")),
@@ -154,6 +171,15 @@ def _leans(batch: Batch) -> tuple[Floats, Floats]:
     leans = np.where(batch.planar[:, np.newaxis], plane, leans)
     leans[batch.log(Log.STANDS) > 0.0] = 0.0
     return leans[:, :2], leans[:, 2:]
+
+
+def _demands(batch: Batch) -> Arrays:
+    """Return the extremes of what the contact had to bear; NaN of runs that never moved."""
+    normal = batch.log(Log.NORMAL)
+    moved, lifts = np.isfinite(normal), normal <= 0.0
+    found = [batch.log(column) for column in (Log.FRICTION, Log.PIVOTING)]
+    found = [np.where(moved, np.where(lifts & (load > 0.0), np.inf, load), np.nan) for load in found]
+    return dict(zip(_DEMANDS, (*found, np.where(moved, normal, np.nan)), strict=True))
 
 
 def _turns(batch: Batch) -> Floats:

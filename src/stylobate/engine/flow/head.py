@@ -12,5 +12,7 @@ PLANAR: bool
 
 rates_into: Callable[..., None]
 jacobian_into: Callable[..., None]
+speed_left: Callable[..., float]
+"""(rate, parameters) → the rate of a tilt in a plane after a passage of the upright."""
 lean_of: Callable[..., tuple[float, float, float, float]]
 """(state, parameters) → the tilt vector and its rate."""

@@ -45,6 +45,9 @@ def flow_module(model: type[Model], states: int, numbers: int, *, planar: bool) 
         message = f"model {model.name} has no equations of motion in a plane"
         raise UnsupportedError(message)
     functions: dict[str, Callable[..., Any]] = {"rates": rates} if planar else {"rates": rates, "lean": model.lean}
+    loses = planar and model.struck is not None
+    if loses:
+        functions |= {"struck": model.struck, "from_plane": model.from_plane, "lean": model.lean}  # type: ignore[dict-item]
     given = None if planar else model.jacobian
     if given is not None:
         functions["jacobian"] = given
@@ -59,6 +62,7 @@ def flow_module(model: type[Model], states: int, numbers: int, *, planar: bool) 
             _rates_source(arguments),
             _given_jacobian(arguments) if given is not None else _jacobian_source(rates, arguments),
             _lean_source(arguments),
+            _loss_source(arguments, loses=loses),
             Path(__file__).with_name("pattern.py").read_text(encoding="utf-8").split(_MARK, 1)[1],
         ]
     )
@@ -156,3 +160,18 @@ def _lean_source(arguments: _Arguments) -> str:
         numbers = [f"numbers[{j}]" for j in range(len(arguments.numbers))]
         body = f"lean({', '.join([*states, *numbers])})"
     return f"@part\ndef lean_of(y, numbers):\n    return {body}"
+
+
+def _loss_source(arguments: _Arguments, *, loses: bool) -> str:
+    if not loses:
+        return "@part\ndef speed_left(rate, numbers):\n    return rate"
+    numbers = ", ".join(f"numbers[{j}]" for j in range(len(arguments.numbers)))
+    return "\n".join(
+        [
+            "@part",
+            "def speed_left(rate, numbers):",
+            f"    state = struck(*from_plane(0.0, rate, 1.0, 0.0, {numbers}), {numbers})",
+            f"    _, _, vx, _ = lean(*state, {numbers})",
+            "    return vx",
+        ]
+    )

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         jacobian_into,
         lean_of,
         rates_into,
+        speed_left,
     )
 
 Table = npt.NDArray[np.float64]
@@ -39,6 +40,8 @@ FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 0.01, 0.125, 1e-13
 MOST_STEPS = 200_000
 # A crossing of the upright is met to this part of the slenderness.
 MET, MOST_TRIES = 1e-15, 60
+# Part of a change of the model's numbers by whose effect on the loss at a crossing its derivative is told.
+LOSS_STEP = 1e-6
 
 
 @part
@@ -228,8 +231,11 @@ def step_to_upright(
 
 
 @part
-def cross(y: Table, s: float, side: float, terms: Table, numbers: Vector, work: Table) -> bool:
-    """Pass the upright in a plane: the acceleration jumps, and derivatives with it (saltation); False if it grazes."""
+def cross(y: Table, s: float, side: float, terms: Table, numbers: Vector, change: Vector, work: Table) -> bool:
+    """Pass the upright in a plane: speed and acceleration jump, and derivatives with them; False if it grazes.
+
+    With the loss v⁺ = e v⁻ they are multiplied by the saltation matrix ((e, 0), ((a⁺ − e a⁻)/v⁻, e)).
+    """
     push, before, after = work[0], work[1], work[2]
     y[0, 0] = 0.0
     speed = y[1, 0]
@@ -237,10 +243,18 @@ def cross(y: Table, s: float, side: float, terms: Table, numbers: Vector, work: 
         return False
     accelerations_into(s, terms, push)
     rates_into(y[:, 0], push, side, numbers, before)
+    left = speed_left(speed, numbers)
+    kept_part = left / speed
+    y[1, 0] = left
     rates_into(y[:, 0], push, -side, numbers, after)
-    jump = (after[1] - before[1]) / speed
+    jump = (after[1] - kept_part * before[1]) / speed
     for column in range(1, ORDER + 2):
-        y[1, column] += jump * y[0, column]
+        y[1, column] = kept_part * y[1, column] + jump * y[0, column]
+        y[0, column] *= kept_part
+    # What the loss itself changes with the number on which the system depends.
+    numbers_change = change[1:]
+    more = speed_left(speed, numbers + LOSS_STEP * numbers_change)
+    y[1, ORDER + 1] += (more - speed_left(speed, numbers - LOSS_STEP * numbers_change)) / (2.0 * LOSS_STEP)
     return True
 
 
@@ -295,7 +309,7 @@ def flow(
             told[2] += 1
             s += h
             y[:, :] = new
-            if not cross(y, s, side, terms, numbers, work):
+            if not cross(y, s, side, terms, numbers, change, work):
                 return Status.LOST
             side = told[3] = -side
             slopes_into(y, s, side, period, terms, numbers, change, term_change, work, k[0])

@@ -31,6 +31,7 @@ _HARMONIC = 1e-9
 _STEP = 1e-3
 _CENTRAL = {-2.0: 1.0, -1.0: -8.0, 1.0: 8.0, 2.0: -1.0}
 _FORWARD = {0.0: -25.0, 1.0: 48.0, 2.0: -36.0, 3.0: 16.0, 4.0: -3.0}
+_BACKWARD = {-offset: -weight for offset, weight in _FORWARD.items()}
 _ANGLES = ("phase_difference", "rotation", "start_phase")
 
 
@@ -119,16 +120,22 @@ class PeriodicSystem:
         """Return the present value of a number that `changed` takes."""
         return present_value(self.model, self.motion, name)
 
+    def image(self, sense: float) -> Floats:
+        """Return the factors of the states, shape (order,), that make their opposite, or ones for `sense` +1.
+
+        In the opposite state the column leans the other way: turned by half a turn about the vertical, which leaves a
+        spin as it is.
+        """
+        factors = np.full(self.order, sense)
+        if self.model.spin_state is not None and not self.planar:
+            factors[self.model.spin_state] = 1.0
+        return factors
+
     def derivative(self, name: str, at: float | None = None) -> Numbers:
         """Return how the numbers change with the number called `name`, where it is `at`, by default as it is."""
         value = self.value_of(name) if at is None else at
         step = _STEP * (1.0 if name in _ANGLES or value == 0.0 else abs(value))
-        try:
-            around = [self.changed(**{name: value + offset * step}).numbers for offset in _CENTRAL]
-            weights = _CENTRAL.values()
-        except StylobateError:  # at the edge of what can be, such as no friction
-            around = [self.changed(**{name: value + offset * step}).numbers for offset in _FORWARD]
-            weights = _FORWARD.values()
+        around, weights = self._around(name, value, step)
 
         def combined(part: Callable[[Numbers], Any]) -> Any:
             return sum(weight * part(numbers) for weight, numbers in zip(weights, around, strict=True)) / (12.0 * step)
@@ -138,6 +145,16 @@ class PeriodicSystem:
         return Numbers(
             float(combined(lambda numbers: numbers.period)), combined(lambda numbers: numbers.parameters), terms
         )
+
+    def _around(self, name: str, value: float, step: float) -> tuple[list[Numbers], list[float]]:
+        """Return the numbers at values around one, and the weights of their difference; beside it at an edge."""
+        *inner, last = (_CENTRAL, _FORWARD, _BACKWARD)
+        for rule in inner:
+            try:
+                return [self.changed(**{name: value + k * step}).numbers for k in rule], list(rule.values())
+            except StylobateError:  # at the edge of what can be, such as no friction, or no loss
+                continue
+        return [self.changed(**{name: value + k * step}).numbers for k in last], list(last.values())
 
     def carry(
         self,
@@ -177,7 +194,7 @@ class PeriodicSystem:
             [
                 self.rtol,
                 0.01 * self.rtol * self.scale,
-                LOST_TILT * self.scale,
+                max(LOST_TILT * self.scale, self.model.loss_tilt),
                 self.safe_tilt if largest_tilt is None else largest_tilt,
             ]
         )

@@ -48,6 +48,8 @@ class Setup(_FromZero):
     SAMPLES = auto()
     STROBES = auto()
     """How many columns of breaks, and sets of five columns of samples and strobes, the row of the run has."""
+    PASSAGE_TILT = auto()
+    """Least tilt below which a passage of the upright out of a plane loses energy; 0 where none does."""
     LINE_X = auto()
     LINE_Y = auto()
     """Unit vector of the line along which the base moves or, in a plane, the column too; 0, 0 without one."""
@@ -93,6 +95,11 @@ class Log(_FromZero):
     STROBES_AT = auto()
     LIFTS_AT = auto()
     """When the base begins to drop away; infinite if never."""
+    FRICTION = auto()
+    PIVOTING = auto()
+    """Largest demands on the contact while the column moves."""
+    NORMAL = auto()
+    """Least normal force [m g]; followed with the demands where they are asked for."""
     WATCHED = auto()
     """1 in the last periods, in which the following are taken."""
     LATE_LEAST = auto()

@@ -1,14 +1,18 @@
 """Writes the head of a kernel: constants, and the model's functions as the driver calls them."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from stylobate.engine.lanes.columns import NOTE, SLACK, STATE
 from stylobate.engine.lanes.series_source import polynomial, state_polynomial
 from stylobate.engine.lanes.shape import SERIES_ORDER, Shape
 from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET, HOPS_APART
 
-OPTIONAL = ("rest_energy", "no_return_tilt", "departure", "passage", "at_rest")
+OPTIONAL = ("rest_energy", "no_return_tilt", "departure", "passage", "at_rest", "struck")
 """Functions that a model may lack."""
+
+
+# A tilt that is none and yet has a side.
+_ASIDE = 1e-140
 
 
 def constants_source(shape: Shape, has: Mapping[str, bool], *, to_plane: bool) -> str:
@@ -34,6 +38,8 @@ def constants_source(shape: Shape, has: Mapping[str, bool], *, to_plane: bool) -
         "CAN_PASS": has["passage"] and not shape.planar,
         "CAN_PROVE_NO_RETURN": has["no_return_tilt"],
         "CAN_GO_TO_PLANE": to_plane,
+        "CAN_LOSE": has["struck"],
+        "DEMANDS": shape.demands,
         **shape.forcing.constants(shape.rows()),
     }
     return "".join(f"{name} = {value!r}\n" for name, value in values.items())
@@ -65,6 +71,13 @@ def model_source(shape: Shape, has: Mapping[str, bool]) -> str:
         else f"(0.0, {nothing})",
         "model_at_rest(buf, i)": call("at_rest", *state) if has["at_rest"] and not shape.planar else nothing,
     }
+    if not has["struck"]:
+        definitions["model_struck(buf, i)"] = nothing
+    elif not shape.planar:
+        definitions["model_struck(buf, i)"] = call("struck", *state)
+    definitions["model_contact(buf, i, ax, ay, az)"] = contact_call(
+        shape, rows.of_lane, state, parameters, ("ax", "ay", "az")
+    )
     if not has["departure"]:
         definitions["model_departure(buf, i, push, elapsed, ux, uy)"] = nothing
     elif not shape.planar:
@@ -72,7 +85,22 @@ def model_source(shape: Shape, has: Mapping[str, bool]) -> str:
     source = "\n\n".join(f"@part\ndef {name}:\n    return {value}" for name, value in definitions.items()) + "\n"
     if has["departure"] and shape.planar:
         source += _plane_departure(call("departure", "push", "elapsed"), parameters)
+    if has["struck"] and shape.planar:
+        source += _plane_struck(state, parameters)
     return source
+
+
+def contact_call(
+    shape: Shape, at: Callable[[str], str], state: Sequence[str], parameters: Sequence[str], push: tuple[str, str, str]
+) -> str:
+    """Return the call of what tells the loads of the contact, or numbers that stand for none; `at` names a row."""
+    if not shape.demands:
+        return "(1.0, 0.0, 0.0)"
+    numbers = ", ".join(parameters)
+    # At the upright itself the column stands on the edge of the side to which it goes.
+    tilt = f"{state[0]} + {_ASIDE!r} * {at('side')}"
+    moving = f"*from_plane({tilt}, {state[1]}, 1.0, 0.0, {numbers})" if shape.planar else ", ".join(state)
+    return f"contact({moving}, {', '.join(push)}, {numbers})"
 
 
 def _series_within(shape: Shape) -> str:
@@ -86,6 +114,18 @@ def _series_within(shape: Shape) -> str:
 
 def _plane_lean(state: list[str]) -> str:
     return f"({state[0]}, 0.0, {state[1]}, 0.0)"
+
+
+def _plane_struck(state: list[str], parameters: list[str]) -> str:
+    numbers = ", ".join(parameters)
+    return f"""
+
+@part
+def model_struck(buf, i):
+    state = struck(*from_plane({state[0]}, {state[1]}, 1.0, 0.0, {numbers}), {numbers})
+    x, y, vx, vy = lean(*state, {numbers})
+    return (x, vx)
+"""
 
 
 def _plane_departure(departure: str, parameters: list[str]) -> str:

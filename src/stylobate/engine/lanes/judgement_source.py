@@ -303,7 +303,7 @@ def _suspicion(shape: Shape, rows: Rows) -> list[str]:
         c = at("slenderness")
         near = [
             f"square = {at('vx')} * {at('vx')} + {at('vy')} * {at('vy')}",
-            f"near = 1.0 if {at('low')} < {at('rest_tilt')} else 0.0",
+            f"near = 1.0 if {at('low')} < max({at('rest_tilt')}, {at('passage_tilt')}) else 0.0",
             f"inward = 1.0 if {at('radial')} < 0.0 else 0.0",
             f"tilt = {at('tilt')}",
             f"close = 1.0 if tilt * tilt < {HOP_FROM**2!r} * min({c} * {c}, square) else 0.0",

@@ -15,7 +15,7 @@ from stylobate.engine.lanes import pattern, roots
 from stylobate.engine.lanes.columns import LOOKS, Status, Window
 from stylobate.engine.lanes.head_source import OPTIONAL, constants_source, model_source
 from stylobate.engine.lanes.observation_source import observation_source
-from stylobate.engine.lanes.shape import STAGES, Shape
+from stylobate.engine.lanes.shape import DEMANDS, STAGES, Shape
 from stylobate.engine.lanes.step_source import accelerations_source, rates_source, step_source
 from stylobate.models import Model
 
@@ -93,6 +93,10 @@ def _functions(model: type[Model], shape: Shape) -> dict[str, Callable[..., Any]
     """Return the model's functions as a kernel of this shape uses them, by name."""
     functions = {"rates": model.planar_rates if shape.planar else model.rates, "lean": model.lean}
     functions |= {name: getattr(model, name) for name in OPTIONAL}
+    if shape.demands:
+        functions["contact"] = model.contact
+    if shape.planar and (shape.demands or model.struck is not None):
+        functions["from_plane"] = model.from_plane
     return {name: function for name, function in functions.items() if function is not None}
 
 
@@ -117,8 +121,9 @@ def _with_numbers(text: str, shape: Shape) -> str:
     }
 
     slopes = {"SLOPE": "k0_0", "SLOPE_NEW": f"k{STAGES}_0", "LAST_SLOPE": "last_slope0"}
-    # Steps by series have no slopes; what reads them is left out by the compiler.
+    # Steps by series have no slopes; what reads them is left out by the compiler, as what is not followed.
     special |= {name: 0 if shape.series else rows[row] for name, row in slopes.items()}
+    special |= {f"{name.upper()}_NOW": rows[f"{name}_now"] if shape.demands else 0 for name in DEMANDS}
 
     def number(match: re.Match[str]) -> str:
         table, name = match.groups()

@@ -33,6 +33,8 @@ class Shape:
     series
         Where steps are made by Taylor series: of each state the one whose rate it is, or itself. Empty where they are
         made by DOP853.
+    demands
+        Whether it follows what the contact must bear.
     """
 
     states: int
@@ -41,6 +43,7 @@ class Shape:
     forcing: ForcingSource
     width: int
     series: tuple[int, ...] = ()
+    demands: bool = False
 
     @property
     def parameters_at(self) -> int:
@@ -90,6 +93,8 @@ class Shape:
         rows.add(*(f"end_{name}" for name in self.forcing.components))
         for name in ("new", "last"):
             rows.add_many(name, self.order)
+        if self.demands:
+            rows.add(*(f"{name}_now" for name in DEMANDS))
         if self.series:
             rows.add("proposed", *(f"node_{name}" for name in OBSERVED))
             rows.add_many("square", SERIES_ORDER + 1)
@@ -101,6 +106,9 @@ class Shape:
             rows.add_many("last_slope", self.order)
         return rows
 
+
+DEMANDS = ("normal", "friction", "pivoting")
+"""What the contact must bear: normal force over m g, friction and moment over it."""
 
 OBSERVED = ("mean_tilt", "forward_cos", "forward_sin", "backward_cos", "backward_sin")
 """Rows of the integrals over the last periods."""

@@ -1,5 +1,6 @@
 """Writes the functions of a kernel that integrate: a step of all lanes, and the equations of one lane."""
 
+from stylobate.engine.lanes.demand_source import demand_lines
 from stylobate.engine.lanes.expansion import expansion_of
 from stylobate.engine.lanes.judgement_source import judgement
 from stylobate.engine.lanes.series_source import series_lines
@@ -18,6 +19,8 @@ def step_source(model: type[Model], shape: Shape) -> str:
         for stage in range(1, STAGES + 1):
             lines += stage_lines(shape, rows, stage)
     lines += judgement(shape, rows)
+    if shape.demands:
+        lines += demand_lines(shape, rows)
     return "\n".join(lines) + "\n"
 
 

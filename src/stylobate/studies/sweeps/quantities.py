@@ -15,7 +15,7 @@ Floats = npt.NDArray[np.float64]
 STARTS = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
 """The components of the start."""
 
-OF_A_RUN = (*STARTS, "duration")
+OF_A_RUN = (*STARTS, "spin", "duration")
 """What can vary besides the parameters of `simulate_ensemble`."""
 
 
@@ -40,6 +40,7 @@ _QUANTITIES = {
     "tilt_y": _Quantity("initial tilt along y", "rad"),
     "tilt_rate_x": _Quantity("initial rate of tilt along x", "rad s-1"),
     "tilt_rate_y": _Quantity("initial rate of tilt along y", "rad s-1"),
+    "spin": _Quantity("initial angular velocity about the axis", "rad s-1"),
     "duration": _positive("duration", "s"),
     "radius": _positive("base radius", "m"),
     "mass_height": _positive("height of the centre of mass", "m"),
@@ -50,6 +51,9 @@ _QUANTITIES = {
     "slenderness": _positive("slenderness", "1"),
     "size": _positive("size, in that of the column given", "1"),
     "damping": _not_negative("friction", "1"),
+    "spin_friction": _not_negative("spin friction", "1"),
+    "rolling_resistance": _not_negative("rolling resistance", "1"),
+    "restitution": _not_negative("restitution", "1"),
     "acceleration": _not_negative("largest horizontal acceleration of the base", "m s-2"),
     "scale": _Quantity("factor of the base motion", "1"),
     "angular_frequency": _positive("angular frequency", "rad s-1"),

@@ -18,6 +18,7 @@ class RunOptions(TypedDict, total=False):
 
     tilt: Sequence[float]
     tilt_rate: Sequence[float]
+    spin: float
     method: str
     rtol: float
     atol: float | None
@@ -27,11 +28,13 @@ class RunOptions(TypedDict, total=False):
     samples: int | None
     strobes: int
     rules: OutcomeRules | None
+    demands: bool
 
 
 DEFAULTS = RunOptions(
     tilt=(0.0, 0.0),
     tilt_rate=(0.0, 0.0),
+    spin=0.0,
     method="dop853",
     rtol=1e-8,
     atol=None,
@@ -41,6 +44,7 @@ DEFAULTS = RunOptions(
     samples=None,
     strobes=0,
     rules=None,
+    demands=False,
 )
 
 
@@ -62,6 +66,7 @@ class Recipe:
             x, y = chosen[name]
             parts = (values.get(f"{name}_x", np.full(count, x)), values.get(f"{name}_y", np.full(count, y)))
             chosen[name] = np.stack(parts, axis=-1)
+        chosen["spin"] = values.get("spin", chosen["spin"])
         own = {name: array for name, array in values.items() if name not in OF_A_RUN}
         return {**chosen, "duration": self._durations(values), "parameters": own}
 

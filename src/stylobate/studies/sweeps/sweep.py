@@ -25,8 +25,9 @@ from stylobate.studies.sweeps.recipe import DEFAULTS, Recipe, RunOptions
 class Sweep:
     """Many runs that differ in some quantities: `Sweep.grid`, `Sweep.random` or `Sweep.points`.
 
-    What can vary: the starts tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s]; duration [s]; and every name that
-    `simulate_ensemble` takes as a parameter, such as acceleration [m/s²], angular_frequency [rad/s], damping, size.
+    What can vary: the starts tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y, spin [rad/s]; duration [s]; and every name
+    that `simulate_ensemble` takes as a parameter, such as acceleration [m/s²], angular_frequency [rad/s], damping or
+    size.
 
     Parameters
     ----------
@@ -39,8 +40,8 @@ class Sweep:
     periods
         … or for how many periods of its base motion.
     options
-        Further arguments of `simulate_ensemble`: tilt, tilt_rate, rtol, atol, tilt_limit, rest_energy, max_steps,
-        samples, strobes, rules.
+        Further arguments of `simulate_ensemble`: tilt, tilt_rate, spin, method, rtol, atol, tilt_limit, rest_energy,
+        max_steps, samples, strobes, rules, demands.
 
     Raises
     ------

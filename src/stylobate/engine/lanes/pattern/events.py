@@ -7,15 +7,25 @@ from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.moving import set_lean, set_state
-from stylobate.engine.lanes.pattern.passages import cross_upright, hop, hops
-from stylobate.engine.lanes.pattern.peaks import measure_peak, take_back
+from stylobate.engine.lanes.pattern.passages import cross_upright, hop, hops, loses, strike
+from stylobate.engine.lanes.pattern.peaks import closest_within, measure_peak, take_back
 from stylobate.engine.lanes.pattern.resting import rest_within_step, settle
 from stylobate.engine.lanes.pattern.stops import go_on, meet_stop
 from stylobate.engine.lanes.pattern.within import set_within
 from stylobate.engine.lanes.roots import first_growth_past, first_return
 
 if TYPE_CHECKING:
-    from stylobate.engine.lanes.pattern.head import CAN_PASS, CAN_REST, ORDER, PLANAR, SERIES, R, lean_of_new, row_state
+    from stylobate.engine.lanes.pattern.head import (
+        CAN_LOSE,
+        CAN_PASS,
+        CAN_REST,
+        ORDER,
+        PLANAR,
+        SERIES,
+        R,
+        lean_of_new,
+        row_state,
+    )
 
 # --- the kernel's text begins here ---
 
@@ -108,7 +118,8 @@ def held_back(buf: Table, i: int, table: Table, pieces: Table) -> int:
 @part
 def aim(buf: Table, i: int, ahead: float) -> None:
     """Let the next step end at the event that lies `ahead`."""
-    # Of the two conditions of overturning, which is met last: tilt, or growth of the tilt.
+    # Of the two conditions of overturning, which is met last: tilt, or growth of the tilt. A lossy passage, −1, is
+    # aimed at as the latter: where the tilt begins to grow.
     buf[R.BY_TILT, i] = 1.0 if buf[R.TILT, i] < min(buf[R.TILT_LIMIT, i], buf[R.NO_RETURN, i]) else 0.0
     buf[R.H, i] = ahead
     buf[R.AIMED, i] = 1.0
@@ -130,7 +141,26 @@ def arrived(buf: Table, i: int, table: Table, pieces: Table) -> int:
         buf[R.LARGEST_AT, i] = buf[R.TIME, i]
     if meets_upright(buf, i):
         return cross_upright(buf, i, table, pieces)
+    if CAN_LOSE and buf[R.BY_TILT, i] < 0.0:
+        strike(buf, i)
+        return Status.WAITING
     return Status.LIMIT if buf[R.TILT_LIMIT, i] <= buf[R.NO_RETURN, i] else Status.OVERTURNED
+
+
+@part
+def near_upright(buf: Table, i: int) -> float:
+    """Deal with a passage near the upright, out of a plane; return when the column came to rest there, or NaN."""
+    if CAN_LOSE and loses(buf, i):
+        aim(buf, i, -closest_within(buf, i))
+        buf[R.BY_TILT, i] = -1.0
+        return math.nan
+    if CAN_REST and buf[R.REST_ENERGY, i] > 0.0 and buf[R.LOW, i] < buf[R.REST_TILT, i]:
+        rest = rest_within_step(buf, i)
+        if not math.isnan(rest):
+            return rest
+    if CAN_PASS and hops(buf, i):
+        hop(buf, i)
+    return math.nan
 
 
 @part
@@ -151,12 +181,11 @@ def handle(buf: Table, i: int, table: Table, pieces: Table) -> int:
     if buf[R.STEPS, i] >= buf[R.MOST_STEPS, i]:
         return Status.STEP_LIMIT
     if not PLANAR:
-        if CAN_REST and buf[R.REST_ENERGY, i] > 0.0 and buf[R.LOW, i] < buf[R.REST_TILT, i]:
-            rest = rest_within_step(buf, i)
-            if not math.isnan(rest):
-                return settle(buf, i, table, pieces, rest)
-        if CAN_PASS and hops(buf, i):
-            hop(buf, i)
+        rest = near_upright(buf, i)
+        if not math.isnan(rest):
+            return settle(buf, i, table, pieces, rest)
+        if buf[R.AIMED, i] > 0.0:
+            return Status.WAITING
     t = buf[R.TIME, i]
     if t >= buf[R.STOP, i]:
         status = meet_stop(buf, i, table, pieces, t)

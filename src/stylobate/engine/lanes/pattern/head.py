@@ -26,6 +26,8 @@ CAN_DEPART: bool
 CAN_PASS: bool
 CAN_PROVE_NO_RETURN: bool
 CAN_GO_TO_PLANE: bool
+CAN_LOSE: bool
+DEMANDS: bool
 
 HOP_FROM: float
 HOP_OFFSET: float
@@ -43,6 +45,8 @@ series_within: Callable[..., tuple[float, ...]]
 row_state: Callable[..., tuple[float, ...]]
 model_lean: Callable[..., tuple[float, float, float, float]]
 lean_of_new: Callable[..., tuple[float, float, float, float]]
+model_struck: Callable[..., tuple[float, ...]]
+model_contact: Callable[..., tuple[float, float, float]]
 model_at_rest: Callable[..., tuple[float, ...]]
 model_departure: Callable[..., tuple[float, ...]]
 model_no_return: Callable[..., float]

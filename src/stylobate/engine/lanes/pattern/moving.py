@@ -8,7 +8,18 @@ from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.roots import nearest_turn, turns_of
 
 if TYPE_CHECKING:
-    from stylobate.engine.lanes.pattern.head import ORDER, PLANAR, SERIES, R, model_lean, rates_at, row_state
+    from stylobate.engine.lanes.pattern.head import (
+        DEMANDS,
+        ORDER,
+        PLANAR,
+        SERIES,
+        R,
+        accelerations,
+        model_contact,
+        model_lean,
+        rates_at,
+        row_state,
+    )
 
 # --- the kernel's text begins here ---
 
@@ -37,12 +48,25 @@ def set_lean(buf: Table, i: int) -> None:
 
 @part
 def set_rates(buf: Table, i: int, t: float) -> None:
-    """Set the slopes at the beginning of a step, where steps begin with them."""
+    """Set what a step begins with: the loads of the contact, where they are followed, and slopes, where it has them."""
+    if DEMANDS:
+        set_loads(buf, i, t)
     if SERIES:
         return
     slopes = rates_at(buf, i, t, row_state(buf, i, R.STATE))
     for j in range(ORDER):
         buf[R.SLOPE + j, i] = slopes[j]
+
+
+@part
+def set_loads(buf: Table, i: int, t: float) -> None:
+    """Note the loads of the contact at the beginning of a step."""
+    ax, ay, az = accelerations(buf, i, t)
+    normal, force, moment = model_contact(buf, i, ax, ay, az)
+    per = 1.0 / max(normal, 1e-12)
+    buf[R.NORMAL_NOW, i] = normal
+    buf[R.FRICTION_NOW, i] = force * per
+    buf[R.PIVOTING_NOW, i] = moment * per
 
 
 @part

@@ -9,11 +9,25 @@ from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.moving import azimuth_now, set_lean, set_off, set_state
 from stylobate.engine.lanes.pattern.resting import rest_margin, settle
 from stylobate.engine.lanes.pattern.stops import go_on, next_stop
+from stylobate.engine.lanes.pattern.within import set_within
 
 if TYPE_CHECKING:
-    from stylobate.engine.lanes.pattern.head import CAN_REST, HOP_FROM, HOP_OFFSET, R, accelerations, model_passage
+    from stylobate.engine.lanes.pattern.head import (
+        CAN_LOSE,
+        CAN_REST,
+        HOP_FROM,
+        HOP_OFFSET,
+        R,
+        accelerations,
+        lean_of_new,
+        model_passage,
+        model_struck,
+    )
 
 # --- the kernel's text begins here ---
+
+# The tilt that falls by less than this part of its speed does not fall: it is least there.
+JUST_MET = 1e-6
 
 
 @part
@@ -25,9 +39,31 @@ def cross_upright(buf: Table, i: int, table: Table, pieces: Table) -> int:
     rests = CAN_REST and buf[R.REST_ENERGY, i] > 0.0 and rest_margin(buf, i, t, 0.0, abs(speed)) > 0.0
     if speed == 0.0 or rests:
         return settle(buf, i, table, pieces, t)
+    if CAN_LOSE and buf[R.PASSAGE_TILT, i] > 0.0:
+        set_state(buf, i, model_struck(buf, i))
     set_off(buf, i, t, buf[R.HELD_STEP, i])
     go_on(buf, i)
     return Status.WAITING
+
+
+@part
+def loses(buf: Table, i: int) -> bool:
+    """Return whether the step just made went past the upright so closely that the passage costs energy."""
+    if buf[R.LOW, i] >= buf[R.PASSAGE_TILT, i] or buf[R.RADIAL, i] <= 0.0:
+        return False
+    set_within(buf, i, 0.0)
+    x, y, vx, vy = lean_of_new(buf, i)
+    # A passage that was just met is not met again.
+    return x * vx + y * vy < -JUST_MET * math.hypot(x, y) * math.hypot(vx, vy)
+
+
+@part
+def strike(buf: Table, i: int) -> None:
+    """Take the loss of a passage, at the least tilt."""
+    set_state(buf, i, model_struck(buf, i))
+    set_off(buf, i, buf[R.TIME, i], buf[R.WANTED, i])
+    buf[R.ATOL_NOW, i] = buf[R.ATOL, i]
+    go_on(buf, i)
 
 
 @part
@@ -50,6 +86,8 @@ def hop(buf: Table, i: int) -> None:
     # Half a turn on the side on which the momentum says it passes.
     azimuth = azimuth_now(buf, i) + math.copysign(0.5, momentum)
     set_state(buf, i, state)
+    if CAN_LOSE and buf[R.PASSAGE_TILT, i] > 0.0:
+        set_state(buf, i, model_struck(buf, i))
     set_lean(buf, i)
     for row in (R.LEAST_PASSAGE, R.LEAST_TILT):
         buf[row, i] = min(buf[row, i], abs(momentum) / speed)

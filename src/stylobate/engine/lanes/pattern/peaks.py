@@ -56,6 +56,23 @@ def measure_peak(buf: Table, i: int) -> float:
 
 
 @part
+def closest_within(buf: Table, i: int) -> float:
+    """Return how long before the end of the step just made the tilt was least."""
+    before = after = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    if not SERIES:
+        before, after = lean_before(buf, i), lean_after(buf, i)
+    low, high = 0.0, 1.0
+    for _ in range(40):
+        u = 0.5 * (low + high)
+        x, y, vx, vy = lean_within(buf, i, u, before, after)
+        if x * vx + y * vy < 0.0:
+            low = u
+        else:
+            high = u
+    return (1.0 - high) * buf[R.MADE, i]
+
+
+@part
 def take_back(buf: Table, i: int) -> None:
     """Return to the beginning of the step just made."""
     x1, y1, momentum1 = buf[R.X, i], buf[R.Y, i], buf[R.MOMENTUM, i]

@@ -1,0 +1,83 @@
+"""What a run begins with besides tilt and tilt rate."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from stylobate.engine.forcing import common_line
+from stylobate.errors import ParameterError, require_finite, require_vector
+from stylobate.models import Model
+from stylobate.motions import BaseMotion
+
+
+@dataclass(frozen=True, slots=True)
+class Turning:
+    """Spin [rad/s], twist [rad] and position [m] at the start of a run."""
+
+    spin: float
+    twist: float
+    position: tuple[float, float]
+
+    @classmethod
+    def checked(
+        cls, model: Model, spin: float, twist: float, position: Sequence[float], *, standing: bool
+    ) -> "Turning":
+        """Return them; `standing` tells whether the column starts upright and at rest.
+
+        Raises
+        ------
+        ParameterError
+            If one is not finite, or of no meaning for `model`.
+        """
+        spin, twist = require_finite("spin", spin, "rad/s"), require_finite("twist", twist, "rad")
+        x, y = require_vector("position", position, 2, "m")
+        refuse_spin(model, spin, standing=standing)
+        if not model.carried_names and (twist or x or y):
+            name, value = ("twist", twist) if twist else ("position", (x, y))
+            message = f"{name} must be left out: model {model.name} does not follow it, got {value!r}"
+            raise ParameterError(message)
+        return cls(spin, twist, (x, y))
+
+    def added_to(self, model: Model, state: tuple[float, ...]) -> tuple[float, ...]:
+        """Return the `state` of a start without spin with them."""
+        begun = list(state)
+        if model.spin_state is not None:
+            begun[model.spin_state] = self.spin * model.time_scale
+        if model.carried_names:
+            begun += [self.twist, self.position[0] / model.column.radius, self.position[1] / model.column.radius]
+        return tuple(begun)
+
+    def values(self) -> dict[str, Any]:
+        """Return them by name, those left out being none."""
+        given = {"spin": self.spin, "twist": self.twist, "position": self.position}
+        return {name: value for name, value in given.items() if value not in (0.0, (0.0, 0.0))}
+
+
+def refuse_spin(model: Model, spin: float, *, standing: bool) -> None:
+    """Raise ParameterError if there is a spin that `model` does not know, or of a column that stands."""
+    if spin == 0.0:
+        return
+    if model.spin_state is None:
+        message = f"spin must be left out: the column of model {model.name} cannot turn, got {spin!r} rad/s"
+        raise ParameterError(message)
+    if standing:
+        message = f"spin must be 0 for a column that stands flat on its base, got {spin!r} rad/s; give it a tilt"
+        raise ParameterError(message)
+
+
+def require_plane(model: Model, motion: BaseMotion, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> None:
+    """Raise ParameterError if `model` moves in a plane only, and start and base motion lie in none."""
+    if not model.planar_only:
+        return
+    directions = (tilt, tilt_rate, *motion.directions())
+    if any(any(direction) for direction in directions) and common_line(*directions) is None:
+        raise out_of_plane(model, tilt, tilt_rate)
+
+
+def out_of_plane(model: Model, tilt: Sequence[float], tilt_rate: Sequence[float]) -> ParameterError:
+    """Return what is said of a start and a base motion that lie in no vertical plane."""
+    message = (
+        f"tilt, tilt_rate and motion must lie in one vertical plane for model {model.name}; "
+        f"with tilt {tuple(tilt)!r} and tilt_rate {tuple(tilt_rate)!r} they do not"
+    )
+    return ParameterError(message)

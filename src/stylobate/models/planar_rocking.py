@@ -1,0 +1,258 @@
+"""The rocking body in a vertical plane: Housner's block, at finite angles, with restitution at its impacts."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.column import STANDARD_GRAVITY, Column
+from stylobate.errors import require_positive
+from stylobate.models import finite_tilt
+from stylobate.models.checks import require_column, require_frictions, require_restitution
+from stylobate.models.contact import contact_outputs, path_outputs
+from stylobate.models.departing import departing_lean
+from stylobate.models.finite_tilt import TINY, planar_acceleration
+from stylobate.models.model import Floats, Model, Output, Push
+
+
+def rates(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    ax: float,
+    ay: float,
+    az: float,
+    c: float,
+    eta: float,
+    kappa: float,
+    resistance: float,
+    _restitution: float,
+) -> tuple[float, float, float, float]:
+    """Return the rates of tilt vector and tilt rate of a motion in the plane in which the body leans."""
+    tilt = math.sqrt(x * x + y * y + TINY)
+    ux, uy = x / tilt, y / tilt
+    rate, horizontal = vx * ux + vy * uy, ax * ux + ay * uy
+    acceleration, _, _ = planar_acceleration(tilt, rate, 1.0, horizontal, az, c, eta, kappa, resistance)
+    return vx, vy, acceleration * ux, acceleration * uy
+
+
+def contact(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    ax: float,
+    ay: float,
+    az: float,
+    c: float,
+    eta: float,
+    kappa: float,
+    resistance: float,
+    _restitution: float,
+) -> tuple[float, float, float]:
+    """Return N and |T| over m g; nothing turns the body about the vertical."""
+    tilt = math.sqrt(x * x + y * y + TINY)
+    ux, uy = x / tilt, y / tilt
+    rate, horizontal = vx * ux + vy * uy, ax * ux + ay * uy
+    _, normal, swept = planar_acceleration(tilt, rate, 1.0, horizontal, az, c, eta, kappa, resistance)
+    return normal, abs(swept), 0.0
+
+
+def lean(x: Any, y: Any, vx: Any, vy: Any, *_: Any) -> tuple[Any, Any, Any, Any]:
+    """Return the tilt vector and its rate: the state itself."""
+    return x, y, vx, vy
+
+
+def planar_rates(
+    tilt: float,
+    rate: float,
+    side: float,
+    horizontal: float,
+    vertical: float,
+    c: float,
+    eta: float,
+    kappa: float,
+    resistance: float,
+    _restitution: float,
+) -> tuple[float, float]:
+    """Return the right-hand side K θ̈ = (1 + a_z)(sin θ − c cos θ) − a_h (cos θ + c sin θ) − ηθ̇ on one side."""
+    acceleration, _, _ = planar_acceleration(tilt, rate, side, horizontal, vertical, c, eta, kappa, resistance)
+    return rate, acceleration
+
+
+def from_plane(tilt: Any, rate: Any, ux: float, uy: float, *_: float) -> tuple[Any, Any, Any, Any]:
+    """Return the state of a motion along the unit vector (ux, uy)."""
+    return tilt * ux, tilt * uy, rate * ux, rate * uy
+
+
+def rest_energy(tilt: float, speed: float, vertical: float, c: float, _eta: float, kappa: float, *_: float) -> float:
+    """Return ½K|α̇|² + c(1 + a_z)|α|, what is left near the upright above the state of rest."""
+    return finite_tilt.energy_at_rest(tilt, speed, vertical, c, kappa)
+
+
+def no_return_tilt(largest_horizontal: float, least_vertical: float, c: float, *_: float) -> float:
+    """Return the tilt beyond which a growing tilt can never come back [rad]."""
+    return finite_tilt.no_return_tilt(largest_horizontal, least_vertical, c)
+
+
+def departure(
+    push: Push, elapsed: float, c: float, eta: float, kappa: float, *_: float
+) -> tuple[float, float, float, float]:
+    """Return the state a short time after release."""
+    return departing_lean(push, elapsed, eta, 1.0 + kappa * c * c, 1.0)[:4]
+
+
+def struck(x: float, y: float, vx: float, vy: float, *numbers: float) -> tuple[float, ...]:
+    """Return the state after the impact at the upright: the tilt rate times the restitution."""
+    restitution = numbers[-1]
+    return x, y, restitution * vx, restitution * vy
+
+
+@dataclass(frozen=True, slots=True)
+class PlanarRocking(Model):
+    """A body that rocks in a vertical plane from one edge to the other: Housner's model, at finite angles.
+
+    Start and base motion must lie in one vertical plane. Of the column it takes the half width r, the height h of the
+    centre of mass and the transverse inertia; `PlanarRocking.block` makes the rectangular block of the literature.
+
+    Parameters
+    ----------
+    column
+        The body.
+    damping
+        Viscous friction η = D1/(ω0 J0).
+    rolling_resistance
+        Lever arm δ of the normal force, in units of the radius, against the angular velocity.
+    restitution
+        e, the part of the angular velocity that is left after an impact; None for Housner's value 1 − 2 m r²/K, by
+        which the body keeps its angular momentum about the edge that it lands on. Measured values lie on either side.
+
+    Raises
+    ------
+    ParameterError
+        If `column` is no Column, a friction is negative or not finite, or `restitution` lies outside 0 to 1.
+
+    Notes
+    -----
+    K = J0 + m r². Sources: G. W. Housner, "The behavior of inverted pendulum structures during earthquakes", Bulletin
+    of the Seismological Society of America 53 (1963).
+    """
+
+    column: Column
+    damping: float = 0.0
+    rolling_resistance: float = 0.0
+    restitution: float | None = None
+
+    name: ClassVar[str] = "planar rocking"
+    state_names: ClassVar[tuple[str, ...]] = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
+    planar_only: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        require_column(self.column)
+        require_frictions(self, "damping", "rolling_resistance")
+        if self.restitution is not None:
+            require_restitution(self)
+
+    @classmethod
+    def block(
+        cls,
+        *,
+        width: float,
+        height: float,
+        density: float,
+        damping: float = 0.0,
+        restitution: float | None = None,
+        gravity: float = STANDARD_GRAVITY,
+    ) -> Self:
+        """Return the model of a uniform rectangular block, seen in its plane, 1 m thick across it.
+
+        Parameters
+        ----------
+        width, height
+            Of the block [m].
+        density
+            [kg/m³].
+        damping, restitution
+            As of the model; Housner's restitution is 1 − 1.5 sin²α here, tan α = width/height.
+        gravity
+            [m/s²].
+
+        Raises
+        ------
+        ParameterError
+            If a number is not positive.
+        """
+        width, height = require_positive("width", width, "m"), require_positive("height", height, "m")
+        mass = require_positive("density", density, "kg/m³") * width * height
+        transverse = mass * (width**2 + height**2) / 12.0
+        # Nothing turns about the axis in a plane; this is what the axial inertia of a square base would be.
+        column = Column(
+            radius=0.5 * width,
+            mass_height=0.5 * height,
+            mass=mass,
+            transverse_inertia=transverse,
+            axial_inertia=mass * width**2 / 6.0,
+            height=height,
+            gravity=gravity,
+        )
+        return cls(column, damping=damping, restitution=restitution)
+
+    rates = staticmethod(rates)
+    lean = staticmethod(lean)
+    contact = staticmethod(contact)
+    planar_rates = staticmethod(planar_rates)
+    from_plane = staticmethod(from_plane)
+    rest_energy = staticmethod(rest_energy)
+    no_return_tilt = staticmethod(no_return_tilt)
+    departure = staticmethod(departure)
+    struck = staticmethod(struck)
+
+    @property
+    def impact_restitution(self) -> float:
+        """e, Housner's where `restitution` is None."""
+        if self.restitution is not None:
+            return self.restitution
+        column = self.column
+        return max(0.0, 1.0 - 2.0 * column.mass * column.radius**2 / column.rim_inertia)
+
+    @property
+    def parameters(self) -> tuple[float, ...]:
+        """c, η, κ, δ/r and e."""
+        column = self.column
+        numbers = (column.slenderness, self.damping, column.inertia_ratio)
+        return (*numbers, self.rolling_resistance, self.impact_restitution)
+
+    def start(self, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, float, float, float]:
+        """Return the state with this tilt vector [rad] and its rate [rad/s]."""
+        scale = self.time_scale
+        return tilt[0], tilt[1], tilt_rate[0] * scale, tilt_rate[1] * scale
+
+    @property
+    def comes_to_rest(self) -> bool:
+        """Whether there is friction, or loss at impacts."""
+        return self.damping > 0.0 or self.rolling_resistance > 0.0 or self.impact_restitution < 1.0
+
+    @property
+    def loss_tilt(self) -> float:
+        """Positive where impacts cost energy [rad]: every passage in a plane is one."""
+        return finite_tilt.loss_tilt(self.column, self.impact_restitution, None)
+
+    def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
+        """Return energy, the contact point, and what the contact bears."""
+        column = self.column
+        x, y, vx, vy = states
+        c = column.slenderness
+        kinetic = 0.5 * (1.0 + column.inertia_ratio * c * c) * (vx**2 + vy**2)
+        energy = kinetic + finite_tilt.potential(np.hypot(x, y), c)
+        unit = column.mass * column.gravity * column.mass_height
+        outputs = {
+            "energy": Output(energy * unit, "J", "energy above rest"),
+            **path_outputs(self, states, np.zeros((states.shape[1], 2))),
+            **contact_outputs(self, states, accelerations, resting),
+        }
+        del outputs["footprint"]
+        return outputs

@@ -1,0 +1,340 @@
+"""The column that rolls without slip at finite tilt, free to turn about its axis."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.column import Column
+from stylobate.models import finite_tilt
+from stylobate.models.checks import require_column, require_frictions, require_loss
+from stylobate.models.contact import contact_outputs, path_outputs
+from stylobate.models.departing import departing_lean
+from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
+from stylobate.models.model import Floats, Model, Output, Push
+from stylobate.models.passing import past_the_upright
+
+
+def balance(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    spin: float,
+    ax: float,
+    ay: float,
+    az: float,
+    c: float,
+    eta: float,
+    zeta: float,
+    kappa: float,
+    axial: float,
+    resistance: float,
+) -> tuple[float, float, float, float, float, float, float]:
+    """Return the rates of the tilt rate and of the spin; N, T_d, T_n over m g and M_z over m g h."""
+    square = x * x + y * y + TINY
+    tilt = math.sqrt(square)
+    ux, uy = x / tilt, y / tilt
+    per_angle, cos = sine_over_angle(square), cosine(square)
+    sine = per_angle * tilt
+    turning = vy * ux - vx * uy  # θ β̇
+    around = turning / tilt  # β̇
+    w1, w2, w3 = -per_angle * turning, vx * ux + vy * uy, spin
+    outward, across = ax * ux + ay * uy, ay * ux - ax * uy
+    transverse, inertia = 1.0 - kappa, kappa * axial * c * c  # I_t, I_a
+    height, slope = cos + c * sine, c * cos - sine  # ρ', z'
+    freedom = 1.0 + axial - kappa  # D
+    # K θ̈ = −(1 + a_z) z' − ρ' a_d − κρ'β̇ w + (1 − κ)β̇² sin θ cos θ − I_a β̇ sin θ w3 + M2,  w = c w3 − β̇ sin θ
+    gyration = kappa * c * (height + axial * c * sine) * w3
+    whirl = around * (around * sine * (cos + kappa * c * sine) - gyration)
+    moment = whirl - (1.0 + az) * slope - height * outward - eta * w2
+    rolling = w1 * cos + w3 * sine  # the angular rate about d
+    falling, normal, drag = tilt_acceleration(moment, w2, rolling, sine, cos, 1.0 + az, c, kappa, resistance)
+    # The couples: −ηw1; −D0 ω_z about the vertical, D0 = ζ I_a D/i_a; rolling resistance about d.
+    pivoting = zeta * kappa * c * c * freedom * (w3 * cos - w1 * sine)
+    m1 = pivoting * sine - eta * w1 - drag * rolling * cos
+    m3 = -pivoting * cos - drag * rolling * sine
+    # T_n (1 + κ/I_t + 1/i_a) = a_n + κw2 (w3 I_a/I_t − c w1) − κM1/I_t − κcM3/I_a
+    given = kappa * (w2 * (inertia * w3 - transverse * c * w1) - m1) + transverse * (across - m3 / (axial * c))
+    friction = axial / freedom * given
+    # ẇ1 = w2 β̇ cos θ + (T_n + M1 − I_a w2 w3)/I_t;  ẇ3 = (c T_n + M3)/I_a
+    driven = (friction + m1 - inertia * w2 * w3) / transverse
+    spin_rate = (c * friction + m3) / inertia
+    # α̈ along u and across, from θ̈ and from ẇ1 = −d(β̇ sin θ)/dτ.
+    inward = falling - tilt * around * around
+    sideways = 2.0 * w2 * around * (1.0 - cos / per_angle) - driven / per_angle
+    # T_d = a_d + κ(ρ'θ̈ + z'θ̇² + β̇ w)
+    swept = outward + kappa * (height * falling + slope * w2 * w2 + around * (c * w3 + w1))
+    return (
+        inward * ux - sideways * uy,
+        inward * uy + sideways * ux,
+        spin_rate,
+        normal,
+        swept,
+        friction,
+        -pivoting,
+    )
+
+
+def rates(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    spin: float,
+    ax: float,
+    ay: float,
+    az: float,
+    c: float,
+    eta: float,
+    zeta: float,
+    kappa: float,
+    axial: float,
+    resistance: float,
+    _restitution: float,
+) -> tuple[float, float, float, float, float]:
+    """Return the rates of tilt vector, tilt rate and spin w3/ω0."""
+    bx, by, spin_rate, _, _, _, _ = balance(x, y, vx, vy, spin, ax, ay, az, c, eta, zeta, kappa, axial, resistance)
+    return vx, vy, bx, by, spin_rate
+
+
+def contact(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    spin: float,
+    ax: float,
+    ay: float,
+    az: float,
+    c: float,
+    eta: float,
+    zeta: float,
+    kappa: float,
+    axial: float,
+    resistance: float,
+    _restitution: float,
+) -> tuple[float, float, float]:
+    """Return N and |T| over m g, and |M_z| over m g r, that of the spin friction."""
+    _, _, _, normal, along, across, moment = balance(
+        x, y, vx, vy, spin, ax, ay, az, c, eta, zeta, kappa, axial, resistance
+    )
+    return normal, math.sqrt(along * along + across * across), abs(moment) / c
+
+
+def carried_rates(x: float, y: float, vx: float, vy: float, spin: float, *_: float) -> tuple[float, float, float]:
+    """Return χ̇ = w3 − w1 tan(θ/2) and, in radii, the rate −χ̇ n of the centre of the footprint circle."""
+    square = x * x + y * y + TINY
+    # w1 tan(θ/2) = −β̇ sin²θ/(1 + cos θ)
+    twisting = spin + (1.0 - cosine(square)) * (x * vy - y * vx) / square
+    tilt = math.sqrt(square)
+    return twisting, twisting * y / tilt, -twisting * x / tilt
+
+
+def lean(x: Any, y: Any, vx: Any, vy: Any, *_: Any) -> tuple[Any, Any, Any, Any]:
+    """Return the tilt vector and its rate."""
+    return x, y, vx, vy
+
+
+def planar_rates(
+    tilt: float,
+    rate: float,
+    side: float,
+    horizontal: float,
+    vertical: float,
+    c: float,
+    eta: float,
+    _zeta: float,
+    kappa: float,
+    _axial: float,
+    resistance: float,
+    _restitution: float,
+) -> tuple[float, float]:
+    """Return the right-hand side in a vertical plane, in which nothing spins the column up."""
+    acceleration, _, _ = planar_acceleration(tilt, rate, side, horizontal, vertical, c, eta, kappa, resistance)
+    return rate, acceleration
+
+
+def from_plane(tilt: Any, rate: Any, ux: float, uy: float, *_: float) -> tuple[Any, Any, Any, Any, Any]:
+    """Return the state of a motion along the unit vector (ux, uy), without spin."""
+    return tilt * ux, tilt * uy, rate * ux, rate * uy, 0.0 * tilt
+
+
+def rest_energy(
+    tilt: float, speed: float, vertical: float, c: float, _eta: float, _zeta: float, kappa: float, *_: float
+) -> float:
+    """Return ½K|α̇|² + c(1 + a_z)|α|, what is left above the state of rest but for the spin."""
+    return finite_tilt.energy_at_rest(tilt, speed, vertical, c, kappa)
+
+
+def departure(
+    push: Push, elapsed: float, c: float, eta: float, _zeta: float, kappa: float, axial: float, *_: float
+) -> tuple[float, float, float, float, float]:
+    """Return the state a short time after release, the spin being −½|a_h| β (1 − κ)δ²/(cκD).
+
+    β is the rate at which the push turns ahead of the lean.
+    """
+    freedom = 1.0 + axial - kappa
+    x, y, vx, vy, ahead = departing_lean(push, elapsed, eta, 1.0 + kappa * c * c, axial / freedom)
+    spin = -0.5 * push.acceleration * ahead * elapsed**2 * (1.0 - kappa) / (freedom * c * kappa)
+    return x, y, vx, vy, spin
+
+
+def passage(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    spin: float,
+    ax: float,
+    ay: float,
+    az: float,
+    c: float,
+    eta: float,
+    zeta: float,
+    kappa: float,
+    axial: float,
+    *_: float,
+) -> tuple[float, tuple[float, float, float, float, float]]:
+    """Return the duration and the end of a passage of the upright: the limit of grazing rolling, without loss."""
+    inertia = 1.0 + kappa * c * c
+    speed = math.hypot(vx, vy)
+    ux, uy = vx / speed, vy / speed
+    freedom, sideways = 1.0 + axial - kappa, ay * ux - ax * uy
+    along, across = (ax * ux + ay * uy) / inertia, sideways * axial / freedom
+    push = (across * uy - along * ux, -across * ux - along * uy)
+    # The base spins it up until it turns, and down as much behind.
+    gained = sideways * (1.0 - kappa) / (c * kappa * freedom) * (x * ux + y * uy) / speed
+    gyration = c * kappa * (spin + gained)
+    elapsed, end = past_the_upright((x, y, vx, vy), push, c * (1.0 + az), gyration, eta, inertia)
+    return elapsed, (*end, spin * math.exp(-zeta * elapsed))
+
+
+def struck(x: float, y: float, vx: float, vy: float, spin: float, *numbers: float) -> tuple[float, ...]:
+    """Return the state after a passage of the upright with loss: the tilt rate times the restitution."""
+    restitution = numbers[-1]
+    return x, y, restitution * vx, restitution * vy, spin
+
+
+@dataclass(frozen=True, slots=True)
+class Rolling(Model):
+    """The rigid column that rolls without slip on the rim of its base, at any tilt below π/2, and may turn.
+
+    Its state is the tilt vector α = θ(cos β, sin β), its rate and the spin w3, the angular velocity about its axis;
+    twist and footprint follow from them. Regular at the upright but for what is physical: the contact point races round
+    the rim, past the upright by the angle π√(K/J0) where the column has no spin.
+
+    Parameters
+    ----------
+    column
+        The column.
+    damping
+        Viscous friction η = D1/(ω0 J0), a couple −D1 against the horizontal part of the tilting: −D1(w1 u + w2 n).
+    spin_friction
+        ζ, by a moment −D0 times the angular velocity about the vertical, D0 = ζ ω0 I_a D/i_a: a column that spins
+        upright loses its spin at the rate ζ ω0.
+    rolling_resistance
+        Lever arm δ of the normal force, in units of the radius: a couple of size δ r N against the horizontal part of
+        the angular velocity, fading out below the rate 1e-3 ω0.
+    restitution
+        e, the part of the tilt rate that is left after a passage of the upright; 1 for no loss, the limit of grazing
+        rolling. `theory.housner_restitution` tells Housner's value for planar impacts.
+    passage_tilt
+        A least tilt counts as a passage of the upright below this [rad]; by default 0.01 c.
+
+    Raises
+    ------
+    ParameterError
+        If `column` is no Column, a friction is negative or not finite, or `restitution` lies outside 0 to 1.
+
+    Notes
+    -----
+    Overturning is told at a tilt of π/2: spin holds no column up for certain, nor lets it fall. With κ = m h²/J0,
+    i_a = I_a/(m r²), D = 1 + i_a − κ, in units of 1/ω0, h and g, w = c w3 + w1, d and n horizontal along the lean and
+    across it, the equations are those of Newton and Euler with the force N, T_d, T_n at the contact, and
+
+    K θ̈ = −(1 + a_z) z' − ρ' a_d − κρ'β̇w + (1 − κ)β̇² sin θ cos θ − I_a β̇ w3 sin θ + M2,
+    (1 − κ) ẇ1 = (1 − κ) β̇θ̇ cos θ − I_a θ̇ w3 + T_n + M1,   I_a ẇ3 = c T_n + M3.
+    """
+
+    column: Column
+    damping: float = 0.0
+    spin_friction: float = 0.0
+    rolling_resistance: float = 0.0
+    restitution: float = 1.0
+    passage_tilt: float | None = None
+
+    name: ClassVar[str] = "rolling"
+    state_names: ClassVar[tuple[str, ...]] = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y", "spin")
+    spin_state: ClassVar[int | None] = 4
+    carried_names: ClassVar[tuple[str, ...]] = ("twist", "footprint_x", "footprint_y")
+
+    def __post_init__(self) -> None:
+        require_column(self.column)
+        require_frictions(self, "damping", "spin_friction", "rolling_resistance")
+        require_loss(self)
+
+    rates = staticmethod(rates)
+    lean = staticmethod(lean)
+    contact = staticmethod(contact)
+    carried_rates = staticmethod(carried_rates)
+    planar_rates = staticmethod(planar_rates)
+    from_plane = staticmethod(from_plane)
+    rest_energy = staticmethod(rest_energy)
+    departure = staticmethod(departure)
+    passage = staticmethod(passage)
+    struck = staticmethod(struck)
+
+    @property
+    def parameters(self) -> tuple[float, ...]:
+        """c, η, ζ, κ, i_a, δ/r and e."""
+        column = self.column
+        shape = (column.inertia_ratio, column.axial_ratio)
+        frictions = (self.rolling_resistance, self.restitution)
+        return (column.slenderness, self.damping, self.spin_friction, *shape, *frictions)
+
+    def start(
+        self, tilt: tuple[float, float], tilt_rate: tuple[float, float]
+    ) -> tuple[float, float, float, float, float]:
+        """Return the state with this tilt vector [rad] and its rate [rad/s], without spin."""
+        scale = self.time_scale
+        return tilt[0], tilt[1], tilt_rate[0] * scale, tilt_rate[1] * scale, 0.0 * tilt[0]
+
+    @property
+    def comes_to_rest(self) -> bool:
+        """Whether there is friction."""
+        return self.damping > 0.0 or self.rolling_resistance > 0.0 or self.restitution < 1.0
+
+    @property
+    def loss_tilt(self) -> float:
+        """Tilt below which a passage of the upright loses energy [rad]; 0 where none does."""
+        return finite_tilt.loss_tilt(self.column, self.restitution, self.passage_tilt)
+
+    def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
+        """Return spin, twist and footprint, the path of the contact point, energy, and what the contact bears."""
+        column, scale = self.column, self.time_scale
+        spin, twist = states[4:6]
+        return {
+            "spin": Output(spin / scale, "rad s-1", "angular velocity about the axis"),
+            "twist": Output(twist, "rad", "angle of turn about the axis"),
+            **path_outputs(self, states, column.radius * states[6:8].T),
+            "energy": Output(self._energy(states), "J", "energy above rest"),
+            **contact_outputs(self, states, accelerations, resting),
+        }
+
+    def _energy(self, states: Floats) -> Floats:
+        """½Kθ̇² + ½κw² + ½(1 − κ)w1² + ½I_a w3² + c sin θ − (1 − cos θ), in units of m g h."""
+        column = self.column
+        c, kappa = column.slenderness, column.inertia_ratio
+        x, y, vx, vy, w3 = states[:5]
+        tilt = np.hypot(x, y)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            w2 = np.where(tilt > 0.0, (x * vx + y * vy) / tilt, np.hypot(vx, vy))
+            w1 = np.where(tilt > 0.0, -np.sinc(tilt / np.pi) * (x * vy - y * vx) / tilt, 0.0)
+        kinetic = (1.0 + kappa * c * c) * w2**2 + kappa * (c * w3 + w1) ** 2 + (1.0 - kappa) * w1**2
+        kinetic += kappa * column.axial_ratio * c * c * w3**2
+        energy: Floats = 0.5 * kinetic + finite_tilt.potential(tilt, c)
+        return column.mass * column.gravity * column.mass_height * energy

@@ -1,0 +1,340 @@
+"""The column at finite tilt that cannot turn: the slender column's assumption kept, its small angles left behind."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal, get_args
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.column import Column
+from stylobate.errors import ParameterError
+from stylobate.models import finite_tilt
+from stylobate.models.checks import require_column, require_frictions, require_loss
+from stylobate.models.contact import contact_outputs, path_outputs
+from stylobate.models.departing import departing_lean
+from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
+from stylobate.models.model import Floats, Model, Output, Push
+from stylobate.models.passing import past_the_upright
+
+Constraint = Literal["pure_tilt", "rubber"]
+
+# Keeps tan θ and its powers finite where the axis lies level.
+_LEVEL = 1e-100
+
+
+def balance(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    ax: float,
+    ay: float,
+    az: float,
+    c: float,
+    eta: float,
+    kappa: float,
+    axial: float,
+    resistance: float,
+    rubber: float,
+) -> tuple[float, float, float, float, float, float]:
+    """Return the rates of the tilt rate; N, T_d, T_n over m g and M_z over m g h."""
+    square = x * x + y * y + TINY
+    tilt = math.sqrt(square)
+    ux, uy = x / tilt, y / tilt
+    per_angle, cos = sine_over_angle(square), cosine(square)
+    sine = per_angle * tilt
+    around = (vy * ux - vx * uy) / tilt  # β̇
+    w1, w2 = -sine * around, vx * ux + vy * uy
+    outward, across = ax * ux + ay * uy, ay * ux - ax * uy
+    inertia = kappa * axial * c * c  # I_a
+    height, slope = cos + c * sine, c * cos - sine  # ρ', z'
+    # w3 = q w1: q = tan(θ/2) where ω·(e3 + Z) = 0, q = tan θ where ω·Z = 0.
+    up = cos + _LEVEL
+    per_sine = rubber / up + (1.0 - rubber) / (1.0 + cos)
+    q, q_rate = per_sine * sine, rubber / (up * up) + (1.0 - rubber) / (1.0 + cos)
+    w3 = q * w1
+    gyration = kappa * c * (height + axial * c * sine) * w3
+    whirl = around * (around * sine * (cos + kappa * c * sine) - gyration)
+    moment = whirl - (1.0 + az) * slope - height * outward - eta * w2
+    rolling = w1 * cos + w3 * sine
+    falling, normal, drag = tilt_acceleration(moment, w2, rolling, sine, cos, 1.0 + az, c, kappa, resistance)
+    m1, m3 = -eta * w1 - drag * rolling * cos, -drag * rolling * sine
+    # M ẇ1 = M β̇θ̇ cos θ + …, M = I_t + q²I_a + κ(1 + qc)²; with β̇ cos θ = −w1 (q/sin θ)(cos θ/q) the rest is regular.
+    reach = 1.0 + q * c
+    mass = 1.0 - kappa + q * q * inertia + kappa * reach * reach
+    turning = w1 * w2 * (cos * per_sine * (kappa * c * reach + q * inertia) - q * (1.0 + q_rate) * inertia)
+    driven = (turning + reach * (across - kappa * c * (1.0 + q_rate) * w1 * w2) + m1 + q * m3) / mass
+    w1_rate = around * cos * w2 + driven
+    w3_rate = q * w1_rate + q_rate * w2 * w1
+    # T_n = a_n − κ(ẇ − ρ'θ̇β̇); what turns it not about its axis is a couple along e3 + Z, or along Z.
+    friction = across - kappa * (c * w3_rate + w1_rate - height * w2 * around)
+    couple = (inertia * w3_rate - c * friction - m3) * (rubber / up + 1.0 - rubber)
+    inward = falling - tilt * around * around
+    sideways = 2.0 * w2 * around * (1.0 - cos / per_angle) - driven / per_angle
+    swept = outward + kappa * (height * falling + slope * w2 * w2 + around * (c * w3 + w1))
+    return inward * ux - sideways * uy, inward * uy + sideways * ux, normal, swept, friction, couple
+
+
+def rates(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    ax: float,
+    ay: float,
+    az: float,
+    c: float,
+    eta: float,
+    kappa: float,
+    axial: float,
+    resistance: float,
+    rubber: float,
+    _restitution: float,
+) -> tuple[float, float, float, float]:
+    """Return the rates of tilt vector and tilt rate."""
+    bx, by, _, _, _, _ = balance(x, y, vx, vy, ax, ay, az, c, eta, kappa, axial, resistance, rubber)
+    return vx, vy, bx, by
+
+
+def contact(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    ax: float,
+    ay: float,
+    az: float,
+    c: float,
+    eta: float,
+    kappa: float,
+    axial: float,
+    resistance: float,
+    rubber: float,
+    _restitution: float,
+) -> tuple[float, float, float]:
+    """Return N and |T| over m g, and |M_z| over m g r, that of the couple that holds the column from turning."""
+    _, _, normal, along, across, couple = balance(x, y, vx, vy, ax, ay, az, c, eta, kappa, axial, resistance, rubber)
+    return normal, math.sqrt(along * along + across * across), abs(couple) / c
+
+
+def carried_rates(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    _c: float,
+    _eta: float,
+    _kappa: float,
+    _axial: float,
+    _resistance: float,
+    rubber: float,
+    *_: float,
+) -> tuple[float, float, float]:
+    """Return χ̇ = w3 − w1 tan(θ/2), 0 where ω·(e3 + Z) = 0, and the rate −χ̇ n of the footprint circle in radii."""
+    square = x * x + y * y + TINY
+    tilt, cos = math.sqrt(square), cosine(square)
+    # w1 (tan θ − tan(θ/2)) = −β̇ (1 − cos θ)/cos θ
+    twisting = -rubber * (x * vy - y * vx) / square * (1.0 - cos) / (cos + _LEVEL)
+    return twisting, twisting * y / tilt, -twisting * x / tilt
+
+
+def lean(x: Any, y: Any, vx: Any, vy: Any, *_: Any) -> tuple[Any, Any, Any, Any]:
+    """Return the tilt vector and its rate: the state itself."""
+    return x, y, vx, vy
+
+
+def planar_rates(
+    tilt: float,
+    rate: float,
+    side: float,
+    horizontal: float,
+    vertical: float,
+    c: float,
+    eta: float,
+    kappa: float,
+    _axial: float,
+    resistance: float,
+    _rubber: float,
+    _restitution: float,
+) -> tuple[float, float]:
+    """Return the right-hand side in a vertical plane."""
+    acceleration, _, _ = planar_acceleration(tilt, rate, side, horizontal, vertical, c, eta, kappa, resistance)
+    return rate, acceleration
+
+
+def from_plane(tilt: Any, rate: Any, ux: float, uy: float, *_: float) -> tuple[Any, Any, Any, Any]:
+    """Return the state of a motion along the unit vector (ux, uy)."""
+    return tilt * ux, tilt * uy, rate * ux, rate * uy
+
+
+def rest_energy(tilt: float, speed: float, vertical: float, c: float, _eta: float, kappa: float, *_: float) -> float:
+    """Return ½K|α̇|² + c(1 + a_z)|α|, what is left above the state of rest."""
+    return finite_tilt.energy_at_rest(tilt, speed, vertical, c, kappa)
+
+
+def no_return_tilt(largest_horizontal: float, least_vertical: float, c: float, *_: float) -> float:
+    """Return the tilt beyond which a growing tilt can never come back [rad]."""
+    return finite_tilt.no_return_tilt(largest_horizontal, least_vertical, c)
+
+
+def departure(
+    push: Push, elapsed: float, c: float, eta: float, kappa: float, *_: float
+) -> tuple[float, float, float, float]:
+    """Return the state a short time after release."""
+    return departing_lean(push, elapsed, eta, 1.0 + kappa * c * c, 1.0)[:4]
+
+
+def passage(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    ax: float,
+    ay: float,
+    az: float,
+    c: float,
+    eta: float,
+    kappa: float,
+    *_: float,
+) -> tuple[float, tuple[float, float, float, float]]:
+    """Return the duration and the end of a passage of the upright, along which the azimuth turns by π√K."""
+    inertia = 1.0 + kappa * c * c
+    speed = math.hypot(vx, vy)
+    ux, uy = vx / speed, vy / speed
+    along, across = (ax * ux + ay * uy) / inertia, ay * ux - ax * uy
+    push = (across * uy - along * ux, -across * ux - along * uy)
+    return past_the_upright((x, y, vx, vy), push, c * (1.0 + az), 0.0, eta, inertia)
+
+
+def struck(x: float, y: float, vx: float, vy: float, *numbers: float) -> tuple[float, ...]:
+    """Return the state after a passage of the upright with loss: the tilt rate times the restitution."""
+    restitution = numbers[-1]
+    return x, y, restitution * vx, restitution * vy
+
+
+@dataclass(frozen=True, slots=True)
+class Wobbling(Model):
+    """The rigid column that rolls on the rim of its base at any tilt below π/2 and cannot turn.
+
+    Its angular velocity has no part along e3 + Z, the bisector of axis and vertical: it tilts without twist, the
+    footprint of its base stays where it was. This is the holonomic form of the paper's assumption.
+
+    Parameters
+    ----------
+    column
+        The column.
+    damping
+        Viscous friction η = D1/(ω0 J0), a couple −D1(w1 u + w2 n).
+    rolling_resistance
+        Lever arm δ of the normal force, in units of the radius: a couple of size δ r N against the horizontal part of
+        the angular velocity, fading out below the rate 1e-3 ω0.
+    restitution
+        e, the part of the tilt rate that is left after a passage of the upright; 1 for no loss.
+    passage_tilt
+        A least tilt counts as a passage of the upright below this [rad]; by default 0.01 c.
+    constraint
+        "pure_tilt": ω·(e3 + Z) = 0. "rubber": ω·Z = 0, no rotation about the vertical at all, as of a contact that
+        cannot pivot; it is not holonomic, differs by O(c²), and the footprint wanders.
+
+    Raises
+    ------
+    ParameterError
+        If `column` is no Column, a friction is negative or not finite, `restitution` lies outside 0 to 1, or
+        `constraint` is none of the two.
+
+    Notes
+    -----
+    Under pure tilt, with M(θ) = κρ² + (1 − κ) sin²θ + I_a(1 − cos θ)², ρ = sin θ + c(1 − cos θ) and K = 1 + κc², in
+    units of 1/ω0, h and g,
+
+    K θ̈ = ½M'β̇² − (1 + a_z) z' − ρ' a_d − ηθ̇,   (Mβ̇)˙ = −ρ a_n − η sin²θ β̇.
+    """
+
+    column: Column
+    damping: float = 0.0
+    rolling_resistance: float = 0.0
+    restitution: float = 1.0
+    passage_tilt: float | None = None
+    constraint: Constraint = "pure_tilt"
+
+    name: ClassVar[str] = "wobbling"
+    state_names: ClassVar[tuple[str, ...]] = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
+    carried_names: ClassVar[tuple[str, ...]] = ("twist", "footprint_x", "footprint_y")
+
+    def __post_init__(self) -> None:
+        require_column(self.column)
+        require_frictions(self, "damping", "rolling_resistance")
+        require_loss(self)
+        if self.constraint not in get_args(Constraint):
+            message = f"constraint must be 'pure_tilt' or 'rubber', got {self.constraint!r}"
+            raise ParameterError(message)
+
+    rates = staticmethod(rates)
+    lean = staticmethod(lean)
+    contact = staticmethod(contact)
+    carried_rates = staticmethod(carried_rates)
+    planar_rates = staticmethod(planar_rates)
+    from_plane = staticmethod(from_plane)
+    rest_energy = staticmethod(rest_energy)
+    no_return_tilt = staticmethod(no_return_tilt)
+    departure = staticmethod(departure)
+    passage = staticmethod(passage)
+    struck = staticmethod(struck)
+
+    @property
+    def parameters(self) -> tuple[float, ...]:
+        """c, η, κ, i_a, δ/r, 1 for rubber, else 0, and e."""
+        column = self.column
+        shape = (column.inertia_ratio, column.axial_ratio)
+        rest = (self.rolling_resistance, float(self.constraint == "rubber"), self.restitution)
+        return (column.slenderness, self.damping, *shape, *rest)
+
+    def start(self, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, float, float, float]:
+        """Return the state with this tilt vector [rad] and its rate [rad/s]."""
+        scale = self.time_scale
+        return tilt[0], tilt[1], tilt_rate[0] * scale, tilt_rate[1] * scale
+
+    @property
+    def comes_to_rest(self) -> bool:
+        """Whether there is friction, or loss on passing the upright."""
+        return self.damping > 0.0 or self.rolling_resistance > 0.0 or self.restitution < 1.0
+
+    @property
+    def loss_tilt(self) -> float:
+        """Tilt below which a passage of the upright loses energy [rad]; 0 where none does."""
+        return finite_tilt.loss_tilt(self.column, self.restitution, self.passage_tilt)
+
+    def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
+        """Return energy, angular momentum, twist and footprint, the path of the contact, and what the contact bears.
+
+        Under pure tilt the angular momentum Mβ̇ [kg m²/s] belongs to the azimuth of the lean; without friction a base
+        at rest keeps both it and the energy.
+        """
+        column = self.column
+        c, kappa = column.slenderness, column.inertia_ratio
+        x, y, vx, vy = states[:4]
+        tilt = np.hypot(x, y)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            falling = np.where(tilt > 0.0, (x * vx + y * vy) / tilt, np.hypot(vx, vy))
+            around = np.where(tilt > 0.0, (x * vy - y * vx) / tilt**2, 0.0)
+        sine, half = np.sin(tilt), 2.0 * np.sin(0.5 * tilt) ** 2
+        sway = sine + c * half
+        q_sine = half if self.constraint == "pure_tilt" else sine * np.tan(tilt)
+        if self.constraint == "rubber":
+            sway = sine + c * q_sine
+        moment = kappa * sway**2 + (1.0 - kappa) * sine**2 + kappa * column.axial_ratio * c * c * q_sine**2
+        kinetic = (1.0 + kappa * c * c) * falling**2 + moment * around**2
+        energy = 0.5 * kinetic + finite_tilt.potential(tilt, c)
+        unit = column.base_inertia * column.frequency_scale
+        outputs = {
+            "energy": Output(energy * unit * column.frequency_scale, "J", "energy above rest"),
+            "angular_momentum": Output(moment * around * unit, "kg m2 s-1", "angular momentum of the azimuth"),
+            "twist": Output(states[4], "rad", "angle of turn about the axis"),
+            **path_outputs(self, states, column.radius * states[5:7].T),
+            **contact_outputs(self, states, accelerations, resting),
+        }
+        if self.constraint == "rubber":
+            del outputs["angular_momentum"]
+        return outputs

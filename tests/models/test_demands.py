@@ -1,0 +1,175 @@
+"""The largest demands on the contact in a run, and the warnings that come of them."""
+
+import math
+
+import numpy as np
+import pytest
+
+import stylobate as sb
+
+from .same_body import body_of, shaken_in_space, state_of
+
+COLUMN = sb.Column.solid(radius=0.3, height=2.0, density=2000.0)
+C, SCALE = COLUMN.slenderness, COLUMN.frequency_scale
+START = (0.07, 0.4, -0.05, 0.1, 0.1)
+MODELS = {
+    "rolling": sb.Rolling(COLUMN, damping=0.1, spin_friction=0.2),
+    "wobbling": sb.Wobbling(COLUMN, damping=0.1),
+    "rubber": sb.Wobbling(COLUMN, damping=0.1, constraint="rubber"),
+}
+CIRCLE = sb.Harmonic.circular(acceleration=0.05 * COLUMN.gravity, angular_frequency=2.0 * SCALE)
+
+
+def begun(model):
+    state = state_of(model, *START)
+    spin = {} if model.spin_state is None else {"spin": START[-1] * SCALE}
+    return {"tilt": state[:2], "tilt_rate": np.array(state[2:4]) * SCALE, **spin}
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_the_largest_demands_are_those_of_newton_and_euler(name):
+    model, duration = MODELS[name], 3.0 / SCALE
+    motion, acceleration = shaken_in_space(COLUMN, 2.0)
+    run = sb.simulate(model, motion, **begun(model), duration=duration, rtol=1e-11)
+    body, (theta, beta, w1, w2, w3) = body_of(model), START
+    first = body.state(
+        theta=theta, beta=beta, w1=w1 * SCALE, w2=w2 * SCALE, w3=w3 * SCALE if name == "rolling" else None
+    )
+    track = body.follow(
+        first, duration=duration, acceleration=acceleration, times=np.linspace(0.0, duration, 400)[1:-1], rtol=1e-10
+    )
+    weight = COLUMN.mass * COLUMN.gravity
+    friction, normal = run.measures["largest_friction_demand"], run.measures["least_normal_force"]
+    # Between its own samples the oracle can only have missed a little: half the curvature times a half step squared.
+    assert friction == pytest.approx(max(track.demand.max(), track.largest_demand), rel=1e-4)
+    assert friction >= track.demand.max() * (1.0 - 1e-8)
+    assert normal == pytest.approx(track.normal.min() / weight, rel=1e-4)
+    assert normal <= track.normal.min() / weight * (1.0 + 1e-8)
+    if name != "rolling":
+        moment = np.abs(track.couple[:, 2]) / (track.normal * COLUMN.radius)
+        assert run.measures["largest_pivoting_demand"] == pytest.approx(moment.max(), rel=1e-4)
+
+
+def test_demands_do_not_depend_on_the_samples_kept():
+    model = MODELS["rolling"]
+    few, many = (
+        sb.simulate(model, CIRCLE, **begun(model), duration=5.0, samples=samples).measures for samples in (2, 5001)
+    )
+    assert few == many
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_a_run_warns_of_slipping_where_more_friction_is_needed_than_there_is_and_only_there(name):
+    model = MODELS[name]
+    needed = sb.simulate(model, CIRCLE, **begun(model), duration=3.0).measures["largest_friction_demand"]
+    for share, warned in ((1.001, False), (0.999, True)):
+        run = sb.simulate(model, CIRCLE, **begun(model), duration=3.0, friction_coefficient=share * needed)
+        assert bool(run.warnings) is warned
+        if warned:
+            (line,) = run.warnings
+            assert line.startswith("it would slip")
+            assert f"{needed:.4g} times the normal force is needed" in line
+            assert "\n" not in line
+    assert sb.simulate(model, CIRCLE, **begun(model), duration=3.0).warnings == ()
+
+
+def test_the_first_moment_of_slipping_is_told():
+    model = MODELS["wobbling"]
+    run = sb.simulate(model, CIRCLE, **begun(model), duration=3.0, friction_coefficient=0.15)
+    demand, time = run.data["friction_demand"].to_numpy(), run.data["time"].to_numpy()
+    first = time[np.argmax(demand > 0.15)]
+    assert f"it would slip from {first:.4g} s on" in run.warnings[0]
+
+
+def test_a_column_that_is_thrown_down_fast_would_lift_off():
+    # At the upright z'θ̈ and ρ'θ̇² take from the weight: N = 1 + κ(z'θ̈ − ρ'θ̇²) < 0 for fast motions.
+    kappa = COLUMN.inertia_ratio
+    for rate, lifts in ((0.9, False), (1.3, True)):
+        run = sb.simulate(
+            sb.Wobbling(COLUMN), tilt=(0.05, 0.0), tilt_rate=(rate * SCALE, 0.01), duration=0.1 / SCALE,
+            friction_coefficient=100.0,
+        )  # fmt: skip
+        assert (run.measures["least_normal_force"] < 0.0) is lifts
+        assert any("it would lift off" in line for line in run.warnings) is lifts
+        expected = 1.0 + kappa * (
+            -((C * math.cos(0.05) - math.sin(0.05)) ** 2) / (1.0 + kappa * C**2)
+            - (math.cos(0.05) + C * math.sin(0.05)) * rate**2
+        )
+        assert float(run.data["normal_force"][0]) / (COLUMN.mass * COLUMN.gravity) == pytest.approx(expected, abs=1e-3)
+        infinite = np.isinf(run.data["friction_demand"].to_numpy())
+        np.testing.assert_array_equal(infinite, run.data["normal_force"].to_numpy() <= 0.0)
+        assert math.isinf(run.measures["largest_friction_demand"]) is lifts
+
+
+def test_a_column_that_only_stands_has_no_demands_of_motion():
+    run = sb.simulate(MODELS["rolling"], CIRCLE, duration=2.0, friction_coefficient=0.01)
+    assert bool(run.data["resting"].all())
+    assert run.warnings == ()
+    assert "largest_friction_demand" not in run.measures
+
+
+def test_demands_are_told_from_the_motion_only_where_a_column_stands_too():
+    # A standing column needs |a_h|/g = 0.9 c; a brief push releases it, and the demand of the motion is what counts.
+    motion = sb.Harmonic.circular(acceleration=1.05 * C * COLUMN.gravity, angular_frequency=2.0 * SCALE, ramp=8.0)
+    run = sb.simulate(sb.Wobbling(COLUMN, damping=0.1), motion, duration=12.0)
+    moving = ~run.data["resting"].to_numpy()
+    assert 0 < moving.sum() < moving.size
+    expected = run.data["friction_demand"].to_numpy()[moving].max()
+    assert run.measures["largest_friction_demand"] == pytest.approx(expected, rel=1e-3)
+    assert run.measures["largest_friction_demand"] >= expected
+
+
+def test_release_from_rest_needs_the_friction_that_theory_says():
+    # Let go at a small tilt a column needs κc; free of forcing, near the upright.
+    run = sb.simulate(sb.Wobbling(COLUMN), tilt=(1e-6, 0.0), duration=1e-4)
+    known = float(sb.theory.required_friction(C, inertia_ratio=COLUMN.inertia_ratio))
+    # Over the normal force, which falls meanwhile by κc².
+    normal = 1.0 - COLUMN.inertia_ratio * C**2 / (1.0 + COLUMN.inertia_ratio * C**2)
+    friction = COLUMN.inertia_ratio * C / (1.0 + COLUMN.inertia_ratio * C**2)
+    assert run.measures["largest_friction_demand"] == pytest.approx(friction / normal, rel=1e-4)
+    assert friction / normal == pytest.approx(known, rel=1e-12)
+
+
+def test_warnings_and_demands_are_saved_and_loaded(tmp_path):
+    model = MODELS["rolling"]
+    run = sb.simulate(model, CIRCLE, **begun(model), duration=3.0, friction_coefficient=0.01)
+    loaded = sb.load(run.save(tmp_path / "run.nc"))
+    assert loaded.warnings == run.warnings
+    assert len(loaded.warnings) == 1
+    for name in ("largest_friction_demand", "largest_pivoting_demand", "least_normal_force"):
+        assert loaded.measures[name] == run.measures[name]
+    np.testing.assert_array_equal(loaded.data["friction_demand"], run.data["friction_demand"])
+    assert loaded.provenance["friction_coefficient"] == 0.01
+
+
+class _Quiet(sb.Wobbling):
+    """A model whose outputs leave out what its contact bears."""
+
+    def outputs(self, states, accelerations, resting):
+        return {}
+
+
+def test_a_model_that_does_not_tell_its_demands_has_none():
+    run = sb.simulate(_Quiet(COLUMN), CIRCLE, tilt=(0.05, 0.0), duration=1.0, friction_coefficient=0.01)
+    assert run.warnings == ()
+    assert "largest_friction_demand" not in run.measures
+
+
+@pytest.mark.parametrize(("spin", "least"), [(0.05, 1e-5), (0.05, 1e-6), (0.3, 1e-4), (0.3, 1e-6)])
+def test_what_the_contact_bears_for_a_moment_is_not_missed(spin, least):
+    # A spinning column that passes closely in the sense of its spin needs most there, within least/speed: made by
+    # following it from the passage and back in time.
+    body = sb.Column.dimensionless(0.2, 0.74, 0.5)
+    model, away = sb.Rolling(body), 0.537
+    gone = sb.simulate(
+        model, tilt=(least, 0.0), tilt_rate=(0.0, 0.15), spin=spin, duration=away, rtol=1e-12, atol=1e-16
+    ).data.isel(time=-1)
+    run = sb.simulate(
+        model, tilt=gone["tilt"].values, tilt_rate=-gone["tilt_rate"].values, spin=-float(gone["spin"]),
+        duration=2.0 * away - 1e-3, rtol=1e-11, friction_coefficient=0.2,
+    )  # fmt: skip
+    fine = run.sample(away + np.linspace(-100.0, 100.0, 20001) * least)
+    assert run.measures["least_passage"] == pytest.approx(least, rel=1e-4)
+    assert run.measures["largest_friction_demand"] >= float(fine["friction_demand"].max()) * (1.0 - 1e-6)
+    assert run.measures["least_normal_force"] <= float(fine["normal_force"].min()) + 1e-6
+    assert len(run.warnings) == (2 if run.measures["least_normal_force"] < 0.0 else 1)
