@@ -22,10 +22,10 @@ def rolling(model, branch, spin=None):
     return run.data.isel(time=slice(-50, None))
 
 
-def needed(branch):
-    """|a_h + κα̈| on steady rolling, and ηθA."""
+def needed(branch, spin=0.0):
+    """|a_h + κ(α̈ + cσθ û)| on steady rolling, on which the footprint circles with the velocity −cσ n, and ηθA."""
     size, psi = float(branch.amplitude), float(branch.phase)
-    friction = abs(A0 - 0.75 * THETA**2 * size * np.exp(1j * psi))
+    friction = abs(A0 - 0.75 * THETA * (THETA * size - C * spin) * np.exp(1j * psi))
     return friction, ETA * THETA * size
 
 
@@ -43,7 +43,7 @@ def test_steady_rolling_that_cannot_turn_needs_what_theory_says():
 def test_with_a_free_twist_the_spin_friction_gives_the_moment():
     branch = sb.theory.free_twist_rolling(THETA, A0, c=C, eta=ETA, zeta=0.1)
     found = rolling(sb.SlenderRolling(COLUMN, damping=ETA, spin_friction=0.1), branch)
-    friction, _ = needed(branch)
+    friction, _ = needed(branch, float(branch.spin))
     np.testing.assert_allclose(found["friction_demand"], friction, rtol=1e-4)
     np.testing.assert_allclose(found["pivoting_demand"], float(branch.friction_moment), rtol=1e-4)
 

@@ -178,3 +178,22 @@ def test_slightly_out_of_its_plane_a_column_tilts_as_in_it_and_turns_by_more(mod
     turn = float(sb.theory.angle_of_turn(0.2, inertia_ratio=0.745))
     assert passages >= 3
     assert float(space.data["azimuth"][-1] - space.data["azimuth"][0]) == pytest.approx(passages * turn, abs=1e-3)
+
+
+def test_the_friction_that_slender_rolling_needs_is_the_limit_of_that_of_the_rolling_body():
+    # The centre of mass moves with the footprint too; differences go as c².
+    rng = np.random.default_rng(5)
+    draws = rng.normal(size=(40, 7)) * 0.5
+    largest = []
+    for c in (0.04, 0.02, 0.01):
+        column = sb.Column.dimensionless(c)
+        frictions = {"damping": 0.1, "spin_friction": 0.1}
+        small, finite = sb.SlenderRolling(column, **frictions), sb.Rolling(column, **frictions)
+        differences = []
+        for draw in draws:
+            state, push = [*(c * draw[:4]), draw[4]], [*(c * draw[5:]), 0.0]
+            loads = [model.contact(*state, *push, *model.parameters) for model in (small, finite)]
+            differences.append([abs(a - b) / c for a, b in zip(loads[0][1:], loads[1][1:], strict=True)])
+        largest.append(np.max(differences, axis=0))
+    slopes = np.log2(np.array(largest[:-1]) / np.array(largest[1:]))
+    np.testing.assert_allclose(slopes, 2.0, atol=0.05)

@@ -8,6 +8,7 @@ import typer
 
 from stylobate.cli.basin import basin
 from stylobate.cli.boundary import boundary
+from stylobate.cli.ladder import ladder
 from stylobate.cli.many_runs import INTERRUPTED
 from stylobate.cli.map import overturning_map
 from stylobate.cli.options import joined_ranges
@@ -49,7 +50,7 @@ def _options(
     del version
 
 
-for command in (paper, simulate, response, boundary):
+for command in (paper, simulate, ladder, response, boundary):
     app.command()(command)
 app.command("map")(overturning_map)
 app.command()(basin)

@@ -37,6 +37,12 @@ RestEnergy = Annotated[float | None, _option("energy of rest ε, in c²", _RUN)]
 MaxSteps = Annotated[int | None, _option("most integration steps, 200000 by default", _RUN)]
 Method = Annotated[str | None, _option("dop853 (by default), or taylor: faster for columns that roll steadily", _RUN)]
 Samples = Annotated[int | None, _option("number of samples kept", _RUN)]
+Spin = Annotated[float | None, _option("angular velocity about the axis at the start [rad/s]", _RUN)]
+Twist = Annotated[float | None, _option("angle of turn about the axis at the start [rad]", _RUN)]
+Position = Annotated[tuple[float, float] | None, _option("centre of the footprint at the start [m]", _RUN)]
+FrictionCoefficient = Annotated[
+    float | None, _option("of the contact; the run warns where more friction is needed", _RUN)
+]
 
 Shape = Annotated[str | None, _option("solid, hollow, frustum or dimensionless; told from the others", _COLUMN)]
 Radius = Annotated[float | None, _option("base radius [m]", _COLUMN)]
@@ -47,7 +53,18 @@ TopRadius = Annotated[float | None, _option("top radius of a frustum [m]", _COLU
 Slenderness = Annotated[float | None, _option("r/h of a dimensionless column (m = g = ω0 = 1)", _COLUMN)]
 Gravity = Annotated[float | None, _option("gravity [m/s²], 9.80665 by default", _COLUMN)]
 
+Model = Annotated[
+    str | None,
+    _option("slender (by default), slender-rolling, wobbling, rolling or planar-rocking", _MODEL),
+]
 Damping = Annotated[float | None, _option("viscous friction η, dimensionless", _MODEL)]
+SpinFriction = Annotated[float | None, _option("ζ, of a column that may turn: its spin decays at ζω0", _MODEL)]
+RollingResistance = Annotated[float | None, _option("lever arm of the normal force, in radii", _MODEL)]
+Restitution = Annotated[float | None, _option("part of the tilt rate left after passing the upright", _MODEL)]
+Constraint = Annotated[str | None, _option("of wobbling: pure-tilt (by default) or rubber", _MODEL)]
+PassageTilt = Annotated[
+    float | None, _option("tilt below which the upright is passed [rad], 0.01 c by default", _MODEL)
+]
 
 Motion = Annotated[
     str | None,
@@ -92,9 +109,20 @@ RUN_NAMES = (
     "samples",
     "strobes",
     "confidence",
+    "spin",
+    "twist",
+    "position",
+    "friction_coefficient",
 )
 _COLUMN_NAMES = ("shape", "radius", "height", "density", "inner_radius", "top_radius", "slenderness", "gravity")
-_MODEL_NAMES = ("damping",)
+_MODEL_NAMES = (
+    "damping",
+    "spin_friction",
+    "rolling_resistance",
+    "restitution",
+    "constraint",
+    "passage_tilt",
+)
 _MOTION_NAMES = (
     "acceleration",
     "angular_frequency",
@@ -126,7 +154,7 @@ def overlay(described: Mapping[str, Any], given: Mapping[str, Any], run_names: t
     """
     values = dict(described)
     _section(values, "column", _column(values.get("column"), _pick(given, _COLUMN_NAMES)), tag="shape")
-    _section(values, "model", _pick(given, _MODEL_NAMES))
+    _section(values, "model", _model(values, given))
     motion = {**({"kind": given["motion"]} if given.get("motion") else {}), **_pick(given, _MOTION_NAMES)}
     _section(values, "motion", motion, tag="kind")
     chosen = _pick(given, run_names)
@@ -154,8 +182,38 @@ def _column(described: Any, options: dict[str, Any]) -> dict[str, Any]:
     return options | {"shape": before}
 
 
+def _model(values: dict[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the options of the model, with underscores for hyphens.
+
+    Another kind than that of the file keeps what it knows of the numbers there, and `values` lose the others: the same
+    column by another model.
+    """
+    from stylobate.spec.models import known_values  # noqa: PLC0415  heavy imports wait until the options are read
+
+    options = _pick(given, _MODEL_NAMES)
+    if "constraint" in options:
+        options["constraint"] = options["constraint"].replace("-", "_")
+    described = values.get("model", {})
+    if given.get("model") and isinstance(described, Mapping):
+        kind = given["model"].replace("-", "_")
+        values["model"] = {**known_values(described, kind), "kind": kind}
+    return options
+
+
 def _pick(given: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
     return {name: given[name] for name in names if given.get(name) is not None}
+
+
+def overlay_ladder(described: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values `described` with the slendernesses and the reference `given` in the table `ladder`."""
+    values = dict(described)
+    chosen: dict[str, Any] = {}
+    if given.get("scaled_to"):
+        chosen["slenderness"] = given["scaled_to"]
+    if given.get("reference"):
+        chosen["reference"] = given["reference"].replace("-", " ").replace("_", " ")
+    _section(values, "ladder", chosen)
+    return values
 
 
 def overlay_axes(described: Mapping[str, Any], given: Mapping[str, Any], section: str) -> dict[str, Any]:

@@ -23,7 +23,11 @@ def simulate(
     source: Source = None,
     tilt: opt.Tilt = None,
     tilt_rate: opt.TiltRate = None,
+    spin: opt.Spin = None,
+    twist: opt.Twist = None,
+    position: opt.Position = None,
     duration: opt.Duration = None,
+    friction_coefficient: opt.FrictionCoefficient = None,
     rtol: opt.Rtol = None,
     tilt_limit: opt.TiltLimit = None,
     rest_energy: opt.RestEnergy = None,
@@ -37,7 +41,13 @@ def simulate(
     top_radius: opt.TopRadius = None,
     slenderness: opt.Slenderness = None,
     gravity: opt.Gravity = None,
+    model: opt.Model = None,
     damping: opt.Damping = None,
+    spin_friction: opt.SpinFriction = None,
+    rolling_resistance: opt.RollingResistance = None,
+    restitution: opt.Restitution = None,
+    constraint: opt.Constraint = None,
+    passage_tilt: opt.PassageTilt = None,
     motion: opt.Motion = None,
     acceleration: opt.Acceleration = None,
     angular_frequency: opt.AngularFrequency = None,
@@ -90,6 +100,7 @@ def _summary(run: "Response") -> dict[str, Any]:
         "planar": run.planar,
         "events": [{"kind": event.kind, "time": event.time} for event in run.events],
         "measures": dict(run.measures),
+        "warnings": list(run.warnings),
         "thresholds": dict(run.thresholds),
         "provenance": dict(run.provenance),
     }
@@ -119,7 +130,17 @@ def _rows(run: "Response") -> list[tuple[str, str]]:
     ]
     if "mean_rolling_rate" in measures:
         rows.insert(6, ("mean rolling rate", f"{measures['mean_rolling_rate']:.6g} rad/s"))
-    return rows
+    return [*rows, *_demand_rows(run), *(("warning", warning) for warning in run.warnings)]
+
+
+def _demand_rows(run: "Response") -> list[tuple[str, str]]:
+    measures = run.measures
+    rows = [
+        ("needs a friction coefficient of", "largest_friction_demand", ""),
+        ("and to resist pivoting with", "largest_pivoting_demand", " of normal force times radius"),
+        ("least normal force", "least_normal_force", " of the weight"),
+    ]
+    return [(label, f"{measures[name]:.4g}{unit}") for label, name, unit in rows if name in measures]
 
 
 _SHOWN = 4

@@ -101,9 +101,16 @@ def contact(
     axial: float,
     couples: float,
 ) -> tuple[float, float, float]:
-    """Return N = 1 + a_z, |T| = |a_h + κα̈| and, of the spin friction, |M_z|, to leading order."""
-    _, _, bx, by, _ = rates(x, y, vx, vy, spin, ax, ay, az, c, eta, zeta, kappa, axial, couples)
-    tx, ty = ax + kappa * bx, ay + kappa * by
+    """Return N = 1 + a_z, |T| and, of the spin friction, |M_z|, to leading order.
+
+    T = a_h + κ(α̈ + cσβ̇ û − cσ̇ n): the centre of mass moves with the footprint, whose velocity is −cσ n.
+    """
+    _, _, bx, by, spin_rate = rates(x, y, vx, vy, spin, ax, ay, az, c, eta, zeta, kappa, axial, couples)
+    tilt = math.sqrt(x * x + y * y + _TINY)
+    ux, uy = x / tilt, y / tilt
+    around = spin * (vy * ux - vx * uy) / tilt
+    tx = ax + kappa * (bx + c * (around * ux + spin_rate * uy))
+    ty = ay + kappa * (by + c * (around * uy - spin_rate * ux))
     moment = zeta * (1.0 + axial - kappa) * kappa * c * spin
     return 1.0 + az, math.sqrt(tx * tx + ty * ty), abs(moment)
 

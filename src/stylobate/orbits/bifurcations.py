@@ -134,7 +134,7 @@ def orbit_at(point: Point) -> PeriodicOrbit:
     family, chain = point.family, point.chain
     system = family.at(point.value)
     if family.sense < 0.0:
-        chain = shots(system, np.concatenate([chain.states, -chain.states]), family.periods)
+        chain = shots(system, np.concatenate([chain.states, system.image(-1.0) * chain.states]), family.periods)
     return PeriodicOrbit(system.model, system.motion, family.periods, chain, system.line, system.rtol)
 
 

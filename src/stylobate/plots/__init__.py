@@ -7,11 +7,13 @@ from matplotlib.figure import Figure
 
 from stylobate.errors import ParameterError
 from stylobate.plots.basins import plot_basins
+from stylobate.plots.column_path import plot_column_path
 from stylobate.plots.exact_response import plot_exact_response
 from stylobate.plots.exponent import plot_exponent
 from stylobate.plots.fates import plot_fates
 from stylobate.plots.fractions import plot_fractions
 from stylobate.plots.integrity import plot_erosion, plot_integrity
+from stylobate.plots.ladder import plot_ladder, plot_outcome_differences
 from stylobate.plots.lyapunov import plot_lyapunov
 from stylobate.plots.maps import plot_map
 from stylobate.plots.paper_report import paper_report
@@ -27,14 +29,17 @@ __all__ = [
     "plot",
     "plot_averaging_map",
     "plot_basins",
+    "plot_column_path",
     "plot_erosion",
     "plot_exact_response",
     "plot_exponent",
     "plot_fates",
     "plot_fractions",
     "plot_integrity",
+    "plot_ladder",
     "plot_lyapunov",
     "plot_map",
+    "plot_outcome_differences",
     "plot_response",
     "plot_runs",
     "plot_section",
@@ -57,6 +62,8 @@ _BY_KIND: dict[str, Callable[[xr.Dataset], Figure]] = {
     "uncertainty exponent": plot_exponent,
     "integrity": plot_integrity,
     "erosion": plot_erosion,
+    "ladder": plot_ladder,
+    "outcome differences": plot_outcome_differences,
     "slow sweep": plot_slow_sweep,
     "Poincaré section": plot_section,
     "Lyapunov exponents": plot_lyapunov,
@@ -71,8 +78,8 @@ def plot(result: Response | xr.Dataset | Sequence[Response], *, labels: Sequence
     result
         A run, several runs to compare, or the result of a study in `stylobate.studies`: response curves, an
         overturning map, basins, attractors, basin fractions, an uncertainty exponent, integrity or its erosion, a
-        slow sweep, a Poincaré section, Lyapunov exponents. A sweep over two dimensions is drawn as a map, finished or
-        not.
+        slow sweep, a Poincaré section, Lyapunov exponents, the ladder of models, differences of outcomes. A sweep over
+        two dimensions is drawn as a map, finished or not.
     labels
         Names for several runs; by default their outcomes.
 

@@ -1,6 +1,7 @@
 """Descriptions: plain values, as in TOML and JSON, and the objects they stand for."""
 
 from stylobate.spec.basin import BasinDescription
+from stylobate.spec.ladder import LadderDescription
 from stylobate.spec.map import MapDescription
 from stylobate.spec.response import ResponseDescription
 from stylobate.spec.simulation import (
@@ -13,6 +14,7 @@ from stylobate.spec.simulation import (
 
 __all__ = [
     "BasinDescription",
+    "LadderDescription",
     "MapDescription",
     "ResponseDescription",
     "Setup",

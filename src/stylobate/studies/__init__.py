@@ -9,6 +9,8 @@ from stylobate.studies.boundary import uncertainty_exponent
 from stylobate.studies.exact_response import exact_response
 from stylobate.studies.fate import fates
 from stylobate.studies.integrity import erosion, integrity
+from stylobate.studies.ladder_outcomes import Comparison, outcome_differences
+from stylobate.studies.ladder_study import ladder
 from stylobate.studies.lyapunov import lyapunov_exponents
 from stylobate.studies.overturning import overturning_map
 from stylobate.studies.paper import check_paper
@@ -22,6 +24,7 @@ from stylobate.studies.sweeps import Dask, Sweep, Threads, executor_from, open_s
 
 __all__ = [
     "AttractorRules",
+    "Comparison",
     "Dask",
     "Start",
     "Sweep",
@@ -38,8 +41,10 @@ __all__ = [
     "fates",
     "integrity",
     "label_attractors",
+    "ladder",
     "lyapunov_exponents",
     "open_sweep",
+    "outcome_differences",
     "overturning_map",
     "poincare_section",
     "response_curves",

@@ -63,7 +63,7 @@ class SlenderDragged(sb.Slender):
     @staticmethod
     def rates(x, y, vx, vy, ax, ay, az, c, eta, k):
         slowing = eta + k * math.hypot(vx, vy)
-        return sb.Slender.rates(x, y, vx, vy, ax, ay, az, c, slowing)
+        return sb.Slender.rates(x, y, vx, vy, ax, ay, az, c, slowing, 0.75)
 
     @property
     def parameters(self):

@@ -70,9 +70,9 @@ KERNELS = [
 ]
 
 
-def kernel_for(motion, method, planar, model=sb.Slender):
+def kernel_for(motion, method, planar, model=sb.Slender, *, demands=False):
     """Return the module of a kernel and a buffer for it."""
-    options = replace(OPTIONS, method=method)
+    options = replace(OPTIONS, method=method, demands=demands)
     plan = Plan(model(sb.Column.dimensionless(0.1)), MotionPlan.of(MOTIONS[motion], {}, np.ones(1)), options)
     shape = plan.shape(planar=planar)
     return kernel_of(model, shape).module, np.ones(len(shape.rows()) * shape.width)
@@ -86,6 +86,10 @@ def kernel_for(motion, method, planar, model=sb.Slender):
             pytest.param("harmonic", method, False, sb.SlenderRolling, marks=pytest.mark.slow)
             for method in ("dop853", "taylor")
         ),
+        pytest.param("harmonic", "dop853", False, sb.Wobbling, marks=pytest.mark.slow),
+        pytest.param("harmonic", "dop853", False, sb.Rolling),
+        pytest.param("harmonic", "dop853", True, sb.PlanarRocking, marks=pytest.mark.slow),
+        pytest.param("vertical", "dop853", False, sb.Rolling, marks=pytest.mark.slow),
     ],
 )
 def test_steps_work_on_all_lanes_at_once(motion, method, planar, model):
@@ -95,6 +99,23 @@ def test_steps_work_on_all_lanes_at_once(motion, method, planar, model):
     assert counts["pd"] > 100
     assert counts["sd"] == 0, counts
     assert registers["ymm"] + registers["zmm"] > registers["xmm"]
+
+
+@pytest.mark.parametrize(
+    ("model", "planar"),
+    [
+        (sb.Rolling, False),
+        (sb.Wobbling, False),
+        (sb.PlanarRocking, True),
+        pytest.param(sb.Slender, False, marks=pytest.mark.slow),
+    ],
+)
+def test_steps_that_follow_loads_work_on_all_lanes_at_once(model, planar):
+    kernel, buf = kernel_for("harmonic", "dop853", planar, model, demands=True)
+    kernel.step(buf)
+    counts, _ = arithmetic_of(kernel.step)
+    assert counts["pd"] > 100
+    assert counts["sd"] == 0, counts
 
 
 # What tells the polynomials of a step, and the sums, belong to one lane: scalar. Between them stands a loop over the

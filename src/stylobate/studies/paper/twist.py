@@ -15,6 +15,7 @@ from stylobate.models import Model, SlenderRolling
 from stylobate.motions import Harmonic
 from stylobate.results import Finding, Response, Section, Verdict
 from stylobate.studies.paper.setting import CIRCULAR_AMPLITUDES, DAMPING, SLENDERNESS, judged
+from stylobate.studies.paper.twist_at_finite_tilt import findings_at_finite_tilt
 
 _C = SLENDERNESS
 _A0 = CIRCULAR_AMPLITUDES[1]
@@ -48,7 +49,9 @@ _BOUNDARY, _LINEAR = 1e-6, 0.01
 
 def check_twist() -> Section:
     """Check what the assumption of no rotation about the vertical needs, and what becomes of (8) without it."""
-    findings = (_needed(), _with_spin_friction(), _without(), _stability(), _weak_friction(), _upper_frequency())
+    findings: tuple[Finding, ...] = (_needed(), _with_spin_friction(), _without())
+    findings += (_stability(), _weak_friction(), _upper_frequency())
+    findings += findings_at_finite_tilt()
     return Section(findings, {"twist": twist_data(), "twist_boundary": boundary_data()})
 
 

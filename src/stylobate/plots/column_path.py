@@ -1,0 +1,243 @@
+"""The column in space at chosen times, with the path of its contact point on the base, and that path from above."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Polygon
+from matplotlib.ticker import MaxNLocator
+
+from stylobate.errors import ParameterError
+from stylobate.plots.axonometry import Cylinder, Floats, View
+from stylobate.plots.style import BLACK, BLUE, GREY, SKY, VERMILION, new_figure, styled
+from stylobate.results import Response
+
+_GHOSTS = 4
+# The base is drawn this far beyond what happens on it, in radii.
+_MARGIN = 0.35
+_TICKS = 3
+# Samples of paths, and into how many parts a step is cut at most where the contact point turns by more than this [rad].
+_SAMPLES, _PARTS, _TURN = 1500, 64, 0.06
+
+
+@styled
+def plot_column_path(
+    run: Response,
+    *,
+    times: Sequence[float] | None = None,
+    until: float | None = None,
+    azimuth: float = -60.0,
+    elevation: float = 22.0,
+) -> Figure:
+    """Return a figure of the column in space and of the path of its contact point, in the frame of the base.
+
+    The column is a cylinder of its base radius and height at chosen times, the last drawn full, those before as ghosts;
+    a line on its top turns with it. On the base: the path of the contact point, and of the centre of the footprint
+    circle, which moves where the column turns about its axis. To the right the same from above.
+
+    Parameters
+    ----------
+    run
+        A run of a model that tells where its contact lies.
+    times
+        When the column is drawn [s]: within the run, rising. By default five times along what is shown.
+    until
+        End of the paths [s]; by default that of the run, or the last of the `times`.
+    azimuth, elevation
+        Where one looks from [degrees].
+
+    Raises
+    ------
+    ParameterError
+        If the model does not tell the contact point, or a time lies outside the run.
+    """
+    if "contact_point" not in run.data:
+        message = f"run must be of a model that tells its contact_point, got {sorted(map(str, run.data.data_vars))}"
+        raise ParameterError(message)
+    data, drawn = _shown(run, times, until)
+    radius, height = _dimensions(run)
+    view = View(np.radians(azimuth), np.radians(elevation))
+    columns = [_column(data, at, radius, height) for at in drawn]
+    figure = new_figure(4.6)
+    space, plan = figure.subplots(1, 2, width_ratios=(1.0, 1.15))
+    low, high = _extent(data, radius)
+    _draw_ground(space, view, low, high)
+    _draw_paths_in_space(space, view, data)
+    for index, one in enumerate(columns):
+        _draw_column(space, view, one, full=index == len(columns) - 1)
+    _draw_height(space, view, low, high, height)
+    space.set_aspect("equal")
+    space.axis("off")
+    _draw_plan(plan, data, drawn, radius, low, high)
+    figure.legend(*plan.get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    return figure
+
+
+def _shown(run: Response, times: Sequence[float] | None, until: float | None) -> tuple[xr.Dataset, npt.NDArray[Any]]:
+    """Return the samples up to the end of what is shown, and the places in them at which the column is drawn."""
+    end = float(run.data["time"][-1])
+    last = until if until is not None else end if times is None else max(times, default=0.0)
+    chosen = np.linspace(0.0, last, _GHOSTS + 1) if times is None else np.asarray(times, dtype=float)
+    if not (0.0 < last <= end and chosen.size and np.all((chosen >= 0.0) & (chosen <= last))):
+        message = f"times and until must lie within the run, 0 to {end:.6g} s, got {times!r} and {until!r}"
+        raise ParameterError(message)
+    data = _path(run, last, chosen)
+    return data, np.searchsorted(data["time"].to_numpy()[:-1], chosen)
+
+
+def _path(run: Response, last: float, chosen: Floats) -> xr.Dataset:
+    """Return samples close enough for smooth paths; of a saved run those that were kept."""
+    if run.sampler is None:
+        return run.data.isel(time=run.data["time"].to_numpy() <= last)
+    time = np.unique(np.concatenate([np.linspace(0.0, last, _SAMPLES), chosen]))
+    turned = np.nan_to_num(np.abs(np.diff(run.sample(time)["azimuth"].to_numpy())))
+    # Past the upright the contact point races round the rim.
+    parts = np.clip(np.ceil(turned / _TURN), 1, _PARTS).astype(int)
+    pieces = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(time[:-1], time[1:], parts, strict=True)]
+    return run.sample(np.append(np.concatenate(pieces), last))
+
+
+def _dimensions(run: Response) -> tuple[float, float]:
+    """Return radius and height of the column [m]; of a column known by its inertia twice that of the mass centre."""
+    column = run.provenance["column"]
+    return float(column["radius"]), float(column.get("height") or 2.0 * column["mass_height"])
+
+
+def _footprint(data: xr.Dataset) -> Floats:
+    tilt = data["tilt"].to_numpy()
+    return data["footprint"].to_numpy() if "footprint" in data else np.zeros_like(tilt)
+
+
+def _column(data: xr.Dataset, at: int, radius: float, height: float) -> Cylinder:
+    twist = float(data["twist"][at]) if "twist" in data else 0.0
+    return Cylinder.leaning(data["tilt"].to_numpy()[at], twist, _footprint(data)[at], radius, height)
+
+
+def _extent(data: xr.Dataset, radius: float) -> tuple[Floats, Floats]:
+    """Return the corners of the ground that is drawn [m]: all that the footprint circle comes to."""
+    centres = _footprint(data)
+    margin = (1.0 + _MARGIN) * radius
+    return centres.min(axis=0) - margin, centres.max(axis=0) + margin
+
+
+def _on_ground(points: Floats) -> Floats:
+    return np.concatenate([points, np.zeros((*points.shape[:-1], 1))], axis=-1)
+
+
+def _draw_ground(axes: Axes, view: View, low: Floats, high: Floats) -> None:
+    """Draw the base as a board with a grid in metres, numbered along its near edges."""
+    corners = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]])
+    board = view.project(_on_ground(corners))
+    axes.add_patch(Polygon(board, facecolor="#f4f4f4", edgecolor=GREY, linewidth=0.8))
+    centre = board.mean(axis=0)
+    for along, name in ((0, "x"), (1, "y")):
+        across = 1 - along
+        ends = np.zeros((2, 2))
+        ends[:, across] = low[across], high[across]
+        near = int(np.argmin([view.project(_on_ground(_moved(corner, along, low, high)))[1] for corner in ends]))
+        for value in MaxNLocator(_TICKS, steps=[1, 2, 5, 10]).tick_values(low[along], high[along]):
+            if low[along] <= value <= high[along]:
+                ends[:, along] = value
+                line = view.project(_on_ground(ends))
+                axes.plot(*line.T, color="#dddddd", linewidth=0.6)
+                _label(axes, line[near], line[1 - near], f"{value:g}".replace("-", "−"), 7.5)
+        middle = _moved(ends[near], along, low, high)
+        edge = view.project(_on_ground(middle))
+        outwards = edge - centre
+        axes.annotate(
+            f"{name} [m]",
+            (float(edge[0]), float(edge[1])),
+            xytext=tuple(26.0 * outwards / np.hypot(*outwards)),
+            textcoords="offset points",
+            ha="center",
+            va="center",
+            fontsize=8,
+        )
+
+
+def _moved(corner: Floats, along: int, low: Floats, high: Floats) -> Floats:
+    """Return `corner` moved to the middle along one axis."""
+    moved = corner.copy()
+    moved[along] = 0.5 * (low[along] + high[along])
+    return moved
+
+
+def _label(axes: Axes, at: Floats, other: Floats, text: str, size: float) -> None:
+    """Write beside the end `at` of a line, away from its `other` end."""
+    outwards = 9.0 * (at - other) / np.hypot(*(at - other))
+    axes.annotate(
+        text,
+        (float(at[0]), float(at[1])),
+        xytext=tuple(outwards),
+        textcoords="offset points",
+        ha="center",
+        va="center",
+        fontsize=size,
+    )
+
+
+def _draw_paths_in_space(axes: Axes, view: View, data: xr.Dataset) -> None:
+    axes.plot(*view.project(_on_ground(data["contact_point"].to_numpy())).T, color=VERMILION, linewidth=1.0)
+    centres = _footprint(data)
+    if np.ptp(centres) > 0.0:
+        axes.plot(*view.project(_on_ground(centres)).T, color=BLUE, linewidth=1.0)
+
+
+def _draw_column(axes: Axes, view: View, column: Cylinder, *, full: bool) -> None:
+    edge, width = (BLACK, 1.0) if full else (GREY, 0.6)
+    fill: dict[str, Any] = {"facecolor": SKY, "alpha": 0.35 if full else 0.10, "linewidth": 0.0}
+    outline = view.outline(column)
+    axes.add_patch(Polygon(outline, **fill))
+    axes.add_patch(Polygon(outline, fill=False, edgecolor=edge, linewidth=width))
+    for part, outward in ((0.0, -column.axis), (1.0, column.axis)):
+        hidden = not view.sees(outward)
+        axes.plot(*view.project(column.circle(part)).T, color=edge, linewidth=width, linestyle=":" if hidden else "-")
+    if view.sees(column.axis):
+        axes.plot(*view.project(column.mark()).T, color=edge, linewidth=width)
+
+
+def _draw_height(axes: Axes, view: View, low: Floats, high: Floats, height: float) -> None:
+    """Draw a rod as high as the column beside it, with its height."""
+    corners = [np.array([x, y]) for x in (low[0], high[0]) for y in (low[1], high[1])]
+    left = min(corners, key=lambda corner: float(view.project(_on_ground(corner))[0]))
+    foot, top = view.project(np.array([[*left, 0.0], [*left, height]]))
+    axes.annotate("", top, xytext=foot, arrowprops={"arrowstyle": "|-|", "linewidth": 0.8, "mutation_scale": 3})
+    axes.annotate(
+        f"{height:.3g} m", (foot + top) / 2.0, xytext=(-5, 0), textcoords="offset points", ha="right", va="center"
+    )
+
+
+def _draw_plan(axes: Axes, data: xr.Dataset, drawn: npt.NDArray[Any], radius: float, low: Floats, high: Floats) -> None:
+    contact, centres = data["contact_point"].to_numpy(), _footprint(data)
+    circles: dict[str, Any] = {"fill": False, "edgecolor": GREY, "linewidth": 0.7}
+    for at in drawn[:-1]:
+        axes.add_patch(Circle(tuple(centres[at]), radius, linestyle=(0, (4, 2)), **circles))
+    axes.add_patch(Circle(tuple(centres[drawn[-1]]), radius, **{**circles, "edgecolor": BLACK}))
+    axes.plot(*contact.T, color=VERMILION, linewidth=1.1, label="contact point")
+    if np.ptp(centres) > 0.0:
+        axes.plot(*centres.T, color=BLUE, linewidth=1.1, label="centre of the footprint")
+    mark: dict[str, Any] = {"linestyle": "none", "markersize": 5, "color": BLACK}
+    axes.plot(*contact[drawn[:1]].T, marker="o", markerfacecolor="white", label="first", **mark)
+    axes.plot(*contact[drawn[-1:]].T, marker="s", label="last", **mark)
+    for at in drawn:
+        if np.all(np.isfinite(contact[at])):
+            axes.annotate(
+                f"{float(data['time'][at]):.3g} s",
+                tuple(contact[at]),
+                xytext=tuple(14.0 * (contact[at] - centres[at]) / radius),
+                textcoords="offset points",
+                ha="center",
+                va="center",
+                fontsize=7,
+                bbox={"facecolor": "white", "alpha": 0.7, "linewidth": 0.0, "pad": 0.6},
+            )
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(low[1], high[1])
+    axes.set_aspect("equal")
+    axes.set_xlabel("x [m]")
+    axes.set_ylabel("y [m]")
+    axes.set_title("from above")
