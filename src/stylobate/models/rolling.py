@@ -3,19 +3,17 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.models import finite_tilt
+from stylobate.models import finite_tilt, free_twist, tilt_vector
 from stylobate.models.checks import require_column, require_frictions, require_loss
 from stylobate.models.contact import contact_outputs, path_outputs
-from stylobate.models.departing import departing_lean
 from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
 from stylobate.models.model import Floats, Model, Output, Push
-from stylobate.models.passing import past_the_upright
 
 
 def balance(
@@ -134,11 +132,6 @@ def carried_rates(x: float, y: float, vx: float, vy: float, spin: float, *_: flo
     return twisting, twisting * y / tilt, -twisting * x / tilt
 
 
-def lean(x: Any, y: Any, vx: Any, vy: Any, *_: Any) -> tuple[Any, Any, Any, Any]:
-    """Return the tilt vector and its rate."""
-    return x, y, vx, vy
-
-
 def planar_rates(
     tilt: float,
     rate: float,
@@ -158,11 +151,6 @@ def planar_rates(
     return rate, acceleration
 
 
-def from_plane(tilt: Any, rate: Any, ux: float, uy: float, *_: float) -> tuple[Any, Any, Any, Any, Any]:
-    """Return the state of a motion along the unit vector (ux, uy), without spin."""
-    return tilt * ux, tilt * uy, rate * ux, rate * uy, 0.0 * tilt
-
-
 def rest_energy(
     tilt: float, speed: float, vertical: float, c: float, _eta: float, _zeta: float, kappa: float, *_: float
 ) -> float:
@@ -173,14 +161,8 @@ def rest_energy(
 def departure(
     push: Push, elapsed: float, c: float, eta: float, _zeta: float, kappa: float, axial: float, *_: float
 ) -> tuple[float, float, float, float, float]:
-    """Return the state a short time after release, the spin being −½|a_h| β (1 − κ)δ²/(cκD).
-
-    β is the rate at which the push turns ahead of the lean.
-    """
-    freedom = 1.0 + axial - kappa
-    x, y, vx, vy, ahead = departing_lean(push, elapsed, eta, 1.0 + kappa * c * c, axial / freedom)
-    spin = -0.5 * push.acceleration * ahead * elapsed**2 * (1.0 - kappa) / (freedom * c * kappa)
-    return x, y, vx, vy, spin
+    """Return the state a short time after release."""
+    return free_twist.departing(push, elapsed, 1.0 + kappa * c * c, c, eta, kappa, axial)
 
 
 def passage(
@@ -199,18 +181,8 @@ def passage(
     axial: float,
     *_: float,
 ) -> tuple[float, tuple[float, float, float, float, float]]:
-    """Return the duration and the end of a passage of the upright: the limit of grazing rolling, without loss."""
-    inertia = 1.0 + kappa * c * c
-    speed = math.hypot(vx, vy)
-    ux, uy = vx / speed, vy / speed
-    freedom, sideways = 1.0 + axial - kappa, ay * ux - ax * uy
-    along, across = (ax * ux + ay * uy) / inertia, sideways * axial / freedom
-    push = (across * uy - along * ux, -across * ux - along * uy)
-    # The base spins it up until it turns, and down as much behind.
-    gained = sideways * (1.0 - kappa) / (c * kappa * freedom) * (x * ux + y * uy) / speed
-    gyration = c * kappa * (spin + gained)
-    elapsed, end = past_the_upright((x, y, vx, vy), push, c * (1.0 + az), gyration, eta, inertia)
-    return elapsed, (*end, spin * math.exp(-zeta * elapsed))
+    """Return the duration and the end of a passage of the upright, on which the spin turns the path."""
+    return free_twist.passing((x, y, vx, vy), spin, (ax, ay, az), 1.0 + kappa * c * c, c, eta, zeta, kappa, axial)
 
 
 def struck(x: float, y: float, vx: float, vy: float, spin: float, *numbers: float) -> tuple[float, ...]:
@@ -278,11 +250,11 @@ class Rolling(Model):
         require_loss(self)
 
     rates = staticmethod(rates)
-    lean = staticmethod(lean)
+    lean = staticmethod(tilt_vector.lean)
     contact = staticmethod(contact)
     carried_rates = staticmethod(carried_rates)
     planar_rates = staticmethod(planar_rates)
-    from_plane = staticmethod(from_plane)
+    from_plane = staticmethod(tilt_vector.from_plane_without_spin)
     rest_energy = staticmethod(rest_energy)
     departure = staticmethod(departure)
     passage = staticmethod(passage)

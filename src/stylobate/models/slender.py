@@ -3,12 +3,13 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
+from stylobate.models import tilt_vector
 from stylobate.models.checks import require_column, require_frictions
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.departing import departing_lean
@@ -29,21 +30,11 @@ def rates(
     return vx, vy, lean * x - eta * vx - ax, lean * y - eta * vy - ay
 
 
-def lean(x: Any, y: Any, vx: Any, vy: Any, *_: float) -> tuple[Any, Any, Any, Any]:
-    """Return the tilt vector and its rate: the state itself."""
-    return x, y, vx, vy
-
-
 def planar_rates(
     tilt: float, rate: float, side: float, horizontal: float, vertical: float, c: float, eta: float, *_: float
 ) -> tuple[float, float]:
     """Return the right-hand side of (1) in a vertical plane, with û = `side` (±1)."""
     return rate, (1.0 + vertical) * (tilt - c * side) - eta * rate - horizontal
-
-
-def from_plane(tilt: Any, rate: Any, ux: float, uy: float, *_: float) -> tuple[Any, Any, Any, Any]:
-    """Return the state of a motion along the unit vector (ux, uy)."""
-    return tilt * ux, tilt * uy, rate * ux, rate * uy
 
 
 def rest_energy(tilt: float, speed: float, vertical: float, c: float, *_: float) -> float:
@@ -119,10 +110,10 @@ class Slender(Model):
         require_frictions(self, "damping")
 
     rates = staticmethod(rates)
-    lean = staticmethod(lean)
+    lean = staticmethod(tilt_vector.lean)
     contact = staticmethod(contact)
     planar_rates = staticmethod(planar_rates)
-    from_plane = staticmethod(from_plane)
+    from_plane = staticmethod(tilt_vector.from_plane)
     rest_energy = staticmethod(rest_energy)
     no_return_tilt = staticmethod(no_return_tilt)
     departure = staticmethod(departure)

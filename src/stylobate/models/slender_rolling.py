@@ -3,19 +3,17 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, get_args
+from typing import ClassVar, Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
 from stylobate.errors import ParameterError
-from stylobate.models import slender
+from stylobate.models import free_twist, slender, tilt_vector
 from stylobate.models.checks import require_column, require_frictions
 from stylobate.models.contact import contact_outputs, path_outputs
-from stylobate.models.departing import departing_lean
 from stylobate.models.model import Floats, Model, Output, Push
-from stylobate.models.passing import past_the_upright
 
 # As in the slender model: keeps 1/|α| finite at the upright itself.
 _TINY = 1e-300
@@ -63,21 +61,11 @@ def rates(
     )
 
 
-def lean(x: Any, y: Any, vx: Any, vy: Any, *_: Any) -> tuple[Any, Any, Any, Any]:
-    """Return the tilt vector and its rate."""
-    return x, y, vx, vy
-
-
 def planar_rates(
     tilt: float, rate: float, side: float, horizontal: float, vertical: float, c: float, eta: float, *_: float
 ) -> tuple[float, float]:
     """Return the right-hand side in a vertical plane, in which nothing spins the column up: that of the slender one."""
     return rate, (1.0 + vertical) * (tilt - c * side) - eta * rate - horizontal
-
-
-def from_plane(tilt: Any, rate: Any, ux: float, uy: float, *_: float) -> tuple[Any, Any, Any, Any, Any]:
-    """Return the state of a motion along the unit vector (ux, uy), without spin."""
-    return tilt * ux, tilt * uy, rate * ux, rate * uy, 0.0 * tilt
 
 
 def rest_energy(tilt: float, speed: float, vertical: float, c: float, *_: float) -> float:
@@ -124,14 +112,8 @@ def carried_rates(x: float, y: float, _vx: float, _vy: float, spin: float, *_: f
 def departure(
     push: Push, elapsed: float, c: float, eta: float, _zeta: float, kappa: float, axial: float, *_: float
 ) -> tuple[float, float, float, float, float]:
-    """Return the state a short time δ after release, its spin −½|a_h| β (1 − κ)δ²/(cκD).
-
-    β is the rate at which the push turns ahead of the lean.
-    """
-    freedom = 1.0 + axial - kappa
-    x, y, vx, vy, ahead = departing_lean(push, elapsed, eta, 1.0, axial / freedom)
-    spin = -0.5 * push.acceleration * ahead * elapsed**2 * (1.0 - kappa) / (freedom * c * kappa)
-    return x, y, vx, vy, spin
+    """Return the state a short time after release."""
+    return free_twist.departing(push, elapsed, 1.0, c, eta, kappa, axial)
 
 
 def passage(
@@ -151,16 +133,7 @@ def passage(
     *_: float,
 ) -> tuple[float, tuple[float, float, float, float, float]]:
     """Return the duration and the end of a passage of the upright, on which the spin turns the path."""
-    speed = math.hypot(vx, vy)
-    ux, uy = vx / speed, vy / speed
-    freedom, sideways = 1.0 + axial - kappa, ay * ux - ax * uy
-    along, across = ax * ux + ay * uy, sideways * axial / freedom
-    push = (across * uy - along * ux, -across * ux - along * uy)
-    # The base spins it up until it turns, and down as much behind.
-    gained = sideways * (1.0 - kappa) / (c * kappa * freedom) * (x * ux + y * uy) / speed
-    gyration = c * kappa * (spin + gained)
-    elapsed, end = past_the_upright((x, y, vx, vy), push, c * (1.0 + az), gyration, eta, 1.0)
-    return elapsed, (*end, spin * math.exp(-zeta * elapsed))
+    return free_twist.passing((x, y, vx, vy), spin, (ax, ay, az), 1.0, c, eta, zeta, kappa, axial)
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,11 +190,11 @@ class SlenderRolling(Model):
             raise ParameterError(message)
 
     rates = staticmethod(rates)
-    lean = staticmethod(lean)
+    lean = staticmethod(tilt_vector.lean)
     contact = staticmethod(contact)
     carried_rates = staticmethod(carried_rates)
     planar_rates = staticmethod(planar_rates)
-    from_plane = staticmethod(from_plane)
+    from_plane = staticmethod(tilt_vector.from_plane_without_spin)
     rest_energy = staticmethod(rest_energy)
     departure = staticmethod(departure)
     passage = staticmethod(passage)

@@ -3,14 +3,14 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, get_args
+from typing import ClassVar, Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
 from stylobate.errors import ParameterError
-from stylobate.models import finite_tilt
+from stylobate.models import finite_tilt, tilt_vector
 from stylobate.models.checks import require_column, require_frictions, require_loss
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.departing import departing_lean
@@ -140,11 +140,6 @@ def carried_rates(
     return twisting, twisting * y / tilt, -twisting * x / tilt
 
 
-def lean(x: Any, y: Any, vx: Any, vy: Any, *_: Any) -> tuple[Any, Any, Any, Any]:
-    """Return the tilt vector and its rate: the state itself."""
-    return x, y, vx, vy
-
-
 def planar_rates(
     tilt: float,
     rate: float,
@@ -162,11 +157,6 @@ def planar_rates(
     """Return the right-hand side in a vertical plane."""
     acceleration, _, _ = planar_acceleration(tilt, rate, side, horizontal, vertical, c, eta, kappa, resistance)
     return rate, acceleration
-
-
-def from_plane(tilt: Any, rate: Any, ux: float, uy: float, *_: float) -> tuple[Any, Any, Any, Any]:
-    """Return the state of a motion along the unit vector (ux, uy)."""
-    return tilt * ux, tilt * uy, rate * ux, rate * uy
 
 
 def rest_energy(tilt: float, speed: float, vertical: float, c: float, _eta: float, kappa: float, *_: float) -> float:
@@ -272,11 +262,11 @@ class Wobbling(Model):
             raise ParameterError(message)
 
     rates = staticmethod(rates)
-    lean = staticmethod(lean)
+    lean = staticmethod(tilt_vector.lean)
     contact = staticmethod(contact)
     carried_rates = staticmethod(carried_rates)
     planar_rates = staticmethod(planar_rates)
-    from_plane = staticmethod(from_plane)
+    from_plane = staticmethod(tilt_vector.from_plane)
     rest_energy = staticmethod(rest_energy)
     no_return_tilt = staticmethod(no_return_tilt)
     departure = staticmethod(departure)
