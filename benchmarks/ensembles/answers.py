@@ -16,7 +16,7 @@ class Answer:
     Parameters
     ----------
     end
-        x, y, their rates, shape (n, 4).
+        x, y, their rates, shape (n, 4); behind them the spin, of levels that know it.
     time
         When the run ended.
     overturned

@@ -1,4 +1,4 @@
-"""One core for everything that follows."""
+"""One core for everything that follows, or all of them again."""
 
 import os
 
@@ -12,3 +12,9 @@ def use_one_core() -> str:
         return "with one thread each"
     os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     return "bound to one core"
+
+
+def use_all_cores() -> None:
+    """Let this process, whose caller may be bound to one core, and its threads to come run on all."""
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, range(os.cpu_count() or 1))

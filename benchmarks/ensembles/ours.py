@@ -21,20 +21,33 @@ def prepare(workload: Workload, *, method: str) -> Callable[[Workload], Answer]:
     return partial(solve, threads=1, method=method)
 
 
-def solve(workload: Workload, *, threads: int, method: str = "dop853") -> Answer:
+def solve(
+    workload: Workload,
+    *,
+    threads: int,
+    method: str = "dop853",
+    model: sb.Model = MODEL,
+    demands: bool = False,
+    rtol: float = RTOL,
+    atol: float = ATOL,
+) -> Answer:
     """Follow every run of the workload."""
     data = sb.simulate_ensemble(
-        MODEL,
+        model,
         workload.motion,
         tilt=workload.start[:, :2],
-        tilt_rate=workload.start[:, 2:],
+        tilt_rate=workload.start[:, 2:4],
+        spin=workload.start[:, 4] if model.spin_state else 0.0,
         duration=workload.duration,
         parameters=workload.parameters,
         method=method,
-        rtol=RTOL,
-        atol=ATOL,
+        rtol=rtol,
+        atol=atol,
+        demands=demands,
         threads=threads,
     )
-    end = np.concatenate([data["end_tilt"].values, data["end_tilt_rate"].values], axis=1)
+    parts = [data["end_tilt"].values, data["end_tilt_rate"].values]
+    if "end_spin" in data:
+        parts.append(data["end_spin"].values[:, np.newaxis])
     overturned = data["outcome"].values == code_of(sb.Outcome.OVERTURNED)
-    return Answer(end, data["end_time"].values, overturned, int(data["steps"].values.sum()))
+    return Answer(np.concatenate(parts, axis=1), data["end_time"].values, overturned, int(data["steps"].values.sum()))

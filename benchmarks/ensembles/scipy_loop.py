@@ -6,6 +6,8 @@ from collections.abc import Callable
 import numpy as np
 from scipy.integrate import solve_ivp
 
+import stylobate as sb
+
 from .answers import Answer
 from .workloads import ATOL, ETA, ROLLING_ACCELERATION, RTOL, C, Workload
 
@@ -32,6 +34,31 @@ def solve(workload: Workload, *, rtol: float = RTOL, atol: float = ATOL) -> Answ
         end[i], time[i], overturned[i] = flow.y[:, -1], flow.t[-1], flow.status == 1
         steps += len(flow.t) - 1
     return Answer(end, time, overturned, steps)
+
+
+def solve_model(model: sb.Model, workload: Workload) -> Answer:
+    """Follow every run by the equations of a model as it gives them, in plain Python on floats, without an event."""
+    end = np.empty((len(workload), len(model.state_names)))
+    steps = 0
+    for i in range(len(workload)):
+        rates, duration = _model_rates(model, workload, i), workload.duration[i]
+        flow = solve_ivp(rates, (0.0, duration), workload.start[i], method="DOP853", rtol=RTOL, atol=ATOL)
+        end[i] = flow.y[:, -1]
+        steps += len(flow.t) - 1
+    return Answer(end, workload.duration, np.zeros(len(workload), bool), steps)
+
+
+def _model_rates(model: sb.Model, workload: Workload, i: int) -> Callable[..., tuple[float, ...]]:
+    theta, cos, sin = float(workload.theta[i]), math.cos, math.sin
+    (cx, cy), (sx, sy) = workload.cos[i].tolist(), workload.sin[i].tolist()
+    right_hand_side, parameters = model.rates, model.parameters
+
+    def rates(tau, state):
+        turned = theta * tau
+        p, q = cos(turned), sin(turned)
+        return right_hand_side(*state.tolist(), cx * p + sx * q, cy * p + sy * q, 0.0, *parameters)
+
+    return rates
 
 
 def _rolling_rates(workload: Workload, i: int) -> Callable[..., tuple[float, float, float, float]]:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from .engines import Engine
+from .level_trials import Trial
 from .ours import NAMES
 from .scaling import Cost
 from .timing import Timing
@@ -52,6 +53,26 @@ def targets_table(found: Sequence[Timing], two_threads: Mapping[str, float] | No
     ):
         told = ["not measured" if v is None else v if isinstance(v, str) else _number(v) for v in values]
         lines.append(f"| {what} | {aim} | {' | '.join(told)} |")
+    return "\n".join(lines) + "\n"
+
+
+def levels_table(trials: Sequence[Trial], found: Sequence[Timing], workload: str) -> str:
+    """Return one row a level: speed, its ratio to the slender model's, speed with demands, steps and error."""
+    titles = ["trajectories/s", "× `Slender`", "with demands", "steps a run", "µs a step"]
+    titles += {"rolling": ["largest error"], "mix": ["median error", "other outcome"]}[workload]
+    lines = [f"| {workload}, one core | {' | '.join(titles)} |", "|" + "---|" * (len(titles) + 1)]
+    for trial in trials:
+        if not trial.in_table or workload not in trial.counts:
+            continue
+        timing, beside = _of(found, trial.key, workload), _of(found, trial.beside, workload)
+        demanding = None if trial.demanding is None else _of(found, trial.demanding, workload)
+        rate = timing.fastest
+        cells = [trial.name, _number(rate), f"{rate / beside.fastest:.2g}"]
+        cells.append("–" if demanding is None else _number(demanding.fastest))
+        cells += [_number(timing.steps), f"{1e6 / (rate * timing.steps):.2g}", _power(timing.error)]
+        if timing.other_outcomes is not None:
+            cells.append(f"{timing.other_outcomes} of {MIX_DISTINCT}")
+        lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
 

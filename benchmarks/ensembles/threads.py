@@ -8,8 +8,11 @@ import os
 import subprocess
 import sys
 import time
+from collections.abc import Callable
+from functools import partial
 
 from . import ours
+from .one_core import use_all_cores
 from .quiet import wait_for_quiet
 from .workloads import WORKLOADS
 
@@ -32,20 +35,23 @@ def _all_threads() -> dict[str, str]:
 def _measure(repetitions: int, shorter: int) -> dict[str, float]:
     found = {}
     for workload, count in _COUNTS.items():
-        runs = WORKLOADS[workload](count // shorter)
-        ours.solve(runs, threads=2)
-        seconds: dict[int, list[float]] = {1: [], 2: []}
-        for _ in range(repetitions):
-            wait_for_quiet()
-            for threads, taken in seconds.items():
-                begun = time.perf_counter()
-                ours.solve(runs, threads=threads)
-                taken.append(time.perf_counter() - begun)
-        found[workload] = min(seconds[1]) / min(seconds[2])
+        found[workload] = gain(partial(ours.solve, WORKLOADS[workload](count // shorter)), repetitions)
     return found
 
 
+def gain(solve: Callable[..., object], repetitions: int) -> float:
+    """Return the fastest wall time of `solve(threads=1)` over that of `solve(threads=2)`, on all cores."""
+    use_all_cores()
+    solve(threads=2)
+    seconds: dict[int, list[float]] = {1: [], 2: []}
+    for _ in range(repetitions):
+        wait_for_quiet()
+        for threads, taken in seconds.items():
+            begun = time.perf_counter()
+            solve(threads=threads)
+            taken.append(time.perf_counter() - begun)
+    return min(seconds[1]) / min(seconds[2])
+
+
 if __name__ == "__main__":
-    if hasattr(os, "sched_setaffinity"):  # the caller may be bound to one core
-        os.sched_setaffinity(0, range(os.cpu_count() or 1))
     print(json.dumps(_measure(int(sys.argv[1]), int(sys.argv[2]))))

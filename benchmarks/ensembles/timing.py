@@ -1,8 +1,9 @@
 """Times the engines in turns, round after round, so that what disturbs the machine disturbs them alike."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from statistics import median
 
 import numpy as np
@@ -47,25 +48,39 @@ class Timing:
         """Runs a second, the median of the repetitions."""
         return self.count / median(self.seconds)
 
+    @property
+    def fastest(self) -> float:
+        """Runs a second, the fastest of the repetitions."""
+        return self.count / min(self.seconds)
+
 
 def timings(engines: Sequence[Engine], workload: str, *, repetitions: int, shorter: int = 1) -> list[Timing]:
     """Time each engine on a workload; compiling, and a first round, are left out."""
-    runs, solvers, answers = {}, {}, {}
+    runs, solvers = {}, {}
     for engine in engines:
         runs[engine.key] = WORKLOADS[workload](max(engine.counts[workload] // shorter, _least(engine, workload)))
         solvers[engine.key] = engine.prepare(runs[engine.key])
-        answers[engine.key] = solvers[engine.key](_warm_up(engine, runs[engine.key]))
-    seconds: dict[str, list[float]] = {engine.key: [] for engine in engines}
-    for _ in range(repetitions):
-        wait_for_quiet()
-        for engine in engines:
-            begun = time.process_time()
-            answers[engine.key] = solvers[engine.key](runs[engine.key])
-            seconds[engine.key].append(time.process_time() - begun)
+        solvers[engine.key](_warm_up(engine, runs[engine.key]))
+    seconds, answers = in_turns({key: partial(solve, runs[key]) for key, solve in solvers.items()}, repetitions)
     truth = None if workload == "rolling" else scipy_loop.solve(mix(MIX_DISTINCT), rtol=1e-12, atol=1e-14)
     return [
-        _timing(engine.key, runs[engine.key], seconds[engine.key], answers[engine.key], truth) for engine in engines
+        timing_of(engine.key, runs[engine.key], seconds[engine.key], answers[engine.key], truth) for engine in engines
     ]
+
+
+def in_turns(
+    tasks: Mapping[str, Callable[[], Answer]], repetitions: int
+) -> tuple[dict[str, list[float]], dict[str, Answer]]:
+    """Return the processor times of every task in each round, and its last answer."""
+    seconds: dict[str, list[float]] = {key: [] for key in tasks}
+    answers = {}
+    for _ in range(repetitions):
+        wait_for_quiet()
+        for key, task in tasks.items():
+            begun = time.process_time()
+            answers[key] = task()
+            seconds[key].append(time.process_time() - begun)
+    return seconds, answers
 
 
 def _least(engine: Engine, workload: str) -> int:
@@ -76,7 +91,8 @@ def _warm_up(engine: Engine, runs: Workload) -> Workload:
     return runs.take(slice(0, 4)) if engine.key == "scipy" else runs
 
 
-def _timing(key: str, runs: Workload, seconds: Sequence[float], answer: Answer, truth: Answer | None) -> Timing:
+def timing_of(key: str, runs: Workload, seconds: Sequence[float], answer: Answer, truth: Answer | None) -> Timing:
+    """Compare with the exact ends of the runs, or, of the mix, with a `truth` of the distinct ones."""
     other = None
     if truth is None:
         assert runs.exact is not None

@@ -37,7 +37,7 @@ class Workload:
     theta, duration
         Frequency and length of each run.
     start
-        x, y, their rates, shape (n, 4).
+        x, y, their rates, shape (n, 4); behind them the spin, of levels that know it.
     cos, sin
         Coefficients of the base acceleration along x and y [g], shape (n, 2).
     no_return
@@ -78,16 +78,7 @@ def rolling(count: int) -> Workload:
     """Return runs on the exact steady rolling under circular motion: θ even on 3…6, in random order (seed 1)."""
     theta = 3.0 + 3.0 * (np.random.default_rng(1).permutation(count) + 0.5) / count
     branch = sb.theory.steady_rolling(theta, ROLLING_ACCELERATION, c=C, eta=ETA).upper
-    amplitude, psi = branch.amplitude, branch.phase
-    start = np.stack(
-        [
-            amplitude * np.cos(psi),
-            amplitude * np.sin(psi),
-            -amplitude * theta * np.sin(psi),
-            amplitude * theta * np.cos(psi),
-        ],
-        axis=1,
-    )
+    start = on_circle(branch.amplitude, branch.phase, theta)
     circle = np.full(count, ROLLING_ACCELERATION)
     none = np.zeros(count)
     return Workload(
@@ -102,6 +93,12 @@ def rolling(count: int) -> Workload:
         motion=sb.Harmonic.circular(acceleration=ROLLING_ACCELERATION, angular_frequency=3.0),
         parameters={"angular_frequency": theta},
     )
+
+
+def on_circle(amplitude: Array, psi: Array, theta: Array) -> Array:
+    """Return x, y and their rates on a circle of this amplitude, at the angle ψ, turning at the rate θ."""
+    x, y = amplitude * np.cos(psi), amplitude * np.sin(psi)
+    return np.stack([x, y, -theta * y, theta * x], axis=1)
 
 
 def mix(count: int) -> Workload:

@@ -82,7 +82,7 @@ def simulate_ensemble(
         Keep so many of the last states at which the base motion has phase zero (Ωt + start_phase a whole number of
         turns), one a period.
     demands
-        Follow what the contact must bear too, for which steps take about a fifth longer.
+        Follow what the contact must bear too, for which steps take about a tenth longer.
     threads
         Threads to run on; by default all cores.
     progress
