@@ -12,6 +12,7 @@ MOTION = ["--motion", "circular", "--acceleration", "0.065", "--angular-frequenc
 START = ["--tilt", "0.04", "0", "--tilt-rate", "0", "0.07", "--duration", "10"]
 CASE = [*COLUMN, *MOTION, *START]
 SAMPLE = ["--random", "3", "--over", "tilt-x", "0", "1"]
+RANGES = ["--angular-frequency-range", "1", "2", "--bounds", "0.1", "0.2"]
 LINE = ["--motion", "straight", "--acceleration", "0.15", "--angular-frequency", "3"]
 
 
@@ -145,7 +146,11 @@ def test_maps_take_models(capsys):
         ),
         (
             ["response", *COLUMN, *MOTION[:4], "--model", "rolling", "--angular-frequency-range", "1", "2"],
-            "response_curves needs the slender model",
+            "got rolling, of which theory.full_rolling gives steady rolling and orbits.continue_branch orbits",
+        ),
+        (
+            ["boundary", *COLUMN, *LINE[:4], *RANGES, "--model", "planar-rocking"],
+            "no steady rolling of this planar rocking model under horizontal motion; give orbits.periodic_orbit a run",
         ),
         (["simulate", *CASE, "--model", "sliding"], "model.kind must be one of 'slender', 'slender_rolling'"),
         (["simulate", *CASE, "--model", "wobbling", "--constraint", "x"], "input should be 'pure_tilt' or 'rubber'"),
@@ -154,7 +159,9 @@ def test_maps_take_models(capsys):
         (["simulate", *CASE, "--model", "planar-rocking"], "must lie in one vertical plane"),
         (["simulate", *CASE, "--friction-coefficient", "0"], "friction_coefficient must be positive, got 0.0"),
         (["ladder", *CASE, "--reference", "sliding"], "reference must be a level of this case"),
-        (["ladder", *CASE, "--scaled-to", "-1"], "slenderness must be a list of positive numbers"),
+        (["ladder", *CASE, "--scaled-to", "-1"], "--scaled-to must be followed by a positive slenderness, got -1.0"),
+        (["ladder", *CASE, "--tilt", "1.2", "0", "--scaled-to", ".2"], "becomes (2.4, 0) rad where the case is scaled"),
+        (["ladder", *CASE, "--model", "rolling"], "ladder runs all levels of the ladder, and not one model"),
         (["ladder", *COLUMN], "duration is missing"),
         (["ladder", *CASE, "--rolling-resistance", "1"], "No such option"),
     ],
@@ -177,3 +184,12 @@ def test_a_friction_that_levels_do_not_share_is_refused(tmp_path, capsys):
         "model.rolling_resistance is no friction of the ladder: damping, spin_friction, restitution; remove it"
         in capsys.readouterr().err
     )
+
+
+def test_a_slenderness_in_a_file_is_named(tmp_path, capsys):
+    description = tmp_path / "run.toml"
+    description.write_text(
+        'duration = 5.0\n[column]\nshape = "dimensionless"\nslenderness = 0.1\n[ladder]\nslenderness = [0.1, -1.0]\n'
+    )
+    assert run(["ladder", str(description)]) == 2
+    assert capsys.readouterr().err == "stylobate: ladder: slenderness must be positive, got -1.0\n"

@@ -38,8 +38,8 @@ class Touch(NamedTuple):
 
     Attributes
     ----------
-    e3, d, arm
-        Axis, azimuth of its lean, and ρ from the centre of mass to C, (3,).
+    e3, arm, lever
+        Axis, ρ from the centre of mass to C, (3,), and the matrix of ρ ×, (3, 3).
     mobility
         I_G⁻¹ (3, 3).
     free_spin
@@ -51,8 +51,8 @@ class Touch(NamedTuple):
     """
 
     e3: np.ndarray
-    d: np.ndarray
     arm: np.ndarray
+    lever: np.ndarray
     mobility: np.ndarray
     free_spin: np.ndarray
     free: np.ndarray
@@ -60,7 +60,7 @@ class Touch(NamedTuple):
 
     def by_couple(self, couple):
         """Return v̇_C by a couple [m/s²], (3,)."""
-        return -_crossing(self.arm) @ self.mobility @ couple
+        return -self.lever @ (self.mobility @ couple)
 
 
 class Load(NamedTuple):
@@ -128,7 +128,9 @@ class SlidingBody:
     def arm(self, state):
         """Return ρ (3,)."""
         e3 = self.axis(state)
-        lean = math.hypot(e3[0], e3[1]) or 1.0  # upright, where no point is the lowest, the centre of the base
+        lean = math.hypot(e3[0], e3[1])
+        if lean == 0.0:
+            return -self.column.mass_height * e3  # upright no point of the rim is the lowest: the centre of the base
         u = np.array([e3[2] * e3[0] / lean, e3[2] * e3[1] / lean, -lean])
         return self.column.radius * u - self.column.mass_height * e3
 
@@ -164,7 +166,7 @@ class SlidingBody:
         free_spin = mobility @ couple
         lever = _crossing(arm)
         free = turning @ arm_rate - lever @ free_spin - self.column.gravity * UP - acceleration
-        return Touch(e3, d, arm, mobility, free_spin, free, IDENTITY / mass - lever @ mobility @ lever)
+        return Touch(e3, arm, lever, mobility, free_spin, free, IDENTITY / mass - lever @ mobility @ lever)
 
     def slip(self, touching):
         """Return the slip (3,) [m/s] of (G, q, v_C, ω)."""
@@ -196,7 +198,7 @@ class SlidingBody:
 
     def with_slip(self, touching, slip):
         """Return (G, q, v_C, ω) with this slip (3,) and C neither rising nor falling."""
-        changed = self._with_velocity(touching, np.array([slip[0], slip[1], 0.0]))
+        changed = self._with_velocity(touching, [slip[0], slip[1], 0.0])
         if self.patch > 0.0:
             changed[TURNING.start + 2] = slip[2] / self.patch
         return changed
@@ -220,7 +222,7 @@ class SlidingBody:
         system[:3, :3] = at.response
         system[:3, 2] += at.by_couple(rolling)
         system[:3, 3] = at.by_couple(UP)
-        system[3, :3] = at.mobility[2] @ _crossing(at.arm)
+        system[3, :3] = at.mobility[2] @ at.lever
         system[3, 2] += at.mobility[2] @ rolling
         system[3, 3] = at.mobility[2, 2]
         size = 3 if self.patch == 0.0 else 4
@@ -241,7 +243,7 @@ class SlidingBody:
         """Return the rates (13,) of (G, q, v_C, ω)."""
         spin = touching[TURNING]
         velocity = touching[VELOCITY] - _crossing(spin) @ at.arm
-        angular = at.free_spin + at.mobility @ (_crossing(at.arm) @ load.force + load.couple)
+        angular = at.free_spin + at.mobility @ (at.lever @ load.force + load.couple)
         linear = at.free + at.response @ load.force + at.by_couple(load.couple)
         return np.concatenate([velocity, self._attitude_rate(touching), linear, angular])
 
@@ -258,7 +260,7 @@ class SlidingBody:
         """Return the state after an `impulse` (3,) at C."""
         at, after = self.touch(state), state.copy()
         after[VELOCITY] += impulse / self.column.mass
-        after[TURNING] += at.mobility @ _crossing(at.arm) @ impulse
+        after[TURNING] += at.mobility @ at.lever @ impulse
         return after
 
     def energy(self, state):
@@ -280,7 +282,7 @@ class SlidingBody:
 
     @staticmethod
     def _attitude_rate(state):
-        return 0.5 * _product(np.append(0.0, state[TURNING]), state[ATTITUDE])
+        return 0.5 * _product(np.array([0.0, *state[TURNING]]), state[ATTITUDE])
 
     @staticmethod
     def _with_velocity(state, velocity):

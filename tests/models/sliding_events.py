@@ -14,7 +14,7 @@ import numpy as np
 from scipy.integrate import DOP853, Radau
 from scipy.optimize import brentq
 
-from .constrained_body import VELOCITY, at_rest
+from .constrained_body import PLACE, VELOCITY, at_rest
 from .sliding_body import NOTHING
 from .sliding_impact import impulse
 from .sliding_track import Event, Limits, Track
@@ -41,7 +41,7 @@ def follow(body, start, *, duration, acceleration=at_rest, times=None, limits=No
     """
     run = _Run(body, acceleration, limits or Limits())
     state = np.asarray(start, dtype=float)
-    phase, state = run.land(0.0, state) if body.gap(state) <= 1e-14 * body.column.radius else (FLIGHT, state)
+    phase, state = run.land(0.0, state) if body.gap(state) <= 1e-12 * body.column.radius else (FLIGHT, state)
     run.record(0.0, phase, state)
     now = 0.0
     for end in [*([] if times is None else times), duration]:
@@ -132,14 +132,15 @@ class _Run:
     def land(self, time, state):
         """Return phase and state of a body (G, q, v, ω) whose C is on the plane, after the impact if it closes."""
         body, grounded, struck = self.body, state.copy(), np.zeros(3)
-        at = body.touch(state, self.push(time))
-        if math.hypot(at.e3[0], at.e3[1]) <= self.limits.flat:
+        if math.hypot(*body.axis(state)[:2]) <= self.limits.flat:
             return self._event("flat", time, state, state, ENDED), state
         grounded[2] -= body.gap(state)
         velocity = body.touching(grounded)[VELOCITY]
-        if velocity[2] < 0.0:
+        if velocity[2] < -self.limits.still:
             bounce = -body.restitution * velocity[2] > self.limits.resting
-            struck = impulse(velocity, at.response, body.kinetic, body.restitution if bounce else 0.0, body.impact)
+            struck = impulse(
+                velocity, body.touch(grounded).response, body.kinetic, body.restitution if bounce else 0.0, body.impact
+            )
             grounded = body.struck(grounded, struck)
         touching = body.touching(grounded)
         if touching[VELOCITY][2] > self.limits.resting:
@@ -193,15 +194,36 @@ class _Run:
         self.least_denominator = min(self.least_denominator, load.denominator)
         slip = self.body.slip(state)
         speed = np.linalg.norm(slip)
-        longest = 0.5 * speed / np.linalg.norm(self._slip_rate(self.body.rates_touching(state, at, load)))
+        rate = np.linalg.norm(self._slip_rate(self.body.rates_touching(state, at, load)))
+        longest = 0.5 * speed / rate if rate > 0.0 else np.inf
         column = self.body.column
         smooth = 0.05 * math.sqrt(column.radius / column.gravity)
         following = self.body.kinetic * load.force[2] * np.trace(at.response) / speed
         return longest, following * min(longest, smooth, end - time)
 
     def _solver(self, phase, begin, state, end, *, implicit):
-        method, limits = Radau if implicit else DOP853, self.limits
-        return method(lambda t, y: self.rates(phase, t, y), begin, state, end, rtol=limits.rtol, atol=limits.atol)
+        limits = self.limits
+
+        def rates(time, state):
+            return self.rates(phase, time, state)
+
+        if not implicit:
+            return DOP853(rates, begin, state, end, rtol=limits.rtol, atol=limits.atol)
+        return Radau(rates, begin, state, end, rtol=limits.rtol, atol=limits.atol, jac=self._jacobian)
+
+    def _jacobian(self, time, state):
+        """Derivative of the rates while slipping, (13, 13), by differences small against slip; that by G is nought."""
+        speed, patch = np.linalg.norm(self.body.slip(state)), self.body.patch
+        steps = np.full(state.size, 1e-7)
+        steps[VELOCITY] = 1e-6 * speed
+        if patch > 0.0:
+            steps[-1] = 1e-6 * speed / patch
+        rates, jacobian = self.rates(SLIP, time, state), np.zeros((state.size, state.size))
+        for column in range(PLACE.stop, state.size):
+            moved = state.copy()
+            moved[column] += steps[column]
+            jacobian[:, column] = (self.rates(SLIP, time, moved) - rates) / (moved[column] - state[column])
+        return jacobian
 
     def _first_crossing(self, phase, solver):
         """Return the kind of the first event within the last step, and times that bracket it."""

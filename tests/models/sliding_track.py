@@ -15,9 +15,10 @@ class Limits:
     rtol, atol
         Tolerances of the integration.
     still
-        Speed of slip that counts as none [m/s].
+        Speed of slip, and of arrival, that counts as none [m/s].
     resting
-        Speed at which C bounces that counts as none [m/s]: impacts pile up to rest.
+        Speed at which C bounces that counts as none [m/s], so that impacts pile up to rest. A bounce by it must rise
+        well above `deep`, or falling that deep feeds it.
     flat
         Tilt, as sin θ, at which a touching base is flat on the plane, which ends the motion.
     deep
@@ -28,10 +29,10 @@ class Limits:
 
     rtol: float = 1e-11
     atol: float = 1e-14
-    still: float = 1e-10
-    resting: float = 1e-7
+    still: float = 1e-12
+    resting: float = 1e-5
     flat: float = 1e-6
-    deep: float = 1e-13
+    deep: float = 1e-14
     events: int = 1000
 
 

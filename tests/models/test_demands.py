@@ -68,7 +68,7 @@ def test_a_run_warns_of_slipping_where_more_friction_is_needed_than_there_is_and
         if warned:
             (line,) = run.warnings
             assert line.startswith("it would slip")
-            assert f"{needed:.4g} times the normal force is needed" in line
+            assert f"at most {needed:.4g} times the normal force" in line
             assert "\n" not in line
     assert sb.simulate(model, CIRCLE, **begun(model), duration=3.0).warnings == ()
 

@@ -123,3 +123,32 @@ def test_a_restitution_that_is_not_given_cannot_be_followed():
     orbit = sb.orbits.periodic_orbit(model, line, guess=sb.simulate(model, line, tilt=(0.02, 0.0), duration=200.0))
     with pytest.raises(ParameterError, match=r"^parameter restitution has no value in model planar rocking"):
         sb.orbits.continue_branch(orbit, "restitution", bounds=(0.8, 0.99))
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+@pytest.mark.parametrize("name", [*LEVELS, "slender rolling"])
+def test_steady_rolling_of_every_level_needs_no_guess(name, sense):
+    slender = sb.SlenderRolling(COLUMN, damping=ETA, spin_friction=0.1)
+    model = slender if name == "slender rolling" else LEVELS[name][0]
+    circle = sb.Harmonic.circular(acceleration=A0, angular_frequency=THETA, sense=sense)
+    orbit = sb.orbits.periodic_orbit(model, circle)
+    if name == "slender rolling":
+        known = float(sb.theory.free_twist_rolling(THETA, A0, c=C, eta=ETA, zeta=0.1).amplitude)
+    else:
+        known = stable_one(LEVELS[name][1](THETA))[0]
+    assert orbit.mean_tilt == pytest.approx(known, rel=1e-9)
+    assert orbit.turns == sense
+    assert orbit.stable
+
+
+def test_a_guess_may_tell_the_spin():
+    model, theory = LEVELS["rolling 0.1"]
+    branches = theory(THETA)
+    amplitude, phase, _ = stable_one(branches)
+    spin = float(branches.spin[np.flatnonzero(branches.stable)[0]])
+    orbit = sb.orbits.periodic_orbit(model, CIRCLE, guess=[*near(amplitude, phase), spin])
+    assert orbit.state[4] == pytest.approx(spin, rel=1e-9)
+    with pytest.raises(ParameterError, match=r"and perhaps the spin \[rad/s\]"):
+        sb.orbits.periodic_orbit(model, CIRCLE, guess=[0.0] * 6)
+    with pytest.raises(ParameterError, match=r"^guess must be four numbers"):
+        sb.orbits.periodic_orbit(LEVELS["wobbling"][0], CIRCLE, guess=[0.0] * 5)

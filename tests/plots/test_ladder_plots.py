@@ -37,6 +37,14 @@ def test_several_slendernesses_show_convergence():
     assert len(late.lines) == found.sizes["level"]
 
 
+def test_one_slenderness_shows_that_case_alone():
+    found = sb.studies.ladder(COLUMN, CIRCLE, **CASE, slenderness=[0.2])
+    tilts, demands = sb.plot(found).axes
+    assert {tilts.get_xscale(), demands.get_xscale(), tilts.get_yscale()} == {"linear"}
+    top = float(found["largest_tilt"].sel(level="slender")[0]) / 0.2
+    assert tilts.lines[0].get_xdata() == pytest.approx([top])
+
+
 def test_demands_are_shown_beside_the_coefficient():
     found = sb.studies.ladder(COLUMN, CIRCLE, **CASE, friction_coefficient=0.05)
     _, demands = sb.plot(found).axes

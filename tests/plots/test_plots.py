@@ -29,6 +29,16 @@ def test_a_run_shows_tilt_azimuth_and_orbit_with_units(run):
     assert [circle.get_radius() for circle in circles] == [pytest.approx(0.1)]
 
 
+@pytest.mark.parametrize(("direction", "positive"), [(0.0, 1), (2.5, -1), (0.5 * np.pi, 1), (-0.5 * np.pi, -1)])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_tilt_along_its_line_is_positive_towards_x_or_else_y(direction, positive, sign):
+    motion = sb.Harmonic.straight(acceleration=0.15, angular_frequency=3.0, direction=direction)
+    tilt = (0.05 * sign * np.cos(direction), 0.05 * sign * np.sin(direction))
+    figure = sb.plot(sb.simulate(MODEL, motion, tilt=tilt, duration=10.0))
+    shown = next(axes for axes in figure.axes if axes.get_ylabel() == "tilt along its line [rad]")
+    assert shown.lines[0].get_ydata()[0] == pytest.approx(0.05 * sign * positive)
+
+
 def test_several_runs_are_compared_with_a_legend(run):
     other = sb.simulate(MODEL, tilt=(0.05, 0.0), duration=20.0)
     figure = sb.plot([run, other], labels=["forced", "free"])

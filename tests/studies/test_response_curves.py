@@ -1,10 +1,12 @@
 """Response curves in SI units are the closed forms, and their starts are motions of the model."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.errors import ParameterError
+from stylobate.errors import ParameterError, StylobateError
 
 MODEL = sb.Slender(sb.Column.solid(radius=0.5, height=10.0, density=2700.0), damping=0.1)
 
@@ -98,3 +100,75 @@ def test_the_slow_flow_follows_a_weakly_driven_straight_motion():
     assert float(full["amplitude"].mean() / slow["amplitude"].mean()) == pytest.approx(1.0, abs=0.02)
     turned = float(full["azimuth"][-1] - full["azimuth"][0]) / (2.0 * np.pi)
     assert turned == pytest.approx(-10.0, abs=0.05)
+
+
+FULL = sb.Column.solid(radius=0.8, height=4.0, density=2700.0)
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        sb.SlenderRolling(FULL, damping=0.1, spin_friction=0.2),
+        sb.Wobbling(FULL, damping=0.1),
+        sb.Wobbling(FULL, damping=0.1, constraint="rubber"),
+        sb.Rolling(FULL, damping=0.1, spin_friction=0.2),
+    ],
+    ids=lambda model: f"{model.name}-{getattr(model, 'constraint', '')}",
+)
+@pytest.mark.parametrize("sense", [1, -1])
+def test_a_start_is_on_the_steady_rolling_of_its_model(model, sense):
+    motion = sb.Harmonic.circular(acceleration=1.2, angular_frequency=3.6, sense=sense, start_phase=0.7)
+    start = sb.studies.steady_start(model, motion)
+    run = sb.simulate(model, motion, **start, duration=10.0 * motion.period, rtol=1e-10)
+    np.testing.assert_allclose(run.data["amplitude"], run.data["amplitude"][0], rtol=1e-6)
+    turned = float(run.data["azimuth"][-1] - run.data["azimuth"][0]) / (2.0 * np.pi)
+    assert turned == pytest.approx(10.0 * sense, abs=1e-6)
+    if model.spin_state is None:
+        assert "spin" not in start
+    else:
+        assert sense * start["spin"] < 0.0  # against the rolling
+        np.testing.assert_allclose(run.data["spin"], start["spin"], rtol=1e-6)
+
+
+def test_the_branches_of_full_rolling():
+    model = sb.Rolling(FULL, damping=0.1, spin_friction=0.2)
+    motion = sb.Harmonic.circular(acceleration=1.2, angular_frequency=3.6)
+    rolling = sb.theory.full_rolling(
+        3.6 * model.time_scale,
+        1.2 / FULL.gravity,
+        c=FULL.slenderness,
+        eta=0.1,
+        zeta=0.2,
+        inertia_ratio=FULL.inertia_ratio,
+        axial_ratio=FULL.axial_ratio,
+    )
+    assert rolling.stable.tolist() == [False, True]
+    for index, branch in enumerate(("lower", "upper")):
+        start = sb.studies.steady_start(model, motion, branch=branch)
+        assert np.hypot(*start["tilt"]) == pytest.approx(rolling.amplitude[index], rel=1e-12)
+        assert start["spin"] * model.time_scale == pytest.approx(rolling.spin[index], rel=1e-12)
+
+
+@dataclass(frozen=True, slots=True)
+class Own(sb.Slender):
+    """A model with equations of its own."""
+
+
+@pytest.mark.parametrize(
+    ("model", "branch", "told"),
+    [
+        (sb.PlanarRocking(FULL), "upper", "got model planar rocking"),
+        (Own(FULL), "upper", "steady_start needs a closed form"),
+        (sb.Wobbling(FULL, rolling_resistance=0.01), "upper", "rolling_resistance must be 0"),
+        (sb.Rolling(FULL, rolling_resistance=0.01), "upper", "rolling_resistance must be 0"),
+        (sb.SlenderRolling(FULL, couples="isotropic"), "upper", "couples must be 'contact'"),
+        (sb.SlenderRolling(FULL), "lower", 'branch must be "upper" for slender rolling'),
+        (sb.Rolling(FULL, damping=0.1), "upper", "spin_friction must be above zero"),
+        (sb.Rolling(FULL), "left", 'branch must be "upper" or "lower"'),
+    ],
+)
+def test_no_start_where_there_is_no_closed_form(model, branch, told):
+    motion = sb.Harmonic.circular(acceleration=1.2, angular_frequency=3.6)
+    with pytest.raises(StylobateError, match=told) as error:
+        sb.studies.steady_start(model, motion, branch=branch)
+    assert "\n" not in str(error.value)

@@ -1,5 +1,6 @@
 """`stylobate ladder`: one case through all levels of the ladder of models."""
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,6 +11,7 @@ from stylobate.cli import options as opt
 from stylobate.cli.output import check_writable, print_json, print_table, save_figure
 from stylobate.cli.response import plain_curves, save_curves
 from stylobate.cli.source import read_source
+from stylobate.errors import ParameterError
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -19,6 +21,7 @@ ScaledTo = Annotated[
     list[float] | None,
     typer.Option(help="slenderness to which the case is scaled, tilts and base motion with it; repeat it"),
 ]
+NoModel = Annotated[str | None, typer.Option("--model", hidden=True)]
 Reference = Annotated[str | None, typer.Option(help="level from which differences are taken, rolling by default")]
 
 
@@ -46,6 +49,7 @@ def ladder(
     top_radius: opt.TopRadius = None,
     slenderness: opt.Slenderness = None,
     gravity: opt.Gravity = None,
+    model: NoModel = None,
     damping: opt.Damping = None,
     spin_friction: opt.SpinFriction = None,
     restitution: opt.Restitution = None,
@@ -78,6 +82,12 @@ def ladder(
     """
     from stylobate import plots, spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
 
+    if model is not None:
+        message = "ladder runs all levels of the ladder, and not one model; leave out --model"
+        raise ParameterError(message)
+    if any(not 0.0 < c < math.inf for c in scaled_to or ()):
+        message = f"--scaled-to must be followed by a positive slenderness, got {', '.join(map(str, scaled_to or ()))}"
+        raise ParameterError(message)
     check_writable(figure, output)
     values = opt.overlay(read_source(source), context.params, opt.RUN_NAMES)
     setup = spec.LadderDescription.parse(opt.overlay_ladder(values, context.params)).build()

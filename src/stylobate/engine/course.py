@@ -33,6 +33,8 @@ class Course:
         Whether all of its motion was integrated in one vertical plane.
     least_passage
         Least tilt at a passage of the upright out of a plane [rad].
+    crossed
+        Whether it passed the upright in a plane.
     """
 
     model: Model
@@ -45,6 +47,7 @@ class Course:
     failure: str = ""
     planar: bool = True
     least_passage: float = math.inf
+    crossed: bool = False
     _time: float = 0.0
     _azimuth: float | None = None
     _steps: int = 0
@@ -132,6 +135,7 @@ class Course:
             if leg.reason not in (Reason.CROSSED, Reason.STOP):
                 return None
             state = leg.state
+            self.crossed |= leg.reason is Reason.CROSSED
             if leg.reason is Reason.CROSSED and self.model.loss_tilt > 0.0:
                 state = self._struck_in_plane(leg.state, line)
         return None

@@ -62,8 +62,8 @@ class Demands:
         if friction_coefficient is not None and demand > friction_coefficient:
             when = _first(time, moving & (series["largest_friction_demand"] > friction_coefficient))
             warnings.append(
-                f"it would slip{when}: friction of {demand:.4g} times the normal force is needed, "
-                f"friction_coefficient is {friction_coefficient:.4g}; this model never slips"
+                f"it would slip{when}: more friction is needed than friction_coefficient {friction_coefficient:.4g} "
+                f"gives, at most {demand:.4g} times the normal force in all of the run; this model never slips"
             )
         return cls(measures, tuple(warnings))
 

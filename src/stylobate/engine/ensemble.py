@@ -82,7 +82,7 @@ def simulate_ensemble(
         Keep so many of the last states at which the base motion has phase zero (Ωt + start_phase a whole number of
         turns), one a period.
     demands
-        Follow what the contact must bear too, for which steps take about a tenth longer.
+        Follow what the contact must bear too, for which steps take about a fifth longer.
     threads
         Threads to run on; by default all cores.
     progress
@@ -97,7 +97,7 @@ def simulate_ensemble(
         also `strobe_tilt` and `strobe_tilt_rate`, the last strobe last; with `samples` also `sample_time`,
         `sampled_tilt` and `sampled_tilt_rate`; NaN before the run began and after it ended. Of models with a spin also
         `end_spin`. With `demands` the `largest_friction_demand`, `largest_pivoting_demand` and `least_normal_force`
-        (over the weight) while the column moves, told within each step by a parabola through three values.
+        (over the weight) while the column moves, told within each step by parabolas through values at its quarters.
 
     Raises
     ------

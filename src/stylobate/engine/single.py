@@ -154,11 +154,16 @@ def simulate(
         thresholds={
             "close_passage": CLOSE_PASSAGE,
             "passage_tilt": model.loss_tilt,
-            "no_return_tilt": model.least_safe_tilt(forcing.largest_horizontal(0.0), forcing.least_vertical(0.0)),
+            "no_return_tilt": model.least_safe_tilt(*_bounds(forcing)),
             **asdict(thresholds),
             **asdict(rules),
         },
-        measures={**recorded.measures, "least_passage": course.least_passage, **verdict.measures},
+        measures={
+            **recorded.measures,
+            "least_tilt": 0.0 if course.crossed else min(recorded.measures["least_tilt"], course.least_passage),
+            "least_passage": course.least_passage,
+            **verdict.measures,
+        },
         provenance=provenance_of_run(
             model,
             moved,
@@ -190,6 +195,9 @@ _ENDINGS = {
 def _verdict(model: Model, motion: BaseMotion, course: Course, rules: OutcomeRules) -> Verdict:
     if course.ended is Reason.FAILED:
         return Verdict(Outcome.FAILED, f"the integration stopped: {course.failure}", {})
+    unproved = math.isinf(model.least_safe_tilt(*_bounds(course.forcing)))
+    if course.ended is Reason.OVERTURNED and unproved:
+        return Verdict(Outcome.OVERTURNED, "its tilt reached π/2, which counts as overturned", {})
     if course.ended in _ENDINGS:
         return Verdict(*_ENDINGS[course.ended], {})
     if course.stands:
@@ -198,6 +206,11 @@ def _verdict(model: Model, motion: BaseMotion, course: Course, rules: OutcomeRul
         return Verdict(Outcome.AT_REST, f"it stands at the end of the run{before}", {})
     period = None if motion.period is None else motion.period / model.time_scale
     return long_term(model, course.trajectory, period, rules, planar=course.planar)
+
+
+def _bounds(forcing: Forcing) -> tuple[float, float]:
+    """Return sup |a_h| and inf a_z [g] of a whole run."""
+    return forcing.largest_horizontal(0.0), forcing.least_vertical(0.0)
 
 
 def _is_uncertain(model: Model, forcing: Forcing, course: Course, thresholds: Thresholds) -> bool:

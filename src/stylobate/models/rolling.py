@@ -204,7 +204,8 @@ class Rolling(Model):
     column
         The column.
     damping
-        Viscous friction η = D1/(ω0 J0), a couple −D1 against the horizontal part of the tilting: −D1(w1 u + w2 n).
+        Viscous friction η = D1/(ω0 J0), a couple −D1 times the angular velocity across the axis: −D1(w1 u + w2 n), n
+        horizontal and u across axis and n.
     spin_friction
         ζ, by a moment −D0 times the angular velocity about the vertical, D0 = ζ ω0 I_a D/i_a: a column that spins
         upright loses its spin at the rate ζ ω0.

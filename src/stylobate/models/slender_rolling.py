@@ -219,14 +219,24 @@ class SlenderRolling(Model):
         return self.damping > 0.0
 
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
-        """Return spin, twist and footprint, the path of the contact point, and what the contact bears.
+        """Return energy, spin, twist and footprint, the path of the contact point, and what the contact bears.
 
-        The centre of pressure is as of the slender model; the moment about the vertical is that of the spin friction.
+        The energy is ½|α̇|² + cA − ½A² − cκσ Aβ̇ + ½κ(1 + i_a)c²σ² in units of J0 ω0². The centre of pressure is as of the
+        slender model; the moment about the vertical is that of the spin friction.
         """
         column, scale = self.column, self.time_scale
         spin, twist = states[4:6]
         plain = slender.Slender(column, damping=self.damping).outputs(states[:4], accelerations, resting)
+        c, kappa = column.slenderness, column.inertia_ratio
+        unit = column.base_inertia * column.frequency_scale**2
+        x, y, vx, vy = states[:4]
+        tilt = np.hypot(x, y)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            across = np.where(tilt > 0.0, (x * vy - y * vx) / tilt, 0.0)
+        energy = 0.5 * (vx**2 + vy**2) + c * tilt - 0.5 * tilt**2
+        energy += kappa * c * spin * (0.5 * (1.0 + column.axial_ratio) * c * spin - across)
         return {
+            "energy": Output(energy * unit, "J", "energy above rest"),
             "spin": Output(spin / scale, "rad s-1", "angular velocity about the axis"),
             "twist": Output(twist, "rad", "angle of turn about the axis"),
             "centre_of_pressure": plain["centre_of_pressure"],

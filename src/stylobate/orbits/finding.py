@@ -52,9 +52,10 @@ def periodic_orbit(
     motion
         A base motion that is periodic from t = 0.
     guess
-        Tilt vector [rad] and its rate [rad/s] at t = 0: x, y, ẋ, ẏ. Or a run, which is taken where it last passed the
-        phase of t = 0. Or None for steady rolling by theory (slender model, horizontal Harmonic motion): known exactly
-        for one of the two circles of which the motion is made, and followed while the other is added.
+        Tilt vector [rad] and its rate [rad/s] at t = 0: x, y, ẋ, ẏ, and behind them the spin [rad/s] if the model has
+        one and it is not 0. Or a run, which is taken where it last passed the phase of t = 0. Or None for steady
+        rolling by theory (horizontal Harmonic motion): known in closed form for one of the two circles of which the
+        motion is made, and followed while the other is added.
     periods
         Length of the orbit in periods of the base motion; a shorter one to which it leads is told with its own.
     arcs
@@ -95,7 +96,7 @@ def periodic_orbit(
     if guess is None:
         state, line = rolling_by_theory(model, motion, sense), None
     else:
-        lean = _of_run(guess, motion) if isinstance(guess, Response) else _checked(guess)
+        lean = _of_run(guess, model, motion) if isinstance(guess, Response) else _checked(guess, model)
         _require_moving(model, lean)
         state, line = _start(model, motion, lean)
     system = PeriodicSystem(model, motion, line, rtol)
@@ -105,7 +106,7 @@ def periodic_orbit(
 
 def _require_moving(model: Model, lean: Floats) -> None:
     """Raise NoOrbitError if the column is upright there and does not move."""
-    size = np.hypot(*lean[:2]), np.hypot(*lean[2:]) * model.time_scale
+    size = np.hypot(*lean[:2]), np.hypot(*lean[2:_LEAN]) * model.time_scale
     if max(size) < _STANDING * model.column.slenderness:
         message = (
             "no periodic orbit was reached: at the guess the column stands upright and does not move, which is no "
@@ -116,11 +117,13 @@ def _require_moving(model: Model, lean: Floats) -> None:
 
 def _start(model: Model, motion: BaseMotion, lean: Floats) -> tuple[Floats, tuple[float, float] | None]:
     """Return the state in units of the model, along the line of a plane if it and the base motion lie in one."""
-    state = np.array(model.start(tuple(lean[:2]), tuple(lean[2:])), dtype=float)
+    state = np.array(model.start(tuple(lean[:2]), tuple(lean[2:_LEAN])), dtype=float)
+    if model.spin_state is not None and lean.size > _LEAN:
+        state[model.spin_state] = lean[_LEAN] * model.time_scale
     line = plane_of(model, motion, state)
     if line is None:
         return state, None
-    scaled = lean * np.array([1.0, 1.0, model.time_scale, model.time_scale])
+    scaled = lean[:_LEAN] * np.array([1.0, 1.0, model.time_scale, model.time_scale])
     return np.array([scaled[:2] @ line, scaled[2:] @ line]), line
 
 
@@ -275,18 +278,20 @@ def _ranges(system: PeriodicSystem, over: Mapping[str, Sequence[float]] | None) 
     return list(ranges.values())
 
 
-def _checked(guess: npt.ArrayLike) -> Floats:
+def _checked(guess: npt.ArrayLike, model: Model) -> Floats:
     try:
         lean = np.asarray(guess, dtype=float)
     except (TypeError, ValueError):
         lean = np.empty(0)
-    if lean.shape != (_LEAN,) or not np.all(np.isfinite(lean)):
-        message = f"guess must be four numbers, tilt x, y [rad] and their rates [rad/s], got {guess!r}"
+    sizes = ((_LEAN,),) if model.spin_state is None else ((_LEAN,), (_LEAN + 1,))
+    if lean.shape not in sizes or not np.all(np.isfinite(lean)):
+        spin = "" if model.spin_state is None else ", and perhaps the spin [rad/s]"
+        message = f"guess must be four numbers, tilt x, y [rad] and their rates [rad/s]{spin}, got {guess!r}"
         raise ParameterError(message)
     return lean
 
 
-def _of_run(run: Response, motion: BaseMotion) -> Floats:
+def _of_run(run: Response, model: Model, motion: BaseMotion) -> Floats:
     period = motion.period
     time = run.data["time"].to_numpy()
     if period is None or time[-1] < period:
@@ -294,4 +299,5 @@ def _of_run(run: Response, motion: BaseMotion) -> Floats:
         raise ParameterError(message)
     whole = math.floor(time[-1] / period * (1.0 + 1e-12)) * period
     at = run.sample(min(whole, time[-1])) if run.sampler is not None else run.data.interp(time=[whole], method="cubic")
-    return np.concatenate([at["tilt"].to_numpy().ravel(), at["tilt_rate"].to_numpy().ravel()])
+    names = ["tilt", "tilt_rate"] + (["spin"] if model.spin_state is not None and "spin" in at else [])
+    return np.concatenate([at[name].to_numpy().ravel() for name in names])

@@ -11,13 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from stylobate import theory
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError
-from stylobate.models import Model, Slender
+from stylobate.models import Model
 from stylobate.motions import BaseMotion, Harmonic, as_harmonic
 from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.shooting import closed
+from stylobate.orbits.steady import steady_rolling_of, theory_knows
 
 Floats = npt.NDArray[np.float64]
 
@@ -66,10 +66,11 @@ def rolling_by_theory(model: Model, motion: BaseMotion, sense: int | None) -> Fl
         If theory has no such motion, or it is lost on the way to this base motion.
     """
     harmonic = as_harmonic(motion)
-    if type(model) is not Slender or harmonic is None or harmonic.amplitude[2] != 0.0:
+    if not theory_knows(model) or harmonic is None or harmonic.amplitude[2] != 0.0:
         message = (
-            "guess must be given: theory knows steady rolling of the slender model under horizontal Harmonic motion "
-            f"only, got {model.name} under {motion!r}"
+            "guess must be given, such as a run that has settled: theory knows steady rolling under horizontal "
+            "Harmonic motion only, of models with no friction but damping and spin friction; got "
+            f"{model.name} under {motion!r}"
         )
         raise UnsupportedError(message)
     require_sense(sense)
@@ -116,11 +117,9 @@ def _rolling(model: Model, motion: Harmonic, guess: Floats, sense: int) -> Float
     return chain.states[0] if PeriodicOrbit(model, motion, 1, chain).turns == sense else None
 
 
-def _on_the_circle(model: Slender, motion: Harmonic, part: complex, sense: int) -> Floats:
+def _on_the_circle(model: Model, motion: Harmonic, part: complex, sense: int) -> Floats:
     theta = motion.angular_frequency / model.column.frequency_scale
-    acceleration = abs(part) / model.column.gravity
-    steady = theory.steady_rolling(theta, acceleration, c=model.column.slenderness, eta=model.damping).upper
-    amplitude, psi = float(steady.amplitude), float(steady.phase)
+    amplitude, psi, spin = steady_rolling_of(model, theta, abs(part) / model.column.gravity)
     if not amplitude > 0.0:
         message = (
             "guess must be given: theory has no steady rolling in this sense at angular_frequency = "
@@ -130,4 +129,8 @@ def _on_the_circle(model: Slender, motion: Harmonic, part: complex, sense: int) 
     azimuth = cmath.phase(part) + sense * psi
     x, y = amplitude * math.cos(azimuth), amplitude * math.sin(azimuth)
     rate = sense * theta
-    return np.array([x, y, -rate * y, rate * x])
+    state = np.array(model.start((x, y), (0.0, 0.0)), dtype=float)
+    state[2:4] = -rate * y, rate * x
+    if model.spin_state is not None:
+        state[model.spin_state] = sense * spin
+    return state

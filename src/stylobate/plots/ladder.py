@@ -49,6 +49,9 @@ def plot_ladder(found: xr.Dataset) -> Figure:
     slendernesses, how the levels come together as c falls; of one case what the contact must bear. Histories of several
     slendernesses are those of the largest.
     """
+    if found.sizes.get("slenderness") == 1:  # one case: nothing to come together
+        found = found.isel(slenderness=0)
+        found = found.assign_attrs(column_slenderness=float(found["slenderness"]))
     several = "slenderness" in found.dims
     shown = found.isel(slenderness=int(np.argmax(found["slenderness"].to_numpy()))) if several else found
     c = float(shown["slenderness"]) if several else float(found.attrs["column_slenderness"])

@@ -22,6 +22,8 @@ _EVENT_NAMES = {
 }
 # The name of an event later than this part of the run stands to its left.
 _LATE = 0.8
+# A line whose direction has no more than this part along x runs along y, but for rounding.
+_ALONG_Y = 1e-9
 
 
 @styled
@@ -81,11 +83,14 @@ def _draw_orbit(axes: Axes, data: xr.Dataset, line: dict[str, Any]) -> None:
 
 
 def _signed_tilt(data: xr.Dataset) -> np.ndarray:
-    """Return the tilt along the line in which a planar run moves, positive where it leans most."""
+    """Return the tilt along the line in which a planar run moves, positive towards +x, or +y of a line along y."""
     tilt = data["tilt"].to_numpy()
-    largest = tilt[np.argmax(np.hypot(*tilt.T))]
-    length = np.hypot(*largest)
-    return np.asarray(tilt @ largest / length) if length > 0.0 else np.zeros(len(tilt))
+    x, y = tilt[np.argmax(np.hypot(*tilt.T))]
+    length = np.hypot(x, y)
+    if length == 0.0:
+        return np.zeros(len(tilt))
+    positive = x > 0.0 if abs(x) > _ALONG_Y * length else y > 0.0
+    return np.asarray(tilt @ (x, y) / (length if positive else -length))
 
 
 def _mark_events(axes: Axes, run: Response) -> None:

@@ -1,11 +1,12 @@
 """The description of one case on the ladder of models."""
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any, Self
 
 from pydantic import Field
 
-from stylobate.errors import DescriptionError
+from stylobate.errors import DescriptionError, require_positive
 from stylobate.spec.columns import ColumnDescription
 from stylobate.spec.description import Description, built
 from stylobate.spec.models import RollingModel, default_values
@@ -81,6 +82,8 @@ class LadderDescription(Description):
             With one line for each part that cannot be.
         """
         problems = problems_of_the_run(self)
+        for c in self.ladder.slenderness:
+            built("ladder", partial(require_positive, "slenderness", c), problems)
         rules = built("rules", lambda: built_rules(self.rules), problems)
         frictions = self.model.model_dump()
         restitution = frictions.pop("restitution")

@@ -18,7 +18,7 @@ from stylobate.studies.response_curves import response_curves
 from stylobate.studies.sections import poincare_section
 from stylobate.studies.slow_sweep import slow_sweep
 from stylobate.studies.stability_boundary import stability_boundary
-from stylobate.studies.starts import Start, steady_start
+from stylobate.studies.starts import Start, TurningStart, steady_start
 from stylobate.studies.strobes import AttractorRules
 from stylobate.studies.sweeps import Dask, Sweep, Threads, executor_from, open_sweep, run_sweep
 
@@ -29,6 +29,7 @@ __all__ = [
     "Start",
     "Sweep",
     "Threads",
+    "TurningStart",
     "attractors",
     "averaged_motion",
     "averaging_map",

@@ -5,7 +5,7 @@ import numpy as np
 from stylobate.engine import with_parameters
 from stylobate.errors import NoOrbitError, UnsupportedError
 from stylobate.models import Model
-from stylobate.motions import BaseMotion
+from stylobate.motions import BaseMotion, as_harmonic
 from stylobate.orbits import PeriodicOrbit, periodic_orbit
 
 _TRIES = 24
@@ -34,13 +34,27 @@ def first_orbit(
         except NoOrbitError as error:
             reason = error
         except UnsupportedError as error:
-            message = f"no orbit is known to begin with: {_told(error)}"
+            told = _unknown(model, motion) if str(error).startswith("guess must be given") else str(error)
+            message = f"no orbit is known to begin with: {told}"
             raise UnsupportedError(message) from None
     message = (
         f"no orbit was found between {low!r} and {high!r} rad/s to begin with: {_told(reason)}; widen the range, or "
         "make the acceleration larger"
     )
     raise NoOrbitError(message)
+
+
+def _unknown(model: Model, motion: BaseMotion) -> str:
+    """Return of what theory has no rolling, and the remedy: the repr of a motion would fill a screen."""
+    harmonic = as_harmonic(motion)
+    if harmonic is None:
+        under = f"under {type(motion).__name__} motion"
+    else:
+        under = "with a vertical amplitude" if harmonic.amplitude[2] != 0.0 else "under horizontal motion"
+    return (
+        f"theory has no steady rolling of this {model.name} model {under}; give orbits.periodic_orbit a run as guess, "
+        "and follow its orbit by orbits.continue_branch"
+    )
 
 
 def _told(reason: Exception | None) -> str:

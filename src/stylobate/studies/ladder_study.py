@@ -1,6 +1,7 @@
 """One case through all levels of the ladder of models: what each assumption costs."""
 
 import json
+import math
 from collections.abc import Sequence
 from typing import Any, Unpack
 
@@ -21,6 +22,8 @@ from stylobate.studies.ladder_run import Course, Floats, largest_distance
 
 # Times at which levels are compared, unless the user asks for histories of another length.
 _TIMES = 2001
+
+_OF_SIMULATE = tuple(RunArguments.__annotations__)
 
 
 def ladder(
@@ -99,6 +102,10 @@ def ladder(
     wobbling           0.388
     rolling            0.193
     """
+    strange = [name for name in arguments if name not in _OF_SIMULATE]
+    if strange:
+        message = f"{strange[0]} is no argument of ladder; of those of simulate it takes {', '.join(_OF_SIMULATE)}"
+        raise ParameterError(message)
     moved = BASE_AT_REST if motion is None else motion
     case = _case(column, moved, damping, spin_friction, restitution, tilt, tilt_rate, spin)
     duration = require_positive("duration", duration, "s")
@@ -116,7 +123,7 @@ def ladder(
         found = compared(case)
     else:
         scales = _slendernesses(slenderness)
-        found = xr.concat([compared(case.scaled_to(c)) for c in scales], dim="slenderness")
+        found = xr.concat([compared(one) for one in _scaled(case, scales)], dim="slenderness")
         found = found.assign_coords(slenderness=("slenderness", scales, {"units": "1", "long_name": "slenderness"}))
         found = _with_order(found) if scales.size > 1 else found
     found = _with_differences(found, reference)
@@ -174,6 +181,26 @@ def _slendernesses(given: npt.ArrayLike) -> Floats:
         message = f"slenderness must be a list of positive numbers, got {given!r}"
         raise ParameterError(message)
     return values
+
+
+def _scaled(case: Case, slendernesses: Floats) -> list[Case]:
+    """Return the case at each slenderness, or raise ParameterError where it would begin beyond π/2."""
+    found = []
+    for c in slendernesses:
+        try:
+            one = case.scaled_to(float(c))
+        except ParameterError as error:
+            message = f"the column cannot be scaled to slenderness {c:.6g}: {error}"
+            raise ParameterError(message) from None
+        found.append(one)
+        if math.hypot(*one.tilt) >= 0.5 * math.pi:
+            message = (
+                f"tilt {case.tilt!r} rad at slenderness {case.column.slenderness:.6g} becomes "
+                f"({one.tilt[0]:.6g}, {one.tilt[1]:.6g}) rad where the case is scaled to slenderness {c:.6g}, and must "
+                "stay below π/2 in length; scale to less, or tilt less"
+            )
+            raise ParameterError(message)
+    return found
 
 
 _MEASURES = {

@@ -9,7 +9,7 @@ import xarray as xr
 
 from stylobate import theory
 from stylobate.errors import ParameterError, UnsupportedError
-from stylobate.models import Model, Slender
+from stylobate.models import Model, Rolling, Slender, SlenderRolling, Wobbling
 from stylobate.motions import BaseMotion, as_harmonic
 from stylobate.spec import provenance_of_run
 
@@ -100,9 +100,18 @@ def response_curves(
 _NO_PART = 1e-12
 
 
+_OF_OTHERS: dict[type[Model], str] = {
+    SlenderRolling: "theory.free_twist_rolling",
+    Wobbling: "theory.wobbling_rolling",
+    Rolling: "theory.full_rolling",
+}
+
+
 def _slender(model: Model) -> Slender:
     if type(model) is not Slender:  # a subclass has other equations
         message = f"response_curves needs the slender model, which has a closed form; got {model.name}"
+        if type(model) in _OF_OTHERS:
+            message += f", of which {_OF_OTHERS[type(model)]} gives steady rolling and orbits.continue_branch orbits"
         raise UnsupportedError(message)
     return model
 

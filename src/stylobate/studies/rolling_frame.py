@@ -6,7 +6,7 @@ from typing import Self
 
 from stylobate import theory
 from stylobate.errors import ParameterError
-from stylobate.models import Slender
+from stylobate.models import Model
 from stylobate.motions import Harmonic
 
 Vector = tuple[float, float]
@@ -37,7 +37,7 @@ class RollingFrame:
     time_scale: float
 
     @classmethod
-    def of(cls, model: Slender, motion: Harmonic, sense: int | None = None) -> Self:
+    def of(cls, model: Model, motion: Harmonic, sense: int | None = None) -> Self:
         """Return the frame of `motion`; by default in the sense of its larger circular part.
 
         Raises

@@ -1,13 +1,15 @@
-"""Starts on known motions: the steady rolling of the closed form."""
+"""Starts on known motions: the steady rolling of the closed forms."""
 
 import math
 from typing import TypedDict
 
-from stylobate import theory
-from stylobate.errors import ParameterError
-from stylobate.models import Slender
+from stylobate.errors import ParameterError, UnsupportedError
+from stylobate.models import Model, Rolling, Slender, SlenderRolling, Wobbling
 from stylobate.motions import Harmonic
+from stylobate.orbits.steady import steady_rolling_of
 from stylobate.studies.rolling_frame import RollingFrame
+
+_BRANCHES = ("upper", "lower")
 
 
 class Start(TypedDict):
@@ -17,26 +19,41 @@ class Start(TypedDict):
     tilt_rate: tuple[float, float]
 
 
-def steady_start(model: Slender, motion: Harmonic, *, branch: str = "upper", sense: int | None = None) -> Start:
-    """Return the start at t = 0 on the steady rolling (8) of a harmonic motion without ramp.
+class TurningStart(Start):
+    """The start of a run of a column that may turn about its axis."""
 
-    Exact for circular motion, averaged for elliptic and straight motion.
+    spin: float
+
+
+def steady_start(model: Model, motion: Harmonic, *, branch: str = "upper", sense: int | None = None) -> Start:
+    """Return the start at t = 0 on the steady rolling of a harmonic motion without ramp.
+
+    Exact for circular motion, averaged for elliptic and straight motion: (8) of the slender model, and of the others
+    `free_twist_rolling`, `wobbling_rolling` and `full_rolling`.
 
     Parameters
     ----------
     model
-        The slender model.
+        Slender, slender rolling, wobbling or rolling, without rolling resistance; couples of the contact.
     motion
         A horizontal harmonic motion.
     branch
-        "upper" or "lower".
+        "upper" or "lower"; at finite tilt "upper" is the stable branch or, if none is, that of a phase near 0. Of
+        slender rolling only the upper one is known.
     sense
         +1 anticlockwise or −1 clockwise; by default that of the larger circular part of the motion.
+
+    Returns
+    -------
+    Start
+        `tilt` [rad], `tilt_rate` [rad/s]; of a model that may turn a `TurningStart`, with `spin` [rad/s] too.
 
     Raises
     ------
     ParameterError
         If there is no such solution.
+    UnsupportedError
+        If there is no closed form for the model.
 
     Examples
     --------
@@ -47,15 +64,42 @@ def steady_start(model: Slender, motion: Harmonic, *, branch: str = "upper", sen
     >>> sb.simulate(model, motion, **start, duration=50.0).outcome
     <Outcome.ROLLING: 'rolling'>
     """
-    frame = RollingFrame.of(model, motion, sense)
-    steady = theory.steady_rolling(frame.theta, frame.drive, c=model.column.slenderness, eta=model.damping)
-    chosen = {"upper": steady.upper, "lower": steady.lower}.get(branch)
-    if chosen is None:
+    if branch not in _BRANCHES:
         message = f'branch must be "upper" or "lower", got {branch!r}'
         raise ParameterError(message)
-    tilt, psi = float(chosen.amplitude), float(chosen.phase)
+    _require_closed_form(model, branch)
+    frame = RollingFrame.of(model, motion, sense)
+    tilt, psi, spin = steady_rolling_of(model, frame.theta, frame.drive, branch)
     if not math.isfinite(tilt):
         message = f"motion has no steady rolling on the {branch} branch at {motion.angular_frequency!r} rad/s"
         raise ParameterError(message)
     vector, rate = frame.to_tilt(tilt, psi, 0.0, frame.theta)
-    return {"tilt": vector, "tilt_rate": rate}
+    if model.spin_state is None:
+        return {"tilt": vector, "tilt_rate": rate}
+    return TurningStart(tilt=vector, tilt_rate=rate, spin=frame.sense * spin / frame.time_scale)
+
+
+def _require_closed_form(model: Model, branch: str) -> None:
+    """Raise an error of one line unless theory knows steady rolling of the model, with its frictions."""
+    if type(model) not in (Slender, SlenderRolling, Wobbling, Rolling):  # a subclass has other equations
+        message = (
+            "steady_start needs a closed form of steady rolling, as of slender, slender rolling, wobbling and rolling; "
+            f"got model {getattr(model, 'name', model)!s}"
+        )
+        raise UnsupportedError(message)
+    if isinstance(model, Wobbling | Rolling) and model.rolling_resistance > 0.0:
+        message = f"rolling_resistance must be 0 for a closed form of steady rolling, got {model.rolling_resistance!r}"
+        raise UnsupportedError(message)
+    if isinstance(model, SlenderRolling):
+        if model.couples != "contact":
+            message = f"couples must be 'contact' for a closed form of steady rolling, got {model.couples!r}"
+            raise UnsupportedError(message)
+        if branch != "upper":
+            message = f'branch must be "upper" for slender rolling, whose closed form has no other; got {branch!r}'
+            raise ParameterError(message)
+    if isinstance(model, SlenderRolling | Rolling) and model.damping > 0.0 and model.spin_friction == 0.0:
+        message = (
+            "spin_friction must be above zero where there is damping, got 0.0: without it the base spins the column up "
+            "for ever, and there is no steady rolling"
+        )
+        raise ParameterError(message)

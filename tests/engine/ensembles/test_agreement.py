@@ -108,3 +108,22 @@ def test_random_runs_show_every_common_outcome(mixed_runs):
         found |= set(mixed_runs(motion, 700, seed=2).together()["outcome"].to_numpy().tolist())
     codes = {name: code for code, name in enumerate(outcome.name for outcome in sb.Outcome)}
     assert {codes[name] for name in ("AT_REST", "OVERTURNED", "STILL_MOVING")} <= found
+
+
+def test_runs_whose_passages_fall_on_looks_do_not_stick_there():
+    # On the exact periodic motion passages of the upright fall on half periods, as the looks do, but for rounding.
+    theta = np.linspace(3.0, 6.0, 32)
+    rate, phase = sb.theory.planar_forced_response(theta, 0.065, c=C, eta=ETA).fast.start()[1:]
+    motion = sb.Harmonic.straight(acceleration=0.065, angular_frequency=1.0)
+    runs = sb.simulate_ensemble(
+        MODEL,
+        motion,
+        tilt_rate=np.stack([rate, np.zeros_like(rate)], axis=1),
+        duration=200.0 * 2.0 * math.pi / theta,
+        parameters={"angular_frequency": theta, "start_phase": phase},
+        rtol=1e-12,
+        max_steps=20_000,
+    )
+    assert np.all(runs["outcome"] == sb.results.code_of(sb.Outcome.ROCKING))
+    ends = np.abs(runs["end_tilt_rate"][:, 0] / rate - 1.0)
+    assert ends.max() < 1e-8

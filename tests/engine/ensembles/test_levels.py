@@ -123,6 +123,11 @@ def test_a_model_of_one_plane_refuses_motion_out_of_it():
         sb.simulate_ensemble(model, CIRCLE, tilt=(0.05, 0.0), duration=1.0)
 
 
+def test_a_model_of_one_plane_refuses_to_be_set_in_motion_out_of_it():
+    with pytest.raises(ParameterError, match=r"^tilt, tilt_rate and motion must lie in one vertical plane"):
+        sb.simulate_ensemble(sb.PlanarRocking(COLUMN), STRONG, duration=1.0)
+
+
 def test_a_spin_is_refused_where_there_is_none():
     with pytest.raises(ParameterError, match=r"^spin must be left out: .* got 0\.2 rad/s$"):
         sb.simulate_ensemble(sb.Slender(COLUMN), CIRCLE, tilt=(0.05, 0.0), spin=0.2, duration=1.0)
@@ -152,6 +157,14 @@ def test_a_column_that_never_moves_demands_nothing():
     weak = sb.Harmonic.circular(acceleration=0.05, angular_frequency=2.0)
     runs = sb.simulate_ensemble(IN_SPACE["rolling"], weak, duration=5.0, demands=True)
     assert np.isnan([float(runs[name][0]) for name in DEMANDS]).all()
+
+
+def test_least_tilts_of_single_runs_are_those_of_ensembles():
+    # A passage between two samples, at 0.8 % of c.
+    starts = {"tilt": [(0.03, 0.0)], "tilt_rate": [(0.0, 0.0015)]}
+    runs, (run,) = together_and_alone(IN_SPACE["rolling"], CIRCLE, duration=6.0, **starts)
+    assert run.measures["least_tilt"] == pytest.approx(float(runs["least_tilt"][0]), rel=1e-3)
+    assert run.measures["least_tilt"] < float(run.data["amplitude"].min())
 
 
 def test_demands_change_nothing_else():

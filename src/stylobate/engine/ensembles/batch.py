@@ -208,7 +208,8 @@ def _fill_starts(
     base_line = common_lines(motions.directions)
     line = common_lines(np.concatenate([runs.tilt[:, np.newaxis], rate[:, np.newaxis], motions.directions], axis=1))
     planar = np.any(line, axis=1) & (model.planar_rates is not None) & (runs.spin == 0.0)
-    _check_starts(model, runs, stands, planar)
+    still = stands & ~np.any(motions.directions, axis=(1, 2))
+    _check_starts(model, runs, stands, np.any(line, axis=1) | still)
     table[:, [Setup.LINE_X, Setup.LINE_Y]] = np.where(planar[:, np.newaxis], line, base_line)
     table[:, LOG + Log.STANDS] = stands
     upright = ~np.any(runs.tilt, axis=1) & ~stands & ~planar
@@ -226,12 +227,12 @@ def _fill_starts(
     return np.asarray(planar)
 
 
-def _check_starts(model: Model, runs: Runs, stands: npt.NDArray[np.bool_], planar: npt.NDArray[np.bool_]) -> None:
+def _check_starts(model: Model, runs: Runs, stands: npt.NDArray[np.bool_], in_a_plane: npt.NDArray[np.bool_]) -> None:
     """Raise ParameterError for a start with a spin that cannot be, or out of the plane that the model needs."""
     spinning = runs.spin != 0.0
     if spinning.any():
         refuse_spin(model, float(runs.spin[spinning][0]), standing=bool(np.any(spinning & stands)))
-    aside = ~planar & ~stands
+    aside = ~in_a_plane
     if model.planar_only and aside.any():
         tilt, rate = runs.tilt[aside][0].tolist(), runs.tilt_rate[aside][0].tolist()
         raise out_of_plane(model, tilt, rate)

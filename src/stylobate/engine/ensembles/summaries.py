@@ -228,14 +228,15 @@ def _late(batch: Batch) -> _Late:
         np.angle(parts["FORWARD"]) - _reference(batch, batch.motions.forward),
         _reference(batch, batch.motions.backward) - np.angle(parts["BACKWARD"]),
     )
+    mean_tilt = known(batch.log(Log.MEAN_TILT)) / span
     return _Late(
         span=span,
         turned=known(turned),
-        mean_tilt=known(batch.log(Log.MEAN_TILT)) / span,
+        mean_tilt=mean_tilt,
         phase=known(np.angle(np.exp(1j * phase))),
         least_tilt=known(batch.log(Log.LATE_LEAST)),
-        repetition=known(_repetition(batch, LATE)),
-        repetition_before=known(_repetition(batch, BEFORE), before),
+        repetition=known(_repetition(batch, LATE, mean_tilt)),
+        repetition_before=known(_repetition(batch, BEFORE, mean_tilt), before),
         drift=known(np.abs(lags[0] - lags[1]), before),
     )
 
@@ -250,14 +251,15 @@ def _window(batch: Batch, first: int, column: Window) -> Floats:
     return batch.table[:, first + column]
 
 
-def _repetition(batch: Batch, first: int) -> Floats:
+def _repetition(batch: Batch, first: int, mean_tilt: Floats) -> Floats:
     """Return the largest difference of states one period apart, over the largest tilt or rate.
 
+    All looks may fall on passages of the upright: then tilts are told by the mean tilt of the last periods.
     Infinite where the looks saw nothing but a column that stands: what it does between them is not known to repeat.
     """
     tilt_size, rate_size = _window(batch, first, Window.TILT_SIZE), _window(batch, first, Window.RATE_SIZE)
     with np.errstate(divide="ignore", invalid="ignore"):
-        tilt = _window(batch, first, Window.TILT_CHANGE) / tilt_size
+        tilt = _window(batch, first, Window.TILT_CHANGE) / np.fmax(tilt_size, mean_tilt)
         rate = _window(batch, first, Window.RATE_CHANGE) / rate_size
     found = np.fmax(np.nan_to_num(tilt), np.nan_to_num(rate))
     return np.where((tilt_size > 0.0) | (rate_size > 0.0), found, np.inf)

@@ -94,7 +94,7 @@ class Shape:
         for name in ("new", "last"):
             rows.add_many(name, self.order)
         if self.demands:
-            rows.add(*(f"{name}_{place}" for place in ("now", "middle", "end") for name in DEMANDS))
+            rows.add(*(f"{name}_{place}" for place in ("now", 1, 2, 3, 4) for name in DEMANDS))
         if self.series:
             rows.add("proposed", *(f"node_{name}" for name in OBSERVED))
             rows.add_many("square", SERIES_ORDER + 1)

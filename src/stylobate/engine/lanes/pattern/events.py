@@ -142,8 +142,7 @@ def arrived(buf: Table, i: int, table: Table, pieces: Table) -> int:
     if meets_upright(buf, i):
         return cross_upright(buf, i, table, pieces)
     if CAN_LOSE and buf[R.BY_TILT, i] < 0.0:
-        strike(buf, i)
-        return Status.WAITING
+        return strike(buf, i, table, pieces)
     return Status.LIMIT if buf[R.TILT_LIMIT, i] <= buf[R.NO_RETURN, i] else Status.OVERTURNED
 
 

@@ -4,11 +4,10 @@ import math
 from typing import TYPE_CHECKING
 
 from stylobate.engine.compiling.arithmetic import part
-from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.moving import azimuth_now, set_lean, set_off, set_state
 from stylobate.engine.lanes.pattern.resting import rest_margin, settle
-from stylobate.engine.lanes.pattern.stops import go_on, next_stop
+from stylobate.engine.lanes.pattern.stops import next_stop, resume
 from stylobate.engine.lanes.pattern.within import set_within
 
 if TYPE_CHECKING:
@@ -42,8 +41,7 @@ def cross_upright(buf: Table, i: int, table: Table, pieces: Table) -> int:
     if CAN_LOSE and buf[R.PASSAGE_TILT, i] > 0.0:
         set_state(buf, i, model_struck(buf, i))
     set_off(buf, i, t, buf[R.HELD_STEP, i])
-    go_on(buf, i)
-    return Status.WAITING
+    return resume(buf, i, table, pieces)
 
 
 @part
@@ -58,12 +56,12 @@ def loses(buf: Table, i: int) -> bool:
 
 
 @part
-def strike(buf: Table, i: int) -> None:
-    """Take the loss of a passage, at the least tilt."""
+def strike(buf: Table, i: int, table: Table, pieces: Table) -> int:
+    """Take the loss of a passage, at the least tilt; return as `resume` does."""
     set_state(buf, i, model_struck(buf, i))
     set_off(buf, i, buf[R.TIME, i], buf[R.WANTED, i])
     buf[R.ATOL_NOW, i] = buf[R.ATOL, i]
-    go_on(buf, i)
+    return resume(buf, i, table, pieces)
 
 
 @part

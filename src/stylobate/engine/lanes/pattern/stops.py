@@ -115,6 +115,17 @@ def meet_stop(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
 
 
 @part
+def resume(buf: Table, i: int, table: Table, pieces: Table) -> int:
+    """Go on from an event, which may have been met a rounding beyond a stop; return as `meet_stop` does."""
+    while next_stop(buf, i) <= buf[R.TIME, i]:
+        status = meet_stop(buf, i, table, pieces, next_stop(buf, i))
+        if status != Status.WAITING:
+            return status
+    go_on(buf, i)
+    return Status.WAITING
+
+
+@part
 def lean_now(buf: Table, i: int) -> tuple[float, float, float, float]:
     if buf[R.STANDS, i] > 0.0:
         return 0.0, 0.0, 0.0, 0.0
