@@ -221,8 +221,8 @@ class SlenderRolling(Model):
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
         """Return energy, spin, twist and footprint, the path of the contact point, and what the contact bears.
 
-        The energy is ½|α̇|² + cA − ½A² − cκσ Aβ̇ + ½κ(1 + i_a)c²σ² in units of J0 ω0². The centre of pressure is as of the
-        slender model; the moment about the vertical is that of the spin friction.
+        The energy is ½|α̇|² + cA − ½A² − cκσ Aβ̇ + ½κ(1 + i_a)c²σ² in units of J0 ω0². The centre of pressure is as of
+        the slender model; the moment about the vertical is that of the spin friction.
         """
         column, scale = self.column, self.time_scale
         spin, twist = states[4:6]
