@@ -114,7 +114,7 @@ def test_periods_follow_a_frequency_that_varies():
         (lambda: Sweep.grid(3, over={"damping": [0.1]}, duration=1.0), "model must be a model"),
         (
             lambda: Sweep.grid(MODEL, over={"colour": [0.1]}, duration=1.0),
-            "^over: colour is not known here; known are tilt_x, tilt_y, tilt_rate_x, tilt_rate_y, spin, duration, radius",
+            "^over: colour is not known here; known are tilt_x, tilt_y, tilt_rate_x, tilt_rate_y, spin, duration",
         ),
         (lambda: Sweep.points(MODEL, at={"colour": [0.1]}, duration=1.0), "^at: colour is not known here"),
         (
