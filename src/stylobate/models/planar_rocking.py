@@ -10,12 +10,11 @@ import numpy.typing as npt
 
 from stylobate.column import STANDARD_GRAVITY, Column
 from stylobate.errors import require_positive
-from stylobate.models import finite_tilt, tilt_vector
+from stylobate.models import finite_tilt, tilt_vector, without_spin
 from stylobate.models.checks import require_column, require_frictions, require_restitution
 from stylobate.models.contact import contact_outputs, path_outputs
-from stylobate.models.departing import departing_lean
 from stylobate.models.finite_tilt import TINY, planar_acceleration
-from stylobate.models.model import Floats, Model, Output, Push
+from stylobate.models.model import Floats, Model, Output
 
 
 def rates(
@@ -77,29 +76,6 @@ def planar_rates(
     """Return the right-hand side K θ̈ = (1 + a_z)(sin θ − c cos θ) − a_h (cos θ + c sin θ) − ηθ̇ on one side."""
     acceleration, _, _ = planar_acceleration(tilt, rate, side, horizontal, vertical, c, eta, kappa, resistance)
     return rate, acceleration
-
-
-def rest_energy(tilt: float, speed: float, vertical: float, c: float, _eta: float, kappa: float, *_: float) -> float:
-    """Return ½K|α̇|² + c(1 + a_z)|α|, what is left near the upright above the state of rest."""
-    return finite_tilt.energy_at_rest(tilt, speed, vertical, c, kappa)
-
-
-def no_return_tilt(largest_horizontal: float, least_vertical: float, c: float, *_: float) -> float:
-    """Return the tilt beyond which a growing tilt can never come back [rad]."""
-    return finite_tilt.no_return_tilt(largest_horizontal, least_vertical, c)
-
-
-def departure(
-    push: Push, elapsed: float, c: float, eta: float, kappa: float, *_: float
-) -> tuple[float, float, float, float]:
-    """Return the state a short time after release."""
-    return departing_lean(push, elapsed, eta, 1.0 + kappa * c * c, 1.0)[:4]
-
-
-def struck(x: float, y: float, vx: float, vy: float, *numbers: float) -> tuple[float, ...]:
-    """Return the state after the impact at the upright: the tilt rate times the restitution."""
-    restitution = numbers[-1]
-    return x, y, restitution * vx, restitution * vy
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,10 +172,10 @@ class PlanarRocking(Model):
     contact = staticmethod(contact)
     planar_rates = staticmethod(planar_rates)
     from_plane = staticmethod(tilt_vector.from_plane)
-    rest_energy = staticmethod(rest_energy)
-    no_return_tilt = staticmethod(no_return_tilt)
-    departure = staticmethod(departure)
-    struck = staticmethod(struck)
+    rest_energy = staticmethod(without_spin.rest_energy)
+    no_return_tilt = staticmethod(without_spin.no_return_tilt)
+    departure = staticmethod(without_spin.departure)
+    struck = staticmethod(without_spin.struck)
 
     @property
     def impact_restitution(self) -> float:

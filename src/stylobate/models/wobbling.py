@@ -10,12 +10,11 @@ import numpy.typing as npt
 
 from stylobate.column import Column
 from stylobate.errors import ParameterError
-from stylobate.models import finite_tilt, tilt_vector
+from stylobate.models import finite_tilt, tilt_vector, without_spin
 from stylobate.models.checks import require_column, require_frictions, require_loss
 from stylobate.models.contact import contact_outputs, path_outputs
-from stylobate.models.departing import departing_lean
 from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
-from stylobate.models.model import Floats, Model, Output, Push
+from stylobate.models.model import Floats, Model, Output
 from stylobate.models.passing import past_the_upright
 
 Constraint = Literal["pure_tilt", "rubber"]
@@ -159,23 +158,6 @@ def planar_rates(
     return rate, acceleration
 
 
-def rest_energy(tilt: float, speed: float, vertical: float, c: float, _eta: float, kappa: float, *_: float) -> float:
-    """Return ½K|α̇|² + c(1 + a_z)|α|, what is left above the state of rest."""
-    return finite_tilt.energy_at_rest(tilt, speed, vertical, c, kappa)
-
-
-def no_return_tilt(largest_horizontal: float, least_vertical: float, c: float, *_: float) -> float:
-    """Return the tilt beyond which a growing tilt can never come back [rad]."""
-    return finite_tilt.no_return_tilt(largest_horizontal, least_vertical, c)
-
-
-def departure(
-    push: Push, elapsed: float, c: float, eta: float, kappa: float, *_: float
-) -> tuple[float, float, float, float]:
-    """Return the state a short time after release."""
-    return departing_lean(push, elapsed, eta, 1.0 + kappa * c * c, 1.0)[:4]
-
-
 def passage(
     x: float,
     y: float,
@@ -196,12 +178,6 @@ def passage(
     along, across = (ax * ux + ay * uy) / inertia, ay * ux - ax * uy
     push = (across * uy - along * ux, -across * ux - along * uy)
     return past_the_upright((x, y, vx, vy), push, c * (1.0 + az), 0.0, eta, inertia)
-
-
-def struck(x: float, y: float, vx: float, vy: float, *numbers: float) -> tuple[float, ...]:
-    """Return the state after a passage of the upright with loss: the tilt rate times the restitution."""
-    restitution = numbers[-1]
-    return x, y, restitution * vx, restitution * vy
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,11 +243,11 @@ class Wobbling(Model):
     carried_rates = staticmethod(carried_rates)
     planar_rates = staticmethod(planar_rates)
     from_plane = staticmethod(tilt_vector.from_plane)
-    rest_energy = staticmethod(rest_energy)
-    no_return_tilt = staticmethod(no_return_tilt)
-    departure = staticmethod(departure)
+    rest_energy = staticmethod(without_spin.rest_energy)
+    no_return_tilt = staticmethod(without_spin.no_return_tilt)
+    departure = staticmethod(without_spin.departure)
     passage = staticmethod(passage)
-    struck = staticmethod(struck)
+    struck = staticmethod(without_spin.struck)
 
     @property
     def parameters(self) -> tuple[float, ...]:

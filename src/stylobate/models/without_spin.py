@@ -1,0 +1,28 @@
+"""What the models at finite tilt share that have no spin: their parameters begin with c, η, κ and end with e."""
+
+from stylobate.models import finite_tilt
+from stylobate.models.departing import departing_lean
+from stylobate.models.model import Push
+
+
+def rest_energy(tilt: float, speed: float, vertical: float, c: float, _eta: float, kappa: float, *_: float) -> float:
+    """Return ½K|α̇|² + c(1 + a_z)|α|, what is left near the upright above the state of rest."""
+    return finite_tilt.energy_at_rest(tilt, speed, vertical, c, kappa)
+
+
+def no_return_tilt(largest_horizontal: float, least_vertical: float, c: float, *_: float) -> float:
+    """Return the tilt beyond which a growing tilt can never come back [rad]."""
+    return finite_tilt.no_return_tilt(largest_horizontal, least_vertical, c)
+
+
+def departure(
+    push: Push, elapsed: float, c: float, eta: float, kappa: float, *_: float
+) -> tuple[float, float, float, float]:
+    """Return the state a short time after release."""
+    return departing_lean(push, elapsed, eta, 1.0 + kappa * c * c, 1.0)[:4]
+
+
+def struck(x: float, y: float, vx: float, vy: float, *numbers: float) -> tuple[float, ...]:
+    """Return the state after a passage of the upright with loss: the tilt rate times the restitution."""
+    restitution = numbers[-1]
+    return x, y, restitution * vx, restitution * vy
