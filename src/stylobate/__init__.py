@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from stylobate.column import Column
     from stylobate.engine import simulate, simulate_ensemble, with_parameters
     from stylobate.errors import Interrupted, Outcome
-    from stylobate.models import Model, PlanarRocking, Rolling, Slender, SlenderRolling, Wobbling
+    from stylobate.models import Contact, Model, PlanarRocking, Rolling, Slender, SlenderRolling, Sliding, Wobbling
     from stylobate.motions import BaseMotion, Harmonic
     from stylobate.plots import plot
     from stylobate.results import Event, OutcomeRules, Response, load
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 __all__ = [
     "BaseMotion",
     "Column",
+    "Contact",
     "Event",
     "Harmonic",
     "Interrupted",
@@ -38,6 +39,7 @@ __all__ = [
     "Rolling",
     "Slender",
     "SlenderRolling",
+    "Sliding",
     "Wobbling",
     "__version__",
     "errors",
@@ -58,6 +60,7 @@ __all__ = [
 _HOMES = {
     "BaseMotion": "motions",
     "Column": "column",
+    "Contact": "models",
     "Event": "results",
     "Harmonic": "motions",
     "Interrupted": "errors",
@@ -69,6 +72,7 @@ _HOMES = {
     "Rolling": "models",
     "Slender": "models",
     "SlenderRolling": "models",
+    "Sliding": "models",
     "Wobbling": "models",
     "load": "results",
     "plot": "plots",

@@ -86,9 +86,11 @@ class Outcome(Enum):
     LIMIT_REACHED = "limit reached"
     """The tilt reached the limit that the user set."""
     LIFTED_OFF = "lifted off"
-    """The base dropped away: the contact would have to pull."""
+    """The base dropped away: the contact would have to pull. A model that can fly hops on to the end."""
     FAILED = "failed"
     """The integration could not go on; the run's `reason` says why."""
+    SLID = "slid"
+    """It stands upright to the end, and its base slides."""
 
 
 def require_finite(name: str, value: float, unit: str = "") -> float:

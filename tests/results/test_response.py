@@ -187,7 +187,7 @@ def test_codes_are_those_of_outcomes():
     assert sb.results.outcome_of(-1) is None
     with pytest.raises(ParameterError, match=r"^outcome must be an Outcome such as Outcome\.AT_REST, got 'x'$"):
         sb.results.code_of("x")
-    with pytest.raises(ParameterError, match="code must be -1 for not computed, or 0 to 8; got 77"):
+    with pytest.raises(ParameterError, match="code must be -1 for not computed, or 0 to 9; got 77"):
         sb.results.outcome_of(77)
     with pytest.raises(ParameterError, match="code must be a whole number of at least -1, got -2"):
         sb.results.outcome_of(-2)

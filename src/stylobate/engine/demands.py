@@ -45,7 +45,7 @@ class Demands:
 
         Close to the upright the contact bears most for a moment that steps resolve and samples may miss.
         """
-        if model.contact is None or "friction_demand" not in data or bool(data["resting"].all()):
+        if model.contact is None or model.switches or "friction_demand" not in data or bool(data["resting"].all()):
             return cls({}, ())
         tau, moving, series = _seen(model, forcing, trajectory, data)
         extremes = _Extremes(model, forcing, trajectory)

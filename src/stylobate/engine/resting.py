@@ -56,13 +56,17 @@ def release_time(model: Model, forcing: Forcing, start: float, end: float) -> fl
     return None
 
 
+def departure_lapse(forcing: Forcing) -> float:
+    """Return how long after a release the series of a departure hands over to the integrator."""
+    return _DEPARTURE / (1.0 + forcing.highest_frequency)
+
+
 def departure(model: Model, forcing: Forcing, time: float) -> tuple[float, tuple[float, ...]]:
     """Return a time shortly after release at `time`, and the state there.
 
     The state is the model's series about the upright, so that the integrator starts where the lean has a direction.
     """
-    fastest = 1.0 + forcing.highest_frequency
-    elapsed = _DEPARTURE / fastest
+    elapsed = departure_lapse(forcing)
     now, later = forcing.along(np.array([time, time + elapsed])).T
     capacity = model.column.slenderness
     here, there = math.hypot(now[0], now[1]), math.hypot(later[0], later[1])

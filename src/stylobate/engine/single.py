@@ -11,6 +11,8 @@ from stylobate.engine.forcing import Forcing
 from stylobate.engine.history import history
 from stylobate.engine.moving import Method, Mover
 from stylobate.engine.starts import Turning, require_plane
+from stylobate.engine.switching.course import SwitchingCourse
+from stylobate.engine.switching.verdict import Account, switching_verdict
 from stylobate.engine.thresholds import Thresholds, is_rest, rest_is_coarse, thresholds_of
 from stylobate.engine.tolerances import ATOL_SHARE, CLOSE_PASSAGE, RTOL_RANGE
 from stylobate.engine.verdict import Verdict, long_term
@@ -41,6 +43,8 @@ def simulate(
     spin: float = 0.0,
     twist: float = 0.0,
     position: Sequence[float] = (0.0, 0.0),
+    velocity: Sequence[float] = (0.0, 0.0, 0.0),
+    clearance: float = 0.0,
     duration: float,
     friction_coefficient: float | None = None,
     rtol: float = 1e-8,
@@ -71,10 +75,13 @@ def simulate(
         Angular velocity about its axis [rad/s] and angle of turn about it [rad], of models that know them.
     position
         Centre of the footprint circle in the frame of the base [m], of models that carry it along.
+    velocity, clearance
+        Of models that can slip and fly: velocity of the lowest point of the rim, or of the base, relative to the plane
+        [m/s], and its height above it [m].
     duration
         How long to follow it [s].
     friction_coefficient
-        Of the contact: where more friction is needed the result warns. No model here slips for it.
+        Of the contact: where more friction is needed the result warns. Models that slip have their own.
     rtol, atol
         Local error tolerances of the integrator, relative and absolute [rad]; `atol` is 0.01 rtol c by default.
     tilt_limit
@@ -118,7 +125,10 @@ def simulate(
         raise ParameterError(message)
     start_rate = _pair("tilt_rate", tilt_rate, "rad/s")
     at_rest = bool(is_rest(np.array(start_tilt), np.array(start_rate), model.column.slenderness, model.time_scale))
-    turning = Turning.checked(model, spin, twist, position, standing=at_rest)
+    turning = Turning.checked(model, spin, twist, position, velocity, clearance, standing=at_rest)
+    if friction_coefficient is not None and model.switches:
+        message = f"friction_coefficient must be given to model {model.name} itself, got {friction_coefficient!r} here"
+        raise ParameterError(message)
     if friction_coefficient is not None:
         friction_coefficient = require_positive("friction_coefficient", friction_coefficient)
     duration = require_positive("duration", duration, "s")
@@ -128,12 +138,19 @@ def simulate(
     thresholds = thresholds_of(model, forcing, tilt_limit, rest_energy)
     check_motion(moved, duration)
     rules = rules or OutcomeRules()
-    mover = Mover(model, forcing, Watch(model, forcing, thresholds), method)
-    course = Course(model, forcing, mover, duration / model.time_scale)
-    begun = model.start((0.0, 0.0), (0.0, 0.0)) if at_rest else model.start(start_tilt, start_rate)
+    if at_rest:
+        start_tilt = start_rate = (0.0, 0.0)
     require_plane(model, moved, start_tilt, start_rate)
-    course.follow(turning.added_to(model, begun))
-    verdict = _verdict(model, moved, course, rules)
+    course: Course | SwitchingCourse
+    if model.switches:
+        course = SwitchingCourse(model, forcing, method, thresholds, duration / model.time_scale)
+        course.follow(turning.begun(model, start_tilt, start_rate))
+        verdict = switching_verdict(model, moved, course, rules)
+    else:
+        mover = Mover(model, forcing, Watch(model, forcing, thresholds), method)
+        course = Course(model, forcing, mover, duration / model.time_scale)
+        course.follow(turning.added_to(model, model.start(start_tilt, start_rate)))
+        verdict = _verdict(model, moved, course, rules)
     recorded = history(
         model,
         moved,
@@ -163,6 +180,7 @@ def simulate(
             "least_tilt": 0.0 if course.crossed else min(recorded.measures["least_tilt"], course.least_passage),
             "least_passage": course.least_passage,
             **verdict.measures,
+            **(Account.of(course).measures if isinstance(course, SwitchingCourse) else {}),
         },
         provenance=provenance_of_run(
             model,
@@ -213,13 +231,13 @@ def _bounds(forcing: Forcing) -> tuple[float, float]:
     return forcing.largest_horizontal(0.0), forcing.least_vertical(0.0)
 
 
-def _is_uncertain(model: Model, forcing: Forcing, course: Course, thresholds: Thresholds) -> bool:
+def _is_uncertain(model: Model, forcing: Forcing, course: Course | SwitchingCourse, thresholds: Thresholds) -> bool:
     close = course.least_passage < CLOSE_PASSAGE * model.column.slenderness
     coarse = course.released_from_rest and rest_is_coarse(model, forcing, thresholds.rest_energy)
     return close or coarse or course.ended is Reason.FAILED
 
 
-def _decided_at(course: Course, verdict: Verdict, duration: float) -> float:
+def _decided_at(course: Course | SwitchingCourse, verdict: Verdict, duration: float) -> float:
     if verdict.outcome is Outcome.AT_REST and course.ended is Reason.RESTED:
         return course.pieces[-1].start * course.model.time_scale
     if course.ended is Reason.STOP:

@@ -4,25 +4,37 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from stylobate.engine.forcing import common_line
-from stylobate.errors import ParameterError, require_finite, require_vector
+from stylobate.errors import ParameterError, require_finite, require_not_negative, require_vector
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 
 
 @dataclass(frozen=True, slots=True)
 class Turning:
-    """Spin [rad/s], twist [rad] and position [m] at the start of a run."""
+    """Spin [rad/s], twist [rad], position [m], velocity [m/s] and clearance [m] at the start of a run."""
 
     spin: float
     twist: float
     position: tuple[float, float]
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    clearance: float = 0.0
 
     @classmethod
     def checked(
-        cls, model: Model, spin: float, twist: float, position: Sequence[float], *, standing: bool
+        cls,
+        model: Model,
+        spin: float,
+        twist: float,
+        position: Sequence[float],
+        velocity: Sequence[float],
+        clearance: float,
+        *,
+        standing: bool,
     ) -> "Turning":
-        """Return them; `standing` tells whether the column starts upright and at rest.
+        """Return them; `standing` tells whether the column starts upright, without a tilt or a rate of it.
 
         Raises
         ------
@@ -31,12 +43,23 @@ class Turning:
         """
         spin, twist = require_finite("spin", spin, "rad/s"), require_finite("twist", twist, "rad")
         x, y = require_vector("position", position, 2, "m")
+        vx, vy, vz = require_vector("velocity", velocity, 3, "m/s")
+        clearance = require_not_negative("clearance", clearance, "m")
         refuse_spin(model, spin, standing=standing)
-        if not model.carried_names and (twist or x or y):
+        if not model.carried_names and not model.switches and (twist or x or y):
             name, value = ("twist", twist) if twist else ("position", (x, y))
             message = f"{name} must be left out: model {model.name} does not follow it, got {value!r}"
             raise ParameterError(message)
-        return cls(spin, twist, (x, y))
+        if not model.switches and (vx or vy or vz or clearance):
+            name, found = ("clearance", clearance) if clearance else ("velocity", (vx, vy, vz))
+            message = (
+                f"{name} must be left out: in model {model.name} the contact neither slips nor opens, got {found!r}"
+            )
+            raise ParameterError(message)
+        if vz < 0.0 and clearance == 0.0:
+            message = f"velocity must not lead into the plane where the clearance is 0, got {vz!r} m/s along its normal"
+            raise ParameterError(message)
+        return cls(spin, twist, (x, y), (vx, vy, vz), clearance)
 
     def added_to(self, model: Model, state: tuple[float, ...]) -> tuple[float, ...]:
         """Return the `state` of a start without spin with them."""
@@ -47,10 +70,23 @@ class Turning:
             begun += [self.twist, self.position[0] / model.column.radius, self.position[1] / model.column.radius]
         return tuple(begun)
 
+    def begun(self, model: Model, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, ...]:
+        """Return the state of a start of a model that changes between kinds of contact."""
+        return model.begun(
+            tilt,
+            tilt_rate,
+            spin=self.spin,
+            twist=self.twist,
+            position=self.position,
+            velocity=self.velocity,
+            clearance=self.clearance,
+        )
+
     def values(self) -> dict[str, Any]:
         """Return them by name, those left out being none."""
-        given = {"spin": self.spin, "twist": self.twist, "position": self.position}
-        return {name: value for name, value in given.items() if value not in (0.0, (0.0, 0.0))}
+        given: dict[str, Any] = {"spin": self.spin, "twist": self.twist, "position": self.position}
+        given |= {"velocity": self.velocity, "clearance": self.clearance}
+        return {name: value for name, value in given.items() if np.any(value)}
 
 
 def refuse_spin(model: Model, spin: float, *, standing: bool) -> None:
@@ -60,7 +96,7 @@ def refuse_spin(model: Model, spin: float, *, standing: bool) -> None:
     if model.spin_state is None:
         message = f"spin must be left out: the column of model {model.name} cannot turn, got {spin!r} rad/s"
         raise ParameterError(message)
-    if standing:
+    if standing and not model.switches:
         message = f"spin must be 0 for a column that stands flat on its base, got {spin!r} rad/s; give it a tilt"
         raise ParameterError(message)
 

@@ -1,7 +1,7 @@
 """Accepted steps of an integrator, and what is found on their dense output."""
 
 import numpy as np
-from scipy.integrate import DOP853, DenseOutput
+from scipy.integrate import DenseOutput, OdeSolver
 from scipy.optimize import brentq
 
 # Points of a step at which a planar motion is looked at for a swing over the upright and back.
@@ -21,7 +21,7 @@ class Steps:
         self.times = [start]
         self.dense: list[DenseOutput] = []
 
-    def add(self, solver: DOP853) -> DenseOutput:
+    def add(self, solver: OdeSolver) -> DenseOutput:
         """Keep the step just made and return its dense output."""
         dense = solver.dense_output()
         self.times.append(float(solver.t))

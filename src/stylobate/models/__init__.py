@@ -5,6 +5,18 @@ from stylobate.models.planar_rocking import PlanarRocking
 from stylobate.models.rolling import Rolling
 from stylobate.models.slender import Slender
 from stylobate.models.slender_rolling import SlenderRolling
+from stylobate.models.sliding import Contact, Sliding
 from stylobate.models.wobbling import Wobbling
 
-__all__ = ["Model", "Output", "PlanarRocking", "Push", "Rolling", "Slender", "SlenderRolling", "Wobbling"]
+__all__ = [
+    "Contact",
+    "Model",
+    "Output",
+    "PlanarRocking",
+    "Push",
+    "Rolling",
+    "Slender",
+    "SlenderRolling",
+    "Sliding",
+    "Wobbling",
+]

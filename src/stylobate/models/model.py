@@ -4,6 +4,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -108,6 +109,29 @@ class Model(ABC):
     struck: ClassVar[Callable[..., tuple[float, ...]] | None] = None
     """(state…, parameters…) → the state after a passage of the upright below `loss_tilt`, with its loss."""
 
+    margin_names: ClassVar[tuple[str, ...]] = ()
+    """What the `margins` guard, of a model that changes between kinds of contact; empty for one that does not."""
+
+    margins: ClassVar[Callable[..., tuple[float, ...]] | None] = None
+    """(state…, ax, ay, az, ε, parameters…) → what is positive as long as a kind of contact lasts.
+
+    One that is below nought ends it; the last does so only where it was above before. The tilt of "fallen" counts as
+    overturned; all others lead to `react`. ε is the energy of rest.
+    """
+
+    react: ClassVar[Callable[..., tuple[float, tuple[float, ...]]] | None] = None
+    """(state…, number of the margin, ax, ay, az, bx, by, bz, ahead, ε, parameters…) → elapsed time, and state.
+
+    How the motion goes on; the base accelerates with (ax, ay, az) now and (bx, by, bz) a short time `ahead`, from which
+    a release goes. With the number −1 it tells how a motion goes on that begins.
+    """
+
+    refreshed: ClassVar[Callable[..., tuple[float, ...]] | None] = None
+    """(state…, parameters…) → the state with what it keeps from step to step brought up to date, after each step."""
+
+    contact_kinds: ClassVar[type[IntEnum] | None] = None
+    """The kinds of contact, of which the last state is one; the first is standing at rest, RESTING."""
+
     jacobian: ClassVar[Callable[..., tuple[tuple[float, ...], ...]] | None] = None
     """(state…, ax, ay, az, parameters…) → for each rate its derivatives by state, accelerations and parameters.
 
@@ -186,6 +210,36 @@ class Model(ABC):
     def loss_tilt(self) -> float:
         """Least tilt below which a passage of the upright loses energy, as `struck` tells [rad]; 0 where none does."""
         return 0.0
+
+    @property
+    def switches(self) -> bool:
+        """Whether it changes between kinds of contact."""
+        return self.margins is not None
+
+    def begun(
+        self,
+        tilt: tuple[float, float],
+        tilt_rate: tuple[float, float],
+        *,
+        spin: float,
+        twist: float,
+        position: tuple[float, float],
+        velocity: tuple[float, float, float],
+        clearance: float,
+    ) -> tuple[float, ...]:
+        """Return the state of a start of a model that changes between kinds of contact, in SI units."""
+        del spin, twist, position, velocity, clearance
+        return self.start(tilt, tilt_rate)
+
+    def event_of(self, margin: str, before: int, after: int) -> str:
+        """Return the name of an event, by the margin that was broken and the kinds of contact; "" for none."""
+        del margin, before, after
+        return ""
+
+    @property
+    def slope(self) -> tuple[float, float, float]:
+        """What an inclined plane adds to the acceleration of the base [g]; `rates` add it themselves."""
+        return 0.0, 0.0, 0.0
 
     def stands(self, state: tuple[float, ...]) -> bool:
         """Return whether the column stands on its base in this state: no tilt, and no rate of it."""

@@ -46,6 +46,7 @@ OUTCOME_LOOKS = {
     Outcome.OVERTURNED: _OVERTURNED,
     Outcome.LIMIT_REACHED: replace(_OVERTURNED, texture="///"),
     Outcome.LIFTED_OFF: Look(_GREY, "**"),
+    Outcome.SLID: Look(_CREAM, "--", _DARK_INK),
     Outcome.FAILED: Look("#ffffff", "xxx", "#D55E00"),
 }
 
@@ -89,6 +90,7 @@ _FROM_STANDING_TO_FALLING = (
     Outcome.OVERTURNED,
     Outcome.LIMIT_REACHED,
     Outcome.LIFTED_OFF,
+    Outcome.SLID,
     Outcome.FAILED,
 )
 

@@ -16,7 +16,8 @@ from stylobate.errors import Outcome, UnsupportedError
 class Event:
     """Something that happened in a run: its `kind` and `time` [s].
 
-    Kinds are "release", "rest", "overturned", "limit", "lifted" and "failed".
+    Kinds are "release", "rest", "overturned", "limit", "lifted" and "failed"; of models that can slip and fly also
+    "slide" and "stop" of the base, "slip", "reverse" and "stick" of the rim, "lift", "land", "stroke" and "jam".
     """
 
     kind: str

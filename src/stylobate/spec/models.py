@@ -7,7 +7,7 @@ from pydantic import BeforeValidator, Field
 
 from stylobate.column import Column
 from stylobate.errors import UnsupportedError
-from stylobate.models import Model, PlanarRocking, Rolling, Slender, SlenderRolling, Wobbling
+from stylobate.models import Model, PlanarRocking, Rolling, Slender, SlenderRolling, Sliding, Wobbling
 from stylobate.spec.description import Description
 
 
@@ -65,6 +65,26 @@ class RollingModel(Description):
         return Rolling(column, **self.model_dump(exclude={"kind"}))
 
 
+class SlidingModel(Description):
+    """The column that can slip, pivot, lift off and land."""
+
+    kind: Literal["sliding"] = "sliding"
+    friction_coefficient: float = 0.5
+    static_friction_coefficient: float | None = None
+    patch: float = 0.0
+    restitution: float = 0.0
+    damping: float = 0.0
+    spin_friction: float = 0.0
+    rolling_resistance: float = 0.0
+    passage_tilt: float | None = None
+    incline: float = 0.0
+    incline_direction: float = 0.0
+
+    def build(self, column: Column) -> Model:
+        """Return the model of `column`."""
+        return Sliding(column, **self.model_dump(exclude={"kind"}))
+
+
 class PlanarRockingModel(Description):
     """The column that rocks in a vertical plane; `restitution` is Housner's where it is not given."""
 
@@ -85,7 +105,7 @@ def _with_kind(described: Any) -> Any:
 
 ModelDescription = Annotated[
     Annotated[
-        SlenderModel | SlenderRollingModel | WobblingModel | RollingModel | PlanarRockingModel,
+        SlenderModel | SlenderRollingModel | WobblingModel | RollingModel | SlidingModel | PlanarRockingModel,
         Field(discriminator="kind"),
     ],
     BeforeValidator(_with_kind),
@@ -124,6 +144,7 @@ _DESCRIPTIONS: Mapping[type[Model], type[Description]] = {
     SlenderRolling: SlenderRollingModel,
     Wobbling: WobblingModel,
     Rolling: RollingModel,
+    Sliding: SlidingModel,
     PlanarRocking: PlanarRockingModel,
 }
 

@@ -7,6 +7,8 @@ result has the broadcast shape, with NaN (False in a truth value) where there is
 
 from stylobate.theory.averaging import AveragedRolling, averaged_rolling, circular_components
 from stylobate.theory.backbones import planar_backbone, rolling_backbone
+from stylobate.theory.block_motion import BlockPhase, BlockSegment
+from stylobate.theory.conveying import BlockCycle, block_cycle, mean_block_speed
 from stylobate.theory.critical import (
     critical_amplitude,
     critical_frequency,
@@ -27,6 +29,7 @@ from stylobate.theory.free_twist_stability import free_twist_hurwitz_coefficient
 from stylobate.theory.full_rolling import full_rolling
 from stylobate.theory.full_rolling_rates import full_rolling_rates
 from stylobate.theory.high_frequency import HighFrequencyRolling, high_frequency_rates, high_frequency_rolling
+from stylobate.theory.hopping import hopping_speed
 from stylobate.theory.impact import block_restitution, equivalent_viscous_friction, housner_restitution
 from stylobate.theory.lyapunov import first_lyapunov_coefficient
 from stylobate.theory.modulated import ModulatedRolling, modulated_rolling
@@ -39,25 +42,42 @@ from stylobate.theory.planar_forced import (
 )
 from stylobate.theory.planar_free import planar_free_motion, planar_free_period
 from stylobate.theory.rolling import RollingBranch, SteadyRolling, rolling_gap, steady_rolling
+from stylobate.theory.rolling_friction import RollingFriction, rolling_required_friction
 from stylobate.theory.rotating_frame import rotating_frame_jacobian, rotating_frame_rates
+from stylobate.theory.sliding_block import HorizontalSliding, SlidingRegime, horizontal_sliding, sliding_amplitude
+from stylobate.theory.slipping_rolling import SlippingRolling, slipping_rolling
+from stylobate.theory.slipping_rolling_rates import slipping_rolling_rates
 from stylobate.theory.stability import hurwitz_coefficients
+from stylobate.theory.starting import FirstMotion, StartOfMotion, first_motion, start_of_motion
+from stylobate.theory.throwing import bounce_time, flight_throw_number, throw_number
 from stylobate.theory.wobbling import wobbling_rates, wobbling_rolling
 
 __all__ = [
     "AveragedRolling",
+    "BlockCycle",
+    "BlockPhase",
+    "BlockSegment",
     "FiniteTiltRolling",
+    "FirstMotion",
     "FreeMotion",
     "FreeRolling",
     "FreeTwistRolling",
     "HighFrequencyRolling",
+    "HorizontalSliding",
     "ModulatedRolling",
     "PlanarForcedResponse",
     "PlanarOrbit",
     "RollingBranch",
+    "RollingFriction",
+    "SlidingRegime",
+    "SlippingRolling",
+    "StartOfMotion",
     "SteadyRolling",
     "angle_of_turn",
     "averaged_rolling",
+    "block_cycle",
     "block_restitution",
+    "bounce_time",
     "circular_components",
     "critical_amplitude",
     "critical_frequency",
@@ -65,6 +85,8 @@ __all__ = [
     "crossing_frequency",
     "equivalent_viscous_friction",
     "first_lyapunov_coefficient",
+    "first_motion",
+    "flight_throw_number",
     "free_motion",
     "free_rolling",
     "free_rolling_spin",
@@ -78,8 +100,11 @@ __all__ = [
     "full_rolling_rates",
     "high_frequency_rates",
     "high_frequency_rolling",
+    "hopping_speed",
+    "horizontal_sliding",
     "housner_restitution",
     "hurwitz_coefficients",
+    "mean_block_speed",
     "modulated_rolling",
     "planar_backbone",
     "planar_forced_response",
@@ -89,9 +114,15 @@ __all__ = [
     "required_friction",
     "rolling_backbone",
     "rolling_gap",
+    "rolling_required_friction",
     "rotating_frame_jacobian",
     "rotating_frame_rates",
+    "sliding_amplitude",
+    "slipping_rolling",
+    "slipping_rolling_rates",
+    "start_of_motion",
     "steady_rolling",
+    "throw_number",
     "wobbling_rates",
     "wobbling_rolling",
 ]

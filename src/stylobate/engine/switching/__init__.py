@@ -1,0 +1,1 @@
+"""Single runs of models that change between kinds of contact."""

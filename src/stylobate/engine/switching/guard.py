@@ -1,0 +1,76 @@
+"""What ends a kind of contact: margins looked at within each step, their ends located on its dense output."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from scipy.optimize import brentq
+
+from stylobate.engine.forcing import Floats, Forcing
+from stylobate.models import Model
+
+# Parts of each step at whose ends the margins are looked at.
+_PARTS = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Guard:
+    """Watches the margins of a model; `rest_energy` is ε."""
+
+    model: Model
+    forcing: Forcing
+    rest_energy: float
+
+    def margins(self, tau: float, state: Floats) -> tuple[float, ...]:
+        """Return the margins of one state."""
+        assert self.model.margins is not None
+        return self.model.margins(*state.tolist(), *self.forcing.at(tau), self.rest_energy, *self.model.parameters)
+
+    def broken(self, margins: tuple[float, ...]) -> int | None:
+        """Return the first margin that is below nought, but for the last, which must have come from above."""
+        return next((number for number, margin in enumerate(margins[:-1]) if margin < 0.0), None)
+
+    def first_event(
+        self, start: float, end: float, dense: Callable[[float], Floats], before: tuple[float, ...]
+    ) -> tuple[float, int, tuple[float, ...]]:
+        """Return when within a step a margin is first below nought, and which; or its end, −1 and the margins there.
+
+        Parameters
+        ----------
+        start, end
+            The step.
+        dense
+            The state at a time within it.
+        before
+            Margins at its start.
+        """
+        past, margins = start, before
+        for place in range(1, _PARTS + 1):
+            tau = end if place == _PARTS else start + (end - start) * place / _PARTS
+            found = self.margins(tau, dense(tau))
+            crossed = [
+                (self._crossing(number, past, tau, dense, old), number)
+                for number, (old, new) in enumerate(zip(margins, found, strict=True))
+                if new < 0.0 and (old >= 0.0 or number < len(found) - 1)
+            ]
+            if crossed:
+                time, number = min(crossed)
+                return time, number, found
+            past, margins = tau, found
+        return end, -1, margins
+
+    def _crossing(self, number: int, low: float, high: float, dense: Callable[[float], Floats], old: float) -> float:
+        """Return the first time found at which a margin is below nought."""
+        if old < 0.0:
+            return low
+
+        def margin(tau: float) -> float:
+            return self.margins(tau, dense(tau))[number]
+
+        if margin(low) <= 0.0:
+            return low
+        # Ends at a place where it is below nought, within a rounding of where it vanishes.
+        found = float(brentq(margin, low, high, xtol=4e-15 * max(1.0, abs(high))))
+        step = 4e-15 * max(1.0, abs(found))
+        while margin(found) >= 0.0 and found < high:
+            found, step = min(found + step, high), 2.0 * step
+        return found

@@ -1,0 +1,113 @@
+"""The integrator of a stretch between two events: DOP853, or Radau where slip is stiff.
+
+Slip that has hardly begun follows the load almost at once, and so does the creep of a patch that turns: the rates of
+its direction are as large as friction over slip. There the steps of an explicit method are cut by stability alone.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from scipy.integrate import DOP853, Radau
+
+from stylobate.engine.forcing import Floats
+from stylobate.engine.moving import Method
+
+# E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", section IV.2: the boundary of stability of DOP853
+# along the negative axis is at hλ = 6.1; so many steps near it in turn count as stiff.
+_NEAR_BOUNDARY, _STIFF_STEPS = 3.0, 20
+
+# Radau's steps are over where those of DOP853, some times as long, would be stable.
+_EASY = 1.0
+
+
+class Stepper:
+    """Steps from a state towards a stop, by the method that suits them.
+
+    Parameters
+    ----------
+    derivative
+        Rates at a time, of a state.
+    start, state, stop
+        Where it begins, and how far it may go.
+    method
+        Tolerances.
+    may_be_stiff
+        Whether to look for stiffness at all.
+    """
+
+    def __init__(
+        self,
+        derivative: Callable[[float, Any], Any],
+        start: float,
+        state: Floats,
+        stop: float,
+        method: Method,
+        *,
+        may_be_stiff: bool,
+    ) -> None:
+        self._derivative, self._stop, self._method = derivative, stop, method
+        self._may_be_stiff, self._near = may_be_stiff, 0
+        self.solver: Any = self._explicit(start, state)
+
+    @property
+    def running(self) -> bool:
+        """Whether the stop lies ahead."""
+        return bool(self.solver.status == "running")
+
+    def step(self) -> str | None:
+        """Make a step; return why that failed, or None."""
+        if self._near >= _STIFF_STEPS and isinstance(self.solver, DOP853):
+            self.solver = self._implicit(self.solver.t, self.solver.y)
+        elif self._near == 0 and isinstance(self.solver, Radau):
+            self.solver = self._explicit(self.solver.t, self.solver.y)
+        failure = self.solver.step()
+        if self._may_be_stiff and failure is None:
+            self._look(self.solver)
+        return None if failure is None else str(failure)
+
+    def _look(self, solver: Any) -> None:
+        """Count the steps in turn that were cut by stability; of an implicit method, as long as they would be."""
+        if isinstance(solver, DOP853):
+            self._near = self._near + 1 if _boundary(solver) > _NEAR_BOUNDARY else 0
+        elif _largest_rate(solver.J) * solver.step_size < _EASY:
+            self._near = 0
+
+    def _explicit(self, time: float, state: Floats) -> DOP853:
+        method = self._method
+        return DOP853(
+            self._derivative,
+            time,
+            state,
+            self._stop,
+            max_step=method.max_step,
+            rtol=method.rtol,
+            atol=method.atol,
+        )
+
+    def _implicit(self, time: float, state: Floats) -> Radau:
+        method = self._method
+        return Radau(
+            self._derivative,
+            time,
+            state,
+            self._stop,
+            max_step=method.max_step,
+            rtol=method.rtol,
+            atol=method.atol,
+        )
+
+
+def _boundary(solver: Any) -> float:
+    """Return hλ of the last step, from its two last stages."""
+    h, slopes = solver.step_size, solver.K
+    last = solver.n_stages - 1
+    place = solver.y_old + h * (solver.A[last, :last] @ slopes[:last])
+    apart = float(np.linalg.norm(solver.y - place))
+    return h * float(np.linalg.norm(solver.f - slopes[last])) / apart if apart > 0.0 else 0.0
+
+
+def _largest_rate(jacobian: Floats) -> float:
+    rates = np.abs(np.linalg.eigvals(jacobian))
+    return float(rates.max()) if np.isfinite(rates).all() else math.inf

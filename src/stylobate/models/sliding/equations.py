@@ -1,0 +1,293 @@
+"""The equations of motion, what the contact bears and what ends a kind of contact, as the engines call them."""
+
+import math
+
+from stylobate.models.finite_tilt import TINY, cosine, sine_over_angle
+from stylobate.models.sliding.balance import balance
+
+_RESTING, _SLIDING, _ROLLING, _SLIPPING, _FLYING = 0.0, 1.0, 2.0, 3.0, 4.0
+
+MARGINS = ("lift", "friction", "support", "rest", "jam", "fallen", "stroke")
+"""What each of the `margins` guards, in their order.
+
+"lift": the contact presses. "friction": it holds, or still slips. "support": a base stands firm, or there is air under
+the rim. "rest": a column that rocks has energy left. "jam": Painlevé's denominator. "fallen": a tilt below π/2.
+"stroke": no base strikes the plane, which it does where a tilt below `passage_tilt` stops falling.
+"""
+
+STILL = 1e-10
+"""Slip slower than this is none [h ω0]."""
+
+CLEAR = 1e-13
+"""A lowest point deeper than this has landed [h], if it goes deeper."""
+
+JAM = 1e-3
+"""Painlevé's denominator at which slip jams."""
+
+# Closer to the upright than this [of the smaller of c and the speed], on a path that leads past it at less than the
+# second number [c], the rest of the way is told in closed form.
+_CLOSE, _STRAIGHT = 1e-6, 1e-9
+
+
+def rates(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    w3: float,
+    _twist: float,
+    _fx: float,
+    _fy: float,
+    sx: float,
+    sy: float,
+    _rise: float,
+    climb: float,
+    hx: float,
+    hy: float,
+    hz: float,
+    contact: float,
+    ax: float,
+    ay: float,
+    az: float,
+    c: float,
+    eta: float,
+    zeta: float,
+    kappa: float,
+    axial: float,
+    resistance: float,
+    kinetic: float,
+    static: float,
+    patch: float,
+    _restitution: float,
+    _passage: float,
+    slope_x: float,
+    slope_y: float,
+    relief: float,
+) -> tuple[
+    float, float, float, float, float, float, float, float, float, float, float, float, float, float, float, float
+]:
+    """Return the rates of the state; a kind of contact and a heading last until an event."""
+    bx, by, spin_rate, ox, oy, _, _, _, _, _, _, _, twisting, back_x, back_y, _ = balance(
+        x,
+        y,
+        vx,
+        vy,
+        w3,
+        sx,
+        sy,
+        hx,
+        hy,
+        hz,
+        contact,
+        ax,
+        ay,
+        az,
+        c,
+        eta,
+        zeta,
+        kappa,
+        axial,
+        resistance,
+        kinetic,
+        static,
+        patch,
+        slope_x,
+        slope_y,
+        relief,
+    )
+    stays = 1.0 if contact == _RESTING else 0.0
+    flies = 1.0 if contact == _FLYING else 0.0
+    return (
+        vx,
+        vy,
+        bx,
+        by,
+        spin_rate,
+        twisting,
+        (1.0 - stays) * sx + back_x,
+        (1.0 - stays) * sy + back_y,
+        ox,
+        oy,
+        flies * climb,
+        -flies * (1.0 + az - relief) / kappa,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+    )
+
+
+def contact_loads(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    w3: float,
+    _twist: float,
+    _fx: float,
+    _fy: float,
+    sx: float,
+    sy: float,
+    _rise: float,
+    _climb: float,
+    hx: float,
+    hy: float,
+    hz: float,
+    contact: float,
+    ax: float,
+    ay: float,
+    az: float,
+    c: float,
+    eta: float,
+    zeta: float,
+    kappa: float,
+    axial: float,
+    resistance: float,
+    kinetic: float,
+    static: float,
+    patch: float,
+    _restitution: float,
+    _passage: float,
+    slope_x: float,
+    slope_y: float,
+    relief: float,
+) -> tuple[float, float, float]:
+    """Return N and |T| over m g, and |M_z| over m g r."""
+    _, _, _, _, _, normal, tx, ty, moment, _, _, _, _, _, _, _ = balance(
+        x,
+        y,
+        vx,
+        vy,
+        w3,
+        sx,
+        sy,
+        hx,
+        hy,
+        hz,
+        contact,
+        ax,
+        ay,
+        az,
+        c,
+        eta,
+        zeta,
+        kappa,
+        axial,
+        resistance,
+        kinetic,
+        static,
+        patch,
+        slope_x,
+        slope_y,
+        relief,
+    )
+    return normal, math.sqrt(tx * tx + ty * ty), abs(moment) / c
+
+
+def margins(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    w3: float,
+    _twist: float,
+    _fx: float,
+    _fy: float,
+    sx: float,
+    sy: float,
+    rise: float,
+    climb: float,
+    hx: float,
+    hy: float,
+    hz: float,
+    contact: float,
+    ax: float,
+    ay: float,
+    az: float,
+    rest: float,
+    c: float,
+    eta: float,
+    zeta: float,
+    kappa: float,
+    axial: float,
+    resistance: float,
+    kinetic: float,
+    static: float,
+    patch: float,
+    _restitution: float,
+    passage: float,
+    slope_x: float,
+    slope_y: float,
+    relief: float,
+) -> tuple[float, float, float, float, float, float, float]:
+    """Return what is positive as long as a kind of contact lasts, in the order of MARGINS.
+
+    Where one falls below nought an event ends it; the last where it does so from above only. `rest` is ε: on its rim a
+    column comes to rest below the energy ε c² where the plane would hold it.
+    """
+    _, _, _, ox, oy, normal, tx, ty, _, oz, kept, denominator, _, _, _, yawing = balance(
+        x,
+        y,
+        vx,
+        vy,
+        w3,
+        sx,
+        sy,
+        hx,
+        hy,
+        hz,
+        contact,
+        ax,
+        ay,
+        az,
+        c,
+        eta,
+        zeta,
+        kappa,
+        axial,
+        resistance,
+        kinetic,
+        static,
+        patch,
+        slope_x,
+        slope_y,
+        relief,
+    )
+    rolls = contact == _ROLLING
+    slips = contact == _SLIPPING
+    flies = contact == _FLYING
+    stands = contact == _RESTING
+    rim = 1.0 if rolls or slips else 0.0
+    weight = 1.0 + az - relief
+    pushed = math.sqrt((ax + slope_x) * (ax + slope_x) + (ay + slope_y) * (ay + slope_y))
+    drag = math.sqrt(tx * tx + ty * ty)
+    square = x * x + y * y + TINY
+    tilt = math.sqrt(square)
+    speed = math.sqrt(vx * vx + vy * vy) + TINY
+    radial, aside = x * vx + y * vy, abs(x * vy - y * vx) / speed
+    # Slip that fades and is all but gone, or what holds a contact that does not slip
+    radius = c if contact == _SLIDING else patch * c
+    slip = sx * hx + sy * hy + radius * yawing * hz
+    slipping = max(slip - STILL, ox * hx + oy * hy + oz * hz)
+    friction = kept if rolls else (static * weight - pushed) if stands else 1.0 if flies else slipping
+    # Height of the lowest point of the rim
+    sine, cos = sine_over_angle(square) * tilt, cosine(square)
+    gap = rise - c * sine + sine * sine / (1.0 + cos)
+    opening = climb - (c * cos - sine) * (radial / tilt)
+    support = max(gap, opening) + CLEAR if flies else 1.0 if rim > 0.0 else c * weight - drag
+    energy = 0.5 * (1.0 + kappa * c * c) * speed * speed + c * weight * tilt - rest * c * c
+    rests = energy if rim > 0.0 and c * weight > max(pushed, drag) else 1.0
+    # The path towards the upright, to its closest point or as far as it is followed
+    close = _CLOSE * min(c, speed)
+    far = tilt > passage and tilt > close
+    towards = tilt - close if aside < _STRAIGHT * c else -radial / (tilt * speed)
+    stroke = 1.0 if rim == 0.0 or far else towards if radial < 0.0 else -1.0
+    return (
+        1.0 if flies else normal,
+        friction,
+        support,
+        rests,
+        denominator - JAM,
+        0.5 * math.pi - tilt,
+        stroke,
+    )

@@ -1,0 +1,66 @@
+"""Impulses of a column that strikes the plane, limited by friction, of which none adds energy.
+
+The law is that of A. Chatterjee and A. Ruina, "A new algebraic rigid-body collision law based on impulse space
+considerations", J. Appl. Mech. 65 (1998): P = (1 + e) P1 + q (P2 − P1), of which P1 without friction stops the
+approach, P2 stops all of the velocity at the contact, and q ≤ 1 is as large as |P_t| ≤ μ P_z allows. It takes energy
+whatever e ≤ 1 and μ, which impulses on the cone of friction against the slip of arrival do not.
+"""
+
+import math
+
+REST_SPEED = 1e-5
+"""A rebound slower than this is none [h ω0], so that impacts which pile up come to their end.
+
+It rises to 5e-11 κ h, far above the height to which a landing is told.
+"""
+
+
+def responses(sine: float, cos: float, c: float, kappa: float, axial: float) -> tuple[float, float, float, float]:
+    """Return changes of v at the lowest point of the rim by impulses there: W_dd, W_dz, W_zz, and W_nn."""
+    height, slope, transverse = cos + c * sine, c * cos - sine, 1.0 - kappa
+    mass = 1.0 / kappa
+    return (
+        mass + height * height / transverse,
+        height * slope / transverse,
+        mass + slope * slope / transverse,
+        mass + 1.0 / (kappa * axial) + 1.0 / transverse,
+    )
+
+
+def impulse(
+    arrival: tuple[float, float, float],
+    response: tuple[float, float, float, float],
+    coefficient: float,
+    restitution: float,
+) -> tuple[float, float, float]:
+    """Return the impulse along d, n and the vertical at a point that arrives with this velocity."""
+    vd, vn, vz = arrival
+    dd, dz, zz, nn = response
+    smooth = -vz / zz
+    # P2 − P1 leaves v_z alone: its vertical part follows that along d.
+    rough_d = -(vd + dz * smooth) / (dd - dz * dz / zz)
+    rough_n, rough_z = -vn / nn, -dz / zz * rough_d
+    bounced = (1.0 + restitution) * smooth
+    along = math.hypot(rough_d, rough_n)
+    short = along - coefficient * rough_z
+    share = 1.0 if short <= coefficient * bounced else coefficient * bounced / short
+    return share * rough_d, share * rough_n, bounced + share * rough_z
+
+
+def rebound(restitution: float, approach: float) -> float:
+    """Return the restitution of an impact with this speed of approach: none where the rebound would be."""
+    return restitution if restitution * approach > REST_SPEED else 0.0
+
+
+def base_impulse(
+    vx: float, vy: float, w3: float, normal: float, coefficient: float, twisting: float, c: float, inertia: float
+) -> tuple[float, float, float]:
+    """Return the impulse along x and y, and its moment, of a base that meets the plane flat, over the mass κ and I_a.
+
+    Slip and turning of the base are stopped as far as the normal impulse `normal`, over κ, allows each of them.
+    """
+    speed = math.hypot(vx, vy)
+    kept = max(0.0, 1.0 - coefficient * normal / speed) if speed > 0.0 else 0.0
+    turning = coefficient * normal * twisting * c / inertia
+    spun = max(0.0, 1.0 - turning / abs(w3)) if w3 != 0.0 else 0.0
+    return (kept - 1.0) * vx, (kept - 1.0) * vy, (spun - 1.0) * w3

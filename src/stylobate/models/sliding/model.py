@@ -1,0 +1,300 @@
+"""The column in six freedoms, on a plane that it can leave and on which it can slip."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.column import Column
+from stylobate.errors import ParameterError, require_finite, require_positive
+from stylobate.models import finite_tilt, tilt_vector
+from stylobate.models.checks import require_column, require_frictions, require_loss
+from stylobate.models.contact import path_outputs
+from stylobate.models.model import RELEASE_MARGIN, Floats, Model, Output
+from stylobate.models.sliding.equations import MARGINS, contact_loads, margins, rates
+from stylobate.models.sliding.phases import Contact, Numbers, State
+from stylobate.models.sliding.reactions import react, refreshed
+from stylobate.models.sliding.transitions import forces, lifted
+
+# A least tilt counts as a stroke of the base below this, where the user tells no other [c].
+_PASSAGE = 0.01
+
+
+@dataclass(frozen=True, slots=True)
+class Sliding(Model):
+    """The rigid column in unilateral contact with Coulomb friction: it can slip, pivot, lift off and land again.
+
+    It stands on its base, at rest or sliding; rolls on its rim, or slips there; or flies. What changes one into another
+    is an event that is located, and impacts are instants. No parameter regularises friction.
+
+    Parameters
+    ----------
+    column
+        The column.
+    friction_coefficient
+        Kinetic μ, of contacts that slip and of impacts.
+    static_friction_coefficient
+        Up to which a contact does not slip; by default the kinetic one, and not below it.
+    patch
+        Radius ε of the contact of the rim, in units of the base radius. A patch resists turning about the vertical by a
+        moment up to (3π/16) μNε; force and moment fade into each other as it slips and turns. While it does neither,
+        the column rolls as on rubber. 0 is a point.
+    restitution
+        e_n, speed at which the struck point leaves the plane over that of its approach.
+    damping, spin_friction, rolling_resistance
+        As for `Rolling`, while the rim touches.
+    passage_tilt
+        Where a tilt below this stops falling [rad], the base strikes the plane; by default 0.01 c.
+    incline, incline_direction
+        Angle of the plane to the horizontal [rad], and azimuth of the way down. Base motions are told along the plane
+        and along its normal.
+
+    Raises
+    ------
+    ParameterError
+        If `column` is no Column, a number is out of range, or the static coefficient is below the kinetic one.
+
+    Notes
+    -----
+    In the limits it is another model: for large μ, as long as N > 0 and the base does not strike, it is `Rolling`; with
+    a large patch it rolls as on rubber; a column with c above μ slides as a block.
+
+    The rules that end what would not end by itself: a rebound slower than 1e-5 √(gh/κ) is none; slip slower than 1e-10
+    of that is none, and where Painlevé's denominator falls to 1e-3 slip ends by an impulse; below the energy of rest of
+    a run a column on its rim is set down, where the plane holds it. Impacts follow A. Chatterjee and A. Ruina (1998),
+    and never add energy. A stroke of the base is an impact of the rim on the other side, in the plane of the motion;
+    without slip and rebound it is Housner's. While the base stands on the plane its pressure counts as even.
+    """
+
+    column: Column
+    friction_coefficient: float = 0.5
+    static_friction_coefficient: float | None = None
+    patch: float = 0.0
+    restitution: float = 0.0
+    damping: float = 0.0
+    spin_friction: float = 0.0
+    rolling_resistance: float = 0.0
+    passage_tilt: float | None = None
+    incline: float = 0.0
+    incline_direction: float = 0.0
+
+    name: ClassVar[str] = "sliding"
+    state_names: ClassVar[tuple[str, ...]] = State._fields
+    spin_state: ClassVar[int | None] = State._fields.index("spin")
+    margin_names: ClassVar[tuple[str, ...]] = MARGINS
+    contact_kinds: ClassVar[type[IntEnum] | None] = Contact
+
+    def __post_init__(self) -> None:
+        require_column(self.column)
+        require_frictions(self, "patch", "damping", "spin_friction", "rolling_resistance")
+        require_loss(self)
+        coefficient = require_positive("friction_coefficient", self.friction_coefficient)
+        object.__setattr__(self, "friction_coefficient", coefficient)
+        if self.static_friction_coefficient is not None:
+            static = require_positive("static_friction_coefficient", self.static_friction_coefficient)
+            object.__setattr__(self, "static_friction_coefficient", static)
+            if static < coefficient:
+                message = f"static_friction_coefficient must not be below the kinetic {coefficient!r}, got {static!r}"
+                raise ParameterError(message)
+        for name in ("incline", "incline_direction"):
+            object.__setattr__(self, name, require_finite(name, getattr(self, name), "rad"))
+        if not 0.0 <= self.incline < 0.5 * math.pi:
+            message = (
+                f"incline must lie between 0 and π/2 rad, the way down told by its direction, got {self.incline!r}"
+            )
+            raise ParameterError(message)
+
+    rates = staticmethod(rates)
+    lean = staticmethod(tilt_vector.lean)
+    contact = staticmethod(contact_loads)
+    margins = staticmethod(margins)
+    react = staticmethod(react)
+    refreshed = staticmethod(refreshed)
+
+    @property
+    def numbers(self) -> Numbers:
+        """The parameters by name."""
+        column, kinetic, down = self.column, self.friction_coefficient, math.sin(self.incline)
+        return Numbers(
+            c=column.slenderness,
+            eta=self.damping,
+            zeta=self.spin_friction,
+            kappa=column.inertia_ratio,
+            axial=column.axial_ratio,
+            resistance=self.rolling_resistance,
+            kinetic=kinetic,
+            static=kinetic if self.static_friction_coefficient is None else self.static_friction_coefficient,
+            patch=self.patch,
+            restitution=self.restitution,
+            passage_tilt=_PASSAGE * column.slenderness if self.passage_tilt is None else self.passage_tilt,
+            slope_x=-down * math.cos(self.incline_direction),
+            slope_y=-down * math.sin(self.incline_direction),
+            relief=2.0 * math.sin(0.5 * self.incline) ** 2,
+        )
+
+    @property
+    def parameters(self) -> tuple[float, ...]:
+        """`numbers` as a plain tuple."""
+        return tuple(self.numbers)
+
+    @property
+    def slope(self) -> tuple[float, float, float]:
+        """What the inclined plane adds to the acceleration of the base [g]."""
+        numbers = self.numbers
+        return numbers.slope_x, numbers.slope_y, -numbers.relief
+
+    @property
+    def rest_capacity(self) -> float:
+        """The |a_h|/(g + a_z) up to which the column neither slides nor tips: the smaller of c and the static μ."""
+        numbers = self.numbers
+        return min(numbers.c, numbers.static) * (1.0 + RELEASE_MARGIN)
+
+    @property
+    def comes_to_rest(self) -> bool:
+        """It does: strokes of the base take energy."""
+        return True
+
+    def start(self, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, ...]:
+        """Return the state with this tilt vector [rad] and its rate [rad/s], without slip on its rim."""
+        scale, nothing = self.time_scale, 0.0 * tilt[0]
+        lean = (tilt[0], tilt[1], tilt_rate[0] * scale, tilt_rate[1] * scale)
+        return *lean, *(nothing,) * 11, nothing + Contact.ROLLING
+
+    def begun(
+        self,
+        tilt: tuple[float, float],
+        tilt_rate: tuple[float, float],
+        *,
+        spin: float,
+        twist: float,
+        position: tuple[float, float],
+        velocity: tuple[float, float, float],
+        clearance: float,
+    ) -> tuple[float, ...]:
+        """Return the state of a start, from which `react` tells how it touches.
+
+        Parameters
+        ----------
+        tilt, tilt_rate
+            [rad], [rad/s].
+        spin, twist
+            [rad/s], [rad].
+        position
+            Centre of the footprint circle [m].
+        velocity
+            Of the lowest point of the rim, or the base, relative to the plane [m/s].
+        clearance
+            Its height [m].
+        """
+        length, scale = self.column.mass_height, self.time_scale
+        vx, vy, vz = (part * scale / length for part in velocity)
+        lean = (*tilt, tilt_rate[0] * scale, tilt_rate[1] * scale)
+        touching = State(
+            *lean, spin * scale, twist, position[0] / length, position[1] / length, vx, vy, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        )
+        if clearance > 0.0 or vz != 0.0:
+            flying = lifted(touching, self.numbers)
+            return tuple(flying._replace(rise=flying.rise + clearance / length, rise_rate=flying.rise_rate + vz))
+        kind = Contact.SLIPPING if any(lean) else Contact.SLIDING
+        return tuple(touching._replace(contact=float(kind)))
+
+    def event_of(self, margin: str, before: int, after: int) -> str:
+        """Return what an event is called that ended a kind of contact, by its margin, and led to another one."""
+        if margin in ("jam", "stroke"):
+            return margin
+        return _EVENTS.get((Contact(before), Contact(after)), "")
+
+    def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
+        """Return spin, twist, footprint, kind of contact, slip, the height of the lowest point, forces and energy."""
+        del resting
+        column, scale, numbers = self.column, self.time_scale, self.numbers
+        length, named = column.mass_height, State(*states)
+        found = np.array(
+            [
+                forces(State(*state), (push[0], push[1], push[2]), numbers)
+                for state, push in zip(states.T.tolist(), accelerations.T.tolist(), strict=True)
+            ]
+        ).reshape(len(states.T), -1)
+        kind, weight = states[15].astype(np.int8), column.mass * column.gravity
+        touches = kind != Contact.FLYING
+        slip = np.where(touches, states[8:10], 0.0).T * length / scale
+        normal = weight * found[:, 5]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            demand = np.where(normal > 0.0, np.hypot(found[:, 6], found[:, 7]) / found[:, 5], 0.0)
+            pivoting = np.where(normal > 0.0, np.abs(found[:, 8]) / (found[:, 5] * numbers.c), 0.0)
+        return {
+            "contact": Output(
+                kind, "1", "kind of contact: " + ", ".join(f"{k.value} {k.name.lower()}" for k in Contact)
+            ),
+            "spin": Output(states[4] / scale, "rad s-1", "angular velocity about the axis"),
+            "twist": Output(states[5], "rad", "angle of turn about the axis"),
+            **path_outputs(self, states, length * states[6:8].T),
+            "clearance": Output(length * self._gap(named), "m", "height of the lowest point above the plane"),
+            "slip_velocity": Output(slip, "m s-1", "velocity of the contact along the plane"),
+            "energy": Output(self._energy(named), "J", "energy above rest, relative to the plane"),
+            "normal_force": Output(normal, "N", "normal force at the contact"),
+            "friction_force": Output(weight * found[:, 6:8], "N", "friction force at the contact"),
+            "friction_demand": Output(demand, "1", "friction force over normal force"),
+            "pivoting_demand": Output(pivoting, "1", "moment about the vertical over normal force and radius"),
+            "painleve_denominator": Output(found[:, 11], "1", "Painlevé's denominator, 1 without slip on the rim"),
+        }
+
+    def _gap(self, state: State) -> Floats:
+        """Height of the lowest point above the plane [h]."""
+        tilt = np.hypot(state.tilt_x, state.tilt_y)
+        flying = np.asarray(state.contact) == Contact.FLYING
+        gap: Floats = np.where(flying, state.rise - finite_tilt.potential(tilt, self.column.slenderness), 0.0)
+        return gap
+
+    def _energy(self, state: State) -> Floats:
+        """½κ|V|² + ½(1 − κ)(w1² + w2²) + ½I_a w3², and the height of the centre of mass, in units of m g h."""
+        column = self.column
+        c, kappa = column.slenderness, column.inertia_ratio
+        x, y, vx, vy = (np.asarray(part) for part in state[:4])
+        tilt = np.hypot(x, y)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            ux, uy = (np.where(tilt > 0.0, part / tilt, 0.0) for part in (x, y))
+        w2 = ux * vx + uy * vy
+        w1 = -np.sinc(tilt / np.pi) * (ux * vy - uy * vx)
+        flies = np.asarray(state.contact) == Contact.FLYING
+        height, slope = np.cos(tilt) + c * np.sin(tilt), c * np.cos(tilt) - np.sin(tilt)
+        # V = v + ρ'w2 d − w n where the column touches
+        ahead, swing = np.where(flies, 0.0, height * w2), np.where(flies | (tilt == 0.0), 0.0, c * state.spin + w1)
+        speed_x = state.velocity_x + ahead * ux + swing * uy
+        speed_y = state.velocity_y + ahead * uy - swing * ux
+        climb = np.where(flies, state.rise_rate, slope * w2)
+        kinetic = kappa * (speed_x**2 + speed_y**2 + climb**2) + (1.0 - kappa) * (
+            w1**2 + np.where(tilt > 0.0, w2, np.hypot(vx, vy)) ** 2
+        )
+        kinetic += kappa * column.axial_ratio * c * c * np.square(state.spin)
+        weight = 1.0 - self.numbers.relief
+        lift = np.where(flies, state.rise, finite_tilt.potential(tilt, c))
+        energy: Floats = column.mass * column.gravity * column.mass_height * (0.5 * kinetic + weight * lift)
+        return energy
+
+
+_EVENTS: Mapping[tuple[Contact, Contact], str] = {
+    (Contact.RESTING, Contact.SLIDING): "slide",
+    (Contact.RESTING, Contact.ROLLING): "release",
+    (Contact.RESTING, Contact.SLIPPING): "release",
+    (Contact.RESTING, Contact.FLYING): "lift",
+    (Contact.SLIDING, Contact.RESTING): "stop",
+    (Contact.SLIDING, Contact.SLIDING): "reverse",
+    (Contact.SLIDING, Contact.ROLLING): "release",
+    (Contact.SLIDING, Contact.SLIPPING): "release",
+    (Contact.SLIDING, Contact.FLYING): "lift",
+    (Contact.ROLLING, Contact.RESTING): "rest",
+    (Contact.ROLLING, Contact.SLIDING): "rest",
+    (Contact.ROLLING, Contact.SLIPPING): "slip",
+    (Contact.ROLLING, Contact.FLYING): "lift",
+    (Contact.SLIPPING, Contact.RESTING): "rest",
+    (Contact.SLIPPING, Contact.SLIDING): "rest",
+    (Contact.SLIPPING, Contact.ROLLING): "stick",
+    (Contact.SLIPPING, Contact.SLIPPING): "reverse",
+    (Contact.SLIPPING, Contact.FLYING): "lift",
+    **{(Contact.FLYING, kind): "land" for kind in Contact},
+}

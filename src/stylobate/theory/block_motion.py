@@ -1,0 +1,261 @@
+"""A block that slides and hops on a vibrating, possibly inclined plane: its motion, piece by piece.
+
+The plane rises by `incline` = ψ along x; its normal is z. With the base acceleration (ax cos τ, az cos(τ + φ)) in g,
+τ = Ωt, lengths in g/Ω² and velocities in g/Ω, a point mass at the distance s above the plane that moves at the velocity
+u along it obeys
+
+    u̇ = T − sin ψ − ax cos τ,    s̈ = N − cos ψ − az cos(τ + φ).
+
+    stick      u = 0, s = 0       T = sin ψ + ax cos τ, while |T| ≤ μs N
+    slide      u ≷ 0, s = 0       T = ∓μk N, while N ≥ 0
+    flight     s > 0              T = N = 0
+    landing    at the speed v     Pn = (1 + e)v, |Pt| ≤ μk Pn and no more than stops the slip
+
+In every phase the forces are one harmonic and a constant, `stylobate.theory.harmonic_force`, so velocity and place are
+trigonometric functions and polynomials of τ. The next phase begins where a force changes its sign, in closed form, or
+where u or s vanishes. Between the zeros of their derivatives, known in turn, these are monotone: each root is bracketed
+and none can be stepped over. The motion is exact to rounding but for one rule. Landings with e > 0 may follow one
+another ever faster and end in a finite time. A landing that would rebound at less than `rest_speed` does not rebound
+at all if the plane then presses on the block. The bounces so left out would have lasted 2 rest_speed/((1 − e)N), see
+`stylobate.theory.bounce_time`, and have the impulse that the contact gives in that time.
+"""
+
+import cmath
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import IntEnum
+
+from stylobate.errors import ParameterError
+from stylobate.theory.arguments import finite, not_negative, positive
+from stylobate.theory.harmonic_force import HarmonicForce, root
+from stylobate.theory.starting import steepness
+from stylobate.theory.throwing import below_elastic
+
+TURN = 2.0 * math.pi
+# A force that is short of its limit by less than this, relative to all forces, is at its limit.
+_FORCE_ROUNDING = 1e-13
+# A slip or flight that begins at rest and by rounding ends at once is given this time [rad]: so the motion goes on.
+_LEAST_SPAN = 1e-12
+
+
+class BlockPhase(IntEnum):
+    """What a block on a vibrating plane is doing."""
+
+    STICK = 0
+    FORWARD = 1
+    """It slides along +x, uphill."""
+    BACKWARD = 2
+    FLIGHT = 3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BlockSegment:
+    """A time in which a block stays in one phase. Velocities are relative to the plane.
+
+    Parameters
+    ----------
+    phase
+        What it does.
+    start, end
+        Ωt from the beginning of the cycle.
+    velocity
+        Velocity along the plane at the start and at the end [g/Ω]. Where it jumps to the next segment the block lands.
+    normal_velocity
+        Velocity along the normal at the start and at the end [g/Ω]; 0 but in flight.
+    travel
+        Distance along the plane [g/Ω²].
+    """
+
+    phase: BlockPhase
+    start: float
+    end: float
+    velocity: tuple[float, float]
+    normal_velocity: tuple[float, float]
+    travel: float
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """Where a block is in its cycle, and what it does from here on."""
+
+    tau: float
+    u: float
+    s: float
+    rise: float
+    phase: BlockPhase
+
+    def off(self, other: "State") -> float:
+        """How far this state is from another one at the same phase of the base motion."""
+        return max(abs(self.u - other.u), abs(self.s - other.s), abs(self.rise - other.rise))
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """A block, its plane and the base motion."""
+
+    weight: HarmonicForce  # N in contact
+    pull: HarmonicForce  # T if it sticks
+    mu_s: float
+    mu_k: float
+    restitution: float
+    rest_speed: float
+
+    @classmethod
+    def checked(
+        cls,
+        along: float,
+        normal: float,
+        phase: float,
+        incline: float,
+        static_friction: float,
+        kinetic_friction: float | None,
+        *,
+        restitution: float,
+        rest_speed: float,
+    ) -> "Block":
+        """Return the block, or raise ParameterError where a number of `block_cycle` is not one."""
+        mu_s = float(not_negative("static_friction", static_friction))
+        mu_k = mu_s if kinetic_friction is None else float(not_negative("kinetic_friction", kinetic_friction))
+        if mu_k > mu_s:
+            message = f"kinetic_friction must be at most static_friction = {mu_s!r}, got {mu_k!r}"
+            raise ParameterError(message)
+        psi = float(steepness(incline))
+        swing = float(finite("normal", normal)) * cmath.exp(1j * float(finite("phase", phase)))
+        return cls(
+            weight=HarmonicForce(math.cos(psi), swing),
+            pull=HarmonicForce(math.sin(psi), complex(float(finite("along", along)))),
+            mu_s=mu_s,
+            mu_k=mu_k,
+            restitution=float(below_elastic(restitution)),
+            rest_speed=float(positive("rest_speed", rest_speed)),
+        )
+
+    @property
+    def scale(self) -> float:
+        """Size of the accelerations [g]."""
+        return 1.0 + abs(self.weight.swing) + abs(self.pull.swing)
+
+    def margin(self, mu: float, sense: float) -> HarmonicForce:
+        """μN + sense T: what a slip in this sense begins without (μs), and is braked by (μk)."""
+        return HarmonicForce(
+            mu * self.weight.constant + sense * self.pull.constant, mu * self.weight.swing + sense * self.pull.swing
+        )
+
+    def lost(self, force: HarmonicForce, tau: float) -> bool:
+        """Whether a force that must not be negative is, or becomes so now."""
+        value, rounding = force.at(tau), _FORCE_ROUNDING * self.scale
+        return value < -rounding or (value < rounding and force.slope(tau) < 0.0)
+
+    def landed(self, state: State) -> State:
+        """Return the state on the plane in the phase that begins with it."""
+        if self.lost(self.weight, state.tau):
+            return replace(state, phase=BlockPhase.FLIGHT)
+        if state.u != 0.0:
+            return replace(state, phase=BlockPhase.FORWARD if state.u > 0.0 else BlockPhase.BACKWARD)
+        for phase, sense in ((BlockPhase.FORWARD, 1.0), (BlockPhase.BACKWARD, -1.0)):
+            if self.lost(self.margin(self.mu_s, sense), state.tau):
+                return replace(state, phase=phase)
+        return replace(state, phase=BlockPhase.STICK)
+
+    def turn(self, state: State) -> tuple[list[BlockSegment], State]:
+        """Return the segments of one period of the base motion from τ = 0, and the state after it."""
+        segments = []
+        while state.tau < TURN:
+            move = {BlockPhase.STICK: self.stick, BlockPhase.FLIGHT: self.fly}.get(state.phase, self.slide)
+            segment, after = move(state, TURN - state.tau)
+            if segment.end > segment.start:
+                segments.append(segment)
+            state = after
+        return segments, replace(state, tau=0.0)
+
+    def stick(self, state: State, horizon: float) -> tuple[BlockSegment, State]:
+        """Return the segment of a block that sticks, up to a slip, a lift-off or the horizon, and what follows."""
+        falls = {
+            BlockPhase.FLIGHT: self.weight.next_fall(state.tau),
+            BlockPhase.FORWARD: self.margin(self.mu_s, 1.0).next_fall(state.tau),
+            BlockPhase.BACKWARD: self.margin(self.mu_s, -1.0).next_fall(state.tau),
+        }
+        first = min(falls, key=lambda phase: falls[phase])
+        span = min(falls[first], horizon)
+        after = State(_later(state, span, horizon), 0.0, 0.0, 0.0, first if span < horizon else BlockPhase.STICK)
+        return _segment(state, after, 0.0), after
+
+    def slide(self, state: State, horizon: float) -> tuple[BlockSegment, State]:
+        """Return the segment of a block that slides, up to a stop, a lift-off or the horizon, and what follows."""
+        sense = 1.0 if state.phase is BlockPhase.FORWARD else -1.0
+        brake, speed, tau = self.margin(self.mu_k, sense), sense * state.u, state.tau
+        lifts = self.weight.next_fall(tau)
+        span = min(lifts, horizon)
+        stops = _first_zero(
+            lambda x: speed - brake.gain(tau, x), lambda x: -brake.at(tau + x), [*brake.zeros(tau, span), span]
+        )
+        if stops is None:
+            u = state.u - sense * brake.gain(tau, span)
+            after = State(_later(state, span, horizon), u, 0.0, 0.0, state.phase)
+            if span < horizon:
+                after = replace(after, phase=BlockPhase.FLIGHT)
+        else:
+            span = max(stops, 0.0 if speed > 0.0 else min(_LEAST_SPAN, span))
+            after = self.landed(State(_later(state, span, horizon), 0.0, 0.0, 0.0, BlockPhase.STICK))
+        return _segment(state, after, sense * (speed * span - brake.travel(tau, span))), after
+
+    def fly(self, state: State, horizon: float) -> tuple[BlockSegment, State]:
+        """Return the segment of a block in flight, up to a landing or the horizon, and what follows."""
+        tau, weight = state.tau, self.weight
+
+        def rise(x: float) -> float:
+            return state.rise - weight.gain(tau, x)
+
+        marks = [*weight.zeros(tau, horizon), horizon]
+        turns, low = [], 0.0
+        for high in marks:
+            if rise(low) * rise(high) < 0.0:
+                turns.append(root(rise, lambda x: -weight.at(tau + x), low, high))
+            turns.append(high)
+            low = high
+        lands = _first_zero(lambda x: state.s + state.rise * x - weight.travel(tau, x), rise, turns)
+        least = 0.0 if state.rise > 0.0 or state.s > 0.0 else min(_LEAST_SPAN, horizon)
+        span = horizon if lands is None else max(lands, least)
+        u = state.u - self.pull.gain(tau, span)
+        travel = state.u * span - self.pull.travel(tau, span)
+        end = State(_later(state, span, horizon), u, 0.0, rise(span), BlockPhase.FLIGHT)
+        if lands is None:
+            end = replace(end, s=state.s + state.rise * span - weight.travel(tau, span))
+            return _segment(state, end, travel), end
+        return _segment(state, end, travel), self.impact(end)
+
+    def impact(self, state: State) -> State:
+        """Return the state after a landing."""
+        speed = max(-state.rise, 0.0)
+        stays = not self.lost(self.weight, state.tau) and self.restitution * speed < self.rest_speed
+        rebound = 0.0 if stays else self.restitution * speed
+        grip = self.mu_k * (speed + rebound)
+        u = math.copysign(max(abs(state.u) - grip, 0.0), state.u)
+        after = replace(state, u=u, rise=rebound)
+        return self.landed(after) if rebound == 0.0 else after
+
+
+def _later(state: State, span: float, horizon: float) -> float:
+    return TURN if span >= horizon else state.tau + span
+
+
+def _first_zero(value: Callable[[float], float], slope: Callable[[float], float], marks: list[float]) -> float | None:
+    """Return the first zero of a function that begins above zero and is monotone between marks, None without one."""
+    low = 0.0
+    for high in marks:
+        if value(high) <= 0.0:
+            return root(value, slope, low, high)
+        low = high
+    return None
+
+
+def _segment(before: State, after: State, travel: float) -> BlockSegment:
+    return BlockSegment(
+        phase=before.phase,
+        start=before.tau,
+        end=after.tau,
+        velocity=(before.u, after.u),
+        normal_velocity=(before.rise, after.rise),
+        travel=travel,
+    )

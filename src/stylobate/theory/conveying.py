@@ -1,0 +1,257 @@
+"""The periodic motion of a block on a vibrating, possibly inclined plane, and how fast it is conveyed.
+
+The motion is followed piece by piece, `stylobate.theory.block_motion`, until it repeats.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from stylobate.errors import require_whole
+from stylobate.theory.arguments import FloatArray, Real, finite, not_negative, positive
+from stylobate.theory.block_motion import TURN, Block, BlockPhase, BlockSegment, State
+from stylobate.theory.starting import steepness
+from stylobate.theory.throwing import below_elastic
+
+# Where a motion comes to its cycle alternating, by the factor −λ in each period of the base motion, two periods repeat
+# 1/(1 − λ) times better than one. Up to this ratio it is the shorter cycle all the same.
+_SLOW = 1e3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BlockCycle:
+    """What the motion of a block on a vibrating plane has become.
+
+    Parameters
+    ----------
+    mean_speed
+        Mean velocity along the plane [g/Ω], uphill positive; infinite if the block slides ever faster.
+    period
+        Periods of the base motion after which the motion repeats; 0 if it was not seen to repeat. Then the cycle is
+        the second half of all that was computed.
+    cycles
+        Periods of the base motion computed in all.
+    segments
+        The cycle, from a zero of Ωt mod 2π on.
+    """
+
+    mean_speed: float
+    period: int
+    cycles: int
+    segments: tuple[BlockSegment, ...]
+
+    @property
+    def repeats(self) -> bool:
+        """Whether the motion repeats."""
+        return self.period > 0
+
+    @property
+    def fraction(self) -> dict[BlockPhase, float]:
+        """Part of the time spent in each phase."""
+        spent = dict.fromkeys(BlockPhase, 0.0)
+        for segment in self.segments:
+            spent[segment.phase] += segment.end - segment.start
+        whole = self.segments[-1].end - self.segments[0].start
+        return {phase: time / whole for phase, time in spent.items()}
+
+    @property
+    def switches(self) -> tuple[float, ...]:
+        """Ωt at which one phase gives way to the next or a flight to another, from the beginning of the cycle."""
+        return tuple(segment.end for segment in self.segments[:-1])
+
+
+def block_cycle(
+    along: float,
+    normal: float = 0.0,
+    *,
+    static_friction: float,
+    kinetic_friction: float | None = None,
+    restitution: float = 0.0,
+    phase: float = 0.0,
+    incline: float = 0.0,
+    start_velocity: float = 0.0,
+    start_normal_velocity: float = 0.0,
+    cycles: int = 1000,
+    longest_period: int = 16,
+    tolerance: float = 1e-13,
+    rest_speed: float = 1e-9,
+) -> BlockCycle:
+    """Motion of a block on a harmonically vibrating plane once it has become periodic.
+
+    Parameters
+    ----------
+    along, normal
+        Amplitudes of the base acceleration [g]: along·cos τ uphill along the plane, normal·cos(τ + phase) along its
+        normal. Vibration of amplitude a along a line at the angle δ to the plane is along = a cos δ, normal = a sin δ.
+    static_friction
+        μs.
+    kinetic_friction
+        μk, at most μs and equal to it by default.
+    restitution
+        Normal restitution e of a landing, below 1.
+    phase
+        Phase of the normal component [rad].
+    incline
+        Angle ψ of the plane [rad], between −π/2 and π/2.
+    start_velocity, start_normal_velocity
+        Velocity relative to the plane at τ = 0, along it and, zero or positive, away from it [g/Ω].
+    cycles
+        Most periods of the base motion to compute.
+    longest_period
+        Most periods of the base motion after which it is looked for a repetition.
+    tolerance
+        The motion repeats if both velocities [g/Ω] and the distance from the plane [g/Ω²] do so to this, in units of
+        1 + along + normal.
+    rest_speed
+        Rebound velocity below which a landing ends in contact [g/Ω].
+
+    Returns
+    -------
+    BlockCycle
+        The cycle reached from this start. Where several attract, as they do with e > 0 or on a steep plane, another
+        start may reach another.
+
+    Raises
+    ------
+    ParameterError
+        If a friction or `start_normal_velocity` is negative, the kinetic friction above the static one, `restitution`
+        not in [0, 1), the plane as steep as a wall, `tolerance` or `rest_speed` not positive, or a count below 1.
+
+    Notes
+    -----
+    Contact in the slip that has just stopped is given static friction: it slips on or back only if abs(T) > μs N.
+
+    Averaged over a cycle that repeats, the friction carries the component sin ψ of the weight and the normal force
+    cos ψ, landings included. So with μk < abs(tan ψ) nothing holds a block that never sticks.
+
+    Examples
+    --------
+    >>> cycle = block_cycle(0.8 * np.cos(0.5), 0.8 * np.sin(0.5), static_friction=0.4)
+    >>> print(round(cycle.mean_speed, 6), cycle.period, [segment.phase.name for segment in cycle.segments])
+    0.166664 1 ['BACKWARD', 'STICK', 'FORWARD', 'STICK', 'BACKWARD']
+    """
+    block = Block.checked(
+        along, normal, phase, incline, static_friction, kinetic_friction, restitution=restitution, rest_speed=rest_speed
+    )
+    for name, count in (("cycles", cycles), ("longest_period", longest_period)):
+        require_whole(name, count, least=1)
+    near = float(positive("tolerance", tolerance)) * block.scale
+    rise = float(not_negative("start_normal_velocity", start_normal_velocity))
+    state = State(0.0, float(finite("start_velocity", start_velocity)), 0.0, rise, BlockPhase.FLIGHT)
+    state = state if rise > 0.0 else block.landed(state)
+    seen, run = [state], list[list[BlockSegment]]()
+    for _ in range(cycles):
+        segments, state = block.turn(state)
+        run.append(segments)
+        seen.append(state)
+        period = _repeats(seen[-longest_period - 1 :], near)
+        if period:
+            return _summary(run[-period:], period, len(run))
+    cycle = _summary(run[len(run) // 2 :], 0, len(run))
+    return replace(cycle, mean_speed=-math.copysign(math.inf, incline)) if _escapes(block, cycle) else cycle
+
+
+def mean_block_speed(
+    along: Real,
+    normal: Real = 0.0,
+    *,
+    static_friction: Real,
+    kinetic_friction: Real | None = None,
+    restitution: Real = 0.0,
+    phase: Real = 0.0,
+    incline: Real = 0.0,
+    cycles: int = 1000,
+) -> FloatArray:
+    """Mean transport speed of a block on a harmonically vibrating plane that began at rest on it.
+
+    Parameters
+    ----------
+    along, normal, static_friction, kinetic_friction, restitution, phase, incline, cycles
+        As for `block_cycle`.
+
+    Returns
+    -------
+    numpy.ndarray
+        Mean velocity along the plane [g/Ω], of the broadcast shape, uphill positive. Where the motion was not seen to
+        repeat, that of the second half of `cycles` periods; infinite where the block slides ever faster.
+
+    Raises
+    ------
+    ParameterError
+        As for `block_cycle`.
+
+    See Also
+    --------
+    block_cycle : all that is known about the motion, for one block.
+
+    Examples
+    --------
+    >>> angle = np.radians([20.0, 30.0, 40.0])
+    >>> print(mean_block_speed(np.cos(angle), np.sin(angle), static_friction=0.4).round(5))
+    [0.21986 0.28063 0.29896]
+    """
+    kinetic = static_friction if kinetic_friction is None else kinetic_friction
+    given = np.broadcast_arrays(
+        finite("along", along),
+        finite("normal", normal),
+        not_negative("static_friction", static_friction),
+        not_negative("kinetic_friction", kinetic),
+        below_elastic(restitution),
+        finite("phase", phase),
+        steepness(incline),
+    )
+    speed = np.empty(given[0].shape)
+    for cell in np.ndindex(speed.shape):
+        ax, az, mu_s, mu_k, e, phi, psi = (float(number[cell]) for number in given)
+        speed[cell] = block_cycle(
+            ax,
+            az,
+            static_friction=mu_s,
+            kinetic_friction=mu_k,
+            restitution=e,
+            phase=phi,
+            incline=psi,
+            cycles=cycles,
+        ).mean_speed
+    return speed
+
+
+def _repeats(seen: list[State], near: float) -> int:
+    """Return after how many periods of the base motion the last state repeats, 0 if it does not."""
+    off = [seen[-1].off(state) for state in seen[-2::-1]]
+    for period, difference in enumerate(off, 1):
+        if difference <= near:
+            return next(part for part in range(1, period + 1) if not period % part and off[part - 1] <= _SLOW * near)
+    return 0
+
+
+def _summary(run: list[list[BlockSegment]], period: int, cycles: int) -> BlockCycle:
+    """Return a run of turns as one cycle, without the cuts between them."""
+    joined = list[BlockSegment]()
+    for turn, segments in enumerate(run):
+        for number, segment in enumerate(segments):
+            moved = replace(segment, start=segment.start + turn * TURN, end=segment.end + turn * TURN)
+            if turn and not number and joined[-1].phase is moved.phase:
+                joined[-1] = _joined(joined[-1], moved)
+            else:
+                joined.append(moved)
+    travel = math.fsum(segment.travel for segment in joined)
+    return BlockCycle(mean_speed=travel / (len(run) * TURN), period=period, cycles=cycles, segments=tuple(joined))
+
+
+def _joined(first: BlockSegment, second: BlockSegment) -> BlockSegment:
+    return replace(
+        first,
+        end=second.end,
+        velocity=(first.velocity[0], second.velocity[1]),
+        normal_velocity=(first.normal_velocity[0], second.normal_velocity[1]),
+        travel=first.travel + second.travel,
+    )
+
+
+def _escapes(block: Block, cycle: BlockCycle) -> bool:
+    """Whether a block that friction cannot hold never stopped sliding down."""
+    down = -math.copysign(1.0, block.pull.constant)
+    steep = block.mu_k * block.weight.constant < abs(block.pull.constant)
+    return steep and all(down * speed > 0.0 for segment in cycle.segments for speed in segment.velocity)

@@ -1,0 +1,106 @@
+"""The friction that steady rolling on a circularly moving base needs if the contact is not to slip."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stylobate.theory.arguments import FloatArray, Real
+from stylobate.theory.free_twist import checked_numbers
+from stylobate.theory.rolling import rolling_amplitudes
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RollingFriction:
+    """Least coefficient of friction on each branch of steady rolling, arrays of one shape; NaN where there is none.
+
+    Parameters
+    ----------
+    upper
+        On the branch of the larger tilt.
+    lower
+        On that of the smaller one.
+    """
+
+    upper: FloatArray
+    lower: FloatArray
+
+
+def rolling_required_friction(
+    theta: Real,
+    a0: Real,
+    *,
+    c: Real,
+    eta: Real,
+    zeta: Real = np.inf,
+    inertia_ratio: Real = 0.75,
+    axial_ratio: Real = 0.5,
+) -> RollingFriction:
+    """Coefficient of friction below which the contact of a slender column in steady rolling must slip.
+
+    Parameters
+    ----------
+    theta
+        Excitation frequency θ, positive.
+    a0
+        Acceleration amplitude of the base [g].
+    c
+        Slenderness.
+    eta
+        Viscous friction η, a couple against the rate of tilt.
+    zeta
+        Spin friction ζ. Infinite, as by default, it forbids the twist, as the paper does.
+    inertia_ratio
+        κ = m h²/J0; ¾ for a solid cylinder, as by default.
+    axial_ratio
+        i_a = I_a/(m r²); ½ for a solid cylinder. Of no effect where ζ is infinite.
+
+    Returns
+    -------
+    RollingFriction
+        To leading order in c.
+
+    Raises
+    ------
+    ParameterError
+        If `theta`, `c`, `inertia_ratio` or `axial_ratio` is not positive, `inertia_ratio` is 1 or more, or another is
+        negative.
+
+    See Also
+    --------
+    full_rolling : whose `friction_demand` is the same at any tilt.
+    slipping_rolling : the steady rolling that has slip.
+    required_friction : near the upright, on a base at rest.
+
+    Notes
+    -----
+    The moments about the centre of mass, and not the motion of the base, decide the force: over m g it is
+
+        T_d = A(1 + (1 − κ)θ²) − c,   T_n = −ηθA
+
+    along the lean and across it, whether the column turns or not; the twist counts by A, which is that of
+    `steady_rolling` or `free_twist_rolling`. Without friction T_d on the upper branch falls from a0 at low frequency to
+    (1 − κ)a0 − κc at high frequency. It vanishes at θ² = a0/(κc − (1 − κ)a0), where friction is least, and there is no
+    such frequency for a0 ≥ κc/(1 − κ). A column that is not to slip at any high frequency needs κc − (1 − κ)a0, less
+    the harder the base shakes. For a smaller μ rolling without slip ends at
+
+        θ² = (a0 + μ)/(κ(a0 + c) − a0 − μ).
+
+    Examples
+    --------
+    >>> needed = rolling_required_friction([1.2, 1.5, 3.0], 0.065, c=0.1, eta=0.1)
+    >>> print(needed.upper.round(4), needed.lower.round(4))
+    [0.0116 0.0222 0.0467] [0.0805 0.0832 0.0886]
+    """
+    numbers = checked_numbers(theta, a0, c, eta, zeta, inertia_ratio, axial_ratio)
+    theta, a0, c, eta, zeta, kappa, axial = numbers
+    with np.errstate(divide="ignore", invalid="ignore"):
+        lag = np.where(eta > 0.0, eta / (zeta * (1.0 + axial - kappa)), 0.0)
+    possible = np.isfinite(lag)
+    k = 1.0 + theta**2 * (1.0 + np.where(possible, lag, 0.0))
+    upper, lower, _ = rolling_amplitudes(k, eta * theta, a0 / c)
+
+    def needed(tilt: FloatArray) -> FloatArray:  # tilt in units of c
+        along = tilt * (1.0 + (1.0 - kappa) * theta**2) - 1.0
+        return np.where(possible, c * np.hypot(along, eta * theta * tilt), np.nan)
+
+    return RollingFriction(upper=needed(upper), lower=needed(lower))

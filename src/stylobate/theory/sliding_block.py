@@ -1,0 +1,178 @@
+"""A block on a horizontal plane that shakes along itself: how it sticks and slides, in closed form.
+
+The base acceleration is a0 cos τ in g, τ = Ωt, velocities are in g/Ω, and the block slips relative to the plane at the
+velocity u, u̇ = −a0 cos τ ∓ μk. Both half cycles are alike.
+
+Up to a0 = μs it sticks. Beyond, it breaks away at cos τ1 = −μs/a0. A slip that begins at τ0 and lasts for all of the
+half cycle ends there with u = 2a0 sin τ0 − πμk = 0; at that instant the plane pulls it back with a0 abs(cos τ0) and no
+static friction holds it if this exceeds μs. So the block never sticks for
+
+    a0 > a* = √(μs² + (πμk/2)²),
+
+with μs = μk = μ for μ/a0 < 2/√(4 + π²) = 0.5370. This is the classical condition of motion without stops under dry
+friction (Den Hartog 1931), for a mass without a spring. Where it sticks, all but the end of the slip is explicit.
+"""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.errors import ParameterError
+from stylobate.theory.arguments import FloatArray, Real, not_negative
+
+_BISECTIONS = 60  # of an interval shorter than π down to rounding
+
+
+class SlidingRegime(IntEnum):
+    """How a block moves on a plane that shakes along itself."""
+
+    STICKS = 0
+    """It moves with the plane."""
+    STICK_SLIP = 1
+    """It slips, stops and sticks twice in each period."""
+    SLIDES = 2
+    """It slips to and fro without sticking."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HorizontalSliding:
+    """The periodic motion of a block on a plane that shakes along itself, arrays of one shape.
+
+    Parameters
+    ----------
+    regime
+        Values of `SlidingRegime`.
+    onset
+        Ωt at which the block begins to slip forward, in (π/2, π); NaN where it sticks.
+    slip_duration
+        Time of one of the two slips of a period [1/Ω], at most π; 0 where it sticks.
+    peak_velocity
+        Largest velocity of the block relative to the plane [g/Ω].
+    stroke
+        Distance it slips to and fro on the plane [g/Ω²].
+    dissipation
+        Energy it loses in a period, over its mass [g²/Ω²].
+    """
+
+    regime: npt.NDArray[np.int64]
+    onset: FloatArray
+    slip_duration: FloatArray
+    peak_velocity: FloatArray
+    stroke: FloatArray
+    dissipation: FloatArray
+
+
+def horizontal_sliding(a0: Real, *, static_friction: Real, kinetic_friction: Real | None = None) -> HorizontalSliding:
+    """How a block sticks and slides on a horizontal plane that shakes harmonically along itself.
+
+    Parameters
+    ----------
+    a0
+        Acceleration amplitude of the base [g].
+    static_friction
+        μs.
+    kinetic_friction
+        μk, at most μs and equal to it by default.
+
+    Returns
+    -------
+    HorizontalSliding
+        Arrays of the broadcast shape.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is negative, or the kinetic friction above the static one.
+
+    Notes
+    -----
+    Peak velocity and onset are closed forms in both regimes that slip,
+
+        slides:      √(a0² − μk²) + μk [arcsin(μk/a0) − arcsin(πμk/2a0)],              sin τ0 = πμk/2a0,
+        stick–slip:  √(a0² − μk²) + √(a0² − μs²) − μk [arccos(μk/a0) + arccos(μs/a0)],  cos τ1 = −μs/a0.
+
+    The slip lasts π in the one; in the other its end is the root of sin τ1 − sin τ = (μk/a0)(τ − τ1), bisected to
+    rounding. The stroke in the one is √(4a0² − π²μk²); the dissipation in both 2μk times the stroke.
+
+    Examples
+    --------
+    >>> motion = horizontal_sliding([0.2, 0.4, 0.8], static_friction=0.3)
+    >>> print([SlidingRegime(regime).name for regime in motion.regime], motion.peak_velocity.round(5))
+    ['STICKS', 'STICK_SLIP', 'SLIDES'] [0.      0.09551 0.66797]
+    """
+    kinetic_friction = static_friction if kinetic_friction is None else kinetic_friction
+    a, mu_s, mu_k = np.broadcast_arrays(
+        not_negative("a0", a0),
+        not_negative("static_friction", static_friction),
+        not_negative("kinetic_friction", kinetic_friction),
+    )
+    _require_ordered(mu_s, mu_k)
+    slips, slides = a > mu_s, a > _never_sticks(mu_s, mu_k)
+    a, mu_s, mu_k = (np.where(slips, number, blank) for number, blank in ((a, 1.0), (mu_s, 1.0), (mu_k, 1.0)))
+    static, kinetic = np.minimum(mu_s / a, 1.0), mu_k / a
+    onset = np.pi - np.where(slides, np.arcsin(0.5 * np.pi * np.minimum(kinetic, 2.0 / np.pi)), np.arccos(static))
+    lasts = np.where(slides, np.pi, _slip_duration(onset, kinetic))
+    peak_after = np.pi + np.arccos(kinetic) - onset
+    peak = a * (np.sin(onset) + np.sqrt((1.0 - kinetic) * (1.0 + kinetic)) - kinetic * peak_after)
+    stroke = a * (np.cos(onset + lasts) - np.cos(onset) + np.sin(onset) * lasts - 0.5 * kinetic * lasts**2)
+    return HorizontalSliding(
+        regime=np.where(slides, SlidingRegime.SLIDES, np.where(slips, SlidingRegime.STICK_SLIP, SlidingRegime.STICKS)),
+        onset=np.where(slips, onset, np.nan),
+        slip_duration=np.where(slips, lasts, 0.0),
+        peak_velocity=np.where(slips, peak, 0.0),
+        stroke=np.where(slips, stroke, 0.0),
+        dissipation=np.where(slips, 2.0 * mu_k * stroke, 0.0),
+    )
+
+
+def sliding_amplitude(*, static_friction: Real, kinetic_friction: Real | None = None) -> FloatArray:
+    """Acceleration amplitude of a horizontal plane above which a block on it never sticks.
+
+    Parameters
+    ----------
+    static_friction
+        μs.
+    kinetic_friction
+        μk, at most μs and equal to it by default.
+
+    Returns
+    -------
+    numpy.ndarray
+        a* = √(μs² + (πμk/2)²) [g], of the broadcast shape.
+
+    Raises
+    ------
+    ParameterError
+        If a friction is negative, or the kinetic one above the static one.
+
+    Examples
+    --------
+    >>> print(sliding_amplitude(static_friction=0.5370, kinetic_friction=[0.0, 0.3, 0.5370]).round(4))
+    [0.537  0.7144 0.9999]
+    """
+    kinetic_friction = static_friction if kinetic_friction is None else kinetic_friction
+    mu_s, mu_k = not_negative("static_friction", static_friction), not_negative("kinetic_friction", kinetic_friction)
+    _require_ordered(mu_s, mu_k)
+    return np.asarray(_never_sticks(mu_s, mu_k))
+
+
+def _never_sticks(mu_s: FloatArray, mu_k: FloatArray) -> FloatArray:
+    return np.hypot(mu_s, 0.5 * np.pi * mu_k)
+
+
+def _require_ordered(mu_s: FloatArray, mu_k: FloatArray) -> None:
+    if np.any(mu_k > mu_s):
+        message = f"kinetic_friction must be at most static_friction, got up to {float(np.max(mu_k - mu_s))!r} more"
+        raise ParameterError(message)
+
+
+def _slip_duration(onset: FloatArray, kinetic: FloatArray) -> FloatArray:
+    """Return when a slip that begins at rest ends: the root between the peak of its velocity and half a period."""
+    low, high = np.pi + np.arccos(kinetic) - onset, np.full_like(onset, np.pi)
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        goes = np.sin(onset) - np.sin(onset + middle) > kinetic * middle
+        low, high = np.where(goes, middle, low), np.where(goes, high, middle)
+    return 0.5 * (low + high)

@@ -1,0 +1,180 @@
+"""Steady rolling with slip on a circularly moving base: its balances, and all solutions of them.
+
+In the frame that turns with the lean nothing changes, so the contact bears the weight and the moments about the centre
+of mass give T_d, T_n and the moment about the vertical from tilt and spin. The friction law and the motion of the
+centre of mass in its circle decide tilt and slip.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stylobate.theory.arguments import BoolArray, FloatArray
+from stylobate.theory.rigid_body import Numbers, RigidBody
+from stylobate.theory.slipping_pairs import common_zeros
+from stylobate.theory.slipping_rolling_rates import EASED, EXPONENT, SLOWED, TWISTING, Frictions
+from stylobate.theory.zeros import Rows, zeros
+
+
+@dataclass(frozen=True, slots=True)
+class Forced:
+    """Columns that roll and slip on bases that move in circles: arrays of one length.
+
+    Parameters
+    ----------
+    theta, a0
+        Frequency θ and acceleration amplitude of the base [g].
+    spin
+        w3 [ω0] where nothing decides it.
+    friction
+        What resists.
+    body
+        The columns.
+    """
+
+    theta: FloatArray
+    a0: FloatArray
+    spin: FloatArray
+    friction: Frictions
+    body: RigidBody
+
+    def __getitem__(self, rows: Rows) -> "Forced":
+        return Forced(self.theta[rows], self.a0[rows], self.spin[rows], self.friction[rows], self.body[rows])
+
+    @property
+    def undecided(self) -> BoolArray:
+        """Whether nothing decides the spin."""
+        free = (self.friction.eta == 0.0) & (self.friction.zeta == 0.0) & (self.friction.patch == 0.0)
+        return np.asarray(free)
+
+    @property
+    def pivots(self) -> BoolArray:
+        """Whether a patch turns on the base, by a rate that is not known beforehand."""
+        turns = (self.friction.eta > 0.0) & np.isfinite(self.friction.zeta) & (self.friction.patch > 0.0)
+        return np.asarray(turns)
+
+    @property
+    def resistance(self) -> FloatArray:
+        """Moment of a finite spin friction per rate of turn, ζκc²D."""
+        body = self.body
+        return self.friction.zeta * body.kappa * body.c**2 * body.freedom
+
+    def moment(self, tilt: Numbers) -> Numbers:
+        """Moment about the vertical that rolling takes at a tilt."""
+        return np.asarray(self.friction.eta * self.theta * self.body.c * np.sin(tilt) / self.body.height(tilt))
+
+    def turn(self, tilt: FloatArray) -> FloatArray:
+        """ω_z where the patch has no part in it."""
+        s, cosine = np.sin(tilt), np.cos(tilt)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            needed = np.where(self.friction.eta > 0.0, self.moment(tilt) / self.resistance, 0.0)
+        return np.where(self.undecided, self.spin * cosine + self.theta * s**2, -needed)
+
+    def axial_spin(self, tilt: Numbers, turn: Numbers) -> Numbers:
+        """w3, from ω_z = w3 cos A + θ sin²A."""
+        return np.asarray((turn - self.theta * np.sin(tilt) ** 2) / np.cos(tilt))
+
+    def force(self, tilt: Numbers, turn: Numbers) -> tuple[Numbers, Numbers]:
+        """T_d and T_n over m g that keep the tilt and the rolling as they are."""
+        s, cosine, p = np.sin(tilt), np.cos(tilt), self.body.height(tilt)
+        gyration = self.theta * s * (
+            self.body.transverse * self.theta * cosine - self.body.axial * self.axial_spin(tilt, turn)
+        )  # fmt: skip
+        return (self.body.overhang(tilt) + gyration) / p, -self.friction.eta * self.theta * s * cosine / p
+
+    def carried(self, tilt: Numbers, turn: Numbers) -> Numbers:
+        """κθw, over g the acceleration of the centre of mass as it circles without slip."""
+        w = self.body.c * self.axial_spin(tilt, turn) - self.theta * np.sin(tilt)
+        return np.asarray(self.body.kappa * self.theta * w)
+
+
+def solutions(forced: Forced) -> tuple[Rows, FloatArray, FloatArray, FloatArray]:
+    """Return row, tilt, ω_z and speed of slip of all solutions, by rows, then tilt, then speed."""
+    found = [_known_turn(forced), _pivoting(forced)]
+    rows, tilt, turn, speed = (np.concatenate(part) for part in zip(*found, strict=True))
+    order = np.lexsort((speed, tilt, rows))
+    return rows[order], tilt[order], turn[order], speed[order]
+
+
+def _known_turn(forced: Forced) -> tuple[Rows, FloatArray, FloatArray, FloatArray]:
+    """Solutions where ω_z follows from the tilt: one equation for the tilt, and a quadratic one for the slip."""
+    possible = np.flatnonzero(~forced.pivots & ((forced.friction.eta == 0.0) | (forced.friction.zeta > 0.0)))
+
+    def excess(tilt: FloatArray, at: Rows) -> FloatArray:  # |T|² − μ²
+        here = forced[possible[at]]
+        along, across = here.force(tilt, here.turn(tilt))
+        return np.asarray((along - here.friction.mu) * (along + here.friction.mu) + across**2)
+
+    some = forced[possible]
+    at, tilt = zeros(excess, _tilts(some.body.c / (1.0 + some.body.transverse * some.theta**2)))
+    here = some[at]
+    turn = here.turn(tilt)
+    along, across = here.force(tilt, turn)
+    carried = here.carried(tilt, turn)
+    # U = κθ|v|:  U² + 2UκθwT_n/μ = a0² − (T_d − κθw)² − T_n²,  wT_n ≥ 0
+    half = carried * across / here.friction.mu
+    needed = np.hypot(along - carried, across)
+    left = (here.a0 - needed) * (here.a0 + needed)
+    slips = left > 0.0
+    half, left, here = half[slips], left[slips], here[np.flatnonzero(slips)]
+    speed = left / (half + np.sqrt(half**2 + left)) / (here.body.kappa * here.theta)
+    return possible[at[slips]], tilt[slips], turn[slips], speed
+
+
+# Points of the scan over the tilt, its least part of the tilt at which the balance bends, and its end below π/2 [rad].
+_POINTS, _LEAST, _MARGIN = 512, 1e-9, 1e-9
+
+
+def _tilts(scale: FloatArray) -> FloatArray:
+    """Return tilts that are evenly spaced below `scale` and by equal ratios above it."""
+    start, reach = np.arcsinh(_LEAST), np.arcsinh((0.5 * np.pi - _MARGIN) / scale)
+    steps = np.linspace(0.0, 1.0, _POINTS)
+    return np.asarray(scale[:, np.newaxis] * np.sinh(start + (reach[:, np.newaxis] - start) * steps))
+
+
+# The scan of a patch that turns: points of ln |ω_z| and of ln |v|, and their reach below and above their scales.
+_TURNS, _SPEEDS = 120, 120
+_LEAST_TURN, _MOST_TURN, _LEAST_SPEED, _MOST_SPEED = 1e-7, 1e4, 1e-7, 1e2
+
+
+def _pivoting(forced: Forced) -> tuple[Rows, FloatArray, FloatArray, FloatArray]:
+    """Solutions where a patch slips and turns: the moments give the tilt, two equations are left."""
+    possible = np.flatnonzero(forced.pivots)
+    some = forced[possible]
+    across = (some.a0 + some.friction.mu + some.body.c) / (some.body.kappa * some.theta)
+
+    def balance(turn: Numbers, speed: Numbers, at: Rows) -> tuple[Numbers, Numbers]:
+        return _two_balances(some[at], np.exp(turn), np.exp(speed))
+
+    at, turn, speed = common_zeros(
+        balance,
+        np.log(some.theta)[:, np.newaxis] + np.linspace(np.log(_LEAST_TURN), np.log(_MOST_TURN), _TURNS),
+        np.log(across)[:, np.newaxis] + np.linspace(np.log(_LEAST_SPEED), np.log(_MOST_SPEED), _SPEEDS),
+    )
+    turn, speed = np.exp(turn), np.exp(speed)
+    tilt, _ = _pivoted(some[at], turn, speed)
+    return possible[at], np.asarray(tilt, dtype=np.float64), -turn, speed
+
+
+def _pivoted(here: Forced, turn: Numbers, speed: Numbers) -> tuple[Numbers, Numbers]:
+    """Return the tilt at which the moments balance, with ω_z = −`turn`, NaN if there is none, and |T|/N."""
+    pivot = here.friction.patch * turn
+    drag = here.friction.mu * speed / (speed**EXPONENT + (SLOWED * pivot) ** EXPONENT) ** (1.0 / EXPONENT)
+    twist = here.friction.mu * pivot / (pivot**EXPONENT + (EASED * speed) ** EXPONENT) ** (1.0 / EXPONENT)
+    moment = here.resistance * turn + TWISTING * here.friction.patch * twist
+    # M = ηθc tan A/(1 + c tan A)
+    left = here.body.c * (here.friction.eta * here.theta - moment)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        tilt = np.arctan(np.where(left.real > 0.0, moment / left, np.nan))
+    return tilt, drag
+
+
+def _two_balances(here: Forced, turn: Numbers, speed: Numbers) -> tuple[Numbers, Numbers]:
+    """Return what friction lacks of the force across the base, and the base motion of what moves the column."""
+    tilt, drag = _pivoted(here, turn, speed)
+    along, across = here.force(tilt, -turn)
+    fling = here.body.kappa * here.theta * speed / drag  # κθv = −fling T
+    push = along - here.carried(tilt, -turn) - fling * across
+    drive = fling * along + across
+    scale = (here.a0 + here.friction.mu) ** 2
+    return (along**2 + across**2) / drag**2 - 1.0, (push**2 + drive**2 - here.a0**2) / scale

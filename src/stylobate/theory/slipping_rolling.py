@@ -1,0 +1,258 @@
+"""Steady rolling of a rigid column whose contact slips, on a base that moves in a circle."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, finite, not_negative, positive
+from stylobate.theory.finite_tilt import eigenvalues
+from stylobate.theory.rigid_body import Numbers, RigidBody
+from stylobate.theory.slipping_balance import Forced, solutions
+from stylobate.theory.slipping_rolling_rates import STATES, Frictions, rates
+from stylobate.theory.zeros import Rows
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SlippingRolling:
+    """All steady rolling with slip: arrays of the broadcast shape and a last axis for the branches.
+
+    The branches are in the order of rising tilt. The axis is as long as the most of them anywhere, and at least 1; NaN
+    (and False) where there are fewer. The normal force is the weight in all of them.
+
+    Parameters
+    ----------
+    amplitude
+        Tilt angle A [rad], between 0 and π/2.
+    phase
+        Phase ψ by which the contact point leads the base acceleration [rad], in (−π, π].
+    spin
+        Axial angular velocity w3, in units of ω0.
+    slip_along, slip_across
+        Velocity of the contact point of the body on the base, along the lean and across it, in units of hω0.
+    slip_power
+        Power that slip takes, pivoting on a patch included, over m g h ω0; positive.
+    exists
+        Whether there is such a solution.
+    stable
+        Whether all deviations decay; without any friction but that of slip, all but that of the spin, which is
+        arbitrary.
+    eigenvalues
+        Eigenvalues of the Jacobian, complex, along one more axis of length 7 after that of the branches; with infinite
+        `zeta` six, and −∞.
+    """
+
+    amplitude: FloatArray
+    phase: FloatArray
+    spin: FloatArray
+    slip_along: FloatArray
+    slip_across: FloatArray
+    slip_power: FloatArray
+    exists: BoolArray
+    stable: BoolArray
+    eigenvalues: ComplexArray
+
+
+def slipping_rolling(
+    theta: Real,
+    a0: Real,
+    *,
+    mu: Real,
+    c: Real,
+    eta: Real,
+    zeta: Real,
+    patch: Real = 0.0,
+    spin: Real = 0.0,
+    inertia_ratio: Real = 0.75,
+    axial_ratio: Real = 0.5,
+) -> SlippingRolling:
+    """All steady rolling of a rigid column on a base that moves in a circle, at any tilt, while its contact slips.
+
+    Parameters
+    ----------
+    theta
+        Excitation frequency θ, positive.
+    a0
+        Acceleration amplitude of the base [g].
+    mu
+        Coefficient of friction μ of the contact, positive.
+    c
+        Slenderness.
+    eta
+        Viscous friction η, a couple against the rate of tilt.
+    zeta
+        Spin friction ζ, a moment against rotation about the vertical. Infinite, it forbids that. Zero, with friction
+        η, it leaves no steady rolling but on a patch.
+    patch
+        Radius of the contact, in units of the radius of the base, whose friction resists pivoting (Coulomb and
+        Contensou, after Zhuravlev, for a pressure after Hertz); 0 is a point, which does not.
+    spin
+        Axial angular velocity [ω0] where there is no friction but that of the slip of a point and nothing decides it;
+        not used elsewhere.
+    inertia_ratio
+        κ = m h²/J0; ¾ for a slender solid cylinder, as by default.
+    axial_ratio
+        i_a = I_a/(m r²); ½ for a solid cylinder.
+
+    Returns
+    -------
+    SlippingRolling
+        All branches with a tilt below π/2, for the base acceleration a0 (cos θτ, sin θτ).
+
+    Raises
+    ------
+    ParameterError
+        If `theta`, `mu` or a number of the body is not positive, no body has these numbers, `spin` is not finite, or
+        another argument is negative.
+
+    See Also
+    --------
+    full_rolling : the same without slip, with the friction that it needs.
+    rolling_required_friction : that friction for a slender column, in closed form.
+    slipping_rolling_rates : the equations.
+
+    Notes
+    -----
+    The contact bears the weight, and the moments about the centre of mass give its friction, with p = cos A + c sin A
+
+        pT_d = sin A − c cos A + θ sin A ((1 − κ)θ cos A − I_a w3),   pT_n = −ηθ sin A cos A,
+
+    and its moment about the vertical, ηθc sin A/p, as if there were no slip. On a point |T| = μ then is an equation for
+    the tilt alone: **the base acceleration has no part in it**. To leading order in c, without friction η,
+
+        A = (c ± μ)/(1 + (1 − κ)θ²),   T_d = ±μ,
+
+    and the velocity of slip is against T, with U = κθ|v| and w = c w3 − θ sin A
+
+        U² + 2Uκθw T_n/μ + (T_d − κθw)² + T_n² = a0².
+
+    There is one such U > 0, or none: a0 must be more than what rolling at that tilt without slip would need. Without η
+    there is no T_n, the contact point slips along the lean, and the solution with T_d = ±μ exists where its tilt lies
+    between those of the two branches without slip, (c ± a0)/(1 + θ²).
+
+    So where `friction_demand` of rolling without slip passes μ it meets a branch with slip, for weak η in one of two
+    ways.
+
+    * T_d < 0, the contact pulls the column inwards, at high frequency for a0 < κc/(1 − κ): the branch lies at *larger*
+      μ, a saddle, and ends on the lower branch without slip. At the friction demand both vanish. Below it there is no
+      steady rolling near by: the column slips, and those that were followed came down flat on their base.
+    * T_d > 0, pushed outwards, under strong shaking: rolling with slip goes on at smaller μ. It begins unstable, by an
+      oscillation, and is stable from some percent below the friction demand, up to a fifth, in the cases looked at.
+
+    With c = 0.1, η = 0.1 and a0 = 0.065 rolling without slip is stable from θ = 1.40 on, the twist held, and takes a
+    friction of 0.022 at θ = 1.5, 0.047 at 3, 0.057 at 8: μ = 0.05 ends it at θ = 3.58. With ζ = 0.1 it is stable from
+    1.04 on and takes 0.059, 0.076 and 0.081: μ = 0.05 ends it at 1.23. No rolling with slip is stable in either case.
+
+    **Slip isolates.** Where a0 is large against μ and c the column is that of the paper on a base of acceleration μ,
+    but turns about its centre of mass: `steady_rolling` with θ√(1 − κ), μ and η/√(1 − κ) for θ, a0 and η, and with
+    `critical_frequency` of those over √(1 − κ). A solid cylinder rolls stably, with A = (c + μ)/(1 + θ²/4), from about
+    θ = 2θ*(μ) upwards, however hard the base shakes, also where rolling without slip would be unstable. At finite a0
+    slip changes its direction as the column moves, and without η, the twist held, stability begins at θ² = (1 + 2μ/c)/
+    (1 − κ), where A = c/2, for every a0 (found numerically).
+
+    A patch that turns has no threshold of slip. It creeps: slow slip next to the turn leaves it nearly all of its
+    moment, and with it rolling is near that without slip, and stable for ζ = 0 too, as long as μ is neither so large
+    that the patch sticks (`full_rolling` with infinite ζ is what is left) nor below a fold with the branch that slips.
+
+    On a patch two equations in ω_z and |v| are left, solved by a scan and Newton's method. A pair of solutions next to
+    a fold may be missed there, two or three in a thousand columns, and nowhere else.
+
+    Examples
+    --------
+    >>> found = slipping_rolling(3.0, 0.5, mu=0.05, c=0.1, eta=0.1, zeta=float("inf"))
+    >>> print(found.amplitude.round(4), found.slip_along.round(3), found.stable)
+    [0.0154 0.0456] [ 0.216 -0.118] [False  True]
+    """
+    body = RigidBody.checked(c, inertia_ratio, axial_ratio)
+    free = np.asarray(zeta, dtype=np.float64)
+    not_negative("zeta", np.where(np.isposinf(free), 0.0, free))
+    numbers = np.broadcast_arrays(
+        positive("theta", theta),
+        not_negative("a0", a0),
+        positive("mu", mu),
+        not_negative("eta", eta),
+        free,
+        not_negative("patch", patch) * body.c,
+        finite("spin", spin),
+        body.c,
+        body.kappa,
+        body.axial_ratio,
+    )
+    shape = numbers[0].shape
+    theta, a0, mu, eta, free, radius, spin, c, kappa, axial = (number.ravel() for number in numbers)
+    frictions = Frictions(eta=eta, zeta=free, mu=mu, patch=radius)
+    forced = Forced(theta, a0, spin, frictions, RigidBody(c=c, kappa=kappa, axial_ratio=axial))
+    return _described(shape, forced, *solutions(forced))
+
+
+def _described(
+    shape: tuple[int, ...], forced: Forced, rows: Rows, tilt: FloatArray, turn: FloatArray, speed: FloatArray
+) -> SlippingRolling:
+    here, count = forced[rows], len(forced.theta)
+    w3 = here.axial_spin(tilt, turn)
+    t_d, t_n = here.force(tilt, turn)
+    size = np.hypot(t_d, t_n)
+    v_d, v_n = -speed * t_d / size, -speed * t_n / size
+    slid = here.body.kappa * here.theta
+    phase = np.arctan2(slid * v_d - t_n, t_d - here.carried(tilt, turn) + slid * v_n)
+    state = np.stack([np.zeros_like(tilt), here.theta, tilt, phase, w3, v_d, v_n])
+    growth = _eigenvalues(state, here)
+    held = np.isinf(here.friction.zeta)
+    pivoting = np.where(held, 0.0, here.moment(tilt) + np.where(held, 0.0, here.resistance) * turn)
+    exists, place = _placed(rows, count)
+
+    def spread(values: Numbers) -> Numbers:
+        ordered = np.full((*exists.shape, *values.shape[1:]), np.nan, dtype=values.dtype)
+        ordered[rows, place] = values
+        return ordered.reshape(*shape, *ordered.shape[1:])
+
+    stable = np.zeros(exists.shape, dtype=np.bool_)
+    stable[rows, place] = _decays(growth, here.undecided)
+    return SlippingRolling(
+        amplitude=spread(tilt),
+        phase=spread(phase),
+        spin=spread(w3),
+        slip_along=spread(v_d),
+        slip_across=spread(v_n),
+        slip_power=spread(size * speed - pivoting * turn),
+        exists=exists.reshape(*shape, -1),
+        stable=stable.reshape(*shape, -1),
+        eigenvalues=spread(growth),
+    )
+
+
+def _placed(rows: Rows, count: int) -> tuple[BoolArray, Rows]:
+    """Return where among the branches solutions are, and the place of each among those of its row."""
+    many = np.bincount(rows, minlength=count)
+    place = np.arange(len(rows)) - (np.cumsum(many) - many)[rows]
+    exists: BoolArray = np.arange(max(1, int(many.max(initial=0)))) < many[:, np.newaxis]
+    return exists, place
+
+
+def _decays(growth: ComplexArray, undecided: BoolArray) -> BoolArray:
+    """Whether all of the last axis decay, but for the one next to zero where the spin is undecided."""
+    order = np.argsort(np.abs(growth), axis=-1)
+    parts = np.take_along_axis(growth.real, order, axis=-1)
+    parts[undecided, 0] = -1.0
+    return np.asarray(parts.max(axis=-1, initial=-np.inf) < 0.0)
+
+
+_SPIN = 4
+
+
+def _eigenvalues(state: FloatArray, forced: Forced) -> ComplexArray:
+    """Return the seven eigenvalues of each state; six, and −∞ for the spin, where it follows the rolling at once."""
+    out = np.full((state.shape[1], STATES), -np.inf, dtype=np.complex128)
+    held = np.isinf(forced.friction.zeta)
+    if not held.all():
+        free = forced[np.flatnonzero(~held)]
+        out[~held] = eigenvalues(lambda x: rates(x, free.theta, free.a0, free.friction, free.body), state[:, ~held])
+    if held.any():
+        some = forced[np.flatnonzero(held)]
+
+        def without_spin(reduced: Numbers) -> Numbers:
+            spin = -reduced[1] * np.sin(reduced[2]) * np.tan(reduced[2])  # ω·Z = 0
+            whole = np.concatenate([reduced[:_SPIN], spin[np.newaxis], reduced[_SPIN:]])
+            return np.delete(rates(whole, some.theta, some.a0, some.friction, some.body), _SPIN, axis=0)
+
+        out[held, :-1] = eigenvalues(without_spin, np.delete(state[:, held], _SPIN, axis=0))
+    return out

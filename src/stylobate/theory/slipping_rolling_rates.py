@@ -1,0 +1,163 @@
+"""A rigid column whose contact slips, at any tilt, seen from the frame that turns with its lean on a circling base."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from stylobate.errors import ParameterError
+from stylobate.theory.arguments import FloatArray, Real
+from stylobate.theory.rigid_body import Numbers, RigidBody
+
+STATES = 7
+
+# Friction on a patch (Coulomb–Contensou) after Zhuravlev: exponent p, and numbers of a pressure after Hertz.
+EXPONENT, SLOWED, TWISTING, EASED = 3, 8.0 / (3.0 * np.pi), 3.0 * np.pi / 16.0, 15.0 * np.pi / 16.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Frictions:
+    """What resists the motion, arrays of one shape: η, ζ, μ and the radius ε of the contact over h."""
+
+    eta: FloatArray
+    zeta: FloatArray
+    mu: FloatArray
+    patch: FloatArray
+
+    def __getitem__(self, cells: Any) -> "Frictions":
+        return Frictions(eta=self.eta[cells], zeta=self.zeta[cells], mu=self.mu[cells], patch=self.patch[cells])
+
+
+def slipping_rolling_rates(
+    state: Real,
+    theta: Real,
+    a0: Real,
+    *,
+    mu: Real,
+    c: Real,
+    eta: Real,
+    zeta: Real,
+    patch: Real = 0.0,
+    inertia_ratio: Real = 0.75,
+    axial_ratio: Real = 0.5,
+) -> FloatArray:
+    """Right-hand side of a column that slips on a circularly moving base, in the frame of the motion.
+
+    Parameters
+    ----------
+    state
+        Tilt rate θ̇, rolling rate ω = β̇, tilt angle A > 0 [rad], phase ψ = β − θτ, axial angular velocity σ [ω0], and
+        the slip of the contact point along and across the lean, v_d and v_n [hω0], along the first axis: shape
+        (7, ...).
+    theta
+        Excitation frequency θ.
+    a0
+        Acceleration amplitude of the base [g].
+    mu
+        Coefficient of friction μ of the contact.
+    c
+        Slenderness.
+    eta
+        Viscous friction η, a couple against the rate of tilt.
+    zeta
+        Spin friction ζ, a moment against rotation about the vertical. Infinite, it forbids that; the state must then
+        have σ cos A + ω sin²A = 0.
+    patch
+        Radius of the contact, in units of the radius of the base, for pivoting friction; 0 is a point.
+    inertia_ratio
+        κ = m h²/J0; ¾ for a slender solid cylinder, as by default.
+    axial_ratio
+        i_a = I_a/(m r²); ½ for a solid cylinder.
+
+    Returns
+    -------
+    numpy.ndarray
+        Rates of the state in the same order, shape (7, ...). Nothing is checked but the length of the first axis. Not
+        defined at A = 0, nor without slip.
+
+    Raises
+    ------
+    ParameterError
+        If the first axis of `state` does not have seven entries.
+
+    See Also
+    --------
+    full_rolling_rates : the same without slip.
+
+    Notes
+    -----
+    Over J0, with s = sin A, p = cos A + cs, z' = c cos A − s, w1 = −ωs, T = −μN v/|v| over m g and G2 = I_t ω²s cos A −
+    I_aωsσ − ηθ̇:
+
+        N = [1 + κ(z'G2/I_t − pθ̇²)]/[1 + (κ/I_t) z'(z' + pT_d/N)]
+        I_t θ̈ = G2 − N z' − p T_d,   ẇ1 = ωθ̇ cos A − (I_a/I_t)θ̇σ + (T_n + M1)/I_t,   σ̇ = (c T_n + M3)/I_a
+
+    M1 = −ηw1 − Ms, M3 = M cos A, M the moment about the vertical: −ζκc²Dω_z of the spin friction, and that of the
+    patch. The centre of mass has the velocity V = (v_d + pθ̇, v_n − cσ − w1) and the acceleration T/κ − a.
+    """
+    state = np.asarray(state, dtype=np.float64)
+    if state.ndim == 0 or len(state) != STATES:
+        message = f"state must have seven entries along its first axis, got the shape {state.shape}"
+        raise ParameterError(message)
+    theta, a0, mu, c, eta, zeta, radius, kappa, axial = (
+        np.asarray(value, dtype=np.float64)
+        for value in (theta, a0, mu, c, eta, zeta, patch, inertia_ratio, axial_ratio)
+    )
+    body = RigidBody(c=c, kappa=kappa, axial_ratio=axial)
+    frictions = Frictions(eta=eta, zeta=zeta, mu=mu, patch=radius * c)
+    return np.asarray(rates(state, theta, a0, frictions, body), dtype=np.float64)
+
+
+def rates(state: Numbers, theta: FloatArray, a0: FloatArray, friction: Frictions, body: RigidBody) -> Numbers:
+    """Return `slipping_rolling_rates` of a real or complex state."""
+    w2, omega, tilt, psi, w3, along, across = state
+    s, cosine, p = np.sin(tilt), np.cos(tilt), body.height(tilt)
+    slope = -body.overhang(tilt)  # z'
+    w1 = -omega * s
+    g2 = body.transverse * omega**2 * s * cosine - body.axial * omega * s * w3 - friction.eta * w2
+    per_d, per_n, per_z = contact(along, across, w3 * cosine - w1 * s, friction)
+    painleve = 1.0 + body.kappa / body.transverse * slope * (slope + p * per_d)
+    normal = (1.0 + body.kappa * (slope * g2 / body.transverse - p * w2**2)) / painleve
+    t_d, t_n = per_d * normal, per_n * normal
+    w2_rate = (g2 - normal * slope - p * t_d) / body.transverse
+
+    def turning(moment: Numbers) -> tuple[Numbers, Numbers]:
+        gyroscopic = omega * w2 * cosine - body.axial / body.transverse * w2 * w3
+        w1_rate = gyroscopic + (t_n - friction.eta * w1 - moment * s) / body.transverse
+        return w1_rate, (body.c * t_n + moment * cosine) / body.axial
+
+    def vertical(moment: Numbers) -> Numbers:  # (ω·Z)˙, linear in the moment
+        w1_rate, w3_rate = turning(moment)
+        return np.asarray(w3_rate * cosine - w1_rate * s - w2 * (w3 * s + w1 * cosine))
+
+    held = np.isinf(friction.zeta)
+    pivoting = np.where(held, 0.0, friction.zeta) * body.kappa * body.c**2 * body.freedom
+    moment = per_z * normal - pivoting * (w3 * cosine - w1 * s)
+    if held.any():
+        without = vertical(np.zeros_like(moment))
+        moment = np.where(held, without / (without - vertical(np.ones_like(moment))), moment)
+    w1_rate, w3_rate = turning(moment)
+    v_d, v_n = along + p * w2, across - body.c * w3 - w1  # of the centre of mass
+    v_d_rate = omega * v_n + (t_d - a0 * np.cos(psi)) / body.kappa
+    v_n_rate = -omega * v_d + (t_n + a0 * np.sin(psi)) / body.kappa
+    return np.stack(
+        np.broadcast_arrays(
+            w2_rate,
+            -(w1_rate + omega * w2 * cosine) / s,
+            w2,
+            omega - theta,
+            w3_rate,
+            v_d_rate - p * w2_rate - slope * w2**2,
+            v_n_rate + body.c * w3_rate + w1_rate,
+        )
+    )
+
+
+def contact(along: Numbers, across: Numbers, turn: Numbers, friction: Frictions) -> tuple[Numbers, Numbers, Numbers]:
+    """Return T_d, T_n and M_z over N, the moment also over h, of a contact that slips and turns at ω_z = `turn`."""
+    speed = np.sqrt(along**2 + across**2)
+    pivot = np.sqrt((friction.patch * turn) ** 2)
+    # T = −μN v/(|v|^p + (8s/3π)^p)^{1/p};  M_z = −(3π/16) μNε (εω_z)/(s^p + (15π|v|/16)^p)^{1/p},  s = ε|ω_z|
+    drag = friction.mu / (speed**EXPONENT + (SLOWED * pivot) ** EXPONENT) ** (1.0 / EXPONENT)
+    twist = friction.mu / (pivot**EXPONENT + (EASED * speed) ** EXPONENT) ** (1.0 / EXPONENT)
+    return -drag * along, -drag * across, -TWISTING * twist * friction.patch**2 * turn
