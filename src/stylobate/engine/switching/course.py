@@ -30,6 +30,10 @@ _LIMIT = -2
 # Kinds of contact in which the column stands on its base: at rest, and sliding.
 _ON_BASE = (0, 1)
 
+# Those in which a contact slips.
+_SLIPS = ("SLIDING", "SLIPPING")
+
+_JAM = "its contact jams: with friction as large as this no motion of a rigid body follows (Painlevé's paradox)"
 _STEP_LIMIT = "its step limit is reached; raise max_steps, shorten the run or loosen rtol"
 
 # So many changes of contact without a step between them are no motion.
@@ -135,6 +139,9 @@ class SwitchingCourse:
                 self._fail(steps, contact, _STEP_LIMIT)
                 return None
             failure = stepper.step()
+            if failure is not None and (number := guard.nearly_broken(margins)) is not None:
+                self._take(steps, contact)
+                return self._reaction(tuple(stepper.solver.y.tolist()), number)
             if failure is not None:
                 self._fail(steps, contact, failure)
                 return None
@@ -158,8 +165,9 @@ class SwitchingCourse:
         def derivative(tau: float, y: Floats) -> Floats:
             return np.array(rates(*y.tolist(), *forcing.at(min(tau, last)), *parameters))
 
-        slips = self._kind(state).name == "SLIPPING"
-        return Stepper(derivative, self._time, np.array(state), stop, self.method, may_be_stiff=slips)
+        slips, first = self._kind(state).name in _SLIPS, self.model.state_names.index("velocity_x")
+        fine = slice(first, first + 2)
+        return Stepper(derivative, self._time, np.array(state), stop, self.method, slips=slips, fine=fine)
 
     def _refreshed(self, y: Floats) -> Floats:
         refreshed = self.model.refreshed
@@ -192,6 +200,9 @@ class SwitchingCourse:
         kind = model.event_of(name, self._contact(state), self._contact(after))
         if kind and number >= 0:
             self._note(kind, time)
+        if self._kind(after).name == "JAMMED":
+            self.ended, self.failure = Reason.FAILED, _JAM
+            return None
         if elapsed > 0.0 and time + elapsed < self.stop:
             self._bridge(state, after, elapsed)
         return tuple(after)

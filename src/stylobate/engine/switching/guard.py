@@ -11,6 +11,9 @@ from stylobate.models import Model
 # Parts of each step at whose ends the margins are looked at.
 _PARTS = 4
 
+# A margin below this is all but broken.
+_NEXT_TO_NOUGHT = 1e-8
+
 
 @dataclass(frozen=True, slots=True)
 class Guard:
@@ -28,6 +31,11 @@ class Guard:
     def broken(self, margins: tuple[float, ...]) -> int | None:
         """Return the first margin that is below nought, but for the last, which must have come from above."""
         return next((number for number, margin in enumerate(margins[:-1]) if margin < 0.0), None)
+
+    def nearly_broken(self, margins: tuple[float, ...]) -> int | None:
+        """Return the margin next to whose end no step can be made, as where slip is all but gone, if there is one."""
+        least = min(range(len(margins) - 1), key=margins.__getitem__)
+        return least if margins[least] < _NEXT_TO_NOUGHT else None
 
     def first_event(
         self, start: float, end: float, dense: Callable[[float], Floats], before: tuple[float, ...]

@@ -22,6 +22,13 @@ _NEAR_BOUNDARY, _STIFF_STEPS = 3.0, 20
 _EASY = 1.0
 
 
+# Part of its size by which a state is changed to see how the rates change.
+_DIFFERENCE = 1e-7
+
+# The absolute tolerance of a slip, whose direction matters as it fades, is this part of the usual one.
+_FINER = 1e-3
+
+
 class Stepper:
     """Steps from a state towards a stop, by the method that suits them.
 
@@ -33,8 +40,10 @@ class Stepper:
         Where it begins, and how far it may go.
     method
         Tolerances.
-    may_be_stiff
-        Whether to look for stiffness at all.
+    slips
+        Whether a contact slips: this may be stiff, and a slip that fades is told with a finer tolerance.
+    fine
+        Which states are the velocity of slip.
     """
 
     def __init__(
@@ -45,10 +54,15 @@ class Stepper:
         stop: float,
         method: Method,
         *,
-        may_be_stiff: bool,
+        slips: bool,
+        fine: slice,
     ) -> None:
         self._derivative, self._stop, self._method = derivative, stop, method
-        self._may_be_stiff, self._near = may_be_stiff, 0
+        self._may_be_stiff, self._near = slips, 0
+        self._fine = fine
+        self._atol: Any = np.full(state.size, method.atol)
+        if slips:
+            self._atol[fine] *= _FINER
         self.solver: Any = self._explicit(start, state)
 
     @property
@@ -68,11 +82,12 @@ class Stepper:
         return None if failure is None else str(failure)
 
     def _look(self, solver: Any) -> None:
-        """Count the steps in turn that were cut by stability; of an implicit method, as long as they would be."""
+        """Count the steps in turn that were cut by stability; of an implicit method, down those that would not be."""
         if isinstance(solver, DOP853):
             self._near = self._near + 1 if _boundary(solver) > _NEAR_BOUNDARY else 0
-        elif _largest_rate(solver.J) * solver.step_size < _EASY:
-            self._near = 0
+        else:
+            easy = _largest_rate(solver.J) * solver.step_size < _EASY
+            self._near = self._near - 1 if easy else _STIFF_STEPS
 
     def _explicit(self, time: float, state: Floats) -> DOP853:
         method = self._method
@@ -83,7 +98,7 @@ class Stepper:
             self._stop,
             max_step=method.max_step,
             rtol=method.rtol,
-            atol=method.atol,
+            atol=self._atol,
         )
 
     def _implicit(self, time: float, state: Floats) -> Radau:
@@ -95,8 +110,20 @@ class Stepper:
             self._stop,
             max_step=method.max_step,
             rtol=method.rtol,
-            atol=method.atol,
+            atol=self._atol,
+            jac=self._jacobian,
         )
+
+    def _jacobian(self, time: float, state: Floats) -> Floats:
+        """Return the derivatives of the rates by differences, which are small against a slip."""
+        steps = np.full(state.size, _DIFFERENCE)
+        steps[self._fine] = _DIFFERENCE * max(float(np.hypot(*state[self._fine])), self._atol[self._fine][0])
+        rates, jacobian = self._derivative(time, state), np.empty((state.size, state.size))
+        for column, step in enumerate(steps):
+            moved = state.copy()
+            moved[column] += step
+            jacobian[:, column] = (self._derivative(time, moved) - rates) / (moved[column] - state[column])
+        return jacobian
 
 
 def _boundary(solver: Any) -> float:
@@ -109,5 +136,4 @@ def _boundary(solver: Any) -> float:
 
 
 def _largest_rate(jacobian: Floats) -> float:
-    rates = np.abs(np.linalg.eigvals(jacobian))
-    return float(rates.max()) if np.isfinite(rates).all() else math.inf
+    return float(np.abs(np.linalg.eigvals(jacobian)).max()) if np.isfinite(jacobian).all() else math.inf

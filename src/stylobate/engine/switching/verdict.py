@@ -95,7 +95,7 @@ class Account:
         counts = Counter(event.kind for event in course.events)
         return cls(
             {
-                **{f"time_{kind.name.lower()}": time for kind, time in times.items()},
+                **{f"time_{kind.name.lower()}": times[kind] for kind in Contact if kind is not Contact.JAMMED},
                 "residual_displacement": math.hypot(dx, dy),
                 "residual_displacement_x": float(dx),
                 "residual_displacement_y": float(dy),

@@ -276,7 +276,12 @@ def margins(
     opening = climb - (c * cos - sine) * (radial / tilt)
     support = max(gap, opening) + CLEAR if flies else 1.0 if rim > 0.0 else c * weight - drag
     energy = 0.5 * (1.0 + kappa * c * c) * speed * speed + c * weight * tilt - rest * c * c
-    rests = energy if rim > 0.0 and c * weight > max(pushed, drag) else 1.0
+    # Set down, its base would slide with the kinetic friction, or be taken along; one that would trip has to stop
+    trips = kinetic > c
+    bx, by = sx + c * w3 * y / tilt, sy - c * w3 * x / tilt
+    left = 0.5 * kappa * (bx * bx + by * by + axial * c * c * w3 * w3) if trips else 0.0
+    burden = kinetic * weight if not trips and (slips or pushed > static * weight) else pushed
+    rests = energy + left if rim > 0.0 and c * weight > burden else 1.0
     # The path towards the upright, to its closest point or as far as it is followed
     close = _CLOSE * min(c, speed)
     far = tilt > passage and tilt > close

@@ -204,8 +204,8 @@ class Sliding(Model):
 
     def event_of(self, margin: str, before: int, after: int) -> str:
         """Return what an event is called that ended a kind of contact, by its margin, and led to another one."""
-        if margin in ("jam", "stroke"):
-            return margin
+        if margin in ("jam", "stroke") or after == Contact.JAMMED:
+            return "stroke" if margin == "stroke" and after != Contact.JAMMED else "jam"
         return _EVENTS.get((Contact(before), Contact(after)), "")
 
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:

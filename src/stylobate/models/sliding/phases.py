@@ -17,6 +17,8 @@ class Contact(IntEnum):
     """That point slips, or the patch turns."""
     FLYING = 4
     """Nothing touches."""
+    JAMMED = 5
+    """It can neither stick nor slip nor open: Painlevé's paradox, which ends a run."""
 
 
 class State(NamedTuple):

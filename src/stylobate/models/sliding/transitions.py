@@ -6,12 +6,13 @@ from stylobate.models.finite_tilt import cosine, sine_over_angle
 from stylobate.models.free_twist import departing
 from stylobate.models.model import Push
 from stylobate.models.sliding.balance import balance
-from stylobate.models.sliding.equations import JAM, STILL, rates
+from stylobate.models.sliding.equations import JAM, STILL, margins, rates
 from stylobate.models.sliding.friction import TWISTING_BASE, sense_of
 from stylobate.models.sliding.impacts import base_impulse, impulse, rebound, responses
 from stylobate.models.sliding.phases import Numbers, State
 
 _RESTING, _SLIDING, _ROLLING, _SLIPPING, _FLYING = 0.0, 1.0, 2.0, 3.0, 4.0
+_JAMMED = 5.0
 _LIFT, _FRICTION, _SUPPORT, _REST, _JAM, _STROKE = 0, 1, 2, 3, 4, 6
 
 # Slip begins with so much [STILL], too little to be seen and enough to have a direction.
@@ -20,14 +21,15 @@ _KICK = 10.0
 # A base that trips while it slides begins to tilt by so much [c].
 _TRIPPED = 1e-9
 
-# Loads that set a contact going by less than this have no direction of their own [h ω0²].
-_FAINT = 1e-6
+# The first of a slip takes no longer than the contact point takes for this part of the way round the rim [rad].
+_PART_OF_A_TURN = 0.02
 
 # The direction in which a contact gives way is found in so many steps at most, by differences over a small turn, until
 # it is the same.
 _MOST_TURNS, _SMALL_TURN, _SAME = 12, 1e-7, 1e-13
 
 Triple = tuple[float, float, float]
+Margins = tuple[float, float, float, float, float, float, float]
 Forces = tuple[
     float, float, float, float, float, float, float, float, float, float, float, float, float, float, float, float
 ]
@@ -56,7 +58,7 @@ def reaction(
     if rim and event == _STROKE:
         return stroke(state, now, later, ahead, rest, numbers)
     if rim and event == _REST:
-        return settle_flat(upright(state, numbers), now, later, ahead, numbers)
+        return set_down(state, now, later, ahead, numbers)
     if rim and event == _JAM:
         return settle_rim(jammed(state, numbers), now, later, ahead, numbers)
     if rim and event == _LIFT:
@@ -99,6 +101,17 @@ def rates_of(state: State, now: Triple, n: Numbers) -> Forces:
         state.footprint_y, state.velocity_x, state.velocity_y, state.rise, state.rise_rate, state.heading_x,
         state.heading_y, state.heading_z, state.contact, now[0], now[1], now[2], n.c, n.eta, n.zeta, n.kappa, n.axial,
         n.resistance, n.kinetic, n.static, n.patch, n.restitution, n.passage_tilt, n.slope_x, n.slope_y, n.relief,
+    )  # fmt: skip
+
+
+def margins_of(state: State, now: Triple, rest: float, n: Numbers) -> Margins:
+    """Return the margins of a state."""
+    return margins(
+        state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y, state.spin, state.twist, state.footprint_x,
+        state.footprint_y, state.velocity_x, state.velocity_y, state.rise, state.rise_rate, state.heading_x,
+        state.heading_y, state.heading_z, state.contact, now[0], now[1], now[2], rest, n.c, n.eta, n.zeta, n.kappa,
+        n.axial, n.resistance, n.kinetic, n.static, n.patch, n.restitution, n.passage_tilt, n.slope_x, n.slope_y,
+        n.relief,
     )  # fmt: skip
 
 
@@ -191,8 +204,7 @@ def headed_along_slip(state: State, n: Numbers) -> State:
 
 def settle_rim(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
     """Return how a column goes on whose rim touches the plane and neither closes in nor opens."""
-    slip_z = n.patch * n.c * yaw(state)
-    if math.sqrt(state.velocity_x**2 + state.velocity_y**2 + slip_z**2) > _KICK * STILL:
+    if slips(state.velocity_x, state.velocity_y, n.patch * n.c * yaw(state)):
         slipping = headed_along_slip(placed(state, lean_with_rate(state), state.spin, _SLIPPING), n)
         found = forces(slipping, now, n)
         if found[11] >= JAM:
@@ -206,7 +218,7 @@ def settle_rim(state: State, now: Triple, later: Triple, ahead: float, n: Number
 
 
 def leaving(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
-    """Return how a column goes on whose rim the plane would have to pull: in the air, or slipping where that presses."""
+    """Return how a column goes on whose rim the plane would have to pull: in the air, or slipping if that presses."""
     if state.contact == _SLIPPING or opens(state, now, n):
         return 0.0, lifted(state, n)
     return giving_way(state, now, later, ahead, n)
@@ -220,6 +232,11 @@ def opens(state: State, now: Triple, n: Numbers) -> bool:
     around = (state.tilt_rate_y * ux - state.tilt_rate_x * uy) / math.hypot(state.tilt_x, state.tilt_y)
     falling = free[2] * ux + free[3] * uy + around * around * math.hypot(state.tilt_x, state.tilt_y)
     return free[11] - (n.c * cos - sine) * falling + (cos + n.c * sine) * w2 * w2 >= 0.0
+
+
+def slips(vx: float, vy: float, turning: float) -> bool:
+    """Return whether a slip is one, and does not count as none."""
+    return math.sqrt(vx * vx + vy * vy + turning * turning) > _KICK * STILL
 
 
 def lean_with_rate(state: State) -> tuple[float, float, float, float]:
@@ -244,6 +261,12 @@ def giving_way(state: State, now: Triple, later: Triple, ahead: float, n: Number
     as the integral of the difference D of their rates, (D(0) + D(δ)) δ/2, with an error of the third power of δ. A slip
     that began from nothing would take its direction from the load within no time: it has grown when it is integrated.
     """
+    if forces(slipping_along(state, load_direction(state, now, n), n), now, n)[11] < JAM:
+        return 0.0, (lifted(state, n) if opens(state, now, n) else headed(state, (0.0, 0.0, 0.0), _JAMMED))
+    # The time in which the contact point goes a small part of the way round the rim
+    quick = _PART_OF_A_TURN * math.hypot(state.tilt_x, state.tilt_y) / pace(state)
+    if quick < ahead:
+        later, ahead = sooner(now, later, quick / ahead), quick
     rolled = rolled_on(state, now, later, ahead, n)
     found = forces(rolled, later, n)
     if found[5] > 0.0 and found[10] > 0.0:
@@ -259,6 +282,20 @@ def giving_way(state: State, now: Triple, later: Triple, ahead: float, n: Number
     begun = headed_along_slip(headed(begun, (last.heading_x, last.heading_y, last.heading_z), _SLIPPING), n)
     found = forces(begun, later, n)
     return ahead, begun if found[5] > 0.0 else lifted(begun, n)
+
+
+def pace(state: State) -> float:
+    """Return |α̇|, and not nought."""
+    return math.hypot(state.tilt_rate_x, state.tilt_rate_y) + 1e-300
+
+
+def sooner(now: Triple, later: Triple, share: float) -> Triple:
+    """Return what lies a share of the way between two accelerations."""
+    return (
+        now[0] + share * (later[0] - now[0]),
+        now[1] + share * (later[1] - now[1]),
+        now[2] + share * (later[2] - now[2]),
+    )
 
 
 def slipping_along(state: State, heading: Triple, n: Numbers) -> State:
@@ -280,8 +317,9 @@ def load_direction(state: State, now: Triple, n: Numbers) -> Triple:
     found = forces(state, now, n)
     drag = math.hypot(found[6], found[7])
     along, about = sense_of(drag, found[8], found[5], n.patch * n.c, n.static)
-    px, py = (-found[6] / drag, -found[7] / drag) if drag > 0.0 else (0.0, 0.0)
-    guess = (along * px, along * py, about)
+    if drag == 0.0:
+        return 0.0, 0.0, math.copysign(1.0, about)
+    guess = (-along * found[6] / drag, -along * found[7] / drag, about)
     heading = guess
     for _ in range(_MOST_TURNS):
         one, two = across(heading)
@@ -403,7 +441,7 @@ def stroke(state: State, now: Triple, later: Triple, ahead: float, rest: float, 
     left_d, left_n = vd + dd * pd + dz * pz, vn + nn * pn
     velocity = (left_d * ux - left_n * uy, left_d * uy + left_n * ux)
     after = moving(kicked_upright(begun, (pd, pn, pz), n), velocity, 0.0, 0.0, _SLIPPING)
-    w1, w2 = turning(after)
+    _, w2 = turning(after)
     # A path that leads straight to the upright is followed there, and as long behind it.
     straight = inwards > 0.5 * tilt
     elapsed = 2.0 * inwards / pace if straight else 0.0
@@ -415,9 +453,8 @@ def stroke(state: State, now: Triple, later: Triple, ahead: float, rest: float, 
         return elapsed, flattened(state, (ux, uy), speed, now, later, ahead, n)
     if bounce > 0.0:
         return elapsed, lifted_with(after, bounce * 2.0 * c * speed, n)
-    energy = 0.5 * (1.0 + kappa * c * c) * (w1 * w1 + w2 * w2)
-    if energy < rest * c * c and holds(after, now, n):
-        later_on, flat = settle_flat(upright(after, n), now, later, ahead, n)
+    if rests(after, now, rest, n):
+        later_on, flat = set_down(after, now, later, ahead, n)
         return elapsed + later_on, flat
     later_on, after = settle_rim(after, now, later, ahead, n)
     return elapsed + later_on, after
@@ -451,13 +488,17 @@ def flattened(
     return settle_flat(moving(flat, (vx + kx, vy + ky), 0.0, 0.0, _SLIDING), now, later, ahead, n)[1]
 
 
-def holds(state: State, now: Triple, n: Numbers) -> bool:
-    """Return whether the plane holds a column down that is set on its base, even as that slides."""
+def rests(state: State, now: Triple, rest: float, n: Numbers) -> bool:
+    """Return whether a column on its rim comes to rest there, as the margin "rest" tells."""
+    return margins_of(state, now, rest, n)[_REST] < 0.0
+
+
+def set_down(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
+    """Return how a column goes on that comes to rest on its rim: it stops, or its base slides on where it can."""
     flat = upright(state, n)
-    slides = math.hypot(flat.velocity_x, flat.velocity_y) > _KICK * STILL
-    if slides and n.kinetic > n.c:
-        return False
-    return n.c * (1.0 + now[2] - n.relief) > math.hypot(now[0] + n.slope_x, now[1] + n.slope_y)
+    if n.kinetic > n.c:
+        flat = moving(placed(flat, lean_with_rate(flat), 0.0, _SLIDING), (0.0, 0.0), 0.0, 0.0, _SLIDING)
+    return settle_flat(flat, now, later, ahead, n)
 
 
 # --- on the base
@@ -475,8 +516,7 @@ def settle_flat(state: State, now: Triple, later: Triple, ahead: float, n: Numbe
     weight = 1.0 + now[2] - n.relief
     if weight <= 0.0:
         return 0.0, lifted(state, n)
-    slip = math.sqrt(state.velocity_x**2 + state.velocity_y**2 + (n.c * state.spin) ** 2)
-    if slip > _KICK * STILL:
+    if slips(state.velocity_x, state.velocity_y, n.c * state.spin):
         sliding = headed_along_slip(headed(state, (state.heading_x, state.heading_y, state.heading_z), _SLIDING), n)
         found = forces(sliding, now, n)
         drag = math.hypot(found[6], found[7])
@@ -593,10 +633,8 @@ def land(state: State, now: Triple, later: Triple, ahead: float, rest: float, n:
     struck = touching(kicked(state, (pd, pn, pz), n), vd + dd * pd + dz * pz, vn + nn * pn, ux, uy)
     if bounce > 0.0:
         return 0.0, lifted_with(struck, -bounce * vz, n)
-    energy = 0.5 * (1.0 + n.kappa * n.c**2) * (struck.tilt_rate_x**2 + struck.tilt_rate_y**2)
-    energy += n.c * math.hypot(struck.tilt_x, struck.tilt_y)
-    if energy < rest * n.c**2 and holds(struck, now, n):
-        return settle_flat(upright(struck, n), now, later, ahead, n)
+    if rests(struck, now, rest, n):
+        return set_down(struck, now, later, ahead, n)
     return settle_rim(struck, now, later, ahead, n)
 
 
