@@ -41,8 +41,12 @@ Spin = Annotated[float | None, _option("angular velocity about the axis at the s
 Twist = Annotated[float | None, _option("angle of turn about the axis at the start [rad]", _RUN)]
 Position = Annotated[tuple[float, float] | None, _option("centre of the footprint at the start [m]", _RUN)]
 FrictionCoefficient = Annotated[
-    float | None, _option("of the contact; the run warns where more friction is needed", _RUN)
+    float | None, _option("of the contact: kinetic, of sliding; of others, a run warns where it needs more", _RUN)
 ]
+Velocity = Annotated[
+    tuple[float, float, float] | None, _option("of the lowest point at the start, of sliding [m/s]", _RUN)
+]
+Clearance = Annotated[float | None, _option("its height above the base at the start, of sliding [m]", _RUN)]
 
 Shape = Annotated[str | None, _option("solid, hollow, frustum or dimensionless; told from the others", _COLUMN)]
 Radius = Annotated[float | None, _option("base radius [m]", _COLUMN)]
@@ -55,7 +59,7 @@ Gravity = Annotated[float | None, _option("gravity [m/s²], 9.80665 by default",
 
 Model = Annotated[
     str | None,
-    _option("slender (by default), slender-rolling, wobbling, rolling or planar-rocking", _MODEL),
+    _option("slender (by default), slender-rolling, wobbling, rolling, sliding or planar-rocking", _MODEL),
 ]
 Damping = Annotated[float | None, _option("viscous friction η, dimensionless", _MODEL)]
 SpinFriction = Annotated[float | None, _option("ζ, of a column that may turn: its spin decays at ζω0", _MODEL)]
@@ -66,9 +70,16 @@ PassageTilt = Annotated[
     float | None, _option("tilt below which the upright is passed [rad], 0.01 c by default", _MODEL)
 ]
 
+StaticFriction = Annotated[
+    float | None, _option("static coefficient of sliding, by default --friction-coefficient", _MODEL)
+]
+Patch = Annotated[float | None, _option("radius of the contact of sliding, in radii; 0 is a point", _MODEL)]
+Incline = Annotated[float | None, _option("angle of the plane of sliding to the horizontal [rad]", _MODEL)]
+InclineDirection = Annotated[float | None, _option("azimuth of the way down [rad]", _MODEL)]
+
 Motion = Annotated[
     str | None,
-    _option("rest, circular, straight, elliptic, vertical, stroke or orbit; a file knows more kinds", _MOTION),
+    _option("rest, circular, straight, elliptic, vertical, oblique, stroke or orbit; a file knows more kinds", _MOTION),
 ]
 HarmonicMotion = Annotated[str | None, _option("circular, straight or elliptic; a file knows more kinds", _MOTION)]
 Acceleration = Annotated[float | None, _option("acceleration amplitude [m/s²]", _MOTION)]
@@ -77,6 +88,7 @@ Frequency = Annotated[float | None, _option("frequency of a stroke [Hz]", _MOTIO
 Amplitude = Annotated[tuple[float, float] | None, _option("two amplitudes of an ellipse [m/s²]", _MOTION)]
 Phase = Annotated[float | None, _option("phase of the second axis of an ellipse [rad]", _MOTION)]
 Direction = Annotated[float | None, _option("direction of a straight motion [rad]", _MOTION)]
+Angle = Annotated[float | None, _option("angle at which an oblique motion rises [rad]", _MOTION)]
 Sense = Annotated[int | None, _option("1 anticlockwise, -1 clockwise", _MOTION)]
 Stroke = Annotated[float | None, _option("stroke from peak to peak [m]", _MOTION)]
 Diameter = Annotated[float | None, _option("diameter of an orbit [m]", _MOTION)]
@@ -112,6 +124,8 @@ RUN_NAMES = (
     "spin",
     "twist",
     "position",
+    "velocity",
+    "clearance",
     "friction_coefficient",
 )
 _COLUMN_NAMES = ("shape", "radius", "height", "density", "inner_radius", "top_radius", "slenderness", "gravity")
@@ -122,6 +136,10 @@ _MODEL_NAMES = (
     "restitution",
     "constraint",
     "passage_tilt",
+    "static_friction_coefficient",
+    "patch",
+    "incline",
+    "incline_direction",
 )
 _MOTION_NAMES = (
     "acceleration",
@@ -130,6 +148,7 @@ _MOTION_NAMES = (
     "amplitude",
     "phase",
     "direction",
+    "angle",
     "sense",
     "stroke",
     "diameter",
@@ -158,10 +177,17 @@ def overlay(described: Mapping[str, Any], given: Mapping[str, Any], run_names: t
     motion = {**({"kind": given["motion"]} if given.get("motion") else {}), **_pick(given, _MOTION_NAMES)}
     _section(values, "motion", motion, tag="kind")
     chosen = _pick(given, run_names)
+    if _slides(values.get("model")) and "friction_coefficient" in chosen:
+        values["model"] = {**values["model"], "friction_coefficient": chosen.pop("friction_coefficient")}
     for name, other in (("duration", "periods"), ("periods", "duration")):
         if name in chosen and other not in chosen:
             values.pop(other, None)  # how long is said in one way
     return values | chosen
+
+
+def _slides(model: Any) -> bool:
+    """Return whether the described model has a coefficient of friction of its own."""
+    return isinstance(model, Mapping) and model.get("kind") == "sliding"
 
 
 def _column(described: Any, options: dict[str, Any]) -> dict[str, Any]:

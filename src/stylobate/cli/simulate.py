@@ -26,6 +26,8 @@ def simulate(
     spin: opt.Spin = None,
     twist: opt.Twist = None,
     position: opt.Position = None,
+    velocity: opt.Velocity = None,
+    clearance: opt.Clearance = None,
     duration: opt.Duration = None,
     friction_coefficient: opt.FrictionCoefficient = None,
     rtol: opt.Rtol = None,
@@ -48,6 +50,10 @@ def simulate(
     restitution: opt.Restitution = None,
     constraint: opt.Constraint = None,
     passage_tilt: opt.PassageTilt = None,
+    static_friction_coefficient: opt.StaticFriction = None,
+    patch: opt.Patch = None,
+    incline: opt.Incline = None,
+    incline_direction: opt.InclineDirection = None,
     motion: opt.Motion = None,
     acceleration: opt.Acceleration = None,
     angular_frequency: opt.AngularFrequency = None,
@@ -55,6 +61,7 @@ def simulate(
     amplitude: opt.Amplitude = None,
     phase: opt.Phase = None,
     direction: opt.Direction = None,
+    angle: opt.Angle = None,
     sense: opt.Sense = None,
     stroke: opt.Stroke = None,
     diameter: opt.Diameter = None,
@@ -130,7 +137,24 @@ def _rows(run: "Response") -> list[tuple[str, str]]:
     ]
     if "mean_rolling_rate" in measures:
         rows.insert(6, ("mean rolling rate", f"{measures['mean_rolling_rate']:.6g} rad/s"))
-    return [*rows, *_demand_rows(run), *(("warning", warning) for warning in run.warnings)]
+    return [*rows, *_contact_rows(run), *_demand_rows(run), *(("warning", warning) for warning in run.warnings)]
+
+
+def _contact_rows(run: "Response") -> list[tuple[str, str]]:
+    """Return how the column was on the plane and where it came to, of a model that slides."""
+    measures = run.measures
+    if "residual_displacement" not in measures:
+        return []
+    kinds = ("resting", "sliding", "rolling", "slipping", "flying")
+    times = ", ".join(f"{kind} {measures[f'time_{kind}']:.4g} s" for kind in kinds if measures[f"time_{kind}"] > 0.0)
+    moved = ", ".join(f"{measures[f'residual_displacement_{axis}']:.4g} m along {axis}" for axis in "xy")
+    return [
+        ("time", times),
+        ("moved by", moved),
+        ("twisted by", f"{measures['residual_twist']:.4g} rad"),
+        ("slipped", f"{measures['slip_distance']:.4g} m in all"),
+        ("impacts", f"{measures['impacts']:.0f}"),
+    ]
 
 
 def _demand_rows(run: "Response") -> list[tuple[str, str]]:

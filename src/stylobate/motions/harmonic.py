@@ -144,6 +144,29 @@ class Harmonic(BaseMotion):
         )
 
     @classmethod
+    def oblique(
+        cls,
+        *,
+        acceleration: float,
+        angular_frequency: float,
+        angle: float,
+        direction: float = 0.0,
+        start_phase: float = 0.0,
+        ramp: float = 0.0,
+    ) -> Self:
+        """Return a motion along a line that rises at `angle` [rad] towards `direction` [rad], as of a conveyor."""
+        acceleration = require_finite("acceleration", acceleration, "m/s²")
+        angle = require_finite("angle", angle, "rad")
+        direction = require_finite("direction", direction, "rad")
+        level = acceleration * math.cos(angle)
+        return cls(
+            amplitude=(level * math.cos(direction), level * math.sin(direction), acceleration * math.sin(angle)),
+            angular_frequency=angular_frequency,
+            start_phase=start_phase,
+            ramp=ramp,
+        )
+
+    @classmethod
     def displacement_amplitude(
         cls,
         *,

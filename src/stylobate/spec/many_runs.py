@@ -75,7 +75,7 @@ class ManyRuns(Description):
         return [f"duration [s], periods or a duration that varies is needed, one of them; got {got}"]
 
 
-_OF_A_SINGLE_RUN = ("samples", "twist", "position", "friction_coefficient")
+_OF_A_SINGLE_RUN = ("samples", "twist", "position", "friction_coefficient", "velocity", "clearance")
 """What changes what is told of a run, and no outcome."""
 
 _SHARED = (
@@ -97,6 +97,7 @@ def with_numbers_that_vary(values: Mapping[str, Any], names: tuple[str, ...]) ->
 _NEEDED = {
     "circular": ("acceleration", "angular_frequency"),
     "straight": ("acceleration", "angular_frequency"),
+    "oblique": ("acceleration", "angular_frequency"),
     "elliptic": ("angular_frequency",),
     "harmonic": ("angular_frequency",),
 }

@@ -66,6 +66,16 @@ class VerticalMotion(_HarmonicMotion):
     angular_frequency: float
 
 
+class ObliqueMotion(_HarmonicMotion):
+    """Along a line that rises at `angle` towards `direction` [rad]; acceleration in m/s²."""
+
+    kind: Literal["oblique"]
+    acceleration: float
+    angular_frequency: float
+    angle: float
+    direction: float = 0.0
+
+
 class DisplacementMotion(_HarmonicMotion):
     """By the displacement amplitudes along x, y and z [m]."""
 
@@ -160,6 +170,7 @@ MotionDescription = Annotated[
     | StraightMotion
     | EllipticMotion
     | VerticalMotion
+    | ObliqueMotion
     | DisplacementMotion
     | StrokeMotion
     | OrbitMotion

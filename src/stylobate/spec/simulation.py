@@ -49,6 +49,8 @@ class SimulationDescription(Description):
     spin: float = 0.0
     twist: float = 0.0
     position: tuple[float, float] = (0.0, 0.0)
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    clearance: float = 0.0
     duration: float
     friction_coefficient: float | None = None
     rtol: float = 1e-8
@@ -133,6 +135,8 @@ _RUN_CHECKS: Mapping[str, Callable[[str, Any], object]] = {
     "spin": lambda name, value: require_finite(name, value, "rad/s"),
     "twist": lambda name, value: require_finite(name, value, "rad"),
     "position": lambda name, value: require_vector(name, value, 2, "m"),
+    "velocity": lambda name, value: require_vector(name, value, 3, "m/s"),
+    "clearance": lambda name, value: require_not_negative(name, value, "m"),
     "max_steps": lambda name, value: require_whole(name, value, least=1),
     "samples": lambda name, value: require_whole(name, value, least=2),
     "strobes": lambda name, value: require_whole(name, value, least=2),

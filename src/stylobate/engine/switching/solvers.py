@@ -76,7 +76,8 @@ class Stepper:
             self.solver = self._implicit(self.solver.t, self.solver.y)
         elif self._near == 0 and isinstance(self.solver, Radau):
             self.solver = self._explicit(self.solver.t, self.solver.y)
-        failure = self.solver.step()
+        with np.errstate(over="ignore", invalid="ignore"):  # trial steps across the end of a slip are made again
+            failure = self.solver.step()
         if self._may_be_stiff and failure is None:
             self._look(self.solver)
         return None if failure is None else str(failure)
