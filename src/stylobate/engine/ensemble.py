@@ -98,6 +98,8 @@ def simulate_ensemble(
         `sampled_tilt` and `sampled_tilt_rate`; NaN before the run began and after it ended. Of models with a spin also
         `end_spin`. With `demands` the `largest_friction_demand`, `largest_pivoting_demand` and `least_normal_force`
         (over the weight) while the column moves, told within each step by parabolas through values at its quarters.
+        Of models that change between kinds of contact also `end_contact`, `end_footprint`, `end_twist`, how long each
+        kind lasted (`time_slipping` and so on), and the numbers of `impacts` and `slips`.
 
     Raises
     ------
@@ -136,6 +138,10 @@ def simulate_ensemble(
     )
     if demands and model.contact is None:
         message = f"model {model.name} does not tell what its contact bears: give it `contact`, or leave out demands"
+        raise UnsupportedError(message)
+    if model.switches and (demands or options.method != "dop853"):
+        asked = "demands" if demands else f"method {options.method!r}"
+        message = f"model {model.name} changes between kinds of contact: leave out {asked}"
         raise UnsupportedError(message)
     threads = usual_threads() if threads is None else require_whole("threads", threads, least=1)
     runs = broadcast(tilt, tilt_rate, spin, duration, changes)

@@ -16,5 +16,7 @@ HOP_FROM = 1e-6
 """Nearer to the upright than this [units of the smaller of c and the speed] …"""
 HOP_OFFSET = 1e-9
 """… and with the path leading past it at less than this [units of c], it is passed in closed form."""
+SLIP_SHARE = 1e-3
+"""While a contact slips the absolute tolerance of the slip is this part of the usual one."""
 HOPS_APART = 5.0
 """How small a part of the force on a column near rest may change during one hop: one over this."""

@@ -129,6 +129,9 @@ class Model(ABC):
     refreshed: ClassVar[Callable[..., tuple[float, ...]] | None] = None
     """(state…, parameters…) → the state with what it keeps from step to step brought up to date, after each step."""
 
+    slip_states: ClassVar[tuple[int, ...]] = ()
+    """Which states are the velocity of slip, which is told more finely while a contact slips: its direction matters."""
+
     contact_kinds: ClassVar[type[IntEnum] | None] = None
     """The kinds of contact, of which the last state is one; the first is standing at rest, RESTING."""
 

@@ -13,6 +13,7 @@ from stylobate.engine.ensembles.batch import Plan
 from stylobate.engine.ensembles.motion_columns import MotionPlan
 from stylobate.engine.ensembles.options import Options
 from stylobate.engine.lanes.kernels import kernel_of
+from stylobate.models.sliding import Sliding
 
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=3.0)
 OPTIONS = Options.checked(
@@ -114,6 +115,17 @@ def test_steps_that_follow_loads_work_on_all_lanes_at_once(model, planar):
     kernel, buf = kernel_for("harmonic", "dop853", planar, model, demands=True)
     kernel.step(buf)
     counts, _ = arithmetic_of(kernel.step)
+    assert counts["pd"] > 100
+    assert counts["sd"] == 0, counts
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "arguments"), [("evaluate", (0.5,)), ("guard", (0.5,)), ("step", ())])
+def test_equations_and_margins_of_changing_contact_work_on_all_lanes_at_once(name, arguments):
+    kernel, buf = kernel_for("harmonic", "dop853", False, Sliding)
+    function = getattr(kernel, name)
+    function(buf, *arguments)
+    counts, _ = arithmetic_of(function)
     assert counts["pd"] > 100
     assert counts["sd"] == 0, counts
 

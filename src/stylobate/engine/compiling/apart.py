@@ -32,9 +32,17 @@ class _Portable:
     called: Mapping[str, "_Portable"]
 
     @classmethod
-    def of(cls, function: Callable[..., Any]) -> "_Portable":
-        """Return what `function` says."""
-        plain = plain_function(function)
+    def of(
+        cls, function: Callable[..., Any], known: dict[types.FunctionType, "_Portable"] | None = None
+    ) -> "_Portable":
+        """Return what `function` says, and with it the functions that it calls, each of them once."""
+        plain, known = plain_function(function), {} if known is None else known
+        if plain not in known:
+            known[plain] = cls._said(plain, known)
+        return known[plain]
+
+    @classmethod
+    def _said(cls, plain: types.FunctionType, known: dict[types.FunctionType, "_Portable"]) -> "_Portable":
         called = dict(called_functions(plain))
         replaced = {name.split(".")[0] for name in called}
         used = {name: plain.__globals__[name] for name in plain.__code__.co_names if name in plain.__globals__}
@@ -48,15 +56,21 @@ class _Portable:
                 and name not in called
             },
             {name: value.__name__ for name, value in used.items() if isinstance(value, types.ModuleType)},
-            {name: cls.of(value) for name, value in called.items()},
+            {name: cls.of(value, known) for name, value in called.items()},
         )
 
-    def function(self) -> types.FunctionType:
+    def function(self, known: dict[int, types.FunctionType] | None = None) -> types.FunctionType:
         """Return the function."""
+        known = {} if known is None else known
+        if id(self) not in known:
+            known[id(self)] = self._made(known)
+        return known[id(self)]
+
+    def _made(self, known: dict[int, types.FunctionType]) -> types.FunctionType:
         names: dict[str, Any] = {"__name__": "stylobate_model", "__builtins__": __builtins__, **self.values}
         names |= {name: importlib.import_module(module) for name, module in self.modules.items()}
         code = marshal.loads(self.code)  # noqa: S302  our own pipe
-        called = {name: portable.function() for name, portable in self.called.items()}
+        called = {name: portable.function(known) for name, portable in self.called.items()}
         return types.FunctionType(code, with_functions(names, called, code), self.name)
 
 

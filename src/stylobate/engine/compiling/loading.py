@@ -10,7 +10,7 @@ from typing import Any
 from stylobate.engine.compiling.arithmetic import inlined, part
 from stylobate.engine.compiling.model_code import for_compiling
 
-INLINED = ("rates", "lean", "contact")
+INLINED = ("rates", "lean", "contact", "margins", "refreshed")
 """What is called in loops over lanes, which would not become vector code round a call."""
 
 

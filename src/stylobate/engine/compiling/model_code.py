@@ -23,9 +23,12 @@ _number = itertools.count()
 
 
 def for_compiling(
-    function: Function, compiled: Callable[[Function], Function], within: tuple[types.CodeType, ...] = ()
+    function: Function,
+    compiled: Callable[[Function], Function],
+    within: tuple[types.CodeType, ...] = (),
+    known: dict[tuple[types.FunctionType, Callable[[Function], Function]], Function] | None = None,
 ) -> Function:
-    """Return `function` compiled, and with it the plain functions that it calls.
+    """Return `function` compiled, and with it the plain functions that it calls, each of them once.
 
     Raises
     ------
@@ -39,12 +42,16 @@ def for_compiling(
     within = (*within, plain.__code__)
     if plain.__code__.co_flags & inspect.CO_VARARGS:
         compiled = part  # Numba's own inlining knows no *arguments: left to the compiler behind it
-    called = {name: for_compiling(value, compiled, within) for name, value in called_functions(plain)}
+    known = {} if known is None else known
+    if (plain, compiled) in known:
+        return known[plain, compiled]
+    called = {name: for_compiling(value, compiled, within, known) for name, value in called_functions(plain)}
     # A process that reads the machine code imports the modules of its functions: this one is there in all of them.
     names = with_functions({**plain.__globals__, "__name__": __name__}, called, plain.__code__)
     copy = types.FunctionType(plain.__code__, names, plain.__name__, plain.__defaults__, plain.__closure__)
     copy.__module__ = __name__
-    return compiled(copy)
+    known[plain, compiled] = compiled(copy)
+    return known[plain, compiled]
 
 
 def fingerprint(function: Function) -> str:

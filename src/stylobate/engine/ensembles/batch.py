@@ -25,6 +25,9 @@ Floats = npt.NDArray[np.float64]
 WIDTH = 24
 """Lanes of a kernel: three vectors of AVX-512, whose latencies overlap; the buffer still fits the nearest cache."""
 
+SWITCHING_WIDTH = 8
+"""Lanes of a kernel that changes between kinds of contact: a lane has many more rows."""
+
 
 @dataclass(frozen=True, slots=True)
 class Plan:
@@ -45,9 +48,11 @@ class Plan:
             parameters=parameters,
             planar=planar,
             forcing=forcing,
-            width=WIDTH,
+            width=SWITCHING_WIDTH if self.model.switches else WIDTH,
             series=series_integrals(type(self.model), states, parameters, vertical=vertical) if by_series else (),
             demands=self.options.demands,
+            margins=len(self.model.margin_names),
+            slip=self.model.slip_states,
         )
 
     @property
@@ -193,6 +198,7 @@ def _fill_setup(
         Setup.SAMPLES: options.samples,
         Setup.STROBES: options.strobes,
         Setup.PASSAGE_TILT: models.loss_tilt,
+        **dict(zip((Setup.SLOPE_X, Setup.SLOPE_Y, Setup.SLOPE_Z), models.slope.T, strict=True)),
     }
     for column, values in columns.items():
         table[:, column] = values
@@ -220,6 +226,8 @@ def _fill_starts(
         moved.tilt[upright] = off
         columns = ModelColumns.of(model, runs.values, moved.tilt, runs.tilt_rate, runs.spin)
         states[upright] = columns.states[upright]
+    if model.contact_kinds is not None:  # what stands on its base begins as if it slid; the model tells how it goes on
+        states[stands, -1] = model.contact_kinds["SLIDING"]
     table[:, STATE : STATE + states.shape[1]] = states
     table[planar, STATE] = np.sum(runs.tilt * line, axis=1)[planar]
     table[planar, STATE + 1] = np.sum(rate * line, axis=1)[planar]

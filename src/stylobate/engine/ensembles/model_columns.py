@@ -14,14 +14,19 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class ModelColumns:
-    """Arrays over the runs, of shape (n,) but for `states`, (n, number of states), and `parameters`."""
+    """Arrays over the runs: of shape (n,), but for `slope`, (n, 3), `states`, (n, number of states), and `parameters`.
+
+    `length` is the height of the centre of mass [m].
+    """
 
     time_scale: Floats
     gravity: Floats
+    length: Floats
     slenderness: Floats
     capacity: Floats
     comes_to_rest: npt.NDArray[np.bool_]
     loss_tilt: Floats
+    slope: Floats
     states: Floats
     parameters: Floats
 
@@ -38,15 +43,23 @@ class ModelColumns:
         """
         count = len(tilt)
         own = {name: value for name, value in values.items() if name not in MOTION_NAMES}
-        numbers = np.empty((5, count))
-        comes_to_rest = np.empty(count, dtype=bool)
+        numbers = np.empty((6, count))
+        comes_to_rest, slope = np.empty(count, dtype=bool), np.empty((count, 3))
         states = np.empty((count, len(model.state_names)))
         parameters = np.empty((count, len(model.parameters)))
         for changed, runs in _distinct(model, own, count):
             column = changed.column
             numbers[:, runs] = np.array(
-                [changed.time_scale, column.gravity, column.slenderness, changed.rest_capacity, changed.loss_tilt]
+                [
+                    changed.time_scale,
+                    column.gravity,
+                    column.mass_height,
+                    column.slenderness,
+                    changed.rest_capacity,
+                    changed.loss_tilt,
+                ]
             )[:, np.newaxis]
+            slope[runs] = changed.slope
             comes_to_rest[runs] = changed.comes_to_rest
             parameters[runs] = changed.parameters
             vectors = (*tilt[runs].T, *tilt_rate[runs].T)
@@ -55,8 +68,9 @@ class ModelColumns:
                 states[runs, j] = part
             if model.spin_state is not None:
                 states[runs, model.spin_state] = spin[runs] * changed.time_scale
-        time_scale, gravity, slenderness, capacity, loss_tilt = numbers
-        return cls(time_scale, gravity, slenderness, capacity, comes_to_rest, loss_tilt, states, parameters)
+        time_scale, gravity, length, slenderness, capacity, loss_tilt = numbers
+        lengths = (length, slenderness)
+        return cls(time_scale, gravity, *lengths, capacity, comes_to_rest, loss_tilt, slope, states, parameters)
 
 
 def _distinct(

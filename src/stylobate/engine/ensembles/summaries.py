@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.engine.ensembles.batch import Batch
+from stylobate.engine.ensembles.contacts import CONTACT_KINDS, contact_arrays, upright_outcomes
 from stylobate.engine.ensembles.options import Options
 from stylobate.engine.lanes.columns import BEFORE, LATE, LOOKS, SLACK, STATE, Log, Setup, Status, Window
 from stylobate.engine.thresholds import coarse
@@ -29,6 +30,8 @@ _ENDINGS = {
     Status.LIFTED: Outcome.LIFTED_OFF,
     Status.STEP_LIMIT: Outcome.FAILED,
     Status.STEP_TOO_SMALL: Outcome.FAILED,
+    Status.ENDLESS: Outcome.FAILED,
+    Status.JAMMED: Outcome.FAILED,
 }
 
 
@@ -43,6 +46,12 @@ class Quantity:
 
 def _numbers(long_name: str, units: str, *dims: str) -> Quantity:
     return Quantity(np.float64, dims, {"long_name": long_name, "units": units})
+
+
+_CONTACTS = (
+    *("end_footprint", "end_twist", "end_contact", "mean_velocity", "mean_twist_rate", "impacts", "slips"),
+    *(f"time_{kind}" for kind in CONTACT_KINDS),
+)
 
 
 QUANTITIES: Mapping[str, Quantity] = {
@@ -66,6 +75,22 @@ QUANTITIES: Mapping[str, Quantity] = {
     "largest_friction_demand": _numbers("largest friction force over normal force", "1"),
     "largest_pivoting_demand": _numbers("largest moment about the vertical over normal force and radius", "1"),
     "least_normal_force": _numbers("least normal force over weight", "1"),
+    "end_footprint": _numbers("centre of the footprint circle at the end", "m", "axis"),
+    "end_twist": _numbers("angle of turn about the axis at the end", "rad"),
+    "end_contact": Quantity(
+        np.int8,
+        (),
+        {
+            "long_name": "kind of contact at the end: "
+            + ", ".join(f"{k} {kind}" for k, kind in enumerate(CONTACT_KINDS))
+            + ", 5 jammed"
+        },
+    ),
+    **{f"time_{kind}": _numbers(f"how long it was {kind}", "s") for kind in CONTACT_KINDS},
+    "mean_velocity": _numbers("mean velocity of the footprint over the last periods", "m s-1", "axis"),
+    "mean_twist_rate": _numbers("mean rate of the twist over the last periods", "rad s-1"),
+    "impacts": Quantity(np.int32, (), {"long_name": "landings, and strokes of the base"}),
+    "slips": Quantity(np.int32, (), {"long_name": "how often a contact that held began to slip"}),
     "releases": Quantity(np.int32, (), {"long_name": "releases from rest"}),
     "steps": Quantity(np.int32, (), {"long_name": "integration steps"}),
     "strobe_tilt": _numbers("tilt vector at phase zero of the base motion", "rad", "strobe", "axis"),
@@ -84,6 +109,7 @@ def empty(model: Model, options: Options, count: int) -> Arrays:
     sizes = {"axis": 2, "strobe": options.strobes, "sample": options.samples}
     arrays: Arrays = {}
     left_out = {*(() if options.demands else _DEMANDS), *(("end_spin",) if model.spin_state is None else ())}
+    left_out |= {*(() if model.switches else _CONTACTS)}
     for name, quantity in QUANTITIES.items():
         if name in left_out:
             continue
@@ -145,6 +171,8 @@ def _all(batch: Batch) -> Arrays:
     }
     if batch.plan.options.demands:
         arrays |= _demands(batch)
+    if batch.plan.model.switches:
+        arrays |= contact_arrays(batch, late.span)
     index = batch.plan.model.spin_state
     if index is not None:
         spin = np.where(batch.planar | (batch.log(Log.STANDS) > 0.0), 0.0, batch.table[:, STATE + index])
@@ -280,4 +308,5 @@ def _outcomes(batch: Batch, late: _Late) -> npt.NDArray[np.int8]:
     codes = np.where(batch.log(Log.STANDS) > 0.0, code_of(Outcome.AT_REST), codes)
     for ending, outcome in _ENDINGS.items():
         codes = np.where(status == ending, code_of(outcome), codes)
-    return codes.astype(np.int8)
+    codes = codes.astype(np.int8)
+    return upright_outcomes(batch, late.span, codes) if batch.plan.model.switches else codes

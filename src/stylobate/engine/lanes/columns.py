@@ -1,7 +1,8 @@
 """Names for the columns of the table of a batch: what a kernel reads of a run, and what it notes.
 
 The table is one float64 array with a row for each run. A row holds `Setup`, then `Log`, two windows, the looks of a
-period, the state, the model's parameters, the numbers of the base motion, its breaks, samples and strobes.
+period, the state, `Change` where the model knows it, the model's parameters, the numbers of the base motion, its
+breaks, samples and strobes.
 """
 
 from enum import IntEnum, auto
@@ -53,6 +54,10 @@ class Setup(_FromZero):
     LINE_X = auto()
     LINE_Y = auto()
     """Unit vector of the line along which the base moves or, in a plane, the column too; 0, 0 without one."""
+    SLOPE_X = auto()
+    SLOPE_Y = auto()
+    SLOPE_Z = auto()
+    """What an inclined plane adds to the acceleration of the base; it is in the equations, but not in the motion."""
 
 
 class Log(_FromZero):
@@ -112,6 +117,35 @@ class Log(_FromZero):
     """Integrals over the last periods: of the tilt, and of its parts that turn with the forcing and against it."""
 
 
+class Change(_FromZero):
+    """What is noted of the changes between kinds of contact, of models that know them; behind the state."""
+
+    SINCE = auto()
+    """When the present kind of contact began."""
+    CHANGED_AT = auto()
+    AT_ONCE = auto()
+    """When the contact changed last, and how often before at the same moment."""
+    SLIPS = auto()
+    """How often a contact that held gave way."""
+    IMPACTS = auto()
+    """Landings, and strokes of the base."""
+    TIME_RESTING = auto()
+    TIME_SLIDING = auto()
+    TIME_ROLLING = auto()
+    TIME_SLIPPING = auto()
+    TIME_FLYING = auto()
+    """How long each kind of contact lasted, the present one left out; numbered as the kinds are."""
+    WINDOW_AT = auto()
+    WINDOW_X = auto()
+    WINDOW_Y = auto()
+    WINDOW_TWIST = auto()
+    """When the last periods began, and footprint and twist then."""
+    WINDOW_SLIDING = auto()
+    WINDOW_RIM = auto()
+    WINDOW_FLYING = auto()
+    """How long the base had slid by then, the rim touched, and nothing."""
+
+
 class Window(_FromZero):
     """What is noted of a window of some periods, at equal looks."""
 
@@ -164,3 +198,7 @@ class Status(_FromZero):
     """It was released from rest, and its model does not say how it departs."""
     TO_PLANE = auto()
     """It was released from rest by a motion along a line: the kernel of plane motion takes it on."""
+    ENDLESS = auto()
+    """Its contact changed without end."""
+    JAMMED = auto()
+    """Its contact can neither stick nor slip nor open."""

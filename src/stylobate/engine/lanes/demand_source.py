@@ -6,7 +6,7 @@ from stylobate.engine.lanes.head_source import contact_call
 from stylobate.engine.lanes.layout import Rows
 from stylobate.engine.lanes.series_source import polynomial, state_polynomial
 from stylobate.engine.lanes.shape import DEMANDS, Shape
-from stylobate.engine.lanes.stage_source import vertical
+from stylobate.engine.lanes.stage_source import combination, vertical
 
 PLACES = 4
 """Equal parts of a step, at the ends of which the loads are looked at."""
@@ -52,11 +52,16 @@ def _within(shape: Shape, at: Callable[[str], str], j: int, share: float) -> str
         return at(f"y{j}")
     if shape.series:
         return polynomial(state_polynomial(shape, at, j), f"({share!r} * h)")
+    values, slopes = cubic_weights(share)
+    change = combination(slopes, [at(f"last_slope{j}"), at(f"k0_{j}")])
+    return f"{combination(values, [at(f'last{j}'), at(f'y{j}')])} + h * ({change})"
+
+
+def cubic_weights(share: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the weights of values and slopes at the ends of a step of the cubic through them, at this part of it."""
     rest = 1.0 - share
-    values = [(rest * rest * (1.0 + 2.0 * share), f"last{j}"), (share * share * (3.0 - 2.0 * share), f"y{j}")]
-    slopes = [(share * rest * rest, f"last_slope{j}"), (-share * share * rest, f"k0_{j}")]
-    sums = (" + ".join(f"{weight!r} * {at(name)}" for weight, name in terms) for terms in (values, slopes))
-    return "{} + h * ({})".format(*sums)
+    values = (rest * rest * (1.0 + 2.0 * share), share * share * (3.0 - 2.0 * share))
+    return values, (share * rest * rest, -share * share * rest)
 
 
 def _extreme(at: Callable[[str], str], name: str) -> list[str]:

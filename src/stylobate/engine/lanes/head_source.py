@@ -4,18 +4,22 @@ from collections.abc import Callable, Mapping, Sequence
 
 from stylobate.engine.lanes.columns import NOTE, SLACK, STATE
 from stylobate.engine.lanes.series_source import polynomial, state_polynomial
-from stylobate.engine.lanes.shape import SERIES_ORDER, Shape
+from stylobate.engine.lanes.shape import MARGIN_PLACES, SERIES_ORDER, Shape
 from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET, HOPS_APART
+from stylobate.models import Model
 
 OPTIONAL = ("rest_energy", "no_return_tilt", "departure", "passage", "at_rest", "struck")
 """Functions that a model may lack."""
+
+SWITCHING = ("margins", "react", "refreshed")
+"""Functions of a model that changes between kinds of contact."""
 
 
 # A tilt that is none and yet has a side.
 _ASIDE = 1e-140
 
 
-def constants_source(shape: Shape, has: Mapping[str, bool], *, to_plane: bool) -> str:
+def constants_source(model: type[Model], shape: Shape, has: Mapping[str, bool], *, to_plane: bool) -> str:
     """Return the source of the constants; `has` tells which functions the model gives."""
     values = {
         "WIDTH": shape.width,
@@ -40,9 +44,25 @@ def constants_source(shape: Shape, has: Mapping[str, bool], *, to_plane: bool) -
         "CAN_GO_TO_PLANE": to_plane,
         "CAN_LOSE": has["struck"],
         "DEMANDS": shape.demands,
+        "KEPT": shape.order + len(shape.changes),
         **shape.forcing.constants(shape.rows()),
+        **(_contact_constants(model, shape) if shape.margins else {}),
     }
     return "".join(f"{name} = {value!r}\n" for name, value in values.items())
+
+
+def _contact_constants(model: type[Model], shape: Shape) -> dict[str, int]:
+    """Return numbers of margins and of kinds of contact, and parts of a step; the limit of the tilt is a margin too."""
+    assert model.contact_kinds is not None
+    names = model.margin_names
+    return {
+        "MARGINS": shape.margins,
+        "FALLEN": names.index("fallen"),
+        "LAST": shape.margins - 1,
+        "LIMIT": shape.margins,
+        "PARTS": MARGIN_PLACES,
+        **{kind.name: kind.value for kind in model.contact_kinds},
+    }
 
 
 def model_source(shape: Shape, has: Mapping[str, bool]) -> str:

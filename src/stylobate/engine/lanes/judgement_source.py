@@ -8,7 +8,8 @@ from stylobate.engine.lanes.layout import Rows
 from stylobate.engine.lanes.series_source import polynomial, wanted_lines
 from stylobate.engine.lanes.shape import SERIES_ORDER, STAGES, Shape
 from stylobate.engine.lanes.stage_source import combination, reciprocal_scales
-from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET
+from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET, SLIP_SHARE
+from stylobate.models import Contact
 
 # Step control as SciPy's: safety 0.9, a step changes by 0.2 to 10, an error below the last number counts as that.
 _SAFETY, _LEAST_FACTOR, _LARGEST_FACTOR, _LEAST_ERROR = 0.9, 0.2, 10.0, 1e-12
@@ -39,8 +40,10 @@ def _error(shape: Shape, rows: Rows) -> list[str]:
     out = [
         "e5 = 0.0",
         "e3 = 0.0",
+        *_finer(shape, rows),
         *(
-            f"scale{j} = {at('atol_now')} + {at('rtol')} * max(abs({at(f'y{j}')}), abs({at(f'new{j}')}))"
+            f"scale{j} = {'finer' if j in shape.slip else at('atol_now')}"
+            f" + {at('rtol')} * max(abs({at(f'y{j}')}), abs({at(f'new{j}')}))"
             for j in range(shape.order)
         ),
     ]
@@ -56,6 +59,18 @@ def _error(shape: Shape, rows: Rows) -> list[str]:
     ]
 
 
+def _finer(shape: Shape, rows: Rows) -> list[str]:
+    """Return what finds the absolute tolerance of slip, of a model whose contact can slip."""
+    if not shape.slip:
+        return []
+    contact, atol = rows.at(f"y{shape.order - 1}"), rows.at("atol_now")
+    return [
+        f"slips = 1.0 if {contact} == {float(Contact.SLIPPING)!r} or {contact} == {float(Contact.SLIDING)!r} else 0.0",
+        f"atol = {atol}",
+        f"finer = {SLIP_SHARE!r} * atol if slips > 0.0 else atol",
+    ]
+
+
 def _acceptance(shape: Shape, rows: Rows) -> list[str]:
     """Return what finds the new lean, and whether the step is good, and taken or held back by an event."""
     at = rows.at
@@ -68,9 +83,7 @@ def _acceptance(shape: Shape, rows: Rows) -> list[str]:
         *lean,
         "tilt1 = math.sqrt(x1 * x1 + y1 * y1)",
         "radial1 = x1 * vx1 + y1 * vy1",
-        f"past = min(tilt1 - {at('no_return')}, radial1)",
-        f"past = max(past, tilt1 - {at('tilt_limit')})",
-        *_crossing(shape, rows),
+        *_past(shape, rows),
         f"ok = 1.0 if {at('error')} < 1.0 else 0.0",
         f"ahead = (1.0 if past > 0.0 else 0.0) * (0.0 if {at('aimed')} > 0.0 else 1.0)",
         f"{at('ok')} = ok",
@@ -80,11 +93,16 @@ def _acceptance(shape: Shape, rows: Rows) -> list[str]:
     ]
 
 
-def _crossing(shape: Shape, rows: Rows) -> list[str]:
-    if not shape.planar:
-        return []
+def _past(shape: Shape, rows: Rows) -> list[str]:
+    """Return what is positive where the step goes beyond an event."""
     at = rows.at
+    if shape.margins:  # looked at before
+        return [f"past = {at('broken')}"]
+    tilts = [f"past = min(tilt1 - {at('no_return')}, radial1)", f"past = max(past, tilt1 - {at('tilt_limit')})"]
+    if not shape.planar:
+        return tilts
     return [
+        *tilts,
         f"side = {at('side')}",
         f"h = {at('h')}",
         f"s0 = side * {at('x')}",
@@ -295,11 +313,11 @@ def _suspicion(shape: Shape, rows: Rows) -> list[str]:
     """Return what marks the lanes that the driver must look at.
 
     Those held back by an event, at a stop, aimed at an event, out of steps or stuck; in space also those perhaps
-    coming to rest, or so near the upright that they pass it in closed form.
+    coming to rest, or so near the upright that they pass it in closed form, where no margins tell so.
     """
     at = rows.at
     near = ["near = 0.0"]
-    if not shape.planar:
+    if not shape.planar and not shape.margins:
         c = at("slenderness")
         near = [
             f"square = {at('vx')} * {at('vx')} + {at('vy')} * {at('vy')}",
@@ -316,5 +334,7 @@ def _suspicion(shape: Shape, rows: Rows) -> list[str]:
         f"over = 1.0 if {at('steps')} >= {at('most_steps')} else 0.0",
         f"stuck = 1.0 if abs({at('tried')}) < {_SHORTEST!r} * abs({at('time')}) + 1e-300 else 0.0",
         f"met = {at('reached')} + {at('aimed')} + {at('peak')} + near + over",
-        f"{at('flag')} = {at('held')} + stuck * {at('rejected')} + {at('go')} * met",
+        f"flag = {at('held')} + stuck * {at('rejected')} + {at('go')} * met",
+        # Of a lane without a run, margins tell nothing.
+        f"{at('flag')} = flag * (0.0 if {at('run')} < 0.0 else 1.0)" if shape.margins else f"{at('flag')} = flag",
     ]

@@ -13,7 +13,9 @@ from stylobate.engine.compiling import arithmetic
 from stylobate.engine.compiling.modules import compiled_module
 from stylobate.engine.lanes import pattern, roots
 from stylobate.engine.lanes.columns import LOOKS, Status, Window
-from stylobate.engine.lanes.head_source import OPTIONAL, constants_source, model_source
+from stylobate.engine.lanes.dense_source import dense_source
+from stylobate.engine.lanes.head_source import OPTIONAL, SWITCHING, constants_source, model_source
+from stylobate.engine.lanes.margin_source import margins_source, reaction_source, window_source
 from stylobate.engine.lanes.observation_source import observation_source
 from stylobate.engine.lanes.shape import DEMANDS, STAGES, Shape
 from stylobate.engine.lanes.step_source import accelerations_source, rates_source, step_source
@@ -64,13 +66,15 @@ def kernel_source(model: type[Model], shape: Shape) -> str:
         [
             f'"""Written by stylobate {version("stylobate")}: {model.name}, {_kind(shape)}."""\n',
             _IMPORTS,
-            constants_source(shape, has, to_plane=to_plane),
+            constants_source(model, shape, has, to_plane=to_plane),
             accelerations_source(shape),
             rates_source(shape),
             model_source(shape, has),
             step_source(model, shape),
             observation_source(shape),
-            _driver_text(),
+            *_contact_sources(shape),
+            window_source(model, shape, shape.rows()),
+            _driver_text(shape),
         ]
     )
     return _with_numbers(text, shape)
@@ -95,14 +99,23 @@ def _functions(model: type[Model], shape: Shape) -> dict[str, Callable[..., Any]
     functions |= {name: getattr(model, name) for name in OPTIONAL}
     if shape.demands:
         functions["contact"] = model.contact
+    if shape.margins:
+        functions |= {name: getattr(model, name) for name in SWITCHING}
     if shape.planar and (shape.demands or model.struck is not None):
         functions["from_plane"] = model.from_plane
     return {name: function for name, function in functions.items() if function is not None}
 
 
-def _driver_text() -> str:
+def _contact_sources(shape: Shape) -> list[str]:
+    """Return what the driver of a model that changes between kinds of contact calls."""
+    rows = shape.rows()
+    return [write(shape, rows) for write in (margins_source, reaction_source, dense_source)] if shape.margins else []
+
+
+def _driver_text(shape: Shape) -> str:
     folder = Path(pattern.__file__).parent
-    texts = ((folder / f"{name}.py").read_text(encoding="utf-8") for name in pattern.ORDER)
+    order = pattern.SWITCHING_ORDER if shape.margins else pattern.ORDER
+    texts = ((folder / f"{name}.py").read_text(encoding="utf-8") for name in order)
     return "".join(text.split(_MARK, 1)[1] for text in texts)
 
 
@@ -123,6 +136,8 @@ def _with_numbers(text: str, shape: Shape) -> str:
     slopes = {"SLOPE": "k0_0", "SLOPE_NEW": f"k{STAGES}_0", "LAST_SLOPE": "last_slope0"}
     # Steps by series have no slopes; what reads them is left out by the compiler, as what is not followed.
     special |= {name: 0 if shape.series else rows[row] for name, row in slopes.items()}
+    if shape.margins:
+        special |= {"CONTACT": rows[f"y{shape.order - 1}"]}
     special |= {f"{name.upper()}_NOW": rows[f"{name}_now"] if shape.demands else 0 for name in DEMANDS}
 
     def number(match: re.Match[str]) -> str:

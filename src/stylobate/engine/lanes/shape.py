@@ -2,12 +2,18 @@
 
 from dataclasses import dataclass
 
-from stylobate.engine.lanes.columns import LOOKS, STATE, Log, Setup, Window
+from stylobate.engine.lanes.columns import LOOKS, STATE, Change, Log, Setup, Window
 from stylobate.engine.lanes.forcing_source import ForcingSource
 from stylobate.engine.lanes.layout import Rows
 
 STAGES = 12
 """Stages of DOP853; one more gives the slope at the end of a step."""
+
+DENSE_TERMS = 7
+"""Terms of the polynomial that tells the state within a step of DOP853."""
+
+MARGIN_PLACES = 4
+"""Equal parts of a step, at the ends of which margins are looked at."""
 
 SERIES_ORDER = 16
 """Order of Taylor series."""
@@ -35,6 +41,10 @@ class Shape:
         made by DOP853.
     demands
         Whether it follows what the contact must bear.
+    margins
+        How many margins guard a kind of contact, of a model that changes between kinds; else 0.
+    slip
+        Which of its states are the velocity of slip.
     """
 
     states: int
@@ -44,11 +54,13 @@ class Shape:
     width: int
     series: tuple[int, ...] = ()
     demands: bool = False
+    margins: int = 0
+    slip: tuple[int, ...] = ()
 
     @property
     def parameters_at(self) -> int:
-        """Column of the table at which the model's parameters begin, behind the state."""
-        return STATE + max(self.states, 2)
+        """Column of the table at which the model's parameters begin, behind the state and what is noted of changes."""
+        return STATE + max(self.states, 2) + len(self.changes)
 
     @property
     def motion_at(self) -> int:
@@ -64,6 +76,11 @@ class Shape:
     def order(self) -> int:
         """Number of equations."""
         return 2 if self.planar else self.states
+
+    @property
+    def changes(self) -> list[str]:
+        """Rows behind the state: what is noted of changes between kinds of contact."""
+        return [column.name.lower() for column in Change] if self.margins else []
 
     @property
     def expanded(self) -> list[int]:
@@ -87,6 +104,7 @@ class Shape:
             rows.add(*(f"{window}_{column.name.lower()}" for column in Window))
         rows.add_many("look", 4 * LOOKS)
         rows.add_many("y", self.order)
+        rows.add(*self.changes)
         rows.add(*_LANE_ROWS)
         rows.add_many("p", self.parameters)
         self.forcing.reserve(rows)
@@ -104,6 +122,12 @@ class Shape:
             for stage in range(STAGES + 1):
                 rows.add_many(f"k{stage}_", self.order)
             rows.add_many("last_slope", self.order)
+        if self.margins:
+            rows.add("last_margin", "margin_now", "broken")
+            for name in ("stage", "rate", "step"):
+                rows.add_many(name, self.order)
+            for name in ("extra0_", "extra1_", "extra2_", *(f"dense{power}_" for power in range(DENSE_TERMS))):
+                rows.add_many(name, self.order)
         return rows
 
 

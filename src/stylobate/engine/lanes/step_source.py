@@ -6,11 +6,14 @@ from stylobate.engine.lanes.judgement_source import judgement
 from stylobate.engine.lanes.series_source import series_lines
 from stylobate.engine.lanes.shape import STAGES, Shape
 from stylobate.engine.lanes.stage_source import rates_call, stage_lines, vertical
+from stylobate.engine.lanes.switching_source import switching_step_source
 from stylobate.models import Model
 
 
 def step_source(model: type[Model], shape: Shape) -> str:
     """Return the source of `step(buf)`, one attempt at a step in every lane."""
+    if shape.margins:
+        return switching_step_source(shape)
     rows = shape.rows()
     lines = ["@vectorised", "def step(buf):"]
     if shape.series:

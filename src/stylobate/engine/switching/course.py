@@ -165,9 +165,8 @@ class SwitchingCourse:
         def derivative(tau: float, y: Floats) -> Floats:
             return np.array(rates(*y.tolist(), *forcing.at(min(tau, last)), *parameters))
 
-        slips, first = self._kind(state).name in _SLIPS, self.model.state_names.index("velocity_x")
-        fine = slice(first, first + 2)
-        return Stepper(derivative, self._time, np.array(state), stop, self.method, slips=slips, fine=fine)
+        slip = self.model.slip_states if self._kind(state).name in _SLIPS else ()
+        return Stepper(derivative, self._time, np.array(state), stop, self.method, slip)
 
     def _refreshed(self, y: Floats) -> Floats:
         refreshed = self.model.refreshed

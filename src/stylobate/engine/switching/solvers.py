@@ -13,6 +13,7 @@ from scipy.integrate import DOP853, Radau
 
 from stylobate.engine.forcing import Floats
 from stylobate.engine.moving import Method
+from stylobate.engine.tolerances import SLIP_SHARE
 
 # E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", section IV.2: the boundary of stability of DOP853
 # along the negative axis is at hλ = 6.1; so many steps near it in turn count as stiff.
@@ -24,9 +25,6 @@ _EASY = 1.0
 
 # Part of its size by which a state is changed to see how the rates change.
 _DIFFERENCE = 1e-7
-
-# The absolute tolerance of a slip, whose direction matters as it fades, is this part of the usual one.
-_FINER = 1e-3
 
 
 class Stepper:
@@ -40,10 +38,9 @@ class Stepper:
         Where it begins, and how far it may go.
     method
         Tolerances.
-    slips
-        Whether a contact slips: this may be stiff, and a slip that fades is told with a finer tolerance.
-    fine
-        Which states are the velocity of slip.
+    slip
+        Which states are the velocity of a contact that slips: this may be stiff, and a slip that fades is told more
+        finely. Empty where nothing slips.
     """
 
     def __init__(
@@ -53,16 +50,12 @@ class Stepper:
         state: Floats,
         stop: float,
         method: Method,
-        *,
-        slips: bool,
-        fine: slice,
+        slip: tuple[int, ...],
     ) -> None:
         self._derivative, self._stop, self._method = derivative, stop, method
-        self._may_be_stiff, self._near = slips, 0
-        self._fine = fine
+        self._slip, self._near = list(slip), 0
         self._atol: Any = np.full(state.size, method.atol)
-        if slips:
-            self._atol[fine] *= _FINER
+        self._atol[self._slip] *= SLIP_SHARE
         self.solver: Any = self._explicit(start, state)
 
     @property
@@ -78,7 +71,7 @@ class Stepper:
             self.solver = self._explicit(self.solver.t, self.solver.y)
         with np.errstate(over="ignore", invalid="ignore"):  # trial steps across the end of a slip are made again
             failure = self.solver.step()
-        if self._may_be_stiff and failure is None:
+        if self._slip and failure is None:
             self._look(self.solver)
         return None if failure is None else str(failure)
 
@@ -118,7 +111,7 @@ class Stepper:
     def _jacobian(self, time: float, state: Floats) -> Floats:
         """Return the derivatives of the rates by differences, which are small against a slip."""
         steps = np.full(state.size, _DIFFERENCE)
-        steps[self._fine] = _DIFFERENCE * max(float(np.hypot(*state[self._fine])), self._atol[self._fine][0])
+        steps[self._slip] = _DIFFERENCE * max(float(np.hypot(*state[self._slip])), self._atol[self._slip[0]])
         rates, jacobian = self._derivative(time, state), np.empty((state.size, state.size))
         for column, step in enumerate(steps):
             moved = state.copy()

@@ -85,6 +85,7 @@ class Sliding(Model):
     name: ClassVar[str] = "sliding"
     state_names: ClassVar[tuple[str, ...]] = State._fields
     spin_state: ClassVar[int | None] = State._fields.index("spin")
+    slip_states: ClassVar[tuple[int, ...]] = tuple(map(State._fields.index, ("velocity_x", "velocity_y")))
     margin_names: ClassVar[tuple[str, ...]] = MARGINS
     contact_kinds: ClassVar[type[IntEnum] | None] = Contact
 

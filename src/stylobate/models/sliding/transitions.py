@@ -1,6 +1,7 @@
 """What becomes of a column when a kind of contact ends."""
 
 import math
+from typing import NamedTuple
 
 from stylobate.models.finite_tilt import cosine, sine_over_angle
 from stylobate.models.free_twist import departing
@@ -26,7 +27,10 @@ _PART_OF_A_TURN = 0.02
 
 # The direction in which a contact gives way is found in so many steps at most, by differences over a small turn, until
 # it is the same.
-_MOST_TURNS, _SMALL_TURN, _SAME = 12, 1e-7, 1e-13
+_MOST_TURNS, _SMALL_TURN, _SAME = 20, 1e-7, 1e-9
+
+# A rim that strikes again and again does so at most so often, and no more below this part of its first speed.
+_MOST_STRIKES, _FAINT = 50, 1e-10
 
 Triple = tuple[float, float, float]
 Margins = tuple[float, float, float, float, float, float, float]
@@ -76,6 +80,8 @@ def reaction(
     if state.contact == _SLIDING:
         if event == _FRICTION:
             return stopped(state, now, later, ahead, numbers)
+        if event == _SUPPORT:
+            return tripping(state, now, later, ahead, numbers)
         return settle_flat(state, now, later, ahead, numbers)
     if event == _FRICTION:
         return set_sliding(state, now, later, ahead, numbers)
@@ -328,6 +334,9 @@ def load_direction(state: State, now: Triple, n: Numbers) -> Triple:
         by_two = pulled_aside(state, tilted(heading, two, _SMALL_TURN), one, two, now, n)
         a, b = (by_one[0] - aside[0]) / _SMALL_TURN, (by_two[0] - aside[0]) / _SMALL_TURN
         c, d = (by_one[1] - aside[1]) / _SMALL_TURN, (by_two[1] - aside[1]) / _SMALL_TURN
+        # The two directions turn with the heading.
+        gain = along_slip(state, heading, now, n)
+        a, d = a - gain, d - gain
         if n.patch == 0.0:  # a point turns freely: one direction only
             b, c, d = 0.0, 0.0, 1.0
         size = a * d - b * c
@@ -340,8 +349,8 @@ def load_direction(state: State, now: Triple, n: Numbers) -> Triple:
             return guess
         heading = tilted(tilted(heading, one, p), two, q)
         if math.hypot(p, q) < _SAME:
-            break
-    return heading
+            return heading
+    return guess
 
 
 def across(heading: Triple) -> tuple[Triple, Triple]:
@@ -366,6 +375,12 @@ def pulled_aside(
     found = forces(slipping_along(state, heading, n), now, n)
     x, y, z = found[3], found[4], found[9]
     return x * one[0] + y * one[1] + z * one[2], x * two[0] + y * two[1] + z * two[2]
+
+
+def along_slip(state: State, heading: Triple, now: Triple, n: Numbers) -> float:
+    """Return the acceleration of a slip along its heading."""
+    found = forces(slipping_along(state, heading, n), now, n)
+    return found[3] * heading[0] + found[4] * heading[1] + found[9] * heading[2]
 
 
 def rolled_on(state: State, now: Triple, later: Triple, elapsed: float, n: Numbers) -> State:
@@ -416,76 +431,136 @@ def kicked(state: State, struck: Triple, n: Numbers) -> State:
 # --- the stroke of the base
 
 
+class Body(NamedTuple):
+    """A column that stands upright for a moment: velocity of its centre of mass, rate of its tilt, and spin."""
+
+    velocity_x: float
+    velocity_y: float
+    climb: float
+    rate_x: float
+    rate_y: float
+    spin: float
+
+
 def stroke(state: State, now: Triple, later: Triple, ahead: float, rest: float, n: Numbers) -> tuple[float, State]:
     """Return how a column goes on whose base strikes the plane: on the other side, after an impact of the rim there.
 
-    The passage is taken for one in the vertical plane of its motion, with the same energy: its contact races round the
-    rim with J0 at the least tilt, and turns about the rim with K where it goes straight. e_n = 0 is Housner's impact.
+    The passage is taken for one in the vertical plane of its motion, with the energy that it has. e_n = 0 is Housner's
+    impact; where the column then leans another way than the struck point lies, the rim strikes again, until it rests
+    on the point towards which it leans.
     """
-    c, kappa = n.c, n.kappa
     x, y, vx, vy = lean_with_rate(state)
     tilt, pace = math.hypot(x, y), math.hypot(vx, vy)
     ux, uy = vx / pace, vy / pace
-    inwards = max(-(x * ux + y * uy), 0.0)
-    around = pace * abs(x * uy - y * ux) / max(tilt, 1e-300)
-    speed = math.sqrt(max(pace * pace - around * around, 0.0) + around * around / (1.0 + kappa * c * c))
-    # The rim on the other side arrives
-    response = responses(0.0, 1.0, c, kappa, n.axial)
-    vd = state.velocity_x * ux + state.velocity_y * uy
-    vn = state.velocity_y * ux - state.velocity_x * uy + 2.0 * c * state.spin
-    arrival = (vd, vn, -2.0 * c * speed)
-    bounce = rebound(n.restitution, 2.0 * c * speed)
-    pd, pn, pz = impulse(arrival, response, n.kinetic, bounce)
-    begun = placed(state, (tilt * ux, tilt * uy, speed * ux, speed * uy), state.spin, _SLIPPING)
-    dd, dz, _, nn = response
-    left_d, left_n = vd + dd * pd + dz * pz, vn + nn * pn
-    velocity = (left_d * ux - left_n * uy, left_d * uy + left_n * ux)
-    after = moving(kicked_upright(begun, (pd, pn, pz), n), velocity, 0.0, 0.0, _SLIPPING)
-    _, w2 = turning(after)
     # A path that leads straight to the upright is followed there, and as long behind it.
-    straight = inwards > 0.5 * tilt
-    elapsed = 2.0 * inwards / pace if straight else 0.0
-    if straight:
-        vx, vy = after.tilt_rate_x, after.tilt_rate_y
-        passed = (0.5 * elapsed * vx, 0.5 * elapsed * vy, vx, vy)
-        after = placed(after, passed, after.spin, _SLIPPING)
-    if w2 <= 0.0:
-        return elapsed, flattened(state, (ux, uy), speed, now, later, ahead, n)
+    straight = -(x * ux + y * uy) > 0.5 * tilt
+    elapsed = 2.0 * tilt / pace if straight else 0.0
+    speed = planar_speed(state, (ux, uy), n)
+    body = Body(
+        state.velocity_x + speed * ux - n.c * state.spin * uy,
+        state.velocity_y + speed * uy + n.c * state.spin * ux,
+        -n.c * speed,
+        speed * ux,
+        speed * uy,
+        state.spin,
+    )
+    bounce = rebound(n.restitution, 2.0 * n.c * speed)
+    body = struck_at(body, ux, uy, bounce, n)
     if bounce > 0.0:
-        return elapsed, lifted_with(after, bounce * 2.0 * c * speed, n)
-    if rests(after, now, rest, n):
-        later_on, flat = set_down(after, now, later, ahead, n)
-        return elapsed + later_on, flat
-    later_on, after = settle_rim(after, now, later, ahead, n)
-    return elapsed + later_on, after
+        return elapsed, flying_from(state, body, (tilt * ux, tilt * uy), n)
+    behind = 0.5 * elapsed if straight else 0.0
+    further, after = coming_down(state, body, tilt, behind, now, later, ahead, rest, n)
+    return elapsed + further, after
 
 
-def kicked_upright(state: State, struck: Triple, n: Numbers) -> State:
-    """Return `kicked` as if the column stood upright, where it leans no farther than passages of the upright do."""
-    ux, uy, _, _ = lean_of(state)
-    w1, w2 = turning(state)
-    w1 += struck[1] / (1.0 - n.kappa)
-    w2 -= (n.c * struck[2] + struck[0]) / (1.0 - n.kappa)
-    spin = state.spin + struck[1] / (n.kappa * n.axial * n.c)
-    rate = (w2 * ux + w1 * uy, w2 * uy - w1 * ux)
-    return placed(state, (state.tilt_x, state.tilt_y, rate[0], rate[1]), spin, state.contact)
-
-
-def flattened(
+def coming_down(
     state: State,
-    way: tuple[float, float],
-    speed: float,
+    body: Body,
+    tilt: float,
+    behind: float,
     now: Triple,
     later: Triple,
     ahead: float,
+    rest: float,
     n: Numbers,
-) -> State:
+) -> tuple[float, State]:
+    """Return how a column goes on that has struck the plane, upright, and stays on it.
+
+    It strikes again until it rests on the point of its rim towards which it leans, by `tilt`, or by as much as it goes
+    in the time `behind` the upright.
+    """
+    speed = math.hypot(body.velocity_x, body.velocity_y) + math.hypot(body.rate_x, body.rate_y) + abs(body.climb)
+    for _ in range(_MOST_STRIKES):
+        pace = math.hypot(body.rate_x, body.rate_y)
+        if pace <= _FAINT * speed:
+            break
+        ux, uy = body.rate_x / pace, body.rate_y / pace
+        if body.climb - n.c * pace >= -_FAINT * speed:
+            reach = pace * behind if behind > 0.0 else tilt
+            after = placed(state, (reach * ux, reach * uy, body.rate_x, body.rate_y), body.spin, _SLIPPING)
+            sx = body.velocity_x - body.rate_x - n.c * body.spin * uy
+            sy = body.velocity_y - body.rate_y + n.c * body.spin * ux
+            after = moving(after, (sx, sy), 0.0, 0.0, _SLIPPING)
+            if rests(after, now, rest, n):
+                return set_down(after, now, later, ahead, n)
+            return settle_rim(after, now, later, ahead, n)
+        body = struck_at(body, ux, uy, 0.0, n)
+    return flattened(state, body, now, later, ahead, n)
+
+
+def planar_speed(state: State, way: tuple[float, float], n: Numbers) -> float:
+    """Return the rate of tilt with which a column passes the upright in a plane that has the energy of `state`.
+
+    It then turns about the point of its rim behind it, with the slip that it has now.
+    """
+    c, kappa = n.c, n.kappa
+    x, y, vx, vy = lean_with_rate(state)
+    tilt, sx, sy = math.hypot(x, y), state.velocity_x, state.velocity_y
+    dx, dy = (x / tilt, y / tilt) if tilt > 0.0 else (-way[0], -way[1])
+    # The centre of mass: v + α̇ − c w3 Z × d where it touches, and upwards
+    mx, my, climb = sx + vx + c * state.spin * dy, sy + vy - c * state.spin * dx, c * (vx * dx + vy * dy)
+    behind_x, behind_y = sx - c * state.spin * way[1], sy + c * state.spin * way[0]
+    energy = 0.5 * kappa * (mx * mx + my * my + climb * climb) + 0.5 * (1.0 - kappa) * (vx * vx + vy * vy)
+    energy -= 0.5 * kappa * (behind_x * behind_x + behind_y * behind_y)
+    inertia, along = 1.0 + kappa * c * c, kappa * (behind_x * way[0] + behind_y * way[1])
+    return max((math.sqrt(max(along * along + 2.0 * inertia * energy, 0.0)) - along) / inertia, 0.0)
+
+
+def struck_at(body: Body, ux: float, uy: float, bounce: float, n: Numbers) -> Body:
+    """Return a column that stands upright after an impact of the point of its rim in the direction (ux, uy)."""
+    c, kappa = n.c, n.kappa
+    vx = body.velocity_x - body.rate_x - c * body.spin * uy
+    vy = body.velocity_y - body.rate_y + c * body.spin * ux
+    vz = body.climb - c * (body.rate_x * ux + body.rate_y * uy)
+    arrival = (vx * ux + vy * uy, vy * ux - vx * uy, vz)
+    pd, pn, pz = impulse(arrival, responses(0.0, 1.0, c, kappa, n.axial), n.kinetic, bounce)
+    one, two = pn / (1.0 - kappa), -(c * pz + pd) / (1.0 - kappa)  # of w1 and w2
+    return Body(
+        body.velocity_x + (pd * ux - pn * uy) / kappa,
+        body.velocity_y + (pd * uy + pn * ux) / kappa,
+        body.climb + pz / kappa,
+        body.rate_x + two * ux + one * uy,
+        body.rate_y + two * uy - one * ux,
+        body.spin + pn / (kappa * n.axial * c),
+    )
+
+
+def flying_from(state: State, body: Body, lean: tuple[float, float], n: Numbers) -> State:
+    """Return a column in the air that the plane has just thrown off, leaning this much."""
+    tilt = math.hypot(lean[0], lean[1])
+    square = tilt * tilt
+    rise = height_of(sine_over_angle(square) * tilt, cosine(square), n.c)
+    flying = placed(state, (lean[0], lean[1], body.rate_x, body.rate_y), body.spin, _FLYING)
+    flying = moving(flying, (body.velocity_x, body.velocity_y), rise, body.climb, _FLYING)
+    return headed(flying, (0.0, 0.0, 0.0), _FLYING)
+
+
+def flattened(state: State, body: Body, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
     """Return a column too squat to rock over to its other side: its whole base stops on the plane."""
-    vx = state.velocity_x + speed * way[0] - n.c * state.spin * way[1]
-    vy = state.velocity_y + speed * way[1] + n.c * state.spin * way[0]
-    kx, ky, turned = base_impulse(vx, vy, state.spin, n.c * speed, n.kinetic, TWISTING_BASE, n.c, n.axial * n.c * n.c)
-    flat = placed(state, (0.0, 0.0, 0.0, 0.0), state.spin + turned, _SLIDING)
-    return settle_flat(moving(flat, (vx + kx, vy + ky), 0.0, 0.0, _SLIDING), now, later, ahead, n)[1]
+    approach, vx, vy = max(-body.climb, 0.0), body.velocity_x, body.velocity_y
+    kx, ky, turned = base_impulse(vx, vy, body.spin, approach, n.kinetic, TWISTING_BASE, n.c, n.axial * n.c * n.c)
+    flat = placed(state, (0.0, 0.0, 0.0, 0.0), body.spin + turned, _SLIDING)
+    return settle_flat(moving(flat, (vx + kx, vy + ky), 0.0, 0.0, _SLIDING), now, later, ahead, n)
 
 
 def rests(state: State, now: Triple, rest: float, n: Numbers) -> bool:
@@ -519,10 +594,9 @@ def settle_flat(state: State, now: Triple, later: Triple, ahead: float, n: Numbe
     if slips(state.velocity_x, state.velocity_y, n.c * state.spin):
         sliding = headed_along_slip(headed(state, (state.heading_x, state.heading_y, state.heading_z), _SLIDING), n)
         found = forces(sliding, now, n)
-        drag = math.hypot(found[6], found[7])
-        if drag <= n.c * weight:
+        if math.hypot(found[6], found[7]) <= n.c * weight:
             return 0.0, sliding
-        return tripped(sliding, (-found[6] / drag, -found[7] / drag), now, later, ahead, n)
+        return tripping(sliding, now, later, ahead, n)
     standing = moving(placed(state, (0.0, 0.0, 0.0, 0.0), 0.0, _RESTING), (0.0, 0.0), 0.0, 0.0, _RESTING)
     standing = headed(standing, (0.0, 0.0, 0.0), _RESTING)
     px, py = now[0] + n.slope_x, now[1] + n.slope_y
@@ -572,16 +646,19 @@ def released(state: State, now: Triple, later: Triple, ahead: float, n: Numbers)
     return ahead + further, after
 
 
-def tripped(
-    state: State, way: tuple[float, float], now: Triple, later: Triple, ahead: float, n: Numbers
-) -> tuple[float, State]:
-    """Return a sliding column that friction has begun to tip, the direction in which it leans being its `way`."""
+def tripping(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
+    """Return a sliding column that friction has begun to tip, against its direction."""
+    sliding = forces(state, now, n)
+    drag = math.hypot(sliding[6], sliding[7])
+    way = (-sliding[6] / drag, -sliding[7] / drag)
     tilt = _TRIPPED * n.c
     leaning = placed(state, (tilt * way[0], tilt * way[1], 0.0, 0.0), state.spin, _SLIPPING)
     # From the middle of the base to its rim
     vx, vy = state.velocity_x - n.c * state.spin * way[1], state.velocity_y + n.c * state.spin * way[0]
     leaning = headed_along_slip(moving(leaning, (vx, vy), 0.0, 0.0, _SLIPPING), n)
     found = forces(leaning, now, n)
+    if found[11] < JAM:
+        return settle_rim(jammed(leaning, n), now, later, ahead, n)
     pull = max(found[0] * way[0] + found[1] * way[1], 0.0)
     rate = math.sqrt(2.0 * pull * tilt)
     leaning = placed(leaning, (tilt * way[0], tilt * way[1], rate * way[0], rate * way[1]), state.spin, _SLIPPING)
@@ -651,20 +728,11 @@ def land_flat(state: State, now: Triple, later: Triple, ahead: float, n: Numbers
     inertia = n.axial * n.c * n.c  # I_a/κ
     kx, ky, turned = base_impulse(vx, vy, state.spin, normal, n.kinetic, TWISTING_BASE, n.c, inertia)
     if math.hypot(kx, ky) > n.c * normal:
-        speed = math.hypot(vx, vy)
-        ux, uy = vx / speed, vy / speed
-        response = responses(0.0, 1.0, n.c, n.kappa, n.axial)
-        vn = n.c * state.spin
-        pd, pn, pz = impulse((speed, vn, -approach), response, n.kinetic, bounce)
-        tilt = _TRIPPED * n.c
-        begun = placed(state, (tilt * ux, tilt * uy, 0.0, 0.0), state.spin, _SLIPPING)
-        after = kicked_upright(begun, (pd, pn, pz), n)
-        if turning(after)[1] > 0.0:
-            dd, dz, _, nn = response
-            after = touching(after, speed + dd * pd + dz * pz, vn + nn * pn, ux, uy)
-            if bounce > 0.0:
-                return 0.0, lifted_with(after, bounce * approach, n)
-            return settle_rim(after, now, later, ahead, n)
+        speed, tilt = math.hypot(vx, vy), _TRIPPED * n.c
+        body = struck_at(Body(vx, vy, -approach, 0.0, 0.0, state.spin), vx / speed, vy / speed, bounce, n)
+        if bounce > 0.0:
+            return 0.0, flying_from(state, body, (tilt * vx / speed, tilt * vy / speed), n)
+        return coming_down(state, body, tilt, 0.0, now, later, ahead, 0.0, n)
     flat = placed(state, (0.0, 0.0, 0.0, 0.0), state.spin + turned, _SLIDING)
     if bounce > 0.0:
         return 0.0, moving(flat, (vx + kx, vy + ky), 0.0, bounce * approach, _FLYING)

@@ -17,5 +17,20 @@ ORDER = (
     "peaks",
     "passages",
     "events",
+    "starting",
     "batch",
 )
+
+SWITCHING_ORDER = (
+    "base_motion",
+    "moving",
+    "within",
+    "stops",
+    "release",
+    "peaks",
+    "contact_ends",
+    "contact_changes",
+    "contact_events",
+    "batch",
+)
+"""The same for models that change between kinds of contact."""

@@ -130,9 +130,10 @@ def forcing_rate(buf: Table, i: int) -> float:
 @part
 def least_force(buf: Table, i: int) -> float:
     """Return the least force that holds a standing column down from now on; below zero where it can be released."""
-    return buf[R.CAPACITY, i] * (1.0 + buf[R.LEAST_VERTICAL, i]) - buf[R.LARGEST_HORIZONTAL, i]
+    pushed = buf[R.LARGEST_HORIZONTAL, i] + math.hypot(buf[R.SLOPE_X, i], buf[R.SLOPE_Y, i])
+    return buf[R.CAPACITY, i] * (1.0 + buf[R.LEAST_VERTICAL, i] + buf[R.SLOPE_Z, i]) - pushed
 
 
 @part
 def held_for_good(buf: Table, i: int) -> bool:
-    return least_force(buf, i) >= 0.0 and 1.0 + buf[R.LEAST_VERTICAL, i] > 0.0
+    return least_force(buf, i) >= 0.0 and 1.0 + buf[R.LEAST_VERTICAL, i] + buf[R.SLOPE_Z, i] > 0.0

@@ -10,22 +10,13 @@ from stylobate.engine.lanes.columns import STATE, Status
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import set_leg, set_no_return
 from stylobate.engine.lanes.pattern.events import handle
-from stylobate.engine.lanes.pattern.lift_off import find_lift
-from stylobate.engine.lanes.pattern.moving import azimuth_now, set_off
-from stylobate.engine.lanes.pattern.resting import stand
-from stylobate.engine.lanes.pattern.stops import (
-    go_on,
-    meet_stop,
-    next_stop,
-    set_break,
-    set_look,
-    set_sample,
-    set_strobe,
-)
+from stylobate.engine.lanes.pattern.moving import azimuth_now
+from stylobate.engine.lanes.pattern.starting import begin
+from stylobate.engine.lanes.pattern.stops import set_break, set_look, set_sample, set_strobe
 
 if TYPE_CHECKING:
     from stylobate.engine.lanes.pattern.head import (
-        ORDER,
+        KEPT,
         PARAMETERS,
         PARAMETERS_AT,
         PLANAR,
@@ -46,7 +37,7 @@ def enter(buf: Table, i: int, table: Table, pieces: Table, run: int) -> int:
     """Take a run into lane `i`; return WAITING when it moves, else the status with which it ends at once."""
     for column in range(STATE):
         buf[column, i] = table[run, column]
-    for j in range(ORDER):
+    for j in range(KEPT):
         buf[R.STATE + j, i] = table[run, STATE + j]
     for j in range(PARAMETERS):
         buf[R.PARAMETER + j, i] = table[run, PARAMETERS_AT + j]
@@ -61,18 +52,7 @@ def enter(buf: Table, i: int, table: Table, pieces: Table, run: int) -> int:
     set_break(buf, i, table)
     set_no_return(buf, i)
     set_leg(buf, i, table, pieces, t)
-    find_lift(buf, i, table, pieces)
-    if buf[R.STANDS, i] > 0.0:
-        return stand(buf, i, table, pieces, t)
-    set_off(buf, i, t, 0.0)
-    if buf[R.TILT, i] > buf[R.TILT_LIMIT, i]:
-        return Status.LIMIT
-    while next_stop(buf, i) <= t:
-        status = meet_stop(buf, i, table, pieces, next_stop(buf, i))
-        if status != Status.WAITING:
-            return status
-    go_on(buf, i)
-    return Status.WAITING
+    return begin(buf, i, table, pieces)
 
 
 @part
@@ -86,7 +66,7 @@ def leave(buf: Table, i: int, table: Table, status: int) -> None:
         buf[R.LAST_AZIMUTH, i] = azimuth_now(buf, i)
     for column in range(R.STATUS, STATE):
         table[run, column] = buf[column, i]
-    for j in range(ORDER):
+    for j in range(KEPT):
         table[run, STATE + j] = buf[R.STATE + j, i]
 
 

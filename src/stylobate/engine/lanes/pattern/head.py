@@ -6,6 +6,8 @@ from typing import Any
 WIDTH: int
 ORDER: int
 """Number of equations."""
+KEPT: int
+"""Number of columns of the state, with what is noted of changes between kinds of contact."""
 PARAMETERS: int
 PLANAR: bool
 SERIES: int
@@ -34,6 +36,21 @@ HOP_OFFSET: float
 HOPS_APART: float
 """See `engine.tolerances`."""
 
+LAST: int
+LIMIT: int
+"""Numbers of the last margin, and of that of the tilt limit behind it."""
+FALLEN: int
+"""Number of the margin of a column that has overturned."""
+PARTS: int
+"""Parts of a step at the ends of which margins are looked at."""
+RESTING: int
+SLIDING: int
+ROLLING: int
+SLIPPING: int
+FLYING: int
+JAMMED: int
+"""Kinds of contact."""
+
 R: Any
 """Rows of the buffer."""
 
@@ -52,3 +69,9 @@ model_departure: Callable[..., tuple[float, ...]]
 model_no_return: Callable[..., float]
 model_passage: Callable[..., tuple[float, tuple[float, ...]]]
 model_rest_energy: Callable[..., float]
+margins_at: Callable[..., tuple[float, ...]]
+model_react: Callable[..., tuple[float, tuple[float, ...]]]
+note_window: Callable[..., None]
+"""Notes where and how the column is as the last periods begin, of a model that changes between kinds of contact."""
+set_dense: Callable[..., None]
+dense_state: Callable[..., tuple[float, ...]]

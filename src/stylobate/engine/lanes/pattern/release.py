@@ -16,12 +16,15 @@ if TYPE_CHECKING:
 SAMPLES_PER_PERIOD = 64
 # What counts as the same moment [samples].
 MOMENT = 1e-6
+# Weight that counts as none.
+RELEASE_MARGIN = 8.0 * 2.220446049250313e-16
 
 
 @part
 def excess(buf: Table, i: int, t: float) -> float:
     ax, ay, az = accelerations(buf, i, t)
-    return math.hypot(ax, ay) - buf[R.CAPACITY, i] * (1.0 + az)
+    pushed = math.hypot(ax + buf[R.SLOPE_X, i], ay + buf[R.SLOPE_Y, i])
+    return pushed - buf[R.CAPACITY, i] * (1.0 + az + buf[R.SLOPE_Z, i])
 
 
 @part

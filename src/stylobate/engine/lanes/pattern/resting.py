@@ -8,8 +8,8 @@ from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import forcing_rate, held_for_good, least_force
 from stylobate.engine.lanes.pattern.moving import at_upright, azimuth_now, set_off, set_state
-from stylobate.engine.lanes.pattern.release import release_time
-from stylobate.engine.lanes.pattern.stops import go_on, leg_end, meet_stop, next_stop
+from stylobate.engine.lanes.pattern.release import RELEASE_MARGIN, release_time
+from stylobate.engine.lanes.pattern.stops import go_on, leg_end, meet_stop, next_stop, stand_to_the_end
 from stylobate.engine.lanes.pattern.within import set_within
 from stylobate.models.model import Push
 
@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 
 # Time after release, in units of the fastest time scale, at which the departure series hands over.
 DEPARTURE = 1e-3
-# Weight that counts as none.
-RELEASE_MARGIN = 8.0 * 2.220446049250313e-16
 
 
 @part
@@ -116,16 +114,6 @@ def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
                 return status
         if again:
             release = release_time(buf, i, t, leg_end(buf, i))
-
-
-@part
-def stand_to_the_end(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
-    """Note the rest of a run that stands for good."""
-    while t < buf[R.END, i]:
-        t = next_stop(buf, i)
-        meet_stop(buf, i, table, pieces, t)
-    buf[R.TIME, i] = t
-    return Status.RESTED
 
 
 @part

@@ -10,7 +10,7 @@ from stylobate.engine.lanes.pattern.base_motion import set_leg
 from stylobate.engine.lanes.pattern.moving import azimuth_now, set_rates
 
 if TYPE_CHECKING:
-    from stylobate.engine.lanes.pattern.head import BREAKS_AT, PLANAR, R
+    from stylobate.engine.lanes.pattern.head import BREAKS_AT, PLANAR, R, note_window
 
 # --- the kernel's text begins here ---
 
@@ -126,6 +126,16 @@ def resume(buf: Table, i: int, table: Table, pieces: Table) -> int:
 
 
 @part
+def stand_to_the_end(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
+    """Note the rest of a run that stands for good."""
+    while t < buf[R.END, i]:
+        t = next_stop(buf, i)
+        meet_stop(buf, i, table, pieces, t)
+    buf[R.TIME, i] = t
+    return Status.RESTED
+
+
+@part
 def lean_now(buf: Table, i: int) -> tuple[float, float, float, float]:
     if buf[R.STANDS, i] > 0.0:
         return 0.0, 0.0, 0.0, 0.0
@@ -185,3 +195,4 @@ def take_look(buf: Table, i: int, t: float) -> None:
     if index == middle:
         buf[R.WATCHED, i] = 1.0
         buf[R.LATE_LEAST, i] = math.hypot(x, y)
+        note_window(buf, i, t)

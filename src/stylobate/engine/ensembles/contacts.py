@@ -1,0 +1,86 @@
+"""What is told of runs whose model changes between kinds of contact."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.engine.ensembles.batch import Batch
+from stylobate.engine.lanes.columns import SLACK, STATE, Change, Log, Status
+from stylobate.errors import Outcome
+from stylobate.results.outcomes import code_of
+
+Floats = npt.NDArray[np.float64]
+
+_TIMES = tuple(column for column in Change if column.name.startswith("TIME_"))
+CONTACT_KINDS = tuple(column.name.removeprefix("TIME_").lower() for column in _TIMES)
+"""Kinds of contact, in the order of their numbers."""
+
+
+@dataclass(frozen=True, slots=True)
+class Contacts:
+    """What was noted of the contacts of each run: times in the units of the models."""
+
+    state: Floats
+    noted: Floats
+    kind: npt.NDArray[np.int8]
+    times: Mapping[str, Floats]
+
+    @classmethod
+    def of(cls, batch: Batch) -> "Contacts":
+        """Return it; the present kind of contact lasts to the end."""
+        order = len(batch.plan.model.state_names)
+        state, noted = batch.table[:, STATE : STATE + order].T, batch.table[:, STATE + order :]
+        kind, present = state[-1].astype(np.int8), batch.log(Log.TIME) - noted[:, Change.SINCE]
+        times = {
+            name: noted[:, column] + np.where(kind == number, present, 0.0)
+            for number, (name, column) in enumerate(zip(CONTACT_KINDS, _TIMES, strict=True))
+        }
+        return cls(state, noted, kind, times)
+
+    def late(self, name: str) -> npt.NDArray[np.bool_]:
+        """Return in which runs there was such contact in the last periods."""
+        rim = self.times["rolling"] + self.times["slipping"]
+        taken = {"sliding": self.times["sliding"], "rim": rim, "flying": self.times["flying"]}[name]
+        before = self.noted[:, Change[f"WINDOW_{name.upper()}"]]
+        return np.asarray(taken - before > SLACK * (1.0 + taken))
+
+
+def contact_arrays(batch: Batch, span: Floats) -> dict[str, npt.NDArray[Any]]:
+    """Return where and how the column ended that can leave its place, and how it touched the plane until then.
+
+    `span` is the length of the last periods, NaN where they were not looked at; so for `upright_outcomes`.
+    """
+    names, scale, length = batch.plan.model.state_names, batch.models.time_scale, batch.models.length
+    told = Contacts.of(batch)
+    places = [names.index(name) for name in ("footprint_x", "footprint_y", "twist")]
+    begun = told.noted[:, [Change.WINDOW_X, Change.WINDOW_Y, Change.WINDOW_TWIST]].T
+    span = np.where(np.isnan(span), np.nan, batch.log(Log.TIME) - told.noted[:, Change.WINDOW_AT])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        vx, vy, turning = (told.state[places] - begun) / (span * scale)
+    return {
+        "end_footprint": (told.state[places[:2]] * length).T,
+        "end_twist": told.state[places[2]],
+        "end_contact": told.kind,
+        "mean_velocity": np.stack([vx, vy], axis=-1) * length[:, np.newaxis],
+        "mean_twist_rate": turning,
+        "impacts": told.noted[:, Change.IMPACTS],
+        "slips": told.noted[:, Change.SLIPS],
+        **{f"time_{name}": times * scale for name, times in told.times.items()},
+    }
+
+
+def upright_outcomes(batch: Batch, span: Floats, codes: npt.NDArray[np.int8]) -> npt.NDArray[np.int8]:
+    """Return the outcomes with those of columns that stay upright in the last periods, or at the end without any."""
+    told = Contacts.of(batch)
+    seen, decided = ~np.isnan(span), batch.log(Log.STATUS) == Status.STOPPED
+    names = [kind.name for kind in batch.plan.model.contact_kinds or ()]
+    upright = ~np.any(told.state[:2], axis=0)
+    rim = np.where(seen, told.late("rim"), ~upright)
+    flies = np.where(seen, told.late("flying"), told.kind == names.index("FLYING"))
+    slides = np.where(seen, told.late("sliding"), told.kind == names.index("SLIDING"))
+    hops = decided & ~rim & flies
+    codes = np.where(hops, code_of(Outcome.LIFTED_OFF), codes)
+    return np.where(decided & ~rim & ~flies & slides, code_of(Outcome.SLID), codes).astype(np.int8)

@@ -1,0 +1,178 @@
+"""How a column goes on whose kind of contact ended, and standing until the base motion ends that."""
+
+import math
+from typing import TYPE_CHECKING
+
+from stylobate.engine.compiling.arithmetic import part
+from stylobate.engine.lanes.columns import Status
+from stylobate.engine.lanes.layout import Table
+from stylobate.engine.lanes.pattern.base_motion import held_for_good
+from stylobate.engine.lanes.pattern.contact_ends import broken_now
+from stylobate.engine.lanes.pattern.moving import azimuth_now, first_step, set_lean, set_rates, set_state
+from stylobate.engine.lanes.pattern.release import RELEASE_MARGIN, release_time
+from stylobate.engine.lanes.pattern.stops import leg_end, meet_stop, next_stop, resume, stand_to_the_end
+from stylobate.engine.lanes.roots import nearest_turn, turns_of
+
+if TYPE_CHECKING:
+    from stylobate.engine.lanes.pattern.head import (
+        FALLEN,
+        FLYING,
+        JAMMED,
+        LAST,
+        LIMIT,
+        RESTING,
+        ROLLING,
+        SLIDING,
+        SLIPPING,
+        R,
+        accelerations,
+        margins_at,
+        model_react,
+        row_state,
+    )
+
+# --- the kernel's text begins here ---
+
+# Time after release, in units of the fastest time scale, at which the departure series hands over.
+DEPARTURE = 1e-3
+# So many changes of contact without a step between them are no motion; closer than the second number they are at one
+# moment [units of the larger of 1 and the time].
+MOST_AT_ONCE, ONE_MOMENT = 100, 1e-12
+# No margin: asks how a motion goes on that begins.
+BEGINS = -1
+
+
+@part
+def go_through(buf: Table, i: int, table: Table, pieces: Table, number: int) -> int:
+    """Go on from a broken margin, and from all that break at once behind it; return WAITING, or the final status."""
+    while True:
+        if number == FALLEN:
+            return Status.OVERTURNED
+        if number == LIMIT:
+            return Status.LIMIT
+        if endless(buf, i):
+            return Status.ENDLESS
+        change(buf, i, number)
+        if buf[R.CONTACT, i] == JAMMED:
+            return Status.JAMMED
+        if buf[R.CONTACT, i] == RESTING:
+            status, number = stand(buf, i, table, pieces)
+            if status != Status.WAITING:
+                return status
+        else:
+            set_lean(buf, i)
+            number = broken_now(buf, i)
+            if number < 0:
+                set_going(buf, i)
+                return resume(buf, i, table, pieces)
+
+
+@part
+def endless(buf: Table, i: int) -> bool:
+    """Return whether the contact has changed too often at this moment; count the change that follows."""
+    t = buf[R.TIME, i]
+    again = t - buf[R.CHANGED_AT, i] <= ONE_MOMENT * max(1.0, abs(t))
+    buf[R.AT_ONCE, i] = buf[R.AT_ONCE, i] + 1.0 if again else 0.0
+    buf[R.CHANGED_AT, i] = t
+    return buf[R.AT_ONCE, i] > MOST_AT_ONCE
+
+
+@part
+def change(buf: Table, i: int, number: int) -> None:
+    """Let the model tell how it goes on from a broken margin; put that into the state, and note it."""
+    t, before = buf[R.TIME, i], int(buf[R.CONTACT, i])
+    if buf[R.TILT, i] > 0.0:
+        buf[R.LAST_AZIMUTH, i] = azimuth_now(buf, i)
+    ahead = DEPARTURE / (1.0 + buf[R.FREQUENCY, i])
+    now, later = accelerations(buf, i, t), accelerations(buf, i, t + ahead)
+    elapsed, state = model_react(buf, i, float(number), now, later, ahead)
+    set_state(buf, i, state)
+    buf[R.TIME_RESTING + before, i] += t - buf[R.SINCE, i]
+    buf[R.SINCE, i] = t
+    if number >= 0:
+        count(buf, i, number, before, int(buf[R.CONTACT, i]))
+    buf[R.STANDS, i] = 0.0
+    if elapsed > 0.0 and t + elapsed < buf[R.END, i]:
+        buf[R.TIME, i] = t + elapsed
+
+
+@part
+def count(buf: Table, i: int, number: int, before: int, after: int) -> None:
+    """Count impacts, slips that begin, rests and releases."""
+    if before == FLYING or number == LAST:
+        buf[R.IMPACTS, i] += 1.0
+    if before in (RESTING, ROLLING) and after in (SLIDING, SLIPPING):
+        buf[R.SLIPS, i] += 1.0
+    if after == RESTING and before != RESTING:
+        buf[R.RESTS, i] += 1.0
+    if before == RESTING and after != RESTING:
+        buf[R.RELEASES, i] += 1.0
+        if buf[R.RESTS, i] > 0.0:
+            buf[R.RELEASED_FROM_REST, i] = 1.0
+
+
+@part
+def set_going(buf: Table, i: int) -> None:
+    """Begin to integrate from the state in the buffer, whose lean is set: with the step wanted before, if any."""
+    x, y, tilt, t = buf[R.X, i], buf[R.Y, i], buf[R.TILT, i], buf[R.TIME, i]
+    last = buf[R.LAST_AZIMUTH, i]
+    if tilt > 0.0:
+        here = turns_of(x, y)
+        azimuth = nearest_turn(here, last)
+        buf[R.TURNS, i] = azimuth - here
+        if math.isnan(buf[R.FIRST_AZIMUTH, i]):
+            buf[R.FIRST_AZIMUTH, i] = azimuth
+    else:
+        buf[R.TURNS, i] = 0.0 if math.isnan(last) else last
+        buf[R.TOUCHED_UPRIGHT, i] = 1.0
+    if tilt > buf[R.LARGEST_TILT, i]:
+        buf[R.LARGEST_TILT, i] = tilt
+        buf[R.LARGEST_AT, i] = t
+    buf[R.IN_SPACE, i] = 1.0
+    buf[R.ATOL_NOW, i] = buf[R.ATOL, i]
+    set_rates(buf, i, t)
+    buf[R.AIMED, i] = 0.0
+    buf[R.REJECTED, i] = 0.0
+    if buf[R.WANTED, i] <= 0.0:
+        buf[R.WANTED, i] = first_step(buf, i, t)
+
+
+@part
+def stand(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int]:
+    """Stand until the base motion ends that; return WAITING and the margin that is broken, or the final status."""
+    buf[R.STANDS, i] = 1.0
+    buf[R.TOUCHED_UPRIGHT, i] = 1.0
+    buf[R.WANTED, i] = 0.0
+    set_lean(buf, i)
+    t = buf[R.TIME, i]
+    searched, release = False, math.inf
+    while True:
+        while next_stop(buf, i) <= t:
+            searched = searched and t < leg_end(buf, i)
+            status = meet_stop(buf, i, table, pieces, next_stop(buf, i))
+            if status != Status.WAITING:
+                return status, BEGINS
+        if held_for_good(buf, i):
+            buf[R.DECIDED, i] = t
+            return stand_to_the_end(buf, i, table, pieces, t), BEGINS
+        # The search is not cut at stops that leave the base motion as it is: what is looked at does not change a run.
+        if not searched:
+            release = release_time(buf, i, t, leg_end(buf, i))
+            searched = True
+        t = min(release, next_stop(buf, i))
+        buf[R.TIME, i] = t
+        if release <= t:
+            return Status.WAITING, broken_at_release(buf, i)
+
+
+@part
+def broken_at_release(buf: Table, i: int) -> int:
+    """Return the margin that ends standing; by a rounding it may not be broken yet."""
+    margins = margins_at(buf, i, buf[R.TIME, i], row_state(buf, i, R.STATE))
+    number = 0
+    if margins[0] > RELEASE_MARGIN:
+        number = 1
+        for k in range(2, LAST):
+            if margins[k] < margins[number]:
+                number = k
+    return number

@@ -1,0 +1,29 @@
+"""How a run begins that was taken into a lane."""
+
+from typing import TYPE_CHECKING
+
+from stylobate.engine.compiling.arithmetic import part
+from stylobate.engine.lanes.columns import Status
+from stylobate.engine.lanes.layout import Table
+from stylobate.engine.lanes.pattern.lift_off import find_lift
+from stylobate.engine.lanes.pattern.moving import set_off
+from stylobate.engine.lanes.pattern.resting import stand
+from stylobate.engine.lanes.pattern.stops import resume
+
+if TYPE_CHECKING:
+    from stylobate.engine.lanes.pattern.head import R
+
+# --- the kernel's text begins here ---
+
+
+@part
+def begin(buf: Table, i: int, table: Table, pieces: Table) -> int:
+    """Set the run of a lane going; return WAITING when it moves, else the status with which it ends at once."""
+    t = buf[R.TIME, i]
+    find_lift(buf, i, table, pieces)
+    if buf[R.STANDS, i] > 0.0:
+        return stand(buf, i, table, pieces, t)
+    set_off(buf, i, t, 0.0)
+    if buf[R.TILT, i] > buf[R.TILT_LIMIT, i]:
+        return Status.LIMIT
+    return resume(buf, i, table, pieces)
