@@ -82,6 +82,8 @@ def overturning_map(
 ) -> None:
     """Tell what becomes of the column over two parameters: stays, rocks, rolls or overturns.
 
+    Of --model sliding: whether it stays, slides, rocks or rolls, slips, flies or overturns.
+
     A number of column, model, motion or start can vary along each axis: angular-frequency, acceleration, start-phase,
     damping, size, tilt-x … A saved map is shown; options that change it compute it anew. Examples:
 
@@ -91,6 +93,7 @@ def overturning_map(
     stylobate map map.zarr --resume
     """
     from stylobate import spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
+    from stylobate.studies.contact_map import class_shares  # noqa: PLC0415
     from stylobate.studies.overturning import outcome_shares  # noqa: PLC0415
     from stylobate.studies.sweeps.quantities import check_quantities  # noqa: PLC0415
 
@@ -99,7 +102,7 @@ def overturning_map(
     saved = open_saved(source)
     if not is_to_compute(saved, given):
         assert saved is not None
-        found = outcome_shares(saved)
+        found = class_shares(saved) if "time_flying" in saved else outcome_shares(saved)
     else:
         if saved is None:
             described = read_source(source)
@@ -109,7 +112,8 @@ def overturning_map(
         setup = spec.MapDescription.parse(values).build()
         for place, name in zip("xy", setup.options["over"], strict=True):
             check_quantities(f"map.{place}", setup.model, [name])
-        found, complete = computed(studies.overturning_map, setup, given, "map")
+        study = studies.contact_map if setup.model.switches else studies.overturning_map
+        found, complete = computed(study, setup, given, "map")
     write(found, given)
     if as_json:
         print_json(_summary(found))
@@ -130,8 +134,12 @@ def _summary(found: "xr.Dataset") -> dict[str, Any]:
     }
 
 
+# What the counts of each kind of map are over.
+_NAMES = {"overturning map": "outcome_name", "contact map": "class_name"}
+
+
 def _shares(found: "xr.Dataset") -> list[tuple[str, int, float]]:
-    table = (found[name].to_numpy() for name in ("outcome_name", "count", "share"))
+    table = (found[name].to_numpy() for name in (_NAMES[found.attrs["kind"]], "count", "share"))
     return [(str(name), int(count), float(share)) for name, count, share in zip(*table, strict=True)]
 
 

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from stylobate.errors import ParameterError
 from stylobate.plots.basins import plot_basins
 from stylobate.plots.column_path import plot_column_path
+from stylobate.plots.contact_map import plot_contact_map, plot_drift
 from stylobate.plots.exact_response import plot_exact_response
 from stylobate.plots.exponent import plot_exponent
 from stylobate.plots.fates import plot_fates
@@ -30,6 +31,8 @@ __all__ = [
     "plot_averaging_map",
     "plot_basins",
     "plot_column_path",
+    "plot_contact_map",
+    "plot_drift",
     "plot_erosion",
     "plot_exact_response",
     "plot_exponent",
@@ -56,6 +59,8 @@ _BY_KIND: dict[str, Callable[[xr.Dataset], Figure]] = {
     "ensemble": plot_map,
     "sweep": plot_map,
     "overturning map": plot_map,
+    "contact map": plot_contact_map,
+    "drift": plot_drift,
     "attractors": plot_basins,
     "basins": plot_basins,
     "basin fractions": plot_fractions,
@@ -78,7 +83,8 @@ def plot(result: Response | xr.Dataset | Sequence[Response], *, labels: Sequence
     result
         A run, several runs to compare, or the result of a study in `stylobate.studies`: response curves, an
         overturning map, basins, attractors, basin fractions, an uncertainty exponent, integrity or its erosion, a
-        slow sweep, a Poincaré section, Lyapunov exponents, the ladder of models, differences of outcomes. A sweep over
+        slow sweep, a Poincaré section, Lyapunov exponents, the ladder of models, differences of outcomes, a
+        contact map, a drift. A sweep over
         two dimensions is drawn as a map, finished or not.
     labels
         Names for several runs; by default their outcomes.

@@ -102,6 +102,14 @@ def outcome_classes() -> tuple[MapClass, ...]:
     return (*known, _UNFINISHED_CLASS)
 
 
+def contact_classes(found: xr.Dataset) -> tuple[MapClass, ...]:
+    """Return the classes of a contact map, from standing to falling, the last for what has not been computed."""
+    looks = (_AT_REST, replace(_AT_REST, texture="--"), _ROCKING, _ROLLING_BACK, Look(_GREY, "**"), _OVERTURNED)
+    names = [str(name) for name in found["class_name"].to_numpy()]
+    shown = zip(names, (*looks, OUTCOME_LOOKS[Outcome.FAILED]), strict=True)
+    return (*(MapClass(code, name, look) for code, (name, look) in enumerate(shown)), _UNFINISHED_CLASS)
+
+
 def attractor_classes(found: xr.Dataset) -> tuple[MapClass, ...]:
     """Return the classes of the attractors in a table over `attractor_index`, of unsettled runs, and of no runs."""
     kinds = [str(kind) for kind in found["attractor_kind"].to_numpy()]

@@ -6,6 +6,8 @@ from stylobate.studies.averaging_map import averaging_map
 from stylobate.studies.basin_fractions import basin_fractions
 from stylobate.studies.basins import basins
 from stylobate.studies.boundary import uncertainty_exponent
+from stylobate.studies.contact_map import ContactClass, contact_classes, contact_map
+from stylobate.studies.drift import drift
 from stylobate.studies.exact_response import exact_response
 from stylobate.studies.fate import fates
 from stylobate.studies.integrity import erosion, integrity
@@ -25,6 +27,7 @@ from stylobate.studies.sweeps import Dask, Sweep, Threads, executor_from, open_s
 __all__ = [
     "AttractorRules",
     "Comparison",
+    "ContactClass",
     "Dask",
     "Start",
     "Sweep",
@@ -36,6 +39,9 @@ __all__ = [
     "basin_fractions",
     "basins",
     "check_paper",
+    "contact_classes",
+    "contact_map",
+    "drift",
     "erosion",
     "exact_response",
     "executor_from",
