@@ -76,7 +76,7 @@ def test_vectors_are_checked_element_by_element():
         require_vector("tilt", (0.0, math.nan), 2, "rad")
 
 
-def test_outcomes_are_nine_and_each_is_explained():
+def test_outcomes_are_ten_and_each_is_explained():
     assert [outcome.name for outcome in Outcome] == [
         "AT_REST",
         "ROCKING",
@@ -87,5 +87,6 @@ def test_outcomes_are_nine_and_each_is_explained():
         "LIMIT_REACHED",
         "LIFTED_OFF",
         "FAILED",
+        "SLID",
     ]
     assert "StylobateError" in errors.__doc__

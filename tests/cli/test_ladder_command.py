@@ -152,7 +152,7 @@ def test_maps_take_models(capsys):
             ["boundary", *COLUMN, *LINE[:4], *RANGES, "--model", "planar-rocking"],
             "no steady rolling of this planar rocking model under horizontal motion; give orbits.periodic_orbit a run",
         ),
-        (["simulate", *CASE, "--model", "sliding"], "model.kind must be one of 'slender', 'slender_rolling'"),
+        (["simulate", *CASE, "--model", "tumbling"], "model.kind must be one of 'slender', 'slender_rolling'"),
         (["simulate", *CASE, "--model", "wobbling", "--constraint", "x"], "input should be 'pure_tilt' or 'rubber'"),
         (["simulate", *CASE, "--spin", "1"], "spin must be left out: the column of model slender cannot turn"),
         (["simulate", *CASE, "--twist", "1"], "twist must be left out"),

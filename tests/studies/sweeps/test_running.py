@@ -85,7 +85,7 @@ def test_a_result_says_how_it_was_made(random, tmp_path):
         assert made["duration"] == 4.0
         assert made["motion"]["angular_frequency"] == 1.0
         assert data["outcome"].attrs["flag_meanings"].split()[0] == "NOT_COMPUTED"
-        np.testing.assert_array_equal(data["outcome"].attrs["flag_values"], np.arange(-1, 9))
+        np.testing.assert_array_equal(data["outcome"].attrs["flag_values"], np.arange(-1, 10))
 
 
 EMPTY = {

@@ -19,6 +19,9 @@ _LIFT, _FRICTION, _SUPPORT, _REST, _JAM, _STROKE = 0, 1, 2, 3, 4, 6
 # Slip begins with so much [STILL], too little to be seen and enough to have a direction.
 _KICK = 10.0
 
+# A weight that counts as none [m g]: there a sliding base lifts off, and friction vanishes with it.
+_WEIGHTLESS = 1e-12
+
 # A base that trips while it slides begins to tilt by so much [c].
 _TRIPPED = 1e-9
 
@@ -80,8 +83,10 @@ def reaction(
     if state.contact == _SLIDING:
         if event == _FRICTION:
             return stopped(state, now, later, ahead, numbers)
-        if event == _SUPPORT:
+        if event == _SUPPORT and 1.0 + now[2] - numbers.relief > _WEIGHTLESS:
             return tripping(state, now, later, ahead, numbers)
+        if event == _SUPPORT:
+            return 0.0, lifted(state, numbers)
         return settle_flat(state, now, later, ahead, numbers)
     if event == _FRICTION:
         return set_sliding(state, now, later, ahead, numbers)
