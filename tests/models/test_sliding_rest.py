@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.models.sliding import equations, impacts, transitions
+from stylobate.models.sliding import equations, impacts, on_base, on_rim, onset, posture
 
 # The numbers below which something counts as nothing, and where they are looked up.
 SMALL = ("STILL", "REST_SPEED", "JAM")
-HOMES = (equations, transitions, impacts)
+HOMES = (equations, impacts, on_base, on_rim, onset, posture)
 COLUMN = sb.Column.dimensionless(slenderness=0.2)
 
 

@@ -14,8 +14,7 @@ import math
 
 from stylobate.models.finite_tilt import FADING, TINY, cosine, sine_over_angle, tilt_acceleration
 from stylobate.models.sliding.friction import per_normal, reserve
-
-_RESTING, _SLIDING, _ROLLING, _SLIPPING, _FLYING = 0.0, 1.0, 2.0, 3.0, 4.0
+from stylobate.models.sliding.phases import FLYING, ROLLING, SLIDING, SLIPPING
 
 # A normal force or a denominator below this is as good as none.
 _LEAST = 1e-12
@@ -60,10 +59,10 @@ def balance(
         the slip; what friction has left per normal force before it slips; Painlevé's denominator;
         rate of the twist; that of the centre of the footprint but for its slip (2); ω_z.
     """
-    rolls = 1.0 if contact == _ROLLING else 0.0
-    slips = 1.0 if contact == _SLIPPING else 0.0
-    flies = 1.0 if contact == _FLYING else 0.0
-    slides = 1.0 if contact == _SLIDING else 0.0
+    rolls = 1.0 if contact == ROLLING else 0.0
+    slips = 1.0 if contact == SLIPPING else 0.0
+    flies = 1.0 if contact == FLYING else 0.0
+    slides = 1.0 if contact == SLIDING else 0.0
     rim, base = rolls + slips, 1.0 - rolls - slips - flies
     ax, ay, weight = ax + slope_x, ay + slope_y, 1.0 + az - relief
     # Kinematics

@@ -4,8 +4,7 @@ import math
 
 from stylobate.models.finite_tilt import TINY, cosine, sine_over_angle
 from stylobate.models.sliding.balance import balance
-
-_RESTING, _SLIDING, _ROLLING, _SLIPPING, _FLYING = 0.0, 1.0, 2.0, 3.0, 4.0
+from stylobate.models.sliding.phases import FLYING, RESTING, ROLLING, SLIDING, SLIPPING
 
 MARGINS = ("lift", "friction", "support", "rest", "jam", "fallen", "stroke")
 """What each of the `margins` guards, in their order.
@@ -95,8 +94,8 @@ def rates(
         slope_y,
         relief,
     )
-    stays = 1.0 if contact == _RESTING else 0.0
-    flies = 1.0 if contact == _FLYING else 0.0
+    stays = 1.0 if contact == RESTING else 0.0
+    flies = 1.0 if contact == FLYING else 0.0
     return (
         vx,
         vy,
@@ -253,10 +252,10 @@ def margins(
         slope_y,
         relief,
     )
-    rolls = contact == _ROLLING
-    slips = contact == _SLIPPING
-    flies = contact == _FLYING
-    stands = contact == _RESTING
+    rolls = contact == ROLLING
+    slips = contact == SLIPPING
+    flies = contact == FLYING
+    stands = contact == RESTING
     rim = 1.0 if rolls or slips else 0.0
     weight = 1.0 + az - relief
     pushed = math.sqrt((ax + slope_x) * (ax + slope_x) + (ay + slope_y) * (ay + slope_y))
@@ -266,7 +265,7 @@ def margins(
     speed = math.sqrt(vx * vx + vy * vy) + TINY
     radial, aside = x * vx + y * vy, abs(x * vy - y * vx) / speed
     # Slip that fades and is all but gone, or what holds a contact that does not slip
-    radius = c if contact == _SLIDING else patch * c
+    radius = c if contact == SLIDING else patch * c
     slip = sx * hx + sy * hy + radius * yawing * hz
     slipping = max(slip - STILL, ox * hx + oy * hy + oz * hz)
     friction = kept if rolls else (static * weight - pushed) if stands else 1.0 if flies else slipping

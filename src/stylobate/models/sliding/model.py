@@ -16,9 +16,10 @@ from stylobate.models.checks import require_column, require_frictions, require_l
 from stylobate.models.contact import path_outputs
 from stylobate.models.model import RELEASE_MARGIN, Floats, Model, Output
 from stylobate.models.sliding.equations import MARGINS, contact_loads, margins, rates
+from stylobate.models.sliding.lift_off import lifted
 from stylobate.models.sliding.phases import Contact, Numbers, State
+from stylobate.models.sliding.posture import forces
 from stylobate.models.sliding.reactions import react, refreshed
-from stylobate.models.sliding.transitions import forces, lifted
 
 # A least tilt counts as a stroke of the base below this, where the user tells no other [c].
 _PASSAGE = 0.01

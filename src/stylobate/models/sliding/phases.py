@@ -21,6 +21,10 @@ class Contact(IntEnum):
     """It can neither stick nor slip nor open: Painlevé's paradox, which ends a run."""
 
 
+RESTING, SLIDING, ROLLING, SLIPPING, FLYING, JAMMED = map(float, Contact)
+"""The same as the numbers that a state holds."""
+
+
 class State(NamedTuple):
     """What is integrated, in units of h and 1/ω0.
 

@@ -1,0 +1,158 @@
+"""How a rim that rolls begins to slip."""
+
+import math
+
+from stylobate.models.sliding.equations import JAM, STILL
+from stylobate.models.sliding.friction import sense_of
+from stylobate.models.sliding.lift_off import lifted, opens
+from stylobate.models.sliding.phases import JAMMED, SLIPPING, Numbers, State
+from stylobate.models.sliding.posture import (
+    KICK,
+    Triple,
+    advanced,
+    forces,
+    headed,
+    headed_along_slip,
+    lean_of,
+    lean_with_rate,
+    moving,
+    pace,
+    placed,
+    rates_of,
+)
+
+# The first of a slip takes no longer than the contact point takes for this part of the way round the rim [rad].
+_PART_OF_A_TURN = 0.02
+
+# The direction in which a contact gives way is found in so many steps at most, by differences over a small turn, until
+# it is the same.
+_MOST_TURNS, _SMALL_TURN, _SAME = 20, 1e-7, 1e-9
+
+
+def giving_way(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
+    """Return a column that has rolled so far a short time after it began to slip.
+
+    Friction then acts on with what it has, along a slip that follows the load. By that the motion departs from rolling
+    as the integral of the difference D of their rates, (D(0) + D(δ)) δ/2, with an error of the third power of δ. A slip
+    that began from nothing would take its direction from the load within no time: it has grown when it is integrated.
+    """
+    if forces(slipping_along(state, load_direction(state, now, n), n), now, n)[11] < JAM:
+        return 0.0, (lifted(state, n) if opens(state, now, n) else headed(state, (0.0, 0.0, 0.0), JAMMED))
+    # The time in which the contact point goes a small part of the way round the rim
+    quick = _PART_OF_A_TURN * math.hypot(state.tilt_x, state.tilt_y) / pace(state)
+    if quick < ahead:
+        later, ahead = sooner(now, later, quick / ahead), quick
+    rolled = rolled_on(state, now, later, ahead, n)
+    found = forces(rolled, later, n)
+    if found[5] > 0.0 and found[10] > 0.0:
+        return ahead, rolled
+    if opens(rolled, later, n):
+        return ahead, lifted(rolled, n)
+    first = slipping_along(state, load_direction(state, now, n), n)
+    last = slipping_along(rolled, load_direction(rolled, later, n), n)
+    begun = advanced(rolled, rates_of(first, now, n), 0.5 * ahead)
+    begun = advanced(begun, rates_of(state, now, n), -0.5 * ahead)
+    begun = advanced(begun, rates_of(last, later, n), 0.5 * ahead)
+    begun = advanced(begun, rates_of(rolled, later, n), -0.5 * ahead)
+    begun = headed_along_slip(headed(begun, (last.heading_x, last.heading_y, last.heading_z), SLIPPING), n)
+    found = forces(begun, later, n)
+    return ahead, begun if found[5] > 0.0 else lifted(begun, n)
+
+
+def sooner(now: Triple, later: Triple, share: float) -> Triple:
+    """Return what lies a share of the way between two accelerations."""
+    return (
+        now[0] + share * (later[0] - now[0]),
+        now[1] + share * (later[1] - now[1]),
+        now[2] + share * (later[2] - now[2]),
+    )
+
+
+def slipping_along(state: State, heading: Triple, n: Numbers) -> State:
+    """Return a rolling column with a slip along this heading that is too small to be seen."""
+    kick = KICK * STILL
+    started = moving(headed(state, heading, SLIPPING), (kick * heading[0], kick * heading[1]), 0.0, 0.0, SLIPPING)
+    if n.patch == 0.0:
+        return started
+    _, _, _, cos = lean_of(state)
+    spin = state.spin + kick * heading[2] / (n.patch * n.c * cos)
+    return placed(started, lean_with_rate(started), spin, SLIPPING)
+
+
+def load_direction(state: State, now: Triple, n: Numbers) -> Triple:
+    """Return the heading along which a rolling contact gives way: that of the acceleration that its slip would have.
+
+    Found by Newton's rule from the slip whose friction is most like the load; where that has no answer, it is this one.
+    """
+    found = forces(state, now, n)
+    drag = math.hypot(found[6], found[7])
+    along, about = sense_of(drag, found[8], found[5], n.patch * n.c, n.static)
+    if drag == 0.0:
+        return 0.0, 0.0, math.copysign(1.0, about)
+    guess = (-along * found[6] / drag, -along * found[7] / drag, about)
+    heading = guess
+    for _ in range(_MOST_TURNS):
+        one, two = across(heading)
+        aside = pulled_aside(state, heading, one, two, now, n)
+        by_one = pulled_aside(state, tilted(heading, one, _SMALL_TURN), one, two, now, n)
+        by_two = pulled_aside(state, tilted(heading, two, _SMALL_TURN), one, two, now, n)
+        a, b = (by_one[0] - aside[0]) / _SMALL_TURN, (by_two[0] - aside[0]) / _SMALL_TURN
+        c, d = (by_one[1] - aside[1]) / _SMALL_TURN, (by_two[1] - aside[1]) / _SMALL_TURN
+        # The two directions turn with the heading.
+        gain = along_slip(state, heading, now, n)
+        a, d = a - gain, d - gain
+        if n.patch == 0.0:  # a point turns freely: one direction only
+            b, c, d = 0.0, 0.0, 1.0
+        size = a * d - b * c
+        if size == 0.0:
+            return guess
+        p, q = (b * aside[1] - d * aside[0]) / size, (c * aside[0] - a * aside[1]) / size
+        if n.patch == 0.0:
+            q = 0.0
+        if math.hypot(p, q) > 1.0:
+            return guess
+        heading = tilted(tilted(heading, one, p), two, q)
+        if math.hypot(p, q) < _SAME:
+            return heading
+    return guess
+
+
+def across(heading: Triple) -> tuple[Triple, Triple]:
+    """Return two unit vectors across a heading, the first level with the plane."""
+    hx, hy, hz = heading
+    level = math.hypot(hx, hy)
+    one = (-hy / level, hx / level, 0.0) if level > 0.0 else (1.0, 0.0, 0.0)
+    return one, (hy * one[2] - hz * one[1], hz * one[0] - hx * one[2], hx * one[1] - hy * one[0])
+
+
+def tilted(heading: Triple, way: Triple, angle: float) -> Triple:
+    """Return a heading turned towards a `way` across it by an angle whose tangent is told."""
+    x, y, z = heading[0] + angle * way[0], heading[1] + angle * way[1], heading[2] + angle * way[2]
+    size = math.sqrt(x * x + y * y + z * z)
+    return x / size, y / size, z / size
+
+
+def pulled_aside(
+    state: State, heading: Triple, one: Triple, two: Triple, now: Triple, n: Numbers
+) -> tuple[float, float]:
+    """Return the acceleration of a slip along a heading, across that: its parts along two directions."""
+    found = forces(slipping_along(state, heading, n), now, n)
+    x, y, z = found[3], found[4], found[9]
+    return x * one[0] + y * one[1] + z * one[2], x * two[0] + y * two[1] + z * two[2]
+
+
+def along_slip(state: State, heading: Triple, now: Triple, n: Numbers) -> float:
+    """Return the acceleration of a slip along its heading."""
+    found = forces(slipping_along(state, heading, n), now, n)
+    return found[3] * heading[0] + found[4] * heading[1] + found[9] * heading[2]
+
+
+def rolled_on(state: State, now: Triple, later: Triple, elapsed: float, n: Numbers) -> State:
+    """Return a column that goes on rolling for a short time, by the classical rule of Runge and Kutta."""
+    middle = (0.5 * (now[0] + later[0]), 0.5 * (now[1] + later[1]), 0.5 * (now[2] + later[2]))
+    first = rates_of(state, now, n)
+    second = rates_of(advanced(state, first, 0.5 * elapsed), middle, n)
+    third = rates_of(advanced(state, second, 0.5 * elapsed), middle, n)
+    fourth = rates_of(advanced(state, third, elapsed), later, n)
+    end = advanced(advanced(state, first, elapsed / 6.0), second, elapsed / 3.0)
+    return advanced(advanced(end, third, elapsed / 3.0), fourth, elapsed / 6.0)

@@ -1,0 +1,147 @@
+"""States of the column, made and looked at: lean, turning and slip, rates, forces and margins."""
+
+import math
+
+from stylobate.models.finite_tilt import cosine, sine_over_angle
+from stylobate.models.sliding.balance import balance
+from stylobate.models.sliding.equations import STILL, margins, rates
+from stylobate.models.sliding.phases import SLIDING, Numbers, State
+
+# Slip begins with so much [STILL], too little to be seen and enough to have a direction.
+KICK = 10.0
+
+Triple = tuple[float, float, float]
+Margins = tuple[float, float, float, float, float, float, float]
+Forces = tuple[
+    float, float, float, float, float, float, float, float, float, float, float, float, float, float, float, float
+]
+
+
+def forces(state: State, now: Triple, n: Numbers) -> Forces:
+    """Return what `balance` tells of a state."""
+    return balance(
+        state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y, state.spin, state.velocity_x,
+        state.velocity_y, state.heading_x, state.heading_y, state.heading_z, state.contact, now[0], now[1], now[2],
+        n.c, n.eta, n.zeta, n.kappa, n.axial, n.resistance, n.kinetic, n.static, n.patch, n.slope_x, n.slope_y,
+        n.relief,
+    )  # fmt: skip
+
+
+def rates_of(state: State, now: Triple, n: Numbers) -> Forces:
+    """Return the rates of a state."""
+    return rates(
+        state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y, state.spin, state.twist, state.footprint_x,
+        state.footprint_y, state.velocity_x, state.velocity_y, state.rise, state.rise_rate, state.heading_x,
+        state.heading_y, state.heading_z, state.contact, now[0], now[1], now[2], n.c, n.eta, n.zeta, n.kappa, n.axial,
+        n.resistance, n.kinetic, n.static, n.patch, n.restitution, n.passage_tilt, n.slope_x, n.slope_y, n.relief,
+    )  # fmt: skip
+
+
+def margins_of(state: State, now: Triple, rest: float, n: Numbers) -> Margins:
+    """Return the margins of a state."""
+    return margins(
+        state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y, state.spin, state.twist, state.footprint_x,
+        state.footprint_y, state.velocity_x, state.velocity_y, state.rise, state.rise_rate, state.heading_x,
+        state.heading_y, state.heading_z, state.contact, now[0], now[1], now[2], rest, n.c, n.eta, n.zeta, n.kappa,
+        n.axial, n.resistance, n.kinetic, n.static, n.patch, n.restitution, n.passage_tilt, n.slope_x, n.slope_y,
+        n.relief,
+    )  # fmt: skip
+
+
+def advanced(state: State, by: Forces, elapsed: float) -> State:
+    """Return `state` after this time with the rates `by`."""
+    return State(
+        state.tilt_x + elapsed * by[0], state.tilt_y + elapsed * by[1], state.tilt_rate_x + elapsed * by[2],
+        state.tilt_rate_y + elapsed * by[3], state.spin + elapsed * by[4], state.twist + elapsed * by[5],
+        state.footprint_x + elapsed * by[6], state.footprint_y + elapsed * by[7], state.velocity_x + elapsed * by[8],
+        state.velocity_y + elapsed * by[9], state.rise + elapsed * by[10], state.rise_rate + elapsed * by[11],
+        state.heading_x, state.heading_y, state.heading_z, state.contact,
+    )  # fmt: skip
+
+
+def placed(state: State, lean: tuple[float, float, float, float], spin: float, contact: float) -> State:
+    """Return `state` with this lean and its rate, spin and kind of contact."""
+    return State(
+        lean[0], lean[1], lean[2], lean[3], spin, state.twist, state.footprint_x, state.footprint_y,
+        state.velocity_x, state.velocity_y, state.rise, state.rise_rate, state.heading_x, state.heading_y,
+        state.heading_z, contact,
+    )  # fmt: skip
+
+
+def moving(state: State, velocity: tuple[float, float], rise: float, climb: float, contact: float) -> State:
+    """Return `state` with this velocity, height and its rate, and kind of contact."""
+    return State(
+        state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y, state.spin, state.twist,
+        state.footprint_x, state.footprint_y, velocity[0], velocity[1], rise, climb, state.heading_x,
+        state.heading_y, state.heading_z, contact,
+    )  # fmt: skip
+
+
+def headed(state: State, heading: Triple, contact: float) -> State:
+    """Return `state` with this heading and kind of contact."""
+    return State(
+        state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y, state.spin, state.twist,
+        state.footprint_x, state.footprint_y, state.velocity_x, state.velocity_y, state.rise, state.rise_rate,
+        heading[0], heading[1], heading[2], contact,
+    )  # fmt: skip
+
+
+def radius_of(state: State, n: Numbers) -> float:
+    """Return the radius of what touches: that of the patch, or of the base."""
+    return n.c if state.contact == SLIDING else n.patch * n.c
+
+
+def lean_of(state: State) -> tuple[float, float, float, float]:
+    """Return the direction d of the lean, its sine and its cosine; upright, that in which it begins to lean."""
+    square = state.tilt_x**2 + state.tilt_y**2
+    tilt = math.sqrt(square)
+    if tilt > 0.0:
+        return state.tilt_x / tilt, state.tilt_y / tilt, sine_over_angle(square) * tilt, cosine(square)
+    speed = math.hypot(state.tilt_rate_x, state.tilt_rate_y)
+    return state.tilt_rate_x / speed, state.tilt_rate_y / speed, 0.0, 1.0
+
+
+def lean_with_rate(state: State) -> tuple[float, float, float, float]:
+    """Return the tilt vector and its rate."""
+    return state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y
+
+
+def turning(state: State) -> tuple[float, float]:
+    """Return w1 and w2."""
+    ux, uy, _, _ = lean_of(state)
+    square = state.tilt_x**2 + state.tilt_y**2
+    across = state.tilt_rate_y * ux - state.tilt_rate_x * uy
+    return -sine_over_angle(square) * across, state.tilt_rate_x * ux + state.tilt_rate_y * uy
+
+
+def yaw(state: State) -> float:
+    """Return ω_z."""
+    if state.tilt_x == 0.0 and state.tilt_y == 0.0:
+        return state.spin
+    _, _, sine, cos = lean_of(state)
+    w1, _ = turning(state)
+    return state.spin * cos - w1 * sine
+
+
+def height_of(sine: float, cos: float, c: float) -> float:
+    """Return how much higher the centre of mass of a column on its rim is than that of one that stands."""
+    return c * sine - sine * sine / (1.0 + cos)
+
+
+def headed_along_slip(state: State, n: Numbers) -> State:
+    """Return `state` with its heading along its slip."""
+    slip_z = radius_of(state, n) * yaw(state)
+    size = math.sqrt(state.velocity_x**2 + state.velocity_y**2 + slip_z**2)
+    if size == 0.0:
+        return state
+    return headed(state, (state.velocity_x / size, state.velocity_y / size, slip_z / size), state.contact)
+
+
+def slips(vx: float, vy: float, turning: float) -> bool:
+    """Return whether a slip is one, and does not count as none."""
+    return math.sqrt(vx * vx + vy * vy + turning * turning) > KICK * STILL
+
+
+def pace(state: State) -> float:
+    """Return |α̇|, and not nought."""
+    return math.hypot(state.tilt_rate_x, state.tilt_rate_y) + 1e-300

@@ -1,0 +1,147 @@
+"""How a column goes on that strikes the plane, upright, with the rim of its base."""
+
+import math
+from typing import NamedTuple
+
+from stylobate.models.finite_tilt import cosine, sine_over_angle
+from stylobate.models.sliding.friction import TWISTING_BASE
+from stylobate.models.sliding.impacts import base_impulse, impulse, rebound, responses
+from stylobate.models.sliding.on_base import rests, set_down, settle_flat
+from stylobate.models.sliding.on_rim import settle_rim
+from stylobate.models.sliding.phases import FLYING, SLIDING, SLIPPING, Numbers, State
+from stylobate.models.sliding.posture import Triple, headed, height_of, lean_with_rate, moving, placed
+
+# A rim that strikes again and again does so at most so often, and no more below this part of its first speed.
+_MOST_STRIKES, _FAINT = 50, 1e-10
+
+
+class Body(NamedTuple):
+    """A column that stands upright for a moment: velocity of its centre of mass, rate of its tilt, and spin."""
+
+    velocity_x: float
+    velocity_y: float
+    climb: float
+    rate_x: float
+    rate_y: float
+    spin: float
+
+
+def stroke(state: State, now: Triple, later: Triple, ahead: float, rest: float, n: Numbers) -> tuple[float, State]:
+    """Return how a column goes on whose base strikes the plane: on the other side, after an impact of the rim there.
+
+    The passage is taken for one in the vertical plane of its motion, with the energy that it has. e_n = 0 is Housner's
+    impact; where the column then leans another way than the struck point lies, the rim strikes again, until it rests
+    on the point towards which it leans.
+    """
+    x, y, vx, vy = lean_with_rate(state)
+    tilt, pace = math.hypot(x, y), math.hypot(vx, vy)
+    ux, uy = vx / pace, vy / pace
+    # A path that leads straight to the upright is followed there, and as long behind it.
+    straight = -(x * ux + y * uy) > 0.5 * tilt
+    elapsed = 2.0 * tilt / pace if straight else 0.0
+    speed = planar_speed(state, (ux, uy), n)
+    body = Body(
+        state.velocity_x + speed * ux - n.c * state.spin * uy,
+        state.velocity_y + speed * uy + n.c * state.spin * ux,
+        -n.c * speed,
+        speed * ux,
+        speed * uy,
+        state.spin,
+    )
+    bounce = rebound(n.restitution, 2.0 * n.c * speed)
+    body = struck_at(body, ux, uy, bounce, n)
+    if bounce > 0.0:
+        return elapsed, flying_from(state, body, (tilt * ux, tilt * uy), n)
+    behind = 0.5 * elapsed if straight else 0.0
+    further, after = coming_down(state, body, tilt, behind, now, later, ahead, rest, n)
+    return elapsed + further, after
+
+
+def coming_down(
+    state: State,
+    body: Body,
+    tilt: float,
+    behind: float,
+    now: Triple,
+    later: Triple,
+    ahead: float,
+    rest: float,
+    n: Numbers,
+) -> tuple[float, State]:
+    """Return how a column goes on that has struck the plane, upright, and stays on it.
+
+    It strikes again until it rests on the point of its rim towards which it leans, by `tilt`, or by as much as it goes
+    in the time `behind` the upright.
+    """
+    speed = math.hypot(body.velocity_x, body.velocity_y) + math.hypot(body.rate_x, body.rate_y) + abs(body.climb)
+    for _ in range(_MOST_STRIKES):
+        pace = math.hypot(body.rate_x, body.rate_y)
+        if pace <= _FAINT * speed:
+            break
+        ux, uy = body.rate_x / pace, body.rate_y / pace
+        if body.climb - n.c * pace >= -_FAINT * speed:
+            reach = pace * behind if behind > 0.0 else tilt
+            after = placed(state, (reach * ux, reach * uy, body.rate_x, body.rate_y), body.spin, SLIPPING)
+            sx = body.velocity_x - body.rate_x - n.c * body.spin * uy
+            sy = body.velocity_y - body.rate_y + n.c * body.spin * ux
+            after = moving(after, (sx, sy), 0.0, 0.0, SLIPPING)
+            if rests(after, now, rest, n):
+                return set_down(after, now, later, ahead, n)
+            return settle_rim(after, now, later, ahead, n)
+        body = struck_at(body, ux, uy, 0.0, n)
+    return flattened(state, body, now, later, ahead, n)
+
+
+def planar_speed(state: State, way: tuple[float, float], n: Numbers) -> float:
+    """Return the rate of tilt with which a column passes the upright in a plane that has the energy of `state`.
+
+    It then turns about the point of its rim behind it, with the slip that it has now.
+    """
+    c, kappa = n.c, n.kappa
+    x, y, vx, vy = lean_with_rate(state)
+    tilt, sx, sy = math.hypot(x, y), state.velocity_x, state.velocity_y
+    dx, dy = (x / tilt, y / tilt) if tilt > 0.0 else (-way[0], -way[1])
+    # The centre of mass: v + α̇ − c w3 Z × d where it touches, and upwards
+    mx, my, climb = sx + vx + c * state.spin * dy, sy + vy - c * state.spin * dx, c * (vx * dx + vy * dy)
+    behind_x, behind_y = sx - c * state.spin * way[1], sy + c * state.spin * way[0]
+    energy = 0.5 * kappa * (mx * mx + my * my + climb * climb) + 0.5 * (1.0 - kappa) * (vx * vx + vy * vy)
+    energy -= 0.5 * kappa * (behind_x * behind_x + behind_y * behind_y)
+    inertia, along = 1.0 + kappa * c * c, kappa * (behind_x * way[0] + behind_y * way[1])
+    return max((math.sqrt(max(along * along + 2.0 * inertia * energy, 0.0)) - along) / inertia, 0.0)
+
+
+def struck_at(body: Body, ux: float, uy: float, bounce: float, n: Numbers) -> Body:
+    """Return a column that stands upright after an impact of the point of its rim in the direction (ux, uy)."""
+    c, kappa = n.c, n.kappa
+    vx = body.velocity_x - body.rate_x - c * body.spin * uy
+    vy = body.velocity_y - body.rate_y + c * body.spin * ux
+    vz = body.climb - c * (body.rate_x * ux + body.rate_y * uy)
+    arrival = (vx * ux + vy * uy, vy * ux - vx * uy, vz)
+    pd, pn, pz = impulse(arrival, responses(0.0, 1.0, c, kappa, n.axial), n.kinetic, bounce)
+    one, two = pn / (1.0 - kappa), -(c * pz + pd) / (1.0 - kappa)  # of w1 and w2
+    return Body(
+        body.velocity_x + (pd * ux - pn * uy) / kappa,
+        body.velocity_y + (pd * uy + pn * ux) / kappa,
+        body.climb + pz / kappa,
+        body.rate_x + two * ux + one * uy,
+        body.rate_y + two * uy - one * ux,
+        body.spin + pn / (kappa * n.axial * c),
+    )
+
+
+def flying_from(state: State, body: Body, lean: tuple[float, float], n: Numbers) -> State:
+    """Return a column in the air that the plane has just thrown off, leaning this much."""
+    tilt = math.hypot(lean[0], lean[1])
+    square = tilt * tilt
+    rise = height_of(sine_over_angle(square) * tilt, cosine(square), n.c)
+    flying = placed(state, (lean[0], lean[1], body.rate_x, body.rate_y), body.spin, FLYING)
+    flying = moving(flying, (body.velocity_x, body.velocity_y), rise, body.climb, FLYING)
+    return headed(flying, (0.0, 0.0, 0.0), FLYING)
+
+
+def flattened(state: State, body: Body, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
+    """Return a column too squat to rock over to its other side: its whole base stops on the plane."""
+    approach, vx, vy = max(-body.climb, 0.0), body.velocity_x, body.velocity_y
+    kx, ky, turned = base_impulse(vx, vy, body.spin, approach, n.kinetic, TWISTING_BASE, n.c, n.axial * n.c * n.c)
+    flat = placed(state, (0.0, 0.0, 0.0, 0.0), body.spin + turned, SLIDING)
+    return settle_flat(moving(flat, (vx + kx, vy + ky), 0.0, 0.0, SLIDING), now, later, ahead, n)
