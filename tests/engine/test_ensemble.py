@@ -225,6 +225,7 @@ class _Unsaid(sb.Slender):
     departure = None
 
 
+@pytest.mark.slow
 def test_a_model_that_cannot_depart_is_not_said_to_stand():
     with pytest.raises(UnsupportedError, match="does not say how a column departs"):
         sb.simulate_ensemble(_Unsaid(MODEL.column, damping=ETA), LINE, duration=5.0)
@@ -267,6 +268,7 @@ print(many["end_tilt"].to_numpy().tobytes().hex())
 """
 
 
+@pytest.mark.slow
 def test_a_model_in_a_users_file_is_compiled_once_and_anew_when_it_changes(tmp_path):
     path = tmp_path / "dragged.py"
     path.write_text(OWN)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
+from stylobate.engine.ensembles import pool
 from stylobate.errors import UnsupportedError
 from stylobate.models.sliding import Contact, Sliding
 
@@ -62,6 +63,58 @@ def test_runs_are_those_of_the_single_engine():
     assert {"slip", "stick", "stroke", "land", "slide", "overturned"} <= set(kinds)
 
 
+def compared(motion, starts, numbers, duration):
+    """Follow runs together and alone; compare their ends, samples and strobes, and return the kinds of events."""
+    count, kinds = len(duration), Counter()
+    given = {"duration": duration, "rtol": RTOL, "samples": 5, "strobes": 2, "threads": 1}
+    runs = sb.simulate_ensemble(Sliding(COLUMN), motion, parameters=numbers, **starts, **given)
+    for i in range(count):
+        run = runs.isel(run=i)
+        model, moved = sb.with_parameters(Sliding(COLUMN), motion, **{k: float(v[i]) for k, v in numbers.items()})
+        start = {name: values[i].tolist() for name, values in starts.items()}
+        single = sb.simulate(model, moved, duration=float(duration[i]), rtol=RTOL, **start)
+        end = float(single.data["time"][-1])
+        last = single.sample(min(float(run["end_time"]), end)).isel(time=0)
+        for name in ("tilt", "spin", "twist", "footprint"):
+            np.testing.assert_allclose(run[f"end_{name}"], last[name], atol=1e-7, err_msg=name)
+        period = 2.0 * np.pi / moved.highest_frequency
+        strobes = [period * (np.floor(duration[i] / period) - back) for back in (1, 0)]
+        for kind, times in (("sample", run["sample_time"].to_numpy()), ("strobe", np.array(strobes))):
+            # What begins to slip at once is told at its start as it is the lapse of that later.
+            seen = (times > 0.0) & (times <= end)
+            told = f"{kind}d_tilt" if kind == "sample" else "strobe_tilt"
+            np.testing.assert_allclose(run[told][seen], single.sample(times[seen])["tilt"], atol=1e-7)
+            assert np.isnan(run[told][(times < 0.0) | (times > end)]).all()
+        kinds += Counter(event.kind for event in single.events)
+        for name in TIMES:
+            assert float(run[name]) == pytest.approx(single.measures[name], abs=5e-3)
+    return set(kinds)
+
+
+def test_runs_with_a_patch_are_those_of_the_single_engine():
+    starts, numbers, acceleration = random_runs(4, seed=5)
+    starts["spin"] = np.linspace(-0.4, 0.5, 4)  # of columns that stand too
+    numbers |= {"acceleration": acceleration, "patch": np.linspace(0.02, 0.4, 4)}
+    assert {"slip", "stick"} & compared(CIRCLE, starts, numbers, np.linspace(2.0, 3.0, 4))
+
+
+def test_runs_on_a_base_that_moves_up_and_down_are_those_of_the_single_engine():
+    starts, numbers, acceleration = random_runs(6, seed=6)
+    oblique = sb.Harmonic.oblique(acceleration=1.0, angular_frequency=3.0, angle=1.1)
+    numbers |= {"acceleration": 2.5 * acceleration, "patch": np.array([0.0, 0.0, 0.1] * 2)}
+    assert {"lift", "land"} <= compared(oblique, starts, numbers, np.linspace(3.0, 4.0, 6))
+
+
+def test_threads_change_nothing(monkeypatch):
+    monkeypatch.setattr(pool, "_FEWEST", 4)
+    monkeypatch.setattr(pool, "_MOST", 4)
+    starts, numbers, acceleration = random_runs(16, seed=7)
+    options = {"acceleration": acceleration, "parameters": numbers, "duration": 4.0, "rtol": 1e-8, "samples": 3}
+    alone, shared = (ensemble(threads=threads, **options, **starts) for threads in (1, 3))
+    for name in alone.data_vars:
+        np.testing.assert_array_equal(alone[name], shared[name], err_msg=name)
+
+
 def test_kinds_of_contact_last_for_the_whole_run():
     starts, numbers, acceleration = random_runs(16, seed=2)
     runs = ensemble(acceleration=acceleration, parameters=numbers, duration=5.0, rtol=1e-8, **starts)
@@ -107,6 +160,19 @@ def test_a_base_turns_to_a_stop_as_coulomb_tells():
     assert float(run["time_sliding"][0]) == pytest.approx(stop, rel=1e-8)
     assert float(run["end_twist"][0]) == pytest.approx(0.5 * spin * stop, rel=1e-8)
     assert sb.results.outcome_of(int(run["outcome"][0])) is sb.Outcome.AT_REST
+
+
+def test_a_base_slides_down_a_plane_as_galileo_tells():
+    # Steps are half a period long here, as the times at which the last periods are looked at lie apart.
+    frequency, friction, incline = np.linspace(8.0, 20.0, 24), 0.03, 0.2
+    duration = 12.0 * 2.0 * np.pi / frequency
+    runs = ensemble(
+        Sliding(COLUMN, friction_coefficient=friction, incline=incline), acceleration=np.zeros(24), rtol=1e-5,
+        parameters={"angular_frequency": frequency}, duration=duration, max_steps=1000, tilt=(0.0, 0.0),
+    )  # fmt: skip
+    assert (runs["outcome"] == sb.results.code_of(sb.Outcome.SLID)).all()
+    way = 0.5 * COLUMN.gravity * (np.sin(incline) - friction * np.cos(incline)) * duration**2
+    np.testing.assert_allclose(runs["end_footprint"][:, 0], way, rtol=1e-5)
 
 
 def test_rocking_comes_to_rest_by_strokes_of_its_base():

@@ -68,3 +68,8 @@ def test_a_start_that_cannot_be_is_named(options, match):
 @pytest.mark.parametrize("options", [{"velocity": (0.1, 0.0, 0.0)}, {"clearance": 0.1}])
 def test_a_model_that_neither_slips_nor_flies_says_so(options):
     refused(next(iter(options)), lambda: sb.simulate(sb.Rolling(COLUMN), tilt=(0.05, 0.0), duration=1.0, **options))
+
+
+def test_no_times_are_no_samples():
+    run = sb.simulate(sb.Sliding(COLUMN), tilt=(0.1, 0.0), duration=1.0)
+    assert run.sample([]).sizes["time"] == 0

@@ -7,6 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate import theory
+from stylobate.models.sliding.friction import sense_of
 
 COLUMN = sb.Column.dimensionless(slenderness=0.15, inertia_ratio=0.72, axial_ratio=0.6)
 # No friction of either kind is ever all used by this.
@@ -131,3 +132,23 @@ def test_steady_rolling_with_slip_stays(forcing, mu, frictions):
     np.testing.assert_allclose(data["spin"], known.spin[branch], rtol=1e-7)
     np.testing.assert_allclose(np.hypot(*data["slip_velocity"].to_numpy().T), np.hypot(*slip), rtol=1e-7)
     np.testing.assert_allclose(data["normal_force"], 1.0, atol=1e-7)
+
+
+def test_what_tips_before_it_slides_tips_though_it_would_slide_on():
+    # Let go on a steep plane: pushed beyond what holds it, its base would slide on once it slid.
+    kinetic, slenderness, static, incline = 0.14, 0.15, 0.25, 0.3
+    assert kinetic < slenderness < static < math.tan(incline)
+    model = sb.Sliding(
+        sb.Column.dimensionless(slenderness=slenderness), friction_coefficient=kinetic,
+        static_friction_coefficient=static, incline=incline,
+    )  # fmt: skip
+    run = sb.simulate(model, duration=20.0)
+    assert run.outcome is sb.Outcome.OVERTURNED
+    assert run.measures["time_rolling"] > 1.0
+
+
+@pytest.mark.parametrize("normal", [0.0, -0.5])
+def test_a_patch_that_the_plane_would_have_to_pull_gives_way_by_slip(normal):
+    along, about = sense_of(0.2, 0.01, normal, 0.05, 0.3)
+    assert along == pytest.approx(1.0, abs=1e-6)
+    assert -1e-3 < about < 0.0

@@ -8,6 +8,7 @@ import typer
 
 from stylobate.cli.basin import basin
 from stylobate.cli.boundary import boundary
+from stylobate.cli.drift import drift
 from stylobate.cli.ladder import ladder
 from stylobate.cli.many_runs import INTERRUPTED
 from stylobate.cli.map import overturning_map
@@ -54,6 +55,7 @@ for command in (paper, simulate, ladder, response, boundary):
     app.command()(command)
 app.command("map")(overturning_map)
 app.command()(basin)
+app.command()(drift)
 
 
 def main() -> None:

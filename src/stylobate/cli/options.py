@@ -265,6 +265,13 @@ def overlay_axes(described: Mapping[str, Any], given: Mapping[str, Any], section
     return {**values, section: table} if table else values
 
 
+def overlay_late(described: Mapping[str, Any], given: Mapping[str, Any], section: str) -> dict[str, Any]:
+    """Return the values `described` with the option `late`, where it is given, in a table of them."""
+    values = dict(described)
+    _section(values, section, _pick(given, ("late",)))
+    return values
+
+
 def overlay_sample(described: Mapping[str, Any], given: Mapping[str, Any], section: str) -> dict[str, Any]:
     """Return the values `described` with the random sample `given` as options random, seed and over in a table."""
     values, sample = dict(described), _pick(given, ("random", "seed"))

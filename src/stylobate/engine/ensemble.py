@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from stylobate.engine.ensembles.alone import follow_alone
 from stylobate.engine.ensembles.batch import Batch, Plan
 from stylobate.engine.ensembles.broadcasting import AXIS, ArrayLike, Runs, broadcast
 from stylobate.engine.ensembles.harmonics import terms_of
@@ -176,10 +177,16 @@ def _followed(
     done = 0
 
     def compute(part: slice, halt: Halt) -> None:
-        batch = Batch.of(plan, runs.part(part))
+        chosen = runs.part(part)
+        batch = Batch.of(plan, chosen)
         batch.advance(halt)
-        for name, values in summaries(batch).items():
-            arrays[name][part] = values
+        _put(arrays, part, batch)
+        stiff = np.flatnonzero(batch.stiff)
+        if stiff.size:
+            chosen = chosen.part(stiff)
+            batch = Batch.of(plan, chosen)
+            follow_alone(batch, chosen, halt)
+            _put(arrays, part.start + stiff, batch)
 
     def count(part: slice) -> None:
         nonlocal done
@@ -188,6 +195,11 @@ def _followed(
             progress(done, len(runs))
 
     return run_parts(parts_of(len(runs), threads), compute, threads, count)
+
+
+def _put(arrays: Arrays, places: slice | npt.NDArray[np.intp], batch: Batch) -> None:
+    for name, values in summaries(batch).items():
+        arrays[name][places] = values
 
 
 def _provenance(model: Model, motion: BaseMotion, options: Options, same: Mapping[str, Any]) -> dict[str, Any]:

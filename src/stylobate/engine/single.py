@@ -133,7 +133,7 @@ def simulate(
         friction_coefficient = require_positive("friction_coefficient", friction_coefficient)
     duration = require_positive("duration", duration, "s")
     samples = None if samples is None else require_whole("samples", samples, least=2)
-    method = _method(model, moved, rtol, atol, max_steps)
+    method = method_of(model, moved, rtol, atol, max_steps)
     forcing = Forcing.of(model, moved)
     thresholds = thresholds_of(model, forcing, tilt_limit, rest_energy)
     check_motion(moved, duration)
@@ -245,7 +245,8 @@ def _decided_at(course: Course | SwitchingCourse, verdict: Verdict, duration: fl
     return course.trajectory.end * course.model.time_scale
 
 
-def _method(model: Model, motion: BaseMotion, rtol: float, atol: float | None, max_steps: int) -> Method:
+def method_of(model: Model, motion: BaseMotion, rtol: float, atol: float | None, max_steps: int) -> Method:
+    """Return how a run is integrated, its options checked."""
     low, high = RTOL_RANGE
     rtol = require_positive("rtol", rtol)
     if not low <= rtol <= high:

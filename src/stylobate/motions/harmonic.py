@@ -154,13 +154,21 @@ class Harmonic(BaseMotion):
         start_phase: float = 0.0,
         ramp: float = 0.0,
     ) -> Self:
-        """Return a motion along a line that rises at `angle` [rad] towards `direction` [rad], as of a conveyor."""
+        """Return a motion along a line that rises at `angle` [rad] towards `direction` [rad], as of a conveyor.
+
+        As in all studies `acceleration` is the horizontal amplitude [m/s²]; the vertical one is tan(angle) times it.
+        """
         acceleration = require_finite("acceleration", acceleration, "m/s²")
-        angle = require_finite("angle", angle, "rad")
         direction = require_finite("direction", direction, "rad")
-        level = acceleration * math.cos(angle)
+        if not abs(angle) < math.pi / 2.0:
+            message = f"angle must lie between -pi/2 and pi/2 rad, got {angle!r}; see Harmonic.vertical"
+            raise ParameterError(message)
         return cls(
-            amplitude=(level * math.cos(direction), level * math.sin(direction), acceleration * math.sin(angle)),
+            amplitude=(
+                acceleration * math.cos(direction),
+                acceleration * math.sin(direction),
+                acceleration * math.tan(angle),
+            ),
             angular_frequency=angular_frequency,
             start_phase=start_phase,
             ramp=ramp,

@@ -21,8 +21,10 @@ from stylobate.plots.paper_report import paper_report
 from stylobate.plots.response import plot_response
 from stylobate.plots.runs import plot_runs
 from stylobate.plots.sections import plot_section
+from stylobate.plots.slipping_boundary import plot_slipping_boundary
 from stylobate.plots.slow_sweep import plot_slow_sweep
 from stylobate.plots.stability_boundary import plot_averaging_map, plot_stability_boundary
+from stylobate.plots.start_boundary import plot_start_boundary
 from stylobate.results import Response
 
 __all__ = [
@@ -46,8 +48,10 @@ __all__ = [
     "plot_response",
     "plot_runs",
     "plot_section",
+    "plot_slipping_boundary",
     "plot_slow_sweep",
     "plot_stability_boundary",
+    "plot_start_boundary",
 ]
 
 _BY_KIND: dict[str, Callable[[xr.Dataset], Figure]] = {
@@ -69,6 +73,8 @@ _BY_KIND: dict[str, Callable[[xr.Dataset], Figure]] = {
     "erosion": plot_erosion,
     "ladder": plot_ladder,
     "outcome differences": plot_outcome_differences,
+    "slipping boundary": plot_slipping_boundary,
+    "start boundary": plot_start_boundary,
     "slow sweep": plot_slow_sweep,
     "Poincaré section": plot_section,
     "Lyapunov exponents": plot_lyapunov,
@@ -84,8 +90,8 @@ def plot(result: Response | xr.Dataset | Sequence[Response], *, labels: Sequence
         A run, several runs to compare, or the result of a study in `stylobate.studies`: response curves, an
         overturning map, basins, attractors, basin fractions, an uncertainty exponent, integrity or its erosion, a
         slow sweep, a Poincaré section, Lyapunov exponents, the ladder of models, differences of outcomes, a
-        contact map, a drift. A sweep over
-        two dimensions is drawn as a map, finished or not.
+        contact map, a drift, the boundaries of slip and of the start of motion, a fragility, annual rates, reached
+        bands. A sweep over two dimensions is drawn as a map, finished or not.
     labels
         Names for several runs; by default their outcomes.
 

@@ -22,6 +22,8 @@ _MARGIN = 0.35
 _TICKS = 3
 # Samples of paths, and into how many parts a step is cut at most where the contact point turns by more than this [rad].
 _SAMPLES, _PARTS, _TURN = 1500, 64, 0.06
+# A contact that can change moves less than this between samples, in radii, unless it leaps.
+_LEAP = 0.5
 
 
 @styled
@@ -66,7 +68,7 @@ def plot_column_path(
     space, plan = figure.subplots(1, 2, width_ratios=(1.0, 1.15))
     low, high = _extent(data, radius)
     _draw_ground(space, view, low, high)
-    _draw_paths_in_space(space, view, data)
+    _draw_paths_in_space(space, view, data, radius)
     for index, one in enumerate(columns):
         _draw_column(space, view, one, full=index == len(columns) - 1)
     _draw_height(space, view, low, high, height)
@@ -180,8 +182,17 @@ def _label(axes: Axes, at: Floats, other: Floats, text: str, size: float) -> Non
     )
 
 
-def _draw_paths_in_space(axes: Axes, view: View, data: xr.Dataset) -> None:
-    axes.plot(*view.project(_on_ground(data["contact_point"].to_numpy())).T, color=VERMILION, linewidth=1.0)
+def _contact_path(data: xr.Dataset, radius: float) -> Floats:
+    """Return the path of the contact point, with a gap where it leapt: a base that strikes lands on another point."""
+    path = data["contact_point"].to_numpy()
+    if "contact" not in data:
+        return path
+    leaps = np.flatnonzero(np.hypot(*np.diff(path, axis=0).T) > _LEAP * radius)
+    return np.insert(path, leaps + 1, np.nan, axis=0)
+
+
+def _draw_paths_in_space(axes: Axes, view: View, data: xr.Dataset, radius: float) -> None:
+    axes.plot(*view.project(_on_ground(_contact_path(data, radius))).T, color=VERMILION, linewidth=1.0)
     centres = _footprint(data)
     if np.ptp(centres) > 0.0:
         axes.plot(*view.project(_on_ground(centres)).T, color=BLUE, linewidth=1.0)
@@ -217,7 +228,7 @@ def _draw_plan(axes: Axes, data: xr.Dataset, drawn: npt.NDArray[Any], radius: fl
     for at in drawn[:-1]:
         axes.add_patch(Circle(tuple(centres[at]), radius, linestyle=(0, (4, 2)), **circles))
     axes.add_patch(Circle(tuple(centres[drawn[-1]]), radius, **{**circles, "edgecolor": BLACK}))
-    axes.plot(*contact.T, color=VERMILION, linewidth=1.1, label="contact point")
+    axes.plot(*_contact_path(data, radius).T, color=VERMILION, linewidth=1.1, label="contact point")
     if np.ptp(centres) > 0.0:
         axes.plot(*centres.T, color=BLUE, linewidth=1.1, label="centre of the footprint")
     mark: dict[str, Any] = {"linestyle": "none", "markersize": 5, "color": BLACK}

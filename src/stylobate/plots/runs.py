@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
+from stylobate.plots.contact_strip import ContactHistory, draw_contact
 from stylobate.plots.style import BLACK, DASHES, GREY, PALETTE, new_figure, styled
 from stylobate.results import Response
 
@@ -20,6 +21,8 @@ _EVENT_NAMES = {
     "lifted": "lifted off",
     "failed": "failed",
 }
+# Heights of a panel, of a row of kinds of contact, and of what is about the rows [inches].
+_PANEL, _ROW, _GAP = 2.0, 0.19, 0.3
 # The name of an event later than this part of the run stands to its left.
 _LATE = 0.8
 # A line whose direction has no more than this part along x runs along y, but for rounding.
@@ -32,7 +35,8 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
 
     Shows the tilt angle, the azimuth of the lean (in a plane: the tilt with its sign) and the base acceleration
     against time, and the path of the tilt vector. Dashed: |α| = c, beyond which the column, left alone, falls, and the
-    acceleration c g that releases it.
+    acceleration c g that releases it. Of one run of a model that changes its contact also how the column met the
+    plane, a row for each kind of contact.
 
     Parameters
     ----------
@@ -42,8 +46,8 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
         A name for each; by default its outcome.
     """
     names = labels or [run.outcome.value for run in runs]
-    figure = new_figure(6.0)
-    axes = figure.subplot_mosaic([["tilt", "orbit"], ["azimuth", "orbit"], ["base", "orbit"]], width_ratios=(1.15, 1.0))
+    contact = ContactHistory.of(runs[0]) if len(runs) == 1 and "contact" in runs[0].data else None
+    figure, axes = _panels(contact)
     tilt, azimuth, base, orbit = axes["tilt"], axes["azimuth"], axes["base"], axes["orbit"]
     azimuth.sharex(tilt)
     base.sharex(tilt)
@@ -73,6 +77,23 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
     azimuth.set_ylabel("tilt along its line [rad]" if planar else "azimuth β [turns]")
     _finish(tilt, orbit, max(limits), compared=len(runs) > 1, title=names[0])
     return figure
+
+
+def _panels(contact: ContactHistory | None) -> tuple[Figure, dict[str, Axes]]:
+    """Return a figure and its panels by name, with that of the kinds of contact drawn where it is wanted."""
+    heights = {"tilt": _PANEL, "contact": 0.0, "azimuth": _PANEL, "base": _PANEL}
+    if contact is None:
+        del heights["contact"]
+    else:
+        heights["contact"] = _GAP + _ROW * len(contact.shown)
+    figure = new_figure(sum(heights.values()))
+    axes = figure.subplot_mosaic(
+        [[name, "orbit"] for name in heights], width_ratios=(1.15, 1.0), height_ratios=list(heights.values())
+    )
+    if contact is not None:
+        axes["contact"].sharex(axes["tilt"])
+        draw_contact(axes["contact"], contact)
+    return figure, axes
 
 
 def _draw_orbit(axes: Axes, data: xr.Dataset, line: dict[str, Any]) -> None:

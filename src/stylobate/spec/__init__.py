@@ -1,6 +1,7 @@
 """Descriptions: plain values, as in TOML and JSON, and the objects they stand for."""
 
 from stylobate.spec.basin import BasinDescription
+from stylobate.spec.drift import DriftDescription
 from stylobate.spec.ladder import LadderDescription
 from stylobate.spec.map import MapDescription
 from stylobate.spec.response import ResponseDescription
@@ -14,6 +15,7 @@ from stylobate.spec.simulation import (
 
 __all__ = [
     "BasinDescription",
+    "DriftDescription",
     "LadderDescription",
     "MapDescription",
     "ResponseDescription",

@@ -18,8 +18,10 @@ from stylobate.studies.overturning import overturning_map
 from stylobate.studies.paper import check_paper
 from stylobate.studies.response_curves import response_curves
 from stylobate.studies.sections import poincare_section
+from stylobate.studies.slipping_boundary import SteadyRolling, slipping_boundary
 from stylobate.studies.slow_sweep import slow_sweep
 from stylobate.studies.stability_boundary import stability_boundary
+from stylobate.studies.start_boundary import start_boundary
 from stylobate.studies.starts import Start, TurningStart, steady_start
 from stylobate.studies.strobes import AttractorRules
 from stylobate.studies.sweeps import Dask, Sweep, Threads, executor_from, open_sweep, run_sweep
@@ -30,6 +32,7 @@ __all__ = [
     "ContactClass",
     "Dask",
     "Start",
+    "SteadyRolling",
     "Sweep",
     "Threads",
     "TurningStart",
@@ -56,8 +59,10 @@ __all__ = [
     "poincare_section",
     "response_curves",
     "run_sweep",
+    "slipping_boundary",
     "slow_sweep",
     "stability_boundary",
+    "start_boundary",
     "steady_start",
     "uncertainty_exponent",
 ]

@@ -73,14 +73,13 @@ def drift(
 
     Examples
     --------
-    >>> import math
     >>> import stylobate as sb
-    >>> part = sb.Column.solid(radius=0.02, height=0.03, density=7800.0)
-    >>> tray = sb.Harmonic.oblique(acceleration=12.0, angular_frequency=60.0, angle=math.radians(30.0))
-    >>> model = sb.Sliding(part, friction_coefficient=0.3)
-    >>> found = sb.studies.drift(model, tray, over={"friction_coefficient": [0.2, 0.3]}, periods=40, late=10)
-    >>> found["throw_number"].values.round(3)
-    array([0.612, 0.612])
+    >>> block = sb.Column.solid(radius=1.5, height=2.0, density=1000.0)
+    >>> sloping = sb.Sliding(block, friction_coefficient=0.2, incline=0.1)
+    >>> shaking = sb.Harmonic.straight(acceleration=1.0, angular_frequency=3.0)
+    >>> found = sb.studies.drift(sloping, shaking, over={"acceleration": [1.0, 3.0]}, periods=30, late=10)
+    >>> found["mean_velocity"].sel(axis="x").values.round(4)    # down the slope
+    array([0.0013, 0.1962])
     """
     if not model.switches:
         message = f"model {model.name} holds its contact: a drift needs one that slips, such as Sliding(column)"
@@ -100,12 +99,13 @@ def drift(
     sweep = Sweep.grid(model, motion, over=over, periods=periods, **options)
 
     def label(runs: xr.Dataset) -> xr.Dataset:
-        return _labelled(runs, model, motion)
+        return walked(runs, model, motion)
 
     return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
 
 
-def _labelled(runs: xr.Dataset, model: Model, motion: BaseMotion) -> xr.Dataset:
+def walked(runs: xr.Dataset, model: Model, motion: BaseMotion) -> xr.Dataset:
+    """Return `runs` of this `model` and `motion` as a drift: with speeds, classes and throw numbers."""
     # A run that stands for good ends early in its last periods' stead: it goes nowhere.
     stands = (runs["outcome"] == code_of(Outcome.AT_REST)) & runs["mean_twist_rate"].isnull()
     velocity = runs["mean_velocity"].where(~stands, 0.0).assign_attrs(runs["mean_velocity"].attrs)

@@ -140,6 +140,7 @@ def test_a_spin_is_refused_where_there_is_none():
         sb.simulate_ensemble(IN_SPACE["rolling"], CIRCLE, spin=[0.0, 0.2], duration=1.0)
 
 
+@pytest.mark.slow
 def test_spin_has_its_dimension_like_any_other_argument():
     model, spin = IN_SPACE["rolling"], [0.0, 0.1, 0.2]
     runs = sb.simulate_ensemble(model, CIRCLE, tilt=(0.03, 0.0), tilt_rate=(0.0, 0.06), spin=spin, duration=0.5)

@@ -124,6 +124,7 @@ def test_a_model_with_the_required_members_only(written):
         sb.simulate_ensemble(model, CIRCLE.scaled(3.0), duration=5.0)
 
 
+@pytest.mark.slow
 def test_a_model_that_calls_another_models_functions(written):
     model = written(SLENDER_DRAGGED).SlenderDragged(COLUMN, damping=0.1, drag=5.0)
     expect_as_alone(model, CIRCLE, **TURNING)
@@ -197,6 +198,7 @@ class Counted(sb.Slender):
 """
 
 
+@pytest.mark.slow
 def test_a_model_whose_tilt_is_not_its_first_state(written):
     model = written(FURTHER).Counted(COLUMN, damping=0.1)
     data = expect_as_alone(model, CIRCLE, **{**TURNING, "rtol": 1e-10})
@@ -297,6 +299,7 @@ def test_a_change_of_another_models_function_changes_the_fingerprint_of_what_cal
     assert fingerprint(told) != before
 
 
+@pytest.mark.slow
 def test_functions_that_the_user_compiled_already_are_taken_and_told_apart(written):
     before = "import numba\n\n\n@numba.njit\ndef resistance(vx, vy, k):\n    return k * math.sqrt(vx * vx + vy * vy)\n"
     one = written(dragged("resistance(vx, vy, k)", before)).Dragged

@@ -50,9 +50,9 @@ class Runs:
     def __len__(self) -> int:
         return math.prod(self.shape)
 
-    def part(self, chosen: slice) -> "Runs":
+    def part(self, chosen: slice | npt.NDArray[np.intp]) -> "Runs":
         """Return some of the runs, without layout."""
-        length = len(range(*chosen.indices(len(self))))
+        length = len(self.duration[chosen])
         values = {name: value[chosen] for name, value in self.values.items()}
         starts = (self.tilt[chosen], self.tilt_rate[chosen], self.spin[chosen], self.duration[chosen])
         return Runs((RUN,), (length,), *starts, values, {})

@@ -278,7 +278,8 @@ def _next_step(shape: Shape, rows: Rows) -> list[str]:
         f"ok = {at('ok')}",
         f"stop = {at('stop')}",
         "remaining = stop - t",
-        "reached = go * (1.0 if h >= remaining else 0.0)",
+        # By a rounding a step shorter than what remains may reach the stop too.
+        "reached = go * (1.0 if max(h - remaining, t + h - stop) >= 0.0 else 0.0)",
         f"{at('reached')} = reached",
         f"{at('tried')} = h",
         f"{at('made')} = h * go",
@@ -331,10 +332,15 @@ def _suspicion(shape: Shape, rows: Rows) -> list[str]:
         ]
     return [
         *near,
-        f"over = 1.0 if {at('steps')} >= {at('most_steps')} else 0.0",
+        f"over = 1.0 if {at('steps')} >= {_most_steps(shape, at)} else 0.0",
         f"stuck = 1.0 if abs({at('tried')}) < {_SHORTEST!r} * abs({at('time')}) + 1e-300 else 0.0",
         f"met = {at('reached')} + {at('aimed')} + {at('peak')} + near + over",
         f"flag = {at('held')} + stuck * {at('rejected')} + {at('go')} * met",
         # Of a lane without a run, margins tell nothing.
         f"{at('flag')} = flag * (0.0 if {at('run')} < 0.0 else 1.0)" if shape.margins else f"{at('flag')} = flag",
     ]
+
+
+def _most_steps(shape: Shape, at: Callable[[str], str]) -> str:
+    """Return after how many steps the driver must look at a lane."""
+    return f"min({at('most_steps')}, {at('stiff_look_at')})" if shape.margins else at("most_steps")

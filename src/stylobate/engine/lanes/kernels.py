@@ -18,6 +18,7 @@ from stylobate.engine.lanes.head_source import OPTIONAL, SWITCHING, constants_so
 from stylobate.engine.lanes.margin_source import margins_source, reaction_source, window_source
 from stylobate.engine.lanes.observation_source import observation_source
 from stylobate.engine.lanes.shape import DEMANDS, STAGES, Shape
+from stylobate.engine.lanes.stability_source import stability_source
 from stylobate.engine.lanes.step_source import accelerations_source, rates_source, step_source
 from stylobate.models import Model
 
@@ -108,8 +109,8 @@ def _functions(model: type[Model], shape: Shape) -> dict[str, Callable[..., Any]
 
 def _contact_sources(shape: Shape) -> list[str]:
     """Return what the driver of a model that changes between kinds of contact calls."""
-    rows = shape.rows()
-    return [write(shape, rows) for write in (margins_source, reaction_source, dense_source)] if shape.margins else []
+    rows, writers = shape.rows(), (margins_source, reaction_source, dense_source, stability_source)
+    return [write(shape, rows) for write in writers] if shape.margins else []
 
 
 def _driver_text(shape: Shape) -> str:

@@ -43,6 +43,20 @@ _MOST_AT_ONCE = 100
 _MOMENT = 1e-12
 
 
+@dataclass(frozen=True, slots=True)
+class Switch:
+    """A change of the kind of contact: when, by which margin or −1 at the start, from what to what."""
+
+    time: float
+    margin: int
+    before: int
+    after: int
+
+
+def _never() -> bool:
+    return False
+
+
 @dataclass(slots=True)
 class SwitchingCourse:
     """A run on its way; `follow` takes it to its end.
@@ -51,6 +65,12 @@ class SwitchingCourse:
     ----------
     pieces, events, contacts, times
         What has been computed; `contacts` has the kind of contact of each piece, `times` the ends of its steps.
+    switches
+        The changes between kinds of contact, with those from which no motion followed.
+    left
+        The state at the end.
+    halted
+        Asked before each step whether to stop there.
     ended, failure
         Why the run ended; STOP when its time was up.
     planar, least_passage, crossed
@@ -66,6 +86,9 @@ class SwitchingCourse:
     times: list[Floats] = field(default_factory=list)
     contacts: list[int] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
+    switches: list[Switch] = field(default_factory=list)
+    left: tuple[float, ...] = ()
+    halted: Callable[[], bool] = _never
     ended: Reason = Reason.STOP
     failure: str = ""
     planar: bool = False
@@ -100,6 +123,9 @@ class SwitchingCourse:
             now = self._stand(now) if self._kind(now).name == "RESTING" else self._move(now)
         if not self.pieces:
             self._rest(state, 0.0)
+        if now is None:
+            now = tuple(self.trajectory.states(np.array([self._time]))[:, 0].tolist())
+        self.left = now
 
     def _contact(self, state: tuple[float, ...]) -> int:
         return int(state[-1])
@@ -135,8 +161,7 @@ class SwitchingCourse:
             return self._reaction(state, broken)
         stepper, steps = self._stepper(state, stop), Steps(self._time)
         while stepper.running:
-            if self._steps + len(steps.dense) >= self.method.max_steps:
-                self._fail(steps, contact, _STEP_LIMIT)
+            if self._given_up(steps, contact):
                 return None
             failure = stepper.step()
             if failure is not None and (number := guard.nearly_broken(margins)) is not None:
@@ -158,6 +183,17 @@ class SwitchingCourse:
             solver.y[:] = self._refreshed(solver.y)
         self._take(steps, contact)
         return tuple(stepper.solver.y.tolist())
+
+    def _given_up(self, steps: Steps, contact: int) -> bool:
+        """Return whether no step more is to be made."""
+        if self.halted():
+            self._take(steps, contact)
+            self.ended = Reason.HALTED
+        elif self._steps + len(steps.dense) >= self.method.max_steps:
+            self._fail(steps, contact, _STEP_LIMIT)
+        else:
+            return False
+        return True
 
     def _stepper(self, state: tuple[float, ...], stop: float) -> Stepper:
         rates, parameters, forcing, last = self.model.rates, self.model.parameters, self.forcing, just_before(stop)
@@ -196,6 +232,7 @@ class SwitchingCourse:
         elapsed, after = model.react(
             *state, float(number), *now, *later, ahead, self.thresholds.rest_energy, *model.parameters
         )
+        self.switches.append(Switch(time, number, self._contact(state), self._contact(after)))
         kind = model.event_of(name, self._contact(state), self._contact(after))
         if kind and number >= 0:
             self._note(kind, time)

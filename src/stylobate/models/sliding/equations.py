@@ -279,7 +279,9 @@ def margins(
     trips = kinetic > c
     bx, by = sx + c * w3 * y / tilt, sy - c * w3 * x / tilt
     left = 0.5 * kappa * (bx * bx + by * by + axial * c * c * w3 * w3) if trips else 0.0
-    burden = kinetic * weight if not trips and (slips or pushed > static * weight) else pushed
+    # One that stands slides only if it does not tip before
+    slides = slips or (static <= c and pushed > static * weight)
+    burden = kinetic * weight if slides and not trips else pushed
     rests = energy + left if rim > 0.0 and c * weight > burden else 1.0
     # The path towards the upright, to its closest point or as far as it is followed
     close = _CLOSE * min(c, speed)

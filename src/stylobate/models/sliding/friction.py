@@ -105,7 +105,8 @@ def sense_of(force: float, moment: float, normal: float, radius: float, coeffici
     """
     if radius == 0.0:
         return 1.0, 0.0
-    drag = min(force / (coefficient * normal), 1.0 - 1e-12) ** 3
+    # What the plane would have to pull at slips rather than turns.
+    drag = min(force / (coefficient * max(normal, 1e-300)), 1.0 - 1e-12) ** 3
     ratio = SLOWED * (drag / (1.0 - drag)) ** (1.0 / 3.0)  # |v|/s, for which T is this part of μN
     length = math.sqrt(1.0 + ratio * ratio)
     return ratio / length, math.copysign(1.0 / length, -moment)

@@ -24,6 +24,9 @@ from stylobate.models.sliding.reactions import react, refreshed
 # A least tilt counts as a stroke of the base below this, where the user tells no other [c].
 _PASSAGE = 0.01
 
+# So many numbers `forces` tells of a state.
+_FORCES = 16
+
 
 @dataclass(frozen=True, slots=True)
 class Sliding(Model):
@@ -220,7 +223,7 @@ class Sliding(Model):
                 forces(State(*state), (push[0], push[1], push[2]), numbers)
                 for state, push in zip(states.T.tolist(), accelerations.T.tolist(), strict=True)
             ]
-        ).reshape(len(states.T), -1)
+        ).reshape(len(states.T), _FORCES)
         kind, weight = states[15].astype(np.int8), column.mass * column.gravity
         touches = kind != Contact.FLYING
         slip = np.where(touches, states[8:10], 0.0).T * length / scale

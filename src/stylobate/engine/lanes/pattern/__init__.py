@@ -30,6 +30,7 @@ SWITCHING_ORDER = (
     "peaks",
     "contact_ends",
     "contact_changes",
+    "contact_stiffness",
     "contact_events",
     "batch",
 )

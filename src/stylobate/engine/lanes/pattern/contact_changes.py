@@ -20,6 +20,7 @@ if TYPE_CHECKING:
         JAMMED,
         LAST,
         LIMIT,
+        ORDER,
         RESTING,
         ROLLING,
         SLIDING,
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
         accelerations,
         margins_at,
         model_react,
+        observe,
         row_state,
     )
 
@@ -86,6 +88,8 @@ def change(buf: Table, i: int, number: int) -> None:
     ahead = DEPARTURE / (1.0 + buf[R.FREQUENCY, i])
     now, later = accelerations(buf, i, t), accelerations(buf, i, t + ahead)
     elapsed, state = model_react(buf, i, float(number), now, later, ahead)
+    for j in range(ORDER):
+        buf[R.LAST_STATE + j, i] = buf[R.STATE + j, i]
     set_state(buf, i, state)
     buf[R.TIME_RESTING + before, i] += t - buf[R.SINCE, i]
     buf[R.SINCE, i] = t
@@ -93,7 +97,18 @@ def change(buf: Table, i: int, number: int) -> None:
         count(buf, i, number, before, int(buf[R.CONTACT, i]))
     buf[R.STANDS, i] = 0.0
     if elapsed > 0.0 and t + elapsed < buf[R.END, i]:
-        buf[R.TIME, i] = t + elapsed
+        pass_lapse(buf, i, elapsed)
+
+
+@part
+def pass_lapse(buf: Table, i: int, elapsed: float) -> None:
+    """Pass the short time in which one state became the other."""
+    buf[R.TIME, i] += elapsed
+    if buf[R.WATCHED, i] > 0.0:
+        set_lean(buf, i)
+        buf[R.MADE, i] = elapsed
+        buf[R.LOW, i] = buf[R.TILT, i]
+        observe(buf.reshape(buf.size), i)
 
 
 @part

@@ -8,6 +8,12 @@ from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.contact_changes import BEGINS, go_through
 from stylobate.engine.lanes.pattern.contact_ends import broken_now, first_end, nearly_broken
+from stylobate.engine.lanes.pattern.contact_stiffness import (
+    LOOK_EVERY,
+    look_whether_stiff,
+    out_of_steps,
+    stiff_for_long,
+)
 from stylobate.engine.lanes.pattern.moving import set_lean, set_rates, set_state
 from stylobate.engine.lanes.pattern.peaks import measure_peak
 from stylobate.engine.lanes.pattern.stops import go_on, leg_end, meet_stop
@@ -35,6 +41,8 @@ def begin(buf: Table, i: int, table: Table, pieces: Table) -> int:
     buf[R.CHANGED_AT, i] = -math.inf
     buf[R.SINCE, i] = buf[R.TIME, i]
     buf[R.WANTED, i] = 0.0
+    buf[R.STIFF_LOOKS, i] = 0.0
+    buf[R.STIFF_LOOK_AT, i] = LOOK_EVERY
     set_lean(buf, i)
     if buf[R.TILT, i] > buf[R.TILT_LIMIT, i]:
         return Status.LIMIT
@@ -59,8 +67,11 @@ def handle(buf: Table, i: int, table: Table, pieces: Table) -> int:
             set_lean(buf, i)
             note_tilt(buf, i)
             return Status.LIMIT
+    look_whether_stiff(buf, i)
+    if stiff_for_long(buf, i):
+        return Status.STIFF
     if buf[R.STEPS, i] >= buf[R.MOST_STEPS, i]:
-        return Status.STEP_LIMIT
+        return out_of_steps(buf, i)
     t = buf[R.TIME, i]
     buf[R.AIMED, i] = 0.0
     if t >= buf[R.STOP, i]:
@@ -91,7 +102,7 @@ def held_back(buf: Table, i: int, table: Table, pieces: Table) -> int:
     if number == LAST or buf[R.CONTACT, i] == FLYING:
         buf[R.WANTED, i] = 0.0
     if buf[R.STEPS, i] >= buf[R.MOST_STEPS, i]:
-        return Status.STEP_LIMIT
+        return out_of_steps(buf, i)
     return go_through(buf, i, table, pieces, number)
 
 

@@ -73,5 +73,7 @@ margins_at: Callable[..., tuple[float, ...]]
 model_react: Callable[..., tuple[float, tuple[float, ...]]]
 note_window: Callable[..., None]
 """Notes where and how the column is as the last periods begin, of a model that changes between kinds of contact."""
+stability: Callable[..., float]
+"""hλ of the step just made, by a method of Runge and Kutta."""
 set_dense: Callable[..., None]
 dense_state: Callable[..., tuple[float, ...]]

@@ -1,0 +1,79 @@
+"""`stylobate drift` does what `drift` does, keeps what it computed, and shows it again."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import stylobate as sb
+from stylobate.cli.main import run
+
+BLOCK = ["--radius", "1.5", "--height", "2", "--density", "1000", "--friction-coefficient", "0.2"]
+SLOPE = ["--incline", "0.1", "--motion", "straight", "--angular-frequency", "3"]
+OVER = ["--x", "acceleration", "0.5", "12", "4"]
+DRIFT = ["drift", *BLOCK, *SLOPE, *OVER, "--periods", "12", "--late", "4"]
+
+
+@pytest.fixture(scope="module")
+def found():
+    block = sb.Column.solid(radius=1.5, height=2.0, density=1000.0)
+    model = sb.Sliding(block, friction_coefficient=0.2, incline=0.1)
+    shaking = sb.Harmonic.straight(acceleration=1.0, angular_frequency=3.0)
+    return sb.studies.drift(model, shaking, over={"acceleration": np.linspace(0.5, 12.0, 4)}, periods=12.0, late=4)
+
+
+def test_it_finds_saves_and_shows_what_the_study_finds(tmp_path, capsys, saved, found):
+    path, drawn = tmp_path / "drift.nc", tmp_path / "drift.png"
+    assert run([*DRIFT, "--output", str(path), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    xr.testing.assert_equal(saved(path), found)
+    assert [row["acceleration"] for row in told["drifts"]] == found["acceleration"].values.tolist()
+    velocities = np.array([row["mean_velocity"] for row in told["drifts"]])
+    np.testing.assert_array_equal(velocities, found["mean_velocity"])
+    assert told["drifts"][0]["contact_class"] == "STAYS"
+    assert told["drifts"][-1]["contact_class"] == "SLIDES"
+    assert run(["drift", str(path), "--figure", str(drawn)]) == 0
+    assert "m/s" in capsys.readouterr().out
+    assert drawn.read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_store_is_shown_as_a_drift_and_repeated_with_other_numbers(tmp_path, capsys, saved, found):
+    store, path = tmp_path / "drift.zarr", tmp_path / "again.nc"
+    assert run([*DRIFT, "--output", str(store), "--json"]) == 0
+    first = json.loads(capsys.readouterr().out)
+    assert run(["drift", str(store), "--json"]) == 0
+    again = json.loads(capsys.readouterr().out)
+    assert again["drifts"] == first["drifts"]
+    assert run(["drift", str(store), "--late", "2", "--output", str(path), "--json"]) == 0
+    others = saved(path)
+    # The motion is nearly periodic by then: means over fewer periods are nearly the same.
+    np.testing.assert_allclose(others["mean_velocity"], found["mean_velocity"], rtol=1e-3, atol=1e-9)
+    assert json.loads(others.attrs["provenance"])["rules"]["periods"] == 2
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (["--late", "12"], "periods must be at least one more than late, which is 12; got 12.0"),
+        (["--model", "rolling"], "model rolling holds its contact: a drift needs one that slips, such as Sliding"),
+        (["--y", "acceleration", "1", "2", "2"], "drift.x and drift.y must differ, got 'acceleration' in both"),
+        (["--y", "tilt-z", "1", "2", "2"], "drift.y"),
+    ],
+)
+def test_bad_questions_are_told_in_one_line(arguments, line, capsys):
+    given = [part for part in DRIFT if "incline" not in part and part != "0.1"] if "rolling" in arguments else DRIFT
+    assert run([*given, *arguments]) == 2
+    told = capsys.readouterr().err.splitlines()
+    assert len(told) == 1
+    assert line in told[0]
+
+
+def test_a_saved_map_is_no_drift(tmp_path, capsys):
+    path = tmp_path / "map.nc"
+    rolling = ["map", "--slenderness", "0.1", "--motion", "circular", "--periods", "2"]
+    rolling += ["--x", "angular-frequency", "1", "2", "2", "--y", "acceleration", "0.01", "0.02", "2"]
+    assert run([*rolling, "--output", str(path)]) == 0
+    capsys.readouterr()
+    assert run(["drift", str(path)]) == 2
+    assert "no drift" in capsys.readouterr().err
