@@ -13,6 +13,7 @@ from stylobate.plots.exact_response import plot_exact_response
 from stylobate.plots.exponent import plot_exponent
 from stylobate.plots.fates import plot_fates
 from stylobate.plots.fractions import plot_fractions
+from stylobate.plots.fragility import plot_annual_rate, plot_fragility, plot_reached_bands
 from stylobate.plots.integrity import plot_erosion, plot_integrity
 from stylobate.plots.ladder import plot_ladder, plot_outcome_differences
 from stylobate.plots.lyapunov import plot_lyapunov
@@ -30,6 +31,7 @@ from stylobate.results import Response
 __all__ = [
     "paper_report",
     "plot",
+    "plot_annual_rate",
     "plot_averaging_map",
     "plot_basins",
     "plot_column_path",
@@ -40,11 +42,13 @@ __all__ = [
     "plot_exponent",
     "plot_fates",
     "plot_fractions",
+    "plot_fragility",
     "plot_integrity",
     "plot_ladder",
     "plot_lyapunov",
     "plot_map",
     "plot_outcome_differences",
+    "plot_reached_bands",
     "plot_response",
     "plot_runs",
     "plot_section",
@@ -69,6 +73,9 @@ _BY_KIND: dict[str, Callable[[xr.Dataset], Figure]] = {
     "basins": plot_basins,
     "basin fractions": plot_fractions,
     "uncertainty exponent": plot_exponent,
+    "fragility": plot_fragility,
+    "annual rate": plot_annual_rate,
+    "reached bands": plot_reached_bands,
     "integrity": plot_integrity,
     "erosion": plot_erosion,
     "ladder": plot_ladder,
