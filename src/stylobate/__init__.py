@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from stylobate.engine import simulate, simulate_ensemble, with_parameters
     from stylobate.errors import Interrupted, Outcome
     from stylobate.models import Contact, Model, PlanarRocking, Rolling, Slender, SlenderRolling, Sliding, Wobbling
-    from stylobate.motions import BaseMotion, Harmonic
+    from stylobate.motions import BaseMotion, Harmonic, OneOf, Pulse, Record, Sweep, records
+    from stylobate.motions.records import read_record, read_records, sample_record
     from stylobate.plots import plot
     from stylobate.results import Event, OutcomeRules, Response, load
 
@@ -32,14 +33,18 @@ __all__ = [
     "Harmonic",
     "Interrupted",
     "Model",
+    "OneOf",
     "Outcome",
     "OutcomeRules",
     "PlanarRocking",
+    "Pulse",
+    "Record",
     "Response",
     "Rolling",
     "Slender",
     "SlenderRolling",
     "Sliding",
+    "Sweep",
     "Wobbling",
     "__version__",
     "errors",
@@ -48,7 +53,11 @@ __all__ = [
     "orbits",
     "plot",
     "plots",
+    "read_record",
+    "read_records",
+    "records",
     "results",
+    "sample_record",
     "simulate",
     "simulate_ensemble",
     "spec",
@@ -68,14 +77,22 @@ _HOMES = {
     "Outcome": "errors",
     "OutcomeRules": "results",
     "PlanarRocking": "models",
+    "OneOf": "motions",
+    "Pulse": "motions",
+    "Record": "motions",
     "Response": "results",
     "Rolling": "models",
     "Slender": "models",
     "SlenderRolling": "models",
     "Sliding": "models",
+    "Sweep": "motions",
     "Wobbling": "models",
     "load": "results",
     "plot": "plots",
+    "read_record": "motions.records",
+    "read_records": "motions.records",
+    "records": "motions",
+    "sample_record": "motions.records",
     "simulate": "engine",
     "simulate_ensemble": "engine",
     "with_parameters": "engine",

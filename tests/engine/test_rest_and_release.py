@@ -103,6 +103,16 @@ def test_release_of_a_delayed_motion_comes_at_its_onset():
     assert float(run.sample(3.6).amplitude[0]) > 0.0
 
 
+def test_a_base_that_starts_with_a_jump_releases_the_column_at_any_time():
+    jump = sb.Harmonic.straight(acceleration=0.2, angular_frequency=2.0)
+    model = sb.Slender(sb.Column.dimensionless(slenderness=C))
+    at_once = sb.simulate(model, jump, duration=1.0)
+    for delay in np.random.default_rng(5).uniform(0.1, 9.0, 40):
+        run = sb.simulate(model, jump.delayed(delay), duration=delay + 1.0)
+        assert run.events[0].time == pytest.approx(delay, rel=1e-14)
+        np.testing.assert_allclose(run.data["tilt"][-1], at_once.data["tilt"][-1], rtol=1e-11, atol=1e-15)
+
+
 @pytest.mark.parametrize("acceleration", [0.12, 0.3])
 @pytest.mark.parametrize("shape", [1.0, 0.95])
 def test_motion_after_release_agrees_with_starts_ever_closer_to_the_upright(shape, acceleration, integrate_equations_1):

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -9,9 +10,10 @@ import pytest
 import stylobate as sb
 from stylobate.errors import DescriptionError, FileError, UnsupportedError
 from stylobate.motions import BASE_AT_REST, Sum
+from stylobate.motions.pulses import Waveform
 from stylobate.spec import SimulationDescription, description_of, provenance_of_run, read_description
 
-H = sb.Harmonic
+H, P = sb.Harmonic, sb.Pulse
 STONE = '[column]\nshape = "solid"\nradius = 0.5\nheight = 10.0\ndensity = 2700.0\n'
 TIME = np.linspace(0.0, 5.0, 23)
 
@@ -36,6 +38,40 @@ MOTIONS = {
     'kind = "orbit"\ndiameter = 0.02\nrpm = 300\nsense = -1': H.orbit(diameter=0.02, rpm=300.0, sense=-1),
     'kind = "harmonic"\namplitude = [0.1, 0.2, 0.3]\nphase = [0, 1, 2]\nangular_frequency = 2': H(
         amplitude=(0.1, 0.2, 0.3), phase=(0.0, 1.0, 2.0), angular_frequency=2.0
+    ),
+    'kind = "half_sine"\nacceleration = 2\nangular_frequency = 3\ndirection = 0.3\nstart = 1\nvertical = 0.5': (
+        P.half_sine(acceleration=2.0, angular_frequency=3.0, direction=0.3, start=1.0, vertical=0.5)
+    ),
+    'kind = "half_cosine"\nacceleration = 2\nangular_frequency = 3': P.half_cosine(
+        acceleration=2.0, angular_frequency=3.0
+    ),
+    'kind = "one_sine"\nacceleration = 2\nangular_frequency = 3': P.one_sine(acceleration=2.0, angular_frequency=3.0),
+    'kind = "one_cosine"\nacceleration = 2\nangular_frequency = 3': P.one_cosine(
+        acceleration=2.0, angular_frequency=3.0
+    ),
+    'kind = "sinusoidal"\nacceleration = 2\nangular_frequency = 3\nphase = 0.2\ncycles = 2.5': P.sinusoidal(
+        acceleration=2.0, angular_frequency=3.0, phase=0.2, cycles=2.5
+    ),
+    'kind = "type_a"\nvelocity = 0.4\nangular_frequency = 3': P.type_a(velocity=0.4, angular_frequency=3.0),
+    'kind = "type_b"\nvelocity = 0.4\nangular_frequency = 3': P.type_b(velocity=0.4, angular_frequency=3.0),
+    'kind = "type_c"\nvelocity = 0.4\nangular_frequency = 3\ncycles = 2': P.type_c(
+        velocity=0.4, angular_frequency=3.0, cycles=2
+    ),
+    'kind = "ricker"\nacceleration = 2\nangular_frequency = 3': P.ricker(acceleration=2.0, angular_frequency=3.0),
+    'kind = "antisymmetric_ricker"\nacceleration = 2\nangular_frequency = 3': P.antisymmetric_ricker(
+        acceleration=2.0, angular_frequency=3.0
+    ),
+    'kind = "gabor"\nvelocity = 0.4\nfrequency = 1.5\noscillations = 2': P.gabor(
+        velocity=0.4, frequency=1.5, oscillations=2.0
+    ),
+    'kind = "mavroeidis_papageorgiou"\nvelocity = 0.4\nfrequency = 1.5\noscillations = 2\nphase = 1': (
+        P.mavroeidis_papageorgiou(velocity=0.4, frequency=1.5, oscillations=2.0, phase=1.0)
+    ),
+    'kind = "linear_sweep"\nacceleration = 0.4\nfrequencies = [0.5, 4]\nlength = 4\nstart_phase = 1': sb.Sweep.linear(
+        acceleration=0.4, frequencies=(0.5, 4.0), length=4.0, start_phase=1.0
+    ),
+    'kind = "logarithmic_sweep"\ndisplacement = 0.4\nfrequencies = [4, 0.5]\nlength = 4\nstart = 0.5': (
+        sb.Sweep.logarithmic(displacement=0.4, frequencies=(4.0, 0.5), length=4.0, start=0.5)
     ),
     'kind = "sum"\nmotions = [{kind = "rest"}, {kind = "orbit", diameter = 0.02, rpm = 300}]': Sum(
         motions=(BASE_AT_REST, H.orbit(diameter=0.02, rpm=300.0))
@@ -151,6 +187,11 @@ CIRCULAR = {"kind": "circular", "acceleration": 1.0, "angular_frequency": 1.0}
             ["motion.amplitude.1"],
         ),
         ({"motion": {"kind": "scaled", "motion": CIRCULAR}}, ["motion.factor"]),
+        (
+            {"motion": {"kind": "half_sine", "velocity": 1.0, "acceleration": 1.0}},
+            ["motion.angular_frequency", "motion.velocity"],
+        ),
+        ({"motion": {"kind": "type_c", "velocity": 1.0, "angular_frequency": 1.0, "cycles": 1.5}}, ["motion.cycles"]),
     ],
 )
 def test_each_mistake_is_one_line_that_names_its_field(change, fields):
@@ -183,6 +224,14 @@ def test_all_mistakes_are_told_at_once():
         ({"model": {"damping": -1.0}}, ["model: damping must be zero or positive, got -1.0"]),
         ({"motion": {**CIRCULAR, "sense": 3}}, ["motion: sense must be +1"]),
         ({"motion": {**CIRCULAR, "angular_frequency": 0.0}}, ["motion: angular_frequency must be positive, got 0.0"]),
+        (
+            {"motion": {"kind": "gabor", "velocity": 1.0, "frequency": 1.0, "oscillations": 0.0}},
+            ["motion: oscillations must be positive, got 0.0"],
+        ),
+        (
+            {"motion": {"kind": "linear_sweep", "frequencies": [1.0, 2.0], "length": 9.0}},
+            ["motion: acceleration or displacement must be given, one of them"],
+        ),
         (
             {
                 "column": {"shape": "dimensionless", "slenderness": math.nan},
@@ -235,3 +284,21 @@ def test_a_motion_of_the_users_own_runs_and_its_provenance_says_it_cannot_be_rep
     assert run.provenance["motion"]["kind"] == "other"
     with pytest.raises(UnsupportedError, match="only the repr is kept"):
         description_of(run.provenance)
+
+
+def test_a_pulse_of_the_users_own_waveform_keeps_only_its_repr():
+    @dataclass(frozen=True, slots=True)
+    class Bump(Waveform):
+        duration: float = 1.0
+        highest_frequency: float = 1.0
+
+        def derivative(self, time, order):
+            return 0.01 * time ** (2 - order) / (2.0, 1.0, 1.0)[order]
+
+        def turning_points(self):
+            return ()
+
+    model = sb.Slender(sb.Column.dimensionless(0.1))
+    stored = provenance_of_run(model, sb.Pulse(waveform=Bump()), duration=5.0, tilt=(0.1, 0.2))
+    assert stored["motion"]["kind"] == "other"
+    assert "Bump" in stored["motion"]["repr"]

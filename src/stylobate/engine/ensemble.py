@@ -22,6 +22,7 @@ from stylobate.engine.single import check_motion, require_nouns
 from stylobate.errors import Interrupted, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.motions import BASE_AT_REST, BaseMotion
+from stylobate.motions.one_of import members_of
 from stylobate.results import OutcomeRules
 from stylobate.spec import provenance_of_run
 
@@ -151,7 +152,8 @@ def simulate_ensemble(
     arguments = {"tilt": tilt, "tilt_rate": tilt_rate, "spin": spin, "duration": duration, **changes}
     same = {name: np.asarray(value).tolist() for name, value in arguments.items() if name not in runs.coordinates}
     if terms_of(moved) is None and len(runs):
-        check_motion(moved, float(runs.duration.max()))
+        for member in members_of(moved):
+            check_motion(member, float(runs.duration.max()))
     plan = Plan(model, MotionPlan.of(moved, runs.values, runs.duration), options)
 
     def result() -> xr.Dataset:

@@ -9,6 +9,7 @@ from stylobate.errors import ParameterError, UnsupportedError, require_finite
 from stylobate.models import Model
 from stylobate.motions import BaseMotion, Harmonic
 from stylobate.motions.combined import Sum, Transformed
+from stylobate.motions.one_of import number_of, with_choice
 
 COLUMN_NAMES = (
     "radius",
@@ -22,7 +23,7 @@ COLUMN_NAMES = (
 )
 """Its fields; `slenderness` changes the radius, `size` all lengths at the same density."""
 
-MOTION_NAMES = ("angular_frequency", "start_phase", "acceleration", "scale", "rotation", "delay")
+MOTION_NAMES = ("motion", "angular_frequency", "start_phase", "acceleration", "scale", "rotation", "delay")
 """In the order in which they are applied."""
 
 ELLIPSE_NAMES = ("amplitude_x", "amplitude_y", "amplitude_z", "phase_difference")
@@ -72,7 +73,7 @@ def check_names(
                 raise ParameterError(message)
 
 
-def with_parameters(model: Model, motion: BaseMotion, **values: float) -> tuple[Model, BaseMotion]:
+def with_parameters(model: Model, motion: BaseMotion, /, **values: float) -> tuple[Model, BaseMotion]:
     """Return `model` and `motion` with these numbers changed: the objects behind one run of an ensemble.
 
     Parameters
@@ -82,10 +83,10 @@ def with_parameters(model: Model, motion: BaseMotion, **values: float) -> tuple[
     **values
         Of the column: radius, mass_height [m], mass [kg], transverse_inertia, axial_inertia [kg m²], gravity [m/s²],
         slenderness (by its radius), size (all lengths times it). Of the model: its own fields, such as damping. Of the
-        motion, applied in this order: angular_frequency [rad/s], start_phase [rad], acceleration [m/s²] (its largest
-        horizontal one; of a sum, the sum of those of its parts), scale (a factor), rotation [rad] about the vertical,
-        delay [s]. Before these, of a harmonic motion: amplitude_x, amplitude_y, amplitude_z [m/s²], phase_difference
-        (phase of y less that of x) [rad].
+        motion, applied in this order: motion (which of those in a `OneOf`); of a harmonic motion amplitude_x,
+        amplitude_y, amplitude_z [m/s²] and phase_difference (phase of y less that of x) [rad]; angular_frequency
+        [rad/s], start_phase [rad], acceleration [m/s²] (its largest horizontal one; of a sum, the sum of those of its
+        parts), scale (a factor), rotation [rad] about the vertical, delay [s].
 
     Raises
     ------
@@ -130,6 +131,8 @@ def _changed_column(column: Column, values: Mapping[str, float]) -> Column:
 
 def changed_motion(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotion:
     """Return `motion` with these numbers: those of the ellipse, then in the order of MOTION_NAMES."""
+    if "motion" in values:
+        motion = _one_of(motion, values["motion"])
     harmonic = {name: values[name] for name in (*ELLIPSE_NAMES, *_OF_HARMONICS) if name in values}
     if harmonic:
         motion = _changed_harmonic(motion, harmonic)
@@ -141,6 +144,14 @@ def changed_motion(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotio
     if "rotation" in values:
         motion = motion.rotated(values["rotation"])
     return motion.delayed(values["delay"]) if "delay" in values else motion
+
+
+def _one_of(motion: BaseMotion, number: float) -> BaseMotion:
+    chosen = with_choice(motion, number)
+    if chosen is None:
+        message = f"motion can be chosen in a OneOf only; {_said(motion)}"
+        raise UnsupportedError(message)
+    return chosen
 
 
 def largest_acceleration(motion: BaseMotion) -> float:
@@ -208,6 +219,8 @@ def present_value(model: Model, motion: BaseMotion, name: str) -> float:
         return _CHANGES[name]
     if name == "acceleration":
         return largest_acceleration(motion)
+    if name == "motion":
+        return float(number_of(motion))
     value = getattr(*_holder(model, motion, name))
     if value is None:
         message = f"parameter {name} has no value in model {model.name}; give it one"

@@ -140,4 +140,7 @@ def _peaks_near_limit(excess: Floats) -> list[int]:
 def _root(model: Model, forcing: Forcing, below: float, above: float) -> float:
     if _excess(model, forcing, below) >= 0.0:
         return below
-    return float(brentq(lambda t: _excess(model, forcing, t), below, above, xtol=1e-15 * max(1.0, above)))
+    exactly = 1e-15 * max(1.0, above)
+    root = float(brentq(lambda t: _excess(model, forcing, t), below, above, xtol=exactly))
+    # Where the base motion jumps the root found may lie before the jump.
+    return root if _excess(model, forcing, root) >= 0.0 else min(above, root + 4.0 * exactly)

@@ -25,7 +25,7 @@ class BaseMotion(ABC):
     Notes
     -----
     For developers: a motion of your own implements `derivative`, `largest_horizontal`, `vertical_range` and
-    `directions`; `duration`, `period`, `highest_frequency` and `breaks` have defaults.
+    `directions`; `duration`, `period`, `highest_frequency`, `breaks` and `degree` have defaults.
     """
 
     __slots__ = ()
@@ -84,6 +84,14 @@ class BaseMotion(ABC):
     def breaks(self) -> tuple[float, ...]:
         """Times at which the acceleration is not smooth [s], increasing; integrators stop there."""
         return ()
+
+    @property
+    def degree(self) -> int | None:
+        """Degree of the polynomials that the acceleration is between its breaks; None where it is none.
+
+        What is linear between breaks, as a record is, is tabulated exactly.
+        """
+        return None
 
     def acceleration(self, time: npt.ArrayLike) -> npt.NDArray[np.float64]:
         """Return the base acceleration at `time` [s], shape (..., 3) [m/s²]."""

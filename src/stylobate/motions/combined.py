@@ -26,7 +26,7 @@ class Sum(BaseMotion):
     def __post_init__(self) -> None:
         object.__setattr__(self, "motions", tuple(self.motions))
         for motion in self.motions:
-            _require_motion("motions", motion)
+            require_motion("motions", motion)
 
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
         """Return the sum of the displacements (`order` 0), velocities (1) or accelerations (2)."""
@@ -81,6 +81,12 @@ class Sum(BaseMotion):
         """The breaks of all the parts [s]."""
         return tuple(sorted({time for motion in self.motions for time in motion.breaks}))
 
+    @property
+    def degree(self) -> int | None:
+        """The highest degree of a part; 0 for none."""
+        degrees = [motion.degree for motion in self.motions]
+        return None if None in degrees else max((degree or 0 for degree in degrees), default=0)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Transformed(BaseMotion):
@@ -89,7 +95,7 @@ class Transformed(BaseMotion):
     motion: BaseMotion
 
     def __post_init__(self) -> None:
-        _require_motion("motion", self.motion)
+        require_motion("motion", self.motion)
 
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
         """Return the displacement (`order` 0), velocity (1) or acceleration (2) of the motion."""
@@ -126,6 +132,11 @@ class Transformed(BaseMotion):
     def breaks(self) -> tuple[float, ...]:
         """The breaks of the motion [s]."""
         return self.motion.breaks
+
+    @property
+    def degree(self) -> int | None:
+        """The degree of the motion."""
+        return self.motion.degree
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -232,7 +243,8 @@ BASE_AT_REST = Sum()
 """A base that does not move."""
 
 
-def _require_motion(name: str, motion: object) -> None:
+def require_motion(name: str, motion: object) -> None:
+    """Raise ParameterError if `motion` is none."""
     if not isinstance(motion, BaseMotion):
         message = f"{name} must be a base motion such as Harmonic.circular(...), got {motion!r}"
         raise ParameterError(message)

@@ -100,6 +100,13 @@ _NEEDED = {
     "oblique": ("acceleration", "angular_frequency"),
     "elliptic": ("angular_frequency",),
     "harmonic": ("angular_frequency",),
+    **dict.fromkeys(
+        (
+            *("half_sine", "half_cosine", "one_sine", "one_cosine", "sinusoidal"),
+            *("ricker", "antisymmetric_ricker"),
+        ),
+        ("acceleration",),
+    ),
 }
 
 

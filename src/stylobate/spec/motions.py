@@ -5,7 +5,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from stylobate.errors import UnsupportedError
-from stylobate.motions import BaseMotion, Delayed, Harmonic, Rotated, Scaled, Sum
+from stylobate.motions import BaseMotion, Delayed, Harmonic, Pulse, Rotated, Scaled, Sum, Sweep
+from stylobate.motions.pulses import AntisymmetricRicker, Gabor, MavroeidisPapageorgiou, Ricker, Sinusoid
 from stylobate.spec.description import Description
 
 
@@ -67,7 +68,7 @@ class VerticalMotion(_HarmonicMotion):
 
 
 class ObliqueMotion(_HarmonicMotion):
-    """Along a line that rises at `angle` towards `direction` [rad]; acceleration in m/s²."""
+    """Along a line that rises at `angle` towards `direction` [rad]; horizontal acceleration in m/s²."""
 
     kind: Literal["oblique"]
     acceleration: float
@@ -114,6 +115,82 @@ class GeneralHarmonicMotion(_HarmonicMotion):
     def build(self) -> BaseMotion:
         """Return the motion."""
         return Harmonic(**self.model_dump(exclude={"kind"}))
+
+
+class _LineMotion(Description):
+    direction: float = 0.0
+    start: float = 0.0
+    vertical: float = 0.0
+
+
+class _PulseMotion(_LineMotion):
+    def build(self) -> BaseMotion:
+        """Return the motion, by the constructor of Pulse that has the name of the kind."""
+        values = self.model_dump()
+        motion = getattr(Pulse, values.pop("kind"))(**values)
+        assert isinstance(motion, BaseMotion)
+        return motion
+
+
+class AccelerationPulseMotion(_PulseMotion):
+    """A pulse by its largest acceleration [m/s²] and angular_frequency [rad/s]."""
+
+    kind: Literal["half_sine", "half_cosine", "one_sine", "one_cosine", "ricker", "antisymmetric_ricker"]
+    acceleration: float
+    angular_frequency: float
+
+
+class SinusoidalPulseMotion(_PulseMotion):
+    """A part of a sinusoid of acceleration [m/s²], its phase in rad, its length in cycles."""
+
+    kind: Literal["sinusoidal"]
+    acceleration: float
+    angular_frequency: float
+    phase: float = 0.0
+    cycles: float = 1.0
+
+
+class VelocityPulseMotion(_PulseMotion):
+    """A forward, or forward-and-back, pulse by its velocity [m/s] and angular_frequency [rad/s]."""
+
+    kind: Literal["type_a", "type_b"]
+    velocity: float
+    angular_frequency: float
+
+
+class CyclicPulseMotion(_PulseMotion):
+    """A pulse of several cycles that ends where it began, by its velocity [m/s]."""
+
+    kind: Literal["type_c"]
+    velocity: float
+    angular_frequency: float
+    cycles: int = 1
+
+
+class VelocityWaveletMotion(_PulseMotion):
+    """A harmonic velocity [m/s] under a bell; frequency in Hz, phase in rad."""
+
+    kind: Literal["gabor", "mavroeidis_papageorgiou"]
+    velocity: float
+    frequency: float
+    phase: float = 0.0
+    oscillations: float
+
+
+class SweepMotion(_LineMotion):
+    """A sine sweep of constant acceleration [m/s²] or displacement [m] between two frequencies [Hz] in `length` [s]."""
+
+    kind: Literal["linear_sweep", "logarithmic_sweep"]
+    acceleration: float | None = None
+    displacement: float | None = None
+    frequencies: tuple[float, float]
+    length: float
+    start_phase: float = 0.0
+
+    def build(self) -> BaseMotion:
+        """Return the motion."""
+        make = Sweep.linear if self.kind == "linear_sweep" else Sweep.logarithmic
+        return make(**self.model_dump(exclude={"kind"}))
 
 
 class SumMotion(Description):
@@ -175,6 +252,12 @@ MotionDescription = Annotated[
     | StrokeMotion
     | OrbitMotion
     | GeneralHarmonicMotion
+    | AccelerationPulseMotion
+    | SinusoidalPulseMotion
+    | VelocityPulseMotion
+    | CyclicPulseMotion
+    | VelocityWaveletMotion
+    | SweepMotion
     | SumMotion
     | ScaledMotion
     | RotatedMotion
@@ -194,7 +277,7 @@ def describe_motion(motion: BaseMotion) -> Description:
     UnsupportedError
         If the motion is of a class that descriptions do not know.
     """
-    if type(motion) not in (Harmonic, Sum, Scaled, Rotated, Delayed):  # a subclass is another motion
+    if type(motion) not in (Harmonic, Pulse, Sweep, Sum, Scaled, Rotated, Delayed):  # a subclass is another motion
         message = f"a motion of class {type(motion).__name__} has no description; results keep its repr only"
         raise UnsupportedError(message)
     match motion:
@@ -207,19 +290,58 @@ def describe_motion(motion: BaseMotion) -> Description:
                 start_phase=motion.start_phase,
                 ramp=motion.ramp,
             )
+        case Pulse():
+            return _described_pulse(motion)
+        case Sweep():
+            return _described_sweep(motion)
         case Sum(motions=()):
             return RestMotion(kind="rest")
         case Sum():
             return SumMotion.parse(
                 {"kind": "sum", "motions": [describe_motion(part).values() for part in motion.motions]}
             )
+        case Scaled() | Rotated() | Delayed():
+            return _described_copy(motion)
+    raise AssertionError
+
+
+def _described_copy(motion: Scaled | Rotated | Delayed) -> Description:
+    copied = {"motion": describe_motion(motion.motion).values()}
+    match motion:
         case Scaled():
             changed = {"kind": "scaled", "factor": motion.factor, "vertical": motion.vertical}
-            return ScaledMotion.parse({**changed, "motion": describe_motion(motion.motion).values()})
+            return ScaledMotion.parse({**changed, **copied})
         case Rotated():
-            changed = {"kind": "rotated", "angle": motion.angle}
-            return RotatedMotion.parse({**changed, "motion": describe_motion(motion.motion).values()})
+            return RotatedMotion.parse({"kind": "rotated", "angle": motion.angle, **copied})
         case Delayed():
-            changed = {"kind": "delayed", "delay": motion.delay}
-            return DelayedMotion.parse({**changed, "motion": describe_motion(motion.motion).values()})
-    raise AssertionError
+            return DelayedMotion.parse({"kind": "delayed", "delay": motion.delay, **copied})
+
+
+_WAVEFORMS: dict[type, tuple[str, type[_PulseMotion]]] = {
+    Sinusoid: ("sinusoidal", SinusoidalPulseMotion),
+    Ricker: ("ricker", AccelerationPulseMotion),
+    AntisymmetricRicker: ("antisymmetric_ricker", AccelerationPulseMotion),
+    Gabor: ("gabor", VelocityWaveletMotion),
+    MavroeidisPapageorgiou: ("mavroeidis_papageorgiou", VelocityWaveletMotion),
+}
+
+
+def _described_pulse(pulse: Pulse) -> Description:
+    waveform = pulse.waveform
+    if type(waveform) not in _WAVEFORMS:
+        message = f"a waveform of class {type(waveform).__name__} has no description; results keep its repr only"
+        raise UnsupportedError(message)
+    kind, description = _WAVEFORMS[type(waveform)]
+    own = [name for name in description.model_fields if name not in {"kind", *_LineMotion.model_fields}]
+    numbers = {name: getattr(waveform, name) for name in own}
+    return description.parse({"kind": kind, **numbers, **_line(pulse)})
+
+
+def _described_sweep(sweep: Sweep) -> Description:
+    own = {"frequencies": sweep.frequencies, "length": sweep.length, "start_phase": sweep.start_phase}
+    kind, amplitude = f"{sweep.law.value}_sweep", {sweep.quantity.value: sweep.amplitude}
+    return SweepMotion.parse({"kind": kind, **amplitude, **own, **_line(sweep)})
+
+
+def _line(motion: Pulse | Sweep) -> dict[str, float]:
+    return {"direction": motion.direction, "start": motion.start, "vertical": motion.vertical}

@@ -41,6 +41,7 @@ from stylobate.theory.planar_forced import (
     planar_kick_slope,
 )
 from stylobate.theory.planar_free import planar_free_motion, planar_free_period
+from stylobate.theory.pulse_overturning import half_sine_overturning, one_sine_overturning
 from stylobate.theory.rolling import RollingBranch, SteadyRolling, rolling_gap, steady_rolling
 from stylobate.theory.rolling_friction import RollingFriction, rolling_required_friction
 from stylobate.theory.rotating_frame import rotating_frame_jacobian, rotating_frame_rates
@@ -98,6 +99,7 @@ __all__ = [
     "free_twist_upper_frequency",
     "full_rolling",
     "full_rolling_rates",
+    "half_sine_overturning",
     "high_frequency_rates",
     "high_frequency_rolling",
     "hopping_speed",
@@ -106,6 +108,7 @@ __all__ = [
     "hurwitz_coefficients",
     "mean_block_speed",
     "modulated_rolling",
+    "one_sine_overturning",
     "planar_backbone",
     "planar_forced_response",
     "planar_free_motion",

@@ -78,10 +78,12 @@ class Terms:
     ramp: Floats
 
     @classmethod
-    def of(cls, terms: tuple[Term, ...], values: Mapping[str, Floats], count: int, base_acceleration: float) -> "Terms":
+    def of(
+        cls, terms: tuple[Term, ...], values: Mapping[str, Floats], count: int, base_acceleration: Floats
+    ) -> "Terms":
         """Return `terms` for each of `count` runs, with the numbers of `values`, each of shape (count,), changed.
 
-        `base_acceleration` is the largest horizontal one before the change [m/s²].
+        `base_acceleration` is the largest horizontal one before the change, of each [m/s²].
         """
         shape = (count, len(terms))
 
@@ -102,7 +104,7 @@ class Terms:
         )
         return made._with(values, base_acceleration)
 
-    def _with(self, values: Mapping[str, Floats], base_acceleration: float) -> "Terms":
+    def _with(self, values: Mapping[str, Floats], base_acceleration: Floats) -> "Terms":
         frequency, amplitude, start_phase = self.angular_frequency, self.amplitude, self.start_phase
         shift, onset = self.shift, self.onset
         if "angular_frequency" in values:
@@ -146,7 +148,7 @@ class Terms:
         return np.stack(parts, axis=-1).reshape(len(scale), -1)
 
 
-def factors(values: Mapping[str, Floats], base_acceleration: float) -> Floats | None:
+def factors(values: Mapping[str, Floats], base_acceleration: Floats) -> Floats | None:
     """Return the factor by which `acceleration` and `scale` multiply the motion of each run, or None for 1."""
     factor = None
     if "acceleration" in values:

@@ -1,19 +1,21 @@
 """What a kernel needs of the base motion of each run."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.engine.ensembles.harmonics import Term, Terms, factors, terms_of
 from stylobate.engine.ensembles.model_columns import ModelColumns
-from stylobate.engine.ensembles.polynomials import Table, tabulated
+from stylobate.engine.ensembles.polynomials import Table, one_after_another, tabulated
 from stylobate.engine.lanes.forcing_source import ForcingSource, Harmonics, Polynomials
-from stylobate.engine.parameters import harmonic_part, largest_acceleration
+from stylobate.engine.parameters import changed_motion, harmonic_part, largest_acceleration
 from stylobate.errors import require_positive
 from stylobate.motions import BaseMotion
+from stylobate.motions.one_of import members_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -24,15 +26,19 @@ _NO_PIECES = np.zeros((1, 5))
 class MotionPlan:
     """How an ensemble's base motion is evaluated: decided once, so that all its runs are computed alike.
 
-    `terms` is None for a motion that is tabulated, in `table`.
+    `members` are the motions of which each run has one. `terms` is None for motions that are tabulated, in `table`, one
+    after another: each begins at its piece of `first`, and has so many as `lengths` tells.
     """
 
     motion: BaseMotion
+    members: tuple[BaseMotion, ...]
     terms: tuple[Term, ...] | None
     table: Table | None
+    first: npt.NDArray[np.intp]
+    lengths: npt.NDArray[np.intp]
     windowed: bool
     vertical: bool
-    base_acceleration: float
+    base_acceleration: Floats
 
     @classmethod
     def of(cls, motion: BaseMotion, values: Mapping[str, Floats], duration: Floats) -> "MotionPlan":
@@ -41,7 +47,7 @@ class MotionPlan:
         Raises
         ------
         ParameterError
-            If an angular frequency is not positive.
+            If an angular frequency is not positive, or there is no motion of a number that is chosen.
         UnsupportedError
             If the motion lacks a number that is to be changed, or cannot be tabulated.
         """
@@ -50,16 +56,28 @@ class MotionPlan:
                 harmonic_part(motion, name)
         if "angular_frequency" in values:
             require_positive("angular_frequency", values["angular_frequency"].min(initial=1.0), "rad/s")
-        base = largest_acceleration(motion) if "acceleration" in values else 1.0
+        for number in np.unique(values.get("motion", ())):
+            changed_motion(motion, {"motion": float(number)})
+        members = members_of(motion) if "motion" in values else (motion,)
+        scaled = "acceleration" in values
+        base = np.array([largest_acceleration(member) if scaled else 1.0 for member in members])
+        vertical = any(bound != 0.0 for member in members for bound in member.vertical_range(0.0))
+        nowhere = np.zeros(1, dtype=np.intp)
         terms = terms_of(motion)
         if terms is not None:
             windowed = "delay" in values or any(term.ramp > 0.0 or term.onset > 0.0 for term in terms)
             vertical = any(term.amplitude[2] != 0.0 for term in terms)
-            return cls(motion, terms, None, windowed, vertical, base)
+            return cls(motion, members, terms, None, nowhere, nowhere, windowed, vertical, base)
         least_delay = values["delay"].min(initial=0.0) if "delay" in values else 0.0
         end = float(duration.max(initial=1e-300)) - float(least_delay)
-        vertical = any(bound != 0.0 for bound in motion.vertical_range(0.0))
-        return cls(motion, None, tabulated(motion, end), False, vertical, base)
+        tables = [tabulated(member, end) for member in members]
+        lengths = np.array([len(table.rows) for table in tables])
+        table = one_after_another(tables)
+        return cls(motion, members, None, table, np.cumsum(lengths) - lengths, lengths, False, vertical, base)
+
+    def member(self, values: Mapping[str, Floats], count: int) -> npt.NDArray[np.intp]:
+        """Return which of the `members` each of `count` runs has."""
+        return values["motion"].astype(np.intp) if "motion" in values else np.zeros(count, dtype=np.intp)
 
     def source(self, *, planar: bool) -> ForcingSource:
         """Return how kernels evaluate it."""
@@ -98,33 +116,41 @@ class MotionColumns:
     @classmethod
     def of(cls, plan: MotionPlan, values: Mapping[str, Floats], models: ModelColumns) -> "MotionColumns":
         """Return them for runs of these `models` that change these `values`."""
-        motion, count = plan.motion, len(models.gravity)
-        factor = factors(values, plan.base_acceleration)
+        count = len(models.gravity)
+        which = plan.member(values, count)
+
+        def each(tell: Callable[[BaseMotion], Any]) -> Floats:
+            return np.array([tell(member) for member in plan.members], dtype=float)[which]
+
+        factor = factors(values, plan.base_acceleration[which])
         factor = np.ones(count) if factor is None else factor
         per_gravity = factor / models.gravity
-        bounds = [per_gravity * bound for bound in motion.vertical_range(0.0)]
+        bounds = per_gravity * each(lambda motion: motion.vertical_range(0.0)).T
         rotation = values.get("rotation", np.zeros(count))
         if plan.terms is not None:
-            terms = Terms.of(plan.terms, values, count, plan.base_acceleration)
+            terms = Terms.of(plan.terms, values, count, plan.base_acceleration[which])
             columns, breaks = terms.columns(models.time_scale, models.gravity, windowed=plan.windowed), terms.breaks()
             breaks = breaks[:, np.any(np.isfinite(breaks), axis=0)] if plan.windowed else breaks[:, :0]
-            frequency, phase, forward, backward = _single_frequency(terms, motion)
+            frequency, phase, forward, backward = _single_frequency(terms, plan.motion)
         else:
             columns = _table_columns(plan, values, factor, rotation, models)
             breaks = np.empty((count, 0))
-            frequency = np.full(count, motion.highest_frequency)
+            frequency = each(lambda motion: motion.highest_frequency)
             phase = np.zeros(count)
             forward = backward = np.full(count, np.nan)
+        period = each(lambda motion: motion.period or 0.0)
+        if "angular_frequency" in values:
+            period = 2.0 * math.pi / values["angular_frequency"]
         return cls(
             columns=columns,
             breaks=breaks / models.time_scale[:, np.newaxis],
             frequency=frequency * models.time_scale,
-            period=_period(motion, values, count) / models.time_scale,
+            period=period / models.time_scale,
             phase=phase,
-            largest=np.abs(per_gravity) * motion.largest_horizontal(0.0),
-            least_vertical=np.minimum(*bounds),
-            largest_vertical=np.maximum(*bounds),
-            directions=_directions(motion, factor, rotation),
+            largest=np.abs(per_gravity) * each(lambda motion: motion.largest_horizontal(0.0)),
+            least_vertical=bounds.min(axis=0),
+            largest_vertical=bounds.max(axis=0),
+            directions=_directions(plan.members, which, factor, rotation),
             forward=forward,
             backward=backward,
         )
@@ -146,16 +172,13 @@ def _single_frequency(terms: Terms, motion: BaseMotion) -> tuple[Floats, Floats,
     return frequency, phase / (2.0 * math.pi), forward, backward
 
 
-def _period(motion: BaseMotion, values: Mapping[str, Floats], count: int) -> Floats:
-    if "angular_frequency" in values:
-        return 2.0 * math.pi / values["angular_frequency"]
-    return np.full(count, motion.period or 0.0)
-
-
-def _directions(motion: BaseMotion, factor: Floats, rotation: Floats) -> Floats:
-    vectors = np.array(motion.directions(), dtype=float).reshape(-1, 2)
+def _directions(members: Sequence[BaseMotion], which: npt.NDArray[np.intp], factor: Floats, rotation: Floats) -> Floats:
+    spanning = [member.directions() for member in members]
+    vectors = np.zeros((len(members), max(map(len, spanning)), 2))  # zero vectors fit any line
+    for number, given in enumerate(spanning):
+        vectors[number, : len(given)] = np.array(given, dtype=float).reshape(-1, 2)
     cos, sin = np.cos(rotation)[:, np.newaxis], np.sin(rotation)[:, np.newaxis]
-    x, y = vectors[:, 0], vectors[:, 1]
+    x, y = np.moveaxis(vectors[which], -1, 0)
     turned = np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
     return np.asarray(factor[:, np.newaxis, np.newaxis] * turned)
 
@@ -164,7 +187,7 @@ def _table_columns(
     plan: MotionPlan, values: Mapping[str, Floats], factor: Floats, rotation: Floats, models: ModelColumns
 ) -> Floats:
     count = len(factor)
-    scaled = factor / models.gravity
+    scaled, which = factor / models.gravity, plan.member(values, count)
     delay = values.get("delay", np.zeros(count))
-    first, number = np.zeros(count), np.full(count, float(len(plan.pieces)))
+    first, number = plan.first[which], plan.lengths[which]
     return np.stack([scaled, np.cos(rotation), np.sin(rotation), scaled, delay, first, number], axis=1)

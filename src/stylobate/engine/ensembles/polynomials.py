@@ -1,6 +1,7 @@
 """Any base motion as a table: one polynomial after another between its breaks, to rounding."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,8 @@ from stylobate.motions.base import ACCELERATION
 Floats = npt.NDArray[np.float64]
 
 DEGREE = 15
+# Numbers of a row before its coefficients.
+_BOUNDS = 5
 # Pieces are no longer than half the shortest period, and halved where the polynomials do not get as near as this part
 # of the largest acceleration, so often at most.
 _ACCURACY, _HALVINGS = 1e-11, 12
@@ -33,6 +36,19 @@ class Table:
     rows: Floats
     degree: int
 
+    def raised(self, degree: int) -> "Table":
+        """Return the same pieces as polynomials of a higher `degree`."""
+        count = len(self.rows)
+        coefficients = np.zeros((count, 3, degree + 1))
+        coefficients[:, :, : self.degree + 1] = self.rows[:, _BOUNDS:].reshape(count, 3, -1)
+        return Table(np.column_stack([self.rows[:, :_BOUNDS], coefficients.reshape(count, -1)]), degree)
+
+
+def one_after_another(tables: Sequence[Table]) -> Table:
+    """Return the pieces of all `tables` in one, of the highest of their degrees."""
+    degree = max(table.degree for table in tables)
+    return Table(np.concatenate([table.raised(degree).rows for table in tables]), degree)
+
 
 def tabulated(motion: BaseMotion, end: float) -> Table:
     """Return the table of `motion` from t = 0 to `end` [s].
@@ -42,6 +58,8 @@ def tabulated(motion: BaseMotion, end: float) -> Table:
     UnsupportedError
         If it is not smooth between its breaks.
     """
+    if motion.degree is not None and motion.degree <= 1:
+        return _linear(motion)
     frequency = motion.highest_frequency
     longest = math.pi / frequency if frequency > 0.0 else math.inf
     edges = [0.0, *(time for time in motion.breaks if 0.0 < time < end)]
@@ -59,6 +77,19 @@ def tabulated(motion: BaseMotion, end: float) -> Table:
         for a, b, coefficients in pieces
     ]
     return Table(np.array(rows), DEGREE)
+
+
+def _linear(motion: BaseMotion) -> Table:
+    """Return the table of a motion that is linear between its breaks, exactly; its last piece goes on for ever."""
+    edges = np.array([0.0, *(time for time in motion.breaks if time > 0.0)])
+    edges = np.append(edges, edges[-1] + 1.0)
+    middle, quarter = 0.5 * (edges[:-1] + edges[1:]), 0.25 * np.diff(edges)
+    first = np.stack(motion.derivative(middle - quarter, ACCELERATION))
+    second = np.stack(motion.derivative(middle + quarter, ACCELERATION))
+    bounds = [(motion.largest_horizontal(time), *motion.vertical_range(time)) for time in edges[:-1].tolist()]
+    coefficients = np.stack([0.5 * (first + second), second - first], axis=1)
+    rows = np.column_stack([edges[:-1], edges[1:], bounds, *coefficients.transpose(2, 0, 1).reshape(-1, 6).T])
+    return Table(rows, 1)
 
 
 def _cuts(low: float, high: float, longest: float, end: float) -> Floats:

@@ -138,7 +138,7 @@ OBSERVED = ("mean_tilt", "forward_cos", "forward_sin", "backward_cos", "backward
 """Rows of the integrals over the last periods."""
 
 _LANE_ROWS = (
-    "run", "h", "tried", "held_step", "by_tilt", "stop", "wanted", "made", "aimed", "rejected", "side",
+    "run", "piece", "h", "tried", "held_step", "by_tilt", "stop", "wanted", "made", "aimed", "rejected", "side",
     "atol_now", "grown", "rest_tilt", "no_return",
     "tilt", "radial", "momentum", "x", "y", "vx", "vy",
     "turns", "low", "peak", "flag", "error", "ok", "held", "go", "reached",

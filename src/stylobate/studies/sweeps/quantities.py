@@ -59,6 +59,9 @@ _QUANTITIES = {
     "patch": _not_negative("radius of the contact, in base radii", "1"),
     "incline": _not_negative("angle of the plane to the horizontal", "rad"),
     "incline_direction": _Quantity("azimuth of the way down", "rad"),
+    "motion": _Quantity(
+        "number of the base motion", "1", lambda values: (values >= 0.0) & (values % 1.0 == 0.0), "be whole, from 0 on"
+    ),
     "acceleration": _not_negative("largest horizontal acceleration of the base", "m s-2"),
     "scale": _Quantity("factor of the base motion", "1"),
     "angular_frequency": _positive("angular frequency", "rad s-1"),

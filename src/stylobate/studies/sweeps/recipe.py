@@ -9,6 +9,7 @@ import numpy as np
 
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
+from stylobate.motions.one_of import members_of
 from stylobate.results import OutcomeRules
 from stylobate.studies.sweeps.quantities import OF_A_RUN, Floats
 
@@ -75,5 +76,8 @@ class Recipe:
             return values["duration"] if self.duration is None else self.duration
         if "angular_frequency" in values:
             return np.asarray(self.periods * 2.0 * math.pi / values["angular_frequency"])
+        if "motion" in values:
+            periods = np.array([member.period or math.nan for member in members_of(self.motion)])
+            return np.asarray(self.periods * periods[values["motion"].astype(np.intp)])
         assert self.motion.period is not None  # a sweep refuses periods of a motion without one
         return self.periods * self.motion.period

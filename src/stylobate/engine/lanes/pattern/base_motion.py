@@ -81,13 +81,8 @@ def set_piece(buf: Table, i: int, motion: Table, pieces: Table, t: float) -> Non
             buf[row, i] = 0.0
         buf[R.LEG_ENDS, i] = delay / scale
         return
-    low, high = first, last
-    while low < high:  # the last piece that begins at `t` or before
-        middle = (low + high + 1) // 2
-        if pieces[middle, 0] + delay <= time:
-            low = middle
-        else:
-            high = middle - 1
+    low = piece_at(pieces, first + int(buf[R.PIECE, i]), first, last, delay, time)
+    buf[R.PIECE, i] = low - first
     start, end = pieces[low, 0], pieces[low, 1]
     buf[FIRST_FORCING, i] = (0.5 * (start + end) + delay) / scale
     buf[FIRST_FORCING + 1, i] = 2.0 * scale / (end - start)
@@ -110,6 +105,24 @@ def set_piece(buf: Table, i: int, motion: Table, pieces: Table, t: float) -> Non
     set_no_return(buf, i)
     if low < last:
         buf[R.LEG_ENDS, i] = (end + delay) / scale
+
+
+@part
+def piece_at(pieces: Table, near: int, first: int, last: int, delay: float, time: float) -> int:
+    """Return the last piece that begins at a time or before: most often the one behind the last that was asked for."""
+    if pieces[near, 0] + delay <= time:
+        first = near
+        if near == last or pieces[near + 1, 0] + delay > time:
+            return near
+        if near + 1 == last or pieces[near + 2, 0] + delay > time:
+            return near + 1
+    while first < last:
+        middle = (first + last + 1) // 2
+        if pieces[middle, 0] + delay <= time:
+            first = middle
+        else:
+            last = middle - 1
+    return first
 
 
 @part

@@ -42,6 +42,7 @@ def enter(buf: Table, i: int, table: Table, pieces: Table, run: int) -> int:
     for j in range(PARAMETERS):
         buf[R.PARAMETER + j, i] = table[run, PARAMETERS_AT + j]
     buf[R.RUN, i] = run
+    buf[R.PIECE, i] = 0.0
     c, t = buf[R.SLENDERNESS, i], buf[R.TIME, i]
     buf[R.GROWN, i] = GROWN * c
     buf[R.REST_TILT, i] = buf[R.REST_ENERGY, i] * c

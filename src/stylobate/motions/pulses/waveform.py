@@ -1,0 +1,88 @@
+"""What a waveform is: how a pulse goes along its line, from its beginning to its end."""
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+
+# Cells to the shortest period in which turning points are looked for, and halvings of a cell that has one.
+_CELLS_PER_PERIOD = 1024
+_HALVINGS = 60
+
+
+class Waveform(ABC):
+    """An acceleration along a line from the time 0 to `duration`, and what follows from it.
+
+    Notes
+    -----
+    For developers: a waveform of your own is a frozen dataclass that implements `duration`, `highest_frequency`,
+    `derivative` and `turning_points`. Pulse(waveform=…) then makes a base motion of it.
+    """
+
+    __slots__ = ()
+
+    @property
+    @abstractmethod
+    def duration(self) -> float:
+        """How long it lasts [s]."""
+
+    @property
+    @abstractmethod
+    def highest_frequency(self) -> float:
+        """Highest angular frequency in the acceleration [rad/s]."""
+
+    @abstractmethod
+    def derivative(self, time: Floats, order: int) -> Floats:
+        """Return the displacement (`order` 0) [m], velocity (1) [m/s] or acceleration (2) [m/s²].
+
+        Parameters
+        ----------
+        time
+            Times from 0 to `duration` [s].
+        order
+            0, 1 or 2. Displacement and velocity begin with 0; the acceleration at `duration` is the last one.
+        """
+
+    @abstractmethod
+    def turning_points(self) -> tuple[tuple[float, float], ...]:
+        """Return the time [s] and the acceleration [m/s²] of its extremes between beginning and end, in order."""
+
+    @property
+    def margin(self) -> float:
+        """By how much the acceleration may pass those of `turning_points` and the ends [m/s²]."""
+        return 0.0
+
+
+def found_turning_points(
+    acceleration: Callable[[Floats], Floats], slope: Callable[[Floats], Floats], duration: float, frequency: float
+) -> tuple[tuple[float, float], ...]:
+    """Return time and acceleration where its `slope` changes sign, by bisection of 1024 cells in the shortest period.
+
+    Two turning points in one cell are not seen; see `unseen`.
+    """
+    edges = np.linspace(0.0, duration, _cells(duration, frequency) + 1)
+    rising = slope(edges) > 0.0
+    turns = np.flatnonzero(rising[1:] != rising[:-1])
+    low, high = edges[turns], edges[turns + 1]
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        before = (slope(middle) > 0.0) == rising[turns]
+        low, high = np.where(before, middle, low), np.where(before, high, middle)
+    times = 0.5 * (low + high)
+    return tuple(zip(times.tolist(), acceleration(times).tolist(), strict=True))
+
+
+def unseen(third: float, duration: float, frequency: float) -> float:
+    """Return by how much two turning points in one cell of width h can pass its ends: h³/12 sup |d³a/dt³|.
+
+    Between them the slope is bounded by ½(t − t1)(t2 − t) times `third` = sup |d³a/dt³|, since it vanishes at both.
+    """
+    return third * (duration / _cells(duration, frequency)) ** 3 / 12.0
+
+
+def _cells(duration: float, frequency: float) -> int:
+    return math.ceil(_CELLS_PER_PERIOD * frequency * duration / (2.0 * math.pi))

@@ -1,0 +1,138 @@
+"""One file, one record."""
+
+import os
+from collections.abc import Mapping
+from enum import Enum
+from pathlib import Path
+
+from stylobate.errors import FileError, ParameterError, require_positive
+from stylobate.motions.records.at2 import is_at2, read_at2
+from stylobate.motions.records.component import Component
+from stylobate.motions.records.lines import Text, is_binary, read_bytes
+from stylobate.motions.records.named_columns import is_csv, read_csv
+from stylobate.motions.records.record import AXES, Record
+from stylobate.motions.records.tables import read_table
+from stylobate.motions.records.units import in_si, require_unit
+from stylobate.motions.records.waveforms import read_waveform
+
+
+class RecordFormat(Enum):
+    """How a file is written."""
+
+    AT2 = "PEER AT2"
+    TABLE = "one column of accelerations, or time and acceleration"
+    CSV = "named columns"
+    WAVEFORM = "whatever ObsPy reads"
+
+
+def read_record(
+    path: str | os.PathLike[str],
+    units: str | None = None,
+    *,
+    step: float | None = None,
+    columns: Mapping[str, str] | None = None,
+    axis: str | None = None,
+    format: RecordFormat | None = None,  # noqa: A002  the word of the field
+) -> Record:
+    """Return the record in one file.
+
+    Parameters
+    ----------
+    path
+        The file; gzip is unpacked.
+    units
+        Unit of the accelerations: "g", "m/s²" (m/s2), "cm/s²" (cm/s2, gal) or "mm/s²". Only to be left out where the
+        file tells: it is never guessed.
+    step
+        Time step [s], of a file that tells none: a single column.
+    columns
+        Which column of a CSV file is "time", "x", "y" and "z", by name.
+    axis
+        Axis of the record along which a single component acts: "x", "y" or "z". None is z where the file says up or
+        down (then the sign is turned), else x.
+    format
+        How the file is written; None finds out.
+
+    Raises
+    ------
+    FileError
+        If the file is missing, empty, cut short, holds something that is not a number or unequal steps, or does not
+        tell its unit; with the number of the line.
+    ParameterError
+        If units are unknown or contradict the file.
+    UnsupportedError
+        If only ObsPy reads the format and it is not installed.
+    """
+    path = Path(path)
+    step = None if step is None else require_positive("step", step, "s")
+    return as_record(read_component(path, step, columns, format), path, units, axis)
+
+
+def read_component(
+    path: Path,
+    step: float | None,
+    columns: Mapping[str, str] | None,
+    format: RecordFormat | None,  # noqa: A002
+) -> Component:
+    """Return what the file gives, in its own units."""
+    content = read_bytes(path)
+    if format is RecordFormat.WAVEFORM or (
+        format is None and (is_binary(content) or content.startswith(b"Origin Time"))
+    ):
+        return read_waveform(path, content)
+    if is_binary(content):
+        message = f"{path}: a binary file, not {format.value if format else 'text'}"
+        raise FileError(message)
+    text = Text.of(path, content)
+    if format is RecordFormat.AT2 and not is_at2(text):
+        raise text.fault(0, "no header of an AT2 file: NPTS and DT are missing")
+    if format is RecordFormat.AT2 or (format is None and is_at2(text)):
+        return read_at2(text)
+    if format is RecordFormat.CSV or (format is None and (columns is not None or is_csv(text))):
+        return read_csv(text, columns, step)
+    return read_table(text, step)
+
+
+def as_record(component: Component, path: Path, units: str | None, axis: str | None) -> Record:
+    """Return the record of one file's content, in SI units."""
+    factor, told = _scale(component, path, units)
+    provenance: tuple[str, ...] = (
+        f"read from {path.name}, {told}" + (f": {component.title}" if component.title else ""),
+    )
+    direction = component.direction
+    if component.samples.ndim > 1:
+        samples = factor * component.samples
+        return Record(
+            samples=samples, step=component.step, start=component.start, name=name_of(path), provenance=provenance
+        )
+    up = direction.vertical if direction else 0
+    axis = ("z" if up else "x") if axis is None else axis
+    if axis not in AXES:
+        message = f'axis must be "x", "y" or "z", got {axis!r}'
+        raise ParameterError(message)
+    if direction is not None:
+        provenance += (f"{direction} along {axis}" + (" with its sign turned" if up < 0 and axis == "z" else ""),)
+    sign = -1.0 if up < 0 and axis == "z" else 1.0
+    along = {axis: sign * factor * component.samples}
+    return Record.from_components(
+        **along, step=component.step, start=component.start, name=name_of(path), provenance=provenance
+    )
+
+
+def name_of(path: Path) -> str:
+    """Return the name of a file without its folder and endings."""
+    name = path.name.removesuffix(".gz")
+    return name.rpartition(".")[0] or name
+
+
+def _scale(component: Component, path: Path, units: str | None) -> tuple[float, str]:
+    given = None if units is None else require_unit(units)
+    if component.unit is None and given is None:
+        message = f'{path}: the file does not tell its unit; give units="g", "m/s²" or "cm/s²"'
+        raise FileError(message)
+    if component.unit is not None and given is not None and component.unit != given:
+        message = f"{path}: units must be left out or {component.unit!r}, which the file says, got {units!r}"
+        raise ParameterError(message)
+    unit = component.unit or given
+    assert unit is not None
+    return in_si(unit), f"in {unit}" + (" as the file says" if component.unit else " as given")

@@ -1,0 +1,123 @@
+"""Overturning by one pulse: closed forms, arcs of the linear block joined one to another, and the engine."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import stylobate as sb
+from stylobate import theory
+from stylobate.errors import ParameterError
+
+# So slender that finite angles change nothing: the error of the theory is of the order c².
+C = 1e-3
+COLUMN = sb.Column.dimensionless(slenderness=C)
+BLOCK_FREQUENCY = COLUMN.frequency_scale / math.sqrt(1.0 + COLUMN.inertia_ratio * C**2)  # p = √(mgR/K)
+
+
+@pytest.mark.parametrize(("theta", "least"), [(2.0, 1.8007), (5.0, 3.2891), (10.0, 5.7865)])
+def test_the_least_half_sine_has_known_values(theta, least):
+    assert float(theory.half_sine_overturning(theta, 1.0)) == pytest.approx(least, abs=5e-5)
+
+
+def arcs(u, rate, side, start, theta, a):
+    """Return the motion ü = u − side + a sin θτ from a state on: the tilt over c, on one side, within the pulse."""
+    share = -a / (1.0 + theta**2)
+    first = u - side - share * math.sin(theta * start)
+    second = rate - share * theta * math.cos(theta * start)
+
+    def tilt(tau):
+        s = tau - start
+        return side + first * np.cosh(s) + second * np.sinh(s) + share * np.sin(theta * tau)
+
+    def speed(tau):
+        s = tau - start
+        return first * np.sinh(s) + second * np.cosh(s) + share * theta * np.cos(theta * tau)
+
+    return tilt, speed
+
+
+def overturns(a, theta, end, restitution):
+    """Return the number of impacts before it overturns, or None: arc by arc, behind the pulse by its energy."""
+    # Positive in the direction in which the first half of the pulse throws the column.
+    now, u, rate, side, impacts = math.asin(1.0 / a) / theta, 0.0, 0.0, 1.0, 0
+    while impacts < 3:
+        tilt, speed = arcs(u, rate, side, now, theta, a)
+        tau = np.linspace(now, end, 4001)
+        values = side * tilt(tau)
+        landed = np.flatnonzero((values[1:] <= 0.0) & (values[:-1] > 0.0))
+        if landed.size == 0:
+            u, rate = side * float(tilt(end)), side * float(speed(end))
+            if u - 1.0 + rate > 0.0:
+                return impacts
+            # It comes back. Of the rate at which it lands e is left, and 1 carries it over the other side.
+            landing = math.sqrt(rate**2 + 2.0 * u - u**2)
+            return impacts + 1 if restitution * landing > 1.0 else None
+        k = int(landed[0])
+        now = brentq(tilt, tau[k], tau[k + 1], xtol=1e-15)
+        u, rate, side, impacts = 0.0, restitution * float(speed(now)), -side, impacts + 1
+    return None
+
+
+@pytest.mark.parametrize("theta", [0.3, 1.0, 2.0, 5.0, 20.0])
+@pytest.mark.parametrize(
+    ("least", "half_turns"), [(theory.half_sine_overturning, 1.0), (theory.one_sine_overturning, 2.0)]
+)
+def test_arcs_begin_to_overturn_without_impact_at_the_closed_form(least, half_turns, theta):
+    a, end = float(least(theta, 1.0)), half_turns * math.pi / theta
+    assert overturns(a * (1.0 + 1e-9), theta, end, 0.9) == 0
+    assert overturns(a * (1.0 - 1e-9), theta, end, 0.9) != 0
+    if half_turns == 1.0:
+        assert overturns(a * (1.0 - 1e-9), theta, end, 1.0) is None
+
+
+def test_one_sine_overturns_with_an_impact_below_a_gap_and_without_above_it():
+    end = 2.0 * math.pi / 5.0
+    for a, impacts in ((3.0185, None), (3.0187, 1), (6.3180, 1), (6.3182, None), (7.1680, None), (7.1682, 0)):
+        assert overturns(a, 5.0, end, 0.9) == impacts
+    assert float(theory.one_sine_overturning(5.0, 1.0)) == pytest.approx(7.168, abs=5e-4)
+
+
+def outcome(model, make, a, theta):
+    pulse = make(acceleration=a * C * COLUMN.gravity, angular_frequency=theta * BLOCK_FREQUENCY)
+    duration = (2.0 * math.pi / theta + 20.0) / BLOCK_FREQUENCY
+    return sb.simulate(model, pulse, duration=duration, rtol=1e-10).outcome
+
+
+@pytest.mark.parametrize("model", [sb.PlanarRocking(COLUMN, restitution=0.9), sb.Slender(COLUMN, damping=0.0)])
+@pytest.mark.parametrize("theta", [2.0, 5.0, 10.0])
+def test_the_engine_overturns_by_half_a_sine_where_theory_says(model, theta):
+    a = float(theory.half_sine_overturning(theta, 1.0))
+    assert outcome(model, sb.Pulse.half_sine, a * (1.0 + 1e-5), theta) is sb.Outcome.OVERTURNED
+    assert outcome(model, sb.Pulse.half_sine, a * (1.0 - 1e-5), theta) is not sb.Outcome.OVERTURNED
+
+
+@pytest.mark.parametrize(
+    ("a", "falls"),
+    [(3.0185, False), (3.0187, True), (5.0, True), (6.3180, True), (6.3182, False), (7.1680, False), (7.1683, True)],
+)
+def test_the_engine_has_the_two_ways_to_overturn_by_one_sine(a, falls):
+    found = outcome(sb.PlanarRocking(COLUMN, restitution=0.9), sb.Pulse.one_sine, a, 5.0)
+    assert (found is sb.Outcome.OVERTURNED) is falls
+
+
+@pytest.mark.parametrize("least", [theory.half_sine_overturning, theory.one_sine_overturning])
+def test_long_pulses_need_only_release_and_short_ones_an_impulse(least):
+    assert float(least(0.02, 0.1)) == pytest.approx(0.1, rel=1e-3)
+    values = least(np.geomspace(0.1, 100.0, 31), 1.0)
+    assert np.all(np.diff(values) > 0.0)
+    np.testing.assert_allclose(least([[2.0], [3.0]], [0.1, 0.2]), least([[2.0], [3.0]], 1.0) * [[0.1, 0.2]], rtol=1e-15)
+
+
+def test_a_short_half_sine_must_give_the_velocity_that_carries_over_the_edge():
+    # A velocity 2a/θ at once gives the tilt rate that carries it to u = 1: 1.
+    theta = 1e4
+    assert float(theory.half_sine_overturning(theta, 1.0)) == pytest.approx(0.5 * theta, rel=1e-3)
+
+
+@pytest.mark.parametrize("least", [theory.half_sine_overturning, theory.one_sine_overturning])
+@pytest.mark.parametrize(("values", "name"), [((0.0, 1.0), "theta"), ((1.0, -1.0), "c"), ((math.nan, 1.0), "theta")])
+def test_impossible_numbers_are_refused_by_name(least, values, name):
+    with pytest.raises(ParameterError, match=rf"^{name}\b"):
+        least(*values)
