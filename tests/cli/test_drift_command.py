@@ -69,6 +69,11 @@ def test_bad_questions_are_told_in_one_line(arguments, line, capsys):
     assert line in told[0]
 
 
+def test_what_varies_must_be_told(capsys):
+    assert run(["drift", *BLOCK, *SLOPE]) == 2
+    assert "drift.x is missing: what varies, such as --x acceleration 2 30 29" in capsys.readouterr().err
+
+
 def test_a_saved_map_is_no_drift(tmp_path, capsys):
     path = tmp_path / "map.nc"
     rolling = ["map", "--slenderness", "0.1", "--motion", "circular", "--periods", "2"]

@@ -79,20 +79,23 @@ def test_a_landing_is_one_impulse_at_the_lowest_point_within_the_cone(restitutio
     assert compared > 100
 
 
-@pytest.mark.parametrize("moving", ["straight", "aside", "spinning", "slipping"])
+@pytest.mark.parametrize("moving", ["straight", "aside", "spinning", "slipping", "all"])
 @pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
 @pytest.mark.parametrize("friction", [0.02, 0.3, 1.5])
 def test_a_stroke_of_the_base_never_adds_energy(friction, restitution, moving):
     rng = np.random.default_rng(5)
     stroke = float(sb.Sliding(COLUMN).margin_names.index("stroke"))
+    # Where all moves at once the slip and spin may hold most of the energy.
+    scale = 3.0 if moving == "all" else 1.0
     for c, kappa, axial in rng.uniform([0.05, 0.5, 0.3], [0.9, 0.8, 0.5], (100, 3)):
         column = sb.Column.dimensionless(slenderness=c, inertia_ratio=kappa, axial_ratio=axial)
         model = sb.Sliding(column, friction_coefficient=friction, restitution=restitution)
         tilt, fall, around = c * rng.uniform([1e-4, -0.5, -0.5], [0.009, -0.1, 0.5])
-        beta, spin, slip = rng.uniform(-math.pi, math.pi), rng.normal(scale=0.3), rng.normal(scale=0.1, size=2)
-        around = around if moving == "aside" else 0.0
-        spin = spin if moving == "spinning" else 0.0
-        slip = slip if moving == "slipping" else np.zeros(2)
+        beta, spin = rng.uniform(-math.pi, math.pi), rng.normal(scale=0.3 * scale)
+        slip = rng.normal(scale=0.1 * scale, size=2)
+        around = around if moving in ("aside", "all") else 0.0
+        spin = spin if moving in ("spinning", "all") else 0.0
+        slip = slip if moving in ("slipping", "all") else np.zeros(2)
         d, n = np.array([math.cos(beta), math.sin(beta)]), np.array([-math.sin(beta), math.cos(beta)])
         begun = State(
             *tilt * d, *fall * d + around * n, spin, 0.0, 0.0, 0.0, *slip, 0.0, 0.0, 0.0, 0.0, 0.0,
@@ -103,8 +106,43 @@ def test_a_stroke_of_the_base_never_adds_energy(friction, restitution, moving):
             float(model.outputs(np.array([state]).T, np.zeros((3, 1)), np.zeros(1, dtype=bool))["energy"].values[0])
             for state in (begun, after)
         )
-        # Tilts of a passage are 0.01 c at most, and what is told of it is right but for a few terms of that size.
-        assert left <= before * 1.03
+        assert left <= before * (1.0 + ROUNDING)
+
+
+@pytest.mark.parametrize(
+    ("column", "numbers", "start"),
+    [
+        (
+            sb.Column.dimensionless(slenderness=0.5594860838162148),
+            {
+                "friction_coefficient": 0.03315,
+                "static_friction_coefficient": 0.04973,
+                "patch": 0.05,
+                "restitution": 0.9,
+            },
+            {"tilt": (-0.29256, -0.19951), "velocity": (-0.022847, 0.487995, 0.0), "spin": 0.5, "duration": 9.0},
+        ),
+        (
+            sb.Column.dimensionless(slenderness=0.475),
+            {"friction_coefficient": 0.1, "restitution": 0.5},
+            {"tilt": (0.19, 0.0), "tilt_rate": (0.0, 0.05), "duration": 4.0},
+        ),
+    ],
+)
+def test_no_stroke_adds_energy_to_a_squat_column_that_spins_and_slips(column, numbers, start):
+    run = sb.simulate(sb.Sliding(column, damping=0.03, **numbers), **start, samples=4001)
+    assert sum(event.kind == "stroke" for event in run.events) > 0
+    energy = run.data["energy"].to_numpy()
+    assert np.all(np.diff(energy) <= 1e-8 * energy[0])
+
+
+def test_a_part_that_was_dropped_and_then_slides_has_slid():
+    part = sb.Column.solid(radius=0.02, height=0.03, density=7800.0)
+    tray = sb.Harmonic.oblique(acceleration=15.0, angular_frequency=60.0, angle=0.52)
+    model = sb.Sliding(part, friction_coefficient=0.3, restitution=0.2)
+    run = sb.simulate(model, tray, clearance=0.01, duration=1.0)
+    assert run.measures["time_flying"] > 0.05
+    assert run.outcome is sb.Outcome.SLID
 
 
 @pytest.mark.parametrize("c", [0.3, 0.46, 0.8])

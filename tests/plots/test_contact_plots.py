@@ -48,3 +48,12 @@ def test_a_saved_run_has_the_strip_of_its_samples(run, tmp_path):
     names = {axes: {label.get_text() for label in axes.get_yticklabels()} for axes in (strip, before)}
     assert names[strip] <= names[before]
     assert {"resting", "rolling", "slipping"} <= names[strip]
+
+
+def test_one_case_of_the_start_of_motion_can_be_chosen():
+    found = sb.studies.start_boundary(
+        MODEL, slenderness=[0.1, 0.2, 0.4], friction_coefficient=[0.1, 0.3], vertical_ratio=[0.0, 0.5]
+    )
+    both, one = sb.plot(found), sb.plot(found.sel(vertical_ratio=0.5, friction_coefficient=0.3))
+    assert len(both.axes) == 2
+    assert len(one.axes) == 1

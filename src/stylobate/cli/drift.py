@@ -12,7 +12,7 @@ from stylobate.cli.many_runs import check_outputs, computed, end, is_to_compute,
 from stylobate.cli.output import print_json, print_table
 from stylobate.cli.saved import axes_of, open_saved, plain_axes, provenance_of
 from stylobate.cli.source import read_source
-from stylobate.errors import FileError
+from stylobate.errors import FileError, ParameterError
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -111,6 +111,9 @@ def drift(
         else:
             described = spec.DriftDescription.of_saved(provenance_of(saved), axes_of(saved)).values()
         values = opt.overlay_axes(opt.overlay(described, given, opt.RUN_NAMES), given, "drift")
+        if "x" not in dict(values.get("drift", {})):
+            message = "drift.x is missing: what varies, such as --x acceleration 2 30 29"
+            raise ParameterError(message)
         setup = spec.DriftDescription.parse(opt.overlay_late(values, given, "drift")).build()
         for place, name in zip("xy", setup.options["over"], strict=False):
             check_quantities(f"drift.{place}", setup.model, [name])
@@ -130,8 +133,8 @@ def _walked(saved: "xr.Dataset", source: Path | None) -> "xr.Dataset":
 
     if "transport_speed" in saved:
         return saved
-    if "mean_twist_rate" not in saved:
-        message = f"{source} holds runs of a model that does not slip, and no drift"
+    if saved.attrs["kind"] not in ("sweep", "drift") or "mean_twist_rate" not in saved:
+        message = f"{source} holds a {saved.attrs['kind']}, and no drift; see stylobate map"
         raise FileError(message)
     setup = spec.DriftDescription.of_saved(provenance_of(saved), axes_of(saved)).build()
     return walked(saved, setup.model, setup.motion)

@@ -26,10 +26,11 @@ class Look:
 _CREAM, _LILAC, _SKY, _AMBER, _SEA, _BLUE, _NIGHT = (
     "#F6F1DA", "#DAD2E8", "#74C0EA", "#D58900", "#008B65", "#0063A0", "#1B0B16",
 )  # fmt: skip
-_MAUVE, _GREY = "#A4558C", "#767676"
+_MAUVE, _GREY, _SAND = "#A4558C", "#767676", "#E5BE8F"
 _DARK_INK, _LILAC_INK = "#333333", "#8E7DA3"
 
 _AT_REST, _ROCKING = Look(_CREAM, ink=_DARK_INK), Look(_SKY, ink=_DARK_INK)
+_SLIDING = Look(_SAND, "--", _DARK_INK)
 _ROLLING, _ROLLING_BACK = Look(_AMBER, ink=_DARK_INK), Look(_BLUE, "\\\\\\")
 _MODULATED, _MODULATED_BACK = Look(_SEA, "..."), Look(_SEA, "ooo")
 _APERIODIC = Look(_MAUVE, "---")
@@ -46,7 +47,7 @@ OUTCOME_LOOKS = {
     Outcome.OVERTURNED: _OVERTURNED,
     Outcome.LIMIT_REACHED: replace(_OVERTURNED, texture="///"),
     Outcome.LIFTED_OFF: Look(_GREY, "**"),
-    Outcome.SLID: Look(_CREAM, "--", _DARK_INK),
+    Outcome.SLID: _SLIDING,
     Outcome.FAILED: Look("#ffffff", "xxx", "#D55E00"),
 }
 
@@ -104,7 +105,7 @@ def outcome_classes() -> tuple[MapClass, ...]:
 
 def contact_classes(found: xr.Dataset) -> tuple[MapClass, ...]:
     """Return the classes of a contact map, from standing to falling, the last for what has not been computed."""
-    looks = (_AT_REST, replace(_AT_REST, texture="--"), _ROCKING, _ROLLING_BACK, Look(_GREY, "**"), _OVERTURNED)
+    looks = (_AT_REST, _SLIDING, _ROCKING, _ROLLING_BACK, Look(_GREY, "**"), _OVERTURNED)
     names = [str(name) for name in found["class_name"].to_numpy()]
     shown = zip(names, (*looks, OUTCOME_LOOKS[Outcome.FAILED]), strict=True)
     return (*(MapClass(code, name, look) for code, (name, look) in enumerate(shown)), _UNFINISHED_CLASS)

@@ -49,6 +49,8 @@ def plot_start_boundary(found: xr.Dataset) -> Figure:
     ParameterError
         If there are more than four frictions, or more than four panels: choose some by `found.sel`.
     """
+    chosen = [name for name in ("friction_coefficient", "vertical_ratio", "incline") if name not in found.dims]
+    found = found.expand_dims(chosen)
     cases = found.stack(case=("vertical_ratio", "incline"))
     if cases.sizes["case"] > _MOST or cases.sizes["friction_coefficient"] > _MOST:
         message = (

@@ -11,7 +11,7 @@ import xarray as xr
 from stylobate.engine.parameters import with_parameters
 from stylobate.errors import Outcome, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
-from stylobate.motions import BaseMotion
+from stylobate.motions import BASE_AT_REST, BaseMotion
 from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED, code_of
 from stylobate.studies.contact_map import contact_classes
@@ -62,7 +62,8 @@ def drift(
     xarray.Dataset
         Of kind "drift": the runs over the names, with `mean_velocity` (axis) and `transport_speed` [m/s],
         `mean_twist_rate` [rad/s], `contact_class`, `throw_number` and all that ensembles tell; NaN where a column did
-        not move on to the end, as one that overturns; 0 where it came to rest for good.
+        not move on to the end, as one that overturns; 0 where it came to rest for good. A column that runs away down a
+        slope has the mean velocity of these periods, which grows with them.
 
     Raises
     ------
@@ -84,8 +85,9 @@ def drift(
     if not model.switches:
         message = f"model {model.name} holds its contact: a drift needs one that slips, such as Sliding(column)"
         raise UnsupportedError(message)
-    if motion.period is None and "angular_frequency" not in over:
-        message = f"a drift needs a periodic base motion, got {motion!r}"
+    if not isinstance(motion, BaseMotion) or (motion.period is None and "angular_frequency" not in over):
+        got = "a base at rest" if motion in (None, BASE_AT_REST) else repr(motion)
+        message = f"a drift needs a periodic base motion, such as an oblique one; got {got}"
         raise UnsupportedError(message)
     if not isinstance(over, Mapping) or not 1 <= len(over) <= _MOST_NAMES:
         message = f'over must name one or two parameters, such as "friction_coefficient"; got {over!r}'

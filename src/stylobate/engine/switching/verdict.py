@@ -17,6 +17,9 @@ from stylobate.models.sliding.equations import JAM
 from stylobate.motions import BaseMotion
 from stylobate.results import OutcomeRules
 
+# The end of a whole number of periods is told to this part of the time.
+_SLACK = 1e-9
+
 # Nodes of Gauss's rule for the lengths of paths, to each step.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
@@ -40,15 +43,18 @@ _UPRIGHT = (
 def switching_verdict(model: Model, motion: BaseMotion, course: SwitchingCourse, rules: OutcomeRules) -> Verdict:
     """Return what became of the column.
 
-    What it does over the last periods decides, or at the end where the base motion has no period: whether it stands,
-    its base slides, it hops, or it moves on its rim, which is then judged as for the other models.
+    What it does over the last periods decides, or at the end where there are none or too few: whether it stands, its
+    base slides, it hops, or it moves on its rim, which is then judged as for the other models.
     """
     if course.ended is Reason.FAILED:
         return Verdict(Outcome.FAILED, f"the integration stopped: {course.failure}", {})
     if course.ended in _ENDINGS:
         return Verdict(*_ENDINGS[course.ended], {})
     period = None if motion.period is None else motion.period / model.time_scale
-    since = course.trajectory.end - (0.0 if period is None else rules.periods * period)
+    end = course.trajectory.end
+    # Periods of which some are no late ones, as in ensembles.
+    enough = period is not None and end * (1.0 + _SLACK) >= (rules.periods + 1) * period
+    since = end - rules.periods * period if enough and period is not None else end
     late = [number for number, piece in enumerate(course.pieces) if piece.end > since] or [len(course.pieces) - 1]
     kinds = {course.contacts[number] for number in late}
     leans = any(_leans(course, number) for number in late)

@@ -5,7 +5,7 @@ import math
 from stylobate.models.finite_tilt import cosine, sine_over_angle
 from stylobate.models.sliding.balance import balance
 from stylobate.models.sliding.equations import STILL, margins, rates
-from stylobate.models.sliding.phases import SLIDING, Numbers, State
+from stylobate.models.sliding.phases import FLYING, SLIDING, Numbers, State
 
 # Slip begins with so much [STILL], too little to be seen and enough to have a direction.
 KICK = 10.0
@@ -145,3 +145,32 @@ def slips(vx: float, vy: float, turning: float) -> bool:
 def pace(state: State) -> float:
     """Return |α̇|, and not nought."""
     return math.hypot(state.tilt_rate_x, state.tilt_rate_y) + 1e-300
+
+
+def energy_of(state: State, n: Numbers) -> tuple[float, float]:
+    """Return the kinetic energy, and that of the height of the centre of mass above that at rest [m g h]."""
+    kinetic = n.kappa * n.axial * (n.c * state.spin) ** 2
+    mx, my, climb, lift = state.velocity_x, state.velocity_y, 0.0, 0.0
+    if state.tilt_x != 0.0 or state.tilt_y != 0.0 or state.tilt_rate_x != 0.0 or state.tilt_rate_y != 0.0:
+        ux, uy, sine, cos = lean_of(state)
+        w1, w2 = turning(state)
+        ahead, swing = (cos + n.c * sine) * w2, n.c * state.spin + w1
+        mx, my = mx + ahead * ux + swing * uy, my + ahead * uy - swing * ux
+        climb, lift = (n.c * cos - sine) * w2, height_of(sine, cos, n.c)
+        kinetic += (1.0 - n.kappa) * (w1 * w1 + w2 * w2)
+    if state.contact == FLYING:
+        mx, my, climb, lift = state.velocity_x, state.velocity_y, state.rise_rate, state.rise
+    kinetic += n.kappa * (mx * mx + my * my + climb * climb)
+    return 0.5 * kinetic, (1.0 - n.relief) * lift
+
+
+def with_no_more(energy: float, state: State, n: Numbers) -> State:
+    """Return `state`, slowed down as a whole if it has more than this energy."""
+    kinetic, lift = energy_of(state, n)
+    if kinetic + lift <= energy:
+        return state
+    part = math.sqrt(max(energy - lift, 0.0) / kinetic)
+    rates = (state.tilt_x, state.tilt_y, part * state.tilt_rate_x, part * state.tilt_rate_y)
+    slower = placed(state, rates, part * state.spin, state.contact)
+    velocity = (part * state.velocity_x, part * state.velocity_y)
+    return moving(slower, velocity, state.rise, part * state.rise_rate, state.contact)

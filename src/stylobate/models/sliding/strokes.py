@@ -9,7 +9,16 @@ from stylobate.models.sliding.impacts import base_impulse, impulse, rebound, res
 from stylobate.models.sliding.on_base import rests, set_down, settle_flat
 from stylobate.models.sliding.on_rim import settle_rim
 from stylobate.models.sliding.phases import FLYING, SLIDING, SLIPPING, Numbers, State
-from stylobate.models.sliding.posture import Triple, headed, height_of, lean_with_rate, moving, placed
+from stylobate.models.sliding.posture import (
+    Triple,
+    energy_of,
+    headed,
+    height_of,
+    lean_with_rate,
+    moving,
+    placed,
+    with_no_more,
+)
 
 # A rim that strikes again and again does so at most so often, and no more below this part of its first speed.
 _MOST_STRIKES, _FAINT = 50, 1e-10
@@ -29,9 +38,10 @@ class Body(NamedTuple):
 def stroke(state: State, now: Triple, later: Triple, ahead: float, rest: float, n: Numbers) -> tuple[float, State]:
     """Return how a column goes on whose base strikes the plane: on the other side, after an impact of the rim there.
 
-    The passage is taken for one in the vertical plane of its motion, with the energy that it has. e_n = 0 is Housner's
-    impact; where the column then leans another way than the struck point lies, the rim strikes again, until it rests
-    on the point towards which it leans.
+    The passage is taken for one in the vertical plane of its motion, with the energy that it has; where that does not
+    suffice for the slip it would have, the column strikes as it moves. e_n = 0 is Housner's impact; where the column
+    then leans another way than the struck point lies, the rim strikes again, until it rests on the point towards which
+    it leans. The tilt is neglected in all this, but no energy is gained by that.
     """
     x, y, vx, vy = lean_with_rate(state)
     tilt, pace = math.hypot(x, y), math.hypot(vx, vy)
@@ -40,18 +50,14 @@ def stroke(state: State, now: Triple, later: Triple, ahead: float, rest: float, 
     straight = -(x * ux + y * uy) > 0.5 * tilt
     elapsed = 2.0 * tilt / pace if straight else 0.0
     speed = planar_speed(state, (ux, uy), n)
-    body = Body(
-        state.velocity_x + speed * ux - n.c * state.spin * uy,
-        state.velocity_y + speed * uy + n.c * state.spin * ux,
-        -n.c * speed,
-        speed * ux,
-        speed * uy,
-        state.spin,
-    )
-    bounce = rebound(n.restitution, 2.0 * n.c * speed)
+    body = in_plane(state, (ux, uy), speed, n) if speed >= 0.0 else as_it_is(state, n)
+    approach = n.c * (body.rate_x * ux + body.rate_y * uy) - body.climb
+    bounce = rebound(n.restitution, approach)
     body = struck_at(body, ux, uy, bounce, n)
     if bounce > 0.0:
-        return elapsed, flying_from(state, body, (tilt * ux, tilt * uy), n)
+        kinetic, lift = energy_of(state, n)
+        flying = flying_from(state, body, (tilt * ux, tilt * uy), n)
+        return elapsed, with_no_more(kinetic + lift, flying, n)
     behind = 0.5 * elapsed if straight else 0.0
     further, after = coming_down(state, body, tilt, behind, now, later, ahead, rest, n)
     return elapsed + further, after
@@ -73,6 +79,8 @@ def coming_down(
     It strikes again until it rests on the point of its rim towards which it leans, by `tilt`, or by as much as it goes
     in the time `behind` the upright.
     """
+    kinetic, lift = energy_of(state, n)
+    energy = kinetic + lift
     speed = math.hypot(body.velocity_x, body.velocity_y) + math.hypot(body.rate_x, body.rate_y) + abs(body.climb)
     for _ in range(_MOST_STRIKES):
         pace = math.hypot(body.rate_x, body.rate_y)
@@ -84,7 +92,7 @@ def coming_down(
             after = placed(state, (reach * ux, reach * uy, body.rate_x, body.rate_y), body.spin, SLIPPING)
             sx = body.velocity_x - body.rate_x - n.c * body.spin * uy
             sy = body.velocity_y - body.rate_y + n.c * body.spin * ux
-            after = moving(after, (sx, sy), 0.0, 0.0, SLIPPING)
+            after = with_no_more(energy, moving(after, (sx, sy), 0.0, 0.0, SLIPPING), n)
             if rests(after, now, rest, n):
                 return set_down(after, now, later, ahead, n)
             return settle_rim(after, now, later, ahead, n)
@@ -95,19 +103,45 @@ def coming_down(
 def planar_speed(state: State, way: tuple[float, float], n: Numbers) -> float:
     """Return the rate of tilt with which a column passes the upright in a plane that has the energy of `state`.
 
-    It then turns about the point of its rim behind it, with the slip that it has now.
+    It then turns about the point of its rim behind it, with the slip that it has now. −1 where that has more energy.
     """
     c, kappa = n.c, n.kappa
-    x, y, vx, vy = lean_with_rate(state)
-    tilt, sx, sy = math.hypot(x, y), state.velocity_x, state.velocity_y
-    dx, dy = (x / tilt, y / tilt) if tilt > 0.0 else (-way[0], -way[1])
-    # The centre of mass: v + α̇ − c w3 Z × d where it touches, and upwards
-    mx, my, climb = sx + vx + c * state.spin * dy, sy + vy - c * state.spin * dx, c * (vx * dx + vy * dy)
-    behind_x, behind_y = sx - c * state.spin * way[1], sy + c * state.spin * way[0]
-    energy = 0.5 * kappa * (mx * mx + my * my + climb * climb) + 0.5 * (1.0 - kappa) * (vx * vx + vy * vy)
+    body = as_it_is(state, n)
+    behind_x, behind_y = state.velocity_x - c * state.spin * way[1], state.velocity_y + c * state.spin * way[0]
+    energy = 0.5 * kappa * (body.velocity_x**2 + body.velocity_y**2 + body.climb**2)
+    energy += 0.5 * (1.0 - kappa) * (body.rate_x**2 + body.rate_y**2)
     energy -= 0.5 * kappa * (behind_x * behind_x + behind_y * behind_y)
     inertia, along = 1.0 + kappa * c * c, kappa * (behind_x * way[0] + behind_y * way[1])
-    return max((math.sqrt(max(along * along + 2.0 * inertia * energy, 0.0)) - along) / inertia, 0.0)
+    square = along * along + 2.0 * inertia * energy
+    return (math.sqrt(square) - along) / inertia if square >= 0.0 and math.sqrt(square) >= along else -1.0
+
+
+def in_plane(state: State, way: tuple[float, float], speed: float, n: Numbers) -> Body:
+    """Return a column that passes the upright this way, at this rate of tilt, on the point of its rim behind it."""
+    return Body(
+        state.velocity_x + speed * way[0] - n.c * state.spin * way[1],
+        state.velocity_y + speed * way[1] + n.c * state.spin * way[0],
+        -n.c * speed,
+        speed * way[0],
+        speed * way[1],
+        state.spin,
+    )
+
+
+def as_it_is(state: State, n: Numbers) -> Body:
+    """Return a column near the upright with the velocities that it has."""
+    x, y, vx, vy = lean_with_rate(state)
+    tilt = math.hypot(x, y)
+    dx, dy = (x / tilt, y / tilt) if tilt > 0.0 else (-vx / math.hypot(vx, vy), -vy / math.hypot(vx, vy))
+    # The centre of mass: v + α̇ − c w3 Z × d where it touches, and upwards
+    return Body(
+        state.velocity_x + vx + n.c * state.spin * dy,
+        state.velocity_y + vy - n.c * state.spin * dx,
+        n.c * (vx * dx + vy * dy),
+        vx,
+        vy,
+        state.spin,
+    )
 
 
 def struck_at(body: Body, ux: float, uy: float, bounce: float, n: Numbers) -> Body:
