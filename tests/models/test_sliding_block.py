@@ -4,9 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import stylobate as sb
 from stylobate import theory
+from stylobate.models.sliding.friction import even
 from stylobate.theory import BlockPhase, FirstMotion
 
 # c above μ: it never tips. m = g = ω0 = 1, h = κ.
@@ -128,3 +130,42 @@ def test_a_spinning_base_stops_as_the_moment_of_an_even_pressure_says():
     assert run.outcome is sb.Outcome.AT_REST
     assert run.events[0].time == pytest.approx(spin / slows, rel=1e-7)
     assert run.measures["residual_twist"] == pytest.approx(0.5 * spin**2 / slows, rel=1e-7)
+
+
+def of_an_even_pressure(speed, twisting):
+    """Return force and moment over μN and the radius, summed over a disc that slips and whose rim turns so fast."""
+    x, weights = np.polynomial.legendre.leggauss(120)
+    r, around = 0.5 * (x + 1.0), 2.0 * np.pi * (np.arange(720) + 0.5) / 720.0
+    cos, sin = np.cos(around)[:, np.newaxis], np.sin(around)[:, np.newaxis]
+    along, across = speed - twisting * r * sin, twisting * r * cos
+    size = np.hypot(along, across)
+    share = weights * r  # dr r, over the area π
+    return ((along / size) @ share).mean(), ((r * (cos * across - sin * along) / size) @ share).mean()
+
+
+@pytest.mark.parametrize(
+    ("speed", "twisting"), [(1.0, 0.0), (0.01, 1.0), (0.5, 1.0), (1.0, 1.0), (1.0, 0.8), (1.0, 0.1)]
+)
+def test_friction_of_a_base_that_slides_and_turns_is_that_of_an_even_pressure(speed, twisting):
+    along, about = even(speed, twisting)
+    force, moment = of_an_even_pressure(speed, twisting)
+    np.testing.assert_allclose([along * speed, about * twisting], [force, moment], rtol=0.0, atol=1e-4)
+
+
+def test_a_base_that_slides_and_turns_stops_both_at_once():
+    disc, mu, speed, spin = sb.Column.solid(radius=0.5, height=1.0, density=1000.0), 0.2, 1.0, 2.0
+    run = sb.simulate(sb.Sliding(disc, friction_coefficient=mu), velocity=(speed, 0.0, 0.0), spin=spin, duration=2.0)
+
+    def rates(time, state):
+        force, moment = of_an_even_pressure(state[0], disc.radius * state[1])
+        slows = mu * disc.gravity
+        return [-slows * force, -slows * disc.mass * disc.radius * moment / disc.axial_inertia, *state[:2]]
+
+    def stops(time, state):
+        return state[0] - 1e-4
+
+    stops.terminal = True
+    known = solve_ivp(rates, (0.0, 2.0), [speed, spin, 0.0, 0.0], events=stops, rtol=1e-7, atol=1e-9)
+    assert run.decided_at == pytest.approx(known.t[-1], abs=1e-3)
+    assert run.measures["residual_displacement"] == pytest.approx(known.y[2, -1], abs=1e-4)
+    assert run.measures["residual_twist"] == pytest.approx(known.y[3, -1], abs=1e-4)
