@@ -50,6 +50,7 @@ bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks, beside the engines that c
 	$(BIN)/python -m pytest benchmarks --benchmark-enable --benchmark-only
 	$(BIN)/python -m benchmarks.ensembles
 	$(BIN)/python -m benchmarks.ensembles.levels
+	$(BIN)/python -m benchmarks.ensembles.contacts
 	$(BIN)/python -m benchmarks.orbits
 
 clean:  ## remove what the targets made

@@ -71,7 +71,11 @@ def test_branches_keep_to_the_theory_and_lose_stability_where_it_says(name):
 @pytest.mark.parametrize(
     ("model", "names"),
     [
-        (sb.PlanarRocking(COLUMN, damping=0.1), ("damping", "slenderness", "angular_frequency")),
+        pytest.param(
+            sb.PlanarRocking(COLUMN, damping=0.1),
+            ("damping", "slenderness", "angular_frequency"),
+            marks=pytest.mark.slow,
+        ),
         (sb.PlanarRocking(COLUMN, damping=0.1, restitution=0.9), ("restitution", "slenderness")),
         (sb.Wobbling(COLUMN, damping=0.1, restitution=0.9), ("restitution", "angular_frequency")),
     ],

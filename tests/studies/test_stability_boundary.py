@@ -111,6 +111,7 @@ def test_a_curve_begun_on_a_bound_is_followed_once():
     assert found["curve_kind"].values.tolist() == ["pitchfork"]
 
 
+@pytest.mark.slow
 def test_a_curve_that_bends_much_over_wide_bounds_is_followed_once():
     found = sb.studies.stability_boundary(
         MODEL, LINE, bounds=(0.005, 0.4), angular_frequency=(0.4, 6.0), values=[0.10375, 0.2025, 0.4]

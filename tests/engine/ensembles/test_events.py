@@ -287,6 +287,7 @@ def test_rest_between_hops_too_small_to_follow_is_uncertain(runs_of):
     assert runs.alone(0).uncertain
 
 
+@pytest.mark.slow
 def test_a_column_released_under_a_model_that_cannot_depart_is_told():
     class Stuck(sb.Slender):
         departure = None

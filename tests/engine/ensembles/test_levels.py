@@ -86,9 +86,10 @@ def test_runs_that_begin_at_rest_or_overturn_are_those_alone(name):
 
 @pytest.mark.parametrize(
     "model",
-    [pytest.param(sb.Wobbling(COLUMN, restitution=0.9), marks=pytest.mark.slow), sb.Rolling(COLUMN, restitution=0.9)],
+    [sb.Wobbling(COLUMN, restitution=0.9), sb.Rolling(COLUMN, restitution=0.9)],
     ids=["wobbling", "rolling"],
 )
+@pytest.mark.slow
 def test_losses_at_the_upright_are_those_of_single_runs(model):
     # The first three pass it within 0.01 c, on the way and again after each loss; the last one in a plane.
     starts = {"tilt": [(0.05, 0.0)] * 4, "tilt_rate": [(0.0, 1e-5), (0.0, 1e-4), (0.0, 5e-4), (0.0, 0.0)]}

@@ -155,6 +155,7 @@ def resistance(vx, vy, k):
 """
 
 
+@pytest.mark.slow
 def test_a_model_whose_functions_call_helpers_and_read_constants_of_their_module(written):
     text = dragged("resistance(vx, vy, k)", HELPERS)
     model = written(text).Dragged(COLUMN, drag=5.0)

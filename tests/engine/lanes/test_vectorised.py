@@ -105,8 +105,8 @@ def test_steps_work_on_all_lanes_at_once(motion, method, planar, model):
 @pytest.mark.parametrize(
     ("model", "planar"),
     [
-        (sb.Rolling, False),
-        (sb.Wobbling, False),
+        pytest.param(sb.Rolling, False, marks=pytest.mark.slow),
+        pytest.param(sb.Wobbling, False, marks=pytest.mark.slow),
         (sb.PlanarRocking, True),
         pytest.param(sb.Slender, False, marks=pytest.mark.slow),
     ],
