@@ -111,7 +111,7 @@ def drift(
         else:
             described = spec.DriftDescription.of_saved(provenance_of(saved), axes_of(saved)).values()
         values = opt.overlay_axes(opt.overlay(described, given, opt.RUN_NAMES), given, "drift")
-        if "x" not in dict(values.get("drift", {})):
+        if not values.get("drift"):
             message = "drift.x is missing: what varies, such as --x acceleration 2 30 29"
             raise ParameterError(message)
         setup = spec.DriftDescription.parse(opt.overlay_late(values, given, "drift")).build()

@@ -2,6 +2,7 @@
 
 import cmath
 import math
+from abc import abstractmethod
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -88,8 +89,60 @@ class Sum(BaseMotion):
         return None if None in degrees else max((degree or 0 for degree in degrees), default=0)
 
 
+class Following(BaseMotion):
+    """What has all the properties of another motion but those that a subclass changes."""
+
+    __slots__ = ()
+
+    @property
+    @abstractmethod
+    def followed(self) -> BaseMotion:
+        """The other motion."""
+
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return the displacement (`order` 0), velocity (1) or acceleration (2) of the motion."""
+        return self.followed.derivative(time, order)
+
+    def largest_horizontal(self, since: float = 0.0) -> float:
+        """Return the bound of the motion [m/s²]."""
+        return self.followed.largest_horizontal(since)
+
+    def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
+        """Return the bounds of the motion [m/s²]."""
+        return self.followed.vertical_range(since)
+
+    def directions(self) -> tuple[tuple[float, float], ...]:
+        """Return the directions of the motion [m/s²]."""
+        return self.followed.directions()
+
+    @property
+    def duration(self) -> float:
+        """The duration of the motion [s]."""
+        return self.followed.duration
+
+    @property
+    def period(self) -> float | None:
+        """The period of the motion [s]."""
+        return self.followed.period
+
+    @property
+    def highest_frequency(self) -> float:
+        """The highest angular frequency of the motion [rad/s]."""
+        return self.followed.highest_frequency
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The breaks of the motion [s]."""
+        return self.followed.breaks
+
+    @property
+    def degree(self) -> int | None:
+        """The degree of the motion."""
+        return self.followed.degree
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Transformed(BaseMotion):
+class Transformed(Following):
     """A copy of `motion` that has all its properties but those a subclass changes."""
 
     motion: BaseMotion
@@ -97,46 +150,10 @@ class Transformed(BaseMotion):
     def __post_init__(self) -> None:
         require_motion("motion", self.motion)
 
-    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
-        """Return the displacement (`order` 0), velocity (1) or acceleration (2) of the motion."""
-        return self.motion.derivative(time, order)
-
-    def largest_horizontal(self, since: float = 0.0) -> float:
-        """Return the bound of the motion [m/s²]."""
-        return self.motion.largest_horizontal(since)
-
-    def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
-        """Return the bounds of the motion [m/s²]."""
-        return self.motion.vertical_range(since)
-
-    def directions(self) -> tuple[tuple[float, float], ...]:
-        """Return the directions of the motion [m/s²]."""
-        return self.motion.directions()
-
     @property
-    def duration(self) -> float:
-        """The duration of the motion [s]."""
-        return self.motion.duration
-
-    @property
-    def period(self) -> float | None:
-        """The period of the motion [s]."""
-        return self.motion.period
-
-    @property
-    def highest_frequency(self) -> float:
-        """The highest angular frequency of the motion [rad/s]."""
-        return self.motion.highest_frequency
-
-    @property
-    def breaks(self) -> tuple[float, ...]:
-        """The breaks of the motion [s]."""
-        return self.motion.breaks
-
-    @property
-    def degree(self) -> int | None:
-        """The degree of the motion."""
-        return self.motion.degree
+    def followed(self) -> BaseMotion:
+        """The motion of which it is a copy."""
+        return self.motion
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

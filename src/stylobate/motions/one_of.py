@@ -3,15 +3,13 @@
 from dataclasses import dataclass, replace
 from typing import Self
 
-import numpy.typing as npt
-
 from stylobate.errors import ParameterError
-from stylobate.motions.base import BaseMotion, Components
-from stylobate.motions.combined import Transformed, require_motion
+from stylobate.motions.base import BaseMotion
+from stylobate.motions.combined import Following, Transformed, require_motion
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OneOf(BaseMotion):
+class OneOf(Following):
     """The motion of the number `chosen` among `motions`, counted from 0; ensembles vary it under the name `motion`.
 
     Parameters
@@ -54,50 +52,9 @@ class OneOf(BaseMotion):
         return replace(self, chosen=number)  # type: ignore[arg-type]  # checked where it is made
 
     @property
-    def motion(self) -> BaseMotion:
+    def followed(self) -> BaseMotion:
         """The motion that is chosen."""
         return self.motions[self.chosen]
-
-    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
-        """Return the displacement (`order` 0), velocity (1) or acceleration (2) of the motion chosen."""
-        return self.motion.derivative(time, order)
-
-    def largest_horizontal(self, since: float = 0.0) -> float:
-        """Return the bound of the motion chosen [m/s²]."""
-        return self.motion.largest_horizontal(since)
-
-    def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
-        """Return the bounds of the motion chosen [m/s²]."""
-        return self.motion.vertical_range(since)
-
-    def directions(self) -> tuple[tuple[float, float], ...]:
-        """Return the directions of the motion chosen [m/s²]."""
-        return self.motion.directions()
-
-    @property
-    def duration(self) -> float:
-        """The duration of the motion chosen [s]."""
-        return self.motion.duration
-
-    @property
-    def period(self) -> float | None:
-        """The period of the motion chosen [s]."""
-        return self.motion.period
-
-    @property
-    def highest_frequency(self) -> float:
-        """The highest angular frequency of the motion chosen [rad/s]."""
-        return self.motion.highest_frequency
-
-    @property
-    def breaks(self) -> tuple[float, ...]:
-        """The breaks of the motion chosen [s]."""
-        return self.motion.breaks
-
-    @property
-    def degree(self) -> int | None:
-        """The degree of the motion chosen."""
-        return self.motion.degree
 
 
 def members_of(motion: BaseMotion) -> tuple[BaseMotion, ...]:
