@@ -6,9 +6,11 @@ from typing import Annotated
 
 import typer
 
+from stylobate.cli.assess import assess
 from stylobate.cli.basin import basin
 from stylobate.cli.boundary import boundary
 from stylobate.cli.drift import drift
+from stylobate.cli.fragility import fragility
 from stylobate.cli.ladder import ladder
 from stylobate.cli.many_runs import INTERRUPTED
 from stylobate.cli.map import overturning_map
@@ -16,6 +18,7 @@ from stylobate.cli.options import joined_ranges
 from stylobate.cli.paper import paper
 from stylobate.cli.response import response
 from stylobate.cli.simulate import simulate
+from stylobate.cli.spectrum import spectrum
 from stylobate.errors import DescriptionError, StylobateError
 
 _BAD_INPUT = 2
@@ -56,6 +59,9 @@ for command in (paper, simulate, ladder, response, boundary):
 app.command("map")(overturning_map)
 app.command()(basin)
 app.command()(drift)
+app.command()(assess)
+app.command()(spectrum)
+app.command()(fragility)
 
 
 def main() -> None:

@@ -79,7 +79,10 @@ InclineDirection = Annotated[float | None, _option("azimuth of the way down [rad
 
 Motion = Annotated[
     str | None,
-    _option("rest, circular, straight, elliptic, vertical, oblique, stroke or orbit; a file knows more kinds", _MOTION),
+    _option(
+        "rest, circular, straight, elliptic, vertical, oblique, stroke, orbit or record; a file knows more kinds",
+        _MOTION,
+    ),
 ]
 HarmonicMotion = Annotated[str | None, _option("circular, straight or elliptic; a file knows more kinds", _MOTION)]
 Acceleration = Annotated[float | None, _option("acceleration amplitude [m/s²]", _MOTION)]
@@ -95,6 +98,16 @@ Diameter = Annotated[float | None, _option("diameter of an orbit [m]", _MOTION)]
 Rpm = Annotated[float | None, _option("turns a minute of an orbit", _MOTION)]
 StartPhase = Annotated[float | None, _option("phase at the start [rad]", _MOTION)]
 Ramp = Annotated[float | None, _option("time over which the amplitude rises [s]", _MOTION)]
+
+RecordFiles = Annotated[
+    list[Path] | None, _option("a file of a record; once more for each component of the same event", _MOTION)
+]
+SampleRecord = Annotated[str | None, _option('a record that comes with the package: "el centro 1940"', _MOTION)]
+Units = Annotated[str | None, _option("of a record whose file tells none: g, m/s2 or cm/s2", _MOTION)]
+TimeStep = Annotated[float | None, _option("time step of a record whose file tells none [s]", _MOTION)]
+Scale = Annotated[float | None, _option("factor of a record", _MOTION)]
+Rotation = Annotated[float | None, _option("by which a record is turned about the vertical [rad]", _MOTION)]
+Tail = Annotated[float | None, _option("rest after a record [s]", _MOTION)]
 
 Figure = Annotated[Path | None, _option("draw into this file (.png, .pdf, .svg)", _OUTPUT)]
 Output = Annotated[Path | None, _option("save the result into this netCDF file (.nc)", _OUTPUT)]
@@ -156,6 +169,7 @@ _MOTION_NAMES = (
     "start_phase",
     "ramp",
 )
+_RECORD_NAMES = ("units", "step", "scale", "rotation", "tail")
 _SHAPES = {"slenderness": "dimensionless", "inner_radius": "hollow", "top_radius": "frustum"}
 
 
@@ -175,7 +189,7 @@ def overlay(described: Mapping[str, Any], given: Mapping[str, Any], run_names: t
     _section(values, "column", _column(values.get("column"), _pick(given, _COLUMN_NAMES)), tag="shape")
     _section(values, "model", _model(values, given))
     motion = {**({"kind": given["motion"]} if given.get("motion") else {}), **_pick(given, _MOTION_NAMES)}
-    _section(values, "motion", motion, tag="kind")
+    _section(values, "motion", {**motion, **_record(given)}, tag="kind")
     chosen = _pick(given, run_names)
     if _slides(values.get("model")) and "friction_coefficient" in chosen:
         values["model"] = {**values["model"], "friction_coefficient": chosen.pop("friction_coefficient")}
@@ -188,6 +202,16 @@ def overlay(described: Mapping[str, Any], given: Mapping[str, Any], run_names: t
 def _slides(model: Any) -> bool:
     """Return whether the described model has a coefficient of friction of its own."""
     return isinstance(model, Mapping) and model.get("kind") == "sliding"
+
+
+def _record(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the options of a record; its files tell that the motion is one."""
+    files = [str(path) for path in given.get("record") or ()]
+    which: dict[str, Any] = {"path": files[0] if len(files) == 1 else files} if files else {}
+    if given.get("sample_record"):
+        which["sample"] = given["sample_record"]
+    kind = {"kind": "record"} if which and not given.get("motion") else {}
+    return {**kind, **which, **_pick(given, _RECORD_NAMES)}
 
 
 def _column(described: Any, options: dict[str, Any]) -> dict[str, Any]:

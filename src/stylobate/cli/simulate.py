@@ -68,6 +68,13 @@ def simulate(
     rpm: opt.Rpm = None,
     start_phase: opt.StartPhase = None,
     ramp: opt.Ramp = None,
+    record: opt.RecordFiles = None,
+    sample_record: opt.SampleRecord = None,
+    units: opt.Units = None,
+    step: opt.TimeStep = None,
+    scale: opt.Scale = None,
+    rotation: opt.Rotation = None,
+    tail: opt.Tail = None,
     figure: opt.Figure = None,
     output: opt.Output = None,
     as_json: opt.Json = False,
@@ -80,6 +87,10 @@ def simulate(
     --acceleration 1.5 --angular-frequency 4 --start-phase 1.57 --duration 30
 
     stylobate simulate run.toml --duration 60 --figure run.png --output run.nc
+
+    stylobate simulate --radius 0.3 --height 3 --density 2700 --record quake_NS.txt --record quake_EW.txt --units g
+
+    A run under a record needs no duration: it goes on for a free tail of 20/p after it.
     """
     from stylobate import engine, plots, spec  # noqa: PLC0415  heavy imports wait until the options are read
 

@@ -6,6 +6,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stylobate.errors import ParameterError
+from stylobate.plots.assessment import assessment_report, assessment_tables
 from stylobate.plots.basins import plot_basins
 from stylobate.plots.column_path import plot_column_path
 from stylobate.plots.contact_map import plot_contact_map, plot_drift
@@ -14,12 +15,17 @@ from stylobate.plots.exponent import plot_exponent
 from stylobate.plots.fates import plot_fates
 from stylobate.plots.fractions import plot_fractions
 from stylobate.plots.fragility import plot_annual_rate, plot_fragility, plot_reached_bands
+from stylobate.plots.incremental import plot_incremental
 from stylobate.plots.integrity import plot_erosion, plot_integrity
 from stylobate.plots.ladder import plot_ladder, plot_outcome_differences
 from stylobate.plots.lyapunov import plot_lyapunov
 from stylobate.plots.maps import plot_map
+from stylobate.plots.overturning_bands import plot_overturning_bands
 from stylobate.plots.paper_report import paper_report
+from stylobate.plots.planar_bias import plot_directions, plot_planar_bias
 from stylobate.plots.response import plot_response
+from stylobate.plots.robustness import plot_robustness
+from stylobate.plots.rocking_spectrum import plot_rocking_spectrum
 from stylobate.plots.runs import plot_runs
 from stylobate.plots.sections import plot_section
 from stylobate.plots.slipping_boundary import plot_slipping_boundary
@@ -29,6 +35,8 @@ from stylobate.plots.start_boundary import plot_start_boundary
 from stylobate.results import Response
 
 __all__ = [
+    "assessment_report",
+    "assessment_tables",
     "paper_report",
     "plot",
     "plot_annual_rate",
@@ -36,6 +44,7 @@ __all__ = [
     "plot_basins",
     "plot_column_path",
     "plot_contact_map",
+    "plot_directions",
     "plot_drift",
     "plot_erosion",
     "plot_exact_response",
@@ -43,13 +52,18 @@ __all__ = [
     "plot_fates",
     "plot_fractions",
     "plot_fragility",
+    "plot_incremental",
     "plot_integrity",
     "plot_ladder",
     "plot_lyapunov",
     "plot_map",
     "plot_outcome_differences",
+    "plot_overturning_bands",
+    "plot_planar_bias",
     "plot_reached_bands",
     "plot_response",
+    "plot_robustness",
+    "plot_rocking_spectrum",
     "plot_runs",
     "plot_section",
     "plot_slipping_boundary",
@@ -76,6 +90,11 @@ _BY_KIND: dict[str, Callable[[xr.Dataset], Figure]] = {
     "fragility": plot_fragility,
     "annual rate": plot_annual_rate,
     "reached bands": plot_reached_bands,
+    "overturning bands": plot_overturning_bands,
+    "rocking spectrum": plot_rocking_spectrum,
+    "incremental dynamic analysis": plot_incremental,
+    "planar bias": plot_planar_bias,
+    "robustness": plot_robustness,
     "integrity": plot_integrity,
     "erosion": plot_erosion,
     "ladder": plot_ladder,
@@ -98,7 +117,8 @@ def plot(result: Response | xr.Dataset | Sequence[Response], *, labels: Sequence
         overturning map, basins, attractors, basin fractions, an uncertainty exponent, integrity or its erosion, a
         slow sweep, a Poincaré section, Lyapunov exponents, the ladder of models, differences of outcomes, a
         contact map, a drift, the boundaries of slip and of the start of motion, a fragility, annual rates, reached
-        bands. A sweep over two dimensions is drawn as a map, finished or not.
+        bands, overturning bands, a rocking spectrum, an incremental dynamic analysis, a planar bias, a robustness.
+        A sweep over two dimensions is drawn as a map, finished or not.
     labels
         Names for several runs; by default their outcomes.
 

@@ -25,15 +25,22 @@ th, td { text-align: left; vertical-align: top; padding: .4rem .6rem; border-bot
 thead th { border-bottom: 2px solid #666; }
 .verdict { font-weight: 600; white-space: nowrap; }
 nav a { margin-right: 1rem; }
+@media print { body { font-size: 10pt; max-width: none; margin: 0; } nav { display: none; }
+  table { font-size: 7.5pt; } .wide { overflow: visible; } thead { display: table-header-group; }
+  tr, figure { break-inside: avoid; } h2 { break-after: avoid; } }
 """
 
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A figure with its `caption` and a text that says what it shows to those who cannot see it."""
+    """A figure with its `caption` and a text that says what it shows to those who cannot see it.
+
+    `drawn` is what `png_of` makes of it, where that was done before.
+    """
 
     figure: Figure
     caption: str
+    drawn: bytes = b""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,10 +96,15 @@ def _part(part: str | Picture | Table) -> str:
             return _table(part)
 
 
-def _picture(picture: Picture) -> str:
+def png_of(figure: Figure) -> bytes:
+    """Return the figure as the PNG that a page embeds."""
     buffer = BytesIO()
-    picture.figure.savefig(buffer, format="png", dpi=_RESOLUTION)
-    data = base64.b64encode(buffer.getvalue()).decode("ascii")
+    figure.savefig(buffer, format="png", dpi=_RESOLUTION)
+    return buffer.getvalue()
+
+
+def _picture(picture: Picture) -> str:
+    data = base64.b64encode(picture.drawn or png_of(picture.figure)).decode("ascii")
     caption = escape(picture.caption)
     return (
         f'<figure><img alt="{caption}" src="data:image/png;base64,{data}"><figcaption>{caption}</figcaption></figure>'

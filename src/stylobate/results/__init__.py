@@ -1,5 +1,6 @@
 """Results: what a computation returns, saved and loaded with everything needed to repeat it."""
 
+from stylobate.results.assessment import Assessment
 from stylobate.results.findings import Finding, PaperCheck, Section, Verdict
 from stylobate.results.outcomes import code_of, outcome_of
 from stylobate.results.response import Event, Response
@@ -7,6 +8,7 @@ from stylobate.results.rules import OutcomeRules
 from stylobate.results.storage import load
 
 __all__ = [
+    "Assessment",
     "Event",
     "Finding",
     "OutcomeRules",

@@ -1,9 +1,12 @@
 """Descriptions: plain values, as in TOML and JSON, and the objects they stand for."""
 
+from stylobate.spec.assess import AssessDescription, AssessmentSetup
 from stylobate.spec.basin import BasinDescription
 from stylobate.spec.drift import DriftDescription
+from stylobate.spec.fragility import FragilityDescription, FragilitySetup
 from stylobate.spec.ladder import LadderDescription
 from stylobate.spec.map import MapDescription
+from stylobate.spec.records import DescribedRecord, RecordMotion, RecordsDescription
 from stylobate.spec.response import ResponseDescription
 from stylobate.spec.simulation import (
     Setup,
@@ -12,15 +15,24 @@ from stylobate.spec.simulation import (
     provenance_of_run,
     read_description,
 )
+from stylobate.spec.spectrum import SpectrumDescription
 
 __all__ = [
+    "AssessDescription",
+    "AssessmentSetup",
     "BasinDescription",
+    "DescribedRecord",
     "DriftDescription",
+    "FragilityDescription",
+    "FragilitySetup",
     "LadderDescription",
     "MapDescription",
+    "RecordMotion",
+    "RecordsDescription",
     "ResponseDescription",
     "Setup",
     "SimulationDescription",
+    "SpectrumDescription",
     "description_of",
     "provenance_of_run",
     "read_description",

@@ -11,6 +11,8 @@ _T = TypeVar("_T")
 
 # Fields whose value is one of several descriptions, told apart by a tag; so is each element of a list.
 _UNION_FIELDS = ("column", "model", "motion")
+# Fields that are tables of such, by names of the user's.
+_UNION_TABLES = ("columns",)
 
 
 class Description(BaseModel):
@@ -76,5 +78,10 @@ def _without_tags(loc: tuple[int | str, ...]) -> list[str]:
     return [
         str(part)
         for i, part in enumerate(loc)
-        if i == 0 or not (loc[i - 1] in _UNION_FIELDS or isinstance(loc[i - 1], int))
+        if i == 0 or not (loc[i - 1] in _UNION_FIELDS or isinstance(loc[i - 1], int) or _in_table(loc, i))
     ]
+
+
+def _in_table(loc: tuple[int | str, ...], place: int) -> bool:
+    """Return whether the part at this `place` tells which member of a union a named one is."""
+    return place == 2 and loc[0] in _UNION_TABLES and len(loc) > 3  # noqa: PLR2004  columns, name, shape, number

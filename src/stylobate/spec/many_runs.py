@@ -1,6 +1,6 @@
 """What descriptions of many runs share: a column, its model, a base motion, a start, how long and how closely."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal, Self
 
 from pydantic import Field
@@ -17,6 +17,8 @@ from stylobate.spec.simulation import (
     OF_OTHER_COMMANDS,
     built_parts,
     built_rules,
+    duration_with_tail,
+    follows_a_record,
     problems_of_the_run,
     refuse_own_classes,
 )
@@ -52,8 +54,8 @@ class ManyRuns(Description):
         """Return the description as plain values that JSON and TOML can hold, defaults left out."""
         return self.model_dump(mode="json", exclude_none=True, by_alias=True)
 
-    def common(self, problems: list[str]) -> tuple[Model, BaseMotion, dict[str, Any]]:
-        """Return model, motion and the arguments that all runs share.
+    def common(self, problems: list[str], varying: Sequence[str] = ()) -> tuple[Model, BaseMotion, dict[str, Any]]:
+        """Return model, motion and the arguments that all runs share but for those `varying`.
 
         Raises
         ------
@@ -63,16 +65,28 @@ class ManyRuns(Description):
         problems += problems_of_the_run(self)
         rules = built("rules", lambda: built_rules(self.rules), problems)
         model, motion = built_parts(self.column, self.model, self.motion, problems)
-        return model, motion, {name: getattr(self, name) for name in _SHARED} | {"rules": rules or OutcomeRules()}
+        options = {name: getattr(self, name) for name in _SHARED} | {"rules": rules or OutcomeRules()}
+        if self._lasts_as_its_record(varying):
+            options["duration"] = duration_with_tail(model, motion)
+        return model, motion, options
 
     def problems_of_the_length(self, names: tuple[str, ...]) -> list[str]:
-        """Return a line unless one of `duration` and `periods` is given, or a duration among the `names` that vary."""
+        """Return a line unless one of `duration` and `periods` is given, or a duration among the `names` that vary.
+
+        Under a record none is needed: see `SimulationDescription`.
+        """
+        if self._lasts_as_its_record(names):
+            return []
         given = [name for name in ("duration", "periods") if getattr(self, name) is not None]
         given += ["a duration that varies"] if "duration" in names else []
         if len(given) == 1:
             return []
         got = " and ".join(given) or "none of them"
         return [f"duration [s], periods or a duration that varies is needed, one of them; got {got}"]
+
+    def _lasts_as_its_record(self, names: Sequence[str]) -> bool:
+        untold = self.duration is None and self.periods is None and "duration" not in names
+        return untold and follows_a_record(self.motion.model_dump())
 
 
 _OF_A_SINGLE_RUN = ("samples", "twist", "position", "friction_coefficient", "velocity", "clearance")

@@ -64,5 +64,5 @@ class MapDescription(ManyRuns):
         if x.name == y.name:
             problems.append(f"map.x and map.y must differ, got {x.name!r} in both")
         problems += self.problems_of_the_length((x.name, y.name))
-        model, motion, options = self.common(problems)
+        model, motion, options = self.common(problems, (x.name, y.name))
         return Setup(model, motion, {"over": over, **options})

@@ -1,13 +1,15 @@
 """Descriptions of base motions, told apart by their `kind`."""
 
-from typing import Annotated, Literal
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
 from stylobate.errors import UnsupportedError
-from stylobate.motions import BaseMotion, Delayed, Harmonic, Pulse, Rotated, Scaled, Sum, Sweep
+from stylobate.motions import BaseMotion, Delayed, Harmonic, OneOf, Pulse, Record, Rotated, Scaled, Sum, Sweep
 from stylobate.motions.pulses import AntisymmetricRicker, Gabor, MavroeidisPapageorgiou, Ricker, Sinusoid
 from stylobate.spec.description import Description
+from stylobate.spec.records import DescribedRecord, RecordMotion
 
 
 class RestMotion(Description):
@@ -204,6 +206,18 @@ class SumMotion(Description):
         return Sum(motions=tuple(motion.build() for motion in self.motions))
 
 
+class OneOfMotion(Description):
+    """One of several motions, the one of the number `chosen`, counted from 0."""
+
+    kind: Literal["one_of"]
+    motions: tuple["MotionDescription", ...]
+    chosen: int = 0
+
+    def build(self) -> BaseMotion:
+        """Return the motion."""
+        return OneOf(motions=tuple(motion.build() for motion in self.motions), chosen=self.chosen)
+
+
 class ScaledMotion(Description):
     """A motion times `factor`, its vertical component times `vertical`."""
 
@@ -258,6 +272,8 @@ MotionDescription = Annotated[
     | CyclicPulseMotion
     | VelocityWaveletMotion
     | SweepMotion
+    | RecordMotion
+    | OneOfMotion
     | SumMotion
     | ScaledMotion
     | RotatedMotion
@@ -265,7 +281,7 @@ MotionDescription = Annotated[
     Field(discriminator="kind"),
 ]
 
-for _composite in (SumMotion, ScaledMotion, RotatedMotion, DelayedMotion):
+for _composite in (SumMotion, OneOfMotion, ScaledMotion, RotatedMotion, DelayedMotion):
     _composite.model_rebuild()
 
 
@@ -275,34 +291,45 @@ def describe_motion(motion: BaseMotion) -> Description:
     Raises
     ------
     UnsupportedError
-        If the motion is of a class that descriptions do not know.
+        If the motion is of a class that descriptions do not know, or a record that was read in Python.
     """
-    if type(motion) not in (Harmonic, Pulse, Sweep, Sum, Scaled, Rotated, Delayed):  # a subclass is another motion
-        message = f"a motion of class {type(motion).__name__} has no description; results keep its repr only"
+    describe = _DESCRIBERS.get(type(motion))  # a subclass is another motion
+    if describe is not None:
+        return describe(motion)
+    if type(motion) is Record:
+        message = f"the record {motion.name!r} has no description that tells of which files; results keep its repr only"
         raise UnsupportedError(message)
-    match motion:
-        case Harmonic():
-            return GeneralHarmonicMotion(
-                kind="harmonic",
-                amplitude=motion.amplitude,
-                phase=motion.phase,
-                angular_frequency=motion.angular_frequency,
-                start_phase=motion.start_phase,
-                ramp=motion.ramp,
-            )
-        case Pulse():
-            return _described_pulse(motion)
-        case Sweep():
-            return _described_sweep(motion)
-        case Sum(motions=()):
-            return RestMotion(kind="rest")
-        case Sum():
-            return SumMotion.parse(
-                {"kind": "sum", "motions": [describe_motion(part).values() for part in motion.motions]}
-            )
-        case Scaled() | Rotated() | Delayed():
-            return _described_copy(motion)
-    raise AssertionError
+    message = f"a motion of class {type(motion).__name__} has no description; results keep its repr only"
+    raise UnsupportedError(message)
+
+
+def _described_harmonic(motion: Harmonic) -> Description:
+    return GeneralHarmonicMotion(
+        kind="harmonic",
+        amplitude=motion.amplitude,
+        phase=motion.phase,
+        angular_frequency=motion.angular_frequency,
+        start_phase=motion.start_phase,
+        ramp=motion.ramp,
+    )
+
+
+def _described_record(motion: DescribedRecord) -> Description:
+    return motion.description
+
+
+def _described_sum(motion: Sum) -> Description:
+    if not motion.motions:
+        return RestMotion(kind="rest")
+    return SumMotion.parse({"kind": "sum", "motions": _described_members(motion)})
+
+
+def _described_one_of(motion: OneOf) -> Description:
+    return OneOfMotion.parse({"kind": "one_of", "motions": _described_members(motion), "chosen": motion.chosen})
+
+
+def _described_members(motion: Sum | OneOf) -> list[dict[str, Any]]:
+    return [describe_motion(member).values() for member in motion.motions]
 
 
 def _described_copy(motion: Scaled | Rotated | Delayed) -> Description:
@@ -345,3 +372,16 @@ def _described_sweep(sweep: Sweep) -> Description:
 
 def _line(motion: Pulse | Sweep) -> dict[str, float]:
     return {"direction": motion.direction, "start": motion.start, "vertical": motion.vertical}
+
+
+_DESCRIBERS: Mapping[type[BaseMotion], Callable[[Any], Description]] = {
+    Harmonic: _described_harmonic,
+    Pulse: _described_pulse,
+    Sweep: _described_sweep,
+    DescribedRecord: _described_record,
+    Sum: _described_sum,
+    OneOf: _described_one_of,
+    Scaled: _described_copy,
+    Rotated: _described_copy,
+    Delayed: _described_copy,
+}

@@ -21,12 +21,13 @@ from stylobate.errors import (
     require_whole,
 )
 from stylobate.models import Model
-from stylobate.motions import BaseMotion
+from stylobate.motions import BaseMotion, Record
 from stylobate.results import OutcomeRules
 from stylobate.spec.columns import ANY_COLUMN, ColumnDescription, GivenColumn
 from stylobate.spec.description import Description, built
 from stylobate.spec.models import ModelDescription, SlenderModel, describe_model
 from stylobate.spec.motions import MotionDescription, RestMotion, describe_motion
+from stylobate.spec.records import anchored
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +40,10 @@ class Setup:
 
 
 class SimulationDescription(Description):
-    """A run: `column`, `model`, `motion` and the arguments of `simulate`, under the same names."""
+    """A run: `column`, `model`, `motion` and the arguments of `simulate`, under the same names.
+
+    A run under a record needs no `duration`: it then lasts as long as the record and a free tail of 20/p.
+    """
 
     column: ColumnDescription
     model: ModelDescription = SlenderModel()
@@ -51,7 +55,7 @@ class SimulationDescription(Description):
     position: tuple[float, float] = (0.0, 0.0)
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
     clearance: float = 0.0
-    duration: float
+    duration: float | None
     friction_coefficient: float | None = None
     rtol: float = 1e-8
     atol: float | None = None
@@ -64,7 +68,11 @@ class SimulationDescription(Description):
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
         """Return the description of these `values`; what they say for other commands is of no concern here."""
-        return super().parse({name: value for name, value in values.items() if name not in OF_OTHER_COMMANDS})
+        own = {name: value for name, value in values.items() if name not in OF_OTHER_COMMANDS}
+        if own.get("duration") is None:
+            own.pop("duration", None)
+            own |= {"duration": None} if follows_a_record(values.get("motion")) else {}
+        return super().parse(own)
 
     def build(self) -> Setup:
         """Return the objects described.
@@ -78,6 +86,8 @@ class SimulationDescription(Description):
         rules = built("rules", lambda: built_rules(self.rules), problems)
         model, motion = built_parts(self.column, self.model, self.motion, problems)
         options = self.model_dump(exclude={"column", "model", "motion"}) | {"rules": rules}
+        if self.duration is None:
+            options["duration"] = duration_with_tail(model, motion)
         return Setup(model, motion, options)
 
 
@@ -113,6 +123,26 @@ def built_parts(
     return modelled, moved
 
 
+FREE_TAIL = 20.0
+"""How long a run goes on after its record if no duration is given, in 1/p: what is near its balance parts by e²⁰."""
+
+
+def follows_a_record(motion: object) -> bool:
+    """Return whether the plain values of a `motion` are those of a record, or of one scaled, turned or delayed."""
+    if not isinstance(motion, Mapping):
+        return False
+    kind = motion.get("kind")
+    if kind in ("sum", "one_of"):
+        members = motion.get("motions")
+        return isinstance(members, Sequence) and bool(members) and all(follows_a_record(one) for one in members)
+    return kind == "record" or (kind in ("scaled", "rotated", "delayed") and follows_a_record(motion.get("motion")))
+
+
+def duration_with_tail(model: Model, motion: BaseMotion) -> float:
+    """Return how long a run lasts where no duration is given: the motion and a free tail of 20/p [s]."""
+    return motion.duration + FREE_TAIL / model.column.frequency_parameter
+
+
 def _require_share(name: str, value: float) -> None:
     if not 0.0 < value < 1.0:
         message = f"{name} must lie between 0 and 1, got {value!r}; 0.95 is usual"
@@ -120,7 +150,8 @@ def _require_share(name: str, value: float) -> None:
 
 
 OF_OTHER_COMMANDS = (
-    *("map", "basin", "ladder", "periods", "method", "strobes", "confidence", "angular_frequency_range", "points"),
+    *("map", "basin", "spectrum", "fragility", "records", "ladder", "periods"),
+    *("method", "strobes", "confidence", "angular_frequency_range", "points"),
 )
 """What a description may say that is no argument of a single run."""
 
@@ -147,7 +178,7 @@ _RUN_CHECKS: Mapping[str, Callable[[str, Any], object]] = {
 
 
 def read_description(path: str | Path) -> dict[str, Any]:
-    """Return the plain values of the TOML file `path`.
+    """Return the plain values of the TOML file `path`; files of records are told from its folder on.
 
     Raises
     ------
@@ -155,13 +186,14 @@ def read_description(path: str | Path) -> dict[str, Any]:
         If it cannot be read or is not TOML.
     """
     try:
-        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
+        values: dict[str, Any] = anchored(tomllib.loads(Path(path).read_text(encoding="utf-8")), Path(path).parent)
     except OSError as error:
         message = f"cannot read {path}: {error.strerror or error}"
         raise FileError(message) from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         message = f"{path} is not a TOML file: {error}"
         raise FileError(message) from None
+    return values
 
 
 def built_rules(rules: Mapping[str, Any]) -> OutcomeRules:
@@ -201,6 +233,12 @@ def refuse_own_classes(provenance: Mapping[str, Any]) -> None:
     """Raise UnsupportedError if a run used a model or motion that descriptions do not know."""
     for name in ("model", "motion"):
         if provenance[name].get("kind") == "other":
+            if "record" in provenance[name]:
+                message = (
+                    f"the run was under the record {provenance[name]['record']!r}, read in Python, whose numbers are "
+                    f'not kept; describe it (kind = "record") to have it repeated'
+                )
+                raise UnsupportedError(message)
             message = f"the run used a {name} of its own, of which only the repr is kept: {provenance[name]['repr']}"
             raise UnsupportedError(message)
 
@@ -209,4 +247,11 @@ def _described(describe: Callable[[], Description], thing: object) -> dict[str, 
     try:
         return describe().values()
     except UnsupportedError:
-        return {"kind": "other", "repr": repr(thing)}
+        return {"kind": "other", "repr": repr(thing), **_told_of_record(thing)}
+
+
+def _told_of_record(thing: object) -> dict[str, Any]:
+    """Return what is told of a record that was read in Python."""
+    if not isinstance(thing, Record):
+        return {}
+    return {"record": thing.name, "digest": thing.digest, "processing": list(thing.provenance)}

@@ -1,0 +1,84 @@
+"""Draws the figures of the page "Shaken by records", and one of "Fragility", into docs/_static/shaking.
+
+Run it with `python docs/figures/shaking.py`; it takes a minute or two on one core.
+"""
+
+from collections.abc import Callable
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+from PIL import Image
+
+import stylobate as sb
+
+FOLDER = Path(__file__).parents[1] / "_static" / "shaking"
+
+MODEL = sb.Slender(sb.Column.solid(radius=0.4, height=4.0, density=2700.0), damping=0.03)
+QUAKES = sb.records.EvolvingNoise(
+    arias=1.2, duration_5_95=8.0, middle_time=5.0, frequency=2.5, frequency_rate=-0.1, bandwidth=0.3
+)
+
+
+def quakes(count: int) -> dict[str, sb.Record]:
+    """Records along x and y, each with the same largest horizontal acceleration."""
+    made = (QUAKES.record(np.random.default_rng(seed), components=2, step=0.02) for seed in range(count))
+    return {f"quake {place + 1}": one.trimmed(0.0, 14.0).scaled_to(1.0) for place, one in enumerate(made)}
+
+
+def analysis() -> Figure:
+    """Twelve records at twenty scales."""
+    found = sb.studies.incremental_dynamic_analysis(MODEL, quakes(12), scales=np.linspace(1.6, 5.4, 20))
+    bands = sb.studies.reached_bands(found["intensity"], found["reached"].sel(limit_state="overturning"))
+    print(bands["monotone"].to_numpy(), np.unique(found["outcome"], return_counts=True))
+    return sb.plot(found)
+
+
+def robust() -> Figure:
+    """The same records near the median of their capacities, with small changes."""
+    found = sb.studies.robustness(MODEL, quakes(12), scale=3.8)
+    print(found["share_flipped"].sel(limit_state="overturning").to_numpy())
+    return sb.plot(found)
+
+
+def directions() -> Figure:
+    """Three of them, the planar column in every direction."""
+    angles = np.radians(np.arange(0.0, 180.0, 10.0))
+    scales = np.geomspace(1.6, 12.0, 30)
+    found = sb.studies.planar_bias(MODEL, dict(list(quakes(12).items())[:3]), scales=scales, directions=angles)
+    print(found[["least_overturning", "worst_least_planar_overturning", "capacity_bias"]])
+    return sb.plots.plot_directions(found)
+
+
+def bias() -> Figure:
+    """All of them, the planar column along both components."""
+    found = sb.studies.planar_bias(MODEL, quakes(12), scales=np.linspace(1.6, 5.4, 20))
+    names = ("overall_bias", "overall_scatter", "overall_standard_error", "overall_compared")
+    print({name: float(found[name]) for name in (*names, *(name.replace("overall", "capacity") for name in names[:3]))})
+    return sb.plot(found)
+
+
+def fragility() -> Figure:
+    """Forty records and the fragility of their runs."""
+    found = sb.studies.incremental_dynamic_analysis(MODEL, quakes(40), scales=np.geomspace(1.6, 10.0, 14))
+    fits = sb.studies.fragility_of_runs(found, resamples=500, rng=np.random.default_rng(0))
+    print(fits[["median", "dispersion", "non_monotone_records"]])
+    return sb.plot(fits.isel(limit_state=[1, 2, 4]))
+
+
+def save(draw: Callable[[], Figure]) -> None:
+    """Save a figure with 256 colours, which a drawing of lines does not exceed visibly."""
+    buffer = BytesIO()
+    draw().savefig(buffer, format="png", dpi=130)
+    picture = Image.open(buffer).convert("RGB").quantize(256, dither=Image.Dither.NONE)
+    picture.save(FOLDER / f"{draw.__name__}.png", optimize=True)
+    print(draw.__name__)
+
+
+DRAWINGS = (analysis, robust, directions, bias, fragility)
+
+if __name__ == "__main__":
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    for drawing in DRAWINGS:
+        save(drawing)

@@ -1,0 +1,46 @@
+"""Draws the figures of the page "spectra" into docs/_static/spectra; takes some minutes on two cores.
+
+Run it with `python docs/figures/spectra.py`.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+import stylobate as sb
+
+FOLDER = Path(__file__).parents[1] / "_static" / "spectra"
+STONE = sb.Column.solid(radius=0.5, height=5.0, density=2000.0)
+
+
+def pulse() -> xr.Dataset:
+    """Overturn by one sine: frequency and amplitude, for three frictions."""
+    column = sb.Column.dimensionless(slenderness=0.1)
+    sine = sb.Pulse.one_sine(acceleration=0.1, angular_frequency=1.0)
+    over = {"angular_frequency": np.linspace(0.5, 9.0, 86) * column.frequency_parameter, "damping": [0.02, 0.1, 0.2]}
+    return sb.studies.overturning_bands(sb.Slender(column), sine, scales=np.geomspace(1.0, 20.0, 41), over=over)
+
+
+def record() -> xr.Dataset:
+    """Overturn by El Centro 1940, three components: size and scale, for three slendernesses."""
+    quake = sb.sample_record("el centro 1940")
+    over = {"size": np.geomspace(0.2, 4.0, 27), "slenderness": [0.1, 0.15, 0.2]}
+    model = sb.Slender(STONE, damping=0.05)
+    scales = np.geomspace(0.25, 4.0, 41)
+    # Columns that are hardly lifted rattle through many small rocks.
+    return sb.studies.overturning_bands(model, quake, scales=scales, over=over, width=3e-3, max_steps=3_000_000)
+
+
+def rocking() -> xr.Dataset:
+    """Peaks under the same record at its own scale."""
+    quake = sb.sample_record("el centro 1940")
+    over = {"size": np.geomspace(0.1, 10.0, 60), "slenderness": [0.1, 0.15, 0.2, 0.25]}
+    return sb.studies.rocking_spectrum(sb.Slender(STONE, damping=0.05), quake, over=over)
+
+
+if __name__ == "__main__":
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    for study in (pulse, record, rocking):
+        sb.plot(study()).savefig(FOLDER / f"{study.__name__}.png", dpi=110)
+        print(study.__name__)

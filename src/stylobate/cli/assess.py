@@ -1,0 +1,111 @@
+"""`stylobate assess`: columns under a folder of records, with a report that others can read."""
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from stylobate.cli.many_runs import INTERRUPTED
+from stylobate.cli.options import Json, ThreadCount
+from stylobate.cli.output import NETCDF, check_place, print_json, print_table
+from stylobate.errors import FileError, Interrupted
+
+if TYPE_CHECKING:
+    from stylobate.results.assessment import Assessment
+
+Source = Annotated[Path, typer.Argument(help="the study, a TOML file; or a saved assessment (.nc) to show again")]
+Folder = Annotated[
+    Path | None,
+    typer.Option(help="where to write report, tables and figures [default: NAME-assessment]", show_default=False),
+]
+Store = Annotated[
+    Path | None, typer.Option(help="what keeps the parts computed [default: FOLDER/store]", show_default=False)
+]
+
+_SHOWN = ("column", "scale", "did not overturn it", "overturned it", "not decided", "flip under small changes")
+
+
+def assess(
+    source: Source, folder: Folder = None, store: Store = None, threads: ThreadCount = None, as_json: Json = False
+) -> None:
+    """Tell whether columns survive records, how close it was, and how sure that is.
+
+    Reads a study in a TOML file: columns, a folder of records, the dissipation at three levels, the friction. Writes
+    report.html, which needs no other file and no network; tables, figures, a summary and the numbers. Parts that are
+    computed are kept: after Ctrl-C the same command goes on. Examples:
+
+    stylobate assess study.toml
+
+    stylobate assess study-assessment/assessment.nc --folder again
+    """
+    from stylobate import plots  # noqa: PLC0415  heavy imports wait until the options are read
+
+    if not source.is_file():
+        message = f"cannot read {source}: No such file or directory"
+        raise FileError(message)
+    target = folder or Path(f"{source.stem}-assessment")
+    check_place(target / "report.html" if target.exists() else target)
+    found = _loaded(source) if source.suffix == NETCDF else _computed(source, store or target / "store", threads)
+    report = plots.assessment_report(found, target)
+    summary = plots.assessment_tables(found)["summary"]
+    if as_json:
+        print_json({"summary": _rows(summary), "setting": found.setting, "report": str(report)})
+    else:
+        shown = [summary.header.index(name) for name in _SHOWN if name in summary.header]
+        rows = [[row[place] for place in shown] for row in summary.rows]
+        print_table(str(found.setting["title"]), rows, [summary.header[place] for place in shown])
+        print((target / "summary.txt").read_text(encoding="utf-8").partition("\n")[2])
+        print(f"report: {report}")
+
+
+def _loaded(source: Path) -> "Assessment":
+    from stylobate.results import Assessment  # noqa: PLC0415
+
+    return Assessment.load(source)
+
+
+def _computed(source: Path, store: Path, threads: int | None) -> "Assessment":
+    from stylobate import spec, studies  # noqa: PLC0415
+
+    setup = spec.AssessDescription.parse(spec.read_description(source)).build()
+    try:
+        with _parts_done() as progress:
+            return studies.assess(
+                setup.columns,
+                setup.records,
+                **setup.options,
+                store=store,
+                executor=studies.Threads(threads),
+                progress=progress,
+            )
+    except (Interrupted, KeyboardInterrupt):
+        print(f"stylobate: what was computed is kept in {store}; the same command goes on from there", file=sys.stderr)
+        raise typer.Exit(INTERRUPTED) from None
+
+
+@contextmanager
+def _parts_done() -> Iterator[Callable[[str, int, int], None]]:
+    """Give a function that shows what is computed, and how much of the work is done; a line each without a terminal."""
+    from rich.console import Console  # noqa: PLC0415
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn  # noqa: PLC0415
+
+    console = Console(stderr=True, markup=False, highlight=False)
+    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=console, transient=True, disable=not sys.stderr.isatty()) as bar:
+        task = bar.add_task("assessment", total=None)
+        told: list[str] = []
+
+        def advance(what: str, done: int, total: int) -> None:
+            bar.update(task, description=what, completed=done, total=total)
+            if not sys.stderr.isatty() and told[-1:] != [what]:
+                told.append(what)
+                print(f"stylobate: {what} ({100 * done // max(total, 1)} % done)", file=sys.stderr)
+
+        yield advance
+
+
+def _rows(table: Any) -> list[dict[str, str]]:
+    return [dict(zip(table.header, row, strict=True)) for row in table.rows]

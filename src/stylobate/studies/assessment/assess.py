@@ -1,0 +1,239 @@
+"""`assess`: whether each column survives each record, how close it was, and how sure that is."""
+
+from collections.abc import Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Unpack
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.errors import require_positive, require_whole
+from stylobate.models import Model
+from stylobate.motions import Record
+from stylobate.results.assessment import Assessment
+from stylobate.spec import provenance_of_run
+from stylobate.studies.assessment.fragilities import fragility_of
+from stylobate.studies.assessment.governing import governing_record, history_of
+from stylobate.studies.assessment.inputs import CENTRAL, Inputs
+from stylobate.studies.assessment.margins import margin_runs, margins_of
+from stylobate.studies.assessment.parts import Announce, Parts
+from stylobate.studies.assessment.properties import column_properties, record_properties
+from stylobate.studies.assessment.robust import planar_of, planar_runs, robustness_of, robustness_runs
+from stylobate.studies.assessment.summary import summary_of
+from stylobate.studies.assessment.verdicts import verdict_runs, verdicts_on
+from stylobate.studies.shaking import Change
+from stylobate.studies.shaking.following import TAIL
+from stylobate.studies.shaking.named_records import Records
+from stylobate.studies.sweeps import Executor
+from stylobate.studies.sweeps.recipe import RunOptions
+from stylobate.studies.varied import require_no_tilt_limit
+
+_MAX_STEPS = 2_000_000
+
+
+def assess(
+    columns: Mapping[str, Model],
+    records: Records,
+    *,
+    dissipation: Mapping[str, Mapping[str, float]],
+    friction_coefficient: float | Mapping[str, float],
+    scales: npt.ArrayLike = (1.0,),
+    margin_scales: npt.ArrayLike | None = None,
+    width: float = 5e-3,
+    tail: float | None = None,
+    changes: Sequence[Change] | None = None,
+    planar: bool = True,
+    contact: bool = True,
+    least_records: int = 10,
+    title: str = "Columns under records",
+    notes: Sequence[str] = (),
+    store: str | Path | None = None,
+    executor: Executor | None = None,
+    progress: Announce | None = None,
+    **options: Unpack[RunOptions],
+) -> Assessment:
+    """Return what becomes of each column under each record, how close it was, and how sure that is.
+
+    Parameters
+    ----------
+    columns
+        Models of columns in space, by name; the numbers in `dissipation` replace theirs.
+    records
+        Base motions that end: a sequence, or a mapping from names. They are told in the order of their names.
+    dissipation
+        By level, of which there are "low", "central" and "high" at least, the numbers of the model that dissipate:
+        damping, spin_friction, rolling_resistance, restitution; the same ones at each level.
+    friction_coefficient
+        Of the contact between column and base, one or one for each column by name: what the friction that a run
+        needs is compared with.
+    scales
+        Factors of the records at which verdicts are given; vertical components are scaled likewise.
+    margin_scales
+        Factors looked at for the bands that overturn, by default 60 from 0.2 to 5, evenly in their logarithm; besides
+        them the `scales` and what the changes make of them.
+    width
+        Relative width to which the edges of bands are found.
+    tail
+        How long columns are followed after a record [s]; by default 20/p.
+    changes
+        Small changes under which each verdict is repeated; by default `SMALL_CHANGES`; none for an empty sequence.
+    planar
+        Whether Housner's planar column answers too.
+    contact
+        Whether runs tell what the contact must bear.
+    least_records
+        Fewer records give no fragility.
+    title, notes
+        What the assessment is called; assumptions of its author, for the report.
+    store
+        A folder that keeps each part that is computed: with it an interrupted assessment goes on where it was.
+    executor
+        As in `run_sweep`.
+    progress
+        Told what is computed, the runs done and the runs in all, about.
+    **options
+        Of all runs, as in `simulate_ensemble`; `max_steps` is 2 000 000 unless it is given, for a column that hardly
+        rocks trembles fast.
+
+    Returns
+    -------
+    Assessment
+        Its data: "columns" and "records", their numbers; "verdicts" over column, record, dissipation, vertical and
+        scale: `overturned` (1, 0, −1 not told), `tilt_ratio`, what the contact must bear; "margins" over column,
+        case, record and band; "robustness" over column, scale, record and change; "planar"; "fragility" over column
+        where there are records enough; "histories" over column, of the record that governs each; "summary", counts.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range, or the dissipation is not stated.
+    Interrupted
+        On Ctrl-C; the parts that were computed are in the store.
+
+    Notes
+    -----
+    Records are sorted by name and every column is computed by itself: the order of either changes no number.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import stylobate as sb
+    >>> column = sb.Slender(sb.Column.solid(radius=0.4, height=4.0, density=2700.0))
+    >>> pulse = sb.Pulse.one_sine(acceleration=2.5, angular_frequency=4.0)
+    >>> found = sb.studies.assess(
+    ...     {"column": column},
+    ...     {"pulse": pulse},
+    ...     dissipation={"low": {"damping": 0.01}, "central": {"damping": 0.05}, "high": {"damping": 0.1}},
+    ...     friction_coefficient=0.6,
+    ...     margin_scales=np.linspace(0.5, 3.0, 11),
+    ...     changes=(),
+    ...     planar=False,
+    ...     contact=False,
+    ... )
+    >>> found.data["verdicts"]["overturned"].sel(vertical="with", scale=1.0).values
+    array([[[1, 1, 1]]], dtype=int8)
+    """
+    require_no_tilt_limit(options)
+    inputs = Inputs.of(
+        columns,
+        records,
+        dissipation,
+        friction_coefficient,
+        scales,
+        np.geomspace(0.2, 5.0, 60) if margin_scales is None else margin_scales,
+        changes,
+        width=require_positive("width", width),
+        tail=tail,
+        least_records=require_whole("least_records", least_records, least=2),
+        options={"max_steps": _MAX_STEPS, **options},
+    )
+    parts = Parts(None if store is None else Path(store), _runs(inputs, planar=planar), progress or _silence)
+    names = list(inputs.columns)
+    verdicts = [verdicts_on(inputs, name, parts, contact=contact, executor=executor) for name in names]
+    margins = [margins_of(inputs, name, parts, executor=executor) for name in names]
+    data = {
+        "columns": column_properties(inputs),
+        "records": record_properties(inputs),
+        "verdicts": _over_columns(verdicts, names),
+        "margins": _over_columns(_of_one_width(margins), names),
+    }
+    if inputs.changes:
+        data["robustness"] = _over_columns(
+            [robustness_of(inputs, name, parts, executor=executor) for name in names], names
+        )
+    if planar:
+        data["planar"] = _over_columns([planar_of(inputs, name, parts, executor=executor) for name in names], names)
+    if len(inputs.records) >= inputs.least_records:
+        peaks = data["records"]["peak_acceleration"].to_numpy()
+        data["fragility"] = _over_columns([fragility_of(one["reached"], peaks) for one in margins], names)
+    governing = [governing_record(one, other, inputs.as_recorded) for one, other in zip(verdicts, margins, strict=True)]
+    runs = [
+        history_of(inputs, name, record, parts, contact=contact) for name, record in zip(names, governing, strict=True)
+    ]
+    data["histories"] = _over_columns(runs, names)
+    data["summary"] = summary_of(data, governing)
+    more = {"title": title, "notes": list(notes), "contact": contact, "resolution": margins[0].attrs["resolution"]}
+    return Assessment(data=data, setting={**_setting(inputs), **more})
+
+
+def _runs(inputs: Inputs, *, planar: bool) -> int:
+    each = verdict_runs(inputs) + margin_runs(inputs) + 1
+    each += robustness_runs(inputs) if inputs.changes else 0
+    each += planar_runs(inputs) if planar else 0
+    return each * len(inputs.columns)
+
+
+def _of_one_width(margins: list[xr.Dataset]) -> list[xr.Dataset]:
+    """Return the margins with as many bands each, NaN beyond the last."""
+    widest = max(one.sizes["band"] for one in margins)
+    return [one.pad(band=(0, widest - one.sizes["band"])) if one.sizes["band"] < widest else one for one in margins]
+
+
+def _over_columns(found: Sequence[xr.Dataset], names: Sequence[str]) -> xr.Dataset:
+    joined: xr.Dataset = xr.concat(
+        list(found),
+        dim=xr.Variable("column", list(names)),
+        data_vars="all",
+        join="outer",
+        combine_attrs="drop_conflicts",
+    )
+    return joined
+
+
+def _setting(inputs: Inputs) -> dict[str, Any]:
+    """Return what was assessed, as plain values."""
+    return {
+        "version": version("stylobate"),
+        "columns": {
+            name: {
+                part: provenance_of_run(levels[CENTRAL], motion)[part]
+                for motion in (next(iter(inputs.records.values())),)
+                for part in ("column", "model")
+            }
+            for name, levels in inputs.columns.items()
+        },
+        "records": {
+            name: {
+                "processing": list(motion.provenance) if isinstance(motion, Record) else [repr(motion)],
+                "digest": motion.digest if isinstance(motion, Record) else "",
+                "motion": provenance_of_run(next(iter(inputs.columns.values()))[CENTRAL], motion)["motion"],
+            }
+            for name, motion in inputs.records.items()
+        },
+        "dissipation": {level: dict(numbers) for level, numbers in inputs.dissipation.items()},
+        "friction_coefficient": dict(inputs.friction),
+        "scales": inputs.scales.tolist(),
+        "margin_scales": [float(inputs.margin_scales[0]), float(inputs.margin_scales[-1]), inputs.margin_scales.size],
+        "width": inputs.width,
+        "tail": "20/p" if inputs.tail is None else inputs.tail,
+        "tail_over_p": TAIL,
+        "changes": [change.name for change in inputs.changes],
+        "least_records": inputs.least_records,
+        "options": {name: repr(value) for name, value in inputs.options.items()},
+    }
+
+
+def _silence(what: str, done: int, total: int) -> None:
+    del what, done, total

@@ -1,0 +1,211 @@
+"""What is assessed: columns with their dissipation and friction, records by name, and what is asked of them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from typing import Any, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.engine.parameters import changed_model, model_names
+from stylobate.errors import ParameterError, require_not_negative, require_positive
+from stylobate.models import Model
+from stylobate.motions import BASE_AT_REST, BaseMotion
+from stylobate.spec import provenance_of_run
+from stylobate.studies.assessment.parts import identities
+from stylobate.studies.shaking import SMALL_CHANGES, Change, ScaledRecord
+from stylobate.studies.shaking.named_records import Records, named_records
+from stylobate.studies.sweeps.fingerprint import identity_of
+from stylobate.studies.sweeps.quantities import Floats
+from stylobate.studies.sweeps.recipe import RunOptions
+
+LEVELS = ("low", "central", "high")
+"""The levels of dissipation that an assessment needs."""
+
+CENTRAL = "central"
+NO_VERTICAL = "central, no vertical"
+"""The case of margins in which the vertical component does not act."""
+
+# Scales nearer than this part of themselves are one.
+_SAME_SCALE = 1e-9
+
+_OF_DISSIPATION = ("damping", "spin_friction", "rolling_resistance", "restitution")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Inputs:
+    """Everything an assessment is told, checked.
+
+    Parameters
+    ----------
+    columns
+        The column with its equations by name, at each level of dissipation.
+    records
+        Base motions by name, sorted.
+    dissipation
+        The numbers of each level.
+    friction
+        The coefficient of friction of each column that its contact is said to have.
+    scales
+        Scale factors at which verdicts are given.
+    margin_scales
+        Scale factors looked at for margins, increasing, those of the verdicts and their small changes among them.
+    width
+        Relative width to which their edges are found.
+    tail
+        How long columns are followed after a record [s], by default 20/p.
+    changes
+        Small changes under which verdicts are repeated.
+    least_records
+        Fewer records give no fragility.
+    options
+        Of all runs.
+    """
+
+    columns: Mapping[str, Mapping[str, Model]]
+    records: Mapping[str, BaseMotion]
+    dissipation: Mapping[str, Mapping[str, float]]
+    friction: Mapping[str, float]
+    scales: Floats
+    margin_scales: Floats
+    width: float
+    tail: float | None
+    changes: tuple[Change, ...]
+    least_records: int
+    options: RunOptions
+
+    @classmethod
+    def of(
+        cls,
+        columns: Mapping[str, Model],
+        records: Records,
+        dissipation: Mapping[str, Mapping[str, float]],
+        friction_coefficient: float | Mapping[str, float],
+        scales: npt.ArrayLike,
+        margin_scales: npt.ArrayLike,
+        changes: Sequence[Change] | None,
+        **more: Any,
+    ) -> Self:
+        """Return the inputs, or raise ParameterError for one that cannot be."""
+        if not isinstance(columns, Mapping) or not columns:
+            message = f"columns must map names to models, at least one, got {columns!r}"
+            raise ParameterError(message)
+        levels = checked_dissipation(dissipation)
+        stated, tried = _rising("scales", scales, least=1), tuple(SMALL_CHANGES if changes is None else changes)
+        return cls(
+            columns={name: _at_levels(name, model, levels) for name, model in columns.items()},
+            records=dict(sorted(named_records(records).items())),
+            dissipation=levels,
+            friction=_frictions(friction_coefficient, list(columns)),
+            scales=stated,
+            margin_scales=_joined(_rising("margin_scales", margin_scales, least=2), stated, tried),
+            changes=tried,
+            **more,
+        )
+
+    @property
+    def as_recorded(self) -> int:
+        """The place of scale 1 among the scales; where it is not among them, of the nearest."""
+        return int(np.argmin(np.abs(np.log(self.scales))))
+
+    @property
+    def has_vertical(self) -> bool:
+        """Whether some record has a vertical component."""
+        return any(any(motion.vertical_range(0.0)) for motion in self.records.values())
+
+    def with_records(self, names: Sequence[str]) -> Self:
+        """Return these inputs with some of the records only."""
+        return replace(self, records={name: self.records[name] for name in names})
+
+    def identity(self, column: str, level: str | None = None) -> dict[str, Any]:
+        """Return what tells the runs of a column, at one level or at all, from others."""
+        models = self.columns[column]
+        chosen = models if level is None else {level: models[level]}
+        return {
+            "version": version("stylobate"),
+            "models": {name: _told(model) for name, model in chosen.items()},
+            "records": identities(self.records),
+            "tail": self.tail,
+            "options": repr(dict(self.options)),
+        }
+
+
+def checked_dissipation(dissipation: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, float]]:
+    """Return the numbers of each level, or raise ParameterError with the remedy.
+
+    Raises
+    ------
+    ParameterError
+        If low, central and high are not all stated, name different numbers, or none.
+    """
+    remedy = "state it for low, central and high, such as low = {damping = 0.005}"
+    if not isinstance(dissipation, Mapping) or not dissipation:
+        message = f"dissipation is missing: how fast a column in space loses energy decides its fate; {remedy}"
+        raise ParameterError(message)
+    missing = [level for level in LEVELS if level not in dissipation]
+    if missing:
+        message = f"dissipation: {' and '.join(missing)} must be stated too; {remedy}"
+        raise ParameterError(message)
+    names = set(dissipation[CENTRAL])
+    if not names or any(set(level) != names for level in dissipation.values()):
+        told = ", ".join(
+            f"{level} {' and '.join(sorted(numbers)) or 'nothing'}" for level, numbers in dissipation.items()
+        )
+        message = f"dissipation must name the same numbers at each level, got {told}; {remedy}"
+        raise ParameterError(message)
+    unknown = sorted(names.difference(_OF_DISSIPATION))
+    if unknown:
+        message = f"dissipation: {unknown[0]} is none; it is told by {', '.join(_OF_DISSIPATION)}"
+        raise ParameterError(message)
+    return {
+        level: {name: require_not_negative(f"dissipation.{level}.{name}", value) for name, value in numbers.items()}
+        for level, numbers in dissipation.items()
+    }
+
+
+def _at_levels(name: str, model: Model, levels: Mapping[str, Mapping[str, float]]) -> dict[str, Model]:
+    if not isinstance(model, Model) or model.planar_only:
+        message = f"columns: {name!r} must be a model of a column in space, such as Wobbling(column), got {model!r}"
+        raise ParameterError(message)
+    lacking = [number for number in levels[CENTRAL] if number not in model_names(model)]
+    if lacking:
+        message = f"dissipation: the model {model.name} has no {lacking[0]}; leave it out or choose another model"
+        raise ParameterError(message)
+    return {level: changed_model(model, numbers) for level, numbers in levels.items()}
+
+
+def _frictions(given: float | Mapping[str, float], columns: Sequence[str]) -> dict[str, float]:
+    if not isinstance(given, Mapping):
+        return dict.fromkeys(columns, require_positive("friction_coefficient", given))
+    for name in (*given, *columns):
+        if (name in given) != (name in columns):
+            what = "is no column" if name in given else "has none; state one for each column"
+            message = f"friction_coefficient: {name!r} {what}"
+            raise ParameterError(message)
+    return {name: require_positive(f"friction_coefficient.{name}", given[name]) for name in columns}
+
+
+def _rising(name: str, values: npt.ArrayLike, *, least: int) -> Floats:
+    try:
+        array = np.atleast_1d(np.array(values, dtype=float))
+    except (TypeError, ValueError):
+        array = np.empty(0)
+    if array.ndim != 1 or array.size < least or not np.all(np.isfinite(array) & (array > 0.0)):
+        message = f"{name} must be positive numbers, {least} or more, got {values!r}"
+        raise ParameterError(message)
+    return np.unique(array)
+
+
+def _joined(scanned: Floats, stated: Floats, changes: Sequence[Change]) -> Floats:
+    """Return the scales `scanned`, with those stated and their small changes: what is said of both is of one set."""
+    factors = [1.0, *(change.factor for change in changes if isinstance(change, ScaledRecord))]
+    rising = np.unique(np.concatenate([scanned, np.outer(stated, factors).ravel()]))
+    apart = np.diff(rising, prepend=0.0) > _SAME_SCALE * rising
+    return np.asarray(rising[apart])
+
+
+def _told(model: Model) -> dict[str, Any]:
+    provenance = provenance_of_run(model, BASE_AT_REST)
+    described = provenance["model"] if provenance["model"].get("kind") != "other" else identity_of(model)
+    return {"column": provenance["column"], "model": described}

@@ -1,0 +1,110 @@
+"""Margins of one column: all bands of scale factors in which each record overturns it, case by case."""
+
+import numpy as np
+import xarray as xr
+
+from stylobate.models import Model
+from stylobate.motions import BaseMotion, OneOf
+from stylobate.studies.assessment.inputs import CENTRAL, NO_VERTICAL, Inputs
+from stylobate.studies.assessment.parts import Parts
+from stylobate.studies.fragility import limit_states
+from stylobate.studies.shaking.following import TAIL
+from stylobate.studies.shaking.incremental import without_vertical
+from stylobate.studies.spectra import overturning_bands
+from stylobate.studies.sweeps import Executor
+from stylobate.studies.sweeps.computing import Progress
+
+_BAND = ("band_from", "band_to", "safe_below", "safe_above", "open_below", "open_above")
+
+
+def margins_of(inputs: Inputs, column: str, parts: Parts, *, executor: Executor | None) -> xr.Dataset:
+    """Return the bands of a column.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `case` (the levels of dissipation; and the central one without the vertical component) and `record`:
+        `least_overturning`, the least scale that overturned, NaN where none did; `largest_below`, the largest scale
+        below it that did not, NaN where none; `bands`; `unknown`, runs that tell nothing; `stands_again`, whether it
+        did not overturn at a scale above one that overturned it. Over `band` too all of `overturning_bands`. Of the
+        central case over `limit_state` and `margin_scale`: `reached`.
+    """
+    found = [_bands(inputs, column, case, parts, executor) for case in cases_of(inputs)]
+    widest = max(one.sizes["band"] for one in found)
+    padded = [one.pad(band=(0, widest - one.sizes["band"])) if one.sizes["band"] < widest else one for one in found]
+    joined: xr.Dataset = xr.concat(padded, dim=xr.Variable("case", cases_of(inputs)), data_vars="all", join="override")
+    central = inputs.columns[column][CENTRAL]
+    scanned = joined.sel(case=CENTRAL)
+    reached = limit_states(scanned[["outcome", "largest_tilt"]], slenderness=central.column.slenderness).transpose(
+        "record", "limit_state", "margin_scale"
+    )
+    return joined.drop_vars(["outcome", "largest_tilt"]).assign(reached=reached.drop_vars("case"))
+
+
+def cases_of(inputs: Inputs) -> list[str]:
+    """Return the names of the cases."""
+    return [*inputs.dissipation, *([NO_VERTICAL] if inputs.has_vertical else [])]
+
+
+def margin_runs(inputs: Inputs) -> int:
+    """Return how many runs the margins of one column take at least."""
+    return len(cases_of(inputs)) * _scan_runs(inputs)
+
+
+def _scan_runs(inputs: Inputs) -> int:
+    return len(inputs.records) * inputs.margin_scales.size
+
+
+def _bands(inputs: Inputs, column: str, case: str, parts: Parts, executor: Executor | None) -> xr.Dataset:
+    level = CENTRAL if case == NO_VERTICAL else case
+    model = inputs.columns[column][level]
+    motions = [without_vertical(one) if case == NO_VERTICAL else one for one in inputs.records.values()]
+
+    def compute(progress: Progress) -> xr.Dataset:
+        return _told(_found(inputs, model, motions, executor, progress), list(inputs.records))
+
+    identity = {
+        **inputs.identity(column, level),
+        "vertical": case != NO_VERTICAL,
+        "scales": inputs.margin_scales.tolist(),
+        "width": inputs.width,
+    }
+    return parts.get(f"{column}: margins, {case}", _scan_runs(inputs), identity, compute)
+
+
+def _found(
+    inputs: Inputs, model: Model, motions: list[BaseMotion], executor: Executor | None, progress: Progress
+) -> xr.Dataset:
+    tail = TAIL if inputs.tail is None else inputs.tail * model.column.frequency_parameter
+    return overturning_bands(
+        model,
+        OneOf(motions=tuple(motions)),
+        over={"motion": np.arange(len(motions))},
+        scales=inputs.margin_scales,
+        width=inputs.width,
+        tail=tail,
+        executor=executor,
+        progress=progress,
+        **inputs.options,
+    )
+
+
+def _told(found: xr.Dataset, names: list[str]) -> xr.Dataset:
+    plain = found.rename(motion="record", scale="margin_scale")
+    plain = plain.drop_vars([name for name in plain.coords if name != "margin_scale"]).assign_coords(record=names)
+    kept = plain[[*_BAND, "bands", "unknown", "outcome", "largest_tilt"]].transpose("record", ...)
+    flags = {name: kept[name].astype(float) for name in ("open_below", "open_above", "bands", "unknown")}
+    first = kept.isel(band=0)
+    last = kept["band_to"].max("band")
+    again = (kept["bands"] > 1) | (last < float(plain["margin_scale"][-1]))
+    return (
+        kept.assign(flags)
+        .assign(
+            least_overturning=first["band_from"].assign_attrs(units="1", long_name="least scale that overturned"),
+            largest_below=first["safe_below"].assign_attrs(units="1", long_name="largest scale below that did not"),
+            stands_again=again.astype(float).assign_attrs(
+                long_name="did not overturn at a scale above one that overturned"
+            ),
+        )
+        .assign_attrs(resolution=found.attrs["resolution"], provenance=found.attrs["provenance"])
+    )

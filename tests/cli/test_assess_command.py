@@ -1,0 +1,106 @@
+"""`stylobate assess`: a study in, a report out; interrupted, shown again, refused."""
+
+import json
+
+import numpy as np
+import pytest
+
+from stylobate import studies
+from stylobate.cli.main import run
+
+STUDY = """
+title = "One column"
+friction_coefficient = 0.6
+scales = [1.0]
+robustness = false
+planar = false
+contact = false
+tail = 1.0
+
+[columns.tank]
+shape = "solid"
+radius = 0.2
+height = 2.0
+density = 2700.0
+
+[model]
+kind = "slender"
+
+[dissipation]
+low = {damping = 0.01}
+central = {damping = 0.05}
+high = {damping = 0.1}
+
+[records]
+source = "quakes/*.txt"
+units = "g"
+step = 0.02
+
+[margin]
+from = 0.5
+to = 2.0
+number = 3
+"""
+
+
+@pytest.fixture
+def study(tmp_path):
+    quakes = tmp_path / "quakes"
+    quakes.mkdir()
+    time = 0.02 * np.arange(101)
+    for name, peak in (("strong_NS", 0.9), ("weak_NS", 0.02)):
+        np.savetxt(quakes / f"{name}.txt", peak * np.sin(np.pi * time) * np.sin(np.pi * time / 2.0))
+    path = tmp_path / "study.toml"
+    path.write_text(STUDY, encoding="utf-8")
+    return path
+
+
+def test_a_study_gives_a_report_that_is_kept_and_shown_again(study, tmp_path, capsys, monkeypatch):
+    folder = tmp_path / "out"
+    assert run(["assess", str(study), "--folder", str(folder)]) == 0
+    told = capsys.readouterr()
+    assert "As recorded (scale 1) it overturned under 1 of 2 records" in told.out
+    assert "tank: verdicts" in told.err
+    for name in ("report.html", "summary.txt", "assessment.nc", "tables/verdicts.csv", "figures/margins-1.png"):
+        assert (folder / name).stat().st_size > 0
+    drawn = (folder / "report.html").read_text(encoding="utf-8")
+    assert all(name in drawn for name in ("strong", "weak", "SHA-256"))
+    monkeypatch.setattr(studies, "assess", None)  # nothing is computed to show it again
+    assert run(["assess", str(folder / "assessment.nc"), "--folder", str(tmp_path / "again"), "--json"]) == 0
+    summary = json.loads(capsys.readouterr().out)["summary"]
+    assert summary[0]["overturned it"] == "1"
+    assert (tmp_path / "again" / "report.html").read_text(encoding="utf-8") == drawn
+
+
+def test_an_interrupted_assessment_says_how_to_go_on(study, tmp_path, capsys, monkeypatch):
+    def stop(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(studies, "assess", stop)
+    assert run(["assess", str(study), "--folder", str(tmp_path / "out")]) == 130
+    assert "the same command goes on from there" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("gone", "told"),
+    [
+        ("[dissipation]", "dissipation is missing: how fast a column in space loses energy"),
+        ("friction_coefficient", "friction_coefficient is missing"),
+        ("units", "the file does not tell its unit"),
+    ],
+)
+def test_what_must_be_stated_is_asked_for(gone, told, study, capsys):
+    lines = STUDY.splitlines()
+    cut = [line for line in lines if not line.startswith(gone)]
+    if gone.startswith("["):
+        cut = [line for line in cut if not line.startswith(("low", "central", "high"))]
+    study.write_text("\n".join(cut), encoding="utf-8")
+    assert run(["assess", str(study)]) == 2
+    problems = capsys.readouterr().err.splitlines()
+    assert told in problems[0]
+    assert len(problems) == (2 if gone == "units" else 1)  # one for each file
+
+
+def test_a_missing_study_is_one_line(capsys):
+    assert run(["assess", "none.toml"]) == 2
+    assert capsys.readouterr().err == "stylobate: cannot read none.toml: No such file or directory\n"

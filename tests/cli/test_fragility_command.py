@@ -1,0 +1,195 @@
+"""`stylobate fragility` runs what is described, fits it, keeps the runs, and fits them anew."""
+
+import json
+
+import numpy as np
+import pytest
+
+import stylobate as sb
+from stylobate.cli.main import run
+from stylobate.errors import DescriptionError
+from stylobate.spec import FragilityDescription
+from stylobate.studies import (
+    Counting,
+    FragilityStudy,
+    HazardCurve,
+    LognormalSpread,
+    NormalSpread,
+    annual_rate,
+    fragility_of_runs,
+    incremental_dynamic_analysis,
+    property_samples,
+)
+
+COLUMN = ["--radius", "0.4", "--height", "4", "--density", "2700", "--damping", "0.05"]
+MODEL = sb.Slender(sb.Column.solid(radius=0.4, height=4.0, density=2700.0), damping=0.05)
+SCALES = ["--scales", "0.8", "8", "6"]
+STUDY = """
+records = "quakes"
+
+[column]
+shape = "solid"
+radius = 0.4
+height = 4.0
+density = 2700.0
+
+[model]
+kind = "slender"
+damping = 0.05
+
+[fragility]
+scales = { values = [0.8, 1.6, 3.2, 6.4] }
+intensity = "PGA/(g tan α)"
+samples = 3
+seed = 2
+resamples = 20
+counting = "first"
+tail = 2.0
+
+[fragility.spreads]
+damping = { kind = "lognormal", dispersion = 0.3 }
+size = { kind = "normal", deviation = 0.02 }
+
+[fragility.hazard]
+file = "site.csv"
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Return a folder with records, the hazard of a site, and a study of them."""
+    (tmp_path / "quakes").mkdir()
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        samples = np.hanning(80)[:, np.newaxis] * rng.normal(size=(80, 3)) * (1.5, 1.5, 0.3)
+        record = sb.Record(samples=samples, step=0.02, name=f"q{seed}")
+        sb.records.write_csv(record, tmp_path / "quakes" / f"q{seed}.csv")
+    (tmp_path / "site.csv").write_text("intensity,rate\n# of the site\n0.5,1e-2\n2.0; 1e-3\n8.0 5e-5\n")
+    (tmp_path / "study.toml").write_text(STUDY)
+    return tmp_path
+
+
+def test_options_run_what_python_runs(folder, capsys, saved):
+    drawn = [folder / "fits.png", folder / "runs.png"]
+    made = ["--output", str(folder / "runs.nc"), "--figure", str(drawn[0]), "--runs-figure", str(drawn[1])]
+    quakes = ["--records", str(folder / "quakes")]
+    assert run(["fragility", *COLUMN, *quakes, *SCALES, "--resamples", "20", "--json", *made]) == 0
+    told = json.loads(capsys.readouterr().out)
+    records = {record.name: record for record in sb.read_records(folder / "quakes")}
+    runs = incremental_dynamic_analysis(MODEL, records, scales=np.geomspace(0.8, 8.0, 6))
+    np.testing.assert_array_equal(saved(folder / "runs.nc")["largest_tilt"], runs["largest_tilt"])
+    fits = fragility_of_runs(runs)
+    for place, row in enumerate(told["limit_states"]):
+        expected = float(fits["median"][place])
+        assert row["median"] == (pytest.approx(expected) if np.isfinite(expected) else None)
+        assert row["runs_reached"] == int(fits["runs_reached"][place])
+    assert told["records"] == sorted(records)
+    assert all(path.read_bytes().startswith(b"\x89PNG") for path in drawn)
+
+
+def test_a_described_study_is_that_of_its_parts(folder):
+    description = FragilityDescription.parse(
+        sb.spec.read_description(folder / "study.toml")
+        | {"fragility": sb.spec.read_description(folder / "study.toml")["fragility"] | {"hazard": HAZARD}}
+    )
+    study = FragilityStudy.of(description.build())
+    runs = study.runs()
+    spreads = {"damping": LognormalSpread(0.3), "size": NormalSpread(0.02)}
+    rng = np.random.default_rng(np.random.SeedSequence(2, spawn_key=(0,)))
+    samples = property_samples(MODEL, spreads, count=3, rng=rng)
+    for name, values in samples.items():
+        np.testing.assert_array_equal(runs[name], values)
+    same = incremental_dynamic_analysis(
+        MODEL, study.records, scales=[0.8, 1.6, 3.2, 6.4], parameters=samples, tail=2.0, intensity="PGA/(g tan α)"
+    )
+    np.testing.assert_array_equal(runs["largest_tilt"], same["largest_tilt"])
+    fits = study.fits(runs)
+    assert fits.attrs["counting"] == Counting.FIRST.value
+    curve = HazardCurve(intensity=HAZARD["intensity"], rate=HAZARD["rate"], units="1", quantity="PGA/(g tan α)")
+    rates = study.rates(fits)
+    np.testing.assert_array_equal(rates["annual_rate"], annual_rate(fits, curve)["annual_rate"])
+    assert study.parts(runs).attrs["limit_state"] == "overturning"
+    assert study.parts(runs.isel(property_sample=0)) is None
+
+
+HAZARD = {"intensity": [0.5, 2.0, 8.0], "rate": [1e-2, 1e-3, 5e-5]}
+
+
+def test_saved_runs_are_fitted_anew_and_repeated(folder, capsys, saved, monkeypatch):
+    monkeypatch.chdir(folder)
+    assert run(["fragility", "study.toml", "--output", "runs.nc"]) == 0
+    table = capsys.readouterr().out
+    for words in ("overturning", "in 50 years", "4 records × 3 property samples × 4 scales", "runs counted first"):
+        assert words in table
+    assert run(["fragility", "runs.nc", "--counting", "as computed", "--resamples", "0", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["intervals"].startswith("profile likelihood")
+    assert told["counting"] == "as computed"
+    assert told["limit_states"][-1]["runs"] + told["limit_states"][-1]["runs_not_known"] == 48
+    monkeypatch.chdir(folder.parent)
+    other = folder / "other.nc"
+    assert run(["fragility", str(folder / "runs.nc"), "--damping", "0.1", "--output", str(other)]) == 0
+    capsys.readouterr()
+    np.testing.assert_allclose(saved(other)["damping"], 2.0 * saved(folder / "runs.nc")["damping"])
+
+
+def test_a_store_goes_on(folder, capsys, monkeypatch):
+    monkeypatch.chdir(folder)
+    command = ["fragility", "study.toml", "--output", "runs.zarr", "--json"]
+    assert run(command) == 0
+    first = json.loads(capsys.readouterr().out)
+    assert run([*command, "--resume"]) == 0
+    assert json.loads(capsys.readouterr().out) == first
+    assert run(["fragility", "runs.zarr"]) == 2
+    assert "it goes on with the description that began it" in capsys.readouterr().err
+
+
+def test_what_was_interrupted_is_fitted_as_far_as_it_is_known_and_goes_on(folder, capsys, interrupted, monkeypatch):
+    monkeypatch.chdir(folder)
+    command = ["fragility", "study.toml", "--property-samples", "24", "--threads", "1", "--json"]
+    assert run([*command, "--output", "runs.zarr"]) == 130
+    told = capsys.readouterr()
+    assert "goes on with --resume" in told.err
+    partial = json.loads(told.out)
+    assert 0 < partial["computed"] < 384
+    assert partial["limit_states"][-1]["runs"] <= partial["computed"]
+    interrupted.undo()
+    monkeypatch.chdir(folder)
+    assert run([*command, "--output", "runs.zarr", "--resume"]) == 0
+    resumed = json.loads(capsys.readouterr().out)
+    assert resumed["computed"] == resumed["runs"] == 384
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--spread", "damping"], "--spread must be a name and a dispersion, such as damping=0.4, got 'damping'"),
+        (["--vertical", "maybe"], "--vertical must be on, off or both, got 'maybe'"),
+        (["--hazard", "nowhere.csv"], "cannot read"),
+        (["--hazard", "study.toml"], "study.toml holds no numbers"),
+        (["--spread", "colour=0.1"], "spreads: colour is not known here"),
+        (["--property-samples", "0"], "fragility.samples and fragility.spreads go together"),
+        (["--intensity", "magnitude"], "intensity must be 'peak ground acceleration'"),
+        (["--records", "nowhere"], "nowhere: No such file or directory"),
+        (["--figure", "f.doc"], "--figure must end with"),
+    ],
+)
+def test_mistakes_are_told_in_one_line(folder, capsys, monkeypatch, options, message):
+    monkeypatch.chdir(folder)
+    assert run(["fragility", "study.toml", *options]) == 2
+    told = capsys.readouterr().err.strip()
+    assert message in told
+    assert "\n" not in told
+
+
+def test_a_description_tells_all_its_mistakes():
+    values = {
+        "column": {"shape": "dimensionless", "slenderness": 0.1},
+        "records": {"source": "quakes"},
+        "duration": 3.0,
+        "fragility": {"scales": {"from": 1.0, "to": 2.0, "number": 0}, "samples": 3, "years": -1.0, "hazard": {}},
+    }
+    with pytest.raises(DescriptionError) as told:
+        FragilityDescription.parse(values).build()
+    for words in ("duration is not known", "number must be", "go together", "years must be", "a file of them"):
+        assert words in str(told.value)
