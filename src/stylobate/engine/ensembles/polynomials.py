@@ -1,7 +1,7 @@
 """Any base motion as a table: one polynomial after another between its breaks, to rounding."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -85,7 +85,8 @@ def tabulated(motion: BaseMotion, end: float) -> Table:
         for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
             pieces += _fitted(motion, a, b, size, _HALVINGS)
     starts, ends, coefficients = zip(*pieces, strict=True)
-    return Table.of(np.column_stack([starts, ends]), _bounds(motion, starts), np.stack(coefficients))
+    bounds = np.array([(motion.largest_horizontal(time), *motion.vertical_range(time)) for time in starts])
+    return Table.of(np.column_stack([starts, ends]), bounds, np.stack(coefficients))
 
 
 def _linear(motion: BaseMotion) -> Table:
@@ -96,13 +97,12 @@ def _linear(motion: BaseMotion) -> Table:
     first = np.stack(motion.derivative(middle - quarter, ACCELERATION))
     second = np.stack(motion.derivative(middle + quarter, ACCELERATION))
     coefficients = np.stack([0.5 * (first + second), second - first], axis=-1).transpose(1, 0, 2)
-    spans = np.column_stack([edges[:-1], edges[1:]])
-    return Table.of(spans, _bounds(motion, edges[:-1].tolist()), coefficients)
-
-
-def _bounds(motion: BaseMotion, times: Iterable[float]) -> Floats:
-    """Return sup |a_h|, inf and sup a_z from each of these times on."""
-    return np.array([(motion.largest_horizontal(time), *motion.vertical_range(time)) for time in times])
+    # Between its ends a line is nowhere larger than there.
+    ends = np.stack([coefficients[..., 0] - coefficients[..., 1], coefficients[..., 0] + coefficients[..., 1]])
+    horizontal, vertical = np.hypot(ends[..., 0], ends[..., 1]).max(axis=0), ends[..., 2]
+    bounds = np.stack([horizontal, -vertical.min(axis=0), vertical.max(axis=0)])
+    bounds = np.maximum.accumulate(bounds[:, ::-1], axis=1)[:, ::-1] * [[1.0], [-1.0], [1.0]]
+    return Table.of(np.column_stack([edges[:-1], edges[1:]]), bounds.T, coefficients)
 
 
 def _cuts(low: float, high: float, longest: float, end: float) -> Floats:
