@@ -16,9 +16,9 @@ Bools = npt.NDArray[np.bool_]
 # The energy of steady rolling at frequency θ is 1.5 c²/θ²; rest is entered below a hundredth of it at most.
 _REST_ENERGY, _REST_ENERGY_ROLLING = 1e-4, 0.015
 # Where the base motion can release the column again, at most a hundredth of the energy it releases it with; not below
-# the last numbers, which bound the number of hops to follow: of a motion that goes on for ever, in which small hops may
-# grow, and of one that ends.
-_REST_ENERGY_HOP, _LEAST_REST_ENERGY, _LEAST_OF_ONE_THAT_ENDS = 0.01, 1e-8, 1e-5
+# the next number, which bounds the number of hops to follow, or the last for a motion that is over before small hops
+# could grow, within so many of its mean periods, or is known at samples only, and so no better.
+_REST_ENERGY_HOP, _LEAST_REST_ENERGY, _LEAST_IF_BRIEF, _BRIEF = 0.01, 1e-8, 1e-5, 100.0
 
 # A start nearer to rest than this, tilt and rate in units of c, is the rounding of one at rest.
 _ROUNDED_REST = 1e-14
@@ -74,7 +74,9 @@ def _forced(model: Model, forcing: Forcing) -> tuple[float, float, float, float]
 
 def least_rest_energy(motion: BaseMotion) -> float:
     """Return the least ε for a column that `motion` may release again."""
-    return _LEAST_OF_ONE_THAT_ENDS if math.isfinite(motion.duration) else _LEAST_REST_ENERGY
+    sampled = motion.degree is not None and motion.degree <= 1
+    brief = motion.duration * motion.mean_frequency < _BRIEF * 2.0 * math.pi
+    return _LEAST_IF_BRIEF if sampled or brief else _LEAST_REST_ENERGY
 
 
 def usual_rest_energy(
