@@ -48,11 +48,16 @@ class Table:
         goes_on = np.append(0.0, jumps <= _GOES_ON * np.abs(coefficients).max(initial=0.0))
         return cls(np.column_stack([spans, bounds, goes_on, coefficients.reshape(len(spans), -1)]), powers - 1)
 
+    @property
+    def coefficients(self) -> Floats:
+        """Those of all pieces, shape (pieces, 3, degree + 1)."""
+        return self.rows[:, _BEFORE:].reshape(len(self.rows), 3, -1)
+
     def raised(self, degree: int) -> "Table":
         """Return the same pieces as polynomials of a higher `degree`."""
         count = len(self.rows)
         coefficients = np.zeros((count, 3, degree + 1))
-        coefficients[:, :, : self.degree + 1] = self.rows[:, _BEFORE:].reshape(count, 3, -1)
+        coefficients[:, :, : self.degree + 1] = self.coefficients
         return Table(np.column_stack([self.rows[:, :_BEFORE], coefficients.reshape(count, -1)]), degree)
 
 
