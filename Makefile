@@ -51,6 +51,7 @@ bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks, beside the engines that c
 	$(BIN)/python -m benchmarks.ensembles
 	$(BIN)/python -m benchmarks.ensembles.levels
 	$(BIN)/python -m benchmarks.ensembles.contacts
+	$(BIN)/python -m benchmarks.ensembles.records
 	$(BIN)/python -m benchmarks.orbits
 
 clean:  ## remove what the targets made

@@ -13,6 +13,9 @@ from stylobate.motions.base import ACCELERATION
 
 Floats = npt.NDArray[np.float64]
 
+# Over this part of the shortest time in a motion that is linear its slope is taken.
+_AHEAD = 1e-6
+
 
 @dataclass(frozen=True, slots=True)
 class Forcing:
@@ -53,6 +56,20 @@ class Forcing:
     def highest_frequency(self) -> float:
         """Highest dimensionless frequency; 0 for a base at rest."""
         return self.motion.highest_frequency * self.time_scale
+
+    @property
+    def mean_frequency(self) -> float:
+        """Mean dimensionless frequency; 0 for a base at rest."""
+        return self.motion.mean_frequency * self.time_scale
+
+    def largest_rate(self, tau: float, slenderness: float) -> float:
+        """Return how fast the force on a column near rest may change about `tau`; exactly, where it is linear."""
+        if self.motion.degree is not None and self.motion.degree <= 1:
+            ahead = _AHEAD / max(self.highest_frequency, 1.0)
+            x, y, z = ((b - a) / ahead for a, b in zip(self.at(tau), self.at(tau + ahead), strict=True))
+            return math.hypot(x, y) + slenderness * abs(z)
+        vertical = max(map(abs, self.vertical_range(tau)))
+        return self.highest_frequency * (self.largest_horizontal(tau) + slenderness * vertical)
 
     def stops(self, end: float) -> tuple[float, ...]:
         """Return the times up to `end` at which an integration must stop: breaks of the acceleration, and `end`."""

@@ -90,7 +90,7 @@ class Mover:
                 return self._space_leg(steps, solver.y, azimuth, Reason.FAILED, least, failure)
             dense = steps.add(solver)
             passage = self._passage(before, steps, solver.y)
-            least = min(least, passage[1])
+            least = min(least, passage[1] if self._counts(solver.y) else math.inf)
             events = [self.watch.first_event(steps.times[-2], solver.t, dense)]
             events.append((passage[0], Reason.STRUCK) if self._loses_at(passage, steps) else None)
             found = [event for event in events if event is not None]
@@ -151,7 +151,8 @@ class Mover:
         )
         (x, y), (vx, vy) = self.model.tilt(ends)[:, 0], self.model.tilt_rate(ends)[:, 0]
         reason = Reason.STRUCK if self.model.loss_tilt > 0.0 else Reason.STOP
-        return Leg(piece, end_state, reason, abs(x * vy - y * vx) / math.hypot(vx, vy))
+        speed = math.hypot(vx, vy)
+        return Leg(piece, end_state, reason, math.inf if self.watch.is_slow(speed) else abs(x * vy - y * vx) / speed)
 
     def in_plane(
         self,
@@ -251,6 +252,10 @@ class Mover:
             brentq(lambda tau: self._radial(dense(tau))[1], steps.times[-2], steps.times[-1], xtol=1e-300, rtol=1e-15)
         )
         return nearest, self._radial(dense(nearest))[0]
+
+    def _counts(self, state: Floats) -> bool:
+        """Return whether a passage that ends in `state` is none of a column as slow as one at rest."""
+        return not self.watch.is_slow(float(np.hypot(*self.model.tilt_rate(state[:, np.newaxis])[:, 0])))
 
     def _loses_at(self, passage: tuple[float, float], steps: Steps) -> bool:
         """Return whether a passage within the last step costs energy; one just passed is not passed again."""

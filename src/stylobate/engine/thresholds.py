@@ -9,14 +9,16 @@ import numpy.typing as npt
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.errors import require_not_negative, require_positive
 from stylobate.models import Model
+from stylobate.motions import BaseMotion
 
 Bools = npt.NDArray[np.bool_]
 
 # The energy of steady rolling at frequency θ is 1.5 c²/θ²; rest is entered below a hundredth of it at most.
 _REST_ENERGY, _REST_ENERGY_ROLLING = 1e-4, 0.015
 # Where the base motion can release the column again, at most a hundredth of the energy it releases it with; not below
-# the last number, which bounds the number of hops to follow.
-_REST_ENERGY_HOP, _LEAST_REST_ENERGY = 0.01, 1e-8
+# the next number, which bounds the number of hops to follow, or the last for a motion that is over before small hops
+# could grow, within so many of its mean periods, or is known at samples only, and so no better.
+_REST_ENERGY_HOP, _LEAST_REST_ENERGY, _LEAST_IF_BRIEF, _BRIEF = 0.01, 1e-8, 1e-5, 100.0
 
 # A start nearer to rest than this, tilt and rate in units of c, is the rounding of one at rest.
 _ROUNDED_REST = 1e-14
@@ -57,7 +59,7 @@ def thresholds_of(model: Model, forcing: Forcing, tilt_limit: float | None, rest
 
 
 def _default_rest_energy(model: Model, forcing: Forcing) -> float:
-    return float(usual_rest_energy(*_forced(model, forcing)))
+    return float(usual_rest_energy(*_forced(model, forcing), least=least_rest_energy(forcing.motion)))
 
 
 def rest_is_coarse(model: Model, forcing: Forcing, rest_energy: float) -> bool:
@@ -67,28 +69,42 @@ def rest_is_coarse(model: Model, forcing: Forcing, rest_energy: float) -> bool:
 
 def _forced(model: Model, forcing: Forcing) -> tuple[float, float, float, float]:
     least = forcing.least_vertical(0.0)
-    return forcing.highest_frequency, forcing.largest_horizontal(0.0), least, model.rest_capacity
+    return forcing.mean_frequency, forcing.largest_horizontal(0.0), least, model.rest_capacity
+
+
+def least_rest_energy(motion: BaseMotion) -> float:
+    """Return the least ε for a column that `motion` may release again."""
+    sampled = motion.degree is not None and motion.degree <= 1
+    brief = motion.duration * motion.mean_frequency < _BRIEF * 2.0 * math.pi
+    return _LEAST_IF_BRIEF if sampled or brief else _LEAST_REST_ENERGY
 
 
 def usual_rest_energy(
-    frequency: npt.ArrayLike, largest: npt.ArrayLike, least_vertical: npt.ArrayLike, capacity: npt.ArrayLike
+    frequency: npt.ArrayLike,
+    largest: npt.ArrayLike,
+    least_vertical: npt.ArrayLike,
+    capacity: npt.ArrayLike,
+    *,
+    least: npt.ArrayLike,
 ) -> Floats:
     """Return the ε at which rest is entered where nobody asks for another; arguments of any one shape.
 
     Parameters
     ----------
     frequency
-        The highest dimensionless frequency of the base motion; 0 for a base at rest.
+        The mean dimensionless frequency of the base motion; 0 for a base at rest.
     largest, least_vertical
         sup |a_h| and inf a_z [g].
     capacity
         |a_h|/(1 + a_z) up to which the column stays.
+    least
+        See `least_rest_energy`.
     """
     theta = np.asarray(frequency, dtype=float)
     with np.errstate(divide="ignore"):
         energy = np.minimum(_REST_ENERGY, _REST_ENERGY_ROLLING / theta**2)
     hop = hop_energy(frequency, largest, least_vertical, capacity)
-    finest = np.maximum(_LEAST_REST_ENERGY, _REST_ENERGY_HOP * hop)
+    finest = np.maximum(least, _REST_ENERGY_HOP * hop)
     return np.where(np.isnan(hop), energy, np.minimum(energy, finest))
 
 

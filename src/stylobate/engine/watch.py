@@ -81,6 +81,12 @@ class Watch:
         """Return whether a column of this tilt [rad] and (dimensionless) speed comes to rest at the time `tau`."""
         return self._rest_margin(tau, tilt, speed) > 0.0
 
+    def is_slow(self, speed: float) -> bool:
+        """Return whether the energy of a motion of this speed is no more than that at which rest is entered."""
+        c = self.model.column.slenderness
+        energy = self._rest_energy(0.0, c, 0.0)
+        return 0.0 < energy < math.inf and speed * speed <= self.thresholds.rest_energy * c**4 / energy
+
     @property
     def _rest_tilt(self) -> float:
         return self.thresholds.rest_energy * self.model.column.slenderness
@@ -93,7 +99,7 @@ class Watch:
         force = self.model.rest_capacity * (1.0 + az) - math.hypot(ax, ay)
         if self._holds_from(tau):
             force = self._least_force(tau)
-        change = 2.0 * math.sqrt(2.0 * max(energy, 0.0)) * self._forcing_rate(tau)
+        change = 2.0 * math.sqrt(2.0 * max(energy, 0.0)) * self.forcing.largest_rate(tau, self.model.column.slenderness)
         return min(
             self.thresholds.rest_energy * self.model.column.slenderness**2 - energy,
             force - math.sqrt(HOPS_APART * change),
@@ -109,11 +115,6 @@ class Watch:
     def _least_force(self, tau: float) -> float:
         weight = 1.0 + self.forcing.least_vertical(tau)
         return self.model.rest_capacity * weight - self.forcing.largest_horizontal(tau)
-
-    def _forcing_rate(self, tau: float) -> float:
-        vertical = max(map(abs, self.forcing.vertical_range(tau)))
-        largest = self.forcing.largest_horizontal(tau) + self.model.column.slenderness * vertical
-        return self.forcing.highest_frequency * largest
 
     def _no_return_tilt(self, tau: float) -> float:
         limit = self.model.least_safe_tilt(self.forcing.largest_horizontal(tau), self.forcing.least_vertical(tau))

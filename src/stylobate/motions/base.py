@@ -25,7 +25,7 @@ class BaseMotion(ABC):
     Notes
     -----
     For developers: a motion of your own implements `derivative`, `largest_horizontal`, `vertical_range` and
-    `directions`; `duration`, `period`, `highest_frequency`, `breaks` and `degree` have defaults.
+    `directions`; `duration`, `period`, `highest_frequency`, `mean_frequency`, `breaks` and `degree` have defaults.
     """
 
     __slots__ = ()
@@ -79,6 +79,15 @@ class BaseMotion(ABC):
         Steps and searches are no longer than it allows: a motion of your own that changes must give it.
         """
         return 0.0
+
+    @property
+    def mean_frequency(self) -> float:
+        """Mean angular frequency of the acceleration [rad/s]: with it peaks rise and fall; by default the highest.
+
+        How long the base motion pushes a column that it releases, and so how small an energy counts as rest, is judged
+        by it.
+        """
+        return self.highest_frequency
 
     @property
     def breaks(self) -> tuple[float, ...]:

@@ -78,6 +78,11 @@ class Sum(BaseMotion):
         return max((motion.highest_frequency for motion in self.motions), default=0.0)
 
     @property
+    def mean_frequency(self) -> float:
+        """The highest mean frequency of a part [rad/s]."""
+        return max((motion.mean_frequency for motion in self.motions), default=0.0)
+
+    @property
     def breaks(self) -> tuple[float, ...]:
         """The breaks of all the parts [s]."""
         return tuple(sorted({time for motion in self.motions for time in motion.breaks}))
@@ -129,6 +134,11 @@ class Following(BaseMotion):
     def highest_frequency(self) -> float:
         """The highest angular frequency of the motion [rad/s]."""
         return self.followed.highest_frequency
+
+    @property
+    def mean_frequency(self) -> float:
+        """The mean angular frequency of the motion [rad/s]."""
+        return self.followed.mean_frequency
 
     @property
     def breaks(self) -> tuple[float, ...]:

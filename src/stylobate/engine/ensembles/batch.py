@@ -155,7 +155,13 @@ class Batch:
 
 def _rest_energy(options: Options, models: ModelColumns, motions: MotionColumns) -> Floats:
     if options.rest_energy is None:
-        energy = usual_rest_energy(motions.frequency, motions.largest, motions.least_vertical, models.capacity)
+        energy = usual_rest_energy(
+            motions.mean_frequency,
+            motions.largest,
+            motions.least_vertical,
+            models.capacity,
+            least=motions.least_rest_energy,
+        )
     else:
         energy = np.full(len(models.capacity), options.rest_energy)
     return np.where(models.comes_to_rest, energy, 0.0)

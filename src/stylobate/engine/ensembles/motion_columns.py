@@ -13,6 +13,7 @@ from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.polynomials import Table, one_after_another, tabulated
 from stylobate.engine.lanes.forcing_source import ForcingSource, Harmonics, Polynomials
 from stylobate.engine.parameters import changed_motion, harmonic_part, largest_acceleration
+from stylobate.engine.thresholds import least_rest_energy
 from stylobate.errors import require_positive
 from stylobate.motions import BaseMotion
 from stylobate.motions.one_of import members_of
@@ -104,6 +105,8 @@ class MotionColumns:
     columns: Floats
     breaks: Floats
     frequency: Floats
+    mean_frequency: Floats
+    least_rest_energy: Floats
     period: Floats
     phase: Floats
     largest: Floats
@@ -132,10 +135,12 @@ class MotionColumns:
             columns, breaks = terms.columns(models.time_scale, models.gravity, windowed=plan.windowed), terms.breaks()
             breaks = breaks[:, np.any(np.isfinite(breaks), axis=0)] if plan.windowed else breaks[:, :0]
             frequency, phase, forward, backward = _single_frequency(terms, plan.motion)
+            mean_frequency = frequency
         else:
             columns = _table_columns(plan, values, factor, rotation, models)
             breaks = np.empty((count, 0))
             frequency = each(lambda motion: motion.highest_frequency)
+            mean_frequency = each(lambda motion: motion.mean_frequency)
             phase = np.zeros(count)
             forward = backward = np.full(count, np.nan)
         period = each(lambda motion: motion.period or 0.0)
@@ -145,6 +150,8 @@ class MotionColumns:
             columns=columns,
             breaks=breaks / models.time_scale[:, np.newaxis],
             frequency=frequency * models.time_scale,
+            mean_frequency=mean_frequency * models.time_scale,
+            least_rest_energy=each(least_rest_energy),
             period=period / models.time_scale,
             phase=phase,
             largest=np.abs(per_gravity) * each(lambda motion: motion.largest_horizontal(0.0)),

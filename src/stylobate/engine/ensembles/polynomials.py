@@ -15,12 +15,14 @@ from stylobate.motions.base import ACCELERATION
 Floats = npt.NDArray[np.float64]
 
 DEGREE = 15
-# Numbers of a row before its coefficients.
-_BOUNDS = 5
+# Numbers of a row before its coefficients; the kernels know it too.
+_BEFORE = 6
 # Pieces are no longer than half the shortest period, and halved where the polynomials do not get as near as this part
 # of the largest acceleration, so often at most.
 _ACCURACY, _HALVINGS = 1e-11, 12
 _MOST_PIECES = 2_000_000
+# A piece begins where the one before ends if its acceleration does, to this part of the largest.
+_GOES_ON = 1e-10
 # Short of a break, from either side, by this part of the time.
 _ASIDE = 4.0 * float(np.finfo(float).eps)
 
@@ -29,19 +31,34 @@ _ASIDE = 4.0 * float(np.finfo(float).eps)
 class Table:
     """Pieces of polynomials, a row each.
 
-    A row holds start and end [s]; sup |a_h|, inf and sup a_z from its start on [m/s²]; then for x, y and z the
-    coefficients, lowest power first, in the time from the middle of the piece over half its length.
+    A row holds start and end [s]; sup |a_h|, inf and sup a_z from its start on [m/s²]; 1 if the acceleration goes on
+    without a jump from the piece before, else 0; then for x, y and z the coefficients, lowest power first, in the time
+    from the middle of the piece over half its length.
     """
 
     rows: Floats
     degree: int
 
+    @classmethod
+    def of(cls, spans: Floats, bounds: Floats, coefficients: Floats) -> "Table":
+        """Return the table of pieces with these starts and ends (n, 2), bounds (n, 3), coefficients (n, 3, powers)."""
+        powers = coefficients.shape[-1]
+        starts, ends = coefficients @ (-1.0) ** np.arange(powers), coefficients.sum(axis=-1)
+        jumps = np.abs(starts[1:] - ends[:-1]).max(axis=-1, initial=0.0)
+        goes_on = np.append(0.0, jumps <= _GOES_ON * np.abs(coefficients).max(initial=0.0))
+        return cls(np.column_stack([spans, bounds, goes_on, coefficients.reshape(len(spans), -1)]), powers - 1)
+
+    @property
+    def coefficients(self) -> Floats:
+        """Those of all pieces, shape (pieces, 3, degree + 1)."""
+        return self.rows[:, _BEFORE:].reshape(len(self.rows), 3, -1)
+
     def raised(self, degree: int) -> "Table":
         """Return the same pieces as polynomials of a higher `degree`."""
         count = len(self.rows)
         coefficients = np.zeros((count, 3, degree + 1))
-        coefficients[:, :, : self.degree + 1] = self.rows[:, _BOUNDS:].reshape(count, 3, -1)
-        return Table(np.column_stack([self.rows[:, :_BOUNDS], coefficients.reshape(count, -1)]), degree)
+        coefficients[:, :, : self.degree + 1] = self.coefficients
+        return Table(np.column_stack([self.rows[:, :_BEFORE], coefficients.reshape(count, -1)]), degree)
 
 
 def one_after_another(tables: Sequence[Table]) -> Table:
@@ -72,11 +89,9 @@ def tabulated(motion: BaseMotion, end: float) -> Table:
         cuts = _cuts(low, high, longest, end)
         for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
             pieces += _fitted(motion, a, b, size, _HALVINGS)
-    rows = [
-        [a, b, motion.largest_horizontal(a), *motion.vertical_range(a), *coefficients.ravel()]
-        for a, b, coefficients in pieces
-    ]
-    return Table(np.array(rows), DEGREE)
+    starts, ends, coefficients = zip(*pieces, strict=True)
+    bounds = np.array([(motion.largest_horizontal(time), *motion.vertical_range(time)) for time in starts])
+    return Table.of(np.column_stack([starts, ends]), bounds, np.stack(coefficients))
 
 
 def _linear(motion: BaseMotion) -> Table:
@@ -86,10 +101,13 @@ def _linear(motion: BaseMotion) -> Table:
     middle, quarter = 0.5 * (edges[:-1] + edges[1:]), 0.25 * np.diff(edges)
     first = np.stack(motion.derivative(middle - quarter, ACCELERATION))
     second = np.stack(motion.derivative(middle + quarter, ACCELERATION))
-    bounds = [(motion.largest_horizontal(time), *motion.vertical_range(time)) for time in edges[:-1].tolist()]
-    coefficients = np.stack([0.5 * (first + second), second - first], axis=1)
-    rows = np.column_stack([edges[:-1], edges[1:], bounds, *coefficients.transpose(2, 0, 1).reshape(-1, 6).T])
-    return Table(rows, 1)
+    coefficients = np.stack([0.5 * (first + second), second - first], axis=-1).transpose(1, 0, 2)
+    # Between its ends a line is nowhere larger than there.
+    ends = np.stack([coefficients[..., 0] - coefficients[..., 1], coefficients[..., 0] + coefficients[..., 1]])
+    horizontal, vertical = np.hypot(ends[..., 0], ends[..., 1]).max(axis=0), ends[..., 2]
+    bounds = np.stack([horizontal, -vertical.min(axis=0), vertical.max(axis=0)])
+    bounds = np.maximum.accumulate(bounds[:, ::-1], axis=1)[:, ::-1] * [[1.0], [-1.0], [1.0]]
+    return Table.of(np.column_stack([edges[:-1], edges[1:]]), bounds.T, coefficients)
 
 
 def _cuts(low: float, high: float, longest: float, end: float) -> Floats:

@@ -141,7 +141,7 @@ def _all(batch: Batch) -> Arrays:
     start = np.hypot(*batch.plan.model.lean(*batch.models.states.T, *batch.models.parameters.T)[:2])
     is_coarse = coarse(
         batch.rest_energy,
-        batch.motions.frequency,
+        batch.motions.mean_frequency,
         batch.motions.largest,
         batch.motions.least_vertical,
         batch.models.capacity,

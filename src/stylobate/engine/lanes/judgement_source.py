@@ -146,7 +146,29 @@ def _extremes(shape: Shape, rows: Rows) -> list[str]:
         f"{at('largest_at')} = now if seen > largest else before",
         f"{at('largest_tilt')} = max(largest, seen)",
         *_least(at, "least_tilt"),
-        *(() if shape.planar else _least(at, "least_passage")),
+        *(() if shape.planar else _least_passage(at)),
+        *_slow(shape, at),
+    ]
+
+
+def _slow(shape: Shape, at: Callable[[str], str]) -> list[str]:
+    """Return what tells whether the column may have been slow enough to come to rest within the step.
+
+    Its speed within lies no further below that at the ends than it changed, or its weight may have changed it. A step
+    by series may be long: it is always looked at.
+    """
+    if shape.planar or shape.margins:
+        return []
+    if shape.series:
+        return [f"{at('slow')} = 1.0"]
+    before, after = ("vx", "vy"), ("new_vx", "new_vy")
+    changes = [f"({at(new)} - {at(old)})" for old, new in zip(before, after, strict=True)]
+    squares = [" + ".join(f"{at(name)} * {at(name)}" for name in names) for names in (before, after)]
+    return [
+        f"pull = h * {at('slenderness')}",
+        f"change = {' + '.join(f'{one} * {one}' for one in changes)} + pull * pull",
+        f"slowest = min({squares[0]}, {squares[1]})",
+        f"{at('slow')} = 1.0 if slowest < 2.0 * (change + {at('rest_square')}) else 0.0",
     ]
 
 
@@ -225,6 +247,15 @@ def _least(at: Callable[[str], str], row: str) -> tuple[str, ...]:
         f"least = {at(row)}",
         "closer = low if go * fell > 0.0 else least",
         f"{at(row)} = min(least, closer)",
+    )
+
+
+def _least_passage(at: Callable[[str], str]) -> tuple[str, ...]:
+    """Return what notes the least tilt of passages that are not as slow as rest."""
+    return (
+        f"square = {at('new_vx')} * {at('new_vx')} + {at('new_vy')} * {at('new_vy')}",
+        f"fell = fell if square > {at('rest_square')} else 0.0",
+        *_least(at, "least_passage"),
     )
 
 
@@ -322,7 +353,8 @@ def _suspicion(shape: Shape, rows: Rows) -> list[str]:
         c = at("slenderness")
         near = [
             f"square = {at('vx')} * {at('vx')} + {at('vy')} * {at('vy')}",
-            f"near = 1.0 if {at('low')} < max({at('rest_tilt')}, {at('passage_tilt')}) else 0.0",
+            f"lowest = {at('slow')} * {at('rest_tilt')}",
+            f"near = 1.0 if {at('low')} < max(lowest, {at('passage_tilt')}) else 0.0",
             f"inward = 1.0 if {at('radial')} < 0.0 else 0.0",
             f"tilt = {at('tilt')}",
             f"close = 1.0 if tilt * tilt < {HOP_FROM**2!r} * min({c} * {c}, square) else 0.0",

@@ -36,3 +36,10 @@ def corners(samples: Floats) -> npt.NDArray[np.bool_]:
     bent = np.any(np.diff(slopes, axis=0) != 0.0, axis=1)
     bent[[0, -1]] |= np.any(samples[[0, -1]] != 0.0, axis=1)
     return np.asarray(bent)
+
+
+def mean_frequency(samples: Floats, step: float) -> float:
+    """Return the root mean square of the slope over that of the acceleration [rad/s], 0 where there is none."""
+    left, right = samples[:-1], samples[1:]
+    square = np.sum(left * left + left * right + right * right) / 3.0
+    return float(np.sqrt(np.sum((right - left) ** 2) / square) / step) if square > 0.0 else 0.0

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from stylobate.errors import ParameterError, require_finite, require_not_negative, require_positive
 from stylobate.motions.base import ACCELERATION, VELOCITY, BaseMotion, Components
-from stylobate.motions.records.knots import corners, integrals, largest_from_each
+from stylobate.motions.records.knots import corners, integrals, largest_from_each, mean_frequency
 
 Floats = npt.NDArray[np.float64]
 
@@ -214,6 +214,14 @@ class Record(BaseMotion):
     def highest_frequency(self) -> float:
         """2/step [rad/s]: with it |ȧ| ≤ ω sup |a|, as in a harmonic motion; half a period is longer than a step."""
         return 2.0 / self.step if np.any(self.samples) else 0.0
+
+    @property
+    def mean_frequency(self) -> float:
+        """Root mean square of ȧ over that of a, all components together [rad/s]: so often does a pass zero, over π.
+
+        S. O. Rice, "Mathematical analysis of random noise", Bell Syst. Tech. J. 23 (1944).
+        """
+        return mean_frequency(self.samples, self.step)
 
     @property
     def degree(self) -> int:

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 # --- the kernel's text begins here ---
 
+# Where the coefficients of a piece begin in its row, and the place that tells whether it goes on without a jump.
+COEFFICIENTS_AT, GOES_ON = 6, 5
+
 
 @part
 def set_leg(buf: Table, i: int, table: Table, pieces: Table, t: float) -> None:
@@ -72,8 +75,7 @@ def set_terms(buf: Table, i: int, motion: Table, t: float) -> None:
 @part
 def set_piece(buf: Table, i: int, motion: Table, pieces: Table, t: float) -> None:
     """Load the polynomial that holds from `t` on."""
-    factor, cos, sin, vertical, delay = motion[0], motion[1], motion[2], motion[3], motion[4]
-    first, last = int(motion[5]), int(motion[5] + motion[6]) - 1
+    delay, first, last = motion[4], int(motion[5]), int(motion[5] + motion[6]) - 1
     scale = buf[R.TIME_SCALE, i]
     time = t * scale * (1.0 + 4e-16)  # a leg that begins at a knot has passed it
     if time < delay:
@@ -81,13 +83,22 @@ def set_piece(buf: Table, i: int, motion: Table, pieces: Table, t: float) -> Non
             buf[row, i] = 0.0
         buf[R.LEG_ENDS, i] = delay / scale
         return
-    low = piece_at(pieces, first + int(buf[R.PIECE, i]), first, last, delay, time)
-    buf[R.PIECE, i] = low - first
-    start, end = pieces[low, 0], pieces[low, 1]
+    load_piece(buf, i, motion, pieces, piece_at(pieces, first + int(buf[R.PIECE, i]), first, last, delay, time))
+
+
+@part
+def load_piece(buf: Table, i: int, motion: Table, pieces: Table, index: int) -> None:
+    """Load the polynomial in row `index`, and the bounds of the base motion from its start on."""
+    factor, cos, sin, vertical, delay = motion[0], motion[1], motion[2], motion[3], motion[4]
+    first, count = int(motion[5]), int(motion[6])
+    scale = buf[R.TIME_SCALE, i]
+    piece = pieces[index]
+    start, end = piece[0], piece[1]
+    buf[R.PIECE, i] = index - first
     buf[FIRST_FORCING, i] = (0.5 * (start + end) + delay) / scale
     buf[FIRST_FORCING + 1, i] = 2.0 * scale / (end - start)
     for k in range(FORCING_ROWS):
-        x, y = pieces[low, 5 + k], pieces[low, 5 + FORCING_ROWS + k]
+        x, y = piece[COEFFICIENTS_AT + k], piece[COEFFICIENTS_AT + FORCING_ROWS + k]
         x, y = factor * (cos * x - sin * y), factor * (sin * x + cos * y)
         row = FIRST_FORCING + 2 + k
         if PLANAR:
@@ -97,14 +108,29 @@ def set_piece(buf: Table, i: int, motion: Table, pieces: Table, t: float) -> Non
             row += FORCING_ROWS
             buf[row, i] = y
         if VERTICAL:
-            buf[row + FORCING_ROWS, i] = vertical * pieces[low, 5 + 2 * FORCING_ROWS + k]
-    # Bounds from now on replace those of the whole motion.
-    buf[R.LARGEST_HORIZONTAL, i] = abs(factor) * pieces[low, 2]
-    buf[R.LEAST_VERTICAL, i] = min(vertical * pieces[low, 3], vertical * pieces[low, 4])
-    buf[R.LARGEST_VERTICAL, i] = max(vertical * pieces[low, 3], vertical * pieces[low, 4])
-    set_no_return(buf, i)
-    if low < last:
-        buf[R.LEG_ENDS, i] = (end + delay) / scale
+            buf[row + FORCING_ROWS, i] = vertical * piece[COEFFICIENTS_AT + 2 * FORCING_ROWS + k]
+    largest, up, down = abs(factor) * piece[2], vertical * piece[3], vertical * piece[4]
+    least = min(up, down)
+    changed = largest != buf[R.LARGEST_HORIZONTAL, i] or least != buf[R.LEAST_VERTICAL, i]
+    buf[R.LARGEST_HORIZONTAL, i] = largest
+    buf[R.LEAST_VERTICAL, i] = least
+    buf[R.LARGEST_VERTICAL, i] = max(up, down)
+    if changed:
+        set_no_return(buf, i)
+    buf[R.LEG_ENDS, i] = (end + delay) / scale if index - first < count - 1 else math.inf
+
+
+@part
+def goes_on_in_next_piece(buf: Table, i: int, table: Table, pieces: Table) -> bool:
+    """Load the next piece if it goes on at the end of this leg without a jump, so that slopes hold; return whether."""
+    motion = table[int(buf[R.RUN, i]), MOTION_AT:]
+    delay, index = motion[4], int(motion[5] + buf[R.PIECE, i])
+    leg_end = buf[R.LEG_ENDS, i]
+    # Before a delayed motion begins no piece is loaded; very short ones end where they begin, by rounding.
+    if (pieces[index, 1] + delay) / buf[R.TIME_SCALE, i] != leg_end or pieces[index + 1, GOES_ON] == 0.0:
+        return False
+    load_piece(buf, i, motion, pieces, index + 1)
+    return buf[R.LEG_ENDS, i] > leg_end
 
 
 @part
@@ -135,7 +161,16 @@ def set_no_return(buf: Table, i: int) -> None:
 
 @part
 def forcing_rate(buf: Table, i: int) -> float:
-    """Return the largest rate at which the force on a column near rest can change."""
+    """Return the largest rate at which the force on a column near rest can change; exactly, where it is linear."""
+    if DEGREE == 1:
+        per_half = buf[FIRST_FORCING + 1, i]
+        x, row = buf[FIRST_FORCING + 3, i], FIRST_FORCING + 5
+        y = 0.0
+        if not PLANAR:
+            y = buf[row, i]
+            row += 2
+        z = buf[row, i] if VERTICAL else 0.0
+        return per_half * (math.hypot(x, y) + buf[R.SLENDERNESS, i] * abs(z))
     vertical = max(abs(buf[R.LEAST_VERTICAL, i]), abs(buf[R.LARGEST_VERTICAL, i]))
     return buf[R.FREQUENCY, i] * (buf[R.LARGEST_HORIZONTAL, i] + buf[R.SLENDERNESS, i] * vertical)
 

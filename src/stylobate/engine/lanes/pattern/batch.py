@@ -10,9 +10,9 @@ from stylobate.engine.lanes.columns import STATE, Status
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import set_leg, set_no_return
 from stylobate.engine.lanes.pattern.events import handle
-from stylobate.engine.lanes.pattern.moving import azimuth_now
+from stylobate.engine.lanes.pattern.moving import azimuth_now, rest_square
 from stylobate.engine.lanes.pattern.starting import begin
-from stylobate.engine.lanes.pattern.stops import set_break, set_look, set_sample, set_strobe
+from stylobate.engine.lanes.pattern.stops import passes_knot, set_break, set_look, set_sample, set_strobe
 
 if TYPE_CHECKING:
     from stylobate.engine.lanes.pattern.head import (
@@ -46,6 +46,7 @@ def enter(buf: Table, i: int, table: Table, pieces: Table, run: int) -> int:
     c, t = buf[R.SLENDERNESS, i], buf[R.TIME, i]
     buf[R.GROWN, i] = GROWN * c
     buf[R.REST_TILT, i] = buf[R.REST_ENERGY, i] * c
+    buf[R.REST_SQUARE, i] = rest_square(buf, i)
     buf[R.PER_TURN, i] = 1.0 / buf[R.PERIOD, i] if buf[R.PERIOD, i] > 0.0 else 0.0
     set_look(buf, i)
     set_sample(buf, i)
@@ -127,7 +128,8 @@ def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8]) -> bool:
             for i in range(WIDTH):
                 if buf[R.WATCHED, i] > 0.0 and buf[R.GO, i] > 0.0:
                     observe(flat, i)
-                met = met or buf[R.FLAG, i] > 0.0
+                if buf[R.FLAG, i] > 0.0 and not passes_knot(buf, i, table, pieces):
+                    met = True
             if halt[0] != 0:
                 return False
         for i in range(WIDTH):

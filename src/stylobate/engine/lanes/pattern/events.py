@@ -153,7 +153,7 @@ def near_upright(buf: Table, i: int) -> float:
         aim(buf, i, -closest_within(buf, i))
         buf[R.BY_TILT, i] = -1.0
         return math.nan
-    if CAN_REST and buf[R.REST_ENERGY, i] > 0.0 and buf[R.LOW, i] < buf[R.REST_TILT, i]:
+    if CAN_REST and buf[R.REST_ENERGY, i] > 0.0 and buf[R.LOW, i] < buf[R.SLOW, i] * buf[R.REST_TILT, i]:
         rest = rest_within_step(buf, i)
         if not math.isnan(rest):
             return rest

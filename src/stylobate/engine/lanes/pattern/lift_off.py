@@ -10,7 +10,7 @@ from stylobate.engine.lanes.pattern.release import SAMPLES_PER_PERIOD
 from stylobate.engine.lanes.pattern.stops import set_break
 
 if TYPE_CHECKING:
-    from stylobate.engine.lanes.pattern.head import VERTICAL, R, accelerations
+    from stylobate.engine.lanes.pattern.head import DEGREE, VERTICAL, R, accelerations
 
 # --- the kernel's text begins here ---
 
@@ -46,7 +46,9 @@ def weight(buf: Table, i: int, t: float) -> float:
 @part
 def lift_in_leg(buf: Table, i: int, start: float, end: float) -> float:
     frequency = buf[R.FREQUENCY, i]
-    spacing = 2.0 * math.pi / (frequency * SAMPLES_PER_PERIOD) if frequency > 0.0 else end - start
+    # A weight that is linear in time is least at an end.
+    sampled = frequency > 0.0 and DEGREE != 1
+    spacing = 2.0 * math.pi / (frequency * SAMPLES_PER_PERIOD) if sampled else end - start
     t0 = t1 = start
     w0 = w1 = weight(buf, i, start)
     if w0 < 0.0:

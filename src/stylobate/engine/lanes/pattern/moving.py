@@ -17,6 +17,7 @@ if TYPE_CHECKING:
         accelerations,
         model_contact,
         model_lean,
+        model_rest_energy,
         rates_at,
         row_state,
     )
@@ -31,6 +32,14 @@ def azimuth_now(buf: Table, i: int) -> float:
         last = buf[R.LAST_AZIMUTH, i]
         return 0.0 if math.isnan(last) else last
     return buf[R.TURNS, i] + turns_of(buf[R.X, i], buf[R.Y, i])
+
+
+@part
+def rest_square(buf: Table, i: int) -> float:
+    """Return the square of the speed at which the energy of motion alone is that at which rest is entered."""
+    c = buf[R.SLENDERNESS, i]
+    energy = model_rest_energy(buf, i, 0.0, c, 0.0)
+    return buf[R.REST_ENERGY, i] * c**4 / energy if energy > 0.0 else 0.0
 
 
 @part

@@ -87,8 +87,10 @@ def hop(buf: Table, i: int) -> None:
     if CAN_LOSE and buf[R.PASSAGE_TILT, i] > 0.0:
         set_state(buf, i, model_struck(buf, i))
     set_lean(buf, i)
-    for row in (R.LEAST_PASSAGE, R.LEAST_TILT):
-        buf[row, i] = min(buf[row, i], abs(momentum) / speed)
+    closest = abs(momentum) / speed
+    buf[R.LEAST_TILT, i] = min(buf[R.LEAST_TILT, i], closest)
+    if speed * speed > buf[R.REST_SQUARE, i]:
+        buf[R.LEAST_PASSAGE, i] = min(buf[R.LEAST_PASSAGE, i], closest)
     buf[R.LAST_AZIMUTH, i] = azimuth
     set_off(buf, i, t + elapsed, buf[R.WANTED, i])
     buf[R.ATOL_NOW, i] = buf[R.ATOL, i]

@@ -8,7 +8,7 @@ from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import held_for_good
 
 if TYPE_CHECKING:
-    from stylobate.engine.lanes.pattern.head import R, accelerations
+    from stylobate.engine.lanes.pattern.head import DEGREE, R, accelerations
 
 # --- the kernel's text begins here ---
 
@@ -32,6 +32,8 @@ def release_time(buf: Table, i: int, start: float, end: float) -> float:
     """Return the first time in [start, end) at which the base motion releases a standing column, or infinity."""
     if held_for_good(buf, i) or end <= start:
         return math.inf
+    if DEGREE == 1:
+        return release_on_line(buf, i, start, end)
     frequency = buf[R.FREQUENCY, i]
     spacing = 2.0 * math.pi / (frequency * SAMPLES_PER_PERIOD) if frequency > 0.0 else end - start
     spacing = min(spacing, 0.5 * (end - start))
@@ -59,6 +61,20 @@ def release_time(buf: Table, i: int, start: float, end: float) -> float:
             return found if found < end else math.inf
         t0, e0, t1, e1 = t1, e1, t2, e2
     return math.inf
+
+
+@part
+def release_on_line(buf: Table, i: int, start: float, end: float) -> float:
+    """Return the same where the base acceleration is linear in time: the excess is convex, and largest at an end."""
+    if excess(buf, i, start) > 0.0:
+        moment = min(start + MOMENT * (end - start), end)
+        if excess(buf, i, moment) > 0.0:
+            return start
+        start = moment
+    if excess(buf, i, end) <= 0.0:
+        return math.inf
+    found = crossing(buf, i, start, end)
+    return found if found < end else math.inf
 
 
 @part

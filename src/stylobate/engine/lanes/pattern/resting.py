@@ -34,13 +34,18 @@ DEPARTURE = 1e-3
 
 
 @part
+def holding_force(buf: Table, i: int, ax: float, ay: float, az: float) -> float:
+    """Return the force that holds a standing column down: the least from now on, if that holds it for good."""
+    force = least_force(buf, i)
+    return force if force >= 0.0 else buf[R.CAPACITY, i] * (1.0 + az) - math.hypot(ax, ay)
+
+
+@part
 def rest_margin(buf: Table, i: int, t: float, tilt: float, speed: float) -> float:
     """Return what is positive where a column of this tilt and speed comes to rest at `t`."""
     ax, ay, az = accelerations(buf, i, t)
     energy = model_rest_energy(buf, i, tilt, speed, az)
-    force = least_force(buf, i)
-    if force < 0.0:
-        force = buf[R.CAPACITY, i] * (1.0 + az) - math.hypot(ax, ay)
+    force = holding_force(buf, i, ax, ay, az)
     change = 2.0 * math.sqrt(2.0 * max(energy, 0.0)) * forcing_rate(buf, i)
     limit = buf[R.REST_ENERGY, i] * buf[R.SLENDERNESS, i] ** 2
     return min(limit - energy, force - math.sqrt(HOPS_APART * change))
@@ -69,6 +74,10 @@ def rest_within_step(buf: Table, i: int) -> float:
 
 @part
 def margin_within_step(buf: Table, i: int, start: float, h: float, u: float) -> float:
+    ax, ay, az = accelerations(buf, i, start + u * h)
+    force = holding_force(buf, i, ax, ay, az)
+    if force <= 0.0:  # so is the margin
+        return force
     set_within(buf, i, u * h)
     x, y, vx, vy = lean_of_new(buf, i)
     return rest_margin(buf, i, start + u * h, math.hypot(x, y), math.hypot(vx, vy))

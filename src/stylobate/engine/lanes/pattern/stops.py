@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.columns import LOOKS, NOTE, SLACK, Status, Window
 from stylobate.engine.lanes.layout import Table
-from stylobate.engine.lanes.pattern.base_motion import set_leg
+from stylobate.engine.lanes.pattern.base_motion import goes_on_in_next_piece, set_leg
 from stylobate.engine.lanes.pattern.moving import azimuth_now, set_rates
 
 if TYPE_CHECKING:
-    from stylobate.engine.lanes.pattern.head import BREAKS_AT, PLANAR, R, note_window
+    from stylobate.engine.lanes.pattern.head import BREAKS_AT, DEGREE, PLANAR, R, note_window
 
 # --- the kernel's text begins here ---
 
@@ -83,6 +83,23 @@ def go_on(buf: Table, i: int) -> None:
     stop = next_stop(buf, i)
     buf[R.STOP, i] = stop
     buf[R.H, i] = min(buf[R.WANTED, i], stop - buf[R.TIME, i])
+
+
+@part
+def passes_knot(buf: Table, i: int, table: Table, pieces: Table) -> bool:
+    """Go on where a piece of the base motion ends and the next goes on, and nothing else is due; return whether."""
+    # A flag of 1 that is due to a stop reached has no other cause.
+    if DEGREE < 0 or buf[R.FLAG, i] != 1.0 or buf[R.REACHED, i] != 1.0 or buf[R.RUN, i] < 0.0:
+        return False
+    t, leg_end = buf[R.TIME, i], buf[R.LEG_ENDS, i]
+    others = min(buf[R.END, i], buf[R.LIFTS_AT, i], buf[R.BREAKS_AT, i], buf[R.LOOKS_AT, i])
+    if t != leg_end or t >= min(others, buf[R.SAMPLES_AT, i], buf[R.STROBES_AT, i]):
+        return False
+    if not goes_on_in_next_piece(buf, i, table, pieces):
+        return False
+    buf[R.FLAG, i] = 0.0
+    go_on(buf, i)
+    return True
 
 
 @part
