@@ -39,6 +39,8 @@ class Thresholds:
     ----------
     rest_energy
         ε: rest is entered below the energy ε c² at most; 0 where friction cannot bring the column to rest.
+    rest_energy_for_good
+        The same once nothing to come can release the column again.
     tilt_limit
         Tilt that ends the run, set by the user [rad]; infinite for none.
     overturned_tilt
@@ -46,6 +48,7 @@ class Thresholds:
     """
 
     rest_energy: float
+    rest_energy_for_good: float = 0.0
     tilt_limit: float = math.inf
     overturned_tilt: float = math.pi / 2.0
 
@@ -53,9 +56,12 @@ class Thresholds:
 def thresholds_of(model: Model, forcing: Forcing, tilt_limit: float | None, rest_energy: float | None) -> Thresholds:
     """Return the thresholds of a run; a `tilt_limit` [rad] and a `rest_energy` the user gives are checked."""
     asked = None if rest_energy is None else require_not_negative("rest_energy", rest_energy)
-    energy = 0.0 if not model.comes_to_rest else _default_rest_energy(model, forcing) if asked is None else asked
     limit = math.inf if tilt_limit is None else require_positive("tilt_limit", tilt_limit, "rad")
-    return Thresholds(rest_energy=energy, tilt_limit=limit)
+    if not model.comes_to_rest:
+        return Thresholds(rest_energy=0.0, tilt_limit=limit)
+    energy = _default_rest_energy(model, forcing) if asked is None else asked
+    for_good = float(rest_energy_for_good(forcing.mean_frequency)) if asked is None else asked
+    return Thresholds(rest_energy=energy, rest_energy_for_good=for_good, tilt_limit=limit)
 
 
 def _default_rest_energy(model: Model, forcing: Forcing) -> float:
@@ -100,12 +106,16 @@ def usual_rest_energy(
     least
         See `least_rest_energy`.
     """
-    theta = np.asarray(frequency, dtype=float)
-    with np.errstate(divide="ignore"):
-        energy = np.minimum(_REST_ENERGY, _REST_ENERGY_ROLLING / theta**2)
+    energy = rest_energy_for_good(frequency)
     hop = hop_energy(frequency, largest, least_vertical, capacity)
     finest = np.maximum(least, _REST_ENERGY_HOP * hop)
     return np.where(np.isnan(hop), energy, np.minimum(energy, finest))
+
+
+def rest_energy_for_good(frequency: npt.ArrayLike) -> Floats:
+    """Return the usual ε where nothing can release the column, at this mean dimensionless frequency."""
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.minimum(_REST_ENERGY, _REST_ENERGY_ROLLING / np.asarray(frequency, dtype=float) ** 2))
 
 
 def coarse(

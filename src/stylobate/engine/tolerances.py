@@ -20,3 +20,5 @@ SLIP_SHARE = 1e-3
 """While a contact slips the absolute tolerance of the slip is this part of the usual one."""
 HOPS_APART = 5.0
 """How small a part of the force on a column near rest may change during one hop: one over this."""
+STILL = 1e-5
+"""A column of less energy than this [c²] that nothing to come can release is at rest however its force may change."""

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.thresholds import Thresholds
-from stylobate.engine.tolerances import HOPS_APART
+from stylobate.engine.tolerances import HOPS_APART, STILL
 from stylobate.models import Model
 
 # Points of each step at which conditions are looked at; a step of the integrator resolves the motion.
@@ -89,21 +89,22 @@ class Watch:
 
     @property
     def _rest_tilt(self) -> float:
-        return self.thresholds.rest_energy * self.model.column.slenderness
+        return max(self.thresholds.rest_energy, self.thresholds.rest_energy_for_good) * self.model.column.slenderness
 
     def _rest_margin(self, tau: float, tilt: float, speed: float) -> float:
         # Positive where the energy is below ε c² and what is left of the motion dies as small hops: a hop of speed v
         # against the force F takes 2v/F, in which F itself must change by a small part only.
         ax, ay, az = self.forcing.at(tau)
         energy = self._rest_energy(tilt, speed, az)
-        force = self.model.rest_capacity * (1.0 + az) - math.hypot(ax, ay)
-        if self._holds_from(tau):
-            force = self._least_force(tau)
+        square = self.model.column.slenderness**2
         change = 2.0 * math.sqrt(2.0 * max(energy, 0.0)) * self.forcing.largest_rate(tau, self.model.column.slenderness)
-        return min(
-            self.thresholds.rest_energy * self.model.column.slenderness**2 - energy,
-            force - math.sqrt(HOPS_APART * change),
-        )
+        hop = math.sqrt(HOPS_APART * change)
+        if not self._holds_from(tau):
+            force = self.model.rest_capacity * (1.0 + az) - math.hypot(ax, ay)
+            return min(self.thresholds.rest_energy * square - energy, force - hop)
+        # For good: a little motion that is left needs no proof that it dies.
+        share, dies = self.thresholds.rest_energy_for_good, self._least_force(tau) - hop
+        return max(min(share, STILL) * square - energy, min(share * square - energy, dies))
 
     def _rest_energy(self, tilt: float, speed: float, vertical: float) -> float:
         energy = self.model.rest_energy

@@ -243,7 +243,8 @@ def test_a_square_takes_back_its_root(x):
     terms = Known.of(x)
     # What the square lacks grows by 1/(2 x0 + …).
     allowed = times(growth(terms.terms), 4.0 * COUNT * EPS * times(terms.size, terms.size))
-    assert np.all(np.abs(found - padded(x)) <= allowed)
+    underflow = COUNT * np.finfo(float).tiny
+    assert np.all(np.abs(found - padded(x)) <= allowed + underflow)
 
 
 # What the source holds.

@@ -16,7 +16,7 @@ from stylobate.engine.lanes.kernels import kernel_of
 from stylobate.engine.lanes.shape import Shape
 from stylobate.engine.resting import cannot_depart
 from stylobate.engine.starts import out_of_plane, refuse_spin
-from stylobate.engine.thresholds import is_rest, usual_rest_energy
+from stylobate.engine.thresholds import is_rest, rest_energy_for_good, usual_rest_energy
 from stylobate.engine.tolerances import ATOL_SHARE, FIRST_STEP_OFF, PARALLEL_ULP
 from stylobate.models import Model
 
@@ -167,6 +167,12 @@ def _rest_energy(options: Options, models: ModelColumns, motions: MotionColumns)
     return np.where(models.comes_to_rest, energy, 0.0)
 
 
+def _rest_energy_for_good(options: Options, models: ModelColumns, motions: MotionColumns) -> Floats:
+    usual = rest_energy_for_good(motions.mean_frequency)
+    energy = usual if options.rest_energy is None else options.rest_energy
+    return np.where(models.comes_to_rest, energy, 0.0)
+
+
 def _empty_table(plan: Plan, count: int, breaks: int) -> Floats:
     options = plan.options
     notes = plan.layout.breaks_at + breaks
@@ -197,6 +203,7 @@ def _fill_setup(
         Setup.TILT_LIMIT: math.inf if options.tilt_limit is None else options.tilt_limit,
         Setup.OVERTURNED_TILT: options.overturned_tilt,
         Setup.REST_ENERGY: energy,
+        Setup.REST_ENERGY_FOR_GOOD: _rest_energy_for_good(options, models, motions),
         Setup.LARGEST_HORIZONTAL: motions.largest,
         Setup.LEAST_VERTICAL: motions.least_vertical,
         Setup.LARGEST_VERTICAL: motions.largest_vertical,

@@ -32,6 +32,8 @@ class Setup(_FromZero):
     """What counts as overturned where the model proves nothing."""
     REST_ENERGY = auto()
     """ε; 0 where the column cannot come to rest."""
+    REST_ENERGY_FOR_GOOD = auto()
+    """ε once nothing to come can release the column again."""
     LARGEST_HORIZONTAL = auto()
     LEAST_VERTICAL = auto()
     LARGEST_VERTICAL = auto()

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from stylobate.engine.lanes.columns import NOTE, SLACK, STATE
 from stylobate.engine.lanes.series_source import polynomial, state_polynomial
 from stylobate.engine.lanes.shape import MARGIN_PLACES, SERIES_ORDER, Shape
-from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET, HOPS_APART
+from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET, HOPS_APART, STILL
 from stylobate.models import Model
 
 OPTIONAL = ("rest_energy", "no_return_tilt", "departure", "passage", "at_rest", "struck")
@@ -37,6 +37,7 @@ def constants_source(model: type[Model], shape: Shape, has: Mapping[str, bool], 
         "HOP_FROM": HOP_FROM,
         "HOP_OFFSET": HOP_OFFSET,
         "HOPS_APART": HOPS_APART,
+        "STILL": STILL,
         "CAN_REST": has["rest_energy"],
         "CAN_DEPART": has["departure"],
         "CAN_PASS": has["passage"] and not shape.planar,

@@ -168,7 +168,7 @@ def _slow(shape: Shape, at: Callable[[str], str]) -> list[str]:
         f"pull = h * {at('slenderness')}",
         f"change = {' + '.join(f'{one} * {one}' for one in changes)} + pull * pull",
         f"slowest = min({squares[0]}, {squares[1]})",
-        f"{at('slow')} = 1.0 if slowest < 2.0 * (change + {at('rest_square')}) else 0.0",
+        f"{at('slow')} = 1.0 if slowest < 2.0 * (change + {at('slow_square')}) else 0.0",
     ]
 
 

@@ -139,7 +139,7 @@ OBSERVED = ("mean_tilt", "forward_cos", "forward_sin", "backward_cos", "backward
 
 _LANE_ROWS = (
     "run", "piece", "h", "tried", "held_step", "by_tilt", "stop", "wanted", "made", "aimed", "rejected", "side",
-    "atol_now", "grown", "rest_tilt", "rest_square", "no_return",
+    "atol_now", "grown", "rest_tilt", "rest_square", "slow_square", "no_return",
     "tilt", "radial", "momentum", "x", "y", "vx", "vy",
     "turns", "low", "slow", "peak", "flag", "error", "ok", "held", "go", "reached",
     "new_x", "new_y", "new_vx", "new_vy", "new_tilt", "new_radial", "per_turn",

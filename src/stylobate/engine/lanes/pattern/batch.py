@@ -10,7 +10,7 @@ from stylobate.engine.lanes.columns import STATE, Status
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import set_leg, set_no_return
 from stylobate.engine.lanes.pattern.events import handle
-from stylobate.engine.lanes.pattern.moving import azimuth_now, rest_square
+from stylobate.engine.lanes.pattern.moving import azimuth_now, square_of_speed
 from stylobate.engine.lanes.pattern.starting import begin
 from stylobate.engine.lanes.pattern.stops import passes_knot, set_break, set_look, set_sample, set_strobe
 
@@ -45,8 +45,10 @@ def enter(buf: Table, i: int, table: Table, pieces: Table, run: int) -> int:
     buf[R.PIECE, i] = 0.0
     c, t = buf[R.SLENDERNESS, i], buf[R.TIME, i]
     buf[R.GROWN, i] = GROWN * c
-    buf[R.REST_TILT, i] = buf[R.REST_ENERGY, i] * c
-    buf[R.REST_SQUARE, i] = rest_square(buf, i)
+    most = max(buf[R.REST_ENERGY, i], buf[R.REST_ENERGY_FOR_GOOD, i])
+    buf[R.REST_TILT, i] = most * c
+    buf[R.SLOW_SQUARE, i] = square_of_speed(buf, i, most)
+    buf[R.REST_SQUARE, i] = square_of_speed(buf, i, buf[R.REST_ENERGY, i])
     buf[R.PER_TURN, i] = 1.0 / buf[R.PERIOD, i] if buf[R.PERIOD, i] > 0.0 else 0.0
     set_look(buf, i)
     set_sample(buf, i)

@@ -34,6 +34,7 @@ DEMANDS: bool
 HOP_FROM: float
 HOP_OFFSET: float
 HOPS_APART: float
+STILL: float
 """See `engine.tolerances`."""
 
 LAST: int

@@ -35,11 +35,11 @@ def azimuth_now(buf: Table, i: int) -> float:
 
 
 @part
-def rest_square(buf: Table, i: int) -> float:
-    """Return the square of the speed at which the energy of motion alone is that at which rest is entered."""
+def square_of_speed(buf: Table, i: int, energy: float) -> float:
+    """Return the square of the speed at which a column near the upright has this energy [c²]."""
     c = buf[R.SLENDERNESS, i]
-    energy = model_rest_energy(buf, i, 0.0, c, 0.0)
-    return buf[R.REST_ENERGY, i] * c**4 / energy if energy > 0.0 else 0.0
+    of_speed_c = model_rest_energy(buf, i, 0.0, c, 0.0)
+    return energy * c**4 / of_speed_c if of_speed_c > 0.0 else 0.0
 
 
 @part

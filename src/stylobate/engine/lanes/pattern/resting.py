@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         CAN_GO_TO_PLANE,
         HOPS_APART,
         PLANAR,
+        STILL,
         R,
         accelerations,
         lean_of_new,
@@ -47,8 +48,12 @@ def rest_margin(buf: Table, i: int, t: float, tilt: float, speed: float) -> floa
     energy = model_rest_energy(buf, i, tilt, speed, az)
     force = holding_force(buf, i, ax, ay, az)
     change = 2.0 * math.sqrt(2.0 * max(energy, 0.0)) * forcing_rate(buf, i)
-    limit = buf[R.REST_ENERGY, i] * buf[R.SLENDERNESS, i] ** 2
-    return min(limit - energy, force - math.sqrt(HOPS_APART * change))
+    square = buf[R.SLENDERNESS, i] ** 2
+    dies = force - math.sqrt(HOPS_APART * change)
+    if least_force(buf, i) < 0.0:
+        return min(buf[R.REST_ENERGY, i] * square - energy, dies)
+    share = buf[R.REST_ENERGY_FOR_GOOD, i]
+    return max(min(share, STILL) * square - energy, min(share * square - energy, dies))
 
 
 @part
