@@ -58,7 +58,7 @@ class AssessDescription(Description):
     contact: bool = True
     least_records: int = 10
     rtol: float = 1e-8
-    max_steps: int = 2_000_000
+    max_steps: int = 200_000
     notes: tuple[str, ...] = ()
 
     @classmethod

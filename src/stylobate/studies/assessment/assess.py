@@ -30,8 +30,6 @@ from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.recipe import RunOptions
 from stylobate.studies.varied import require_no_tilt_limit
 
-_MAX_STEPS = 2_000_000
-
 
 def assess(
     columns: Mapping[str, Model],
@@ -94,8 +92,7 @@ def assess(
     progress
         Told what is computed, the runs done and the runs in all, about.
     **options
-        Of all runs, as in `simulate_ensemble`; `max_steps` is 2 000 000 unless it is given, for a column that hardly
-        rocks trembles fast.
+        Of all runs, as in `simulate_ensemble`.
 
     Returns
     -------
@@ -147,7 +144,7 @@ def assess(
         width=require_positive("width", width),
         tail=tail,
         least_records=require_whole("least_records", least_records, least=2),
-        options={"max_steps": _MAX_STEPS, **options},
+        options=options,
     )
     parts = Parts(None if store is None else Path(store), _runs(inputs, planar=planar), progress or _silence)
     names = list(inputs.columns)

@@ -64,14 +64,18 @@ class Change(ABC):
 
 
 @dataclass(frozen=True, slots=True)
-class ScaledRecord(Change):
-    """The record, all components, times `factor`."""
-
+class _Scaled(Change):
     factor: float
-    of: ClassVar[ChangeOf] = ChangeOf.RECORD
 
     def __post_init__(self) -> None:
         require_positive("factor", self.factor)
+
+
+@dataclass(frozen=True, slots=True)
+class ScaledRecord(_Scaled):
+    """The record, all components, times `factor`."""
+
+    of: ClassVar[ChangeOf] = ChangeOf.RECORD
 
     @property
     def name(self) -> str:
@@ -231,14 +235,10 @@ class Filtered(Change):
 
 
 @dataclass(frozen=True, slots=True)
-class DissipationScaled(Change):
+class DissipationScaled(_Scaled):
     """Every dissipation of the model times `factor`: frictions, and what an impact takes, 1 − restitution."""
 
-    factor: float
     of: ClassVar[ChangeOf] = ChangeOf.DISSIPATION
-
-    def __post_init__(self) -> None:
-        require_positive("factor", self.factor)
 
     @property
     def name(self) -> str:
@@ -257,14 +257,10 @@ class DissipationScaled(Change):
 
 
 @dataclass(frozen=True, slots=True)
-class SlendernessScaled(Change):
+class SlendernessScaled(_Scaled):
     """The base radius, and with it the slenderness, times `factor`."""
 
-    factor: float
     of: ClassVar[ChangeOf] = ChangeOf.GEOMETRY
-
-    def __post_init__(self) -> None:
-        require_positive("factor", self.factor)
 
     @property
     def name(self) -> str:
@@ -277,14 +273,10 @@ class SlendernessScaled(Change):
 
 
 @dataclass(frozen=True, slots=True)
-class SizeScaled(Change):
+class SizeScaled(_Scaled):
     """All lengths of the column times `factor`."""
 
-    factor: float
     of: ClassVar[ChangeOf] = ChangeOf.GEOMETRY
-
-    def __post_init__(self) -> None:
-        require_positive("factor", self.factor)
 
     @property
     def name(self) -> str:
@@ -298,14 +290,10 @@ class SizeScaled(Change):
 
 
 @dataclass(frozen=True, slots=True)
-class ToleranceScaled(Change):
+class ToleranceScaled(_Scaled):
     """The tolerances of the integration times `factor`."""
 
-    factor: float
     of: ClassVar[ChangeOf] = ChangeOf.INTEGRATION
-
-    def __post_init__(self) -> None:
-        require_positive("factor", self.factor)
 
     @property
     def name(self) -> str:
