@@ -48,8 +48,10 @@ def study(tmp_path):
     quakes = tmp_path / "quakes"
     quakes.mkdir()
     time = 0.02 * np.arange(101)
-    for name, peak in (("strong_NS", 0.9), ("weak_NS", 0.02)):
-        np.savetxt(quakes / f"{name}.txt", peak * np.sin(np.pi * time) * np.sin(np.pi * time / 2.0))
+    for name, peak in (("strong", 0.9), ("weak", 0.02)):
+        along = peak * np.sin(np.pi * time) * np.sin(np.pi * time / 2.0)
+        for component, share in (("NS", along), ("EW", 0.1 * along[::-1])):
+            np.savetxt(quakes / f"{name}_{component}.txt", share)
     path = tmp_path / "study.toml"
     path.write_text(STUDY, encoding="utf-8")
     return path

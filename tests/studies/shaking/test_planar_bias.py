@@ -26,6 +26,7 @@ def against_itself(c, records, **more):
     return planar_bias(model, records, scales=SCALES, planar=planar, **more)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("direction", [0.0, 0.9])
 def test_along_a_line_a_slender_column_is_planar_to_the_order_of_its_slenderness_squared(direction):
     off = []
