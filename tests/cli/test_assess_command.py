@@ -72,6 +72,11 @@ def test_a_study_gives_a_report_that_is_kept_and_shown_again(study, tmp_path, ca
     summary = json.loads(capsys.readouterr().out)["summary"]
     assert summary[0]["overturned it"] == "1"
     assert (tmp_path / "again" / "report.html").read_text(encoding="utf-8") == drawn
+    # A study of another title does not overwrite it.
+    study.write_text(STUDY.replace("One column", "Another"), encoding="utf-8")
+    assert run(["assess", str(study), "--folder", str(folder)]) == 2
+    assert "holds the assessment 'One column'; name another folder" in capsys.readouterr().err
+    assert (folder / "report.html").read_text(encoding="utf-8") == drawn
 
 
 def test_an_interrupted_assessment_says_how_to_go_on(study, tmp_path, capsys, monkeypatch):

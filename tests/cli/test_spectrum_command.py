@@ -91,7 +91,7 @@ def test_a_rocking_spectrum_tells_peaks(tmp_path, capsys):
 def test_one_column_needs_no_quantity_that_varies(capsys):
     one = ["spectrum", *SLENDER, "--motion", "half-sine", "--angular-frequency", "2", "--scales", "0.1", "0.5", "4"]
     assert run(one) == 0
-    assert "1 case;" in capsys.readouterr().out
+    assert "1 case, model slender, damping" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -192,6 +192,33 @@ def test_friction_beyond_the_stated_one_is_told(found):
     assert "0.31; the stated coefficient is 0.6" in told[1]
 
 
+def test_a_least_scale_that_stands_alone_is_told_so(found):
+    margins = found.data["margins"]
+    assert float(margins["least_lasting"].min()) >= float(margins["least_overturning"].min())
+    plain = summary_paragraphs(found)[0]
+    assert "in a band so narrow" not in plain
+    alone = margins.assign(least_lasting=1.25 * margins["least_overturning"])
+    told = summary_paragraphs(replace(found, data={**found.data, "margins": alone}))[0]
+    wider = float(alone["least_lasting"].sel(column="slim <1>", record="strong", case="central"))
+    assert (
+        "in a band so narrow that another scan might miss it: scales just above and below did not; the least from"
+        in told
+    )
+    assert f"a wider band was found is {wider:.4g}" in told
+
+
+def test_figures_of_an_earlier_report_do_not_stay(found, tmp_path):
+    assessment_report(found, tmp_path)
+    (tmp_path / "figures" / "margins-99.png").write_bytes(b"old")
+    assessment_report(found, tmp_path)
+    assert not (tmp_path / "figures" / "margins-99.png").exists()
+
+
+def test_an_assessment_is_no_single_figure(found):
+    with pytest.raises(sb.errors.ParameterError, match=r"write its report by plots\.assessment_report"):
+        sb.plot(found)
+
+
 def test_a_saved_assessment_tells_the_same(found, folder):
     again = sb.results.Assessment.load(folder / "assessment.nc")
     assert assessment_tables(again) == assessment_tables(found)

@@ -66,6 +66,13 @@ def test_what_is_missing_or_unknown_is_one_line_each(change, told):
         ({"model": {"damping": 0.1}}, "model.damping is told by dissipation"),
         ({"width": 0.0}, "width must be positive"),
         ({"margin": {"from": -1.0}}, "margin: from must be positive"),
+        ({"margin": {"from": 5.0, "to": 3.0}}, "margin.from must be less than margin.to, got 5 and 3"),
+        ({"margin": {"number": 1}}, "margin.number must be 2 or more, got 1"),
+        ({"model": {"kind": "sliding", "friction_coefficient": 0.5}}, "model.kind must be one that holds the contact"),
+        (
+            {"dissipation": {**DISSIPATION, "low": {"damping": 0.5}}},
+            "dissipation: damping must not fall from low to central to high, got low 0.5, central 0.05, high 0.1",
+        ),
         ({"records": {"samples": ["kobe"]}}, "name must be one of 'el centro 1940'"),
         ({"records": "nowhere/*.AT2"}, "nowhere/*.AT2: no file has such a name"),
     ],

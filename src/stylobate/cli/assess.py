@@ -48,7 +48,7 @@ def assess(
         raise FileError(message)
     target = folder or Path(f"{source.stem}-assessment")
     check_place(target / "report.html" if target.exists() else target)
-    found = _loaded(source) if source.suffix == NETCDF else _computed(source, store or target / "store", threads)
+    found = _loaded(source) if source.suffix == NETCDF else _computed(source, target, store, threads)
     report = plots.assessment_report(found, target)
     summary = plots.assessment_tables(found)["summary"]
     if as_json:
@@ -67,10 +67,12 @@ def _loaded(source: Path) -> "Assessment":
     return Assessment.load(source)
 
 
-def _computed(source: Path, store: Path, threads: int | None) -> "Assessment":
+def _computed(source: Path, target: Path, place: Path | None, threads: int | None) -> "Assessment":
     from stylobate import spec, studies  # noqa: PLC0415
 
-    setup = spec.AssessDescription.parse(spec.read_description(source)).build()
+    description = spec.AssessDescription.parse(spec.read_description(source))
+    _refuse_folder_of_another(target, description.title)
+    setup, store = description.build(), place or target / "store"
     try:
         with _parts_done() as progress:
             return studies.assess(
@@ -84,6 +86,14 @@ def _computed(source: Path, store: Path, threads: int | None) -> "Assessment":
     except (Interrupted, KeyboardInterrupt):
         print(f"stylobate: what was computed is kept in {store}; the same command goes on from there", file=sys.stderr)
         raise typer.Exit(INTERRUPTED) from None
+
+
+def _refuse_folder_of_another(target: Path, title: str) -> None:
+    """Raise FileError if the folder holds the report of a study of another title."""
+    earlier = target / "assessment.nc"
+    if earlier.is_file() and (other := _loaded(earlier).setting["title"]) != title:
+        message = f"{target} holds the assessment {other!r}; name another folder with --folder, or remove it"
+        raise FileError(message)
 
 
 @contextmanager

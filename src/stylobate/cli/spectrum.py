@@ -10,7 +10,7 @@ import typer
 from stylobate.cli import options as opt
 from stylobate.cli.many_runs import check_outputs, computed, end, is_to_compute, write
 from stylobate.cli.output import STORE, print_json, print_table
-from stylobate.cli.saved import axes_of, open_saved, provenance_of
+from stylobate.cli.saved import axes_of, model_named, open_saved, provenance_of
 from stylobate.cli.source import read_source
 from stylobate.errors import FileError
 
@@ -113,7 +113,7 @@ def spectrum(
     """Tell all amplitudes at which a pulse or a record overturns columns; above some they may be safe again.
 
     Over one quantity or two: size, slenderness, damping, angular-frequency of a pulse (one-sine, half-sine,
-    one-cosine, ricker …), rotation … Without --x, of one column. With --rocking, peak tilts and rates. Examples:
+    one-cosine, ricker …), rotation … Without --x, of one column; --rocking: peak tilts and rates over --x. Examples:
 
     stylobate spectrum --slenderness 0.1 --damping 0.1 --motion one-sine --x angular-frequency 1 9 41
     --scales 0.1 2 40 --figure spectrum.png
@@ -257,7 +257,7 @@ def _print_bands(found: "xr.Dataset") -> None:
         for row in (rows[:_FIRST] if len(rows) > _ROWS else rows)
     ]
     header = (*dims, "overturns at scales", "least peak acceleration / (g tan α)")
-    told = [f"{len(rows)} case{'s' if len(rows) > 1 else ''}"]
+    told = [f"{len(rows)} case{'s' if len(rows) > 1 else ''}, {model_named(found)}"]
     told += [f"the {_FIRST} that overturn first"] if len(rows) > _ROWS else []
     unknown = int(found["unknown"].sum())
     told += [f"{unknown} of {found['outcome'].size} runs tell nothing"] if unknown else []
@@ -286,7 +286,7 @@ def _print_peaks(found: "xr.Dataset") -> None:
     table = [tuple(_written(row[name]) for name in (*dims, *names)) for row in rows]
     shown = f"; the {len(rows)} that rock most" if len(rows) < found["outcome"].size else ""
     header = (*dims, "2π/p [s]", "outcome", "peak tilt / α", "peak rate of tilt / p")
-    print_table(f"{found['outcome'].size} cases{shown}", table, header)
+    print_table(f"{found['outcome'].size} cases, {model_named(found)}{shown}", table, header)
 
 
 def _written(value: Any) -> str:

@@ -32,7 +32,7 @@ from stylobate.plots.slipping_boundary import plot_slipping_boundary
 from stylobate.plots.slow_sweep import plot_slow_sweep
 from stylobate.plots.stability_boundary import plot_averaging_map, plot_stability_boundary
 from stylobate.plots.start_boundary import plot_start_boundary
-from stylobate.results import Response
+from stylobate.results import Assessment, Response
 
 __all__ = [
     "assessment_report",
@@ -138,5 +138,8 @@ def plot(result: Response | xr.Dataset | Sequence[Response], *, labels: Sequence
         return _BY_KIND[result.attrs["kind"]](result)
     if isinstance(result, Sequence) and result and all(isinstance(run, Response) for run in result):
         return plot_runs(result, labels)
+    if isinstance(result, Assessment):
+        message = "result must be one figure's, got an Assessment: write its report by plots.assessment_report"
+        raise ParameterError(message)
     message = f"result must be a run, a sequence of runs or the result of a study, got {type(result).__name__}"
     raise ParameterError(message)

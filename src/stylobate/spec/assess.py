@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Self
 
+import numpy as np
+import numpy.typing as npt
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
 from stylobate.errors import DescriptionError, ParameterError, require_positive
@@ -106,10 +108,13 @@ class AssessDescription(Description):
             With one line for each part that cannot be.
         """
         problems: list[str] = []
+        problems += self._problems_of_the_model()
         models = {name: self._model(name, problems) for name in self.columns}
         if not models:
             problems.append("columns must hold at least one column, such as [columns.tank]")
         scales = built("margin", self.margin.build, problems)
+        problems += [] if scales is None else _problems_of_the_margin(scales)
+        problems += self._problems_of_the_levels()
         try:
             require_positive("width", self.width)
         except ParameterError as error:
@@ -130,12 +135,30 @@ class AssessDescription(Description):
         column = built(f"columns.{name}", self.columns[name].build, problems)
         if column is None:
             return None
-        central = self.dissipation["central"]
-        told = [number for number in central if number in self.model.model_fields_set]
-        if told:
-            problems.append(f"model.{told[0]} is told by dissipation; leave it out")
-        body = column
-        return built("model", lambda: self.model.build(body), problems) if not told else None
+        return built("model", lambda: self.model.build(column), problems) if not self._problems_of_the_model() else None
+
+    def _problems_of_the_model(self) -> list[str]:
+        if self.model.kind == "sliding":
+            return ["model.kind must be one that holds the contact, such as wobbling, got 'sliding'"]
+        told = [name for name in self.dissipation["central"] if name in self.model.model_fields_set]
+        return [f"model.{name} is told by dissipation; leave it out" for name in told]
+
+    def _problems_of_the_levels(self) -> list[str]:
+        """Return a line where a level loses less than one that is called lower."""
+        levels = [self.dissipation[name].get("damping") for name in _LEVELS]
+        dampings = [value for value in levels if value is not None]
+        if len(dampings) < len(levels) or dampings == sorted(dampings):
+            return []
+        told = ", ".join(f"{name} {value:g}" for name, value in zip(_LEVELS, dampings, strict=True))
+        return [f"dissipation: damping must not fall from low to central to high, got {told}"]
+
+
+def _problems_of_the_margin(scales: npt.NDArray[np.float64]) -> list[str]:
+    if scales.size < 2:  # noqa: PLR2004  edges lie between two
+        return [f"margin.number must be 2 or more, got {scales.size}"]
+    if np.all(np.diff(scales) > 0.0):
+        return []
+    return [f"margin.from must be less than margin.to, got {scales[0]:g} and {scales[-1]:g}"]
 
 
 _NEEDED = {

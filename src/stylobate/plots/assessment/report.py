@@ -52,6 +52,9 @@ def assessment_report(assessment: Assessment, folder: str | Path) -> Path:
             (target / part).mkdir(parents=True, exist_ok=True)
         for name, table in tables.items():
             _write_csv(table, target / "tables" / f"{name}.csv")
+        for stale in (target / "figures").glob("*.png"):
+            if stale.stem not in pictures:
+                stale.unlink()
         for name, picture in pictures.items():
             (target / "figures" / f"{name}.png").write_bytes(picture.drawn)
         (target / "summary.txt").write_text("\n\n".join([title, *lead]) + "\n", encoding="utf-8")

@@ -4,7 +4,7 @@ import math
 
 import xarray as xr
 
-from stylobate.plots.assessment.wording import number, records
+from stylobate.plots.assessment.wording import CENTRAL, number, records
 from stylobate.results.assessment import Assessment
 
 
@@ -69,14 +69,29 @@ def _margin(assessment: Assessment, own: xr.Dataset) -> str:
             f"dissipation; the largest tilt was under {governing}."
         )
     else:
-        said = f"The least scale factor of those run that overturned it is {number(least, 4)}, under {governing}."
+        said = f"The least scale factor of those run that overturned it is {number(least, 4)}, under {governing}"
+        said += f"{_lasting(assessment, str(own['column'].item()), governing)}."
     if not math.isnan(least_of_all) and least_of_all != least:
         said += f" Over all stated dissipations, and without the vertical component, it is {number(least_of_all, 4)}."
     again = int(own["stands_again"])
     if again:
         under = records(again, assessment.data["records"].sizes["record"])
-        said += f" Above a scale that overturned it there are scales that did not, under {under}."
+        said += f" Some larger scales did not overturn it again, under {under}: more shaking is not always worse."
     return said
+
+
+def _lasting(assessment: Assessment, column: str, record: str) -> str:
+    """Return what is to be said of a least scale that stands alone, its neighbours on both sides having stood."""
+    margins = assessment.data["margins"].sel(column=column, record=record, case=CENTRAL)
+    least, lasting = float(margins["least_overturning"]), float(margins["least_lasting"])
+    if lasting == least:
+        return ""
+    alone = ", in a band so narrow that another scan might miss it: scales just above and below did not"
+    return (
+        alone
+        if math.isnan(lasting)
+        else f"{alone}; the least from which a wider band was found is {number(lasting, 4)}"
+    )
 
 
 def _contact(assessment: Assessment, name: str, own: xr.Dataset) -> str:
@@ -86,12 +101,18 @@ def _contact(assessment: Assessment, name: str, own: xr.Dataset) -> str:
     stated = float(assessment.setting["friction_coefficient"][name])
     if need <= stated:
         return (
-            f"The largest friction that any run needed is {number(need)}; the stated coefficient is {number(stated)}."
+            f"The largest friction that any run at {_stated_scales(assessment)} needed is {number(need)}; the stated "
+            f"coefficient is {number(stated)}. What larger scales need was not looked at."
         )
     return (
         f"Some run needed a friction of {number(need)}, above the stated coefficient {number(stated)}: "
         "there the base would slip, which these runs do not follow."
     )
+
+
+def _stated_scales(assessment: Assessment) -> str:
+    scales = assessment.setting["scales"]
+    return f"scale {scales[0]:g}" if len(scales) == 1 else "the stated scales"
 
 
 def _reading(assessment: Assessment) -> str:

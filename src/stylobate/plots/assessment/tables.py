@@ -114,7 +114,7 @@ def _margins(assessment: Assessment) -> Table:
         "record",
         "case of dissipation",
         "least scale that overturned",
-        "all bands that overturned",
+        "bands found that overturned",
         "runs not told",
     )
     rows = []

@@ -25,7 +25,8 @@ def margins_of(inputs: Inputs, column: str, parts: Parts, *, executor: Executor 
     xarray.Dataset
         Over `case` (the levels of dissipation; and the central one without the vertical component) and `record`:
         `least_overturning`, the least scale that overturned, NaN where none did; `largest_below`, the largest scale
-        below it that did not, NaN where none; `bands`; `unknown`, runs that tell nothing; `stands_again`, whether it
+        below it that did not, NaN where none; `least_lasting`, the least scale at which a band begins that is wider
+        than its edges are told; `bands`; `unknown`, runs that tell nothing; `stands_again`, whether it
         did not overturn at a scale above one that overturned it. Over `band` too all of `overturning_bands`. Of the
         central case over `limit_state` and `margin_scale`: `reached`.
     """
@@ -61,7 +62,7 @@ def _bands(inputs: Inputs, column: str, case: str, parts: Parts, executor: Execu
     motions = [without_vertical(one) if case == NO_VERTICAL else one for one in inputs.records.values()]
 
     def compute(progress: Progress) -> xr.Dataset:
-        return _told(_found(inputs, model, motions, executor, progress), list(inputs.records))
+        return _told(_found(inputs, model, motions, executor, progress), list(inputs.records), inputs.width)
 
     identity = {
         **inputs.identity(column, level),
@@ -89,18 +90,23 @@ def _found(
     )
 
 
-def _told(found: xr.Dataset, names: list[str]) -> xr.Dataset:
+def _told(found: xr.Dataset, names: list[str], width: float) -> xr.Dataset:
     plain = found.rename(motion="record", scale="margin_scale")
     plain = plain.drop_vars([name for name in plain.coords if name != "margin_scale"]).assign_coords(record=names)
     kept = plain[[*_BAND, "bands", "unknown", "outcome", "largest_tilt"]].transpose("record", ...)
     flags = {name: kept[name].astype(float) for name in ("open_below", "open_above", "bands", "unknown")}
     first = kept.isel(band=0)
+    lasting = kept["band_to"] > kept["band_from"] * (1.0 + width)
     last = kept["band_to"].max("band")
     again = (kept["bands"] > 1) | (last < float(plain["margin_scale"][-1]))
     return (
         kept.assign(flags)
         .assign(
             least_overturning=first["band_from"].assign_attrs(units="1", long_name="least scale that overturned"),
+            least_lasting=kept["band_from"]
+            .where(lasting)
+            .min("band")
+            .assign_attrs(units="1", long_name="least scale at which a band begins that is no hairline"),
             largest_below=first["safe_below"].assign_attrs(units="1", long_name="largest scale below that did not"),
             stands_again=again.astype(float).assign_attrs(
                 long_name="did not overturn at a scale above one that overturned"
