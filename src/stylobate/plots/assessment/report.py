@@ -157,7 +157,8 @@ def _margin_text(assessment: Assessment) -> str:
     return (
         f"Every record was run at {count} scale factors from {number(low)} to {number(high)}, and every change of the "
         f"answer was halved to {100.0 * assessment.setting['width']:g} %. Overturning is not monotonic: above a factor "
-        "that overturns, a column may stand again, so all bands are told, and the margin is the least factor. "
+        "that overturns, a column may stand again, so all bands found are told, and the margin is the least factor. "
+        "Near the limit the answer is erratic: a scan at other factors finds other narrow bands. "
         f"{assessment.setting['resolution'][0].upper()}{assessment.setting['resolution'][1:]}. The governing record is "
         "the one with the least factor; where none overturned, the one of the largest tilt."
     )
@@ -180,7 +181,7 @@ def _contact_text(assessment: Assessment) -> str:
     return (
         "The friction needed is the largest ratio of horizontal to normal force while the column moved, up to its "
         "overturning if it did. Where it exceeds the stated coefficient the base would slip, and the run is no longer "
-        "what would happen. A normal force of zero would be lift-off."
+        "what would happen. A normal force of zero would be lift-off. The margin's larger factors were not looked at so."
     )
 
 
@@ -200,7 +201,8 @@ def _planar_text(assessment: Assessment) -> str:
     return (
         "The usual calculation takes each horizontal component alone, in its plane, with the loss of energy at impacts "
         "after Housner. It is shown for comparison and decides nothing here: a round column hardly rocks in a plane. A "
-        "positive mean logarithm says that it tilts more in space."
+        "positive mean logarithm says that it tilts more in space. The mean is over records under which the column rocks "
+        "by more than 0.001 α in both and overturns in neither; what the others do is told, and in no mean."
     )
 
 
