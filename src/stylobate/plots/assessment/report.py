@@ -181,7 +181,7 @@ def _contact_text(assessment: Assessment) -> str:
     return (
         "The friction needed is the largest ratio of horizontal to normal force while the column moved, up to its "
         "overturning if it did. Where it exceeds the stated coefficient the base would slip, and the run is no longer "
-        "what would happen. A normal force of zero would be lift-off. The margin's larger factors were not looked at so."
+        "what would happen. A normal force of zero would be lift-off. Larger factors were not looked at so."
     )
 
 
@@ -201,8 +201,8 @@ def _planar_text(assessment: Assessment) -> str:
     return (
         "The usual calculation takes each horizontal component alone, in its plane, with the loss of energy at impacts "
         "after Housner. It is shown for comparison and decides nothing here: a round column hardly rocks in a plane. A "
-        "positive mean logarithm says that it tilts more in space. The mean is over records under which the column rocks "
-        "by more than 0.001 α in both and overturns in neither; what the others do is told, and in no mean."
+        "positive mean logarithm says that it tilts more in space. The mean is over records under which the column "
+        "rocks by more than 0.001 α in both and overturns in neither; what the others do is told, and in no mean."
     )
 
 
