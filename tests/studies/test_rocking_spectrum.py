@@ -38,6 +38,7 @@ def test_peaks_are_those_of_a_single_run(spectrum, size):
     assert one["rocking_period"].item() == pytest.approx(2.0 * math.pi / p)
 
 
+@pytest.mark.slow
 def test_peaks_in_space_are_those_of_a_single_run_too():
     time = 0.02 * np.arange(101)
     shake = 3.0 * np.sin(math.pi * time / 2.0) * np.array([np.cos(7.0 * time), np.sin(5.0 * time), 0.1 * np.cos(time)])
