@@ -14,6 +14,7 @@ from stylobate.models import Model
 from stylobate.motions import Record
 from stylobate.results.assessment import Assessment
 from stylobate.spec import provenance_of_run
+from stylobate.spec.simulation import FREE_TAIL
 from stylobate.studies.assessment.fragilities import fragility_of
 from stylobate.studies.assessment.governing import governing_record, history_of
 from stylobate.studies.assessment.inputs import CENTRAL, Inputs
@@ -24,7 +25,6 @@ from stylobate.studies.assessment.robust import planar_of, planar_runs, robustne
 from stylobate.studies.assessment.summary import summary_of
 from stylobate.studies.assessment.verdicts import verdict_runs, verdicts_on
 from stylobate.studies.shaking import Change
-from stylobate.studies.shaking.following import TAIL
 from stylobate.studies.shaking.named_records import Records
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.recipe import RunOptions
@@ -225,7 +225,7 @@ def _setting(inputs: Inputs) -> dict[str, Any]:
         "margin_scales": [float(inputs.margin_scales[0]), float(inputs.margin_scales[-1]), inputs.margin_scales.size],
         "width": inputs.width,
         "tail": "20/p" if inputs.tail is None else inputs.tail,
-        "tail_over_p": TAIL,
+        "tail_over_p": FREE_TAIL,
         "changes": [change.name for change in inputs.changes],
         "least_records": inputs.least_records,
         "options": {name: repr(value) for name, value in inputs.options.items()},

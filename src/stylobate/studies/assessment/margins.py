@@ -5,10 +5,10 @@ import xarray as xr
 
 from stylobate.models import Model
 from stylobate.motions import BaseMotion, OneOf
+from stylobate.spec.simulation import FREE_TAIL
 from stylobate.studies.assessment.inputs import CENTRAL, NO_VERTICAL, Inputs
 from stylobate.studies.assessment.parts import Parts
 from stylobate.studies.fragility import limit_states
-from stylobate.studies.shaking.following import TAIL
 from stylobate.studies.shaking.incremental import without_vertical
 from stylobate.studies.spectra import overturning_bands
 from stylobate.studies.sweeps import Executor
@@ -76,7 +76,7 @@ def _bands(inputs: Inputs, column: str, case: str, parts: Parts, executor: Execu
 def _found(
     inputs: Inputs, model: Model, motions: list[BaseMotion], executor: Executor | None, progress: Progress
 ) -> xr.Dataset:
-    tail = TAIL if inputs.tail is None else inputs.tail * model.column.frequency_parameter
+    tail = FREE_TAIL if inputs.tail is None else inputs.tail * model.column.frequency_parameter
     return overturning_bands(
         model,
         OneOf(motions=tuple(motions)),

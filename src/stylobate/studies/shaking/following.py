@@ -2,9 +2,7 @@
 
 from stylobate.column import Column
 from stylobate.errors import require_not_negative
-
-TAIL = 20.0
-"""Free vibration after the record, in units of 1/p."""
+from stylobate.spec.simulation import FREE_TAIL
 
 
 def tail_of(column: Column, tail: float | None = None) -> float:
@@ -18,4 +16,4 @@ def tail_of(column: Column, tail: float | None = None) -> float:
     ParameterError
         If `tail` is negative.
     """
-    return TAIL / column.frequency_parameter if tail is None else require_not_negative("tail", tail, "s")
+    return FREE_TAIL / column.frequency_parameter if tail is None else require_not_negative("tail", tail, "s")
