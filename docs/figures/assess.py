@@ -33,8 +33,8 @@ def assessed(store: Path) -> Assessment:
 
 def head(found: Assessment, margins: Figure) -> Figure:
     """Return how the report begins: title, summary, table, margins; drawn, for the page itself needs a browser."""
-    figure = Figure(figsize=(7.4, 9.0))
-    words, table, below = figure.subplots(3, 1, height_ratios=(4.3, 1.3, 3.4))
+    figure = Figure(figsize=(7.4, 9.4))
+    words, table, below = figure.subplots(3, 1, height_ratios=(4.7, 1.3, 3.4))
     for axes in (words, table, below):
         axes.set_axis_off()
     words.text(0.0, 1.02, found.setting["title"], fontsize=14, fontweight="bold", va="bottom")

@@ -22,6 +22,13 @@ def pulse() -> xr.Dataset:
     return sb.studies.overturning_bands(sb.Slender(column), sine, scales=np.geomspace(1.0, 20.0, 41), over=over)
 
 
+def one() -> xr.Dataset:
+    """Overturn one column by El Centro 1940, three components, at many scales."""
+    column = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)
+    quake = sb.sample_record("el centro 1940")
+    return sb.studies.overturning_bands(sb.Slender(column, damping=0.03), quake, scales=np.geomspace(0.5, 2.0, 61))
+
+
 def record() -> xr.Dataset:
     """Overturn by El Centro 1940, three components: size and scale, for three slendernesses."""
     quake = sb.sample_record("el centro 1940")
@@ -40,6 +47,6 @@ def rocking() -> xr.Dataset:
 
 if __name__ == "__main__":
     FOLDER.mkdir(parents=True, exist_ok=True)
-    for study in (pulse, record, rocking):
+    for study in (pulse, one, record, rocking):
         sb.plot(study()).savefig(FOLDER / f"{study.__name__}.png", dpi=110)
         print(study.__name__)

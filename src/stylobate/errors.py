@@ -10,6 +10,7 @@
     └── FileError                      a file that cannot be read or written
 
     Interrupted (KeyboardInterrupt)    Ctrl-C in the middle of many runs; carries what had been computed
+    SeldomMeant (UserWarning)          input that can be, but is more likely a slip
 
 Misuse is an exception. What the physics does, numerical failure included, is an `Outcome`.
 """
@@ -66,6 +67,10 @@ class Interrupted(KeyboardInterrupt):
     def __init__(self, message: str, partial: Any) -> None:
         super().__init__(message)
         self.partial = partial
+
+
+class SeldomMeant(UserWarning):
+    """Input that can be, but is more likely a slip; the message says what and how to mend it."""
 
 
 class Outcome(Enum):

@@ -63,9 +63,13 @@ def test_a_study_gives_a_report_that_is_kept_and_shown_again(study, tmp_path, ca
     told = capsys.readouterr()
     assert "As recorded (scale 1) it overturned under 1 of 2 records" in told.out
     assert "tank: verdicts" in told.err
+    assert "stylobate: drawing figures" in told.err
     for name in ("report.html", "summary.txt", "assessment.nc", "tables/verdicts.csv", "figures/margins-1.png"):
         assert (folder / name).stat().st_size > 0
     drawn = (folder / "report.html").read_text(encoding="utf-8")
+    assert run(["assess", str(study), "--folder", str(folder)]) == 0
+    assert f"stylobate: 5 of 5 parts were kept in {folder / 'store'} and not computed" in capsys.readouterr().err
+    assert (folder / "report.html").read_text(encoding="utf-8") == drawn
     assert all(name in drawn for name in ("strong", "weak", "SHA-256"))
     monkeypatch.setattr(studies, "assess", None)  # nothing is computed to show it again
     assert run(["assess", str(folder / "assessment.nc"), "--folder", str(tmp_path / "again"), "--json"]) == 0

@@ -78,6 +78,16 @@ def test_response_as_json_has_every_curve(capsys):
     [
         (["simulate"], ["column is missing", "duration is missing"]),
         (["simulate", *COLUMN], ["duration is missing"]),
+        (["simulate", *COLUMN], ["how long to follow a run [s], such as 60"]),
+        (["simulate", *COLUMN, "--velocity", "1", "2"], ["--velocity must be followed by 3 numbers; got fewer"]),
+        (
+            ["simulate", *COLUMN, "--velocity", "1", "2", "--duration", "3"],
+            ["--velocity must be followed by 3 numbers; one of them is no number"],
+        ),
+        (
+            ["map", *COLUMN, "--x", "damping", "0.1", "0.2", "2.5"],
+            ["--x must be followed by NAME FROM TO NUMBER; NUMBER must be a whole number"],
+        ),
         (["simulate", *COLUMN, "--duration", "-2"], ["duration must be positive, got -2.0 s"]),
         (
             ["simulate", "--slenderness", "-1", *MOTION[:2], "--acceleration", "nan", *MOTION[4:], "--duration", "1"],

@@ -4,8 +4,10 @@ import json
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import stylobate as sb
+from stylobate.cli.fragility_table import told_parts
 from stylobate.cli.main import run
 from stylobate.errors import DescriptionError
 from stylobate.spec import FragilityDescription
@@ -16,6 +18,7 @@ from stylobate.studies import (
     LognormalSpread,
     NormalSpread,
     annual_rate,
+    dispersion_parts,
     fragility_of_runs,
     incremental_dynamic_analysis,
     property_samples,
@@ -65,6 +68,8 @@ def folder(tmp_path):
         record = sb.Record(samples=samples, step=0.02, name=f"q{seed}")
         sb.records.write_csv(record, tmp_path / "quakes" / f"q{seed}.csv")
     (tmp_path / "site.csv").write_text("intensity,rate\n# of the site\n0.5,1e-2\n2.0; 1e-3\n8.0 5e-5\n")
+    (tmp_path / "bent.csv").write_text("0.5,1e-3\n2.0,1e-2\n")
+    (tmp_path / "velocity.csv").write_text("PGV [1], rate\n0.5,1e-2\n2.0,1e-3\n")
     (tmp_path / "study.toml").write_text(STUDY)
     return tmp_path
 
@@ -133,6 +138,31 @@ def test_saved_runs_are_fitted_anew_and_repeated(folder, capsys, saved, monkeypa
     np.testing.assert_allclose(saved(other)["damping"], 2.0 * saved(folder / "runs.nc")["damping"])
 
 
+def test_a_rate_beyond_the_hazard_is_not_told_as_a_fact(folder, capsys, monkeypatch):
+    monkeypatch.chdir(folder)
+    assert run(["fragility", "study.toml", "--output", "runs.nc"]) == 0
+    capsys.readouterr()
+    (folder / "weak.csv").write_text("PGA/(g tan α), rate\n0.001,1e-1\n0.01,1e-2\n")
+    assert run(["fragility", "runs.nc", "--hazard", "weak.csv"]) == 0
+    told = capsys.readouterr().out
+    assert "annual rate of 'overturning': not told, for the hazard curve ends at 0.01, and" in told
+    assert "of the rate lies beyond; it is between" in told
+    assert run(["fragility", "runs.nc", "--hazard", "weak.csv", "--json"]) == 0
+    states = {one["name"]: one for one in json.loads(capsys.readouterr().out)["limit_states"]}
+    assert states["overturning"]["annual_rate"] is states["overturning"]["probability"] is None
+    assert states["overturning"]["rate_high"] < 0.011
+
+
+def test_a_dispersion_of_nothing_reads_as_none_seen():
+    scale = np.geomspace(1.0, 10.0, 11)
+    capacities = np.array([2.0, 3.0, 5.0])[:, np.newaxis, np.newaxis]
+    reached = xr.DataArray(np.repeat(scale > capacities, 4, axis=1), dims=("record", "property_sample", "scale"))
+    told = told_parts(dispersion_parts(scale, reached, rng=np.random.default_rng(0)))
+    hidden = np.log(10.0) / 10.0 / np.sqrt(12.0)
+    assert f"none seen from properties (0 to {hidden:.3g})" in told
+    assert "e-" not in told
+
+
 def test_a_store_goes_on(folder, capsys, monkeypatch):
     monkeypatch.chdir(folder)
     command = ["fragility", "study.toml", "--output", "runs.zarr", "--json"]
@@ -167,6 +197,13 @@ def test_what_was_interrupted_is_fitted_as_far_as_it_is_known_and_goes_on(folder
         (["--vertical", "maybe"], "--vertical must be on, off or both, got 'maybe'"),
         (["--hazard", "nowhere.csv"], "cannot read"),
         (["--hazard", "study.toml"], "study.toml holds no numbers"),
+        (
+            ["--intensity", "peak ground acceleration"],
+            "fragility.hazard does not tell the unit of its intensity; ",
+        ),
+        (["--hazard-units", "m/s"], "is of an intensity in m/s, the fragility of 'PGA/(g tan α)' in 1"),
+        (["--hazard", "bent.csv"], "fragility.hazard: rate must not increase with intensity"),
+        (["--hazard", "velocity.csv"], "fragility.hazard is of 'peak ground velocity', the fragility of"),
         (["--spread", "colour=0.1"], "spreads: colour is not known here"),
         (["--property-samples", "0"], "fragility.samples and fragility.spreads go together"),
         (["--intensity", "magnitude"], "intensity must be 'peak ground acceleration'"),
@@ -193,3 +230,24 @@ def test_a_description_tells_all_its_mistakes():
         FragilityDescription.parse(values).build()
     for words in ("duration is not known", "number must be", "go together", "years must be", "a file of them"):
         assert words in str(told.value)
+    assert "quakes: No such file or directory" in str(told.value)
+
+
+def test_names_that_are_not_known_are_told_as_they_stand_in_the_file():
+    table = {
+        "scales": {"values": [1.0, 2.0]},
+        "smaples": 3,
+        "intensity": {"perod": 1.0},
+        "spreads": {"damping": {"kind": "lognormal", "dispersoin": 0.3}, "size": {"kind": "log"}},
+    }
+    column = {"shape": "dimensionless", "slenderness": 0.1}
+    with pytest.raises(DescriptionError) as told:
+        FragilityDescription.parse({"column": column, "records": "quakes", "fragility": table})
+    assert told.value.problems[:-1] == (
+        "fragility.intensity.period is missing",
+        "fragility.intensity.perod is not known here; did you mean period?",
+        "fragility.spreads.damping.dispersion is missing",
+        "fragility.spreads.damping.dispersoin is not known here; did you mean dispersion?",
+        *(line for line in told.value.problems if "fragility.spreads.size: a spread must have a kind" in line),
+    )
+    assert told.value.problems[-1] == "fragility.smaples is not known here; did you mean samples?"

@@ -1,6 +1,8 @@
 """Records on the command line."""
 
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -57,3 +59,78 @@ def test_a_map_takes_a_record_and_lasts_as_long(files, tmp_path, capsys):
     assert told["provenance"]["duration"] > 10.0
     assert run(["map", str(saved), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["provenance"] == told["provenance"]
+
+
+STUDY = """
+duration = 2.0
+column = {shape = "solid", radius = 0.3, height = 3.0, density = 2700.0}
+model = {kind = "slender", damping = 0.05}
+motion = {kind = "record", path = "quakes/quake_NS.txt", units = "g", step = 0.01}
+
+[map]
+x = {name = "scale", from = 0.0, to = 3.0, number = 2}
+y = {name = "rotation", from = 0.0, to = 0.1, number = 2}
+"""
+
+
+@pytest.fixture
+def study(files, tmp_path):
+    folder = tmp_path / "study"
+    (folder / "quakes").mkdir(parents=True)
+    files[0].rename(folder / "quakes" / "quake_NS.txt")
+    (folder / "map.toml").write_text(STUDY)
+    return folder
+
+
+def test_a_study_that_was_moved_with_its_records_goes_on_where_it_is_now(study, tmp_path, capsys):
+    assert run(["map", str(study / "map.toml"), "--output", str(study / "map.zarr"), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)["outcomes"]
+    moved = study.rename(tmp_path / "moved")
+    for source in ("map.toml", "map.zarr"):
+        again = ["map", str(moved / source), "--output", str(moved / "map.zarr"), "--resume", "--json"]
+        assert run(again) == 0
+        assert json.loads(capsys.readouterr().out)["outcomes"] == told
+    record = moved / "quakes" / "quake_NS.txt"
+    record.write_text(record.read_text() + "0.0\n")
+    assert run(["map", str(moved / "map.toml"), "--output", str(moved / "map.zarr"), "--resume"]) == 2
+    assert "quake_NS.txt" in capsys.readouterr().err
+
+
+def test_a_saved_run_finds_its_record_beside_it_and_takes_no_other_file_of_that_name(study, tmp_path, capsys):
+    options = ["--record", str(study / "quakes" / "quake_NS.txt"), "--units", "g", "--step", "0.01"]
+    assert run(["simulate", *COLUMN, *options, "--output", str(study / "run.nc"), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    moved = study.rename(tmp_path / "moved")
+    assert run(["simulate", str(moved / "run.nc"), "--json"]) == 0
+    again = json.loads(capsys.readouterr().out)
+    assert again["measures"] == told["measures"]
+    assert list(again["provenance"]["motion"]["file_sha256"]) == [str(moved / "quakes" / "quake_NS.txt")]
+    record = moved / "quakes" / "quake_NS.txt"
+    record.write_text(record.read_text() + "0.0\n")
+    assert run(["simulate", str(moved / "run.nc")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "No such file or directory; the result was made with it: put it there or beside the result" in line
+
+
+def test_a_record_beyond_what_the_ground_does_is_one_line_of_warning(tmp_path, capsys):
+    path = tmp_path / "gal.txt"
+    path.write_text("0.0\n-250.0\n120.0\n")
+    run(["simulate", *COLUMN, "--record", str(path), "--units", "g", "--step", "0.01", "--duration", "0.05"])
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"stylobate: warning: {path}: its peak is 250 g")
+
+
+def test_a_file_that_is_missing_is_told_before_anything_heavy_is_imported(tmp_path):
+    code = (
+        "import sys; from stylobate.cli.main import run; status = run(sys.argv[1:]); "
+        "print(status, sorted({'numba', 'scipy', 'xarray', 'matplotlib'} & set(sys.modules)))"
+    )
+    missing = str(tmp_path / "missing.txt")
+    for arguments in (
+        ["simulate", *COLUMN, "--record", missing],
+        ["map", *COLUMN, "--record", missing],
+        ["spectrum", "missing.toml"],
+        ["simulate", *COLUMN, "--duration", "-1"],
+    ):
+        ended = subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=True)
+        assert ended.stdout == "2 []\n"

@@ -83,6 +83,7 @@ def mixed(count, seed):
     }
 
 
+@pytest.mark.slow  # another comparison with single runs: that of ensembles/test_agreement.py is quick
 @pytest.mark.parametrize(
     "motion", [sb.Harmonic.elliptic(amplitude=(0.1, 0.06), phase=1.0, angular_frequency=2.0), LINE]
 )
@@ -286,6 +287,7 @@ def test_a_model_in_a_users_file_is_compiled_once_and_anew_when_it_changes(tmp_p
     assert changed.stdout != first.stdout
 
 
+@pytest.mark.slow  # looked at from another side in lanes/test_vectorised.py
 @pytest.mark.parametrize("planar", [False, True])
 def test_the_steps_of_all_lanes_are_vector_code(planar):
     machine = numba.core.config.NUMBA_NUM_THREADS and numba.core.codegen.ll.get_host_cpu_features()

@@ -98,6 +98,7 @@ def test_runs_with_a_patch_are_those_of_the_single_engine():
     assert {"slip", "stick"} & compared(CIRCLE, starts, numbers, np.linspace(2.0, 3.0, 4))
 
 
+@pytest.mark.slow  # a kernel of its own
 def test_runs_on_a_base_that_moves_up_and_down_are_those_of_the_single_engine():
     starts, numbers, acceleration = random_runs(6, seed=6)
     oblique = sb.Harmonic.oblique(acceleration=1.0, angular_frequency=3.0, angle=1.1)
@@ -142,7 +143,7 @@ def test_without_slip_it_rolls_as_the_rolling_column():
     tilt, rate = [(0.05, 0.0), (0.06, 0.01), (0.03, -0.02)], [(0.0, 0.03), (0.01, 0.05), (-0.02, 0.04)]
     shared = {"tilt": tilt, "tilt_rate": rate, "duration": 8.0, "rtol": RTOL}
     rough = ensemble(Sliding(COLUMN, friction_coefficient=50.0, passage_tilt=1e-9), **shared)
-    rolling = sb.simulate_ensemble(sb.Rolling(COLUMN), CIRCLE, **shared)
+    rolling = sb.simulate_ensemble(sb.Rolling(COLUMN), CIRCLE, **shared, demands=True)  # a kernel of others
     np.testing.assert_array_equal(rough["slips"], 0)
     for name in ("end_tilt", "end_spin", "largest_tilt", "turns"):
         np.testing.assert_allclose(rough[name], rolling[name], atol=1e-7, err_msg=name)

@@ -188,6 +188,7 @@ def test_a_run_settles_on_steady_rolling_with_a_free_twist():
     assert float(run.data["spin"][-1]) == pytest.approx(float(known.spin), rel=10.0 * left + 1e-7)
 
 
+@pytest.mark.slow  # a flow of its own; that of theory is checked beside its closed forms
 def test_its_orbits_have_the_eigenvalues_of_theory():
     run, known, model, circle = settled(2.0, 0.3)
     orbit = sb.orbits.periodic_orbit(model, circle, guess=run)

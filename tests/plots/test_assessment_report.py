@@ -12,6 +12,7 @@ import stylobate as sb
 from stylobate.plots import assessment_report, assessment_tables
 from stylobate.plots.assessment.summary import summary_paragraphs
 from stylobate.studies import ScaledRecord, assess
+from stylobate.studies.assessment.margins import demands_to_margin
 
 DISSIPATION = {"low": {"damping": 0.01}, "central": {"damping": 0.05}, "high": {"damping": 0.1}}
 
@@ -190,6 +191,46 @@ def test_friction_beyond_the_stated_one_is_told(found):
     told = summary_paragraphs(found)
     assert "needed a friction of 0.712, above the stated coefficient 0.6" in told[0]
     assert "0.31; the stated coefficient is 0.6" in told[1]
+
+
+@pytest.mark.parametrize(
+    ("need", "slipping", "first", "told"),
+    [
+        (0.4, np.nan, 0, "No scale factor that was run for the margin needed more than that."),
+        (0.5, 2.5, 0, "The least scale run that needs more is 2.5, above the least that overturned it: beyond it"),
+        (0.9, 0.8, 1, "needs more is 0.8, in some case below the least that overturned it: there the base would slip"),
+        (np.nan, np.nan, 0, "What other scales need was not looked at."),
+    ],
+)
+def test_friction_up_to_the_margin_is_told(found, need, slipping, first, told):
+    at = {"friction_to_margin": need, "least_slipping": slipping, "slips_first": first}
+    summary = found.data["summary"]
+    counted = summary.assign({name: ("column", np.full(2, value)) for name, value in at.items()})
+    assert told in summary_paragraphs(replace(found, data={**found.data, "summary": counted}))[1]
+
+
+def test_the_table_of_friction_up_to_the_margin_is_that_of_its_runs(found):
+    margins = found.data["margins"]
+    need = margins["friction_demand"].fillna(0.0) + 0.5 * margins["margin_scale"]
+    told = margins.assign(friction_demand=need, **demands_to_margin(margins.assign(friction_demand=need), 0.6))
+    table = assessment_tables(replace(found, data={**found.data, "margins": told}))["contact-to-margin"]
+    scales = margins["margin_scale"].to_numpy()
+    assert {row[6] for row in table.rows} == {f"{scales[scales > 1.2][0]:.4g}"}
+    for column, record, case, _, need_below, *_ in table.rows:
+        least = float(margins["least_overturning"].sel(column=column, record=record, case=case))
+        below = 0.5 * scales[~(scales >= least)]
+        assert need_below == (f"{below.max():.3g}" if below.size else "–")
+    assert len({row[4] for row in table.rows}) > 1
+
+
+def test_a_bias_of_one_record_is_told_to_be_of_too_few(found):
+    nothing = found.data["planar"].assign(bias=found.data["planar"]["bias"] * np.nan)
+    rows = assessment_tables(replace(found, data={**found.data, "planar": nothing}))["planar-bias"].rows
+    assert {row[2] for row in rows} == {"too few records"}
+
+
+def test_few_records_are_told_in_the_words_of_the_fragility(page):
+    assert "2 records: with fewer than 20 the interval of the dispersion is too narrow" in "".join(page.text)
 
 
 def test_a_least_scale_that_stands_alone_is_told_so(found):

@@ -9,6 +9,7 @@ import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
 from stylobate.plots.cells import cell_edges
 from stylobate.plots.classes import OUTCOME_LOOKS
+from stylobate.plots.style import VERMILION
 from stylobate.results.outcomes import code_of
 from stylobate.studies.spectra.band_table import band_table
 from stylobate.studies.spectra.cases import Cases
@@ -33,6 +34,7 @@ def bands(over, codes, motion=PULSE, uncertain=()):
     shape = (*cases.shape, scales.size)
     found = band_table(cases, scan, Edges.between(scan))
     found = found.assign(outcome=(dims, codes.reshape(shape)), uncertain=(dims, unsure.reshape(shape)))
+    found = found.assign(largest_tilt=(dims, np.broadcast_to(0.01 * scales, shape)))
     coords = {**cases.coordinates(), "scale": ("scale", scales, {"long_name": "factor of the base motion"})}
     return found.assign_coords(coords).assign_attrs(kind="overturning bands", width=1e-3)
 
@@ -109,9 +111,45 @@ def test_motions_stand_side_by_side_under_their_names():
     assert [text.get_text() for text in axes.get_xticklabels()] == ["Aigio", "Bam"]
 
 
-def test_one_column_and_too_many_parameters():
-    (axes,) = sb.plot(bands(None, PATTERN)).axes
-    assert axes.get_xlabel().startswith("ω / p = 5")
+def test_bands_of_one_column_lie_along_the_amplitude_with_the_peak_tilts_between_them():
+    found = bands(None, PATTERN, uncertain=[0])
+    figure = sb.plot(found)
+    (axes,) = figure.axes
+    unit = float(found["acceleration_ratio"])
+    (patch,) = [one for one in axes.patches if np.allclose(one.get_facecolor()[:3], DARK)]
+    corners = patch.get_path().vertices
+    np.testing.assert_allclose([corners[:, 0].min(), corners[:, 0].max()], [2.0 * unit, 3.0 * unit], rtol=1e-12)
+    assert axes.get_xlabel() == "peak base acceleration / (g tan α)"
+    assert "ω / p = 5" in axes.get_title(loc="left")
+    (tilts,) = [line for line in axes.lines if line.get_marker() == "." and len(line.get_xdata()) == 5]
+    expected = np.array([0.01, np.nan, np.nan, 0.04, np.nan]) / float(found["tipping_angle"])
+    np.testing.assert_allclose(tilts.get_ydata(), expected, rtol=1e-12)
+    assert {"peak tilt where it stands", "uncertain: 1 run"} <= set(legend_of(figure))
+
+
+def test_a_single_value_of_a_parameter_is_drawn_as_one_column():
+    (axes,) = sb.plot(bands({"size": [2.0], "damping": [0.1]}, PATTERN)).axes
+    assert axes.get_ylabel() == "peak tilt / α"
+
+
+@pytest.mark.parametrize("over", [None, {"size": [1.0, 2.0, 4.0]}])
+def test_a_band_too_narrow_to_be_seen_is_drawn_and_counted_as_such(over):
+    record = sb.Record(samples=[0.0, 0.3, 0.0], step=0.1, name="short")
+    found = bands(over, [SAFE, SAFE, FALLEN, SAFE, SAFE], record)
+    narrow = found.assign(band_from=0.0 * found["band_from"] + 3.0, band_to=0.0 * found["band_to"] + 3.001)
+    count = 1 if over is None else 3
+    label = f"overturns, narrower than drawn: {count} band{'s' if count > 1 else ''}"
+    figure = sb.plot(narrow)
+    assert label in legend_of(figure)
+    (axes,) = figure.axes
+    lines = [line for line in axes.lines if line.get_color() == VERMILION and line.get_linestyle() == "-"]
+    along = [np.mean(line.get_xdata() if over is None else line.get_ydata()) for line in lines]
+    np.testing.assert_allclose(along, [3.0005] * count, rtol=1e-12)
+    wide = found.assign(band_to=0.0 * found["band_to"] + 3.5)
+    assert not [text for text in legend_of(sb.plot(wide)) if "narrower" in text]
+
+
+def test_too_many_parameters_are_refused():
     crowded = bands({"size": np.arange(1.0, 7.0), "damping": np.arange(0.1, 0.6, 0.1)}, PATTERN)
     with pytest.raises(ParameterError, match="two with up to 4 values of one of them"):
         sb.plot(crowded)

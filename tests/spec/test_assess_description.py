@@ -48,6 +48,15 @@ def test_a_study_describes_the_arguments_of_assess():
         ({"columns": {"tank": {"radius": 1.0}}}, ["columns.tank.shape is missing"]),
         ({"records": {"source": "x", "unit": "g"}}, ["records.unit is not known here"]),
         ({"columns": None}, ["columns is missing"]),
+        (
+            {"mragin": {}, "scale": [1.0]},
+            ["mragin is not known here; did you mean margin?", "scale is not known here; did"],
+        ),
+        (
+            {"columns": {"tank": {**COLUMN, "hieght": 1}}},
+            ["columns.tank.hieght is not known here; did you mean height?"],
+        ),
+        ({"friction_coefficient": {"tank": "x"}}, ["friction_coefficient.tank: input should be a valid number"]),
     ],
 )
 def test_what_is_missing_or_unknown_is_one_line_each(change, told):
@@ -73,6 +82,14 @@ def test_what_is_missing_or_unknown_is_one_line_each(change, told):
             {"dissipation": {**DISSIPATION, "low": {"damping": 0.5}}},
             "dissipation: damping must not fall from low to central to high, got low 0.5, central 0.05, high 0.1",
         ),
+        (
+            {"dissipation": {level: {"restitution": 0.5} for level in DISSIPATION}, "model": {"kind": "slender"}},
+            "dissipation: the model slender has no restitution; leave it out",
+        ),
+        (
+            {"dissipation": {**DISSIPATION, "low": {"restitution": 0.5}}},
+            "dissipation must name the same numbers at each level, one or more, got low restitution, central damping",
+        ),
         ({"records": {"samples": ["kobe"]}}, "name must be one of 'el centro 1940'"),
         ({"records": "nowhere/*.AT2"}, "nowhere/*.AT2: no file has such a name"),
     ],
@@ -82,6 +99,28 @@ def test_what_cannot_be_built_is_told(change, told):
         AssessDescription.parse({**STUDY, **change}).build()
     assert len(caught.value.problems) == 1
     assert caught.value.problems[0].startswith(told)
+
+
+def test_all_that_cannot_be_built_is_told_at_once():
+    wrong = {
+        "scales": [-1.0],
+        "margin": {"from": -1.0},
+        "friction_coefficient": {"tanc": 0.6},
+        "tail": -2.0,
+        "dissipation": {**DISSIPATION, "low": {"dampign": 0.1}},
+        "records": "nowhere/*.AT2",
+    }
+    with pytest.raises(DescriptionError) as caught:
+        AssessDescription.parse({**STUDY, **wrong}).build()
+    assert set(caught.value.problems) == {
+        "margin: from must be positive, got -1.0",
+        "dissipation.low.dampign is not known here; did you mean damping?",
+        "tail must be zero or positive, got -2.0 s",
+        "scales must be positive, got -1.0",
+        "friction_coefficient: 'tanc' is no column; did you mean tank?",
+        "friction_coefficient: 'tank' has none; state one for each column",
+        "nowhere/*.AT2: no file has such a name",
+    }
 
 
 def test_files_of_records_are_told_from_the_folder_of_the_study(tmp_path, monkeypatch):

@@ -1,13 +1,18 @@
 """The assessment of columns: its answers are those of single runs, whatever the order, interrupted or not."""
 
+import logging
+from functools import partial
+
 import numpy as np
 import pytest
 import xarray as xr
 
 import stylobate as sb
-from stylobate.errors import FileError, ParameterError
+from stylobate.errors import FileError, ParameterError, SeldomMeant
 from stylobate.results import Assessment
 from stylobate.studies import ScaledRecord, SlendernessScaled, assess
+from stylobate.studies.assessment import robust
+from stylobate.studies.shaking.remarks import remark_on
 
 DISSIPATION = {"low": {"damping": 0.01}, "central": {"damping": 0.05}, "high": {"damping": 0.1}}
 CHANGES = (ScaledRecord(0.95), ScaledRecord(1.05), SlendernessScaled(0.99))
@@ -101,7 +106,7 @@ def test_an_assessment_is_saved_and_shown_again(found, tmp_path):
         Assessment.load(tmp_path / "run.nc")
 
 
-def test_interrupted_work_goes_on_where_it_was(found, tmp_path):
+def test_interrupted_work_goes_on_where_it_was(found, tmp_path, caplog):
     seen = []
 
     def stop(what, done, total):
@@ -118,9 +123,34 @@ def test_interrupted_work_goes_on_where_it_was(found, tmp_path):
     assert {name: (tmp_path / "store" / name).stat().st_mtime_ns for name in kept} == kept
     for name in ("verdicts", "margins", "robustness", "summary"):
         xr.testing.assert_equal(whole.data[name], found.data[name].sel(column=["slim"]))
+    assert not caplog.messages
+    with caplog.at_level(logging.INFO, logger="stylobate"):
+        assessed(columns=("slim",), store=tmp_path / "store")
+    assert caplog.messages == [f"7 of 7 parts were kept in {tmp_path / 'store'} and not computed again"]
     # Another record is another part.
     assessed(columns=("slim",), records=[*RECORDS[:2], RECORDS[2].scaled(1.1)], store=tmp_path / "store", changes=())
     assert len(list((tmp_path / "store").glob("*.nc"))) > len(kept) + 4
+
+
+def test_records_are_computed_some_at_a_time_and_the_whole_is_that_of_all_at_once(monkeypatch):
+    one_by_one = partial(assessed, columns=("slim",), records=RECORDS[:2], planar=True, changes=CHANGES[:1])
+    whole = one_by_one()
+    monkeypatch.setattr(robust, "_TOGETHER", 1)
+    parts = one_by_one()
+    for name in ("robustness", "planar", "summary"):
+        xr.testing.assert_equal(parts.data[name], whole.data[name])
+        for one, told in whole.data[name].items():
+            assert parts.data[name][one].attrs.get("long_name") == told.attrs.get("long_name")
+
+
+def test_what_is_perhaps_in_another_unit_or_one_event_is_remarked():
+    tower, column = (sb.Column.solid(radius=0.1 * height, height=height, density=2700.0) for height in (61.0, 6.0))
+    with pytest.warns(SeldomMeant) as told:
+        remark_on({"tower": tower, "column": column}, ["Aigio", "aigio", "Kobe"])
+    assert [str(one.message).partition(";")[0] for one in told] == [
+        "tower: a height of 61 m",
+        "records: 'Aigio' and 'aigio' differ by case only and are taken as different ones",
+    ]
 
 
 def test_small_changes_flip_what_lies_at_the_margin_and_nothing_far_from_it(found):
@@ -147,6 +177,8 @@ def test_many_records_give_a_fragility_and_few_give_none(found):
     ("change", "told"),
     [
         ({"dissipation": {}}, "dissipation is missing"),
+        ({"dissipation": None}, "dissipation is missing"),
+        ({"friction_coefficient": None}, "friction_coefficient is missing"),
         ({"dissipation": {"low": {"damping": 0.1}}}, "central and high must be stated too"),
         ({"dissipation": {**DISSIPATION, "high": {"restitution": 0.5}}}, "the same numbers at each level"),
         (
@@ -184,5 +216,13 @@ def test_what_the_contact_must_bear_and_the_planar_answer_are_told():
     if "largest_friction_demand" in run.measures:
         told = float(verdicts["friction_demand"].sel(record="middle"))
         assert told == pytest.approx(run.measures["largest_friction_demand"], rel=0.02)
+    margins = whole.data["margins"].sel(column="slim", case="central")
+    assert np.isfinite(margins["friction_demand"].sel(record="strong")).all()
+    need, least = (margins[name].sel(record="strong") for name in ("friction_demand", "least_overturning"))
+    below = need.where(need["margin_scale"] < least)
+    assert float(margins["friction_to_margin"].sel(record="strong")) == pytest.approx(float(below.max()))
+    slipping = need["margin_scale"].to_numpy()[need.to_numpy() > 0.6]
+    told = float(margins["least_slipping"].sel(record="strong"))
+    assert told == slipping[0] if slipping.size else np.isnan(told)
     assert set(whole.data["planar"].dims) == {"column", "record", "scale"}
     assert np.isfinite(float(whole.data["summary"]["friction_demand"].max()))

@@ -37,6 +37,22 @@ def test_variances_of_a_balanced_layout_are_those_of_its_rows_and_columns():
     np.testing.assert_allclose(np.log(found["median_of_record"]), rows, atol=step)
 
 
+def test_properties_that_move_no_capacity_show_no_dispersion():
+    rng = np.random.default_rng(5)
+    scale = np.geomspace(0.1, 90.0, 31)
+    for records in range(3, 13):
+        above = np.log(scale / 3.0) > rng.normal(0.0, 0.4, (records, 1, 1))
+        states = np.repeat(above, 5, axis=1)
+        # One capacity of its own: the mean squares of samples and of the rest are equal, but for rounding.
+        states[1, 3] = np.roll(states[1, 3], 2)
+        states[1, 3, :2] = False
+        found = dispersion_parts(scale, xr.DataArray(states, dims=DIMS), rng=rng)
+        assert found["property_dispersion"].item() == 0.0
+        assert found["record_dispersion"].item() > 0.1
+    # What the steps between scales hide is told.
+    assert found.attrs["resolution"] == pytest.approx(np.log(scale[1] / scale[0]) / np.sqrt(12.0))
+
+
 @pytest.mark.parametrize("samples", Samples)
 def test_the_total_is_the_sum_of_the_variances(samples):
     rng = np.random.default_rng(2)

@@ -73,6 +73,20 @@ def test_a_rate_mostly_from_beyond_the_curve_is_warned_of(caplog):
     assert "of the annual rate of 'overturning' lies beyond the hazard curve" in caplog.text
 
 
+@pytest.mark.parametrize(
+    ("median", "told"),
+    [
+        (3.0, ""),
+        (200.0, "the hazard curve ends at 20, and all of the rate lies beyond"),
+        (0.02, "the hazard curve begins at 0.2, and 97 % of the rate lies beyond"),
+    ],
+)
+def test_a_rate_of_which_the_curve_tells_less_than_half_is_not_told(median, told):
+    found = annual_rate(lognormal_fragility(median, 0.3), BENT)
+    assert found["not_told"].item() == told
+    assert (found["share_beyond"].item() > 0.5) is bool(told)
+
+
 def test_a_steep_curve_continued_too_far_is_told_to_be_infinite():
     steep = HazardCurve(intensity=[1.0, 1.1, 2.0], rate=[0.1, 1e-6, 1e-9])
     found = annual_rate(lognormal_fragility(1.5, 3.0), steep)

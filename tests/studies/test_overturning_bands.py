@@ -8,9 +8,10 @@ import pytest
 import xarray as xr
 
 import stylobate as sb
-from stylobate.errors import Interrupted, Outcome, ParameterError, UnsupportedError
+from stylobate.errors import Interrupted, Outcome, ParameterError, SeldomMeant, UnsupportedError
 from stylobate.results.outcomes import code_of
 from stylobate.studies import overturning_bands
+from stylobate.studies.spectra.cases import Cases
 
 C = 0.1
 COLUMN = sb.Column.dimensionless(C)
@@ -229,3 +230,13 @@ def test_a_record_has_no_frequency_to_vary():
     record = sb.Record(samples=[0.0, 1.0, 0.0], step=0.1)
     with pytest.raises(UnsupportedError, match="angular_frequency can be changed in a Harmonic"):
         overturning_bands(VISCOUS, record, scales=[1.0, 2.0], over={"angular_frequency": [1.0]})
+
+
+def test_a_radius_that_varies_alone_is_remarked_on_and_a_size_is_not():
+    cases = [{"radius": [0.1]}, {"mass_height": [1.0], "damping": [0.1]}]
+    for over in cases:
+        told = f"^over: {next(iter(over))} changes without mass .*; size scales a column"
+        with pytest.warns(SeldomMeant, match=told):
+            Cases.of(VISCOUS, SINE, over)
+    for over in ({"size": [2.0]}, {"slenderness": [0.2]}, {"radius": [0.1], "transverse_inertia": [1.0]}):
+        Cases.of(VISCOUS, SINE, over)

@@ -111,5 +111,7 @@ def test_provenance_and_bad_questions():
     assert "sampled_tilt" not in found
     with pytest.raises(ParameterError, match="over must name a parameter"):
         rocking_spectrum(STONE, PULSE, over={})
+    with pytest.raises(ParameterError, match=r'over must name a parameter with its values, such as {"size": \[…\]}'):
+        rocking_spectrum(STONE, PULSE)
     with pytest.raises(ParameterError, match="samples must be a whole number"):
         rocking_spectrum(STONE, PULSE, over={"size": [1.0]}, samples=1)

@@ -1,13 +1,12 @@
 """`stylobate assess`: columns under a folder of records, with a report that others can read."""
 
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from stylobate.cli.assess_progress import parts_done
 from stylobate.cli.many_runs import INTERRUPTED
 from stylobate.cli.options import Json, ThreadCount
 from stylobate.cli.output import NETCDF, check_place, print_json, print_table
@@ -49,7 +48,10 @@ def assess(
     target = folder or Path(f"{source.stem}-assessment")
     check_place(target / "report.html" if target.exists() else target)
     found = _loaded(source) if source.suffix == NETCDF else _computed(source, target, store, threads)
-    report = plots.assessment_report(found, target)
+    with parts_done() as progress:
+        report = plots.assessment_report(
+            found, target, progress=lambda done, total: progress("drawing figures", done, total)
+        )
     summary = plots.assessment_tables(found)["summary"]
     if as_json:
         print_json({"summary": _rows(summary), "setting": found.setting, "report": str(report)})
@@ -74,7 +76,7 @@ def _computed(source: Path, target: Path, place: Path | None, threads: int | Non
     _refuse_folder_of_another(target, description.title)
     setup, store = description.build(), place or target / "store"
     try:
-        with _parts_done() as progress:
+        with parts_done() as progress:
             return studies.assess(
                 setup.columns,
                 setup.records,
@@ -94,27 +96,6 @@ def _refuse_folder_of_another(target: Path, title: str) -> None:
     if earlier.is_file() and (other := _loaded(earlier).setting["title"]) != title:
         message = f"{target} holds the assessment {other!r}; name another folder with --folder, or remove it"
         raise FileError(message)
-
-
-@contextmanager
-def _parts_done() -> Iterator[Callable[[str, int, int], None]]:
-    """Give a function that shows what is computed, and how much of the work is done; a line each without a terminal."""
-    from rich.console import Console  # noqa: PLC0415
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn  # noqa: PLC0415
-
-    console = Console(stderr=True, markup=False, highlight=False)
-    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=console, transient=True, disable=not sys.stderr.isatty()) as bar:
-        task = bar.add_task("assessment", total=None)
-        told: list[str] = []
-
-        def advance(what: str, done: int, total: int) -> None:
-            bar.update(task, description=what, completed=done, total=total)
-            if not sys.stderr.isatty() and told[-1:] != [what]:
-                told.append(what)
-                print(f"stylobate: {what} ({100 * done // max(total, 1)} % done)", file=sys.stderr)
-
-        yield advance
 
 
 def _rows(table: Any) -> list[dict[str, str]]:

@@ -11,6 +11,7 @@ from stylobate.cli.many_runs import check_outputs, computed, end, is_to_compute,
 from stylobate.cli.output import print_json, print_table
 from stylobate.cli.saved import axes_of, open_saved, plain_axes, provenance_of
 from stylobate.cli.source import read_source
+from stylobate.counted import counted
 from stylobate.errors import FileError
 
 if TYPE_CHECKING:
@@ -108,8 +109,6 @@ def basin(
 
     stylobate basin basin.toml --random 10000 --seed 1 --over tilt-x -0.08 0.08 --over tilt-rate-x -0.1 0.1
     """
-    from stylobate import spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
-
     given, complete = context.params, True
     check_outputs(given)
     saved = open_saved(source)
@@ -117,12 +116,16 @@ def basin(
         assert saved is not None
         found = _labelled(saved, source, confidence)
     else:
+        from stylobate import spec  # noqa: PLC0415  heavy imports wait until the options are read
+
         if saved is None:
             described = read_source(source)
         else:
             described = spec.BasinDescription.of_saved(provenance_of(saved), axes_of(saved)).values()
         values = opt.overlay_axes(opt.overlay(described, given, opt.RUN_NAMES), given, "basin")
         setup = spec.BasinDescription.parse(opt.overlay_sample(values, given, "basin")).build()
+        from stylobate import studies  # noqa: PLC0415  … and the heaviest until they can be used
+
         _check_names(setup.options)
         found, complete = computed(studies.basins, setup, given, "basins")
     write(found, given)
@@ -207,5 +210,5 @@ def _print(found: "xr.Dataset") -> None:
     if told["unsettled"]:
         share = 100.0 * told["unsettled"] / told["computed"]
         rows.append(("unsettled", "", "", str(told["unsettled"]), f"{share:.2f} %", ""))
-    title = f"{told['runs']} starts" + (f", {told['computed']} done" if told["computed"] < told["runs"] else "")
+    title = counted(told["runs"], "start") + (f", {told['computed']} done" if told["computed"] < told["runs"] else "")
     print_table(title, rows, ("attractor", "turns a period", "mean tilt", "starts", "fraction", confidence))

@@ -12,6 +12,7 @@ from stylobate.cli.many_runs import check_outputs, computed, end, is_to_compute,
 from stylobate.cli.output import print_json, print_table
 from stylobate.cli.saved import axes_of, open_saved, plain_axes, provenance_of
 from stylobate.cli.source import read_source
+from stylobate.counted import counted
 from stylobate.errors import FileError, ParameterError
 
 if TYPE_CHECKING:
@@ -174,7 +175,7 @@ def _print(found: "xr.Dataset") -> None:
     told = _rows(found)
     names = [str(dim) for dim in found["outcome"].dims]
     done, total = int(found["computed"]), found["outcome"].size
-    title = f"{total} runs over {' and '.join(names)}" + (f", {done} of them done" if done < total else "")
+    title = f"{counted(total, 'run')} over {' and '.join(names)}" + (f", {done} of them done" if done < total else "")
     if total > _ROWS:
         told = sorted(told, key=lambda row: -_or_zero(row["transport_speed"]))[:_FASTEST]
         title += f"; the {_FASTEST} fastest are shown, --json tells all"

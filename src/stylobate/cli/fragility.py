@@ -54,7 +54,10 @@ CountingRule = Annotated[
 ]
 Confidence = Annotated[float | None, _option("of intervals [default: 0.95]")]
 Resamples = Annotated[int | None, _option("how often records are drawn anew for intervals [default: 1000]")]
-HazardFile = Annotated[Path | None, _option("a file of two columns: intensity, annual rate of exceedance")]
+HazardFile = Annotated[
+    Path | None, _option("a file of two columns: intensity, annual rate of exceedance; first line: PGA [g], rate [1/a]")
+]
+HazardUnits = Annotated[str | None, _option("of the intensities of the hazard, where its file tells none: g, m/s2 …")]
 Years = Annotated[float | None, _option("for which the probability is told [default: 50]")]
 RunsFigure = Annotated[
     Path | None,
@@ -81,6 +84,7 @@ def fragility(
     confidence: Confidence = None,
     resamples: Resamples = None,
     hazard: HazardFile = None,
+    hazard_units: HazardUnits = None,
     years: Years = None,
     tilt: opt.Tilt = None,
     tilt_rate: opt.TiltRate = None,
@@ -154,7 +158,7 @@ def fragility(
 
 
 # What changes the fits and not the runs.
-_OF_FITS = ("counting", "confidence", "resamples", "hazard", "years", "runs_figure")
+_OF_FITS = ("counting", "confidence", "resamples", "hazard", "hazard_units", "years", "runs_figure")
 
 
 def _saved(source: Path | None) -> "xr.Dataset | None":
@@ -237,13 +241,22 @@ def _table(values: Mapping[str, Any], given: Mapping[str, Any]) -> Any:
         table["vertical"] = _VERTICAL[given["vertical"]]
     if given["spread"]:
         table["spreads"] = dict(_spread(text) for text in given["spread"])
-    if given["hazard"] is not None:
-        table["hazard"] = {"file": str(given["hazard"].absolute())}
+    table |= _hazard(table.get("hazard"), given)
     names = {"free_tail": "tail", "property_samples": "samples"}
     for name in ("intensity", "seed", "counting", "confidence", "resamples", "years", *names):
         if given[name] is not None:
             table[names.get(name, name)] = given[name]
     return table
+
+
+def _hazard(described: Any, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the hazard, if the options say something of it."""
+    own = {} if given["hazard"] is None else {"file": str(given["hazard"].absolute())}
+    if given["hazard_units"] is not None:
+        own["units"] = given["hazard_units"]
+    # Another file is another curve: nothing of what is described is of it.
+    kept = dict(described) if isinstance(described, Mapping) and given["hazard"] is None else {}
+    return {"hazard": {**kept, **own}} if own else {}
 
 
 def _spread(text: str) -> tuple[str, dict[str, Any]]:

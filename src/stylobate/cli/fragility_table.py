@@ -1,11 +1,13 @@
 """What `stylobate fragility` tells of its runs: a table of fits, or the same as JSON."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from stylobate.cli.output import print_table
 from stylobate.cli.saved import model_named, provenance_of
+from stylobate.counted import counted
+from stylobate.results.few_records import few_records
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,6 +39,9 @@ _PARTS = [
 ]  # as from dispersion_parts
 
 
+_OF_RATES = ("annual_rate", "rate_low", "rate_high", "probability", "share_beyond")
+
+
 def _row(fits: "xr.Dataset", rates: "xr.Dataset | None", place: int) -> dict[str, Any]:
     """Return what is told of one limit state."""
     one = fits.isel(limit_state=place)
@@ -47,7 +52,10 @@ def _row(fits: "xr.Dataset", rates: "xr.Dataset | None", place: int) -> dict[str
     row |= {name: int(one[name]) for name in ("runs", "runs_reached", "runs_not_known", "non_monotone_records")}
     if rates is not None:
         told = rates.isel(limit_state=place)
-        row |= {name: float(told[name]) for name in ("annual_rate", "rate_low", "rate_high", "probability")}
+        row |= {name: float(told[name]) for name in _OF_RATES}
+        row["rate_not_told"] = str(told["not_told"].item())
+        if row["rate_not_told"]:
+            row |= dict.fromkeys(("annual_rate", "probability"), math.nan)
     return row
 
 
@@ -57,31 +65,29 @@ def print_fits(found: "xr.Dataset", fits: "xr.Dataset", parts: "xr.Dataset | Non
     header = ["limit state", f"median{unit}", "dispersion", "reached", "not monotone"]
     if rates is not None:
         header += ["a year", f"in {rates.attrs['years']:g} years"]
-    rows = [_cells(_row(fits, rates, place)) for place in range(fits.sizes["limit_state"])]
-    print_table(f"{_runs(found)}; {model_named(found)}; over the {found.attrs['intensity']}", rows, header)
+    told = [_row(fits, rates, place) for place in range(fits.sizes["limit_state"])]
+    title = f"{_runs(found)}; {model_named(found)}; over the {found.attrs['intensity']}"
+    print_table(title, [_cells(row) for row in told], header)
     percent = f"{100.0 * float(fits.attrs['confidence']):g} %"
     print(f"{percent} intervals: {fits.attrs['intervals']}; runs counted {fits.attrs['counting']}")
     worst, records = int(fits["non_monotone_records"].max()), found["record"].size
-    if records < _FEW:
-        print(f"{records} records: with fewer than {_FEW} the intervals of the dispersion are too narrow")
+    if few := few_records(records):
+        print(few)
     if worst > 0:
         print(f"not monotone: {worst} of {records} records are safe again at a higher scale than one that is not")
     if parts is not None:
-        print(_told_parts(parts))
-    if rates is not None:
-        beyond = 100.0 * float(rates["share_beyond"].max())
-        print(f"annual rates: up to {beyond:.0f} % from beyond the hazard curve")
+        print(told_parts(parts))
+    for line in _told_rates(told) if rates is not None else []:
+        print(line)
 
 
-# With fewer records the measured coverage of the intervals of the dispersion is well below what they claim.
-_FEW = 20
 _UNITS = {"m s-2": " [m/s²]", "m s-1": " [m/s]"}
 
 
 def _runs(found: "xr.Dataset") -> str:
     done, total = int(found["computed"]), found["outcome"].size
-    over = " × ".join(f"{found.sizes[dim]} {str(dim).replace('_', ' ')}s" for dim in found["outcome"].dims)
-    return f"{total} runs: {over}" + (f", {done} of them done" if done < total else "")
+    over = " × ".join(counted(found.sizes[dim], str(dim).replace("_", " ")) for dim in found["outcome"].dims)
+    return f"{counted(total, 'run')}: {over}" + (f", {done} of them done" if done < total else "")
 
 
 def _cells(row: Mapping[str, Any]) -> list[str]:
@@ -98,16 +104,36 @@ def _cells(row: Mapping[str, Any]) -> list[str]:
         f"{row['non_monotone_records']}" if row["non_monotone_records"] > 0 else "",
     ]
     if "annual_rate" in row:
-        told = math.isfinite(row["annual_rate"])
-        cells += [f"{row['annual_rate']:.2e}", f"{100.0 * row['probability']:.2g} %"] if told else ["", ""]
+        cells += _rate_cells(row)
     return cells
+
+
+def _rate_cells(row: Mapping[str, Any]) -> list[str]:
+    """Return the annual rate and the probability, if they are told."""
+    if row["rate_not_told"]:
+        return ["not told", "not told"]
+    if not math.isfinite(row["annual_rate"]):
+        return ["", ""]
+    return [f"{row['annual_rate']:.2e}", f"{100.0 * row['probability']:.2g} %"]
+
+
+def _told_rates(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return what must be known of the annual rates: how much of them no hazard curve tells."""
+    shares = [row["share_beyond"] for row in rows if math.isfinite(row["annual_rate"])]
+    lines = [f"annual rates: up to {100.0 * max(shares):.0f} % from beyond the hazard curve"] if shares else []
+    for row in rows:
+        if why := row["rate_not_told"]:
+            bounds = f"it is between {row['rate_low']:.1e} and {row['rate_high']:.1e} a year"
+            lines.append(f"annual rate of {row['name']!r}: not told, for {why}; {bounds}")
+    return lines
 
 
 def _short(value: float) -> str:
     return f"{value:.3g}"
 
 
-def _told_parts(parts: "xr.Dataset") -> str:
+def told_parts(parts: "xr.Dataset") -> str:
+    """Return in a line what of the dispersion is of records and of properties; what is 0 was not seen."""
     what = "dispersion of the least scales that overturn"
     if not math.isfinite(float(parts["total_dispersion"])):
         reasons = {
@@ -117,6 +143,7 @@ def _told_parts(parts: "xr.Dataset") -> str:
         }
         counts = [f"{parts.attrs[name]} {reason}" for name, reason in reasons.items() if parts.attrs[name]]
         return f"{what}: not told, for of {parts['log_capacity'].size} series {', '.join(counts)}"
+    hidden = float(parts.attrs["resolution"])  # by the steps between scales
     names = {
         "record": "from record to record",
         "property": "from properties",
@@ -124,6 +151,7 @@ def _told_parts(parts: "xr.Dataset") -> str:
     }
     told = []
     for name, words in names.items():
-        value, low, high = (_short(float(parts[f"{name}_dispersion{end}"])) for end in _ENDS)
-        told.append(f"{value} {words} ({low} to {high})")
+        value, low, high = (float(parts[f"{name}_dispersion{end}"]) for end in _ENDS)
+        seen, high = (_short(value), high) if value > 0.0 else ("none seen", max(high, hidden))
+        told.append(f"{seen} {words} ({_short(low)} to {_short(high)})")
     return f"{what}: {', '.join(told)}"

@@ -35,6 +35,15 @@ def check_outputs(given: Mapping[str, Any]) -> None:
     check_writable(given["figure"], given["output"], stores=True)
 
 
+def check_axes(section: str, setup: "Setup") -> None:
+    """Raise ParameterError for a quantity along x or y, or a value of it, that cannot be; told by its place."""
+    from stylobate.studies.sweeps.quantities import check_quantities, checked_values  # noqa: PLC0415
+
+    for place, (name, values) in zip("xy", setup.options["over"].items(), strict=False):
+        check_quantities(f"{section}.{place}", setup.model, [name])
+        checked_values(f"{section}.{place}", name, values)
+
+
 def computed(
     study: Callable[..., "xr.Dataset"], setup: "Setup", given: Mapping[str, Any], what: str
 ) -> "tuple[xr.Dataset, bool]":

@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stylobate.cli import options as opt
-from stylobate.cli.many_runs import check_outputs, computed, end, is_to_compute, write
+from stylobate.cli.many_runs import check_axes, check_outputs, computed, end, is_to_compute, write
 from stylobate.cli.output import print_json, print_table
 from stylobate.cli.saved import axes_of, open_saved, plain_axes, provenance_of
 from stylobate.cli.source import read_source
+from stylobate.counted import counted
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -99,26 +100,24 @@ def overturning_map(
 
     stylobate map map.zarr --resume
     """
-    from stylobate import spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
-    from stylobate.studies.contact_map import class_shares  # noqa: PLC0415
-    from stylobate.studies.overturning import outcome_shares  # noqa: PLC0415
-    from stylobate.studies.sweeps.quantities import check_quantities  # noqa: PLC0415
-
     given, complete = context.params, True
     check_outputs(given)
     saved = open_saved(source)
     if not is_to_compute(saved, given):
         assert saved is not None
-        found = class_shares(saved) if "time_flying" in saved else outcome_shares(saved)
+        found = _counted(saved)
     else:
+        from stylobate import spec  # noqa: PLC0415  heavy imports wait until the options are read
+
         if saved is None:
             described = read_source(source)
         else:
             described = spec.MapDescription.of_saved(provenance_of(saved), axes_of(saved)).values()
         values = opt.overlay_axes(opt.overlay(described, given, opt.RUN_NAMES), given, "map")
         setup = spec.MapDescription.parse(values).build()
-        for place, name in zip("xy", setup.options["over"], strict=True):
-            check_quantities(f"map.{place}", setup.model, [name])
+        from stylobate import studies  # noqa: PLC0415  … and the heaviest until they can be used
+
+        check_axes("map", setup)
         study = studies.contact_map if setup.model.switches else studies.overturning_map
         found, complete = computed(study, setup, given, "map")
     write(found, given)
@@ -127,6 +126,13 @@ def overturning_map(
     else:
         _print(found)
     end(found, given, complete=complete)
+
+
+def _counted(saved: "xr.Dataset") -> "xr.Dataset":
+    from stylobate.studies.contact_map import class_shares  # noqa: PLC0415
+    from stylobate.studies.overturning import outcome_shares  # noqa: PLC0415
+
+    return class_shares(saved) if "time_flying" in saved else outcome_shares(saved)
 
 
 def _summary(found: "xr.Dataset") -> dict[str, Any]:
@@ -154,6 +160,6 @@ def _print(found: "xr.Dataset") -> None:
     rows = [(name, str(count), f"{100.0 * share:.2f} %") for name, count, share in _shares(found) if count]
     over = " and ".join(str(dim) for dim in found["outcome"].dims)
     done, total = int(found["computed"]), found["outcome"].size
-    title = f"{total} runs over {over}" + (f", {done} of them done" if done < total else "")
+    title = f"{counted(total, 'run')} over {over}" + (f", {done} of them done" if done < total else "")
     uncertain = int(found["uncertain"].sum())
     print_table(title + (f"; {uncertain} uncertain" if uncertain else ""), rows, ("outcome", "runs", "share"))

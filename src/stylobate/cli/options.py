@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from stylobate.errors import ParameterError
+from stylobate.errors import FileError, ParameterError
 
 
 def _option(text: str, panel: str) -> Any:
@@ -15,6 +15,15 @@ def _option(text: str, panel: str) -> Any:
 
 def _axis(text: str) -> Any:
     return typer.Option(help=text, rich_help_panel=_AXES, show_default=False, metavar="NAME FROM TO NUMBER")
+
+
+def _readable(paths: list[Path] | None) -> list[Path] | None:
+    """Return the files, or say at once that one is missing: what reads them takes seconds to import."""
+    for path in paths or ():
+        if not path.is_file():
+            message = f"cannot read {path}: No such file or directory"
+            raise FileError(message)
+    return paths
 
 
 _AXES = "Axes"
@@ -100,7 +109,13 @@ StartPhase = Annotated[float | None, _option("phase at the start [rad]", _MOTION
 Ramp = Annotated[float | None, _option("time over which the amplitude rises [s]", _MOTION)]
 
 RecordFiles = Annotated[
-    list[Path] | None, _option("a file of a record; once more for each component of the same event", _MOTION)
+    list[Path] | None,
+    typer.Option(
+        help="a file of a record; once more for each component of the same event",
+        rich_help_panel=_MOTION,
+        show_default=False,
+        callback=_readable,
+    ),
 ]
 SampleRecord = Annotated[str | None, _option('a record that comes with the package: "el centro 1940"', _MOTION)]
 Units = Annotated[str | None, _option("of a record whose file tells none: g, m/s2 or cm/s2", _MOTION)]

@@ -28,12 +28,19 @@ def open_saved(source: Path | None) -> "xr.Dataset | None":
     if source.suffix == STORE:
         from stylobate import studies  # noqa: PLC0415  heavy imports wait until the options are read
 
-        return studies.open_sweep(source, load=True)
+        return _relocated(studies.open_sweep(source, load=True), source)
     data = _read(source)
     if "outcome" not in data.data_vars or "provenance" not in data.attrs:
         message = f"{source} holds no map or basins saved by stylobate"
         raise FileError(message)
-    return data
+    return _relocated(data, source)
+
+
+def _relocated(data: "xr.Dataset", source: Path) -> "xr.Dataset":
+    """Return `data` with the files of records that were moved together with them found again."""
+    from stylobate import spec  # noqa: PLC0415
+
+    return data.assign_attrs(provenance=json.dumps(spec.relocated(provenance_of(data), source.parent)))
 
 
 def _read(path: Path) -> "xr.Dataset":

@@ -90,18 +90,22 @@ def simulate(
 
     stylobate simulate --radius 0.3 --height 3 --density 2700 --record quake_NS.txt --record quake_EW.txt --units g
 
-    A run under a record needs no duration: it goes on for a free tail of 20/p after it.
+    A run under a record or a pulse needs no duration: it goes on for a free tail of 20/p after it.
     """
-    from stylobate import engine, plots, spec  # noqa: PLC0415  heavy imports wait until the options are read
-
     check_writable(figure, output)
     described = read_source(source)
+    from stylobate import spec  # noqa: PLC0415  heavy imports wait until the options are read
+
     description = spec.SimulationDescription.parse(opt.overlay(described, context.params, opt.RUN_NAMES))
     setup = description.build()
+    from stylobate import engine  # noqa: PLC0415  … and the heaviest until they can be used
+
     run = engine.simulate(setup.model, setup.motion, **setup.options)
     if output is not None:
         run.save(output)
     if figure is not None:
+        from stylobate import plots  # noqa: PLC0415
+
         save_figure(plots.plot(run), figure)
     if as_json:
         print_json(_summary(run))

@@ -13,14 +13,18 @@ def read_source(source: Path | None) -> dict[str, Any]:
     ------
     FileError
         If the file is missing or is neither.
-    """
-    from stylobate import results, spec  # noqa: PLC0415  heavy imports wait until the options are read
 
+    Notes
+    -----
+    Files of records that were moved together with a saved run are found again, see `spec.relocated`.
+    """
     if source is None:
         return {}
     if not source.is_file():
         message = f"cannot read {source}: No such file or directory"
         raise FileError(message)
+    from stylobate import results, spec  # noqa: PLC0415  heavy imports wait until they are needed
+
     if source.suffix == ".nc":
-        return spec.description_of(results.load(source).provenance).values()
+        return spec.description_of(spec.relocated(results.load(source).provenance, source.parent)).values()
     return spec.read_description(source)

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stylobate.cli import options as opt
-from stylobate.cli.many_runs import check_outputs, computed, end, is_to_compute, write
+from stylobate.cli.many_runs import check_axes, check_outputs, computed, end, is_to_compute, write
 from stylobate.cli.output import STORE, print_json, print_table
 from stylobate.cli.saved import axes_of, model_named, open_saved, provenance_of
 from stylobate.cli.source import read_source
+from stylobate.counted import counted
 from stylobate.errors import FileError
 
 if TYPE_CHECKING:
@@ -121,9 +122,6 @@ def spectrum(
     stylobate spectrum --radius 0.5 --height 5 --density 2000 --damping 0.05 --sample-record "el centro 1940"
     --x size 0.2 4 12 --x-spacing log --rocking --output rocking.nc
     """
-    from stylobate import spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
-    from stylobate.studies.sweeps.quantities import check_quantities  # noqa: PLC0415
-
     given, complete = dict(context.params), True
     check_outputs(given)
     saved = _saved(source)
@@ -131,14 +129,17 @@ def spectrum(
         assert saved is not None
         found = saved
     else:
+        from stylobate import spec  # noqa: PLC0415  heavy imports wait until the options are read
+
         described = read_source(source) if saved is None else _description(saved)
         if motion is not None:
             given["motion"] = motion.replace("-", "_")
         values = opt.overlay_axes(opt.overlay(described, given, opt.RUN_NAMES), given, "spectrum")
         description = spec.SpectrumDescription.parse(_overlay(values, given))
         setup = description.build()
-        for place, name in zip("xy", setup.options["over"], strict=False):
-            check_quantities(f"spectrum.{place}", setup.model, [name])
+        from stylobate import studies  # noqa: PLC0415  … and the heaviest until they can be used
+
+        check_axes("spectrum", setup)
         study = studies.rocking_spectrum if description.spectrum.rocking else studies.overturning_bands
         found, complete = computed(study, setup, given, "spectrum")
     write(found, given)
@@ -257,10 +258,10 @@ def _print_bands(found: "xr.Dataset") -> None:
         for row in (rows[:_FIRST] if len(rows) > _ROWS else rows)
     ]
     header = (*dims, "overturns at scales", "least peak acceleration / (g tan α)")
-    told = [f"{len(rows)} case{'s' if len(rows) > 1 else ''}, {model_named(found)}"]
+    told = [f"{counted(len(rows), 'case')}, {model_named(found)}"]
     told += [f"the {_FIRST} that overturn first"] if len(rows) > _ROWS else []
     unknown = int(found["unknown"].sum())
-    told += [f"{unknown} of {found['outcome'].size} runs tell nothing"] if unknown else []
+    told += [f"{unknown} of {counted(found['outcome'].size, 'run')} without an answer"] if unknown else []
     print_table("; ".join([*told, found.attrs["resolution"]]), table, header)
 
 
@@ -286,7 +287,7 @@ def _print_peaks(found: "xr.Dataset") -> None:
     table = [tuple(_written(row[name]) for name in (*dims, *names)) for row in rows]
     shown = f"; the {len(rows)} that rock most" if len(rows) < found["outcome"].size else ""
     header = (*dims, "2π/p [s]", "outcome", "peak tilt / α", "peak rate of tilt / p")
-    print_table(f"{found['outcome'].size} cases, {model_named(found)}{shown}", table, header)
+    print_table(f"{counted(found['outcome'].size, 'case')}, {model_named(found)}{shown}", table, header)
 
 
 def _written(value: Any) -> str:

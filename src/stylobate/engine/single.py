@@ -6,6 +6,8 @@ from dataclasses import asdict
 
 import numpy as np
 
+from stylobate.counted import counted
+from stylobate.engine.afterwards import duration_of, told_of_its_end
 from stylobate.engine.course import Course
 from stylobate.engine.forcing import Forcing
 from stylobate.engine.history import history
@@ -45,7 +47,7 @@ def simulate(
     position: Sequence[float] = (0.0, 0.0),
     velocity: Sequence[float] = (0.0, 0.0, 0.0),
     clearance: float = 0.0,
-    duration: float,
+    duration: float | None = None,
     friction_coefficient: float | None = None,
     rtol: float = 1e-8,
     atol: float | None = None,
@@ -79,7 +81,8 @@ def simulate(
         Of models that can slip and fly: velocity of the lowest point of the rim, or of the base, relative to the plane
         [m/s], and its height above it [m].
     duration
-        How long to follow it [s].
+        How long to follow it [s]; where it is left out, to a free tail of 20/p after a base motion that ends, such as a
+        record or a pulse.
     friction_coefficient
         Of the contact: where more friction is needed the result warns. Models that slip have their own.
     rtol, atol
@@ -105,7 +108,7 @@ def simulate(
     Raises
     ------
     ParameterError
-        If an argument is out of range.
+        If an argument is out of range, or there is no `duration` and the base motion does not end.
 
     Examples
     --------
@@ -131,7 +134,7 @@ def simulate(
         raise ParameterError(message)
     if friction_coefficient is not None:
         friction_coefficient = require_positive("friction_coefficient", friction_coefficient)
-    duration = require_positive("duration", duration, "s")
+    duration = duration_of(duration, model, moved)
     samples = None if samples is None else require_whole("samples", samples, least=2)
     method = method_of(model, moved, rtol, atol, max_steps)
     forcing = Forcing.of(model, moved)
@@ -159,9 +162,10 @@ def simulate(
         planar=course.planar,
         friction_coefficient=friction_coefficient,
     )
+    freed = verdict.outcome is Outcome.STILL_MOVING and math.isfinite(moved.duration) and not model.switches
     return Response(
         outcome=verdict.outcome,
-        reason=verdict.reason,
+        reason=told_of_its_end(recorded.data, model.column, moved) if freed else verdict.reason,
         decided_at=_decided_at(course, verdict, duration),
         uncertain=_is_uncertain(model, forcing, course, thresholds),
         planar=course.planar,
@@ -220,7 +224,7 @@ def _verdict(model: Model, motion: BaseMotion, course: Course, rules: OutcomeRul
         return Verdict(*_ENDINGS[course.ended], {})
     if course.stands:
         releases = sum(event.kind == "release" for event in course.events)
-        before = f", released {releases} times before" if releases else ""
+        before = f", released {counted(releases, 'time')} before" if releases else ""
         return Verdict(Outcome.AT_REST, f"it stands at the end of the run{before}", {})
     period = None if motion.period is None else motion.period / model.time_scale
     return long_term(model, course.trajectory, period, rules, planar=course.planar)

@@ -6,6 +6,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stylobate.errors import ParameterError
+from stylobate.plots.animation import Animation, animate
 from stylobate.plots.assessment import assessment_report, assessment_tables
 from stylobate.plots.basins import plot_basins
 from stylobate.plots.column_path import plot_column_path
@@ -35,6 +36,8 @@ from stylobate.plots.start_boundary import plot_start_boundary
 from stylobate.results import Assessment, Response
 
 __all__ = [
+    "Animation",
+    "animate",
     "assessment_report",
     "assessment_tables",
     "paper_report",

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from stylobate.plots.pose import Floats, base_centres, frames, quaternions
 
 _CIRCLE = np.linspace(0.0, 2.0 * np.pi, 181)
 
@@ -36,17 +36,11 @@ class View:
 
     def outline(self, solid: "Cylinder") -> Floats:
         """Return the corners of what a cylinder covers on paper, in order."""
-        return _hull(self.project(np.concatenate([solid.circle(0.0), solid.circle(1.0)])))
+        return hull(self.project(np.concatenate([solid.circle(0.0), solid.circle(1.0)])))
 
     def sees(self, normal: Floats) -> bool:
         """Return whether a face with this outward `normal` is seen."""
-        cosine = math.cos(self.elevation)
-        eye = (
-            cosine * math.cos(self.azimuth),
-            cosine * math.sin(self.azimuth),
-            math.sin(self.elevation),
-        )
-        return float(np.dot(normal, eye)) > 0.0
+        return float(np.dot(normal, direction(self.azimuth, self.elevation))) > 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,11 +73,7 @@ class Cylinder:
         footprint
             Centre of the circle on the ground about which the contact point lies [m].
         """
-        angle, azimuth = math.hypot(*tilt), math.atan2(tilt[1], tilt[0])
-        frame = _about_z(azimuth) @ _about_y(angle) @ _about_z(twist - azimuth)
-        lean = np.array([math.cos(azimuth), math.sin(azimuth), 0.0])
-        down = math.cos(angle) * lean - np.array([0.0, 0.0, math.sin(angle)])
-        return cls(np.array([*footprint, 0.0]) + radius * (lean - down), frame, radius, height)
+        return cls(base_centres(tilt, footprint, radius), frames(quaternions(tilt, twist)), radius, height)
 
     @property
     def axis(self) -> Floats:
@@ -101,22 +91,18 @@ class Cylinder:
         return np.stack([centre, centre + self.radius * self.frame[:, 0]])
 
 
-def _about_z(angle: float) -> Floats:
-    c, s = math.cos(angle), math.sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+def direction(azimuth: float, elevation: float) -> Floats:
+    """Return the unit vector towards this azimuth and elevation [rad]."""
+    level = math.cos(elevation)
+    return np.array([level * math.cos(azimuth), level * math.sin(azimuth), math.sin(elevation)])
 
 
-def _about_y(angle: float) -> Floats:
-    c, s = math.cos(angle), math.sin(angle)
-    return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
-
-
-def _hull(points: Floats) -> Floats:
+def hull(points: Floats) -> Floats:
     """Return the convex hull of points on paper, anticlockwise: Andrew's monotone chain."""
-    ordered = points[np.lexsort((points[:, 1], points[:, 0]))]
+    ordered = sorted(points.tolist())
 
-    def chain(given: Floats) -> list[Floats]:
-        kept: list[Floats] = []
+    def chain(given: list[list[float]]) -> list[list[float]]:
+        kept: list[list[float]] = []
         for point in given:
             while len(kept) > 1 and _turn(kept[-2], kept[-1], point) <= 0.0:
                 kept.pop()
@@ -126,6 +112,6 @@ def _hull(points: Floats) -> Floats:
     return np.array(chain(ordered) + chain(ordered[::-1]))
 
 
-def _turn(first: Floats, second: Floats, third: Floats) -> float:
-    (ax, ay), (bx, by) = second - first, third - first
-    return float(ax * by - ay * bx)
+def _turn(first: list[float], second: list[float], third: list[float]) -> float:
+    (x, y), (ax, ay), (bx, by) = first, second, third
+    return (ax - x) * (by - y) - (ay - y) * (bx - x)

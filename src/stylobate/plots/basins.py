@@ -12,6 +12,7 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from stylobate.counted import counted
 from stylobate.plots.cells import fill_options, percent
 from stylobate.plots.classes import attractor_classes
 from stylobate.plots.maps import draw_classes
@@ -109,7 +110,7 @@ def _draw_fractions(axes: Axes, found: xr.Dataset) -> None:
 
 def _runs(found: xr.Dataset) -> str:
     unsettled = int(found["unsettled"])
-    told = f"{int(found['computed'])} starts"
+    told = counted(int(found["computed"]), "start")
     return f"{told}, {unsettled} of them unsettled" if unsettled else told
 
 

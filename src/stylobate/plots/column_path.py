@@ -12,7 +12,9 @@ from matplotlib.patches import Circle, Polygon
 from matplotlib.ticker import MaxNLocator
 
 from stylobate.errors import ParameterError
-from stylobate.plots.axonometry import Cylinder, Floats, View
+from stylobate.plots.axonometry import Cylinder, View
+from stylobate.plots.pose import Floats
+from stylobate.plots.shape import Shape
 from stylobate.plots.style import BLACK, BLUE, GREY, SKY, VERMILION, new_figure, styled
 from stylobate.results import Response
 
@@ -61,7 +63,8 @@ def plot_column_path(
         message = f"run must be of a model that tells its contact_point, got {sorted(map(str, run.data.data_vars))}"
         raise ParameterError(message)
     data, drawn = _shown(run, times, until)
-    radius, height = _dimensions(run)
+    shape = Shape.of(run)
+    radius, height = shape.radius, shape.height
     view = View(np.radians(azimuth), np.radians(elevation))
     columns = [_column(data, at, radius, height) for at in drawn]
     figure = new_figure(4.6)
@@ -101,12 +104,6 @@ def _path(run: Response, last: float, chosen: Floats) -> xr.Dataset:
     parts = np.clip(np.ceil(turned / _TURN), 1, _PARTS).astype(int)
     pieces = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(time[:-1], time[1:], parts, strict=True)]
     return run.sample(np.append(np.concatenate(pieces), last))
-
-
-def _dimensions(run: Response) -> tuple[float, float]:
-    """Return radius and height of the column [m]; of a column known by its inertia twice that of the mass centre."""
-    column = run.provenance["column"]
-    return float(column["radius"]), float(column.get("height") or 2.0 * column["mass_height"])
 
 
 def _footprint(data: xr.Dataset) -> Floats:

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from stylobate.counted import counted
 from stylobate.plots.cells import Floats, cell_edges, fill_options, is_geometric, set_scale
 from stylobate.plots.classes import Look, attractor_classes
 from stylobate.plots.labels import axis_label
@@ -56,7 +57,7 @@ def plot_fractions(found: xr.Dataset) -> Figure:
     axes.set(xlim=_limits(x), ylim=(0.0, 1.0))
     if x.size == 1:
         axes.set_xticks(x)
-    axes.set_ylabel(f"fraction of {found.attrs['starts']} starts")
+    axes.set_ylabel(f"fraction of {counted(int(found.attrs['starts']), 'start')}")
     axes.grid(visible=False)
     axes.set_xlabel(axis_label(found[str(name)]))
     figure.legend(handles=legend[::-1], loc="outside right upper")

@@ -1,5 +1,6 @@
 """Fragility curves with what was observed, annual rates with what contributes to them, bands of safety by record."""
 
+import textwrap
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,8 @@ _BAND = 0.18
 _ROW, _FRAME = 0.17, 1.5
 _TALLEST = 7.5
 _BAR = 0.72
+# Letters in a line of a legend.
+_LEGEND = 30
 # Points of several limit states at one intensity stand apart by this factor.
 _APART = 1.012
 
@@ -169,9 +172,13 @@ def _rate_of(state: xr.Dataset, years: float) -> str:
     rate, low, high = (state[key].item() for key in ("annual_rate", "rate_low", "rate_high"))
     if not np.isfinite(rate):
         return f"{name}\nno fit"
+    bounds = f"bounds {low:.2e} to {high:.2e}"
+    if why := str(state["not_told"].item()):
+        reason = textwrap.fill(f"not told: {why}", _LEGEND)
+        return f"{name}\n{reason}\n{bounds}"
     return (
         f"{name}\n{rate:.2e} /a, {100.0 * state['probability'].item():.2g} % in {years:g} a\n"
-        f"bounds {low:.2e} to {high:.2e}\n{100.0 * state['share_beyond'].item():.2g} % from beyond the curve"
+        f"{bounds}\n{100.0 * state['share_beyond'].item():.2g} % from beyond the curve"
     )
 
 

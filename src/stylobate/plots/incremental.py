@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from stylobate.counted import counted
 from stylobate.errors import ParameterError
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import BLACK, GREY, PALETTE, STABLE_WIDTH, new_figure, styled
@@ -146,6 +147,6 @@ def _legend(names: list[str]) -> list[Line2D]:
 
 
 def _title(found: xr.Dataset, *, quantiles: bool) -> str:
-    others = [f"{found.sizes[dim]} {str(dim).replace('_', ' ')}s" for dim in found["tilt_ratio"].dims]
+    others = [counted(found.sizes[dim], str(dim).replace("_", " ")) for dim in found["tilt_ratio"].dims]
     told = f"runs: {', '.join(others)}"
     return told if quantiles else f"{told}; no quantiles, for intensities differ between them"

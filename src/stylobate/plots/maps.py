@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from stylobate.counted import counted
 from stylobate.errors import ParameterError
 from stylobate.plots.cells import Integers, class_legend, draw_cells
 from stylobate.plots.classes import MapClass, outcome_classes
@@ -79,7 +80,7 @@ def _mark_uncertain(axes: Axes, runs: xr.Dataset, x: str, y: str) -> list[Artist
         return []
     known = runs["uncertain"] & (runs["outcome"] != NOT_COMPUTED)
     rows, columns = np.nonzero(known.transpose(y, x).to_numpy())
-    told = f"uncertain  {rows.size} run{'s' if rows.size > 1 else ''}"
+    told = f"uncertain  {counted(rows.size, 'run')}"
     if rows.size > _MOST_MARKED * known.size:
         return [Line2D([], [], label=f"{told}, not marked", linestyle="none")]
     size = float(np.clip(_MAP_WIDTH / max(runs.sizes[x], runs.sizes[y]) / 2.0, *_DOTS))

@@ -8,6 +8,7 @@ from matplotlib.lines import Line2D
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
+from stylobate.counted import counted
 from stylobate.errors import ParameterError
 from stylobate.plots.style import BLACK, BLUE, DASHES, GREY, VERMILION, new_figure, styled
 
@@ -63,9 +64,9 @@ def _overturned(flat: Floats, space: Floats) -> str:
 
 def _bias(found: xr.Dataset) -> str:
     number = int(found["overall_compared"])
-    if number < 2:  # noqa: PLR2004  a scatter needs two
-        return f"{number} records in which both rock and none overturns: too few for a bias"
     bias, scatter, error = (float(found[f"overall_{name}"]) for name in ("bias", "scatter", "standard_error"))
+    if not np.isfinite(bias):
+        return f"{counted(number, 'record')} in which both rock and none overturns: too few for a bias"
     return (
         f"mean of ln(space/plane) over {number} records {bias:+.2f} ± {error:.2f} (standard error),\n"
         f"scatter {scatter:.2f}; where both rock and neither overturns"

@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
+from stylobate.counted import counted
 from stylobate.errors import Outcome
 from stylobate.plots.cells import fill_options
 from stylobate.plots.classes import OUTCOME_LOOKS, UNFINISHED, Look
@@ -42,7 +43,7 @@ def plot_robustness(found: xr.Dataset) -> Figure:
     if records <= _NAMED:
         table.set_xticks(np.arange(records), names, rotation=90 if records > 3 else 0)  # noqa: PLR2004
     else:
-        table.set(xticks=[], xlabel=f"{records} records")
+        table.set(xticks=[], xlabel=counted(records, "record"))
     table.grid(visible=False)
     flips = (cells == 2) | (cells == 3)  # noqa: PLR2004  places in _LOOKS
     bars.barh(np.arange(changes), flips.sum(axis=1), 0.75, color=_LOOKS["flips: now overturns"].colour)

@@ -1,23 +1,26 @@
 """The description of an assessment: columns, records, dissipation, friction, and what is asked of them."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated, Any, Self
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
+from pydantic import BeforeValidator, Field, TypeAdapter, ValidationInfo, field_validator
 
-from stylobate.errors import DescriptionError, ParameterError, require_positive
+from stylobate.errors import DescriptionError, ParameterError, require_not_negative, require_positive, require_whole
 from stylobate.models import Model
 from stylobate.motions import Record
+from stylobate.results.few_records import FEW_RECORDS
 from stylobate.spec.axis import Axis
 from stylobate.spec.columns import ColumnDescription
 from stylobate.spec.description import Description, built
+from stylobate.spec.levels import LEVELS, problems_of_the_levels
 from stylobate.spec.models import ModelDescription, WobblingModel
 from stylobate.spec.records import RecordsDescription
+from stylobate.spec.suggestions import did_you_mean
 
-_LEVELS = ("low", "central", "high")
 _MARGIN = {"from": 0.2, "to": 5.0, "number": 60, "spacing": "log"}
 
 
@@ -29,6 +32,15 @@ def _with_name(values: Any) -> Any:
 def _as_source(values: Any) -> Any:
     """Return the values of records; a folder, a pattern or a list of files is their source."""
     return {"source": values} if isinstance(values, (str, list, tuple)) else values
+
+
+def _as_friction(values: Any) -> Any:
+    """Return a coefficient, or one for each column."""
+    return (_BY_COLUMN if isinstance(values, Mapping) else _ONE).validate_python(values)
+
+
+_ONE: TypeAdapter[float] = TypeAdapter(float)
+_BY_COLUMN: TypeAdapter[dict[str, float]] = TypeAdapter(dict[str, float])
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +59,7 @@ class AssessDescription(Description):
     columns: dict[str, ColumnDescription]
     model: ModelDescription = WobblingModel()
     dissipation: dict[str, dict[str, float]]
-    friction_coefficient: float | dict[str, float]
+    friction_coefficient: Annotated[float | dict[str, float], BeforeValidator(_as_friction)]
     records: Annotated[RecordsDescription, BeforeValidator(_as_source)]
     scales: tuple[float, ...] = (1.0,)
     margin: Annotated[Axis, BeforeValidator(_with_name)] = Field(
@@ -58,7 +70,7 @@ class AssessDescription(Description):
     robustness: bool = True
     planar: bool = True
     contact: bool = True
-    least_records: int = 10
+    least_records: int = FEW_RECORDS
     rtol: float = 1e-8
     max_steps: int = 200_000
     notes: tuple[str, ...] = ()
@@ -93,7 +105,7 @@ class AssessDescription(Description):
     @classmethod
     def _at_three_levels(cls, given: dict[str, dict[str, float]], info: ValidationInfo) -> dict[str, dict[str, float]]:
         del info
-        missing = [level for level in _LEVELS if level not in given]
+        missing = [level for level in LEVELS if level not in given]
         if missing:
             message = f"dissipation: {' and '.join(missing)} must be stated too: {_NEEDED['dissipation']}"
             raise ValueError(message)
@@ -114,11 +126,8 @@ class AssessDescription(Description):
             problems.append("columns must hold at least one column, such as [columns.tank]")
         scales = built("margin", self.margin.build, problems)
         problems += [] if scales is None else _problems_of_the_margin(scales)
-        problems += self._problems_of_the_levels()
-        try:
-            require_positive("width", self.width)
-        except ParameterError as error:
-            problems.append(str(error))
+        problems += problems_of_the_levels(self.dissipation, type(self.model))
+        problems += self._problems_of_the_numbers()
         records: dict[str, Record] = {}
         try:
             records = self.records.build()
@@ -143,14 +152,39 @@ class AssessDescription(Description):
         told = [name for name in self.dissipation["central"] if name in self.model.model_fields_set]
         return [f"model.{name} is told by dissipation; leave it out" for name in told]
 
-    def _problems_of_the_levels(self) -> list[str]:
-        """Return a line where a level loses less than one that is called lower."""
-        levels = [self.dissipation[name].get("damping") for name in _LEVELS]
-        dampings = [value for value in levels if value is not None]
-        if len(dampings) < len(levels) or dampings == sorted(dampings):
+    def _problems_of_the_numbers(self) -> list[str]:
+        """Return a line for each number that no assessment can have."""
+        friction = self.friction_coefficient
+        by_column = friction if isinstance(friction, dict) else {}
+        checks: list[Callable[[], object]] = [
+            lambda: require_positive("width", self.width),
+            lambda: require_positive("rtol", self.rtol),
+            lambda: require_whole("max_steps", self.max_steps, least=1),
+            lambda: require_whole("least_records", self.least_records, least=2),
+            lambda: require_not_negative("tail", self.tail or 0.0, "s"),
+            *(partial(require_positive, "scales", scale) for scale in self.scales),
+            *(partial(require_positive, f"friction_coefficient.{name}", one) for name, one in by_column.items()),
+        ]
+        if not isinstance(friction, dict):
+            checks.append(lambda: require_positive("friction_coefficient", friction))
+        problems = [] if self.scales else ["scales must hold at least one scale factor, such as [1.0]"]
+        for check in checks:
+            try:
+                check()
+            except ParameterError as error:
+                problems.append(str(error))
+        return [*problems, *self._problems_of_the_frictions(by_column)]
+
+    def _problems_of_the_frictions(self, by_column: Mapping[str, float]) -> list[str]:
+        if not by_column:
             return []
-        told = ", ".join(f"{name} {value:g}" for name, value in zip(_LEVELS, dampings, strict=True))
-        return [f"dissipation: damping must not fall from low to central to high, got {told}"]
+        unknown = [
+            f"friction_coefficient: {name!r} is no column; {did_you_mean(name, self.columns) or 'leave it out'}"
+            for name in by_column
+            if name not in self.columns
+        ]
+        lacking = [name for name in self.columns if name not in by_column]
+        return [*unknown, *(f"friction_coefficient: {name!r} has none; state one for each column" for name in lacking)]
 
 
 def _problems_of_the_margin(scales: npt.NDArray[np.float64]) -> list[str]:
@@ -169,7 +203,7 @@ _NEEDED = {
     "friction_coefficient": "the friction between column and base, with which what the runs need is compared",
 }
 _STANDS_IN: dict[str, Any] = {
-    "dissipation": {level: {"damping": 0.0} for level in _LEVELS},
+    "dissipation": {level: {"damping": 0.0} for level in LEVELS},
     "friction_coefficient": 1.0,
 }
 

@@ -6,6 +6,7 @@ from typing import Any, Self, TypeVar
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from stylobate.errors import DescriptionError, ParameterError
+from stylobate.spec.suggestions import with_suggestions
 
 _T = TypeVar("_T")
 
@@ -13,6 +14,8 @@ _T = TypeVar("_T")
 _UNION_FIELDS = ("column", "model", "motion")
 # Fields that are tables of such, by names of the user's.
 _UNION_TABLES = ("columns",)
+# What is to be said of a part that is missing.
+_WANTED = {"duration": ": how long to follow a run [s], such as 60; only after a record or a pulse it may be left out"}
 
 
 class Description(BaseModel):
@@ -32,7 +35,7 @@ class Description(BaseModel):
         try:
             return cls.model_validate(values)
         except ValidationError as error:
-            raise DescriptionError([_line(problem) for problem in error.errors()]) from None
+            raise DescriptionError(with_suggestions(cls, [_line(problem) for problem in error.errors()])) from None
 
     def values(self) -> dict[str, Any]:
         """Return the description as plain values that JSON and TOML can hold, defaults left out."""
@@ -55,7 +58,7 @@ def _line(problem: Any) -> str:
     tag = str(context.get("discriminator", "")).strip("'")
     match problem["type"]:
         case "missing":
-            return f"{name} is missing"
+            return f"{name} is missing{_WANTED.get(name, '')}"
         case "extra_forbidden":
             return _unknown(name, problem["loc"])
         case "union_tag_invalid":

@@ -2,13 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-import numpy as np
-from pydantic import Field
+from pydantic import BeforeValidator, Field
+from pydantic_core import PydanticCustomError
 
 from stylobate.errors import (
+    DescriptionError,
     FileError,
     ParameterError,
     require_finite,
@@ -19,6 +19,7 @@ from stylobate.errors import (
 from stylobate.models import Model
 from stylobate.motions import Record
 from stylobate.spec.description import Description, built
+from stylobate.spec.hazard import Hazard, HazardPoints
 from stylobate.spec.many_runs import ManyRuns
 from stylobate.spec.records import RecordsDescription
 from stylobate.spec.spectrum import Scales
@@ -50,7 +51,22 @@ class Uniform(Description):
     most: float
 
 
-AnySpread = Annotated[Lognormal | Normal | Uniform, Field(discriminator="kind")]
+_SPREADS: dict[str, type[Lognormal | Normal | Uniform]] = {"lognormal": Lognormal, "normal": Normal, "uniform": Uniform}
+
+
+def _as_spread(values: Any) -> Any:
+    """Return the spread of this kind; its mistakes are told by the names in the file, without those of classes."""
+    if isinstance(values, Description):
+        return values
+    kind = values.get("kind") if isinstance(values, Mapping) else None
+    if kind not in _SPREADS:
+        message = f"a spread must have a kind, {', '.join(map(repr, _SPREADS))}, such as {_EXAMPLE}"
+        raise PydanticCustomError("spread", message)  # noqa: EM101  the first is its type
+    return _SPREADS[str(kind)].model_validate(values)
+
+
+_EXAMPLE = '{kind = "lognormal", dispersion = 0.4}'
+AnySpread = Annotated[Lognormal | Normal | Uniform, BeforeValidator(_as_spread)]
 
 
 class Spectral(Description):
@@ -60,34 +76,20 @@ class Spectral(Description):
     damping: float = 0.05
 
 
-class Hazard(Description):
-    """Annual `rate` at which each `intensity` is exceeded; or a `file` of two columns, these two."""
-
-    intensity: tuple[float, ...] = ()
-    rate: tuple[float, ...] = ()
-    file: str | None = None
-
-    def points(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return intensities and rates.
-
-        Raises
-        ------
-        FileError
-            If the file cannot be read.
-        ParameterError
-            If they are given in two ways or none.
-        """
-        if (self.file is None) == (not self.intensity and not self.rate):
-            message = "intensity and rate must be given, or a file of them, one of both"
-            raise ParameterError(message)
-        return (self.intensity, self.rate) if self.file is None else _columns(self.file)
+def _as_intensity(values: Any) -> Any:
+    if isinstance(values, (str, Spectral)):
+        return values
+    if isinstance(values, Mapping):
+        return Spectral.model_validate(values)
+    message = "must be a name, or a table with a period such as {period = 0.5}"
+    raise PydanticCustomError("intensity", message)  # noqa: EM101  the first is its type
 
 
 class Fragility(Description):
     """The `scales` of the records and what else varies; how runs are counted and fitted; the hazard."""
 
     scales: Scales
-    intensity: str | Spectral = "peak ground acceleration"
+    intensity: Annotated[str | Spectral, BeforeValidator(_as_intensity)] = "peak ground acceleration"
     rotations: tuple[float, ...] = (0.0,)
     vertical: tuple[bool, ...] = (True,)
     tail: float | None = None
@@ -114,7 +116,7 @@ class FragilitySetup:
     scales
         Factors of the records.
     hazard
-        Intensities and annual rates, or None.
+        Points of the hazard curve, or None.
     options
         Arguments that all runs share.
     """
@@ -123,7 +125,7 @@ class FragilitySetup:
     records: Mapping[str, Record]
     table: Fragility
     scales: tuple[float, ...]
-    hazard: tuple[tuple[float, ...], tuple[float, ...]] | None
+    hazard: HazardPoints | None
     options: dict[str, Any]
 
 
@@ -135,7 +137,13 @@ class FragilityDescription(ManyRuns):
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
-        """Return the description of these `values`; `records` may be the folder alone."""
+        """Return the description of these `values`; `records` may be the folder alone.
+
+        Raises
+        ------
+        DescriptionError
+            With one line for each mistake.
+        """
         records = values.get("records")
         if isinstance(records, (str, list, tuple)):
             values = {**values, "records": {"source": records}}
@@ -151,13 +159,20 @@ class FragilityDescription(ManyRuns):
         """
         table, problems = self.fragility, self._problems()
         scales = built("fragility.scales", table.scales.build, problems)
-        hazard = None if table.hazard is None else built("fragility.hazard", table.hazard.points, problems)
+        hazard = None if table.hazard is None else _points(table.hazard, problems)
+        records = self._records(problems) if read else {}
         model, _, options = self.common(problems)
         for name in ("duration", "periods", "tilt_limit"):
             del options[name]
-        records = self.records.build() if read else {}
         assert scales is not None
         return FragilitySetup(model, records, table, tuple(scales.tolist()), hazard, options)
+
+    def _records(self, problems: list[str]) -> dict[str, Record]:
+        try:
+            return self.records.build()
+        except DescriptionError as error:
+            problems += error.problems
+            return {}
 
     def _problems(self) -> list[str]:
         table = self.fragility
@@ -183,31 +198,9 @@ class FragilityDescription(ManyRuns):
         return problems
 
 
-def _columns(path: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
+def _points(hazard: Hazard, problems: list[str]) -> HazardPoints | None:
     try:
-        lines = Path(path).read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        message = f"cannot read {path}: {getattr(error, 'strerror', None) or error}"
-        raise FileError(message) from None
-    numbers = [_pair(path, place, line) for place, line in enumerate(lines, start=1) if _holds_numbers(line)]
-    if not numbers:
-        message = f"{path} holds no numbers: two columns are needed, intensity and annual rate"
-        raise FileError(message)
-    x, rate = np.array(numbers).T
-    return tuple(x.tolist()), tuple(rate.tolist())
-
-
-def _holds_numbers(line: str) -> bool:
-    """Return whether a line is neither empty nor a comment nor a header."""
-    text = line.strip()
-    return bool(text) and (text[0].isdigit() or text[0] in "+-.")
-
-
-def _pair(path: str, place: int, line: str) -> tuple[float, float]:
-    parts = line.replace(",", " ").replace(";", " ").split()
-    try:
-        intensity, rate = (float(part) for part in parts)
-    except ValueError:
-        message = f"{path}, line {place}: two numbers are needed, intensity and annual rate, got {line.strip()!r}"
-        raise FileError(message) from None
-    return intensity, rate
+        return hazard.points()
+    except (ParameterError, FileError) as error:
+        problems.append(f"fragility.hazard: {error}")
+        return None

@@ -18,7 +18,7 @@ from stylobate.spec.simulation import (
     built_parts,
     built_rules,
     duration_with_tail,
-    follows_a_record,
+    is_to_end,
     problems_of_the_run,
     refuse_own_classes,
 )
@@ -66,16 +66,16 @@ class ManyRuns(Description):
         rules = built("rules", lambda: built_rules(self.rules), problems)
         model, motion = built_parts(self.column, self.model, self.motion, problems)
         options = {name: getattr(self, name) for name in _SHARED} | {"rules": rules or OutcomeRules()}
-        if self._lasts_as_its_record(varying):
+        if self._lasts_as_its_motion(varying):
             options["duration"] = duration_with_tail(model, motion)
         return model, motion, options
 
     def problems_of_the_length(self, names: tuple[str, ...]) -> list[str]:
         """Return a line unless one of `duration` and `periods` is given, or a duration among the `names` that vary.
 
-        Under a record none is needed: see `SimulationDescription`.
+        Under a record or a pulse none is needed: see `SimulationDescription`.
         """
-        if self._lasts_as_its_record(names):
+        if self._lasts_as_its_motion(names):
             return []
         given = [name for name in ("duration", "periods") if getattr(self, name) is not None]
         given += ["a duration that varies"] if "duration" in names else []
@@ -84,9 +84,9 @@ class ManyRuns(Description):
         got = " and ".join(given) or "none of them"
         return [f"duration [s], periods or a duration that varies is needed, one of them; got {got}"]
 
-    def _lasts_as_its_record(self, names: Sequence[str]) -> bool:
+    def _lasts_as_its_motion(self, names: Sequence[str]) -> bool:
         untold = self.duration is None and self.periods is None and "duration" not in names
-        return untold and follows_a_record(self.motion.model_dump())
+        return untold and is_to_end(self.motion.model_dump())
 
 
 _OF_A_SINGLE_RUN = ("samples", "twist", "position", "friction_coefficient", "velocity", "clearance")

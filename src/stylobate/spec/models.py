@@ -148,4 +148,7 @@ _DESCRIPTIONS: Mapping[type[Model], type[Description]] = {
     PlanarRocking: PlanarRockingModel,
 }
 
-_BY_KIND: Mapping[str, type[Description]] = {one.model_fields["kind"].default: one for one in _DESCRIPTIONS.values()}
+DESCRIBED_MODELS: tuple[type[Description], ...] = tuple(_DESCRIPTIONS.values())
+"""The descriptions of all models."""
+
+_BY_KIND: Mapping[str, type[Description]] = {one.model_fields["kind"].default: one for one in DESCRIBED_MODELS}

@@ -11,6 +11,12 @@ from stylobate.motions.pulses import AntisymmetricRicker, Gabor, MavroeidisPapag
 from stylobate.spec.description import Description
 from stylobate.spec.records import DescribedRecord, RecordMotion
 
+PULSES = (
+    *("half_sine", "half_cosine", "one_sine", "one_cosine", "sinusoidal", "type_a", "type_b", "type_c"),
+    *("ricker", "antisymmetric_ricker", "gabor", "mavroeidis_papageorgiou"),
+)
+"""Kinds of pulses: motions that end."""
+
 
 class RestMotion(Description):
     """A base at rest."""

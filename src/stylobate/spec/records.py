@@ -125,7 +125,7 @@ class RecordMotion(_Reading):
         if self.path is not None and not 1 <= len(self.paths) <= _LONGEST_EVENT:
             message = f"path must name one to three files of one event, got {len(self.paths)}"
             raise ParameterError(message)
-        digests = [_sha256(path) for path in self.paths]
+        digests = [self._sha256(path) for path in self.paths]
         for path, found in zip(self.paths, digests, strict=True):
             was = self.file_sha256.get(path, found)
             if was != found:
@@ -135,6 +135,14 @@ class RecordMotion(_Reading):
                 )
                 raise ParameterError(message)
         return digests
+
+    def _sha256(self, path: str) -> str:
+        try:
+            return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+        except OSError as error:
+            remedy = "; the result was made with it: put it there or beside the result" if self.file_sha256 else ""
+            message = f"cannot read {path}: {error.strerror or error}{remedy}"
+            raise FileError(message) from None
 
     def _read(self) -> Record:
         if self.sample is not None:
@@ -318,14 +326,6 @@ def _events(paths: Iterable[Path]) -> list[list[Path]]:
     for path in paths:
         events.setdefault((path.parent, split_name(name_of(path))[0]), []).append(path)
     return list(events.values())
-
-
-def _sha256(path: str) -> str:
-    try:
-        return hashlib.sha256(Path(path).read_bytes()).hexdigest()
-    except OSError as error:
-        message = f"cannot read {path}: {error.strerror or error}"
-        raise FileError(message) from None
 
 
 def anchored(values: Any, folder: Path) -> Any:

@@ -26,7 +26,7 @@ from stylobate.results import OutcomeRules
 from stylobate.spec.columns import ANY_COLUMN, ColumnDescription, GivenColumn
 from stylobate.spec.description import Description, built
 from stylobate.spec.models import ModelDescription, SlenderModel, describe_model
-from stylobate.spec.motions import MotionDescription, RestMotion, describe_motion
+from stylobate.spec.motions import PULSES, MotionDescription, RestMotion, describe_motion
 from stylobate.spec.records import anchored
 
 
@@ -42,7 +42,7 @@ class Setup:
 class SimulationDescription(Description):
     """A run: `column`, `model`, `motion` and the arguments of `simulate`, under the same names.
 
-    A run under a record needs no `duration`: it then lasts as long as the record and a free tail of 20/p.
+    A run under a record or a pulse needs no `duration`: it then lasts as long as that and a free tail of 20/p.
     """
 
     column: ColumnDescription
@@ -71,7 +71,7 @@ class SimulationDescription(Description):
         own = {name: value for name, value in values.items() if name not in OF_OTHER_COMMANDS}
         if own.get("duration") is None:
             own.pop("duration", None)
-            own |= {"duration": None} if follows_a_record(values.get("motion")) else {}
+            own |= {"duration": None} if is_to_end(values.get("motion")) else {}
         return super().parse(own)
 
     def build(self) -> Setup:
@@ -124,18 +124,19 @@ def built_parts(
 
 
 FREE_TAIL = 20.0
-"""How long a run goes on after its record if no duration is given, in 1/p: what is near its balance parts by e²⁰."""
+"""How long a run goes on after its base motion if no duration is given, in 1/p: near its balance all parts by e²⁰."""
 
 
-def follows_a_record(motion: object) -> bool:
-    """Return whether the plain values of a `motion` are those of a record, or of one scaled, turned or delayed."""
+def is_to_end(motion: object) -> bool:
+    """Return whether the plain values of a `motion` are of one that ends: a record or a pulse, perhaps scaled or so."""
     if not isinstance(motion, Mapping):
         return False
     kind = motion.get("kind")
     if kind in ("sum", "one_of"):
         members = motion.get("motions")
-        return isinstance(members, Sequence) and bool(members) and all(follows_a_record(one) for one in members)
-    return kind == "record" or (kind in ("scaled", "rotated", "delayed") and follows_a_record(motion.get("motion")))
+        return isinstance(members, Sequence) and bool(members) and all(is_to_end(one) for one in members)
+    changed = kind in ("scaled", "rotated", "delayed")
+    return kind in ("record", *PULSES) or (changed and is_to_end(motion.get("motion")))
 
 
 def duration_with_tail(model: Model, motion: BaseMotion) -> float:

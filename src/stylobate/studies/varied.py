@@ -1,10 +1,11 @@
 """What studies let vary: the starts of one system, and one parameter."""
 
-from collections.abc import Mapping
+import warnings
+from collections.abc import Iterable, Mapping
 
 import numpy.typing as npt
 
-from stylobate.errors import ParameterError
+from stylobate.errors import ParameterError, SeldomMeant
 from stylobate.models import Model
 from stylobate.studies.sweeps.quantities import STARTS, Floats, check_quantities, checked_values
 
@@ -49,6 +50,22 @@ def one_parameter(model: Model, along: Mapping[str, npt.ArrayLike], over: Mappin
     values = checked_values("along", name, given)
     _require_some("along", name, values)
     return name, values
+
+
+def remark_on_lengths(where: str, names: Iterable[str]) -> None:
+    """Warn with SeldomMeant if one length of a column varies and nothing else of its body: that is no larger column."""
+    given = set(names)
+    alone = [name for name in _LENGTHS if name in given]
+    if alone and given.isdisjoint(_OF_THE_BODY):
+        message = (
+            f"{where}: {alone[0]} changes without mass and moments of inertia, which belong to another body then; "
+            "size scales a column at one shape and density, slenderness its radius with the axial inertia"
+        )
+        warnings.warn(message, SeldomMeant, stacklevel=3)
+
+
+_LENGTHS = ("radius", "mass_height")
+_OF_THE_BODY = ("mass", "transverse_inertia", "axial_inertia")
 
 
 def _require_some(where: str, name: str, values: Floats) -> None:

@@ -46,8 +46,8 @@ def expect_as_alone(runs, outcome_in, end_of, ends_of):
         RAMPED.delayed(-0.9).delayed(2.0),
         RAMPED.delayed(2.0).delayed(-0.9).rotated(1.0),
         RAMPED.delayed(2.0).delayed(1.1),
-        TWO,
-        TWO.rotated(-0.4).scaled(0.7),
+        pytest.param(TWO, marks=pytest.mark.slow),  # a kernel of its own; see the test by plain Python in lanes
+        pytest.param(TWO.rotated(-0.4).scaled(0.7), marks=pytest.mark.slow),
         LIFTING,
         LIFTING.scaled(1.2, vertical=-0.4),
     ],
@@ -128,6 +128,7 @@ def test_a_tabulated_motion_is_the_motion_to_rounding(motion, end):
     np.testing.assert_allclose(table.rows[:, 2], [motion.largest_horizontal(start) for start in starts])
 
 
+@pytest.mark.slow  # two kernels of its own; see the test by plain Python in lanes
 @pytest.mark.parametrize(
     "motion",
     [Burst(vertical=0.0), Burst(onset=2.345, vertical=0.0), Burst(onset=0.7), Burst(bend=0.0, vertical=0.0)],
@@ -138,24 +139,30 @@ def test_a_motion_of_ones_own_moves_runs_as_it_does_alone(runs_of, outcome_in, e
     assert len(set(data["end_tilt"][:, 0].to_numpy().tolist())) == 3
 
 
-def test_a_motion_of_ones_own_releases_a_column_from_rest(runs_of, outcome_in, end_of, ends_of):
+PLANES = pytest.mark.parametrize("planar", [True, pytest.param(False, marks=pytest.mark.slow)])
+
+
+@PLANES
+def test_a_motion_of_ones_own_releases_a_column_from_rest(runs_of, outcome_in, end_of, ends_of, planar):
     still = {"tilt": (0.0, 0.0), "duration": 12.0, "rtol": 1e-10}
-    for motion in (Burst(vertical=0.0), Burst(bend=0.0, vertical=0.0)):
-        runs = runs_of(STONE, motion, 3, **still, parameters={"scale": [1.0, 1.5, 2.0]})
-        data = expect_as_alone(runs, outcome_in, end_of, ends_of)
-        assert int(data["releases"][0]) == 0
-        assert int(data["releases"][2]) >= 1
+    motion = Burst(bend=0.0 if planar else 0.8, vertical=0.0)
+    runs = runs_of(STONE, motion, 3, **still, parameters={"scale": [1.0, 1.5, 2.0]})
+    data = expect_as_alone(runs, outcome_in, end_of, ends_of)
+    assert int(data["releases"][0]) == 0
+    assert int(data["releases"][2]) >= 1
 
 
 # Bounds that fall are taken anew with each piece of the table: what they prove is told at most a piece later.
-def test_a_motion_that_dies_away_proves_the_same_a_piece_later(runs_of, outcome_in, end_of, ends_of):
-    motion = Burst(vertical=0.0, bounds_fall=True)
+@PLANES
+def test_a_motion_that_dies_away_proves_the_same_a_piece_later(runs_of, outcome_in, end_of, ends_of, planar):
+    motion = Burst(bend=0.0 if planar else 0.8, vertical=0.0, bounds_fall=True)
     piece = math.pi / motion.highest_frequency
-    start = np.stack([np.linspace(0.0, 0.12, 13), np.full(13, 0.01)], axis=1)
+    start = np.stack([np.linspace(0.0, 0.12, 13), np.full(13, 0.0 if planar else 0.01)], axis=1)
     runs = runs_of(STONE, motion, 13, tilt=start, duration=25.0, rtol=1e-10)
     data = runs.together()
     outcomes = [outcome_in(data, index) for index in range(13)]
-    assert set(outcomes) == {sb.Outcome.OVERTURNED, sb.Outcome.STILL_MOVING}
+    # In a plane friction brings some to rest.
+    assert set(outcomes) - {sb.Outcome.AT_REST} == {sb.Outcome.OVERTURNED, sb.Outcome.STILL_MOVING}
     for index, outcome in enumerate(outcomes):
         single = runs.alone(index)
         assert outcome is single.outcome

@@ -120,6 +120,7 @@ class Poisoned(sb.Slender):
     planar_rates = None
 
 
+@pytest.mark.slow  # a kernel of its own
 def test_rates_that_are_no_numbers_end_a_run_as_failed_and_leave_others_alone(outcome_in):
     data = sb.simulate_ensemble(Poisoned(COLUMN), tilt=[(0.04, 0.0), (0.01, 0.0)], duration=[9.0, 0.5])
     assert outcome_in(data, 0) is sb.Outcome.FAILED

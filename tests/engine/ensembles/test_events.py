@@ -82,7 +82,7 @@ def test_marginal_releases_overturn_at_the_time_of_single_runs(runs_of):
 
 
 @pytest.mark.parametrize("rate", [(0.0, 0.0), (0.0, 0.01)], ids=["in a plane", "in space"])
-@pytest.mark.parametrize("damping", [0.3, 1.5])
+@pytest.mark.parametrize("damping", [pytest.param(0.3, marks=pytest.mark.slow), 1.5])
 def test_friction_brings_columns_to_rest_when_it_does_alone(runs_of, outcome_in, rate, damping):
     model = sb.Slender(COLUMN, damping=damping)
     still = LINE.scaled(0.0)
@@ -187,7 +187,10 @@ def test_a_run_out_of_steps_has_failed(runs_of, outcome_in, max_steps):
 
 
 @pytest.mark.parametrize("acceleration", [1.3, 1.01, 1.0001])
-@pytest.mark.parametrize("rate", [(0.0, 0.0), (0.0, 0.03)], ids=["in a plane", "in space"])
+@pytest.mark.parametrize(
+    "rate",
+    [pytest.param((0.0, 0.0), id="in a plane", marks=pytest.mark.slow), pytest.param((0.0, 0.03), id="in space")],
+)
 def test_a_base_that_falls_faster_than_gravity_is_left_behind(outcome_in, acceleration, rate):
     motion = sb.Harmonic.vertical(acceleration=acceleration, angular_frequency=0.5)
     data = sb.simulate_ensemble(sb.Slender(COLUMN), motion, tilt=(0.03, 0.0), tilt_rate=rate, duration=7.0)
@@ -238,6 +241,7 @@ def test_start_and_motion_in_one_plane_are_integrated_in_it(runs_of, end_of, end
     np.testing.assert_allclose(ends_of(data)[4], end_of(single), atol=1e-7)
 
 
+@pytest.mark.slow  # a kernel of its own; runs by Taylor series go on like this too
 def test_a_space_motion_that_rests_goes_on_in_the_plane_of_a_straight_base_motion(runs_of, outcome_in):
     # Begun across the line of the base motion, at rest before it releases the column 40 s later.
     runs = runs_of(

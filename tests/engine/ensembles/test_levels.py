@@ -14,6 +14,7 @@ COLUMN = sb.Column.dimensionless(C)
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=3.0)
 STRONG = sb.Harmonic.circular(acceleration=0.12, angular_frequency=2.0)
 LINE = sb.Harmonic.straight(acceleration=0.13, angular_frequency=2.0)
+SWEEP = sb.Sweep.linear(acceleration=0.13, frequencies=(0.35, 0.45), length=20.0)
 VERTICAL = sb.Harmonic(amplitude=(0.065, 0.05, 0.2), phase=(0.0, 1.0, 2.0), angular_frequency=3.0)
 
 IN_SPACE = {
@@ -23,18 +24,20 @@ IN_SPACE = {
     "rolling": sb.Rolling(COLUMN, damping=0.1, spin_friction=0.1),
     "rolling resistance": sb.Rolling(COLUMN, spin_friction=0.1, rolling_resistance=0.02),
 }
+# In quick runs the column that rolls stands for all: each model has a kernel of its own to compile.
+NAMES = [pytest.param(name, marks=[] if name.startswith("rolling") else pytest.mark.slow) for name in IN_SPACE]
 RTOL = 1e-9
 # Errors of single steps, each of rtol at most, over some hundreds of them in motions that do not diverge.
 CLOSE = 100.0 * RTOL
 DEMANDS = ("largest_friction_demand", "largest_pivoting_demand", "least_normal_force")
 
 
-def together_and_alone(model, motion, *, duration, tilt, tilt_rate, spin=None, **options):
+def together_and_alone(model, motion, *, duration, tilt, tilt_rate, spin=None, demands=True, **options):
     """The runs of an ensemble, and each of them by `simulate`."""
     starts = {"tilt": np.array(tilt), "tilt_rate": np.array(tilt_rate)}
     spins = {} if spin is None else {"spin": np.array(spin)}
     options = {"duration": duration, "rtol": RTOL, **options}
-    runs = sb.simulate_ensemble(model, motion, **starts, **spins, demands=True, threads=1, **options)
+    runs = sb.simulate_ensemble(model, motion, **starts, **spins, demands=demands, threads=1, **options)
     alone = [
         sb.simulate(
             model,
@@ -64,7 +67,7 @@ STARTS = {"tilt": [(0.03, 0.0), (0.02, 0.01), (0.05, -0.02)], "tilt_rate": [(0.0
 
 
 @pytest.mark.parametrize("motion", [CIRCLE, pytest.param(VERTICAL, marks=pytest.mark.slow)], ids=["level", "vertical"])
-@pytest.mark.parametrize("name", IN_SPACE)
+@pytest.mark.parametrize("name", NAMES)
 def test_runs_of_an_ensemble_are_those_alone(name, motion):
     model = IN_SPACE[name]
     spin = None if model.spin_state is None else [0.0, 0.2, -0.3]
@@ -76,7 +79,7 @@ def test_runs_of_an_ensemble_are_those_alone(name, motion):
             assert float(runs[demand][index]) == pytest.approx(run.measures[demand], rel=2e-3, abs=1e-9)
 
 
-@pytest.mark.parametrize("name", ["wobbling", "rolling"])
+@pytest.mark.parametrize("name", [name for name in NAMES if name.values[0] in {"wobbling", "rolling"}])
 def test_runs_that_begin_at_rest_or_overturn_are_those_alone(name):
     starts = {"tilt": [(0.0, 0.0), (0.05, 0.0)], "tilt_rate": [(0.0, 0.0), (0.0, 0.0)]}
     runs, alone = together_and_alone(IN_SPACE[name], STRONG, duration=15.0, **starts)
@@ -111,14 +114,19 @@ def test_a_loss_out_of_a_plane_beside_runs_in_forced_motion():
     assert np.all(np.hypot(*(lossless["end_tilt"] - runs["end_tilt"]).to_numpy().T) > 1e-4)  # each lost some
 
 
+# The sweep needs the kernel of other tests, without demands.
+@pytest.mark.parametrize("motion", [SWEEP, pytest.param(LINE, marks=pytest.mark.slow)], ids=["sweep", "line"])
 @pytest.mark.parametrize(
     "model",
-    [sb.PlanarRocking(COLUMN), sb.PlanarRocking(COLUMN, damping=0.05, restitution=0.95), IN_SPACE["rolling"]],
-    ids=["Housner", "measured", "rolling"],
+    [
+        pytest.param(sb.PlanarRocking(COLUMN), id="Housner"),
+        pytest.param(sb.PlanarRocking(COLUMN, damping=0.05, restitution=0.95), id="measured"),
+        pytest.param(IN_SPACE["rolling"], id="rolling", marks=pytest.mark.slow),
+    ],
 )
-def test_runs_in_a_plane_are_those_alone(model):
+def test_runs_in_a_plane_are_those_alone(model, motion):
     starts = {"tilt": [(0.05, 0.0), (0.0, 0.0), (0.02, 0.0)], "tilt_rate": [(0.0, 0.0)] * 3}
-    runs, alone = together_and_alone(model, LINE, duration=15.0, **starts)
+    runs, alone = together_and_alone(model, motion, duration=15.0, **starts, demands=motion is LINE)
     require_same(runs, alone, close=1e-6)
     assert runs["planar"].all()
 
@@ -174,6 +182,7 @@ def test_least_tilts_of_single_runs_are_those_of_ensembles():
     assert run.measures["least_tilt"] < float(run.data["amplitude"].min())
 
 
+@pytest.mark.slow  # a kernel of its own
 def test_demands_change_nothing_else():
     model = IN_SPACE["rolling"]
     start = {"tilt": (0.03, 0.0), "tilt_rate": (0.0, 0.06), "duration": 10.0}
@@ -201,9 +210,8 @@ def test_ensembles_settle_on_steady_rolling_at_finite_tilt():
     assert stable.size == 1
     amplitude, spin = float(steady.amplitude[stable[0]]), float(steady.spin[stable[0]])
     # The slowest deviation decays by exp(−0.0254 τ).
-    runs = sb.simulate_ensemble(
-        IN_SPACE["rolling"], CIRCLE, tilt=(0.01, 0.0), tilt_rate=(0.0, 0.03), spin=-0.3, duration=900.0, rtol=1e-10
-    )
+    start = {"tilt": (0.01, 0.0), "tilt_rate": (0.0, 0.03), "spin": -0.3}
+    runs = sb.simulate_ensemble(IN_SPACE["rolling"], CIRCLE, **start, duration=900.0, rtol=1e-10, demands=True)
     assert outcome_of(int(runs["outcome"][0])) is sb.Outcome.ROLLING
     assert float(runs["mean_tilt"][0]) == pytest.approx(amplitude, rel=1e-7)
     assert float(runs["end_spin"][0]) == pytest.approx(spin, rel=1e-7)

@@ -124,6 +124,14 @@ def test_a_model_with_the_required_members_only(written):
         sb.simulate_ensemble(model, CIRCLE.scaled(3.0), duration=5.0)
 
 
+def test_rates_that_are_no_numbers_end_a_run_as_failed_and_leave_others_alone(written):
+    model = written(dragged()).Dragged(COLUMN)
+    runs = sb.simulate_ensemble(model, CIRCLE, **TURNING, parameters={"drag": [0.0, 1e308, 5.0]})
+    beside = sb.simulate_ensemble(model, CIRCLE, **TURNING, parameters={"drag": [0.0, 5.0]})
+    assert [sb.results.outcome_of(int(code)) is sb.Outcome.FAILED for code in runs["outcome"]] == [False, True, False]
+    np.testing.assert_array_equal(runs["end_tilt"][[0, 2]], beside["end_tilt"])
+
+
 @pytest.mark.slow
 def test_a_model_that_calls_another_models_functions(written):
     model = written(SLENDER_DRAGGED).SlenderDragged(COLUMN, damping=0.1, drag=5.0)

@@ -111,3 +111,50 @@ def test_the_same_code_runs_as_plain_python(tmp_path):
         np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-5 if index in {15, 19} else 2e-7)
     outcomes = {int(code) for values in plain[::7] for code in values}
     assert len(outcomes) >= 3
+
+
+RARE = """
+import json
+import numpy as np
+import stylobate as sb
+from stylobate.motions import BaseMotion
+
+class Burst(BaseMotion):
+    breaks, highest_frequency = (0.7,), 4.0
+
+    def derivative(self, time, order):
+        t = np.asarray(time, dtype=float)
+        envelope = np.where(t < 0.7, 0.0, np.exp(-(((t - 3.0) / 4.0) ** 2)))
+        wave = 0.08 * np.cos(2.0 * t), 0.04 * np.sin(3.3 * t), 0.03 * np.cos(4.0 * t)
+        return tuple((order == 2) * envelope * part for part in wave)
+
+    def largest_horizontal(self, since=0.0):
+        return 0.09
+
+    def vertical_range(self, since=0.0):
+        return -0.03, 0.03
+
+    def directions(self):
+        return (0.08, 0.0), (0.0, 0.04)
+
+model = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
+one = sb.Harmonic.elliptic(amplitude=(0.06, 0.03), phase=1.0, angular_frequency=2.0, start_phase=0.4)
+two = one + sb.Harmonic.straight(acceleration=0.03, angular_frequency=3.1, direction=1.0)
+start = {"tilt": (0.04, 0.01), "tilt_rate": (-0.01, 0.03), "duration": 4.0, "rtol": 1e-9}
+changes = {"rotation": [0.0, 0.9, -2.0], "scale": [1.0, 1.4, -0.8], "delay": [0.0, 0.63, -0.4]}
+off = []
+for motion, values in ((two, {}), (two.rotated(-0.4).scaled(0.7), {}), (Burst(), changes)):
+    data = sb.simulate_ensemble(model, motion, **start, parameters=values)
+    for index in range(data.sizes["run"]):
+        _, moved = sb.with_parameters(model, motion, **{name: many[index] for name, many in values.items()})
+        single = sb.simulate(model, moved, **start)
+        off.append(float(np.abs(data["end_tilt"].values[index] - single.data["tilt"].values[-1]).max()))
+print(json.dumps(off))
+"""
+
+
+# A kernel takes half a minute to compile, and these no other quick test needs: what they say is seen without compiling.
+def test_sums_of_waves_and_motions_of_ones_own_move_lanes_of_plain_python_as_single_runs(tmp_path):
+    off = json.loads(run(RARE, tmp_path, NUMBA_DISABLE_JIT="1").stdout)
+    assert len(off) == 5
+    assert max(off) < 1e-7

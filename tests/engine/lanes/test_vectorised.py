@@ -88,7 +88,7 @@ def kernel_for(motion, method, planar, model=sb.Slender, *, demands=False):
             for method in ("dop853", "taylor")
         ),
         pytest.param("harmonic", "dop853", False, sb.Wobbling, marks=pytest.mark.slow),
-        pytest.param("harmonic", "dop853", False, sb.Rolling),
+        pytest.param("harmonic", "dop853", False, sb.Rolling, marks=pytest.mark.slow),
         pytest.param("harmonic", "dop853", True, sb.PlanarRocking, marks=pytest.mark.slow),
         pytest.param("vertical", "dop853", False, sb.Rolling, marks=pytest.mark.slow),
     ],
@@ -105,9 +105,9 @@ def test_steps_work_on_all_lanes_at_once(motion, method, planar, model):
 @pytest.mark.parametrize(
     ("model", "planar"),
     [
-        pytest.param(sb.Rolling, False, marks=pytest.mark.slow),
+        (sb.Rolling, False),
         pytest.param(sb.Wobbling, False, marks=pytest.mark.slow),
-        (sb.PlanarRocking, True),
+        pytest.param(sb.PlanarRocking, True, marks=pytest.mark.slow),
         pytest.param(sb.Slender, False, marks=pytest.mark.slow),
     ],
 )

@@ -28,7 +28,7 @@ def at2(folder, name, values, component, step=STEP):
 
 @pytest.fixture
 def waves():
-    return np.random.default_rng(7).normal(size=(3, COUNT))
+    return np.random.default_rng(7).normal(scale=0.2, size=(3, COUNT))
 
 
 def test_peer_names_make_one_event(tmp_path, waves):

@@ -9,7 +9,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.column import STANDARD_GRAVITY
-from stylobate.errors import FileError, ParameterError, UnsupportedError
+from stylobate.errors import FileError, ParameterError, SeldomMeant, UnsupportedError
 from stylobate.motions.records import RecordFormat, write_at2, write_csv
 
 VALUES = np.array([0.0, 0.1, -0.25, 0.03125, 1e-4, -2e-5, 0.5])
@@ -267,3 +267,13 @@ def test_the_sample_is_the_record_of_its_source():
     assert math.isclose(record.times[np.abs(record.samples[:, 0]).argmax()], 2.12)
     with pytest.raises(ParameterError, match=r"name must be one of 'el centro 1940', got 'kobe'"):
         sb.sample_record("kobe")
+
+
+def test_a_record_in_another_unit_than_it_is_read_in_is_remarked_on(tmp_path):
+    path = tmp_path / "gal.txt"
+    path.write_text("0.0\n-250.0\n120.0\n")
+    with pytest.warns(SeldomMeant, match=r"gal\.txt: its peak is 250 g, read in g as given; .* such as cm/s²"):
+        sb.read_record(path, "g", step=0.01)
+    assert sb.read_record(path, "gal", step=0.01).largest_horizontal() == pytest.approx(2.5)
+    path.write_text("0.0\n-3.0\n")
+    sb.read_record(path, "g", step=0.01)

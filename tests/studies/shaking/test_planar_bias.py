@@ -94,6 +94,14 @@ def test_bias_scatter_and_error_are_those_of_the_logarithms():
     )
 
 
+def test_one_record_tells_no_bias():
+    found = against_itself(0.05, pulse(0.05, direction=0.3))
+    assert int(found["overall_compared"]) == 1
+    for name in ("bias", "overall_bias", "capacity_bias", "overall_standard_error"):
+        assert np.isnan(found[name]).all()
+    assert np.isfinite(found["log_ratio"]).any()
+
+
 def test_a_record_in_one_direction_is_a_record():
     record = sb.Record(samples=np.random.default_rng(0).normal(size=(40, 3)), step=0.02, name="noise")
     turned = in_one_direction(record, 0.7)

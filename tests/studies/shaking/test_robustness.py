@@ -1,5 +1,6 @@
 """A verdict far from the boundary stands under every small change; one at the boundary falls."""
 
+import json
 import math
 
 import numpy as np
@@ -110,6 +111,17 @@ def test_changes_that_do_not_apply_are_told_and_not_counted():
     assert int(found["changes_compared"].sel(limit_state="overturning").item()) == int(applies.sum())
     assert set(found["change_of"].to_numpy()) == {one.value for one in ChangeOf}
     assert found.sizes["change"] == len(SMALL_CHANGES)
+
+
+def test_a_result_tells_from_what_it_was_made():
+    changes = [ScaledRecord(1.02), Polarity()]
+    found = robustness(MODEL, {"pulse": PULSE}, scale=0.5, changes=changes, tail=1.0, rtol=1e-6)
+    told = json.loads(found.attrs["provenance"])
+    assert told["model"] == {"kind": "slender", "damping": 0.05}
+    assert told["motion"]["motions"][0]["angular_frequency"] == 6.0
+    assert (told["scale"], told["tail"], told["rtol"], told["rotations"]) == (0.5, 1.0, 1e-6, [0.0])
+    assert told["changes"] == [repr(change) for change in changes]
+    assert found.attrs["kind"] == "robustness"
 
 
 def test_restitution_is_a_dissipation_too():

@@ -78,7 +78,7 @@ def drive(tmp_path, executor, kill_after, pause=0.0, **options):
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
 
 
-@pytest.mark.parametrize("executor", ["threads", "dask://"])
+@pytest.mark.parametrize("executor", ["threads", pytest.param("dask://", marks=pytest.mark.slow)])
 def test_a_driver_killed_and_started_again_changes_nothing(
     grid, tmp_path, assert_same_arrays, counting, undisturbed, executor
 ):

@@ -1,19 +1,26 @@
 """One file, one record."""
 
 import os
+import warnings
 from collections.abc import Mapping
 from enum import Enum
 from pathlib import Path
 
-from stylobate.errors import FileError, ParameterError, require_positive
+import numpy as np
+
+from stylobate.column import STANDARD_GRAVITY
+from stylobate.errors import FileError, ParameterError, SeldomMeant, require_positive
 from stylobate.motions.records.at2 import is_at2, read_at2
 from stylobate.motions.records.component import Component
 from stylobate.motions.records.lines import Text, is_binary, read_bytes
 from stylobate.motions.records.named_columns import is_csv, read_csv
-from stylobate.motions.records.record import AXES, Record
+from stylobate.motions.records.record import AXES, Floats, Record
 from stylobate.motions.records.tables import read_table
 from stylobate.motions.records.units import in_si, require_unit
 from stylobate.motions.records.waveforms import read_waveform
+
+# Horizontal and vertical peaks of strong earthquakes are below, but for a few close to the fault [g].
+_LARGEST_PEAK = 3.0
 
 
 class RecordFormat(Enum):
@@ -62,6 +69,11 @@ def read_record(
         If units are unknown or contradict the file.
     UnsupportedError
         If only ObsPy reads the format and it is not installed.
+
+    Warns
+    -----
+    SeldomMeant
+        If the peak is beyond 3 g, as that of a file in cm/s² that is read in g.
     """
     path = Path(path)
     step = None if step is None else require_positive("step", step, "s")
@@ -99,6 +111,7 @@ def as_record(component: Component, path: Path, units: str | None, axis: str | N
     provenance: tuple[str, ...] = (
         f"read from {path.name}, {told}" + (f": {component.title}" if component.title else ""),
     )
+    _remark_on_the_peak(factor * component.samples, path, told)
     direction = component.direction
     if component.samples.ndim > 1:
         samples = factor * component.samples
@@ -117,6 +130,16 @@ def as_record(component: Component, path: Path, units: str | None, axis: str | N
     return Record.from_components(
         **along, step=component.step, start=component.start, name=name_of(path), provenance=provenance
     )
+
+
+def _remark_on_the_peak(samples: Floats, path: Path, told: str) -> None:
+    peak = float(np.abs(samples).max()) / STANDARD_GRAVITY
+    if peak > _LARGEST_PEAK:
+        message = (
+            f"{path}: its peak is {peak:.3g} g, read {told}; hardly any earthquake shakes the ground beyond "
+            f"{_LARGEST_PEAK:g} g: if the file is in another unit, such as cm/s², name that (units)"
+        )
+        warnings.warn(message, SeldomMeant, stacklevel=2)
 
 
 def name_of(path: Path) -> str:

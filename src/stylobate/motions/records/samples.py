@@ -15,6 +15,11 @@ _SOURCES = {
 }
 
 
+def sample_names() -> tuple[str, ...]:
+    """Return the names of the records that come with the package."""
+    return tuple(_FILES)
+
+
 def sample_record(name: str = "el centro 1940") -> Record:
     """Return a record that comes with the package.
 

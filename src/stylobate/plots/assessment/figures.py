@@ -54,7 +54,7 @@ def margins_figure(assessment: Assessment, column: str) -> Figure:
     ]
     if any(scale != 1.0 for scale in assessment.setting["scales"]):
         handles.append(Line2D([], [], color=BLACK, linestyle="--", label="other stated scales"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=4)
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)
     scanned = own["margin_scale"].to_numpy()
     axes.plot(scanned, np.full(scanned.size, -0.75), "|", color=GREY, markersize=4.0)
     axes.set_title(f"{column}: scale factors that overturned it")

@@ -1,6 +1,7 @@
 """The report of an assessment: one page with all tables and figures, and each of them as a file."""
 
 import csv
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,12 +22,24 @@ from stylobate.plots.assessment.wording import number, scales
 from stylobate.plots.fragility import plot_fragility
 from stylobate.plots.page import Picture, Section, Table, page, png_of
 from stylobate.results.assessment import Assessment
+from stylobate.results.few_records import few_records
+
+# Tables of a dozen columns, wanted whole on a screen and legible on a narrow one, where figures are scrolled too.
+_STYLE = """
+.wide + .wide { margin-top: 1.8rem; } nav a { display: inline-block; }
+@media screen { body { max-width: 68rem; } .wide table { font-size: .84rem; line-height: 1.4; }
+  th, td { padding: .35rem .45rem; min-width: 2.6rem; } }
+@media screen and (max-width: 48rem) { .wide table { width: max-content; } .wide td { max-width: 15rem; }
+  .wide th { max-width: 7rem; } figure { overflow-x: auto; } figure img { max-width: none; width: 44rem; } }
+"""
 
 Pictures = dict[str, Picture]
 Part = str | Picture | Table
 
 
-def assessment_report(assessment: Assessment, folder: str | Path) -> Path:
+def assessment_report(
+    assessment: Assessment, folder: str | Path, *, progress: Callable[[int, int], None] | None = None
+) -> Path:
     """Write report, tables and figures of an assessment; return the path of the report.
 
     Parameters
@@ -36,6 +49,8 @@ def assessment_report(assessment: Assessment, folder: str | Path) -> Path:
     folder
         Gets `report.html`, which needs no other file and no network; `summary.txt`; `tables/*.csv`;
         `figures/*.png`; and `assessment.nc`.
+    progress
+        Told the figures drawn and the figures in all.
 
     Raises
     ------
@@ -44,7 +59,7 @@ def assessment_report(assessment: Assessment, folder: str | Path) -> Path:
     """
     target = Path(folder)
     tables = assessment_tables(assessment)
-    pictures = {name: replace(one, drawn=png_of(one.figure)) for name, one in _pictures(assessment).items()}
+    pictures = _drawn(_pictures(assessment), progress or _silence)
     lead = summary_paragraphs(assessment)
     title = str(assessment.setting["title"])
     try:
@@ -59,12 +74,26 @@ def assessment_report(assessment: Assessment, folder: str | Path) -> Path:
             (target / "figures" / f"{name}.png").write_bytes(picture.drawn)
         (target / "summary.txt").write_text("\n\n".join([title, *lead]) + "\n", encoding="utf-8")
         report = target / "report.html"
-        report.write_text(page(title, lead, _sections(assessment, tables, pictures)), encoding="utf-8")
+        text = page(title, lead, _sections(assessment, tables, pictures))
+        report.write_text(text.replace("</style>", f"{_STYLE}</style>", 1), encoding="utf-8")
     except OSError as error:
         message = f"cannot write into {target}: {error.strerror or error}"
         raise FileError(message) from error
     assessment.save(target / "assessment.nc")
     return report
+
+
+def _drawn(pictures: Pictures, progress: Callable[[int, int], None]) -> Pictures:
+    drawn: Pictures = {}
+    for name, one in pictures.items():
+        progress(len(drawn), len(pictures))
+        drawn[name] = replace(one, drawn=png_of(one.figure))
+    progress(len(drawn), len(pictures))
+    return drawn
+
+
+def _silence(done: int, total: int) -> None:
+    del done, total
 
 
 def _write_csv(table: Table, path: Path) -> None:
@@ -135,7 +164,7 @@ def _sections(assessment: Assessment, tables: dict[str, Table], pictures: Pictur
         ),
         Section(
             "What the contact must bear",
-            [_contact_text(assessment), *drawn("contact"), *listed("contact-by-record")],
+            [_contact_text(assessment), *drawn("contact"), *listed("contact-by-record", "contact-to-margin")],
         ),
         Section(
             "Does the verdict stand under small changes",
@@ -181,7 +210,9 @@ def _contact_text(assessment: Assessment) -> str:
     return (
         "The friction needed is the largest ratio of horizontal to normal force while the column moved, up to its "
         "overturning if it did. Where it exceeds the stated coefficient the base would slip, and the run is no longer "
-        "what would happen. A normal force of zero would be lift-off. Larger factors were not looked at so."
+        "what would happen. A normal force of zero would be lift-off. The last table tells it of the scale factors "
+        "that were run for the margin: what those below the least that overturned needed, and which is the least that "
+        "needs more than is stated."
     )
 
 
@@ -208,9 +239,11 @@ def _planar_text(assessment: Assessment) -> str:
 
 def _fragility_text(assessment: Assessment) -> str:
     count, least = assessment.data["records"].sizes["record"], assessment.setting["least_records"]
+    few = few_records(count)
     if "fragility" not in assessment.data:
-        return f"Not fitted: {count} records, at least {least} are asked for. Few records cannot tell a probability."
-    return (
+        why = few or "few records cannot tell a probability"
+        return f"Not fitted: at least {least} records are asked for (least_records). {why[0].upper()}{why[1:]}."
+    return (f"{few}. " if few else "") + (
         f"Lognormal curves by maximum likelihood over the peak ground acceleration of {count} scaled records, at the "
         "central dissipation; intervals by drawing records anew. Records that are safe again at a higher scale are "
         "counted run by run. The curves speak of these records, not of a site."

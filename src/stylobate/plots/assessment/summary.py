@@ -100,14 +100,32 @@ def _contact(assessment: Assessment, name: str, own: xr.Dataset) -> str:
         return ""
     stated = float(assessment.setting["friction_coefficient"][name])
     if need <= stated:
-        return (
+        at_stated = (
             f"The largest friction that any run at {_stated_scales(assessment)} needed is {number(need)}; the stated "
-            f"coefficient is {number(stated)}. What larger scales need was not looked at."
+            f"coefficient is {number(stated)}."
         )
-    return (
-        f"Some run needed a friction of {number(need)}, above the stated coefficient {number(stated)}: "
-        "there the base would slip, which these runs do not follow."
-    )
+    else:
+        at_stated = (
+            f"Some run needed a friction of {number(need)}, above the stated coefficient {number(stated)}: "
+            "there the base would slip, which these runs do not follow."
+        )
+    return f"{at_stated} {_contact_to_margin(own)}"
+
+
+def _contact_to_margin(own: xr.Dataset) -> str:
+    """Return what the contact must bear up to the margin, and from which scale on that is more than is stated."""
+    need, slipping = (float(own[name]) for name in ("friction_to_margin", "least_slipping"))
+    if math.isnan(need) and math.isnan(slipping):
+        return "What other scales need was not looked at."
+    if math.isnan(slipping):
+        return "No scale factor that was run for the margin needed more than that."
+    said = f"The least scale run that needs more is {number(slipping, 4)}"
+    if int(own["slips_first"]):
+        return (
+            f"{said}, in some case below the least that overturned it: there the base would slip first, and the margin "
+            "is not told by these runs."
+        )
+    return f"{said}, above the least that overturned it: beyond it the base would slip."
 
 
 def _stated_scales(assessment: Assessment) -> str:

@@ -160,6 +160,26 @@ def _contact_by_record(assessment: Assessment) -> Table:
     return Table(header, rows if assessment.setting["contact"] else [])
 
 
+def _contact_to_margin(assessment: Assessment) -> Table:
+    header = (
+        *("column", "record", "case of dissipation", "least scale that overturned", "friction needed below it"),
+        *("stated", "least scale that needs more"),
+    )
+    own = assessment.data["margins"]
+    rows = []
+    for column in _names(own, "column") if assessment.setting["contact"] else []:
+        stated = float(assessment.setting["friction_coefficient"][column])
+        for record in _names(own, "record"):
+            for case in _names(own, "case"):
+                one = own.sel(column=column, record=record, case=case)
+                need, slipping = (float(one[name]) for name in ("friction_to_margin", "least_slipping"))
+                if math.isnan(need) and math.isnan(slipping):
+                    continue
+                first = "none that was run" if math.isnan(slipping) else number(slipping, 4)
+                rows.append((column, record, case, least_scale(one), number(need), number(stated), first))
+    return Table(header, rows)
+
+
 def _verdicts(assessment: Assessment) -> Table:
     header = ("column", "record", "scale", "dissipation", "vertical", "verdict", "largest tilt / α")
     return Table(
@@ -294,9 +314,9 @@ def _bias(assessment: Assessment) -> Table:
         for scale in own["scale"].to_numpy():
             one = own.sel(column=column, scale=scale)
             counts = (f"{int(one[name])}" for name in ("compared", "only_space", "only_planar"))
-            rows.append(
-                (column, f"{scale:g}", number(float(one["bias"])), number(float(one["standard_error"])), *counts)
-            )
+            bias = float(one["bias"])
+            told = "too few records" if math.isnan(bias) else number(bias)
+            rows.append((column, f"{scale:g}", told, number(float(one["standard_error"])), *counts))
     return Table(header, rows)
 
 
@@ -343,6 +363,7 @@ _TABLES: dict[str, Callable[[Assessment], Table]] = {
     "verdicts-by-record": _verdicts_by_record,
     "verdicts": _verdicts,
     "contact-by-record": _contact_by_record,
+    "contact-to-margin": _contact_to_margin,
     "contact": _contact,
     "robustness": _robustness,
     "planar": _planar,

@@ -13,6 +13,7 @@ from stylobate.errors import require_positive, require_whole
 from stylobate.models import Model
 from stylobate.motions import Record
 from stylobate.results.assessment import Assessment
+from stylobate.results.few_records import FEW_RECORDS
 from stylobate.spec import provenance_of_run
 from stylobate.spec.simulation import FREE_TAIL
 from stylobate.studies.assessment.fragilities import fragility_of
@@ -26,6 +27,7 @@ from stylobate.studies.assessment.summary import summary_of
 from stylobate.studies.assessment.verdicts import verdict_runs, verdicts_on
 from stylobate.studies.shaking import Change
 from stylobate.studies.shaking.named_records import Records
+from stylobate.studies.shaking.remarks import remark_on
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.recipe import RunOptions
 from stylobate.studies.varied import require_no_tilt_limit
@@ -35,8 +37,8 @@ def assess(
     columns: Mapping[str, Model],
     records: Records,
     *,
-    dissipation: Mapping[str, Mapping[str, float]],
-    friction_coefficient: float | Mapping[str, float],
+    dissipation: Mapping[str, Mapping[str, float]] | None = None,
+    friction_coefficient: float | Mapping[str, float] | None = None,
     scales: npt.ArrayLike = (1.0,),
     margin_scales: npt.ArrayLike | None = None,
     width: float = 5e-3,
@@ -44,7 +46,7 @@ def assess(
     changes: Sequence[Change] | None = None,
     planar: bool = True,
     contact: bool = True,
-    least_records: int = 10,
+    least_records: int = FEW_RECORDS,
     title: str = "Columns under records",
     notes: Sequence[str] = (),
     store: str | Path | None = None,
@@ -62,10 +64,11 @@ def assess(
         Base motions that end: a sequence, or a mapping from names. They are told in the order of their names.
     dissipation
         By level, of which there are "low", "central" and "high" at least, the numbers of the model that dissipate:
-        damping, spin_friction, rolling_resistance, restitution; the same ones at each level.
+        damping, spin_friction, rolling_resistance, restitution; the same ones at each level. There is no default: it
+        must be stated.
     friction_coefficient
         Of the contact between column and base, one or one for each column by name: what the friction that a run
-        needs is compared with.
+        needs is compared with. It must be stated.
     scales
         Factors of the records at which verdicts are given; vertical components are scaled likewise.
     margin_scales
@@ -82,11 +85,12 @@ def assess(
     contact
         Whether runs tell what the contact must bear.
     least_records
-        Fewer records give no fragility.
+        Fewer records give no fragility: by default what its intervals need to be as wide as they claim.
     title, notes
         What the assessment is called; assumptions of its author, for the report.
     store
-        A folder that keeps each part that is computed: with it an interrupted assessment goes on where it was.
+        A folder that keeps each part that is computed: with it an interrupted assessment goes on where it was, and
+        logs how much of it was known.
     executor
         As in `run_sweep`.
     progress
@@ -105,9 +109,14 @@ def assess(
     Raises
     ------
     ParameterError
-        If an argument is out of range, or the dissipation is not stated.
+        If an argument is out of range, or dissipation or friction are not stated.
     Interrupted
         On Ctrl-C; the parts that were computed are in the store.
+
+    Warns
+    -----
+    SeldomMeant
+        Of a column of more than 60 m, and of records whose names differ by case only.
 
     Notes
     -----
@@ -146,10 +155,11 @@ def assess(
         least_records=require_whole("least_records", least_records, least=2),
         options=options,
     )
+    remark_on({name: levels[CENTRAL].column for name, levels in inputs.columns.items()}, inputs.records)
     parts = Parts(None if store is None else Path(store), _runs(inputs, planar=planar), progress or _silence)
     names = list(inputs.columns)
     verdicts = [verdicts_on(inputs, name, parts, contact=contact, executor=executor) for name in names]
-    margins = [margins_of(inputs, name, parts, executor=executor) for name in names]
+    margins = [margins_of(inputs, name, parts, contact=contact, executor=executor) for name in names]
     data = {
         "columns": column_properties(inputs),
         "records": record_properties(inputs),
@@ -171,6 +181,7 @@ def assess(
     ]
     data["histories"] = _over_columns(runs, names)
     data["summary"] = summary_of(data, governing)
+    parts.tell()
     more = {"title": title, "notes": list(notes), "contact": contact, "resolution": margins[0].attrs["resolution"]}
     return Assessment(data=data, setting={**_setting(inputs), **more})
 

@@ -13,6 +13,7 @@ from stylobate.errors import ParameterError, require_not_negative, require_posit
 from stylobate.models import Model
 from stylobate.motions import BASE_AT_REST, BaseMotion
 from stylobate.spec import provenance_of_run
+from stylobate.spec.levels import LEVELS, OF_DISSIPATION
 from stylobate.studies.assessment.parts import identities
 from stylobate.studies.shaking import SMALL_CHANGES, Change, ScaledRecord
 from stylobate.studies.shaking.named_records import Records, named_records
@@ -20,17 +21,12 @@ from stylobate.studies.sweeps.fingerprint import identity_of
 from stylobate.studies.sweeps.quantities import Floats
 from stylobate.studies.sweeps.recipe import RunOptions
 
-LEVELS = ("low", "central", "high")
-"""The levels of dissipation that an assessment needs."""
-
 CENTRAL = "central"
 NO_VERTICAL = "central, no vertical"
 """The case of margins in which the vertical component does not act."""
 
 # Scales nearer than this part of themselves are one.
 _SAME_SCALE = 1e-9
-
-_OF_DISSIPATION = ("damping", "spin_friction", "rolling_resistance", "restitution")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,8 +76,8 @@ class Inputs:
         cls,
         columns: Mapping[str, Model],
         records: Records,
-        dissipation: Mapping[str, Mapping[str, float]],
-        friction_coefficient: float | Mapping[str, float],
+        dissipation: Mapping[str, Mapping[str, float]] | None,
+        friction_coefficient: float | Mapping[str, float] | None,
         scales: npt.ArrayLike,
         margin_scales: npt.ArrayLike,
         changes: Sequence[Change] | None,
@@ -131,7 +127,7 @@ class Inputs:
         }
 
 
-def checked_dissipation(dissipation: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, float]]:
+def checked_dissipation(dissipation: Mapping[str, Mapping[str, float]] | None) -> dict[str, dict[str, float]]:
     """Return the numbers of each level, or raise ParameterError with the remedy.
 
     Raises
@@ -154,9 +150,9 @@ def checked_dissipation(dissipation: Mapping[str, Mapping[str, float]]) -> dict[
         )
         message = f"dissipation must name the same numbers at each level, got {told}; {remedy}"
         raise ParameterError(message)
-    unknown = sorted(names.difference(_OF_DISSIPATION))
+    unknown = sorted(names.difference(OF_DISSIPATION))
     if unknown:
-        message = f"dissipation: {unknown[0]} is none; it is told by {', '.join(_OF_DISSIPATION)}"
+        message = f"dissipation: {unknown[0]} is none; it is told by {', '.join(OF_DISSIPATION)}"
         raise ParameterError(message)
     return {
         level: {name: require_not_negative(f"dissipation.{level}.{name}", value) for name, value in numbers.items()}
@@ -175,7 +171,12 @@ def _at_levels(name: str, model: Model, levels: Mapping[str, Mapping[str, float]
     return {level: changed_model(model, numbers) for level, numbers in levels.items()}
 
 
-def _frictions(given: float | Mapping[str, float], columns: Sequence[str]) -> dict[str, float]:
+def _frictions(given: float | Mapping[str, float] | None, columns: Sequence[str]) -> dict[str, float]:
+    if given is None:
+        message = (
+            "friction_coefficient is missing: the friction between column and base, such as 0.6; one, or by column"
+        )
+        raise ParameterError(message)
     if not isinstance(given, Mapping):
         return dict.fromkeys(columns, require_positive("friction_coefficient", given))
     for name in (*given, *columns):

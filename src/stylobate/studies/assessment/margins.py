@@ -17,7 +17,7 @@ from stylobate.studies.sweeps.computing import Progress
 _BAND = ("band_from", "band_to", "safe_below", "safe_above", "open_below", "open_above")
 
 
-def margins_of(inputs: Inputs, column: str, parts: Parts, *, executor: Executor | None) -> xr.Dataset:
+def margins_of(inputs: Inputs, column: str, parts: Parts, *, contact: bool, executor: Executor | None) -> xr.Dataset:
     """Return the bands of a column.
 
     Returns
@@ -28,9 +28,12 @@ def margins_of(inputs: Inputs, column: str, parts: Parts, *, executor: Executor 
         below it that did not, NaN where none; `least_lasting`, the least scale at which a band begins that is wider
         than its edges are told; `bands`; `unknown`, runs that tell nothing; `stands_again`, whether it
         did not overturn at a scale above one that overturned it. Over `band` too all of `overturning_bands`. Of the
-        central case over `limit_state` and `margin_scale`: `reached`.
+        central case over `limit_state` and `margin_scale`: `reached`. What the contact must bear, NaN without
+        `contact`: over `margin_scale` too `friction_demand`; `friction_to_margin`, the largest of the scales run below
+        the least that overturned, of all where none did; `least_slipping`, the least scale run that needed more than
+        the stated friction, NaN where none did.
     """
-    found = [_bands(inputs, column, case, parts, executor) for case in cases_of(inputs)]
+    found = [_bands(inputs, column, case, parts, contact, executor) for case in cases_of(inputs)]
     widest = max(one.sizes["band"] for one in found)
     padded = [one.pad(band=(0, widest - one.sizes["band"])) if one.sizes["band"] < widest else one for one in found]
     joined: xr.Dataset = xr.concat(padded, dim=xr.Variable("case", cases_of(inputs)), data_vars="all", join="override")
@@ -39,7 +42,23 @@ def margins_of(inputs: Inputs, column: str, parts: Parts, *, executor: Executor 
     reached = limit_states(scanned[["outcome", "largest_tilt"]], slenderness=central.column.slenderness).transpose(
         "record", "limit_state", "margin_scale"
     )
-    return joined.drop_vars(["outcome", "largest_tilt"]).assign(reached=reached.drop_vars("case"))
+    told = joined.drop_vars(["outcome", "largest_tilt"]).assign(reached=reached.drop_vars("case"))
+    return told.assign(demands_to_margin(told, inputs.friction[column]))
+
+
+def demands_to_margin(margins: xr.Dataset, stated: float) -> dict[str, xr.DataArray]:
+    """Return the friction that is needed up to the margin, and where it first exceeds the stated one."""
+    need, scale = margins["friction_demand"], margins["margin_scale"]
+    least = margins["least_overturning"]
+    one = {"units": "1"}
+    return {
+        "friction_to_margin": need.where(~(scale >= least))
+        .max("margin_scale")
+        .assign_attrs(**one, long_name="largest friction needed below the least scale that overturned"),
+        "least_slipping": scale.where(need > stated)
+        .min("margin_scale")
+        .assign_attrs(**one, long_name="least scale that needs more than the stated friction"),
+    }
 
 
 def cases_of(inputs: Inputs) -> list[str]:
@@ -56,26 +75,37 @@ def _scan_runs(inputs: Inputs) -> int:
     return len(inputs.records) * inputs.margin_scales.size
 
 
-def _bands(inputs: Inputs, column: str, case: str, parts: Parts, executor: Executor | None) -> xr.Dataset:
+def _bands(
+    inputs: Inputs, column: str, case: str, parts: Parts, contact: bool, executor: Executor | None
+) -> xr.Dataset:
     level = CENTRAL if case == NO_VERTICAL else case
     model = inputs.columns[column][level]
     motions = [without_vertical(one) if case == NO_VERTICAL else one for one in inputs.records.values()]
 
     def compute(progress: Progress) -> xr.Dataset:
-        return _told(_found(inputs, model, motions, executor, progress), list(inputs.records), inputs.width)
+        found = _found(inputs, model, motions, contact, executor, progress)
+        return _told(found, list(inputs.records), inputs.width)
 
     identity = {
         **inputs.identity(column, level),
         "vertical": case != NO_VERTICAL,
         "scales": inputs.margin_scales.tolist(),
         "width": inputs.width,
+        "contact": contact,
     }
     return parts.get(f"{column}: margins, {case}", _scan_runs(inputs), identity, compute)
 
 
 def _found(
-    inputs: Inputs, model: Model, motions: list[BaseMotion], executor: Executor | None, progress: Progress
+    inputs: Inputs,
+    model: Model,
+    motions: list[BaseMotion],
+    contact: bool,
+    executor: Executor | None,
+    progress: Progress,
 ) -> xr.Dataset:
+    options = inputs.options.copy()
+    options["demands"] = contact
     tail = FREE_TAIL if inputs.tail is None else inputs.tail * model.column.frequency_parameter
     return overturning_bands(
         model,
@@ -86,14 +116,17 @@ def _found(
         tail=tail,
         executor=executor,
         progress=progress,
-        **inputs.options,
+        **options,
     )
 
 
 def _told(found: xr.Dataset, names: list[str], width: float) -> xr.Dataset:
     plain = found.rename(motion="record", scale="margin_scale")
     plain = plain.drop_vars([name for name in plain.coords if name != "margin_scale"]).assign_coords(record=names)
-    kept = plain[[*_BAND, "bands", "unknown", "outcome", "largest_tilt"]].transpose("record", ...)
+    demand = plain.get("largest_friction_demand", xr.full_like(plain["largest_tilt"], np.nan))
+    about = {"units": "1", "long_name": "largest friction force over normal force"}
+    plain = plain.assign(friction_demand=demand.assign_attrs(about))
+    kept = plain[[*_BAND, "bands", "unknown", "outcome", "largest_tilt", "friction_demand"]].transpose("record", ...)
     flags = {name: kept[name].astype(float) for name in ("open_below", "open_above", "bands", "unknown")}
     first = kept.isel(band=0)
     lasting = kept["band_to"] > kept["band_from"] * (1.0 + width)

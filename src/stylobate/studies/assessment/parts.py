@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import logging
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +14,8 @@ from stylobate.errors import FileError
 from stylobate.motions import BaseMotion, Record
 from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.fingerprint import identity_of
+
+_log = logging.getLogger("stylobate")
 
 Announce: TypeAlias = Callable[[str, int, int], None]
 """Told what is computed, how much of everything is done and how much there is, in runs."""
@@ -36,6 +39,7 @@ class Parts:
     total: int
     announce: Announce
     _done: list[int] = field(default_factory=list, init=False)
+    _known: list[str] = field(default_factory=list, init=False)
 
     def get(
         self, name: str, runs: int, identity: Mapping[str, Any], compute: Callable[[Progress], xr.Dataset]
@@ -51,7 +55,9 @@ class Parts:
         self.announce(name, before, self.total)
         path = None if self.store is None else self.store / f"{_digest({'part': name, **identity})}.nc"
         found = None if path is None else _kept(path)
-        if found is None:
+        if found is not None:
+            self._known.append(name)
+        else:
             found = compute(
                 lambda done, total: self.announce(name, before + round(runs * done / max(total, 1)), self.total)
             )
@@ -60,6 +66,13 @@ class Parts:
         self._done.append(runs)
         self.announce(name, before + runs, self.total)
         return found
+
+    def tell(self) -> None:
+        """Log in one line how many parts were known, if any were."""
+        if self._known:
+            _log.info(
+                "%d of %d parts were kept in %s and not computed again", len(self._known), len(self._done), self.store
+            )
 
 
 def identities(motions: Mapping[str, BaseMotion]) -> dict[str, Any]:

@@ -7,10 +7,15 @@ from stylobate.studies.assessment.inputs import CENTRAL, Inputs
 from stylobate.studies.assessment.parts import Parts
 from stylobate.studies.fragility.observations import LIMIT_STATE
 from stylobate.studies.shaking import planar_bias, robustness
+from stylobate.studies.shaking.planar_bias import bias_of
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.computing import Progress
 
 _AXES = 2
+# Counts of records.
+_COUNTS = ("only_space", "only_planar")
+# Records that are computed, and kept, together: enough to keep the cores busy, few enough to lose at Ctrl-C.
+_TOGETHER = 4
 
 
 def robustness_of(inputs: Inputs, column: str, parts: Parts, *, executor: Executor | None) -> xr.Dataset:
@@ -24,32 +29,46 @@ def robustness_of(inputs: Inputs, column: str, parts: Parts, *, executor: Execut
         `flipped` and `compared`, numbers of changes; `tilt_ratio_low`, `tilt_ratio_high`. Along `change`
         `change_of`.
     """
-    found = []
+    by_scale = []
     for scale in inputs.scales.tolist():
-
-        def compute(progress: Progress, scale: float = scale) -> xr.Dataset:
-            return _told(
-                robustness(
-                    inputs.columns[column][CENTRAL],
-                    dict(inputs.records),
-                    scale=scale,
-                    changes=inputs.changes,
-                    tail=inputs.tail,
-                    executor=executor,
-                    progress=progress,
-                    **inputs.options,
-                )
-            )
-
-        identity = {
-            **inputs.identity(column, CENTRAL),
-            "scale": scale,
-            "changes": [repr(change) for change in inputs.changes],
-        }
-        runs = len(inputs.records) * (1 + len(inputs.changes))
-        found.append(parts.get(f"{column}: small changes, scale {scale:g}", runs, identity, compute))
-    joined: xr.Dataset = xr.concat(found, dim=xr.Variable("scale", inputs.scales), data_vars="all", join="override")
+        few = [_robustness_at(some, column, scale, parts, executor) for some in _some_at_a_time(inputs)]
+        by_scale.append(xr.concat(few, dim="record", data_vars="minimal", join="override"))
+    joined: xr.Dataset = xr.concat(by_scale, dim=xr.Variable("scale", inputs.scales), data_vars="all", join="override")
     return joined
+
+
+def _some_at_a_time(inputs: Inputs) -> list[Inputs]:
+    names = list(inputs.records)
+    return [inputs.with_records(names[at : at + _TOGETHER]) for at in range(0, len(names), _TOGETHER)]
+
+
+def _part_name(column: str, what: str, inputs: Inputs) -> str:
+    first, last = next(iter(inputs.records)), list(inputs.records)[-1]
+    return f"{column}: {what}, {first}" + (f" to {last}" if last != first else "")
+
+
+def _robustness_at(inputs: Inputs, column: str, scale: float, parts: Parts, executor: Executor | None) -> xr.Dataset:
+    def compute(progress: Progress) -> xr.Dataset:
+        return _told(
+            robustness(
+                inputs.columns[column][CENTRAL],
+                dict(inputs.records),
+                scale=scale,
+                changes=inputs.changes,
+                tail=inputs.tail,
+                executor=executor,
+                progress=progress,
+                **inputs.options,
+            )
+        )
+
+    identity = {
+        **inputs.identity(column, CENTRAL),
+        "scale": scale,
+        "changes": [repr(change) for change in inputs.changes],
+    }
+    runs = len(inputs.records) * (1 + len(inputs.changes))
+    return parts.get(_part_name(column, f"small changes, scale {scale:g}", inputs), runs, identity, compute)
 
 
 def robustness_runs(inputs: Inputs) -> int:
@@ -86,7 +105,13 @@ def planar_of(inputs: Inputs, column: str, parts: Parts, *, executor: Executor |
         overturns, and `log_ratio` of the tilts where both rock; over `scale` `bias`, `standard_error`, `compared`,
         `only_space`, `only_planar`.
     """
+    few = [_planar_at(some, column, parts, executor) for some in _some_at_a_time(inputs)]
+    records = xr.concat([one.drop_vars(_COUNTS) for one in few], dim="record", join="override")
+    counts = xr.concat([one[list(_COUNTS)] for one in few], dim="part").sum("part", keep_attrs=True)
+    return records.assign({**counts.data_vars, **bias_of(records["log_ratio"])})
 
+
+def _planar_at(inputs: Inputs, column: str, parts: Parts, executor: Executor | None) -> xr.Dataset:
     def compute(progress: Progress) -> xr.Dataset:
         found = planar_bias(
             inputs.columns[column][CENTRAL],
@@ -97,12 +122,12 @@ def planar_of(inputs: Inputs, column: str, parts: Parts, *, executor: Executor |
             progress=progress,
             **inputs.options,
         )
-        kept = found[["log_ratio", "bias", "standard_error", "compared", "only_space", "only_planar"]]
-        kept = kept.assign(planar_tilt_ratio=found["worst_planar_tilt_ratio"])
+        kept = found[["log_ratio", *_COUNTS]].assign(planar_tilt_ratio=found["worst_planar_tilt_ratio"])
         return kept.drop_vars([name for name in kept.coords if name not in ("record", "scale")])
 
     identity = {**inputs.identity(column, CENTRAL), "scales": inputs.scales.tolist()}
-    return parts.get(f"{column}: planar", planar_runs(inputs), identity, compute)
+    runs = len(inputs.records) * inputs.scales.size * (1 + _AXES)
+    return parts.get(_part_name(column, "planar", inputs), runs, identity, compute)
 
 
 def planar_runs(inputs: Inputs) -> int:

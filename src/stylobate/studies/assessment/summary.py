@@ -29,8 +29,9 @@ def summary_of(data: Mapping[str, xr.Dataset], governing: list[str]) -> xr.Datas
         those with a verdict that a small change flips; `planar_differs`, of those by which the planar column does
         otherwise; `largest_tilt_ratio`; `friction_demand`, the largest of all runs, and over `record` too
         `friction_by_record`. Over `column`: `governing`, `least_overturning` of the central case and, of all cases,
-        `least_of_all`, NaN where none overturned; `never_overturned` and `stands_again`, numbers of records in the
-        central case.
+        `least_of_all`, NaN where none overturned; `friction_to_margin`, the largest of all cases, and the
+        `least_slipping` of them; `slips_first`, whether in some case a record needs more than the stated friction below
+        the scale that overturns; `never_overturned` and `stands_again`, numbers of records in the central case.
     """
     verdicts, margins = data["verdicts"], data["margins"]
     fallen = verdicts["overturned"]
@@ -60,10 +61,19 @@ def summary_of(data: Mapping[str, xr.Dataset], governing: list[str]) -> xr.Datas
             "governing": ("column", governing),
             "least_overturning": least.sel(case=CENTRAL, drop=True).min("record"),
             "least_of_all": least.min(("record", "case")),
+            "friction_to_margin": margins["friction_to_margin"].max(("record", "case")),
+            "least_slipping": margins["least_slipping"].min(("record", "case")),
+            "slips_first": _slips_first(margins).any(("record", "case")).astype(np.int8),
             "never_overturned": (bands == 0).sum("record"),
             "stands_again": (margins["stands_again"].sel(case=CENTRAL, drop=True) > 0).sum("record"),
         }
     ).transpose("column", ...)
+
+
+def _slips_first(margins: xr.Dataset) -> xr.DataArray:
+    """Return whether more than the stated friction is needed below the least scale that overturned, or none did."""
+    slipping, falling = margins["least_slipping"], margins["least_overturning"]
+    return slipping.notnull() & ~(slipping >= falling)
 
 
 def _differs(states: xr.DataArray, dim: str) -> xr.DataArray:

@@ -24,6 +24,10 @@ _log = logging.getLogger("stylobate")
 
 # A share of the rate from beyond the hazard curve above which a warning is due.
 _MUCH_BEYOND = 0.1
+# A share above which the rate is that of a continuation that nobody vouches for: it is not told.
+_MOSTLY_BEYOND = 0.5
+_NEARLY_ALL = 0.995
+_UNITS = {"m s-2": " m/s²", "m s-1": " m/s"}
 
 
 def annual_rate(fragility: xr.Dataset, hazard: HazardCurve, *, years: float = 50.0, bins: int = 40) -> xr.Dataset:
@@ -46,6 +50,7 @@ def annual_rate(fragility: xr.Dataset, hazard: HazardCurve, *, years: float = 50
         Of kind "annual rate". Over `limit_state`: `annual_rate` [1/a], the curve continued beyond its ends with the
         slopes it has there; `rate_within` the curve; `rate_below` and `rate_above`, the two continuations; `rate_low`
         and `rate_high`, bounds, see the notes; `share_beyond` of the rate, a warning is logged above a tenth;
+        `not_told`, where more than half lies beyond, in words why tables and figures do not tell the rate, else empty;
         `probability` in `years` years, 1 − exp(−rate·years). NaN for limit states without a fit. Over `bin` within the
         curve: `contribution` [1/a], `bin_from`, `bin_to`, `bin_intensity`. Also the curve, over `point`.
 
@@ -84,6 +89,7 @@ def annual_rate(fragility: xr.Dataset, hazard: HazardCurve, *, years: float = 50
     for name, one in zip(names, share, strict=True):
         if one > _MUCH_BEYOND:
             _log.warning("%.0f %% of the annual rate of %r lies beyond the hazard curve; extend it", 100.0 * one, name)
+    not_told = [_why_not_told(*one, hazard) for one in zip(share, below, above, strict=True)]
     edges = _edges(hazard, count)
     about = {"units": hazard.units, "long_name": hazard.quantity}
     per_year = {"units": "a-1"}
@@ -96,6 +102,7 @@ def annual_rate(fragility: xr.Dataset, hazard: HazardCurve, *, years: float = 50
             "rate_low": (LIMIT_STATE, low, {**per_year, "long_name": "lower bound of the annual rate"}),
             "rate_high": (LIMIT_STATE, high, {**per_year, "long_name": "upper bound of the annual rate"}),
             "share_beyond": (LIMIT_STATE, share, {"units": "1", "long_name": "share from beyond the hazard curve"}),
+            "not_told": (LIMIT_STATE, not_told, {"long_name": "why the annual rate is not told"}),
             "probability": (
                 LIMIT_STATE,
                 -np.expm1(-rate * time),
@@ -119,6 +126,16 @@ def annual_rate(fragility: xr.Dataset, hazard: HazardCurve, *, years: float = 50
         },
         attrs={"kind": "annual rate", "years": time},
     )
+
+
+def _why_not_told(share: float, below: float, above: float, hazard: HazardCurve) -> str:
+    """Return in words why a rate is not told, nothing where it is told or has no fit."""
+    if not share > _MOSTLY_BEYOND:
+        return ""
+    ends = np.exp(hazard.log_intensity)
+    which = f"begins at {ends[0]:.3g}" if below > above else f"ends at {ends[-1]:.3g}"
+    percent = "all" if share > _NEARLY_ALL else f"{100.0 * share:.0f} %"
+    return f"the hazard curve {which}{_UNITS.get(hazard.units, '')}, and {percent} of the rate lies beyond"
 
 
 def _parts(

@@ -24,6 +24,8 @@ from stylobate.studies.proportions import require_confidence
 
 _DIMS = ("record", "property_sample", "scale")
 _LEAST = 2
+# Variances are differences of mean squares: what is less than this part of these is their rounding.
+_ROUNDING = 1e-12
 
 
 class Samples(Enum):
@@ -61,6 +63,12 @@ class MeanSquares:
         if np.isnan(self.freedom[1]):
             return np.stack([(record - rest) / self.samples, rest - self.step, np.zeros_like(rest)], axis=-1)
         return np.stack([(record - rest) / self.samples, (sample - rest) / self.records, rest - self.step], axis=-1)
+
+    def estimate(self) -> Floats:
+        """Return the variances, those that are not positive as 0, and so those that are a rounding of the others."""
+        found = self.variances(self.values)
+        largest = self.values[~np.isnan(self.freedom)].max()
+        return np.where(found <= _ROUNDING * largest, 0.0, found)
 
     def drawn(self, count: int, rng: np.random.Generator) -> Floats:
         """Return variances that would explain the mean squares, drawn with their χ² distributions.
@@ -105,7 +113,8 @@ def dispersion_parts(
         estimate whose variance is not positive is 0. Over `record` and `property_sample` `log_capacity`; over each of
         them `median_of_record`, `median_of_sample` and the `dispersion_of_record`, `dispersion_of_sample` of the
         capacities in it. Attributes `non_monotone_share` of the series that are safe again above their capacity,
-        `never_reached` and `reached_at_once`, numbers of series whose capacity is beyond the scales, or not known.
+        `never_reached` and `reached_at_once`, numbers of series whose capacity is beyond the scales, or not known;
+        `resolution`, the dispersion that the steps between scales hide, d/√12: an estimate of 0 is none seen above it.
         Where there are such, capacities are NaN there and so are all dispersions: give more scales.
 
     Raises
@@ -121,7 +130,7 @@ def dispersion_parts(
     state, x = _series(reached, scale)
     capacity, step = _capacities(state, np.log(x))
     squares = _mean_squares(capacity, step, samples)
-    estimate = np.maximum(squares.variances(squares.values), 0.0)
+    estimate = squares.estimate()
     draws = squares.drawn(count, rng)
     tail = 0.5 - 0.5 * level
     ends = np.quantile(_with_total(draws), [tail, 1.0 - tail], axis=0)
@@ -143,6 +152,7 @@ def dispersion_parts(
             "samples": samples.value,
             "confidence": level,
             "resamples": count,
+            "resolution": float(np.sqrt(squares.step)),
             **_flags(state),
         },
     )

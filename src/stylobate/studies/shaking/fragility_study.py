@@ -21,7 +21,9 @@ from stylobate.studies.shaking.property_spreads import (
     UniformSpread,
     property_samples,
 )
+from stylobate.studies.shaking.remarks import remark_on
 from stylobate.studies.shaking.run_fragility import fragility_of_runs
+from stylobate.studies.shaking.site_hazard import site_hazard
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.recipe import RunOptions
@@ -49,7 +51,7 @@ class FragilityStudy:
     counting, confidence, resamples
         As for `fit_fragility`.
     hazard
-        Points of the hazard curve, intensities in the unit of `intensity` and annual rates.
+        The hazard curve, in `intensity`.
     years
         For which probabilities are told.
     options
@@ -69,7 +71,7 @@ class FragilityStudy:
     counting: Counting = Counting.AS_COMPUTED
     confidence: float = 0.95
     resamples: int = 1000
-    hazard: tuple[tuple[float, ...], tuple[float, ...]] | None = None
+    hazard: HazardCurve | None = None
     years: float = 50.0
     options: RunOptions
 
@@ -80,11 +82,12 @@ class FragilityStudy:
         Raises
         ------
         ParameterError
-            If an intensity is not known, or a spread cannot be.
+            If an intensity is not known, the hazard is of another one or no curve, or a spread cannot be.
         """
         table = setup.table
         spectral = None if isinstance(table.intensity, str) else table.intensity
         measure = table.intensity if spectral is None else SpectralAcceleration(spectral.period, spectral.damping)
+        intensity = as_intensity(measure)  # type: ignore[arg-type]
         return cls(
             model=setup.model,
             records=setup.records,
@@ -92,25 +95,17 @@ class FragilityStudy:
             rotations=table.rotations,
             vertical=table.vertical,
             tail=table.tail,
-            intensity=as_intensity(measure),  # type: ignore[arg-type]
+            intensity=intensity,
             spreads={name: _spread(spread) for name, spread in table.spreads.items()},
             samples=table.samples,
             seed=table.seed,
             counting=Counting(table.counting),
             confidence=table.confidence,
             resamples=table.resamples,
-            hazard=setup.hazard,
+            hazard=None if setup.hazard is None else site_hazard(setup.hazard, intensity),
             years=table.years,
             options=RunOptions(**setup.options),  # type: ignore[typeddict-item]
         )
-
-    @property
-    def hazard_curve(self) -> HazardCurve | None:
-        """The hazard in the intensity of the study."""
-        if self.hazard is None:
-            return None
-        x, rate = self.hazard
-        return HazardCurve(intensity=x, rate=rate, units=self.intensity.units, quantity=self.intensity.value)
 
     def runs(
         self,
@@ -121,6 +116,7 @@ class FragilityStudy:
         progress: Progress | None = None,
     ) -> xr.Dataset:
         """Return the incremental dynamic analysis, with the samples of the properties."""
+        remark_on({"column": self.model.column}, self.records)
         samples = None
         if self.spreads:
             rng = self._stream(_OF_SAMPLES)
@@ -168,8 +164,7 @@ class FragilityStudy:
 
     def rates(self, fits: xr.Dataset) -> xr.Dataset | None:
         """Return annual rates of the limit states, None without a hazard."""
-        curve = self.hazard_curve
-        return None if curve is None else annual_rate(fits, curve, years=self.years)
+        return None if self.hazard is None else annual_rate(fits, self.hazard, years=self.years)
 
     def _stream(self, place: int) -> np.random.Generator:
         return np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(place,)))

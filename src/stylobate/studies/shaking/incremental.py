@@ -25,7 +25,7 @@ from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.quantities import Floats, attributes_of, checked_values
 from stylobate.studies.sweeps.recipe import RunOptions
-from stylobate.studies.varied import require_no_tilt_limit
+from stylobate.studies.varied import remark_on_lengths, require_no_tilt_limit
 
 _TOLD_OTHERWISE = {
     "motion": "records",
@@ -329,6 +329,7 @@ def _samples(parameters: Mapping[str, npt.ArrayLike] | None) -> dict[str, Floats
         if name in _TOLD_OTHERWISE:
             message = f"parameters cannot name {name}: it is told by {_TOLD_OTHERWISE[name]}"
             raise ParameterError(message)
+    remark_on_lengths("parameters", given)
     several = {name: checked_values("parameters", name, values) for name, values in given.items() if np.ndim(values)}
     sizes = {name: values.size for name, values in several.items()}
     if len(set(sizes.values())) > 1 or 0 in sizes.values():

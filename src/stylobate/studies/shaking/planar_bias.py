@@ -23,6 +23,9 @@ from stylobate.studies.sweeps.recipe import RunOptions
 AXES = (0.0, 0.5 * math.pi)
 """The directions of the two horizontal components [rad]."""
 
+# One record tells no bias: nothing tells how far the next would lie from it.
+_LEAST = 2
+
 
 def planar_bias(
     model: Model,
@@ -73,8 +76,8 @@ def planar_bias(
         `overall_compared`, those of the mean of `log_ratio` over the scales of each record; `only_space` and
         `only_planar`, over `scale`, how many records overturn one of the two only. Likewise `capacity_bias`,
         `capacity_scatter`, `capacity_standard_error`, `capacities_compared` of
-        `log_capacity_ratio`. A positive bias of tilts, or a negative one of capacities, says that the planar column
-        is on the unsafe side.
+        `log_capacity_ratio`. All these are NaN of fewer than two records. A positive bias of tilts, or a negative one
+        of capacities, says that the planar column is on the unsafe side.
 
     Raises
     ------
@@ -178,7 +181,7 @@ def _compared(space: xr.Dataset, flat: xr.Dataset, least_ratio: float) -> xr.Dat
             "least_planar_overturning": least_flat,
             "worst_least_planar_overturning": worst_least,
             "log_capacity_ratio": _named(log_capacity, "ln(least overturning scale in space/in a plane)"),
-            **_moments(log_ratio, ("bias", "scatter", "standard_error", "compared")),
+            **bias_of(log_ratio),
             **_moments(
                 log_ratio.mean("scale"),
                 ("overall_bias", "overall_scatter", "overall_standard_error", "overall_compared"),
@@ -190,6 +193,11 @@ def _compared(space: xr.Dataset, flat: xr.Dataset, least_ratio: float) -> xr.Dat
         },
         attrs={"kind": "planar bias", "provenance": space.attrs["provenance"], "intensity": space.attrs["intensity"]},
     )
+
+
+def bias_of(log_ratio: xr.DataArray) -> dict[str, xr.DataArray]:
+    """Return mean, scatter, standard error and number over the records of ln(tilt in space/planar tilt)."""
+    return _moments(log_ratio, ("bias", "scatter", "standard_error", "compared"))
 
 
 def _logarithm(values: xr.DataArray) -> xr.DataArray:
@@ -212,9 +220,10 @@ def _least_scale(fallen: xr.DataArray) -> xr.DataArray:
 def _moments(values: xr.DataArray, names: tuple[str, str, str, str]) -> dict[str, xr.DataArray]:
     """Return mean, standard deviation, standard error and number over the records; NaN where they are too few."""
     number = values.notnull().sum("record")
-    mean = values.mean("record")
-    scatter = (((values - mean) ** 2).sum("record") / (number - 1).where(number > 1)) ** 0.5
-    error = scatter / number.where(number > 0) ** 0.5
+    enough = number >= _LEAST
+    mean = values.mean("record").where(enough)
+    scatter = (((values - mean) ** 2).sum("record") / (number - 1).where(enough)) ** 0.5
+    error = scatter / number.where(enough) ** 0.5
     told = ("mean over the records", "standard deviation over the records", "standard error of the mean")
     parts = zip((mean, scatter, error, number), (*told, "records compared"), strict=True)
     return dict(zip(names, (_named(one, long_name) for one, long_name in parts), strict=True))

@@ -1,5 +1,6 @@
 """Does the verdict stand? Every run again under small changes of record, dissipation, geometry and integration."""
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Unpack, cast
@@ -70,7 +71,7 @@ def robustness(
         `share_flipped` of them; `repeatable`, True where none flips overturning; `tilt_ratio_low` and
         `tilt_ratio_high`, the ends of the peak tilts over all changes, infinite where one overturns; `tilt_dispersion`,
         the standard deviation of ln(peak tilt) of those that do not overturn. Along `change` its name and `change_of`:
-        record, dissipation, geometry or integration.
+        record, dissipation, geometry or integration. Its `provenance` tells model, records, options and changes.
 
     Raises
     ------
@@ -102,7 +103,19 @@ def robustness(
         done += len(group) * angles.size
         if progress is not None:
             progress(done, total)
-    return _told(arrays, list(named), angles, chosen, factor)
+    found = _told(arrays, list(named), angles, chosen, factor)
+    sweep = Sweep.points(model, OneOf(motions=tuple(named.values())), at={"scale": [factor]}, duration=1.0, **options)
+    return found.assign_attrs(
+        provenance=_provenance(
+            sweep, scale=factor, rotations=angles.tolist(), tail=tail, changes=[repr(change) for change in chosen]
+        )
+    )
+
+
+def _provenance(given: Sweep, **own: Any) -> str:
+    """Return what all runs have in common but for their changes, and what is this study's `own`, in JSON."""
+    common = {name: value for name, value in given.describe().items() if name not in ("design", "duration", "periods")}
+    return json.dumps({**common, **own})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

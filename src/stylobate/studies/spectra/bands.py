@@ -56,9 +56,9 @@ def overturning_bands(
     scales
         Factors of the base motion: positive, increasing, two or more.
     over
-        Parameters with their values, as for `overturning_map`: size, slenderness, damping, rotation [rad], …;
-        angular_frequency [rad/s], here of a pulse too, whose other numbers stay; `motion`, the numbers of those in a
-        `OneOf`. By default one case.
+        Parameters with their values, as for `overturning_map`: size (all lengths times it at one density), slenderness,
+        damping, rotation [rad], …; angular_frequency [rad/s], here of a pulse too, whose other numbers stay; `motion`,
+        the numbers of those in a `OneOf`. By default one case.
     width
         Relative width, high/low − 1, to which edges are halved.
     tail
@@ -95,6 +95,12 @@ def overturning_bands(
         If the motion lacks a number that is to vary.
     Interrupted
         On Ctrl-C; `partial` has the bands as far as they are known.
+
+    Warns
+    -----
+    SeldomMeant
+        If `over` names a length of the column, such as its radius, and neither its mass nor its inertia: `size` makes a
+        larger column.
 
     See Also
     --------

@@ -18,7 +18,7 @@ from stylobate.studies.spectra.pulse_frequency import frequency_of, is_pulse, of
 from stylobate.studies.sweeps import Sweep
 from stylobate.studies.sweeps.quantities import OF_A_RUN, Floats, attributes_of, check_quantities, checked_values
 from stylobate.studies.sweeps.recipe import RunOptions
-from stylobate.studies.varied import require_values
+from stylobate.studies.varied import remark_on_lengths, require_values
 
 Integers = npt.NDArray[np.int64]
 
@@ -149,6 +149,7 @@ def _checked_names(model: Model, over: Mapping[str, npt.ArrayLike], *, scaled: b
     if over:
         check_quantities("over", model, over)
     require_values("over", over)
+    remark_on_lengths("over", over)
     return over
 
 

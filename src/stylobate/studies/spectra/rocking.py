@@ -32,7 +32,7 @@ def rocking_spectrum(
     model: Model,
     motion: BaseMotion,
     *,
-    over: Mapping[str, npt.ArrayLike],
+    over: Mapping[str, npt.ArrayLike] | None = None,
     tail: float = TAIL,
     duration: float | None = None,
     store: str | Path | None = None,
@@ -52,8 +52,8 @@ def rocking_spectrum(
     model, motion
         The column and the base motion: a `Pulse`, a `Record`, or a `OneOf` several.
     over
-        Parameters with their values, as for `overturning_bands`, and `scale`: size, which sets p ~ 1/√size, and
-        slenderness, motion, angular_frequency …
+        Parameters with their values, one at least, as for `overturning_bands`, and `scale`: size, which sets
+        p ~ 1/√size, and slenderness, motion, angular_frequency …
     tail, duration
         As for `overturning_bands`.
     store, executor, resume, progress, **options

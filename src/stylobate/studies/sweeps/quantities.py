@@ -90,24 +90,32 @@ def attributes_of(name: str) -> dict[str, str]:
 def checked_values(where: str, name: str, values: npt.ArrayLike) -> Floats:
     """Return `values` of the quantity `name` as an array, shape (n,).
 
+    Parameters
+    ----------
+    where
+        The argument that names it with its values; or, such as scales, holds its values alone.
+    name, values
+        The quantity and its values.
+
     Raises
     ------
     ParameterError
         If they are no list of numbers, or one of them is not what the quantity accepts.
     """
+    told = where if where in (name, f"{name}s") else f"{where}[{name!r}]"
     try:
         array = np.array(values, dtype=np.float64)  # a copy: what a sweep describes does not change
     except (TypeError, ValueError):
-        message = f"{where}[{name!r}] must be a list of numbers, got {values!r}"
+        message = f"{told} must be a list of numbers, got {values!r}"
         raise ParameterError(message) from None
     if array.ndim != 1:
-        message = f"{where}[{name!r}] must be a list of numbers, got an array of shape {array.shape}"
+        message = f"{told} must be a list of numbers, got an array of shape {array.shape}"
         raise ParameterError(message)
     quantity = _QUANTITIES.get(name, _ANY)
     refused = ~quantity.accepts(array)
     if refused.any():
         unit = f" {quantity.units}" if quantity.units not in ("", "1") else ""
-        message = f"{where}[{name!r}] must {quantity.demand}, got {float(array[refused][0])!r}{unit}"
+        message = f"{told} must {quantity.demand}, got {float(array[refused][0])!r}{unit}"
         raise ParameterError(message)
     array.setflags(write=False)
     return array

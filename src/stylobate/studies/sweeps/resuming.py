@@ -1,6 +1,7 @@
 """What differs between the description of a stored sweep and that of the one at hand, in words."""
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 # So many differences are told; more of them say that it is another sweep altogether.
@@ -11,11 +12,24 @@ def differences(stored: Mapping[str, Any], given: Mapping[str, Any]) -> list[str
     """Return one phrase for each of the first differences, the version before all others; none if there is none."""
     if stored.get("version") != given.get("version"):
         return [f"it was made by stylobate {stored.get('version')}, this is {given.get('version')}"]
-    before, now = dict(_leaves(stored)), dict(_leaves(given))
+    before, now = dict(_leaves(_by_name(stored))), dict(_leaves(_by_name(given)))
     names = [*now, *(name for name in before if name not in now)]
     found = [_told(name, before.get(name), now.get(name)) for name in names if before.get(name) != now.get(name)]
     more = [f"and {len(found) - _TOLD} more differences"] if len(found) > _TOLD else []
     return [*found[:_TOLD], *more]
+
+
+def _by_name(values: Any) -> Any:
+    """Return `values` with files of records told by name and content: in another folder they are the same."""
+    if isinstance(values, list):
+        return [_by_name(value) for value in values]
+    if not isinstance(values, Mapping):
+        return values
+    found = {name: _by_name(value) for name, value in values.items()}
+    if isinstance(values.get("file_sha256"), Mapping) and values["file_sha256"]:
+        found.pop("path", None)
+        found["file_sha256"] = {Path(path).name: digest for path, digest in values["file_sha256"].items()}
+    return found
 
 
 def _leaves(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:

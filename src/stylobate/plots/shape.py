@@ -1,0 +1,63 @@
+"""The body that is drawn: what a run knows of its column, completed."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Self
+
+from stylobate.results import Response
+
+# A body whose axial inertia is that of the frustum with its centre of mass, to this part, is that frustum.
+_SAME = 1e-9
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shape:
+    """A column as a body with a round base and top.
+
+    Attributes
+    ----------
+    radius, top_radius
+        Of base and top [m].
+    height
+        [m]; of a column known by its inertia twice the height of its centre of mass.
+    mass_height
+        Height of the centre of mass [m].
+    slenderness
+        c.
+    """
+
+    radius: float
+    top_radius: float
+    height: float
+    mass_height: float
+    slenderness: float
+
+    @classmethod
+    def of(cls, run: Response) -> Self:
+        """Return the body of the column of `run`: a frustum if it has the inertia of a solid one, else a cylinder."""
+        column = run.provenance["column"]
+        radius, mass_height = float(column["radius"]), float(column["mass_height"])
+        return cls(
+            radius=radius,
+            top_radius=_top_radius(column),
+            height=float(column.get("height") or 2.0 * mass_height),
+            mass_height=mass_height,
+            slenderness=radius / mass_height,
+        )
+
+
+def _top_radius(column: Mapping[str, Any]) -> float:
+    """Return the top radius of the solid frustum that these numbers describe, or the base radius."""
+    radius = float(column["radius"])
+    if not column.get("height"):
+        return radius
+    part = float(column["mass_height"]) / float(column["height"])
+    # Centre of mass of a frustum whose top is q times as wide: 4 part (1 + q + q²) = 1 + 2q + 3q², with 0 < q.
+    a, b, c = 3.0 - 4.0 * part, 2.0 - 4.0 * part, 1.0 - 4.0 * part
+    if not (a > 0.0 > c):
+        return radius
+    q = (math.sqrt(b * b - 4.0 * a * c) - b) / (2.0 * a)
+    axial = 0.3 * radius**2 * (1.0 + q + q**2 + q**3 + q**4) / (1.0 + q + q**2)
+    same = math.isclose(axial, float(column["axial_inertia"]) / float(column["mass"]), rel_tol=_SAME)
+    return q * radius if same else radius

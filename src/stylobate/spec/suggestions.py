@@ -1,0 +1,68 @@
+"""What a misspelt name in a description may have meant."""
+
+import re
+from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
+from typing import Annotated, Any, get_args, get_origin
+
+from pydantic import BaseModel
+
+_NOT_KNOWN = re.compile(r"(?P<told>(?P<path>\S+) (is not known here|does not belong to \w+ '\w+')); .*")
+_LIKENESS = 0.7
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """Return a question after the most alike of the names that are `known`; nothing where none is.
+
+    >>> did_you_mean("dampign", ["damping", "restitution"])
+    'did you mean damping?'
+    """
+    found = get_close_matches(name, sorted(known), n=1, cutoff=_LIKENESS)
+    return f"did you mean {found[0]}?" if found else ""
+
+
+def with_suggestions(description: type[BaseModel], problems: Sequence[str]) -> list[str]:
+    """Return the lines on mistakes, those on names that are not known with the one that was perhaps meant.
+
+    Parameters
+    ----------
+    description
+        The class of what was described.
+    problems
+        A line for each mistake.
+    """
+    return [_suggesting(description, line) for line in problems]
+
+
+def _suggesting(description: type[BaseModel], line: str) -> str:
+    found = _NOT_KNOWN.fullmatch(line)
+    if found is None:
+        return line
+    *path, name = found["path"].split(".")
+    question = did_you_mean(name, _names(description, path))
+    return f"{found['told']}; {question}" if question and f" {name}?" not in question else line
+
+
+def _names(annotation: Any, path: Sequence[str]) -> set[str]:
+    """Return the names that may stand at a path below what is annotated so; none where the path leads nowhere."""
+    found: set[str] = set()
+    for one in _alternatives(annotation):
+        if get_origin(one) is dict and path:
+            found |= _names(get_args(one)[1], path[1:])
+        if not (isinstance(one, type) and issubclass(one, BaseModel)):
+            continue
+        fields = {field.alias or name: field.annotation for name, field in one.model_fields.items()}
+        if not path:
+            found |= set(fields)
+        elif path[0] in fields:
+            found |= _names(fields[path[0]], path[1:])
+    return found
+
+
+def _alternatives(annotation: Any) -> list[Any]:
+    """Return the types of which a value may be one."""
+    origin = get_origin(annotation)
+    if origin is dict or not get_args(annotation):
+        return [annotation]
+    inner = get_args(annotation)[:1] if origin is Annotated else get_args(annotation)
+    return [one for part in inner for one in _alternatives(part)]

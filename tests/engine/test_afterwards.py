@@ -1,0 +1,65 @@
+"""How long a run lasts where nobody says, and what is told of a column that moves at its end."""
+
+import math
+
+import pytest
+
+import stylobate as sb
+from stylobate.errors import Outcome, ParameterError
+from stylobate.spec.simulation import FREE_TAIL
+
+COLUMN = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)
+P = COLUMN.frequency_parameter
+MODELS = [sb.Slender(COLUMN, damping=0.02), sb.Wobbling(COLUMN, damping=0.02), sb.Rolling(COLUMN, damping=0.02)]
+SINE = sb.Pulse.one_sine(acceleration=4.0, angular_frequency=6.0)
+
+
+@pytest.mark.parametrize("motion", [SINE, sb.Record(samples=[0.0, 1.0, 0.0], step=0.1), 0.3 * SINE.delayed(0.5)])
+def test_without_a_duration_a_run_outlasts_a_motion_that_ends_by_twenty_time_scales(motion):
+    run = sb.simulate(MODELS[0], motion)
+    assert run.provenance["duration"] == pytest.approx(motion.duration + FREE_TAIL / P, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("motion", "what"),
+    [
+        (None, "a base at rest"),
+        (sb.Harmonic.circular(acceleration=1.0, angular_frequency=2.0), "a base motion that never ends"),
+    ],
+)
+def test_a_motion_that_does_not_end_wants_a_duration(motion, what):
+    with pytest.raises(ParameterError, match=f"^duration must be given, in s, with {what}, such as duration=60.0"):
+        sb.simulate(MODELS[0], motion)
+
+
+@pytest.mark.parametrize("model", MODELS, ids=lambda model: model.name)
+def test_what_is_told_to_be_safe_never_overturns_and_what_overturns_later_was_told_to_be_open(model):
+    told = set()
+    for scale in (0.6, 0.9, 1.2, 1.5, 1.8):
+        motion = SINE.scaled(scale)
+        for share in (0.5, 1.0, 1.5):
+            run = sb.simulate(model, motion, duration=share * motion.duration)
+            if run.outcome is not Outcome.STILL_MOVING:
+                continue
+            later = sb.simulate(model, motion, duration=motion.duration + 60.0 / P).outcome
+            safe = "cannot overturn any more" in run.reason
+            told.add((safe, later is Outcome.OVERTURNED))
+            assert safe != run.reason.endswith("it may yet overturn: follow it longer")
+            assert not (share < 1.0 and safe)
+    assert (True, True) not in told
+    assert {(True, False), (False, True)} <= told
+
+
+def test_the_energy_told_is_that_over_the_energy_of_the_balance():
+    model = sb.Wobbling(COLUMN)
+    let_go, alpha = 0.5 * COLUMN.tipping_angle, COLUMN.tipping_angle
+    run = sb.simulate(model, tilt=(let_go, 0.0), tilt_rate=(0.0, 1e-3), duration=1.0)
+    # Without friction it keeps the height R (cos(α − θ) − cos α) of its start.
+    share = (math.cos(alpha - let_go) - math.cos(alpha)) / (1.0 - math.cos(alpha))
+    assert f"it has {100.0 * share:.2g} % of the energy that takes" in run.reason
+
+
+def test_a_column_beyond_its_balance_is_not_told_to_be_safe():
+    falling = sb.simulate(MODELS[1], tilt=(1.0001 * COLUMN.tipping_angle, 0.0), tilt_rate=(-1e-3, 0.0), duration=0.01)
+    assert falling.outcome is Outcome.STILL_MOVING
+    assert falling.reason.endswith("it may yet overturn: follow it longer")
