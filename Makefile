@@ -4,7 +4,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all lint docs bench clean
+.PHONY: help demo lab page test test-all lint docs bench clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 12
@@ -30,7 +30,20 @@ $(VENV)/.%: pyproject.toml | $(VENV)/.core
 demo: $(VENV)/.core  ## reproduce, check and draw the source paper into stylobate-paper/
 	$(BIN)/stylobate paper
 
-test: $(VENV)/.core $(VENV)/.test  ## the tests
+WEB     := src/stylobate/lab/web
+PAGE    := src/stylobate/lab/page/index.html
+
+$(PAGE): $(WEB)/package-lock.json $(WEB)/build.mjs $(WEB)/index.html $(shell find $(WEB)/src -type f)
+	@command -v npm >/dev/null || { echo "npm not found: the laboratory's page is bundled with Node 20 or newer (on Debian or Ubuntu: apt install nodejs npm)"; exit 1; }
+	cd $(WEB) && npm ci --no-audit --no-fund && npm run build
+	@touch $@
+
+page: $(PAGE)  ## the laboratory's page and the viewer of moving pictures, bundled with Node
+
+lab: $(VENV)/.core $(PAGE)  ## the laboratory, in the browser
+	$(BIN)/stylobate lab
+
+test: $(VENV)/.core $(VENV)/.test  ## the tests; those of the page need `make page` and chromium, else they are skipped
 	$(BIN)/python -m pytest -n auto
 
 test-all: $(VENV)/.core $(VENV)/.test  ## the tests, the slow ones included

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from stylobate.models import Contact, Model, PlanarRocking, Rolling, Slender, SlenderRolling, Sliding, Wobbling
     from stylobate.motions import BaseMotion, Harmonic, OneOf, Pulse, Record, Sweep, records
     from stylobate.motions.records import read_record, read_records, sample_record
-    from stylobate.plots import plot
+    from stylobate.plots import animate, plot
     from stylobate.results import Event, OutcomeRules, Response, load
 
 __all__ = [
@@ -47,6 +47,7 @@ __all__ = [
     "Sweep",
     "Wobbling",
     "__version__",
+    "animate",
     "errors",
     "load",
     "motions",
@@ -87,6 +88,7 @@ _HOMES = {
     "Sliding": "models",
     "Sweep": "motions",
     "Wobbling": "models",
+    "animate": "plots",
     "load": "results",
     "plot": "plots",
     "read_record": "motions.records",

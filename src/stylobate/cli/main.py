@@ -1,8 +1,9 @@
 """The program `stylobate`: its commands, and how mistakes are told."""
 
 import sys
+import warnings
 from collections.abc import Sequence
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -11,6 +12,7 @@ from stylobate.cli.basin import basin
 from stylobate.cli.boundary import boundary
 from stylobate.cli.drift import drift
 from stylobate.cli.fragility import fragility
+from stylobate.cli.lab import lab
 from stylobate.cli.ladder import ladder
 from stylobate.cli.many_runs import INTERRUPTED
 from stylobate.cli.map import overturning_map
@@ -19,7 +21,8 @@ from stylobate.cli.paper import paper
 from stylobate.cli.response import response
 from stylobate.cli.simulate import simulate
 from stylobate.cli.spectrum import spectrum
-from stylobate.errors import DescriptionError, StylobateError
+from stylobate.cli.usage import told
+from stylobate.errors import DescriptionError, SeldomMeant, StylobateError
 
 _BAD_INPUT = 2
 
@@ -62,6 +65,7 @@ app.command()(drift)
 app.command()(assess)
 app.command()(spectrum)
 app.command()(fragility)
+app.command()(lab)
 
 
 def main() -> None:
@@ -71,11 +75,23 @@ def main() -> None:
 
 def run(arguments: Sequence[str]) -> int:
     """Run one command and return its exit status."""
-    arguments = joined_ranges(arguments) or ["--help"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", SeldomMeant)
+        warnings.showwarning = _show_warning
+        return _run(joined_ranges(arguments) or ["--help"])
+
+
+def _show_warning(message: Warning | str, *rest: Any, **more: Any) -> None:
+    del rest, more
+    print(f"stylobate: warning: {message}", file=sys.stderr)
+
+
+def _run(arguments: Sequence[str]) -> int:
+    program = typer.main.get_command(app)
     try:
-        status = typer.main.get_command(app).main(arguments, prog_name="stylobate", standalone_mode=False)
+        status = program.main(arguments, prog_name="stylobate", standalone_mode=False)
     except _UsageError as error:
-        return _tell([getattr(error, "format_message", error.__str__)()])
+        return _tell([told(error, program)])
     except DescriptionError as error:
         return _tell(error.problems)
     except StylobateError as error:

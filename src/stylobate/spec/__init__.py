@@ -6,6 +6,7 @@ from stylobate.spec.drift import DriftDescription
 from stylobate.spec.fragility import FragilityDescription, FragilitySetup
 from stylobate.spec.ladder import LadderDescription
 from stylobate.spec.map import MapDescription
+from stylobate.spec.record_files import relocated
 from stylobate.spec.records import DescribedRecord, RecordMotion, RecordsDescription
 from stylobate.spec.response import ResponseDescription
 from stylobate.spec.simulation import (
@@ -15,6 +16,7 @@ from stylobate.spec.simulation import (
     provenance_of_run,
     read_description,
 )
+from stylobate.spec.snippets import as_python, as_toml
 from stylobate.spec.spectrum import SpectrumDescription
 
 __all__ = [
@@ -33,7 +35,10 @@ __all__ = [
     "Setup",
     "SimulationDescription",
     "SpectrumDescription",
+    "as_python",
+    "as_toml",
     "description_of",
     "provenance_of_run",
     "read_description",
+    "relocated",
 ]

@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -56,6 +57,14 @@ def test_a_second_process_compiles_nothing_and_computes_the_same_bits(tmp_path):
     assert two["took"] < 0.25 * one["took"]
     assert one["end"] == two["end"]
     assert len(list(tmp_path.glob("*.py"))) == 1
+
+
+@pytest.mark.slow
+def test_of_two_processes_that_need_a_kernel_one_compiles_it(tmp_path):
+    with ThreadPoolExecutor() as pool:
+        both = list(pool.map(lambda _: run(SCRIPT, tmp_path), range(2)))
+    assert sum("compiling" in one.stderr for one in both) == 1
+    assert json.loads(both[0].stdout)["end"] == json.loads(both[1].stdout)["end"]
 
 
 def test_a_folder_that_cannot_be_written_is_told_in_one_line(tmp_path, monkeypatch):

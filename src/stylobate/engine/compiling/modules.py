@@ -12,6 +12,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from filelock import FileLock
 from llvmlite import binding as llvm
 from numba import config
 from numba.core.errors import NumbaError, UnsupportedBytecodeError
@@ -65,20 +66,27 @@ def compiled_module(
             _write(path, source)
         mark = path.with_name(f"{path.stem}.{_machine()}.compiled")
         jit = not config.DISABLE_JIT  # type: ignore[attr-defined]
-        if jit and not mark.exists():
-            # A warning for whoever has set up no logging: seconds pass, once.
-            _log.warning("compiling %s; kept in %s", told, path.parent)
-            compile_apart(path, functions)  # where that fails, it is compiled here, and what is wrong is told
-        try:
-            module = load(path, functions)
-        except (NumbaError, UnsupportedBytecodeError, RecursionError) as error:
-            lines = (line.strip() for line in str(error).splitlines())
-            reason = next((line for line in lines if line and not line.startswith("Failed in")), "no reason")
-            message = f"model {of} cannot be compiled; single runs by simulate need no compiling: {reason}"
-            raise UnsupportedError(message) from error
-        if jit:
+        if not jit or mark.exists():
+            return _loaded(path, functions, of)
+        # One process compiles, others that need the same wait for it.
+        with FileLock(path.with_name(f"{mark.name}.lock")):
+            if not mark.exists():
+                # A warning for whoever has set up no logging: seconds pass, once.
+                _log.warning("compiling %s; kept in %s", told, path.parent)
+                compile_apart(path, functions)  # where that fails, it is compiled here, and what is wrong is told
+            module = _loaded(path, functions, of)
             mark.touch()
         return module
+
+
+def _loaded(path: Path, functions: Mapping[str, Callable[..., Any]], of: str) -> types.ModuleType:
+    try:
+        return load(path, functions)
+    except (NumbaError, UnsupportedBytecodeError, RecursionError) as error:
+        lines = (line.strip() for line in str(error).splitlines())
+        reason = next((line for line in lines if line and not line.startswith("Failed in")), "no reason")
+        message = f"model {of} cannot be compiled; single runs by simulate need no compiling: {reason}"
+        raise UnsupportedError(message) from error
 
 
 def cache_folder() -> Path:

@@ -1,0 +1,64 @@
+"""Runs and records as plain values that JSON can hold."""
+
+from typing import Any
+
+from stylobate.lab.plain import numbers, table
+from stylobate.models import Model
+from stylobate.motions import Record
+from stylobate.plots.animation import drawn_motion
+from stylobate.results import Response
+
+
+def plain_run(run: Response, model: Model) -> dict[str, Any]:
+    """Return what a page shows of `run`: what became of it, its history, and how it is drawn."""
+    return {
+        "outcome": run.outcome.name,
+        "told": run.outcome.value,
+        "reason": run.reason,
+        "decided_at": run.decided_at,
+        "uncertain": run.uncertain,
+        "planar": run.planar,
+        "warnings": list(run.warnings),
+        "events": [{"kind": event.kind, "time": event.time} for event in run.events],
+        "measures": table(run.measures),
+        "thresholds": table(run.thresholds),
+        "column": plain_column(model),
+        "drawn": drawn_motion(run),
+        "series": _series(run, model),
+    }
+
+
+def plain_column(model: Model) -> dict[str, float]:
+    """Return the numbers of the column that decide."""
+    column = model.column
+    names = ("radius", "mass_height", "mass", "slenderness", "inertia_ratio", "axial_ratio", "frequency_scale")
+    told = {name: float(getattr(column, name)) for name in names}
+    return {
+        **told,
+        "frequency_parameter": column.frequency_parameter,
+        "gravity": column.gravity,
+        "releasing_acceleration": column.slenderness * column.gravity,
+    }
+
+
+def _series(run: Response, model: Model) -> dict[str, Any]:
+    data, column = run.data, model.column
+    told = {"time": numbers(data["time"]), "base_acceleration": numbers(data["base_acceleration"])}
+    kept = ("amplitude", "azimuth", "rolling_rate", "friction_demand", "pivoting_demand", "contact")
+    told |= {name: numbers(data[name]) for name in kept if name in data}
+    if "normal_force" in data:
+        told["normal_force"] = numbers(data["normal_force"] / (column.mass * column.gravity))
+    return told
+
+
+def plain_record(record: Record) -> dict[str, Any]:
+    """Return what is told of an uploaded record."""
+    peaks = {axis: float(abs(record.samples[:, index]).max()) for index, axis in enumerate("xyz")}
+    return {
+        "name": record.name,
+        "samples": len(record.samples),
+        "step": record.step,
+        "duration": record.duration,
+        "peaks": table({axis: peak for axis, peak in peaks.items() if peak > 0.0}),
+        "provenance": list(record.provenance),
+    }

@@ -1,0 +1,175 @@
+"""What the page, or any program on this machine, can ask the laboratory for. See docs/laboratory.md."""
+
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import anyio
+from anyio import to_thread
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import Route
+
+from stylobate import spec
+from stylobate.lab.answers import plain_column
+from stylobate.lab.bodies import json_body
+from stylobate.lab.catalogue import about
+from stylobate.lab.crew import Crew
+from stylobate.lab.curves import response
+from stylobate.lab.described import Described, described
+from stylobate.lab.jobs import Jobs, broken
+from stylobate.lab.limits import Limits
+from stylobate.lab.refusals import RefusedError
+from stylobate.lab.schema import schema
+from stylobate.lab.uploads import Uploads
+from stylobate.lab.worker import Broken, Finished, Refused
+
+_log = logging.getLogger("stylobate.lab")
+
+_JOBS: dict[str, type[Any]] = {
+    "exact": spec.ResponseDescription,
+    "map": spec.MapDescription,
+    "basin": spec.BasinDescription,
+    "animation": spec.SimulationDescription,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Api:
+    """The endpoints, over what they share."""
+
+    limits: Limits
+    runs: Crew
+    jobs: Jobs
+    uploads: Uploads
+
+    def routes(self) -> list[Route]:
+        """Return the endpoints by path."""
+        return [
+            Route("/api/about", self.about, methods=["GET"]),
+            Route("/api/schema", self.schema, methods=["GET"]),
+            Route("/api/describe", self.describe, methods=["POST"]),
+            Route("/api/simulate", self.simulate, methods=["POST"]),
+            Route("/api/response", self.response, methods=["POST"]),
+            Route("/api/records", self.upload, methods=["POST"]),
+            Route("/api/jobs", self.begin, methods=["POST"]),
+            Route("/api/jobs/{identity:str}", self.follow, methods=["GET"]),
+            Route("/api/jobs/{identity:str}", self.cancel, methods=["DELETE"]),
+            Route("/api/jobs/{identity:str}/file", self.file, methods=["GET"]),
+        ]
+
+    async def about(self, request: Request) -> Response:
+        """What there is: models, motions, columns with their numbers; presets; limits."""
+        del request
+        return JSONResponse(about(self.limits))
+
+    async def schema(self, request: Request) -> Response:
+        """The description of these endpoints (OpenAPI)."""
+        del request
+        return JSONResponse(schema(self.limits))
+
+    async def describe(self, request: Request) -> Response:
+        """The description as TOML and as Python, and what follows for the column, without a run."""
+        given = await self._described(request)
+
+        def told() -> dict[str, Any]:
+            model = spec.SimulationDescription.parse(given.values).build().model
+            return {**_snippets(given), "column": plain_column(model)}
+
+        return JSONResponse(await to_thread.run_sync(told))
+
+    async def simulate(self, request: Request) -> Response:
+        """One run."""
+        given = await self._described(request)
+        snippets = await to_thread.run_sync(lambda: _snippets(given))
+        answer = await self._run("run", {"max_steps": self.limits.steps, **given.values}, request)
+        return JSONResponse({**answer, **snippets})
+
+    async def response(self, request: Request) -> Response:
+        """Amplitude and phase of steady rolling over frequency, by theory."""
+        given = await self._described(request)
+        return JSONResponse(await to_thread.run_sync(lambda: response(given.values)))
+
+    async def upload(self, request: Request) -> Response:
+        """Keep the files of a record and tell what they hold."""
+        body = await json_body(request, self.limits.records)
+        upload = await to_thread.run_sync(self.uploads.add, body)
+        try:
+            answer = await self._run("record", upload.motion(), request)
+        except RefusedError as error:
+            self.uploads.drop(upload)
+            folder = f"{upload.paths[0].parent}/"
+            raise RefusedError(error.status, [line.replace(folder, "") for line in error.problems]) from None
+        return JSONResponse({"upload": upload.digest, **answer})
+
+    async def begin(self, request: Request) -> Response:
+        """Begin a job."""
+        body = await json_body(request, self.limits.body)
+        kind, values = body.get("kind"), body.get("description")
+        if not isinstance(kind, str) or kind not in _JOBS:
+            raise RefusedError(422, [f"kind must be one of {', '.join(_JOBS)}, got {kind!r}"])
+        if not isinstance(values, dict):
+            raise RefusedError(422, ["description is missing: the plain values of a description"])
+        given = described(values, self.uploads, self.limits)
+        await to_thread.run_sync(lambda: _JOBS[kind].parse(given.values))
+        return JSONResponse({"id": self.jobs.begin(kind, given.values).identity}, status_code=202)
+
+    async def follow(self, request: Request) -> Response:
+        """How a job stands, with the events from the number `after` on."""
+        after = request.query_params.get("after", "0")
+        if not (after.isascii() and after.isdigit() and len(after) < 10):  # noqa: PLR2004  digits of a count
+            raise RefusedError(422, [f"after must be a number of events, got {after!r}"])
+        return JSONResponse(self.jobs[request.path_params["identity"]].told(int(after)))
+
+    async def cancel(self, request: Request) -> Response:
+        """Cancel a job."""
+        return JSONResponse(self.jobs.cancel(request.path_params["identity"]).told(0) | {"events": []})
+
+    async def file(self, request: Request) -> Response:
+        """The picture that a job has made."""
+        result = self.jobs[request.path_params["identity"]].result
+        if not isinstance(result, bytes):
+            raise RefusedError(404, ["this job has no file, or not yet"])
+        return Response(result, media_type="image/gif")
+
+    async def _described(self, request: Request) -> Described:
+        return described(await json_body(request, self.limits.body), self.uploads, self.limits)
+
+    async def _run(self, kind: str, values: dict[str, Any], request: Request) -> dict[str, Any]:
+        """Return the result of a task that somebody waits for; it ends when they wait no more, or after its time."""
+        answer: Finished | Refused | Broken | None = None
+        limits = self.limits
+        try:
+            async with anyio.create_task_group() as group:
+                group.start_soon(_when_gone, request, group.cancel_scope.cancel)
+                answer = await self.runs.perform(kind, values, lambda _: None, wait=limits.wait, limit=limits.run_time)
+                group.cancel_scope.cancel()
+        except* TimeoutError:
+            problem = (
+                f"the run was given up after {limits.run_time:g} s: shorten its duration or run it in Python; "
+                "where other pages are at work, try again"
+            )
+            raise RefusedError(503, [problem]) from None
+        match answer:
+            case Finished(result):
+                assert isinstance(result, dict)
+                return result
+            case Refused(problems):
+                raise RefusedError(422, problems)
+            case Broken(trace):
+                _log.error(trace)
+                raise RefusedError(500, [broken(trace)])
+        raise RefusedError(400, ["the request was taken back"])
+
+
+async def _when_gone(request: Request, act: Callable[[], None]) -> None:
+    """Act when whoever sent `request` has gone."""
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
+    act()
+
+
+def _snippets(given: Described) -> dict[str, str]:
+    description = spec.SimulationDescription.parse(given.told)
+    return {"toml": spec.as_toml(given.told), "python": spec.as_python(description)}

@@ -1,0 +1,96 @@
+"""The laboratory as an ASGI application."""
+
+import tempfile
+from collections.abc import AsyncIterator, Callable, Collection
+from contextlib import AsyncExitStack, asynccontextmanager
+from pathlib import Path
+
+import anyio
+from starlette.applications import Starlette
+from starlette.exceptions import HTTPException
+from starlette.middleware import Middleware
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import Mount, Router
+
+from stylobate.errors import DescriptionError, StylobateError
+from stylobate.lab.api import Api
+from stylobate.lab.crew import Crew
+from stylobate.lab.guards import Guard
+from stylobate.lab.jobs import Jobs, broken
+from stylobate.lab.limits import Limits
+from stylobate.lab.pages import page_routes
+from stylobate.lab.refusals import RefusedError
+from stylobate.lab.uploads import Uploads
+
+
+def create_app(
+    *, hosts: Collection[str], limits: Limits | None = None, ready: Callable[[], object] | None = None
+) -> Starlette:
+    """Return the application, for a server that knows ASGI.
+
+    Parameters
+    ----------
+    hosts
+        Values of the header Host under which it is reached, such as "127.0.0.1:8642"; others are refused.
+    limits
+        How much it may be asked for.
+    ready
+        Called when requests can be answered.
+    """
+    bounds = limits or Limits()
+    inner = Router()
+
+    @asynccontextmanager
+    async def lifespan(app: Starlette) -> AsyncIterator[None]:
+        del app
+        async with AsyncExitStack() as stack:
+            folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="stylobate-lab-")))
+            runs, work = Crew(bounds.runs), Crew(bounds.jobs)
+            stack.callback(runs.end)
+            stack.callback(work.end)
+            group = await stack.enter_async_context(anyio.create_task_group())
+            stack.callback(group.cancel_scope.cancel)
+            jobs = Jobs(work, bounds, group)
+            group.start_soon(jobs.watch)
+            group.start_soon(runs.warm_up)
+            inner.routes[:] = Api(bounds, runs, jobs, Uploads(folder, bounds.uploads)).routes()
+            if ready is not None:
+                ready()
+            yield
+
+    return Starlette(
+        routes=[*page_routes(), Mount("/", app=inner)],
+        middleware=[Middleware(Guard, hosts=hosts)],
+        exception_handlers={
+            RefusedError: _refusal,
+            StylobateError: _mistake,
+            HTTPException: _problem,
+            Exception: _failure,
+        },
+        lifespan=lifespan,
+    )
+
+
+async def _refusal(request: Request, error: Exception) -> Response:
+    del request
+    assert isinstance(error, RefusedError)
+    return JSONResponse({"problems": list(error.problems)}, status_code=error.status)
+
+
+async def _mistake(request: Request, error: Exception) -> Response:
+    """Tell what the library says of the values."""
+    del request
+    problems = error.problems if isinstance(error, DescriptionError) else str(error).splitlines()
+    return JSONResponse({"problems": list(problems)}, status_code=422)
+
+
+async def _failure(request: Request, error: Exception) -> Response:
+    del request
+    return JSONResponse({"problems": [broken(repr(error))]}, status_code=500)
+
+
+async def _problem(request: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    problem = f"{request.method} {request.url.path}: {error.detail.lower()}"
+    return JSONResponse({"problems": [problem]}, status_code=error.status_code, headers=error.headers)

@@ -1,0 +1,80 @@
+"""Response curves, of theory and of exact orbits, as plain values."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from stylobate import spec, studies
+from stylobate.lab.plain import numbers
+from stylobate.lab.worker import Emit, Event
+
+
+def response(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the curves of theory that `values` describe; milliseconds."""
+    setup = spec.ResponseDescription.parse(values).build()
+    low, high = setup.options["range"]
+    frequencies = np.linspace(low, high, setup.options["points"])
+    return plain_curves(studies.response_curves(setup.model, setup.motion, angular_frequency=frequencies))
+
+
+def plain_curves(curves: xr.Dataset) -> dict[str, Any]:
+    """Return the curves of theory, one for each sense and branch."""
+    return {
+        "angular_frequency": numbers(curves["angular_frequency"]),
+        "branches": [
+            {
+                "sense": str(sense),
+                "branch": str(branch),
+                **{
+                    name: numbers(curves[name].sel(sense=sense, branch=branch))
+                    for name in ("amplitude", "phase", "stable")
+                },
+            }
+            for sense in curves["sense"].to_numpy()
+            for branch in curves["branch"].to_numpy()
+        ],
+        "backbone": numbers(curves["backbone"]),
+        "critical": [
+            {"sense": str(sense), "angular_frequency": value}
+            for sense, value in zip(curves["sense"].to_numpy(), numbers(curves["critical_frequency"]), strict=True)
+        ],
+        "averaged": bool(curves.attrs["averaged"]),
+    }
+
+
+def exact_curves(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
+    """Return the exact orbits that `values` describe; each new one is told by its frequency."""
+    setup = spec.ResponseDescription.parse(values).build()
+
+    def reached(frequency: float) -> None:
+        emit(Event({"angular_frequency": float(frequency)}))
+
+    low, high = setup.options["range"]
+    found = studies.exact_response(setup.model, setup.motion, angular_frequency=(low, high), progress=reached)
+    return plain_exact(found)
+
+
+def plain_exact(found: xr.Dataset) -> dict[str, Any]:
+    """Return families of exact orbits and their bifurcations."""
+    names = ("angular_frequency", "mean_tilt", "least_tilt", "largest_tilt", "phase", "stable")
+    owner = found["branch"].to_numpy()
+    families = [
+        {"name": str(label), **{name: numbers(found[name].to_numpy()[owner == index]) for name in names}}
+        for index, label in enumerate(found["branch_name"].to_numpy())
+    ]
+    softness = {1: True, 0: False, -1: None}
+    bifurcations = [
+        {
+            "kind": str(kind),
+            "angular_frequency": float(frequency),
+            "mean_tilt": float(tilt),
+            "soft": softness[int(soft)],
+        }
+        for kind, frequency, tilt, soft in zip(
+            *(found[f"bifurcation_{name}"].to_numpy() for name in ("kind", "angular_frequency", "mean_tilt", "soft")),
+            strict=True,
+        )
+    ]
+    return {"families": families, "bifurcations": bifurcations}

@@ -1,0 +1,105 @@
+"""What a request describes: the names of the command line, but no file of this machine, and no more than the limits."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from stylobate.lab.limits import Limits
+from stylobate.lab.refusals import RefusedError
+from stylobate.lab.uploads import Upload, Uploads
+
+_DEEPEST = 12
+"""How deep motions may be put into motions, as sums of copies and the like."""
+
+
+@dataclass(frozen=True, slots=True)
+class Described:
+    """Plain values of a description: `values` to compute with, `told` to show, in which uploads go by file name."""
+
+    values: dict[str, Any]
+    told: dict[str, Any]
+
+
+def described(body: Mapping[str, Any], uploads: Uploads, limits: Limits) -> Described:
+    """Return what the `body` of a request describes.
+
+    Raises
+    ------
+    RefusedError
+        If it names files of this machine, an upload that is not here, or exceeds a limit.
+    """
+    problems = list(_beyond(body, limits))
+    if problems:
+        raise RefusedError(422, problems)
+    return Described(
+        dict(_with_uploads(body, lambda digest: uploads[digest], Upload.motion)),
+        dict(_with_uploads(body, lambda digest: uploads[digest], Upload.told)),
+    )
+
+
+def _with_uploads(
+    values: Mapping[str, Any],
+    find: Callable[[object], Upload],
+    tell: Callable[[Upload], dict[str, Any]],
+    depth: int = 0,
+) -> dict[str, Any]:
+    """Return `values` with the motion `upload` replaced by its record, wherever it stands."""
+    if depth > _DEEPEST:
+        raise RefusedError(422, [f"motion may hold motions in motions to a depth of {_DEEPEST}; this one goes deeper"])
+    if values.get("kind") == "record" or (set(values) & {"path", "upload", "file_sha256"}):
+        _refuse_files(values)
+        if "upload" in values:
+            rest = {name: value for name, value in values.items() if name not in ("kind", "upload")}
+            values = {**tell(find(values["upload"])), **rest}
+
+    def inside(value: object) -> object:
+        if isinstance(value, Mapping):
+            return _with_uploads(value, find, tell, depth + 1)
+        return [inside(one) for one in value] if isinstance(value, list) else value
+
+    return {name: inside(value) for name, value in values.items()}
+
+
+def _refuse_files(values: Mapping[str, Any]) -> None:
+    for name in ("path", "file_sha256", "source"):
+        if name in values:
+            raise RefusedError(422, [f"{name}: the laboratory reads no files of this machine; upload the record"])
+
+
+def _beyond(body: Mapping[str, Any], limits: Limits) -> list[str]:
+    """Return a line for each number beyond its limit."""
+    bounds = {
+        "duration": (limits.duration, "s"),
+        "max_steps": (limits.steps, "steps"),
+        "samples": (limits.steps, "samples"),
+        "points": (limits.points, "frequencies"),
+        "strobes": (limits.points, "states"),
+    }
+    problems = [
+        f"{name} may be at most {bound:g} {unit} here, got {body[name]!r}; use stylobate in Python for more"
+        for name, (bound, unit) in bounds.items()
+        if _number(body.get(name)) > bound
+    ]
+    plane = body.get("map") or body.get("basin")
+    axes = [plane.get(place) for place in "xy"] if isinstance(plane, Mapping) else []
+    cells = _number(plane.get("random")) if isinstance(plane, Mapping) else 0.0
+    if any(axes):
+        cells = max(cells, math.prod(_length(axis) for axis in axes))
+    if cells > limits.cells:
+        problems.append(f"a map may have {limits.cells} runs here, got {cells:g}; use stylobate map for more")
+    return problems
+
+
+def _length(axis: object) -> float:
+    if not isinstance(axis, Mapping):
+        return 1.0
+    listed = axis.get("values")
+    return len(listed) if isinstance(listed, list) else max(_number(axis.get("number")), 1.0)
+
+
+def _number(value: object) -> float:
+    try:
+        return float(value) if isinstance(value, (int, float, str)) else 0.0
+    except (ValueError, OverflowError):
+        return math.inf if isinstance(value, int) else 0.0

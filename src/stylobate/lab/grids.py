@@ -1,0 +1,86 @@
+"""Maps and basins that fill in while they are computed."""
+
+import os
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from stylobate import spec, studies
+from stylobate.errors import Outcome, ParameterError
+from stylobate.lab.plain import number, numbers
+from stylobate.lab.refining import Cells, Refining
+from stylobate.lab.worker import Emit, Event, Progress
+from stylobate.results.outcomes import code_of
+from stylobate.studies.sweeps.quantities import attributes_of
+
+
+def overturning_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
+    """Return what becomes of the column over two quantities; of a model that slides, what it does."""
+    setup = spec.MapDescription.parse(values).build()
+    study = studies.contact_map if setup.model.switches else studies.overturning_map
+    found = _watched(study, setup, emit)
+    if "contact_class" in found:
+        return _finer(found, "contact_class", found["class_name"].to_numpy())
+    return _counts(found, [outcome.value for outcome in Outcome])
+
+
+def basin_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
+    """Return which attractor each start of a grid leads to."""
+    setup = spec.BasinDescription.parse(values).build()
+    if "count" in setup.options:
+        message = "basin.random is for the command line; the laboratory draws a grid: give basin.x and basin.y"
+        raise ParameterError(message)
+    found = _watched(studies.basins, setup, emit)
+    told = _finer(found, "attractor", found["attractor_name"].to_numpy())
+    told["attractors"] = [_attractor(found.isel(attractor_index=i)) for i in range(found.sizes["attractor_index"])]
+    return told
+
+
+def _attractor(one: xr.Dataset) -> dict[str, Any]:
+    shares = ("fraction", "fraction_low", "fraction_high")
+    return {
+        "name": str(one["attractor_name"].item()),
+        "kind": str(one["attractor_kind"].item()),
+        "period": int(one["attractor_period"]),
+        **{name: number(float(one[name])) for name in shares},
+    }
+
+
+def _watched(study: Callable[..., xr.Dataset], setup: spec.Setup, emit: Emit) -> xr.Dataset:
+    """Return what `study` finds; the outcomes are told as they come."""
+    over = setup.options["over"]
+    axes = {
+        place: {"name": name, "values": numbers(values), **attributes_of(name)}
+        for place, (name, values) in zip("xy", over.items(), strict=True)
+    }
+    names = [[code_of(outcome), outcome.value] for outcome in Outcome]
+    emit(Event({"axes": axes, "names": names}))
+
+    def show(stride: int, places: Cells, outcomes: Cells) -> None:
+        cells = np.column_stack([places, outcomes]).tolist()
+        emit(Event({"stride": stride, "cells": cells}))
+
+    executor = Refining(show, threads=max(1, (os.cpu_count() or 2) // 2))
+    return study(
+        setup.model,
+        setup.motion,
+        **setup.options,
+        executor=executor,
+        progress=lambda done, total: emit(Progress(done, total)),
+    )
+
+
+def _finer(found: xr.Dataset, variable: str, names: Any) -> dict[str, Any]:
+    """Return the cells once more, by what is known of them at the end."""
+    codes = found[variable].transpose(*found["outcome"].dims).to_numpy()
+    listed = [[index, str(name)] for index, name in enumerate(names)]
+    return {"codes": codes.tolist(), "names": listed, **_counts(found, None)}
+
+
+def _counts(found: xr.Dataset, names: list[str] | None) -> dict[str, Any]:
+    told: dict[str, Any] = {"uncertain": int(found["uncertain"].sum()), "runs": int(found["outcome"].size)}
+    if names is not None:
+        told["shares"] = dict(zip(names, numbers(found["share"]), strict=True))
+    return told

@@ -1,0 +1,138 @@
+"""Long work in the background: with progress, events as they come, cancelled or dropped when nobody asks for it."""
+
+import secrets
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any
+
+import anyio
+from anyio.abc import TaskGroup
+
+from stylobate.lab.crew import Crew, Told
+from stylobate.lab.limits import Limits
+from stylobate.lab.refusals import RefusedError
+from stylobate.lab.worker import Broken, Event, Finished, Note, Progress
+
+
+class State(Enum):
+    """Where a job stands."""
+
+    WAITING = "waiting"
+    RUNNING = "running"
+    DONE = "done"
+    FAILED = "failed"
+    CANCELLED = "cancelled"
+
+
+_OPEN = (State.WAITING, State.RUNNING)
+
+
+@dataclass(slots=True)
+class Job:
+    """A task of some `kind` and what has come of it."""
+
+    kind: str
+    identity: str = field(default_factory=lambda: secrets.token_urlsafe(12))
+    state: State = State.WAITING
+    done: int = 0
+    total: int = 0
+    note: str = ""
+    events: list[Mapping[str, Any]] = field(default_factory=list)
+    problems: tuple[str, ...] = ()
+    result: Any = None
+    asked_at: float = field(default_factory=time.monotonic)
+    scope: anyio.CancelScope = field(default_factory=anyio.CancelScope)
+
+    def heard(self, message: Told) -> None:
+        """Take what is told on the way."""
+        self.state = State.RUNNING
+        match message:
+            case Event(value):
+                self.events.append(value)
+            case Progress(done, total):
+                self.done, self.total = done, total
+            case Note(line):
+                self.note = line
+
+    def told(self, after: int) -> dict[str, Any]:
+        """Return the job as plain values, with the events from the number `after` on."""
+        self.asked_at = time.monotonic()
+        return {
+            "id": self.identity,
+            "kind": self.kind,
+            "state": self.state.value,
+            "done": self.done,
+            "total": self.total,
+            "note": self.note,
+            "events": self.events[after:],
+            "next": len(self.events),
+            "problems": list(self.problems),
+            "result": None if isinstance(self.result, bytes) else self.result,
+        }
+
+
+@dataclass(slots=True)
+class Jobs:
+    """All jobs; they run in `crew`, in tasks of `group`."""
+
+    crew: Crew
+    limits: Limits
+    group: TaskGroup
+    _known: dict[str, Job] = field(default_factory=dict)
+
+    def __getitem__(self, identity: str) -> Job:
+        if identity not in self._known:
+            raise RefusedError(404, ["this job is not known (any more); ask for it again"])
+        return self._known[identity]
+
+    def begin(self, kind: str, values: Mapping[str, Any]) -> Job:
+        """Return a new job.
+
+        Raises
+        ------
+        RefusedError
+            If too many wait.
+        """
+        waiting = sum(job.state is State.WAITING for job in self._known.values())
+        if waiting >= self.limits.waiting:
+            raise RefusedError(429, [f"{waiting} jobs wait already; cancel one or try again when one is done"])
+        job = Job(kind)
+        self._known[job.identity] = job
+        self.group.start_soon(self._run, job, values)
+        return job
+
+    def cancel(self, identity: str) -> Job:
+        """Return the job, cancelled unless it had ended."""
+        job = self[identity]
+        if job.state in _OPEN:
+            job.state = State.CANCELLED
+            job.scope.cancel()
+        return job
+
+    async def watch(self) -> None:
+        """Drop jobs that nobody has asked for in a while, for ever."""
+        while True:
+            await anyio.sleep(min(5.0, self.limits.abandoned / 2.0))
+            for job in list(self._known.values()):
+                if time.monotonic() - job.asked_at > self.limits.abandoned:
+                    self.cancel(job.identity)
+                    del self._known[job.identity]
+
+    async def _run(self, job: Job, values: Mapping[str, Any]) -> None:
+        with job.scope:
+            answer = await self.crew.perform(job.kind, values, job.heard)
+            match answer:
+                case Finished(result):
+                    job.state, job.result = State.DONE, result
+                case Broken(trace):
+                    job.state, job.problems = State.FAILED, (broken(trace),)
+                case refused:
+                    job.state, job.problems = State.FAILED, refused.problems
+
+
+def broken(trace: str) -> str:
+    """Return the line that tells of a mistake in the program."""
+    last = trace.strip().splitlines()[-1]
+    return f"the laboratory made a mistake of its own: {last}; please report it with the link of this page"

@@ -1,0 +1,52 @@
+"""How much one request, and all together, may ask of the laboratory."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """What the laboratory refuses to exceed; each refusal names the limit.
+
+    Attributes
+    ----------
+    body
+        Size of a request [bytes].
+    records
+        Size of a request with files of records [bytes].
+    uploads
+        Size of all records kept [bytes]; the oldest go first.
+    duration
+        Length of a run [s].
+    steps
+        Steps of the integration of a run.
+    points
+        Frequencies of a response curve.
+    cells
+        Runs of a map or basin.
+    run_time
+        How long a single run may be computed [s].
+    wait
+        How long a single run may wait for one of the processes that compute them [s].
+    runs
+        Single runs computed at once.
+    jobs
+        Maps and the like computed at once.
+    waiting
+        Jobs that wait.
+    abandoned
+        A job is dropped when nobody has asked for it for so long [s].
+    """
+
+    body: int = 1 << 20
+    records: int = 24 << 20
+    uploads: int = 256 << 20
+    duration: float = 3600.0
+    steps: int = 200_000
+    points: int = 2000
+    cells: int = 40_000
+    run_time: float = 20.0
+    wait: float = 5.0
+    runs: int = 3
+    jobs: int = 2
+    waiting: int = 8
+    abandoned: float = 120.0

@@ -1,0 +1,45 @@
+"""Numbers as JSON has them: lists of rounded floats, null where a number is none."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+_DIGITS = 9
+"""Digits that are sent: a page shows fewer."""
+
+
+def numbers(values: npt.ArrayLike) -> list[Any]:
+    """Return an array as lists, None where a number is not finite."""
+    array = np.asarray(values)
+    if array.dtype.kind != "f":
+        return list(array.tolist())
+    finite = np.isfinite(array)
+    rounded = np.zeros(array.shape)
+    scale = 10.0 ** (_DIGITS - 1 - np.floor(np.log10(np.where(finite & (array != 0.0), np.abs(array), 1.0))))
+    rounded[finite] = (np.round(array * scale) / scale)[finite]
+    told = rounded.astype(object)
+    told[~finite] = None
+    return list(told.tolist())
+
+
+def number(value: float) -> float | None:
+    """Return a number, None where it is not finite."""
+    return float(value) if math.isfinite(value) else None
+
+
+def table(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return named values with numbers that are not finite as None, at any depth."""
+    return {str(name): _plain(value) for name, value in values.items()}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return table(value)
+    if isinstance(value, (list, tuple)):
+        return [_plain(one) for one in value]
+    if isinstance(value, float | np.floating):
+        return number(float(value))
+    return value.item() if isinstance(value, np.generic) else value

@@ -1,0 +1,73 @@
+"""What the processes of the laboratory can compute, by name. Each takes plain values and returns plain values."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from stylobate import engine, spec
+from stylobate.lab.answers import plain_record, plain_run
+from stylobate.lab.worker import Emit, Progress
+
+_LONGEST_PICTURE = 12.0
+"""How long a moving picture lasts at most [s]."""
+
+# Imports inside tasks are heavy, and few of the processes do such tasks.
+
+
+def run(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
+    """Return one run, with all that is drawn of it."""
+    del emit
+    setup = spec.SimulationDescription.parse(values).build()
+    return plain_run(engine.simulate(setup.model, setup.motion, **setup.options), setup.model)
+
+
+def record(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
+    """Return what a record holds."""
+    del emit
+    return plain_record(spec.RecordMotion.parse(values).build())
+
+
+def exact(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
+    """Return exact periodic orbits over a range of frequencies, with their bifurcations."""
+    from stylobate.lab.curves import exact_curves  # noqa: PLC0415
+
+    return exact_curves(values, emit)
+
+
+def overturning(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
+    """Return what becomes of the column over two quantities."""
+    from stylobate.lab.grids import overturning_plane  # noqa: PLC0415
+
+    return overturning_plane(values, emit)
+
+
+def basin(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
+    """Return where starts lead."""
+    from stylobate.lab.grids import basin_plane  # noqa: PLC0415
+
+    return basin_plane(values, emit)
+
+
+def animation(values: Mapping[str, Any], emit: Emit) -> bytes:
+    """Return a run as a moving picture (GIF), long ones faster than they are."""
+    from stylobate.plots.animation import animate  # noqa: PLC0415
+
+    setup = spec.SimulationDescription.parse(values).build()
+    run = engine.simulate(setup.model, setup.motion, **setup.options)
+    speed = max(1.0, float(run.data["time"][-1]) / _LONGEST_PICTURE)
+    return animate(run, speed=speed).gif(lambda done, total: emit(Progress(done, total)))
+
+
+def warm_up() -> None:
+    """Import and compile what every run needs."""
+    values = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "tilt": [0.02, 0.0], "duration": 1.0}
+    run(values, lambda _: None)
+
+
+TASKS: Mapping[str, Callable[[Any, Emit], Any]] = {
+    "run": run,
+    "record": record,
+    "exact": exact,
+    "map": overturning,
+    "basin": basin,
+    "animation": animation,
+}

@@ -1,0 +1,79 @@
+// Bundles the page into ../page and the viewer alone, one script, for pictures that move in a file of their own.
+//
+//   node build.mjs [viewer] [page] [--watch] [--readable]        without a name: both
+
+import { copyFile, mkdir, readFile } from "node:fs/promises";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { build, context } from "esbuild";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const page = join(here, "..", "page");
+const viewer = join(here, "..", "..", "plots", "animation", "viewer.js");
+
+const words = process.argv.slice(2);
+const watch = words.includes("--watch");
+const named = words.filter((word) => !word.startsWith("--"));
+const unknown = named.filter((word) => word !== "viewer" && word !== "page");
+if (unknown.length > 0) {
+  console.error(`nothing is called ${unknown.join(", ")}: build viewer, page or both`);
+  process.exit(2);
+}
+const wanted = (name) => named.length === 0 || named.includes(name);
+
+// What is bundled is passed on: its licences ask to stand in every copy.
+async function licences(packages) {
+  const texts = await Promise.all(
+    packages.map((name) => readFile(join(here, "node_modules", name, "LICENSE"), "utf8")),
+  );
+  return packages.map((name, i) => `/*! ${name}\n${texts[i].trim().replaceAll("*/", "* /")}\n*/`).join("\n");
+}
+
+const common = {
+  absWorkingDir: here,
+  bundle: true,
+  charset: "utf8",
+  target: ["es2022", "chrome110", "firefox115", "safari16.4"],
+  minify: !words.includes("--readable"),
+  legalComments: "none",
+  logLevel: "info",
+};
+
+async function viewerBundle() {
+  return {
+    ...common,
+    entryPoints: ["src/viewer/standalone.ts"],
+    outfile: viewer,
+    format: "iife",
+    globalName: "stylobateViewer",
+    banner: { js: await licences(["three"]) },
+  };
+}
+
+async function pageBundle() {
+  return {
+    ...common,
+    entryPoints: { main: "src/page/main.ts" },
+    outdir: page,
+    format: "esm",
+    sourcemap: words.includes("--readable") && "inline",
+    banner: { js: await licences(["three", "uplot"]) },
+    plugins: [
+      {
+        name: "index.html",
+        setup: (run) => run.onEnd(() => copyFile(join(here, "index.html"), join(page, "index.html"))),
+      },
+    ],
+  };
+}
+
+const bundles = [];
+if (wanted("viewer")) bundles.push(await viewerBundle());
+if (wanted("page")) {
+  await mkdir(page, { recursive: true });
+  bundles.push(await pageBundle());
+}
+for (const bundle of bundles) {
+  if (watch) await (await context(bundle)).watch();
+  else await build(bundle).catch(() => process.exit(1)); // what is wrong has been told by then
+}

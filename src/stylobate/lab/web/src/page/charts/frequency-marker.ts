@@ -1,0 +1,95 @@
+/** The frequency of the motion that is shown, as a line across the response that is drawn along by hand or keys. */
+
+import { element } from "../dom";
+import { withUnit } from "../format";
+import { rounded } from "../ranges";
+
+/** The part of the range that an arrow key moves the marker by, and a page key. */
+const [STEP, PAGE] = [1 / 200, 1 / 20];
+
+/** Where the range of frequencies lies in the host [px]. */
+export interface Extent {
+  readonly left: number;
+  readonly width: number;
+  readonly range: readonly [number, number];
+}
+
+export class FrequencyMarker {
+  readonly root = element("div", { class: "marker", role: "slider", tabindex: 0, "aria-label": "Angular frequency of the base motion" });
+  readonly #host: HTMLElement;
+  readonly #extent: () => Extent;
+  readonly #moved: (frequency: number) => void;
+  #value = 1;
+
+  constructor(host: HTMLElement, extent: () => Extent, moved: (frequency: number) => void) {
+    this.#host = host;
+    this.#extent = extent;
+    this.#moved = moved;
+    this.root.append(element("span", { class: "grip", "aria-hidden": "true" }));
+    host.append(this.root);
+    host.addEventListener("pointerdown", (event) => this.#grasp(event));
+    host.addEventListener("pointermove", (event) => {
+      if (host.hasPointerCapture(event.pointerId)) this.#follow(event);
+    });
+    this.root.addEventListener("keydown", (event) => this.#key(event));
+  }
+
+  show(frequency: number | null): void {
+    this.root.hidden = frequency === null;
+    if (frequency === null) return;
+    this.#value = frequency;
+    const { left, width, range } = this.#extent();
+    const share = Math.min(Math.max((frequency - range[0]) / (range[1] - range[0]), 0), 1);
+    this.root.style.transform = `translateX(${(left + share * width).toFixed(1)}px)`;
+    this.root.setAttribute("aria-valuemin", String(range[0]));
+    this.root.setAttribute("aria-valuemax", String(range[1]));
+    this.root.setAttribute("aria-valuenow", String(frequency));
+    this.root.setAttribute("aria-valuetext", withUnit(frequency, "rad/s", 4));
+  }
+
+  #grasp(event: PointerEvent): void {
+    if (event.button !== 0 || this.root.hidden) return;
+    const { left, width } = this.#extent();
+    const place = event.clientX - this.#host.getBoundingClientRect().left - left;
+    if (place < -GRIP || place > width + GRIP) return;
+    this.#host.setPointerCapture(event.pointerId);
+    this.root.focus({ preventScroll: true });
+    event.preventDefault();
+    this.#follow(event);
+  }
+
+  #follow(event: PointerEvent): void {
+    const { left, width, range } = this.#extent();
+    const share = (event.clientX - this.#host.getBoundingClientRect().left - left) / width;
+    this.#to(range[0] + Math.min(Math.max(share, 0), 1) * (range[1] - range[0]));
+  }
+
+  #key(event: KeyboardEvent): void {
+    const { range } = this.#extent();
+    const span = range[1] - range[0];
+    const steps: Readonly<Record<string, number>> = {
+      ArrowRight: this.#value + STEP * span,
+      ArrowUp: this.#value + STEP * span,
+      ArrowLeft: this.#value - STEP * span,
+      ArrowDown: this.#value - STEP * span,
+      PageUp: this.#value + PAGE * span,
+      PageDown: this.#value - PAGE * span,
+      Home: range[0],
+      End: range[1],
+    };
+    const wanted = steps[event.key];
+    if (wanted === undefined) return;
+    event.preventDefault();
+    event.stopPropagation(); // the arrows of the page move the clock
+    this.#to(Math.min(Math.max(wanted, range[0]), range[1]));
+  }
+
+  #to(frequency: number): void {
+    const { width, range } = this.#extent();
+    const value = rounded(frequency, (range[1] - range[0]) / Math.max(width, 100));
+    this.#moved(Math.max(value, range[0]));
+  }
+}
+
+/** How far beside the range a hand may still grasp [px]. */
+const GRIP = 12;

@@ -1,0 +1,40 @@
+/** How all plots look: axes, grid and lettering in the colours of the theme. */
+
+import type uPlot from "uplot";
+import { themeColour } from "../dom";
+import { told } from "../format";
+
+export const LETTERING = '11px system-ui, -apple-system, "Segoe UI", Roboto, sans-serif';
+
+/** Room for the numbers and the name of a vertical axis [px]: the same everywhere, so that plots stand in line. */
+export const AXIS_WIDTH = 58;
+
+export function axis(label: string, looks: uPlot.Axis = {}): uPlot.Axis {
+  return {
+    ...(label === "" ? {} : { label, labelSize: 16, labelFont: LETTERING, labelGap: 0 }),
+    font: LETTERING,
+    stroke: () => themeColour("muted"),
+    grid: { stroke: () => themeColour("grid"), width: 1 },
+    ticks: { stroke: () => themeColour("grid"), width: 1, size: 4 },
+    gap: 3,
+    values: (_, splits) => splits.map((value) => told(value, 6)),
+    ...looks,
+  };
+}
+
+export function across(label: string): uPlot.Axis {
+  return axis(label, { size: label === "" ? 20 : 22, space: 50 });
+}
+
+export function upright(label: string): uPlot.Axis {
+  return axis(label, { size: AXIS_WIDTH - 16, space: 17 });
+}
+
+/** What uPlot would add and the page does without: zooming by dragging, its own legend and marks. */
+export const PLAIN = {
+  legend: { show: false },
+  cursor: { show: true, x: true, y: false, points: { show: false }, drag: { setScale: false, x: false, y: false } },
+  padding: [8, 10, 0, 0],
+  // Whole pixels would make stairs of lines that rise slowly.
+  pxAlign: false,
+} satisfies Partial<uPlot.Options>;

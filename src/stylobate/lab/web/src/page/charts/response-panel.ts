@@ -1,0 +1,217 @@
+/** The frequency response: curves of theory, exact orbits on request, and the frequency that is shown. */
+
+import type { ExactResponse, JobReport, ResponseCurves } from "../answers";
+import { button, element, newId, onResize } from "../dom";
+import { counted, plain, told, words } from "../format";
+import type { Job } from "../job";
+import type { Extent } from "./frequency-marker";
+import { FrequencyMarker } from "./frequency-marker";
+import { AXIS_WIDTH } from "./plot-looks";
+import { heightOf, linesOf } from "./response-lines";
+import { ResponsePlot } from "./response-plot";
+
+export interface ResponseHearing {
+  readonly frequency: (value: number) => void;
+  readonly range: (range: readonly [number, number] | null) => void;
+  /** Starts the search for exact orbits. */
+  readonly exact: (report: (report: JobReport) => void, ended: (last: JobReport | null, problems: readonly string[]) => void) => Job;
+}
+
+export class ResponsePanel {
+  readonly root: HTMLElement;
+  readonly #hearing: ResponseHearing;
+  readonly #plots = element("div", { class: "response-plots" });
+  readonly #amplitudeHost = element("div", { class: "plot amplitude", role: "img" });
+  readonly #phaseHost = element("div", { class: "plot phase", role: "img" });
+  readonly #note = element("p", { class: "note", "aria-live": "polite" });
+  readonly #legend = element("ul", { class: "legend" });
+  readonly #ask: HTMLButtonElement;
+  readonly #from: HTMLInputElement;
+  readonly #to: HTMLInputElement;
+  readonly #amplitude: ResponsePlot;
+  readonly #phase: ResponsePlot;
+  readonly #marker: FrequencyMarker;
+  #curves: ResponseCurves | null = null;
+  #exact: ExactResponse | null = null;
+  #job: Job | null = null;
+  #range: readonly [number, number] = [0.2, 4];
+  #slenderness = 0.1;
+  #frequency: number | null = null;
+  /** What is to be known of the curves. */
+  #about = "";
+
+  constructor(hearing: ResponseHearing) {
+    this.#hearing = hearing;
+    this.#ask = button("Exact orbits", { class: "small" }, () => this.#askExact());
+    this.#ask.title = "Follow the periodic orbits of the model itself over the range";
+    [this.#from, this.#to] = [this.#rangeField("from"), this.#rangeField("to")];
+    const range = element("span", { class: "range-fields" }, "Ω", this.#from, "–", this.#to, element("span", { class: "unit" }, "rad/s"));
+    const heading = element("header", {}, element("h2", {}, "Frequency response"), this.#ask);
+    const footer = element("footer", {}, this.#note, range);
+    this.#plots.append(this.#amplitudeHost, this.#phaseHost);
+    this.root = element("section", { class: "panel chart response", "aria-label": "Frequency response" }, heading, this.#plots, this.#legend, footer);
+    this.#amplitude = new ResponsePlot("amplitude", this.#amplitudeHost, ["", "|θ|/c"]);
+    this.#phase = new ResponsePlot("phase", this.#phaseHost, ["angular frequency [rad/s]", "phase [rad]"]);
+    this.#marker = new FrequencyMarker(this.#plots, () => this.#extent(), hearing.frequency);
+    for (const [host, { plot }] of [[this.#amplitudeHost, this.#amplitude], [this.#phaseHost, this.#phase]] as const) {
+      onResize(host, (width, height) => {
+        plot.setSize({ width, height });
+        this.#marker.show(this.#frequency);
+      });
+    }
+  }
+
+  /** Shows curves over their range; `own` tells whether they are those of the model that is chosen. */
+  show(curves: ResponseCurves, slenderness: number, range: readonly [number, number], own: boolean): void {
+    this.#curves = curves;
+    this.#slenderness = slenderness;
+    this.showRange(range);
+    this.#about = toldOfCurves(curves, own);
+    this.tell(this.#about);
+    this.#draw();
+  }
+
+  /** Takes the curves away and says why there are none. */
+  clear(reason: string): void {
+    this.#curves = null;
+    this.tell(reason);
+    this.#draw();
+  }
+
+  showRange(range: readonly [number, number]): void {
+    this.#range = range;
+    if (document.activeElement !== this.#from) this.#from.value = plain(range[0]);
+    if (document.activeElement !== this.#to) this.#to.value = plain(range[1]);
+    this.#marker.show(this.#frequency);
+  }
+
+  showFrequency(frequency: number | null): void {
+    this.#frequency = frequency;
+    this.#marker.show(frequency);
+  }
+
+  tell(text: string): void {
+    this.#note.textContent = text;
+  }
+
+  /** Forgets exact orbits: they were those of another case. */
+  forgetExact(): void {
+    this.#job?.cancel();
+    this.#job = null;
+    this.#ask.textContent = "Exact orbits";
+    if (this.#exact === null) return;
+    this.#exact = null;
+    this.#draw();
+  }
+
+  allowExact(allowed: boolean): void {
+    this.#ask.disabled = !allowed;
+  }
+
+  redraw(): void {
+    this.#amplitude.plot.redraw(false);
+    this.#phase.plot.redraw(false);
+  }
+
+  get exact(): ExactResponse | null {
+    return this.#exact;
+  }
+
+  #askExact(): void {
+    if (this.#job !== null) {
+      this.forgetExact();
+      this.tell(this.#about);
+      return;
+    }
+    this.#ask.textContent = "Cancel";
+    this.tell("Exact orbits are being followed…");
+    this.#job = this.#hearing.exact(
+      ({ note }) => {
+        if (note) this.tell(note);
+      },
+      (last, problems) => this.#found(last, problems),
+    );
+  }
+
+  #found(last: JobReport | null, problems: readonly string[]): void {
+    this.#job = null;
+    this.#ask.textContent = "Exact orbits";
+    if (last?.state !== "done") {
+      this.tell(problems.join(" "));
+      return;
+    }
+    this.#exact = last.result as ExactResponse;
+    this.tell(toldOfExact(this.#exact));
+    this.#draw();
+  }
+
+  #draw(): void {
+    const curves = this.#curves;
+    const lines = curves === null ? [] : linesOf(curves, this.#slenderness);
+    const c = this.#slenderness;
+    const tilts = this.#exact?.families.flatMap((one) => one.mean_tilt.map((tilt) => (tilt === null ? null : tilt / c))) ?? [];
+    const picture = {
+      frequency: curves?.angular_frequency ?? [...this.#range],
+      lines,
+      backbone: curves?.backbone.map((value) => (value === null ? null : value / c)) ?? [null, null],
+      critical: (curves?.critical ?? []).flatMap((one) => one.angular_frequency ?? []),
+      exact: this.#exact,
+      slenderness: c,
+      range: this.#range,
+      height: heightOf(lines, tilts),
+    };
+    this.#amplitude.show(picture);
+    this.#phase.show(picture);
+    this.#nameLines(new Set(lines.filter((one) => one.amplitude.some((value) => value !== null)).map((one) => one.sense)));
+    const critical = picture.critical.map((one) => told(one, 4)).join(", ");
+    const summary = lines.length === 0 ? "no curves" : `${counted(new Set(lines.map((one) => one.sense)).size, "sense")} of rolling; stable from ${critical || "no frequency"} rad/s on`;
+    this.#amplitudeHost.setAttribute("aria-label", `Amplitude of steady rolling over angular frequency: ${summary}`);
+    this.#phaseHost.setAttribute("aria-label", "Phase of steady rolling over angular frequency");
+  }
+
+  #nameLines(senses: ReadonlySet<string>): void {
+    const items = [...senses].map((sense) => ["line", sense === "clockwise" ? "vermilion" : "blue", sense]);
+    if (senses.size > 0) items.push(["thin", "muted", "unstable"], ["dotted", "muted", "backbone"]);
+    if (this.#exact !== null) items.push(["dot", "green", "exact"], ["diamond", "purple", "bifurcation"]);
+    this.#legend.replaceChildren(
+      ...items.map(([kind, colour, text]) => element("li", {}, element("span", { class: `key ${kind} ${colour}` }), text ?? "")),
+    );
+  }
+
+
+  #extent(): Extent {
+    const { width } = this.#amplitudeHost.getBoundingClientRect();
+    const room = this.#amplitude.plot.over.getBoundingClientRect();
+    const left = room.left - this.#plots.getBoundingClientRect().left || AXIS_WIDTH;
+    return { left, width: room.width || Math.max(width - AXIS_WIDTH, 1), range: this.#range };
+  }
+
+  #rangeField(which: "from" | "to"): HTMLInputElement {
+    const field = element("input", {
+      ...{ id: newId(which), class: "number tiny", type: "text", inputmode: "decimal", autocomplete: "off" },
+      "aria-label": `Response ${which} angular frequency, rad/s`,
+    });
+    field.addEventListener("change", () => this.#readRange());
+    return field;
+  }
+
+  #readRange(): void {
+    const [from, to] = [Number(this.#from.value), Number(this.#to.value)];
+    const empty = this.#from.value.trim() === "" && this.#to.value.trim() === "";
+    const right = 0 < from && from < to && Number.isFinite(to);
+    for (const field of [this.#from, this.#to]) field.setAttribute("aria-invalid", String(!right && !empty));
+    if (right || empty) this.#hearing.range(right ? [from, to] : null);
+    else this.tell("The range must rise from above zero; leave both fields empty for the usual one.");
+  }
+}
+
+function toldOfCurves(curves: ResponseCurves, own: boolean): string {
+  const how = curves.averaged ? "by averaging" : "in closed form";
+  return own ? `Steady rolling, ${how}.` : `Steady rolling of the slender column that cannot turn, ${how}; this model has none.`;
+}
+
+function toldOfExact(exact: ExactResponse): string {
+  const found = exact.bifurcations.map((one) => `${words(one.kind)} at ${told(one.angular_frequency, 5)}`);
+  const families = counted(exact.families.length, "family", "families");
+  return `Exact: ${families} of orbits; ${found.length > 0 ? `${found.join(", ")} rad/s` : "no bifurcation in the range"}.`;
+}

@@ -1,0 +1,162 @@
+/** One of the two plots of the frequency response: amplitude or phase over angular frequency. */
+
+import uPlot from "uplot";
+import type { ExactResponse, Numbers } from "../answers";
+import { themeColour } from "../dom";
+import { across, PLAIN, upright } from "./plot-looks";
+import type { ResponseLine } from "./response-lines";
+import { continuous } from "./response-lines";
+
+export type Quantity = "amplitude" | "phase";
+
+export interface ResponsePicture {
+  readonly frequency: readonly number[];
+  readonly lines: readonly ResponseLine[];
+  readonly backbone: Numbers;
+  readonly critical: readonly number[];
+  readonly exact: ExactResponse | null;
+  readonly slenderness: number;
+  readonly range: readonly [number, number];
+  readonly height: number;
+}
+
+/** Curves, of every case: two senses, two branches, stable or not; then the backbone. */
+const MOST_LINES = 8;
+
+export class ResponsePlot {
+  readonly plot: uPlot;
+  readonly #quantity: Quantity;
+  #picture: ResponsePicture | null = null;
+
+  constructor(quantity: Quantity, host: HTMLElement, labels: readonly [across: string, upright: string]) {
+    this.#quantity = quantity;
+    const lines = Array.from({ length: MOST_LINES }, (_, i): uPlot.Series => this.#lineLooks(i));
+    this.plot = new uPlot(
+      {
+        ...PLAIN,
+        width: 400,
+        height: 200,
+        scales: {
+          x: { time: false, range: () => [...(this.#picture?.range ?? [0, 1])] },
+          y: { range: (_, low, high) => this.#limits(low, high) },
+        },
+        axes: [across(labels[0]), upright(labels[1])],
+        series: [{}, ...lines, this.#backboneLooks()],
+        hooks: { drawAxes: [(plot) => this.#drawCritical(plot)], draw: [(plot) => this.#drawExact(plot)] },
+        cursor: { show: false },
+      },
+      [[], ...Array.from({ length: MOST_LINES + 1 }, () => [])],
+      host,
+    );
+  }
+
+  show(picture: ResponsePicture): void {
+    this.#picture = picture;
+    const empty = picture.frequency.map(() => null);
+    const lines = Array.from({ length: MOST_LINES }, (_, i) => picture.lines[i]?.[this.#quantity] ?? empty);
+    const backbone = this.#quantity === "amplitude" ? picture.backbone : empty;
+    this.plot.setData([picture.frequency as number[], ...([...lines, backbone] as (number | null)[][])]);
+  }
+
+  /** The looks are asked for when drawing: which line stands at which place changes with the case. */
+  #lineLooks(index: number): uPlot.Series {
+    const stable = index % 2 === 0; // as `linesOf` has them: two branches of one sense, then of the other
+    const second = index >= MOST_LINES / 2;
+    return {
+      stroke: () => themeColour(this.#picture?.lines[index]?.sense === "clockwise" ? "vermilion" : "blue"),
+      // Under a straight motion both senses are alike: the second is drawn finer, on the first.
+      width: stable ? (second ? 1.5 : 3.6) : second ? 1.25 : 1,
+      ...(stable ? {} : { dash: second ? [2, 7] : [5, 4] }),
+      points: { show: false },
+      spanGaps: false,
+    };
+  }
+
+  #backboneLooks(): uPlot.Series {
+    return { stroke: () => themeColour("muted"), width: 1, dash: [1, 4], points: { show: false } };
+  }
+
+  #limits(low: number | null, high: number | null): [number, number] {
+    if (this.#quantity === "amplitude") return [0, this.#picture?.height ?? 1];
+    if (low === null || high === null) return [-Math.PI, 0];
+    const room = Math.max((high - low) * 0.06, 0.05);
+    return [low - room, high + room];
+  }
+
+  #drawCritical(plot: uPlot): void {
+    const { ctx, bbox } = plot;
+    ctx.save();
+    ctx.strokeStyle = themeColour("muted");
+    ctx.setLineDash([2 * uPlot.pxRatio, 3 * uPlot.pxRatio]);
+    for (const frequency of this.#picture?.critical ?? []) {
+      const x = plot.valToPos(frequency, "x", true);
+      if (x < bbox.left || x > bbox.left + bbox.width) continue;
+      ctx.beginPath();
+      ctx.moveTo(x, bbox.top);
+      ctx.lineTo(x, bbox.top + bbox.height);
+      ctx.stroke();
+    }
+    ctx.restore();
+  }
+
+  #drawExact(plot: uPlot): void {
+    const { exact, slenderness } = this.#picture ?? { exact: null, slenderness: 1 };
+    if (exact === null) return;
+    const { ctx, bbox } = plot;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    for (const family of exact.families) {
+      const values = this.#quantity === "phase" ? continuous(family.phase) : family.mean_tilt;
+      const unit = this.#quantity === "phase" ? 1 : slenderness;
+      let last: readonly [number, number, boolean] | null = null;
+      family.angular_frequency.forEach((frequency, i) => {
+        const value = values[i];
+        if (frequency === null || value === null || value === undefined) return;
+        const [x, y] = [plot.valToPos(frequency, "x", true), plot.valToPos(value / unit, "y", true)];
+        const stable = family.stable[i] === true;
+        // Orbits are found close together where the branch bends; dots that touch would hide the curves.
+        if (last !== null && last[2] === stable && Math.hypot(x - last[0], y - last[1]) < APART * uPlot.pxRatio) return;
+        last = [x, y, stable];
+        drawDot(plot, x, y, stable);
+      });
+    }
+    for (const one of this.#quantity === "amplitude" ? exact.bifurcations : []) {
+      if (one.mean_tilt !== null) drawDiamond(plot, one.angular_frequency, one.mean_tilt / slenderness);
+    }
+    ctx.restore();
+  }
+}
+
+/** The least distance of two dots [px]. */
+const APART = 9;
+
+function drawDot(plot: uPlot, x: number, y: number, stable: boolean): void {
+  const { ctx } = plot;
+  const ratio = uPlot.pxRatio;
+  ctx.beginPath();
+  ctx.arc(x, y, 2.4 * ratio, 0, 2 * Math.PI);
+  ctx.fillStyle = themeColour(stable ? "green" : "panel");
+  ctx.strokeStyle = themeColour("green");
+  ctx.lineWidth = 1.1 * ratio;
+  ctx.fill();
+  ctx.stroke();
+}
+
+function drawDiamond(plot: uPlot, frequency: number, value: number): void {
+  const { ctx } = plot;
+  const size = 5.5 * uPlot.pxRatio;
+  const [x, y] = [plot.valToPos(frequency, "x", true), plot.valToPos(value, "y", true)];
+  ctx.beginPath();
+  ctx.moveTo(x, y - size);
+  ctx.lineTo(x + size, y);
+  ctx.lineTo(x, y + size);
+  ctx.lineTo(x - size, y);
+  ctx.closePath();
+  ctx.fillStyle = themeColour("purple");
+  ctx.strokeStyle = themeColour("panel");
+  ctx.lineWidth = uPlot.pxRatio;
+  ctx.fill();
+  ctx.stroke();
+}

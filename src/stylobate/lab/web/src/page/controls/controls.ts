@@ -1,0 +1,123 @@
+/** The column of controls: preset, column, model, base motion, start and length. */
+
+import type { About, Preset } from "../about";
+import { kindsOf } from "../about";
+import type { Description, Part, PartName, Value } from "../description";
+import { kindOf, tagOf, withPartValue, written } from "../description";
+import { choice, element, newId } from "../dom";
+import type { ColumnScales } from "../quantities";
+import { NumberField } from "./number-field";
+import { PartForm, partOfKind } from "./part-form";
+import { RecordForm } from "./record-form";
+import { StartForm } from "./start-form";
+
+export interface ControlsHearing {
+  /** A number has been moved. */
+  readonly edited: (description: Description) => void;
+  /** Another case has been chosen. */
+  readonly jumped: (description: Description) => void;
+  readonly preset: (preset: Preset) => void;
+}
+
+export class Controls {
+  readonly root: HTMLElement;
+  readonly #about: About;
+  readonly #hearing: ControlsHearing;
+  readonly #presets: HTMLSelectElement;
+  readonly #presetTold = element("p", { class: "hint" });
+  readonly #forms: Readonly<Record<PartName, PartForm>>;
+  readonly #record: RecordForm;
+  readonly #start: StartForm;
+  readonly #duration: NumberField;
+  #description: Description;
+
+  constructor(about: About, first: Description, problems: HTMLElement, hearing: ControlsHearing) {
+    this.#about = about;
+    this.#hearing = hearing;
+    this.#description = first;
+    const id = newId("preset");
+    const options = about.presets.map((preset) => [preset.id, preset.title] as const);
+    this.#presets = choice([["", "A case of one's own"], ...options], { id }, (value) => this.#choosePreset(value));
+    this.#forms = { column: this.#form("column"), model: this.#form("model"), motion: this.#form("motion") };
+    this.#record = new RecordForm(about, (motion) => hearing.jumped({ ...this.#description, motion }));
+    this.#forms.motion.root.insertBefore(this.#record.root, this.#forms.motion.root.lastElementChild);
+    this.#start = new StartForm((description) => hearing.edited(description));
+    this.#duration = new NumberField(
+      { name: "duration", label: "Duration", symbol: "t", unit: "s", range: null, top: 60, empty: "by record" },
+      (value) => hearing.edited({ ...this.#description, duration: value }),
+    );
+    const length = element("div", { class: "fields" }, this.#duration.root);
+    this.root = element(
+      "aside",
+      { class: "controls", "aria-label": "Case" },
+      element("div", { class: "panel preset" }, element("label", { for: id }, "Preset"), this.#presets, this.#presetTold),
+      problems,
+      section("Column", this.#forms.column.root),
+      section("Model", this.#forms.model.root),
+      section("Base motion", this.#forms.motion.root),
+      section("Start and length", this.#start.root, length),
+    );
+  }
+
+  get record(): RecordForm {
+    return this.#record;
+  }
+
+  show(description: Description, scales: ColumnScales): void {
+    this.#description = description;
+    const preset = this.#about.presets.find((one) => written(one.description) === written(description));
+    this.#presets.value = preset?.id ?? "";
+    this.#presetTold.textContent = preset?.about ?? "";
+    this.#presetTold.hidden = !preset?.about;
+    for (const part of ["column", "model", "motion"] as const) this.#forms[part].show(description[part], kindOf(description, part));
+    this.#record.show(description.motion);
+    this.#start.show(description, scales);
+    const duration = description["duration"];
+    this.#duration.show(typeof duration === "number" ? duration : null);
+  }
+
+  /** Marks the fields whose names the problems tell. */
+  setWrong(names: ReadonlySet<string>): void {
+    for (const form of Object.values(this.#forms)) form.setWrong(names);
+    this.#start.setWrong(names);
+    this.#duration.setWrong(names.has("duration"));
+  }
+
+  #form(part: PartName): PartForm {
+    return new PartForm(LABELS[part], kindsOf(this.#about, part), {
+      chosen: (kind) => {
+        const chosen = partOfKind(kind, tagOf(part), this.#description[part]);
+        this.#hearing.jumped(this.#fitted({ ...this.#description, [part]: part === "motion" ? this.#withSample(chosen) : chosen }));
+      },
+      changed: (name: string, value: Value) => this.#hearing.edited(withPartValue(this.#description, part, name, value)),
+    });
+  }
+
+  /** A record needs to be one: the first sample, until another is chosen. */
+  #withSample(motion: Part): Part {
+    const sample = this.#about.samples[0]?.name;
+    return motion["kind"] === "record" && sample !== undefined ? { ...motion, sample } : motion;
+  }
+
+  /** A run under a record lasts as long as that; any other needs a length. */
+  #fitted(description: Description): Description {
+    const record = description.motion["kind"] === "record";
+    if (record) return { ...description, duration: null };
+    return { ...description, duration: description["duration"] ?? USUAL_DURATION };
+  }
+
+  #choosePreset(id: string): void {
+    const preset = this.#about.presets.find((one) => one.id === id);
+    if (preset) this.#hearing.preset(preset);
+  }
+}
+
+const LABELS: Readonly<Record<PartName, string>> = { column: "Shape of the column", model: "Model", motion: "Base motion" };
+
+const USUAL_DURATION = 60; // s
+
+/** Narrow windows have the sections closed: what is to be seen comes first. */
+function section(title: string, ...content: readonly HTMLElement[]): HTMLDetailsElement {
+  const open = !matchMedia("(max-width: 759px)").matches;
+  return element("details", { class: "panel section", open }, element("summary", {}, element("h2", {}, title)), ...content);
+}

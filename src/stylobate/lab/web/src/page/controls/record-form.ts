@@ -1,0 +1,134 @@
+/** Which record: one that comes with the package, or files of the user's own. */
+
+import type { About } from "../about";
+import type { Received } from "../answers";
+import { Refused, sendRecord, Unreachable } from "../api";
+import type { Part, Value } from "../description";
+import { button, choice, element, newId } from "../dom";
+import { capital, told, withUnit } from "../format";
+
+const UNITS = [
+  ["", "unit: from the file"],
+  ["g", "unit: g"],
+  ["cm/s2", "unit: cm/s²"],
+  ["m/s2", "unit: m/s²"],
+] as const;
+
+const MOST_FILES = 3;
+const OWN = "\u0000own"; // no sample has this name
+
+/** A record that was uploaded: what the server said of it, and what was sent. */
+interface Kept {
+  readonly told: Received;
+  readonly body: Part;
+}
+
+export class RecordForm {
+  readonly root: HTMLElement;
+  readonly #changed: (motion: Part) => void;
+  readonly #source: HTMLSelectElement;
+  readonly #own: HTMLElement;
+  readonly #files = element("input", { type: "file", multiple: true });
+  readonly #units = choice(UNITS, { "aria-label": "Unit of the record" }, () => this.#send());
+  readonly #told = element("p", { class: "hint", "aria-live": "polite" });
+  readonly #problem = element("p", { class: "problem", role: "alert", hidden: true });
+  readonly #known = new Map<string, Kept>();
+  #motion: Part = {};
+  /** Whether files are to be chosen, while the motion is still that of a sample. */
+  #choosing = false;
+
+  constructor(about: About, changed: (motion: Part) => void) {
+    this.#changed = changed;
+    const [id, fileId] = [newId("record"), newId("files")];
+    const samples = about.samples.map(({ name }) => [name, capital(name)] as const);
+    this.#source = choice([...samples, [OWN, "Own files…"]], { id }, (value) => this.#choose(value));
+    this.#files.id = fileId;
+    this.#files.addEventListener("change", () => this.#send());
+    const label = element("label", { for: fileId, class: "visually-hidden" }, "Files of the record, one to three");
+    const again = button("Choose files…", { class: "wide" }, () => this.#files.click());
+    this.#files.classList.add("visually-hidden");
+    this.#files.tabIndex = -1; // the button beside it is the one to reach
+    this.#own = element("div", { class: "own-record" }, label, this.#files, again, this.#units);
+    const source = element("div", { class: "field choice" }, element("label", { for: id }, "Record"), this.#source);
+    this.root = element("div", { class: "record" }, source, this.#own, this.#told, this.#problem);
+  }
+
+  show(motion: Part): void {
+    const { kind, sample: before } = this.#motion;
+    if (motion["kind"] !== kind || motion["sample"] !== before) this.#choosing = false;
+    this.#motion = motion;
+    this.root.hidden = motion["kind"] !== "record";
+    if (this.root.hidden) return;
+    const { sample, upload } = motion;
+    const own = this.#choosing || typeof sample !== "string";
+    this.#source.value = own ? OWN : sample;
+    this.#own.hidden = !own;
+    const known = typeof upload === "string" ? this.#known.get(upload) : undefined;
+    this.#told.textContent = known ? toldOfRecord(known.told) : "";
+    this.#told.hidden = !known;
+    if (!own) this.#tell(null);
+  }
+
+  /** Sends an upload once more that the server does not hold any more; false where this page has not its files. */
+  async restore(upload: Value | undefined): Promise<boolean> {
+    const kept = typeof upload === "string" ? this.#known.get(upload) : undefined;
+    if (kept === undefined) return false;
+    return (await sendRecord(kept.body)).upload === upload;
+  }
+
+  /** Asks for the files of an upload that neither the server nor this page has. */
+  askAgain(): void {
+    this.#tell("This case needs a record that the server does not hold. Choose its files again.");
+  }
+
+  #choose(value: string): void {
+    if (value !== OWN) {
+      this.#choosing = false;
+      this.#changed({ kind: "record", sample: value, scale: this.#motion["scale"] ?? 1 });
+      return;
+    }
+    this.#choosing = true; // the motion stays until there are files
+    this.show(this.#motion);
+    this.#files.click();
+  }
+
+  #tell(problem: string | null): void {
+    this.#problem.textContent = problem ?? "";
+    this.#problem.hidden = problem === null;
+  }
+
+  async #send(): Promise<void> {
+    const files = [...(this.#files.files ?? [])];
+    if (files.length === 0) return;
+    if (files.length > MOST_FILES) {
+      this.#tell(`A record has at most ${MOST_FILES} files, one for each direction; ${files.length} were chosen.`);
+      return;
+    }
+    try {
+      const contents = await Promise.all(files.map(async (file) => ({ name: file.name, content: await base64(file) })));
+      const body: Part = { files: contents, units: this.#units.value || null };
+      const received = await sendRecord(body);
+      this.#known.set(received.upload, { told: received, body });
+      this.#tell(null);
+      this.#changed({ kind: "record", upload: received.upload, scale: this.#motion["scale"] ?? 1 });
+    } catch (error) {
+      if (error instanceof Unreachable) this.#tell("The server does not answer; choose the files again when it does.");
+      else this.#tell(error instanceof Refused ? error.problems.join(" ") : String(error));
+    }
+  }
+}
+
+function toldOfRecord(record: Received): string {
+  const peaks = Object.entries(record.peaks).map(([axis, peak]) => `${axis} ${withUnit(peak, "m/s²")}`);
+  const length = `${record.samples} samples, ${withUnit(record.duration, "s")} in steps of ${told(record.step)} s`;
+  return `${record.name}: ${length}; peaks ${peaks.join(", ")}.`;
+}
+
+/** Returns the content of a file in base64. */
+async function base64(file: File): Promise<string> {
+  const bytes = new Uint8Array(await file.arrayBuffer());
+  const pieces: string[] = [];
+  // In pieces: a call takes only so many arguments.
+  for (let at = 0; at < bytes.length; at += 0x8000) pieces.push(String.fromCharCode(...bytes.subarray(at, at + 0x8000)));
+  return btoa(pieces.join(""));
+}

@@ -1,0 +1,193 @@
+/**
+ * The view in the address bar, after the #: compact, and readable without this page.
+ *
+ * `column=dimensionless,slenderness:0.1&motion=circular,acceleration:0.065,angular_frequency:1.8&tilt=0.02,0`
+ *
+ * A part is its kind and its numbers; a vector in it is written `0.1/0.2`, what has parts of its own as JSON after `~`.
+ */
+
+import type { About } from "./about";
+import { kindNamed } from "./about";
+import type { Description, Part, PartName, Value } from "./description";
+import { isPart, isVector, PARTS, tagOf } from "./description";
+import type { Axis, Plane, View } from "./state";
+import { isRange, TABS, viewOf } from "./state";
+
+/** A link that cannot be read; the message says why in one line. */
+export class BrokenLink extends Error {}
+
+export function linkOf(view: View): string {
+  const { description } = view;
+  const items = PARTS.map((part) => `${part}=${partWritten(description[part], tagOf(part))}`);
+  for (const [name, value] of Object.entries(description)) {
+    if ((PARTS as readonly string[]).includes(name) || value === null) continue;
+    items.push(`${name}=${isVector(value) ? value.map(atom).join() : atom(value)}`);
+  }
+  if (view.range !== null) items.push(`range=${view.range.join()}`);
+  if (view.map !== null) items.push(`map=${planeWritten(view.map)}`);
+  if (view.basin !== null) items.push(`basin=${planeWritten(view.basin)}`);
+  if (view.tab !== "orbit") items.push(`tab=${view.tab}`);
+  if (view.filled) items.push("filled=true");
+  if (view.speed !== null) items.push(`speed=${view.speed}`);
+  return items.join("&");
+}
+
+/** Returns the view that `link` tells, or raises BrokenLink. */
+export function viewFrom(link: string, about: About): View {
+  const given = itemsOf(link);
+  const looks: Record<string, Value> = {};
+  const values: Record<string, Value> = {};
+  for (const [name, text] of given) {
+    if (isPartName(name)) values[name] = partRead(text, name, about);
+    else if (name in LOOKS) looks[name] = LOOKS[name]?.(text) ?? null;
+    else if (OF_A_RUN.includes(name)) values[name] = text.includes(",") ? text.split(",").map(read) : read(text);
+    else throw new BrokenLink(`${name} is not known`);
+  }
+  const { column, model, motion } = values;
+  if (!isPart(column)) throw new BrokenLink("column is missing");
+  const description: Description = {
+    ...values,
+    column,
+    model: isPart(model) ? model : { kind: "slender" },
+    motion: isPart(motion) ? motion : { kind: "rest" },
+  };
+  return viewOf(description, looks);
+}
+
+const OF_A_RUN: readonly string[] = [
+  ...["tilt", "tilt_rate", "spin", "twist", "position", "velocity", "clearance", "duration", "periods"],
+  ...["friction_coefficient", "rtol", "atol", "tilt_limit", "rest_energy", "max_steps", "samples", "rules"],
+  ...["method", "strobes", "confidence"],
+];
+
+const LOOKS: Readonly<Record<string, (text: string) => Value>> = {
+  range: (text) => {
+    const range = text.split(",").map(read);
+    if (!isRange(range)) throw new BrokenLink(`range must be two rising frequencies, got ${text}`);
+    return range;
+  },
+  map: (text) => planeRead("map", text),
+  basin: (text) => planeRead("basin", text),
+  tab: (text) => {
+    if (!(TABS as readonly string[]).includes(text)) throw new BrokenLink(`tab must be one of ${TABS.join(", ")}`);
+    return text;
+  },
+  filled: (text) => text === "true",
+  speed: (text) => {
+    if (!(Number(text) > 0)) throw new BrokenLink(`speed must be positive, got ${text}`);
+    return Number(text);
+  },
+};
+
+function itemsOf(link: string): [string, string][] {
+  return link
+    .replace(/^#/, "")
+    .split("&")
+    .filter((item) => item !== "")
+    .map((item) => {
+      const place = item.indexOf("=");
+      if (place < 1) throw new BrokenLink(`${item} has no value`);
+      return [item.slice(0, place), item.slice(place + 1)];
+    });
+}
+
+function isPartName(name: string): name is PartName {
+  return (PARTS as readonly string[]).includes(name);
+}
+
+function partWritten(part: Part, tag: string): string {
+  const rest = Object.entries(part).filter(([name, value]) => name !== tag && value !== null);
+  return [String(part[tag]), ...rest.map(([name, value]) => `${name}:${inPart(value)}`)].join();
+}
+
+function inPart(value: Value): string {
+  if (isVector(value) && value.every((one) => !isVector(one) && !isPart(one))) {
+    return value.length === 1 ? `${atom(value[0] ?? null)}/` : value.map(atom).join("/");
+  }
+  return atom(value);
+}
+
+function atom(value: Value): string {
+  if (isVector(value) || isPart(value)) return `~${encodeURIComponent(JSON.stringify(value))}`;
+  if (typeof value !== "string") return value === null ? "none" : String(value);
+  // A name that could be read as a number is told to be none by a mark before it.
+  return `${/^[-+.\d'~]|^(none|true|false)$/.test(value) ? "'" : ""}${encodeURIComponent(value)}`;
+}
+
+function partRead(text: string, part: PartName, about: About): Part {
+  const [kind = "", ...items] = text.split(",");
+  const known = kindNamed(about, part, kind);
+  if (known === undefined) throw new BrokenLink(`${part} ${kind} is not known`);
+  const pairs = items.map((item): [string, Value] => {
+    const place = item.indexOf(":");
+    if (place < 1) throw new BrokenLink(`${part} ${item} has no value`);
+    const name = item.slice(0, place);
+    if (!isKnown(name, part, about, kind)) throw new BrokenLink(`${part} ${kind} has no ${name}`);
+    return [name, readInPart(item.slice(place + 1))];
+  });
+  return { [tagOf(part)]: kind, ...Object.fromEntries(pairs) };
+}
+
+function isKnown(name: string, part: PartName, about: About, kind: string): boolean {
+  const parameters = kindNamed(about, part, kind)?.parameters ?? [];
+  // What a kind has besides its numbers (the sample of a record, the members of a sum) is for the server to judge.
+  return parameters.some((one) => one.name === name) || part === "motion" || name === "gravity";
+}
+
+function readInPart(text: string): Value {
+  if (!text.includes("/")) return read(text);
+  return text.replace(/\/$/, "").split("/").map(read);
+}
+
+function read(text: string): Value {
+  if (text === "none") return null;
+  if (text === "true" || text === "false") return text === "true";
+  const decoded = unescaped(text);
+  if (decoded.startsWith("'")) return decoded.slice(1);
+  if (decoded.startsWith("~")) return fromJson(decoded.slice(1));
+  const number = Number(decoded);
+  if (/^[-+.\d]/.test(decoded)) {
+    if (!Number.isFinite(number)) throw new BrokenLink(`${decoded} is no number`);
+    return number;
+  }
+  return decoded;
+}
+
+function unescaped(text: string): string {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    throw new BrokenLink(`${text} is not well formed`);
+  }
+}
+
+function fromJson(text: string): Value {
+  try {
+    return JSON.parse(text) as Value;
+  } catch {
+    throw new BrokenLink(`${text} is not well formed`);
+  }
+}
+
+function planeWritten(plane: Plane): string {
+  return [plane.x, plane.y].map((axis) => [axis.name, axis.from, axis.to, axis.number].join(":")).join();
+}
+
+function planeRead(what: string, text: string): Value {
+  const axes = text.split(",").map((part): Axis | null => {
+    const [name = "", from, to, number, ...more] = part.split(":");
+    const axis = { name, from: Number(from), to: Number(to), number: Number(number) };
+    const whole = Number.isInteger(axis.number) && axis.number > 1;
+    return /^[a-z_]+$/.test(name) && axis.from < axis.to && whole && more.length === 0 ? axis : null;
+  });
+  const [x, y] = axes;
+  if (!x || !y || axes.length > 2 || x.name === y.name) {
+    throw new BrokenLink(`${what} must be two axes, name:from:to:number, got ${text}`);
+  }
+  return { x: { ...x }, y: { ...y } };
+}
+
+/** Returns the line that tells of a broken link. */
+export function toldOf(broken: BrokenLink): string {
+  return `This link cannot be read: ${broken.message}. The first preset is shown instead.`;
+}

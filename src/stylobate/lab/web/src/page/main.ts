@@ -1,0 +1,55 @@
+/** The page of the laboratory. */
+
+import "uplot/dist/uPlot.min.css";
+import "./styles.css";
+import type { Stage } from "../viewer/index";
+import type { About } from "./about";
+import { about } from "./api";
+import { Connection } from "./connection";
+import { byId } from "./dom";
+import { Laboratory } from "./laboratory";
+import { offered } from "./offered";
+import type { View } from "./state";
+import { ThemeSwitch } from "./theme";
+
+/** What those who test the page, or look into it, can ask it. */
+export interface Handle {
+  readonly stage: Stage | null;
+  readonly laboratory: Laboratory;
+  readonly state: () => View;
+}
+
+declare global {
+  interface Window {
+    stylobate?: Handle;
+  }
+}
+
+async function begin(): Promise<void> {
+  let laboratory: Laboratory | null = null;
+  const theme = new ThemeSwitch((now) => laboratory?.setTheme(now));
+  const connection = new Connection(() => laboratory?.refresh());
+  byId("banner", HTMLElement).replaceWith(connection.root);
+  const found = offered(await answered(connection));
+  byId("version", HTMLElement).textContent = found.version;
+  laboratory = new Laboratory(found, byId("laboratory", HTMLElement), byId("tools", HTMLElement), theme, connection);
+  const shown = laboratory;
+  window.stylobate = { stage: shown.stage, laboratory: shown, state: () => shown.view };
+}
+
+/** Asks what there is, until the server answers. */
+async function answered(connection: Connection): Promise<About> {
+  for (;;) {
+    try {
+      return await about();
+    } catch {
+      connection.lose();
+      await new Promise((resolve) => setTimeout(resolve, 1000));
+    }
+  }
+}
+
+begin().catch((error: unknown) => {
+  const reason = error instanceof Error ? error.message : String(error);
+  byId("laboratory", HTMLElement).textContent = `The page could not start: ${reason}`;
+});

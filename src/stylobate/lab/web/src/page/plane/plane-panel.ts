@@ -1,0 +1,291 @@
+/** An overturning map or a basin: its axes, its picture while it fills in, what its colours mean. */
+
+import type { Attractor, AxesEvent, CellsEvent, JobReport, PlaneResult, ToldAxis } from "../answers";
+import { button, choice, element, newId } from "../dom";
+import { counted, plain, told, withUnit, words } from "../format";
+import type { Job } from "../job";
+import { defaultAxis } from "../planes";
+import type { PlaneKind } from "../planes";
+import type { Quantity } from "../quantities";
+import type { Axis, Plane } from "../state";
+import type { Description } from "../description";
+import { AxisForm } from "./axis-form";
+import { Cells, UNKNOWN } from "./cells";
+import type { Look } from "./looks";
+import { looksOf } from "./looks";
+import type { Place } from "./plane-canvas";
+import { PlaneCanvas } from "./plane-canvas";
+import { swatch } from "./swatch";
+
+export interface PlaneHearing {
+  readonly axes: (plane: Plane) => void;
+  readonly asked: () => void;
+  readonly cancelled: () => void;
+  /** Starts the motion of a cell. */
+  readonly chosen: (x: readonly [string, number], y: readonly [string, number]) => void;
+}
+
+export class PlanePanel {
+  readonly root: HTMLElement;
+  readonly #kind: PlaneKind;
+  readonly #hearing: PlaneHearing;
+  readonly #canvas: PlaneCanvas;
+  readonly #forms: { readonly x: AxisForm; readonly y: AxisForm };
+  readonly #cells: HTMLSelectElement;
+  readonly #summary = element("summary", {});
+  readonly #go: HTMLButtonElement;
+  readonly #progress = element("progress", { max: 1, hidden: true, "aria-label": "Progress" });
+  readonly #readout = element("p", { class: "note readout", "aria-live": "polite" });
+  readonly #problem = element("p", { class: "problem", role: "alert", hidden: true });
+  readonly #legend = element("ul", { class: "legend classes" });
+  #plane: Plane | null = null;
+  #description: Description | null = null;
+  #quantities: readonly Quantity[] = [];
+  #values: Place | null = null;
+  #job: Job | null = null;
+  #key = "";
+  #shownKey = "";
+  #axes: AxesEvent["axes"] | null = null;
+  #filled: Cells | null = null;
+  #names: readonly (readonly [number, string])[] = [];
+  #looks: ReadonlyMap<number, Look> = new Map();
+  #attractors: readonly Attractor[] = [];
+
+  constructor(kind: PlaneKind, hearing: PlaneHearing) {
+    this.#kind = kind;
+    this.#hearing = hearing;
+    this.#canvas = new PlaneCanvas(
+      (cell) => this.#point(cell),
+      (cell) => this.#choose(cell),
+    );
+    const change = (place: "x" | "y") => (axis: Axis) => this.#changeAxis(place, axis);
+    this.#forms = { x: new AxisForm("x", change("x")), y: new AxisForm("y", change("y")) };
+    const id = newId("cells");
+    this.#cells = choice(SIZES.map((size) => [String(size), `${size} × ${size}`]), { id }, (value) => this.#changeSize(Number(value)));
+    this.#go = button("Compute", { class: "primary small" }, () => this.#pressed());
+    const size = element("div", { class: "axis-form" }, element("label", { for: id }, "cells"), this.#cells);
+    const axes = element("details", { class: "axes" }, this.#summary, this.#forms.x.root, this.#forms.y.root, size);
+    const bar = element("div", { class: "plane-bar" }, axes, this.#progress, this.#go);
+    this.root = element("div", { class: `plane-panel ${kind}` }, bar, this.#problem, this.#canvas.root, this.#readout, this.#legend);
+  }
+
+  /** Shows the axes and the values of the case; a picture of another case is told to be one. */
+  show(plane: Plane, quantities: readonly Quantity[], description: Description, values: Place | null, key: string): void {
+    this.#plane = plane;
+    this.#description = description;
+    this.#quantities = quantities;
+    this.#values = values;
+    this.#key = key;
+    this.#forms.x.show(plane.x, quantities);
+    this.#forms.y.show(plane.y, quantities);
+    this.#cells.value = String(plane.x.number);
+    const axis = ({ name, from, to }: Axis): string => `${words(name)} ${told(from)}…${told(to)}`;
+    this.#summary.textContent = `${axis(plane.x)} × ${axis(plane.y)}`;
+    const stale = this.#axes !== null && this.#shownKey !== key;
+    this.root.classList.toggle("stale", stale && this.#job === null);
+    if (this.#axes === null) this.#rest(plane, quantities);
+    else this.#redraw();
+    if (stale && this.#job === null) this.#readout.textContent = "This picture is of an earlier case: compute it again.";
+  }
+
+  /** The job that fills the picture from now on. */
+  follow(start: (report: (report: JobReport) => void, ended: (last: JobReport | null, problems: readonly string[]) => void) => Job): void {
+    this.#job?.cancel();
+    this.#shownKey = this.#key;
+    this.#attractors = [];
+    this.#tellProblem([]);
+    this.#filled = null;
+    this.#go.textContent = "Cancel";
+    this.#progress.hidden = false;
+    this.#progress.removeAttribute("value");
+    this.root.classList.remove("stale");
+    this.#readout.textContent = "Starting…";
+    this.#job = start(
+      (report) => this.#take(report),
+      (last, problems) => this.#end(last, problems),
+    );
+  }
+
+  /** Returns the place of a cell in the window [px], and its size: for those who test the page. */
+  clientPlace(cell: Place): Place {
+    return this.#canvas.clientPlace(cell);
+  }
+
+  get axes(): AxesEvent["axes"] | null {
+    return this.#axes;
+  }
+
+  get filled(): Cells | null {
+    return this.#filled;
+  }
+
+  get running(): boolean {
+    return this.#job !== null;
+  }
+
+  redraw(): void {
+    this.#canvas.redraw();
+  }
+
+  #pressed(): void {
+    if (this.#job === null) {
+      this.#hearing.asked();
+      return;
+    }
+    this.#job.cancel();
+    this.#end(null, []);
+    this.#readout.textContent = "Cancelled; what had been computed stays.";
+    this.#hearing.cancelled();
+  }
+
+  #take(report: JobReport): void {
+    for (const event of report.events as readonly (AxesEvent | CellsEvent)[]) {
+      if ("axes" in event) this.#begin(event);
+      else this.#filled?.take(event);
+    }
+    if (report.total > 0) {
+      this.#progress.max = report.total;
+      this.#progress.value = report.done;
+      this.#readout.textContent = `${report.done} of ${counted(report.total, "run")}`;
+    } else if (report.note) this.#readout.textContent = `${report.note}…`;
+    if (report.events.length > 0) {
+      this.#nameClasses();
+      this.#redraw();
+    }
+  }
+
+  #begin({ axes, names }: AxesEvent): void {
+    this.#axes = axes;
+    this.#filled = new Cells(axes.x.values.length, axes.y.values.length);
+    this.#nameCodes(names);
+  }
+
+  #nameCodes(names: readonly (readonly [number, string])[]): void {
+    this.#names = names;
+    const looks = looksOf(names.map(([, name]) => name));
+    const found = new Map<number, Look>();
+    names.forEach(([code], i) => {
+      const look = looks[i];
+      if (look) found.set(code, look);
+    });
+    this.#looks = found;
+  }
+
+  #end(last: JobReport | null, problems: readonly string[]): void {
+    this.#job = null;
+    this.#go.textContent = "Compute";
+    this.#progress.hidden = true;
+    this.#tellProblem(problems);
+    if (last?.state === "done") this.#finish(last.result as PlaneResult | null);
+    else if (problems.length > 0) this.#readout.textContent = "";
+    this.#redraw();
+  }
+
+  #finish(result: PlaneResult | null): void {
+    const names = result?.names;
+    if (result?.codes && names) {
+      // Starts that reached no attractor have a code below zero.
+      const others: (readonly [number, string])[] = [[-2, "unsettled"], [-1, "not computed"]];
+      this.#nameCodes([...names, ...others]);
+      this.#filled?.takeAll(result.codes);
+    }
+    this.#attractors = result?.attractors ?? [];
+    const runs = result?.runs ?? 0;
+    const unsure = result?.uncertain ? `, ${result.uncertain} of them uncertain` : "";
+    this.#readout.textContent = `${counted(runs, "run")}${unsure}. Click a cell to see its motion.`;
+    this.#nameClasses();
+  }
+
+  /** Before anything is computed: the axes alone. */
+  #rest(plane: Plane, quantities: readonly Quantity[]): void {
+    const toldAxis = (axis: Axis): ToldAxis => ({
+      name: axis.name,
+      values: Array.from({ length: axis.number }, (_, i) => axis.from + ((axis.to - axis.from) * i) / (axis.number - 1)),
+      units: quantities.find((one) => one.name === axis.name)?.unit ?? "",
+    });
+    this.#canvas.show({ axes: { x: toldAxis(plane.x), y: toldAxis(plane.y) }, cells: null, looks: new Map() }, this.#values);
+    this.#readout.textContent = HINTS[this.#kind];
+  }
+
+  #redraw(): void {
+    if (this.#axes === null) return;
+    this.#canvas.show({ axes: this.#axes, cells: this.#filled, looks: this.#looks }, this.#shownValues());
+    const kind = this.#kind === "map" ? "Overturning map" : "Basins of attraction";
+    const { x, y } = this.#axes;
+    this.#canvas.canvas.setAttribute("aria-label", `${kind} over ${words(x.name)} and ${words(y.name)}; arrow keys point at a cell, Enter starts its motion`);
+  }
+
+  #shownValues(): Place | null {
+    const [x, y] = [this.#axes?.x.name, this.#axes?.y.name];
+    return x === this.#plane?.x.name && y === this.#plane?.y.name ? this.#values : null;
+  }
+
+  #nameClasses(): void {
+    const counts = this.#filled?.counts() ?? new Map<number, number>();
+    const known = [...counts].reduce((sum, [code, count]) => sum + (code === UNKNOWN ? 0 : count), 0);
+    const items = this.#names.flatMap(([code, name], i) => {
+      const [count, look] = [counts.get(code) ?? 0, this.#looks.get(code)];
+      if (count === 0 || look === undefined) return [];
+      const attractor = this.#attractors[i];
+      const text = attractor && attractor.fraction !== null ? shareOf(attractor) : percent(count / known);
+      return [element("li", {}, swatch(look), `${name} ${text}`)];
+    });
+    this.#legend.replaceChildren(...items);
+  }
+
+  #point(cell: Place | null): void {
+    if (cell === null || this.#axes === null || this.#filled === null) return;
+    const { x, y } = this.#axes;
+    const code = this.#filled.at(...cell);
+    const name = code === UNKNOWN ? "not computed yet" : (this.#names.find(([one]) => one === code)?.[1] ?? "");
+    const value = (axis: ToldAxis, index: number): string => `${words(axis.name)} ${withUnit(axis.values[index], axis.units)}`;
+    this.#readout.textContent = `${value(x, cell[0])}, ${value(y, cell[1])}: ${name}`;
+  }
+
+  #choose([ix, iy]: Place): void {
+    if (this.#axes === null || this.#job === null && this.#shownKey !== this.#key) return;
+    const { x, y } = this.#axes;
+    const [valueX, valueY] = [x.values[ix], y.values[iy]];
+    if (valueX !== undefined && valueY !== undefined) this.#hearing.chosen([x.name, valueX], [y.name, valueY]);
+  }
+
+  #changeAxis(place: "x" | "y", axis: Axis): void {
+    if (this.#plane === null || this.#description === null) return;
+    const before = this.#plane[place];
+    const quantity = this.#quantities.find((one) => one.name === axis.name);
+    const renamed = axis.name !== before.name && quantity !== undefined;
+    const found = renamed ? defaultAxis(quantity, this.#description, axis.number) : axis;
+    const other = place === "x" ? this.#plane.y : this.#plane.x;
+    const swapped = other.name === found.name ? before : other; // both axes must differ
+    this.#hearing.axes(place === "x" ? { x: found, y: swapped } : { x: swapped, y: found });
+  }
+
+  #changeSize(number: number): void {
+    if (this.#plane === null) return;
+    const { x, y } = this.#plane;
+    this.#hearing.axes({ x: { ...x, number }, y: { ...y, number } });
+  }
+
+  #tellProblem(problems: readonly string[]): void {
+    this.#problem.textContent = problems.join(" ");
+    this.#problem.hidden = problems.length === 0;
+  }
+}
+
+const SIZES = [24, 32, 48, 64, 96, 128, 192] as const;
+
+const HINTS: Readonly<Record<PlaneKind, string>> = {
+  map: "What becomes of the column over two quantities. Compute it, then click a cell to see its motion.",
+  basin: "Where each start leads in the long run. Compute it, then click a start to see its motion.",
+};
+
+function percent(share: number): string {
+  return `${told(100 * share, share < 0.01 ? 1 : 2)} %`;
+}
+
+/** Returns the share of starts that lead to an attractor, with its interval. */
+function shareOf({ fraction, fraction_low: low, fraction_high: high }: Attractor): string {
+  if (fraction === null || low === null || high === null) return "";
+  const whole = (value: number): string => plain(100 * value, 2);
+  return `${percent(fraction)} (${whole(low)} to ${whole(high)})`;
+}

@@ -1,0 +1,56 @@
+/** Axes of maps and basins that suit a case where none are told. */
+
+import type { About } from "./about";
+import type { Description } from "./description";
+import { without, written } from "./description";
+import type { ColumnScales, Quantity } from "./quantities";
+import { basinQuantities, mapQuantities, rangeAbout, valueOf } from "./quantities";
+import type { Axis, Plane } from "./state";
+import { DEFAULT_CELLS } from "./state";
+
+export type PlaneKind = "map" | "basin";
+
+export function quantitiesOf(
+  kind: PlaneKind,
+  description: Description,
+  about: About,
+  scales: ColumnScales,
+): readonly Quantity[] {
+  return kind === "map" ? mapQuantities(description, about, scales) : basinQuantities(description, scales);
+}
+
+/** Returns the plane of the first two quantities: frequency and strength of the motion, or the two tilts. */
+export function defaultPlane(kind: PlaneKind, description: Description, quantities: readonly Quantity[]): Plane | null {
+  const order = kind === "map" ? ["angular_frequency", "acceleration", "scale"] : ["tilt_x", "tilt_y"];
+  const wanted = order.flatMap((name) => quantities.filter((one) => one.name === name));
+  const [x, y] = [...wanted, ...quantities.filter((one) => !wanted.includes(one))];
+  return x && y ? { x: defaultAxis(x, description), y: defaultAxis(y, description) } : null;
+}
+
+export function defaultAxis(quantity: Quantity, description: Description, number = DEFAULT_CELLS): Axis {
+  return { name: quantity.name, ...rangeAbout(quantity, valueOf(description, quantity.name)), number };
+}
+
+/** Tells whether both quantities are numbers that this case has: an axis may be left from another one. */
+export function belongs(plane: Plane, quantities: readonly Quantity[]): boolean {
+  return [plane.x, plane.y].every((axis) => quantities.some((one) => one.name === axis.name));
+}
+
+/** Returns what a plane's picture depends on: the case but for the two numbers that vary, and the axes. */
+export function keyOf(description: Description, plane: Plane): string {
+  const varied = [plane.x.name, plane.y.name];
+  const starts = varied.some((name) => name.startsWith("tilt_"));
+  const rest = {
+    column: without(description.column, ...varied),
+    model: without(description.model, ...varied),
+    motion: without(description.motion, ...varied),
+    tilt: varied.includes("tilt_x") && varied.includes("tilt_y") ? null : (description["tilt"] ?? null),
+    tilt_rate: varied.includes("tilt_rate_x") && varied.includes("tilt_rate_y") ? null : (description["tilt_rate"] ?? null),
+    spin: varied.includes("spin") ? null : (description["spin"] ?? null),
+    duration: varied.includes("duration") ? null : (description["duration"] ?? null),
+    starts,
+    x: { ...plane.x },
+    y: { ...plane.y },
+  };
+  return written(rest);
+}

@@ -1,0 +1,54 @@
+/** What is asked for a view: the bodies of the requests. */
+
+import type { Description, Part, Value } from "./description";
+import { isPart } from "./description";
+import { isHorizontalHarmonic, withoutFrequency } from "./frequency";
+import type { PlaneKind } from "./planes";
+import { niceAbove, niceBelow } from "./ranges";
+import type { Plane } from "./state";
+
+/** Points of a response curve: about one to a pixel. */
+const POINTS = 400;
+
+/** How long the runs of a basin last, in periods of the base motion: what has not settled by then is told apart. */
+const BASIN_PERIODS = 200;
+
+/** Returns a description as it is sent: what need not be given and is not, is left out. */
+export function sent(description: Part): Part {
+  const given = Object.entries(description).filter(([, value]) => value !== null);
+  return Object.fromEntries(given.map(([name, value]): [string, Value] => [name, isPart(value) ? sent(value) : value]));
+}
+
+/** Returns the range of frequencies that suits a column, and holds the frequency that is shown. */
+export function usualRange(scale: number, frequency: number | null): readonly [number, number] {
+  const [low, high] = [niceBelow(0.2 * scale), niceAbove(3.5 * scale)];
+  if (frequency === null || !(frequency > 0)) return [low, high];
+  return [frequency < low ? niceBelow(frequency / 1.2) : low, frequency > high ? niceAbove(frequency * 1.2) : high];
+}
+
+/** Returns the request for exact orbits of the case, or null where it has no response. */
+export function exactRequest(description: Description, range: readonly [number, number]): Part | null {
+  const { column, model, motion } = description;
+  if (!isHorizontalHarmonic(motion)) return null;
+  return sent({ column, model, motion: withoutFrequency(motion), angular_frequency_range: [...range] });
+}
+
+/** Returns the request for response curves: only the slender model has a closed form, and it stands for the others. */
+export function responseRequest(description: Description, range: readonly [number, number]): Part | null {
+  const { model } = description;
+  const slender: Part = { kind: "slender", damping: model["damping"] ?? 0 };
+  const exact = exactRequest({ ...description, model: slender }, range);
+  return exact && { ...exact, points: POINTS };
+}
+
+export function isSlender(description: Description): boolean {
+  return (description.model["kind"] ?? "slender") === "slender";
+}
+
+/** Returns the request for a map or a basin. */
+export function planeRequest(kind: PlaneKind, description: Description, plane: Plane): Part {
+  const periodic = isHorizontalHarmonic(description.motion) && kind === "basin";
+  const axes = { x: { ...plane.x }, y: { ...plane.y } };
+  const length = periodic ? { duration: null, periods: BASIN_PERIODS } : {};
+  return sent({ ...description, ...length, [kind]: axes });
+}

@@ -1,0 +1,100 @@
+/** What is looked at: one immutable value, from which the page and its address follow. */
+
+import type { Description, Value } from "./description";
+import { isPart, isVector } from "./description";
+
+/** Values of one quantity, evenly spaced. */
+export interface Axis {
+  readonly name: string;
+  readonly from: number;
+  readonly to: number;
+  readonly number: number;
+}
+
+export interface Plane {
+  readonly x: Axis;
+  readonly y: Axis;
+}
+
+export const TABS = ["orbit", "map", "basin"] as const;
+export type Tab = (typeof TABS)[number];
+
+export interface View {
+  readonly description: Description;
+  /** Angular frequencies of the response [rad/s]; null: chosen to suit the column. */
+  readonly range: readonly [number, number] | null;
+  /** Axes of the overturning map and of the basin; null: chosen to suit the case. */
+  readonly map: Plane | null;
+  readonly basin: Plane | null;
+  readonly tab: Tab;
+  /** Whether the map or basin of the tab has been asked for: a link to it computes it again. */
+  readonly filled: boolean;
+  /** Speed of the clock, seconds of the motion in a second; null: chosen to suit the motion. */
+  readonly speed: number | null;
+}
+
+export const SPEEDS = [0.02, 0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10, 20] as const;
+
+/** Returns the view of a case with what is told of its looks; what is not told is chosen to suit. */
+export function viewOf(description: Description, looks: Readonly<Record<string, Value>> = {}): View {
+  const tab = TABS.find((one) => one === looks["tab"]) ?? "orbit";
+  const range = looks["range"] ?? looks["angular_frequency_range"];
+  const speed = looks["speed"];
+  return {
+    description,
+    range: isRange(range) ? range : null,
+    map: planeFrom(looks["map"]),
+    basin: planeFrom(looks["basin"]),
+    tab,
+    filled: looks["filled"] === true,
+    speed: typeof speed === "number" && speed > 0 ? speed : null,
+  };
+}
+
+export function isRange(value: Value | undefined): value is readonly [number, number] {
+  if (!isVector(value) || value.length !== 2) return false;
+  const [low, high] = value;
+  return typeof low === "number" && typeof high === "number" && 0 < low && low < high;
+}
+
+export function planeFrom(value: Value | undefined): Plane | null {
+  if (!isPart(value)) return null;
+  const [x, y] = [axisFrom(value["x"]), axisFrom(value["y"])];
+  return x !== null && y !== null && x.name !== y.name ? { x, y } : null;
+}
+
+function axisFrom(value: Value | undefined): Axis | null {
+  if (!isPart(value)) return null;
+  const { name, from, to, number } = value;
+  if (typeof name !== "string" || typeof from !== "number" || typeof to !== "number" || !(from < to)) return null;
+  const cells = typeof number === "number" && Number.isInteger(number) && number > 1 ? number : DEFAULT_CELLS;
+  return { name, from, to, number: cells };
+}
+
+export const DEFAULT_CELLS = 64;
+
+type Listener = (view: View, before: View) => void;
+
+/** Holds the view that is shown, and tells of every change. */
+export class Store {
+  #view: View;
+  readonly #listeners: Listener[] = [];
+
+  constructor(view: View) {
+    this.#view = view;
+  }
+
+  get view(): View {
+    return this.#view;
+  }
+
+  change(changes: Partial<View>): void {
+    const before = this.#view;
+    this.#view = { ...before, ...changes };
+    for (const listener of this.#listeners) listener(this.#view, before);
+  }
+
+  onChange(listener: Listener): void {
+    this.#listeners.push(listener);
+  }
+}

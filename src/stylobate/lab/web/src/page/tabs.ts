@@ -1,0 +1,47 @@
+/** Panels of which one is seen, chosen by tabs. */
+
+import { element, newId } from "./dom";
+
+export interface TabLooks<Name extends string> {
+  readonly name: Name;
+  readonly title: string;
+  readonly panel: HTMLElement;
+}
+
+export class Tabs<Name extends string> {
+  readonly root: HTMLElement;
+  readonly #tabs: readonly { readonly name: Name; readonly tab: HTMLButtonElement; readonly panel: HTMLElement }[];
+
+  constructor(label: string, tabs: readonly TabLooks<Name>[], chosen: (name: Name) => void) {
+    this.#tabs = tabs.map(({ name, title, panel }) => {
+      const [id, panelId] = [newId("tab"), newId("panel")];
+      const tab = element("button", { type: "button", id, role: "tab", "aria-controls": panelId }, title);
+      tab.addEventListener("click", () => chosen(name));
+      const held = element("div", { id: panelId, role: "tabpanel", "aria-labelledby": id, class: "tab-panel" }, panel);
+      return { name, tab, panel: held };
+    });
+    const list = element("div", { role: "tablist", class: "tabs", "aria-label": label }, ...this.#tabs.map((one) => one.tab));
+    list.addEventListener("keydown", (event) => this.#key(event, chosen));
+    this.root = element("section", { class: "panel chart tabbed", "aria-label": label }, list, ...this.#tabs.map((one) => one.panel));
+  }
+
+  show(name: Name): void {
+    for (const one of this.#tabs) {
+      const selected = one.name === name;
+      one.tab.setAttribute("aria-selected", String(selected));
+      one.tab.tabIndex = selected ? 0 : -1;
+      one.panel.hidden = !selected;
+    }
+  }
+
+  #key(event: KeyboardEvent, chosen: (name: Name) => void): void {
+    const step = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
+    const at = this.#tabs.findIndex((one) => one.tab === document.activeElement);
+    const next = this.#tabs[(at + step + this.#tabs.length) % this.#tabs.length];
+    if (step === 0 || at < 0 || next === undefined) return;
+    event.preventDefault();
+    event.stopPropagation();
+    chosen(next.name);
+    next.tab.focus();
+  }
+}

@@ -1,0 +1,27 @@
+/** What became of the column, in a line that is read out. */
+
+import type { Answer } from "./answers";
+import { element } from "./dom";
+import { capital, told } from "./format";
+
+export class Verdict {
+  readonly root = element("div", { class: "verdict", "aria-live": "polite", "aria-atomic": "true" });
+  #told = "";
+
+  show(answer: Answer): void {
+    const at = answer.decided_at === null ? "" : ` Decided at ${told(answer.decided_at, 3)} s.`;
+    const text = [answer.outcome, answer.reason, at, answer.uncertain, ...answer.warnings].join("\n");
+    if (text === this.#told) return; // what has been read out once is not read out again
+    this.#told = text;
+    const badge = element("strong", { class: `badge ${answer.outcome.toLowerCase()}` }, capital(answer.told));
+    const reason = element("span", { class: "reason" }, `${sentence(answer.reason)}${at}`);
+    const marks = answer.uncertain ? [element("strong", { class: "badge unsure", title: "A small change could alter the outcome" }, "Uncertain")] : [];
+    const warnings = answer.warnings.map((line) => element("p", { class: "warning" }, sentence(line)));
+    this.root.replaceChildren(element("p", {}, badge, ...marks, " ", reason), ...warnings);
+  }
+}
+
+function sentence(line: string): string {
+  const text = capital(line.trim());
+  return text === "" || /[.!?]$/.test(text) ? text : `${text}.`;
+}

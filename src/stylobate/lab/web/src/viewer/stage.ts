@@ -1,0 +1,242 @@
+/** A motion drawn in 3D in an element of a page; what is drawn is what was computed, and can be read back. */
+
+import { type Quaternion, Vector3 } from "three";
+import { spinBetween, tiltOf, twistOf } from "./attitude";
+import { drawable, type DrawnMotion, type Pair, type Rotation, type Triple } from "./drawn-motion";
+import { FrameTimes } from "./frame-times";
+import { Look } from "./look";
+import { momentAt, placeOf } from "./moment";
+import { noteElement, noteOn, paintNote } from "./note";
+import { paletteOf, preferredTheme, type Theme } from "./palette";
+import { newDrawing } from "./renderer";
+import { ShakingScene } from "./shaking-scene";
+
+export interface StageOptions {
+  readonly theme?: Theme;
+}
+
+/** The column as it is drawn, in the frame of the base. */
+export interface Pose {
+  readonly tilt: Pair;
+  readonly contact: Pair;
+  readonly twist: number;
+  /** Rate about its own axis [rad/s] between drawn poses; null where the model knows none. */
+  readonly spin: number | null;
+  readonly centre: Triple;
+}
+
+const STILL = 300; // ms without a change, after which a picture is drawn finely
+const SLIM = 2; // height over width from which one looks from lower down
+
+export class Stage {
+  readonly #frame = document.createElement("div");
+  readonly #note = noteElement();
+  readonly #drawing = newDrawing();
+  readonly #look: Look;
+  readonly #frames = new FrameTimes();
+  readonly #watch: ResizeObserver;
+  #theme: Theme;
+  #drawn: ShakingScene | null = null;
+  readonly #past: ShakingScene[] = [];
+  #time = 0;
+  #waiting: number | null = null;
+  #settling: number | null = null;
+
+  /**
+   * @param host - element that the picture fills
+   * @throws Error if the browser draws no 3D
+   */
+  constructor(
+    readonly host: HTMLElement,
+    options: StageOptions = {},
+  ) {
+    this.#theme = options.theme ?? preferredTheme();
+    this.#look = new Look(this.canvas, () => this.#request());
+    Object.assign(this.#frame.style, { position: "relative", width: "100%", height: "100%", overflow: "hidden" });
+    Object.assign(this.canvas.style, { position: "absolute", inset: "0" });
+    this.canvas.tabIndex = 0;
+    this.canvas.setAttribute("role", "img");
+    this.#name("No motion yet.");
+    this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault()); // it is given back
+    this.canvas.addEventListener("webglcontextrestored", () => this.#request());
+    this.#frame.append(this.canvas, this.#note);
+    host.append(this.#frame);
+    this.#watch = new ResizeObserver(() => this.resize());
+    this.#watch.observe(this.#frame);
+    this.resize();
+  }
+
+  get canvas(): HTMLCanvasElement {
+    return this.#drawing.renderer.domElement;
+  }
+
+  get time(): number {
+    return this.#time;
+  }
+
+  /** Draw another motion; the view stays if the column does. */
+  show(motion: DrawnMotion): void {
+    const before = this.#drawn?.motion;
+    this.#build(drawable(motion));
+    if (before === undefined || !sameBody(before, motion)) this.resetCamera();
+    this.#name(
+      `${motion.title.replace(/([^.!?])$/, "$1.")} Arrow keys turn the view, plus and minus go nearer and back, Home resets it.`,
+    );
+  }
+
+  setTime(time: number): void {
+    this.#time = time;
+    if (this.#drawn === null) return;
+    this.#drawn.setTime(time);
+    this.#look.follow(this.#drawn.followed);
+    this.#request();
+  }
+
+  /** Read the pose back from what is drawn. */
+  pose(): Pose {
+    const drawn = this.#showing();
+    const rotation = rotationOf(drawn.column.quaternion);
+    const { contact, motion } = drawn;
+    return {
+      tilt: tiltOf(rotation),
+      contact: [contact.point.position.x, contact.point.position.y],
+      twist: twistOf(rotation, momentAt(motion, this.#time).twist),
+      spin: motion.spin === null ? null : spinAt(motion, this.#time),
+      centre: drawn.column.position.toArray(),
+    };
+  }
+
+  setTheme(theme: Theme): void {
+    if (theme === this.#theme) return;
+    this.#theme = theme;
+    if (this.#drawn !== null) this.#build(this.#drawn.motion);
+  }
+
+  /** Look again from the front, at all of it. */
+  resetCamera(): void {
+    if (this.#drawn === null) return;
+    const {
+      motion: { column },
+      room,
+    } = this.#drawn;
+    const slim = column.height > SLIM * 2 * Math.max(column.radius, column.top_radius);
+    this.#look.show(room, new Vector3(0.28, -1, slim ? 0.36 : 0.52));
+    this.#request();
+  }
+
+  resize(): void {
+    const { clientWidth, clientHeight } = this.#frame;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    this.#drawing.renderer.setSize(clientWidth, clientHeight);
+    this.#look.resize(clientWidth, clientHeight);
+    this.#draw(this.#drawing.moving); // at once: a canvas that changes its size is empty
+    this.#settle();
+  }
+
+  /** Return the picture as it stands, with what is written on it. */
+  async png(): Promise<Blob> {
+    const drawn = this.#showing();
+    this.#draw(this.#drawing.still);
+    const copy = document.createElement("canvas");
+    copy.width = this.canvas.width;
+    copy.height = this.canvas.height;
+    const context = copy.getContext("2d");
+    if (context === null) throw new Error("This browser makes no pictures from a canvas: take a screenshot instead");
+    context.drawImage(this.canvas, 0, 0);
+    paintNote(context, noteOn(drawn.motion, drawn.extent.spacing), paletteOf(this.#theme).ink, this.#drawing.still);
+    return new Promise((done, failed) => {
+      copy.toBlob(
+        (blob) => (blob === null ? failed(new Error("The browser could not write the picture as PNG")) : done(blob)),
+        "image/png",
+      );
+    });
+  }
+
+  /** Median rate of the last pictures drawn while something moved [1/s]. */
+  frameRate(): number {
+    return this.#frames.rate();
+  }
+
+  dispose(): void {
+    if (this.#waiting !== null) cancelAnimationFrame(this.#waiting);
+    if (this.#settling !== null) clearTimeout(this.#settling);
+    this.#watch.disconnect();
+    this.#look.dispose();
+    for (const scene of this.#past.splice(0)) scene.dispose();
+    this.#drawn?.dispose();
+    this.#drawn = null;
+    this.#drawing.renderer.dispose();
+    this.#drawing.renderer.forceContextLoss();
+    this.#frame.remove();
+  }
+
+  #build(motion: DrawnMotion): void {
+    if (this.#drawn !== null) this.#past.push(this.#drawn);
+    const palette = paletteOf(this.#theme);
+    this.#drawn = new ShakingScene(motion, palette);
+    this.#note.textContent = noteOn(motion, this.#drawn.extent.spacing);
+    this.#note.style.color = palette.ink;
+    this.#time = Math.min(motion.time.at(-1)!, Math.max(motion.time[0]!, this.#time));
+    this.setTime(this.#time);
+  }
+
+  #showing(): ShakingScene {
+    if (this.#drawn === null) throw new Error("nothing is shown yet: call show(motion) first");
+    return this.#drawn;
+  }
+
+  #name(text: string): void {
+    this.canvas.setAttribute("aria-label", text);
+  }
+
+  /** Draw with the next frame of the screen, however much changes until then. */
+  #request(): void {
+    this.#waiting ??= requestAnimationFrame((now) => {
+      this.#waiting = null;
+      this.#frames.add(now);
+      this.#draw(this.#drawing.moving);
+      this.#settle();
+    });
+  }
+
+  /** Draw finely once nothing changes any more. */
+  #settle(): void {
+    const { moving, still } = this.#drawing;
+    if (this.#settling !== null) clearTimeout(this.#settling);
+    this.#settling = moving === still ? null : window.setTimeout(() => this.#draw(still), STILL);
+  }
+
+  #draw(fineness: number): void {
+    const { renderer } = this.#drawing;
+    if (renderer.getPixelRatio() !== fineness) renderer.setPixelRatio(fineness);
+    if (this.#drawn !== null) {
+      renderer.render(this.#drawn.scene, this.#look.camera);
+      // Only now: until the new scene is drawn the old one keeps the compiled shaders they share.
+      for (const scene of this.#past.splice(0)) scene.dispose();
+    } else {
+      renderer.setClearColor(paletteOf(this.#theme).background);
+      renderer.clear();
+    }
+  }
+}
+
+function rotationOf({ w, x, y, z }: Quaternion): Rotation {
+  return [w, x, y, z];
+}
+
+/** Return the spin of the column as it is drawn: about `time`, over one step of the samples. */
+function spinAt(motion: DrawnMotion, time: number): number {
+  const last = motion.time.length - 1;
+  if (last === 0) return 0;
+  const index = Math.min(placeOf(motion.time, time).index, last - 1);
+  const half = 0.5 * (motion.time[index + 1]! - motion.time[index]!);
+  const from = Math.max(motion.time[0]!, time - half);
+  const to = Math.min(motion.time[last]!, time + half);
+  return spinBetween(momentAt(motion, from).rotation, momentAt(motion, to).rotation, to - from);
+}
+
+function sameBody(a: DrawnMotion, b: DrawnMotion): boolean {
+  const shape = ({ column, plane }: DrawnMotion): string =>
+    JSON.stringify([column.radius, column.top_radius, column.height, plane.incline, plane.incline_direction]);
+  return shape(a) === shape(b);
+}

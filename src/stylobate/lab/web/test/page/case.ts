@@ -1,0 +1,45 @@
+/** A server's word of itself, and a view, for tests. */
+
+import type { About } from "../../src/page/about";
+import type { View } from "../../src/page/state";
+import { viewOf } from "../../src/page/state";
+
+const number = (name: string, usual: number | null, from: number | null = null, to: number | null = null) => ({
+  name,
+  default: usual,
+  from,
+  to,
+});
+
+export const ABOUT: About = {
+  version: "0",
+  limits: {},
+  shapes: [
+    { kind: "dimensionless", name: "dimensionless", parameters: [number("slenderness", 0.1, 0.02, 0.5), number("inertia_ratio", 0.75)] },
+    { kind: "solid", name: "solid", parameters: [number("radius", 0.5), number("height", 5), number("density", 2700)] },
+  ],
+  models: [
+    { kind: "slender", name: "slender", parameters: [number("damping", 0, 0, 0.5)] },
+    { kind: "sliding", name: "sliding", parameters: [number("damping", 0, 0, 0.5), number("friction_coefficient", 0.5, 0.02, 1.2)] },
+  ],
+  motions: [
+    { kind: "circular", name: "circular", parameters: [number("acceleration", 1), number("angular_frequency", 2)] },
+    { kind: "elliptic", name: "elliptic", parameters: [{ name: "amplitude", default: [1, 0.5] }, number("angular_frequency", 2)] },
+    { kind: "orbit", name: "orbit", parameters: [number("diameter", 0.01), number("rpm", 200)] },
+    { kind: "record", name: "record", parameters: [number("scale", 1, 0.1, 4)] },
+    { kind: "sum", name: "sum", parameters: [] },
+    { kind: "rest", name: "rest", parameters: [] },
+  ],
+  samples: [{ name: "el centro 1940" }],
+  presets: [],
+  outcomes: [],
+};
+
+export const VIEW: View = viewOf({
+  column: { shape: "dimensionless", slenderness: 0.1 },
+  model: { kind: "slender", damping: 0.1 },
+  motion: { kind: "circular", acceleration: 0.065, angular_frequency: 1.8 },
+  tilt: [0.0386, -0.004],
+  tilt_rate: [-0.0075, 0.0695],
+  duration: 60,
+});

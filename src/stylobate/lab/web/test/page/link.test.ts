@@ -1,0 +1,75 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import type { Description, Part } from "../../src/page/description";
+import { BrokenLink, linkOf, viewFrom } from "../../src/page/link";
+import { viewOf, type View } from "../../src/page/state";
+import { ABOUT, VIEW } from "./case";
+
+const again = (view: View): View => viewFrom(`#${linkOf(view)}`, ABOUT);
+
+const under = (motion: Part): View => viewOf({ ...VIEW.description, motion } as Description);
+
+test("a link tells its case in words that can be read", () => {
+  assert.equal(
+    linkOf(VIEW),
+    "column=dimensionless,slenderness:0.1&model=slender,damping:0.1&motion=circular,acceleration:0.065,angular_frequency:1.8" +
+      "&tilt=0.0386,-0.004&tilt_rate=-0.0075,0.0695&duration=60",
+  );
+});
+
+test("a link brings back the view it was made of", () => {
+  const axis = { from: 0.5, to: 6, number: 48 };
+  const map = { x: { name: "angular_frequency", ...axis }, y: { name: "acceleration", ...axis } };
+  const basin = { x: { name: "tilt_x", ...axis, from: -0.1 }, y: { name: "tilt_y", ...axis, from: -1e-7 } };
+  const view: View = { ...VIEW, range: [0.2, 4], map, basin, tab: "map", filled: true, speed: 0.25 };
+  assert.deepEqual(again(view), view);
+  assert.deepEqual(again(VIEW), VIEW);
+});
+
+const MOTIONS: readonly Part[] = [
+  { kind: "record", sample: "el centro 1940", scale: 1.5 },
+  { kind: "record", upload: "1e5", scale: 1 },
+  { kind: "record", upload: "0123abc", scale: 1 },
+  { kind: "elliptic", amplitude: [1, -0.25], angular_frequency: 2 },
+  { kind: "elliptic", amplitude: [1], angular_frequency: 2e-7 },
+  { kind: "sum", motions: [{ kind: "circular", acceleration: 1, angular_frequency: 2 }, { kind: "rest" }] },
+  { kind: "record", sample: "none", scale: 1 },
+  { kind: "record", sample: "50 % & more, = it: ~'/#", scale: 1 },
+  { kind: "record", sample: "Ωμ", scale: 1 },
+];
+
+for (const motion of MOTIONS) {
+  test(`a link brings back the motion ${JSON.stringify(motion)}`, () => {
+    assert.deepEqual(again(under(motion)).description.motion, motion);
+  });
+}
+
+test("a link survives being written into an address", () => {
+  for (const motion of MOTIONS) {
+    const address = new URL(`http://localhost/#${linkOf(under(motion))}`);
+    assert.deepEqual(viewFrom(address.hash, ABOUT).description.motion, motion);
+  }
+});
+
+const BROKEN: readonly (readonly [link: string, told: RegExp])[] = [
+  ["#column", /column has no value/],
+  ["#model=slender", /column is missing/],
+  ["#column=cube", /column cube is not known/],
+  ["#column=solid,colour:1", /column solid has no colour/],
+  ["#column=solid&wind=3", /wind is not known/],
+  ["#column=solid,radius:1..2", /1\.\.2 is no number/],
+  ["#column=solid,radius", /column radius has no value/],
+  ["#column=solid&tab=garden", /tab must be one of/],
+  ["#column=solid&range=4,1", /range must be two rising/],
+  ["#column=solid&map=tilt_x:0:1:8", /map must be two axes/],
+  ["#column=solid&map=tilt_x:0:1:8,tilt_x:0:1:8", /map must be two axes/],
+  ["#column=solid&speed=fast", /speed must be positive/],
+  ["#column=solid&motion=record,sample:%E0%A4%A", /not well formed/],
+  ["#column=solid&motion=sum,motions:~%5B", /not well formed/],
+];
+
+for (const [link, told] of BROKEN) {
+  test(`the link ${link} is told to be broken`, () => {
+    assert.throws(() => viewFrom(link, ABOUT), (error) => error instanceof BrokenLink && told.test(error.message));
+  });
+}

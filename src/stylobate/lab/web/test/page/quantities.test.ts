@@ -1,0 +1,93 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { angularFrequency, isHorizontalHarmonic, withAngularFrequency } from "../../src/page/frequency";
+import { belongs, defaultPlane, keyOf, quantitiesOf } from "../../src/page/planes";
+import { valueOf, withValue } from "../../src/page/quantities";
+import { exactRequest, planeRequest, responseRequest, usualRange } from "../../src/page/requests";
+import { ABOUT, VIEW } from "./case";
+
+const CASE = VIEW.description;
+const SCALES = { slenderness: 0.1, frequency_scale: 1 };
+
+test("a quantity that is set reads as it was set, and leaves the others as they were", () => {
+  const names = [...quantitiesOf("map", CASE, ABOUT, SCALES), ...quantitiesOf("basin", CASE, ABOUT, SCALES)].map((one) => one.name);
+  assert.ok(names.length >= 8);
+  for (const name of names) {
+    const changed = withValue(CASE, name, 0.0123);
+    assert.equal(valueOf(changed, name), 0.0123, name);
+    for (const other of names) if (other !== name) assert.equal(valueOf(changed, other), valueOf(CASE, other), `${other} after ${name}`);
+  }
+});
+
+test("each number of a case is offered for maps once", () => {
+  const names = quantitiesOf("map", CASE, ABOUT, SCALES).map((one) => one.name);
+  assert.equal(new Set(names).size, names.length);
+  assert.deepEqual(names.slice(0, 2), ["acceleration", "angular_frequency"]);
+});
+
+test("a map is over frequency and strength where nothing is said, and holds the motion that is shown", () => {
+  const quantities = quantitiesOf("map", CASE, ABOUT, SCALES);
+  const plane = defaultPlane("map", CASE, quantities)!;
+  assert.deepEqual([plane.x.name, plane.y.name], ["angular_frequency", "acceleration"]);
+  for (const axis of [plane.x, plane.y]) {
+    const value = valueOf(CASE, axis.name)!;
+    assert.ok(axis.from < value && value < axis.to, axis.name);
+  }
+  assert.ok(belongs(plane, quantities));
+  assert.ok(!belongs(plane, quantitiesOf("basin", CASE, ABOUT, SCALES)));
+});
+
+test("a picture stays that of its case when a motion in it is chosen, and not when another number moves", () => {
+  const plane = defaultPlane("map", CASE, quantitiesOf("map", CASE, ABOUT, SCALES))!;
+  const chosen = withValue(withValue(CASE, "angular_frequency", 3), "acceleration", 0.2);
+  assert.equal(keyOf(chosen, plane), keyOf(CASE, plane));
+  for (const name of ["damping", "slenderness", "tilt_x", "duration"]) {
+    assert.notEqual(keyOf(withValue(CASE, name, 0.0321), plane), keyOf(CASE, plane), name);
+  }
+});
+
+test("a basin's picture does not depend on the start that is shown in it", () => {
+  const plane = defaultPlane("basin", CASE, quantitiesOf("basin", CASE, ABOUT, SCALES))!;
+  const other = withValue(withValue(CASE, "tilt_x", 0.01), "tilt_y", 0.02);
+  assert.equal(keyOf(other, plane), keyOf(CASE, plane));
+});
+
+for (const motion of [CASE.motion, { kind: "orbit", diameter: 0.012, rpm: 200 }, { kind: "stroke", stroke: 0.1, frequency: 2 }]) {
+  test(`the frequency of a ${motion["kind"]} motion is set in the quantity in which it is given`, () => {
+    const found = angularFrequency(withAngularFrequency(motion, 7.5))!;
+    assert.ok(Math.abs(found - 7.5) < 1e-4);
+  });
+}
+
+test("motions that are not harmonic, or not horizontal, have no response", () => {
+  assert.ok(isHorizontalHarmonic(CASE.motion));
+  assert.ok(!isHorizontalHarmonic({ kind: "record", sample: "el centro 1940" }));
+  assert.ok(!isHorizontalHarmonic({ kind: "vertical", acceleration: 1, angular_frequency: 3 }));
+  assert.ok(!isHorizontalHarmonic({ kind: "harmonic", amplitude: [1, 0, 0.5], angular_frequency: 3 }));
+  assert.equal(responseRequest({ ...CASE, motion: { kind: "rest" } }, [1, 2]), null);
+});
+
+test("response curves do not depend on the frequency that is shown", () => {
+  const at = (frequency: number) => withValue(CASE, "angular_frequency", frequency);
+  assert.deepEqual(responseRequest(at(1.2), [0.2, 4]), responseRequest(at(2.4), [0.2, 4]));
+});
+
+test("exact orbits are those of the chosen model, and its curves those of the slender one", () => {
+  const sliding = { ...CASE, model: { kind: "sliding", damping: 0.05, friction_coefficient: 0.3 } };
+  assert.deepEqual(exactRequest(sliding, [0.2, 4])!["model"], sliding.model);
+  assert.deepEqual(responseRequest(sliding, [0.2, 4])!["model"], { kind: "slender", damping: 0.05 });
+});
+
+test("the usual range holds the frequency that is shown", () => {
+  for (const frequency of [0.01, 0.3, 1.8, 20.9, 157]) {
+    const [low, high] = usualRange(1.2, frequency);
+    assert.ok(low < frequency && frequency < high, `${low} ${frequency} ${high}`);
+  }
+});
+
+test("what need not be given is not sent", () => {
+  const plane = defaultPlane("basin", CASE, quantitiesOf("basin", CASE, ABOUT, SCALES))!;
+  const body = planeRequest("basin", { ...CASE, atol: null, model: { kind: "slender", passage_tilt: null } }, plane);
+  assert.deepEqual(body["model"], { kind: "slender" });
+  assert.ok(!("atol" in body) && !("duration" in body) && "periods" in body);
+});

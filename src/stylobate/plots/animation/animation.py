@@ -1,0 +1,237 @@
+"""A run as pictures that move: shown in a notebook, or written as GIF, MP4 or a page."""
+
+import base64
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+
+from PIL import Image
+
+from stylobate.errors import (
+    FileError,
+    ParameterError,
+    require_finite,
+    require_positive,
+    require_vector,
+    require_whole,
+)
+from stylobate.plots.animation.gif import Progress, gif_of
+from stylobate.plots.animation.motion import DrawnMotion
+from stylobate.plots.animation.page import page_of
+from stylobate.plots.animation.painter import Look, Painter
+from stylobate.plots.animation.video import write_mp4
+from stylobate.plots.axonometry import View
+from stylobate.results import Response
+
+# Pictures in an animation at most: a minute at the usual rate.
+_MOST = 1500
+# A GIF's clock runs in hundredths of a second, and viewers slow down what is faster than half of them.
+_FASTEST = 50.0
+# Width and height of pictures [pixels]: smaller ones cannot hold what is written in them.
+_SMALLEST, _LARGEST = (320, 280), (3840, 2160)
+_SUFFIXES = (".gif", ".mp4", ".html")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Animation:
+    """A motion with how it is shown; a notebook shows it as a GIF.
+
+    Attributes
+    ----------
+    motion
+        The instants of which there are pictures.
+    history
+        The same motion told finer, for paths and curves.
+    look
+        Size, view, title.
+    frames_per_second
+        Pictures in a second.
+    """
+
+    motion: DrawnMotion
+    history: DrawnMotion
+    look: Look
+    frames_per_second: float
+
+    def __len__(self) -> int:
+        """Return the number of pictures."""
+        return int(self.motion.time.size)
+
+    def pictures(self, progress: Progress | None = None) -> Iterator[Image.Image]:
+        """Yield the pictures in order; after each `progress` is told how many there were, and of how many."""
+        painter = Painter.of(self.motion, self.history, self.look)
+        for index in range(len(self)):
+            yield painter.picture(index)
+            if progress is not None:
+                progress(index + 1, len(self))
+
+    def gif(self, progress: Progress | None = None) -> bytes:
+        """Return the bytes of a GIF; after each picture `progress` is told how many there were, and of how many."""
+        painter = Painter.of(self.motion, self.history, self.look)
+        return gif_of(painter.picture, len(self), self.frames_per_second, progress)
+
+    def html(self) -> str:
+        """Return a page of its own in which the motion can be turned about, stopped and slowed down.
+
+        Raises
+        ------
+        UnsupportedError
+            If the viewer was not built: wheels hold it.
+        """
+        return page_of(self.history.as_dict())
+
+    def save(self, path: str | Path, progress: Progress | None = None) -> Path:
+        """Write the animation to `path`: a .gif, an .mp4 or an .html by its suffix; return the path.
+
+        Raises
+        ------
+        ParameterError
+            If the suffix is none of these.
+        UnsupportedError
+            If an MP4 is asked for without the extra `video`, or a page without its viewer.
+        FileError
+            If the file cannot be written.
+        """
+        path = checked_path(path)
+        beside = path.with_name(f".{path.stem}.part{path.suffix}")
+        try:
+            # Told before a picture is drawn, if nothing can be written there.
+            beside.touch()
+            match path.suffix.lower():
+                case ".gif":
+                    beside.write_bytes(self.gif(progress))
+                case ".mp4":
+                    write_mp4(beside, self.pictures(progress), self.look.size, self.frames_per_second)
+                case _:
+                    beside.write_text(self.html(), encoding="utf-8", newline="\n")
+            beside.replace(path)
+        except OSError as error:
+            message = f"cannot write {path}: {error.strerror or error}"
+            raise FileError(message) from None
+        finally:
+            beside.unlink(missing_ok=True)
+        return path
+
+    def _repr_html_(self) -> str:
+        data = base64.b64encode(self.gif()).decode("ascii")
+        return f'<img alt="{escape(self.motion.title)}" src="data:image/gif;base64,{data}">'
+
+    def __repr__(self) -> str:
+        width, height = self.look.size
+        return f"Animation({len(self)} pictures, {width} × {height}: {self.motion.title})"
+
+
+def animate(
+    run: Response,
+    path: str | Path | None = None,
+    *,
+    size: Sequence[int] = (640, 480),
+    frames_per_second: float = 25.0,
+    speed: float = 1.0,
+    title: str | None = None,
+    azimuth: float = -68.0,
+    elevation: float = 20.0,
+) -> Animation:
+    """Return a run as pictures that move, and write them to `path` where one is given.
+
+    The column has flutes, one of them marked, so that rolling and spin are seen; it stands on a slab that moves with
+    the base over marks on the ground, and leaves the path of its contact point there. Below runs the history of the
+    tilt. Nothing is enlarged, and nothing drawn that was not computed: a column that overturns is shown until it cannot
+    come back.
+
+    Parameters
+    ----------
+    run
+        A run; one that was loaded has its samples joined by straight lines.
+    path
+        File to write: a .gif, an .mp4 (which needs the extra `video`), or an .html, a page of its own in which the
+        motion can be turned about, stopped and slowed down.
+    size
+        Width and height of the pictures [pixels].
+    frames_per_second
+        Pictures in a second, 50 at most.
+    speed
+        Seconds of the run in a second of the animation. There are 1500 pictures at most: long runs need more speed.
+    title
+        A line in the pictures; of a page its heading, by default what became of the column.
+    azimuth, elevation
+        Where one looks from [degrees].
+
+    Returns
+    -------
+    Animation
+        A notebook shows it; `save` writes it.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range, or the suffix of `path` none of these.
+    UnsupportedError
+        If an MP4 is asked for without the extra `video`, or a page without its viewer.
+    FileError
+        If the file cannot be written.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Rolling(sb.Column.solid(radius=0.1, height=0.6, density=2700.0), damping=0.02)
+    >>> sb.animate(sb.simulate(model, tilt=(0.2, 0.0), tilt_rate=(0.0, 0.3), duration=2.0))
+    Animation(51 pictures, 640 × 480: still moving: ...)
+    """
+    path = None if path is None else checked_path(path)
+    rate = require_positive("frames_per_second", frames_per_second, "1/s")
+    if rate > _FASTEST:
+        message = f"frames_per_second must be at most {_FASTEST:g}, got {rate!r}"
+        raise ParameterError(message)
+    pace = require_positive("speed", speed)
+    look = Look(size=_size(size), view=_view(azimuth, elevation), title=title, pace=pace)
+    history = DrawnMotion.of(run, title=title)
+    _require_few(float(history.time[-1]), rate, pace)
+    motion = DrawnMotion.of(run, frames_per_second=rate / pace, title=title, most=_MOST)
+    animation = Animation(motion=motion, history=history, look=look, frames_per_second=rate)
+    if path is not None:
+        animation.save(path)
+    return animation
+
+
+def checked_path(path: str | Path) -> Path:
+    """Return `path` as a Path, or raise ParameterError unless it ends with .gif, .mp4 or .html."""
+    found = Path(path)
+    if found.suffix.lower() not in _SUFFIXES:
+        message = f"path must end with .gif, .mp4 or .html, got {str(path)!r}"
+        raise ParameterError(message)
+    return found
+
+
+def _size(size: Sequence[int]) -> tuple[int, int]:
+    given = require_vector("size", size, 2, "pixels")
+    width, height = (
+        require_whole(f"size[{at}]", number, least=least)  # type: ignore[arg-type]
+        for at, (number, least) in enumerate(zip(given, _SMALLEST, strict=True))
+    )
+    if width > _LARGEST[0] or height > _LARGEST[1]:
+        message = f"size must be at most {_LARGEST[0]} × {_LARGEST[1]} pixels, got {width} × {height}"
+        raise ParameterError(message)
+    return width, height
+
+
+def _view(azimuth: float, elevation: float) -> View:
+    around, above = require_finite("azimuth", azimuth, "degrees"), require_positive("elevation", elevation, "degrees")
+    if above > 90.0:  # noqa: PLR2004  from straight above
+        message = f"elevation must be at most 90 degrees, got {above!r}"
+        raise ParameterError(message)
+    return View(math.radians(around), math.radians(above))
+
+
+def _require_few(end: float, rate: float, pace: float) -> None:
+    if end * rate / pace > _MOST - 1:
+        least = end * rate / (_MOST - 1)
+        # Rounded up, so that it works.
+        power = 10.0 ** (math.floor(math.log10(least)) - 2)
+        message = (
+            f"speed must be at least {math.ceil(least / power) * power:.3g} to show {end:.6g} s by {_MOST} pictures at "
+            f"{rate:g} a second, got {pace!r}"
+        )
+        raise ParameterError(message)

@@ -1,0 +1,266 @@
+"""The motion of a column as it is drawn: poses at equal steps in time."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.errors import Outcome, ParameterError, require_positive
+from stylobate.plots.pose import Floats, base_centres, quaternions
+from stylobate.plots.shape import Shape
+from stylobate.results import Response
+
+# No more instants than this, however long the run: a page holds them all.
+_MOST = 2000
+# Rounding in the number of instants.
+_SLACK = 1e-9
+# What is joined by straight lines between samples.
+_SMOOTH = ("tilt", "tilt_rate", "twist", "spin", "footprint", "clearance", "base_displacement")
+# Digits that are kept where a motion is written as text.
+_DIGITS = 7
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DrawnMotion:
+    """Poses of a column and displacements of its base at n instants, equal steps apart; positions in the base's frame.
+
+    Attributes
+    ----------
+    shape
+        The body.
+    incline, incline_direction
+        Of the plane [rad].
+    time
+        Shape (n,) [s]: from the start of the run to its end.
+    tilt, tilt_rate
+        Shape (n, 2) [rad], [rad/s].
+    twist, spin
+        Angle of turn about the axis and angular velocity about it, shape (n,) [rad], [rad/s]; no spin of models that
+        do not tell it.
+    footprint, contact_point
+        Centre of the circle on the base about which the contact point lies, and that point, shape (n, 2) [m]. Where
+        the column stands upright the contact point is where it was last, or first will be.
+    resting
+        Where the whole base touches, shape (n,).
+    clearance
+        Height of the lowest point above the base, shape (n,) [m], of models that fly.
+    base
+        Displacement of the base, shape (n, 3) [m].
+    friction_demand
+        Shape (n,), of models that tell it.
+    friction_coefficient
+        Of the contact, where it is known.
+    outcome, decided_at, title
+        What became of the column, when that was decided [s], and a line that says so.
+    """
+
+    shape: Shape
+    incline: float
+    incline_direction: float
+    time: Floats
+    tilt: Floats
+    tilt_rate: Floats
+    twist: Floats
+    spin: Floats | None
+    footprint: Floats
+    contact_point: Floats
+    resting: npt.NDArray[np.bool_]
+    clearance: Floats | None
+    base: Floats
+    friction_demand: Floats | None
+    friction_coefficient: float | None
+    outcome: Outcome
+    decided_at: float
+    title: str
+
+    @classmethod
+    def of(
+        cls,
+        run: Response,
+        *,
+        frames_per_second: float | None = None,
+        title: str | None = None,
+        most: int = _MOST,
+    ) -> Self:
+        """Return the motion of `run`; arguments and errors as for `drawn_motion`, with no more than `most` instants."""
+        _require_run(run)
+        data = _at_equal_steps(run, frames_per_second, most)
+        shape, plane = Shape.of(run), run.provenance["model"]
+        tilt = data["tilt"].to_numpy()
+        footprint = data["footprint"].to_numpy() if "footprint" in data else np.zeros_like(tilt)
+        clearance = _optional(data, "clearance")
+        given = run.provenance.get("friction_coefficient")
+        coefficient = plane.get("friction_coefficient") if given is None else given
+        touches = True if clearance is None else clearance <= 0.0
+        return cls(
+            shape=shape,
+            incline=float(plane.get("incline", 0.0)),
+            incline_direction=float(plane.get("incline_direction", 0.0)),
+            time=data["time"].to_numpy(),
+            tilt=tilt,
+            tilt_rate=data["tilt_rate"].to_numpy(),
+            twist=data["twist"].to_numpy() if "twist" in data else np.zeros(len(tilt)),
+            spin=_optional(data, "spin"),
+            footprint=footprint,
+            contact_point=footprint + shape.radius * _directions(tilt),
+            resting=data["resting"].to_numpy() | (~tilt.any(axis=1) & touches),
+            clearance=clearance,
+            base=data["base_displacement"].to_numpy(),
+            friction_demand=_optional(data, "friction_demand"),
+            friction_coefficient=None if coefficient is None else float(coefficient),
+            outcome=run.outcome,
+            decided_at=run.decided_at,
+            title=f"{verdict_of(run.outcome)}: {run.reason}" if title is None else title,
+        )
+
+    @property
+    def rotation(self) -> Floats:
+        """The column's rotation as unit quaternions w, x, y, z, shape (n, 4); no sign leaps."""
+        return quaternions(self.tilt, self.twist)
+
+    @property
+    def centre(self) -> Floats:
+        """Centre of the bottom circle, shape (n, 3) [m]."""
+        clearance = 0.0 if self.clearance is None else self.clearance
+        return base_centres(self.tilt, self.footprint, self.shape.radius, clearance)
+
+    @property
+    def on_rim(self) -> npt.NDArray[np.bool_]:
+        """Where a point of the rim touches and no more, shape (n,)."""
+        flying = np.zeros(self.time.size, dtype=bool) if self.clearance is None else self.clearance > 0.0
+        return ~self.resting & ~flying
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the motion as plain numbers, lists and text for JSON."""
+        shape = self.shape
+        lengths = {"radius": shape.radius, "top_radius": shape.top_radius, "height": shape.height}
+        return {
+            "column": {**lengths, "mass_height": shape.mass_height, "slenderness": shape.slenderness},
+            "plane": {"incline": self.incline, "incline_direction": self.incline_direction},
+            "time": _plain(self.time),
+            "tilt": _plain(self.tilt),
+            "tilt_rate": _plain(self.tilt_rate),
+            "twist": _plain(self.twist),
+            "spin": _plain(self.spin),
+            "footprint": _plain(self.footprint),
+            "contact_point": _plain(self.contact_point),
+            "resting": self.resting.astype(int).tolist(),
+            "clearance": _plain(self.clearance),
+            "base": _plain(self.base),
+            "rotation": _plain(self.rotation),
+            "centre": _plain(self.centre),
+            "friction_demand": _plain(self.friction_demand),
+            "friction_coefficient": self.friction_coefficient,
+            "outcome": self.outcome.name,
+            "decided_at": self.decided_at,
+            "title": self.title,
+        }
+
+
+def drawn_motion(run: Response, *, frames_per_second: float | None = None, title: str | None = None) -> dict[str, Any]:
+    """Return the motion of a run as plain numbers that a page, or any other program, can draw.
+
+    Lengths in m, angles in rad, times in s; z upwards. Positions are told in the frame of the base, whose own
+    displacement is `base`. The column is turned by the unit quaternion `rotation` (w, x, y, z), Rz(β) Ry(θ) Rz(χ − β),
+    and the centre of its bottom circle is `centre`. Nothing is drawn that was not computed: of a column that overturned
+    the motion ends where it was decided that it cannot come back.
+
+    Parameters
+    ----------
+    run
+        A run; of one that was loaded the kept samples are joined by straight lines.
+    frames_per_second
+        Instants per second of the run's own time; by default as many as its samples. There are 2000 at most.
+    title
+        A line of text; by default what became of the column.
+
+    Returns
+    -------
+    dict
+        Lists of equal length by name: "time", "tilt", "tilt_rate", "twist", "spin", "footprint", "contact_point",
+        "resting", "clearance", "base", "rotation", "centre", "friction_demand", seven digits each; None for what the
+        model does not tell, and in place of a demand that is not finite. Beside them "column", "plane",
+        "friction_coefficient", "outcome", "decided_at" and "title".
+
+    Raises
+    ------
+    ParameterError
+        If `run` is no run, or `frames_per_second` not positive.
+    """
+    return DrawnMotion.of(run, frames_per_second=frames_per_second, title=title).as_dict()
+
+
+def verdict_of(outcome: Outcome) -> str:
+    """Return the outcome in words; the motion of a column that overturns ends before its fall."""
+    return "cannot come back" if outcome is Outcome.OVERTURNED else outcome.value
+
+
+def _require_run(run: Response) -> None:
+    if not isinstance(run, Response):
+        message = f"run must be a run, as simulate returns it, got {type(run).__name__}"
+        raise ParameterError(message)
+    if run.data.sizes["time"] < 2:  # noqa: PLR2004  no motion in less
+        message = f"run must have 2 samples at least, got {run.data.sizes['time']}"
+        raise ParameterError(message)
+
+
+def _at_equal_steps(run: Response, frames_per_second: float | None, most: int) -> xr.Dataset:
+    own, end = run.data["time"].to_numpy(), float(run.data["time"][-1])
+    count = own.size
+    if frames_per_second is not None:
+        count = math.ceil(end * require_positive("frames_per_second", frames_per_second, "1/s") - _SLACK) + 1
+    time = np.linspace(0.0, end, min(max(count, 2), most))
+    if np.array_equal(time, own):
+        return run.data
+    return run.sample(time) if run.sampler is not None else _between(run.data, time)
+
+
+def _between(data: xr.Dataset, time: Floats) -> xr.Dataset:
+    """Return samples joined by straight lines, and what is no number as it was at the sample before."""
+    own = data["time"].to_numpy()
+    before = np.clip(np.searchsorted(own, time, side="right") - 1, 0, own.size - 1)
+    smooth = [name for name in _SMOOTH if name in data]
+    joined = {name: _joined(data[name], own, time) for name in smooth}
+    return data.isel(time=before).assign_coords(time=time).assign(joined)
+
+
+def _joined(values: xr.DataArray, own: Floats, time: Floats) -> xr.Variable:
+    flat = values.to_numpy().reshape(own.size, -1)
+    joined = np.stack([np.interp(time, own, part) for part in flat.T], axis=-1)
+    return xr.Variable(values.dims, joined.reshape(time.size, *values.shape[1:]))
+
+
+def _optional(data: Mapping[Any, xr.DataArray], name: str) -> Floats | None:
+    return data[name].to_numpy() if name in data else None
+
+
+def _directions(tilt: Floats) -> Floats:
+    """Return unit vectors along the tilt, where there is none those of the nearest instant before, or else after."""
+    size = np.hypot(*tilt.T)
+    leaning = np.flatnonzero(size > 0.0)
+    if not leaning.size:
+        return np.tile([1.0, 0.0], (len(tilt), 1))
+    last = np.searchsorted(leaning, np.arange(len(tilt)), side="right") - 1
+    known = leaning[np.clip(last, 0, None)]
+    return np.asarray(tilt[known] / size[known, None])
+
+
+def _plain(values: Floats | None) -> list[Any] | None:
+    """Return lists of numbers with seven significant digits, None in place of what is not finite."""
+    if values is None:
+        return None
+    finite = np.isfinite(values)
+    known = np.where(finite & (values != 0.0), values, 1.0)
+    places = _DIGITS - 1 - np.floor(np.log10(np.abs(known)))
+    # Powers of ten up to 10²² are exact, so that the quotient is the double nearest to the short decimal.
+    scale = 10.0 ** np.clip(places, 0, 22)
+    rounded = np.where(values == 0.0, 0.0, np.rint(known * scale) / scale)
+    if finite.all():
+        return list(rounded.tolist())
+    found = rounded.astype(object)
+    found[~finite] = None
+    return list(found.tolist())

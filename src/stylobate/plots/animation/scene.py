@@ -1,0 +1,105 @@
+"""What stands where: the slab that moves with the base, the ground below it, and all that a picture must hold."""
+
+import math
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.plots.animation.motion import DrawnMotion
+from stylobate.plots.pose import Floats, frames, quaternions
+
+# Half the least width of the slab: in base radii, and in heights of the column.
+_LEAST, _OF_HEIGHT = 2.3, 0.16
+# How far the slab reaches beyond what happens on it [base radii], its thickness in half widths, lines across it.
+_MARGIN, _THICKNESS, _LINES = 1.7, 0.09, 8
+# Poses that decide what the picture must hold.
+_SEEN = 240
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scene:
+    """A slab on the ground, and the plane on it in which positions of a motion are told.
+
+    Attributes
+    ----------
+    turned
+        Matrix that takes the frame of the plane to space: the inclination, shape (3, 3).
+    low, high
+        Corners of the slab in its plane, shape (2,) [m].
+    thickness, ground
+        Of the slab, and height of the ground [m].
+    grid
+        Distance between lines on the slab and marks on the ground [m].
+    """
+
+    turned: Floats
+    low: Floats
+    high: Floats
+    thickness: float
+    ground: float
+    grid: float
+
+    @classmethod
+    def of(cls, motion: DrawnMotion) -> Self:
+        """Return the scene that holds all of a motion."""
+        shape = motion.shape
+        least, most = motion.footprint.min(axis=0), motion.footprint.max(axis=0)
+        middle, reach = 0.5 * (least + most), 0.5 * float(np.max(most - least))
+        half = max(reach + _MARGIN * shape.radius, _LEAST * shape.radius, _OF_HEIGHT * shape.height)
+        lean = motion.incline * np.array([math.cos(motion.incline_direction), math.sin(motion.incline_direction)])
+        turned = frames(quaternions(lean, 0.0))
+        thickness = _THICKNESS * half
+        corners = _corners(middle - half, middle + half, -thickness) @ turned.T
+        lowest = corners[:, 2].min() + (motion.base @ turned.T)[:, 2].min()
+        return cls(
+            turned=turned,
+            low=middle - half,
+            high=middle + half,
+            thickness=thickness,
+            ground=float(lowest),
+            grid=round_length(2.0 * half / _LINES),
+        )
+
+    def slab(self, height: float) -> Floats:
+        """Return the corners of the slab at a `height` over its upper face, anticlockwise, in its own frame."""
+        return _corners(self.low, self.high, height)
+
+    @property
+    def normal(self) -> Floats:
+        """Unit vector upwards from the plane, in space."""
+        return self.turned[:, 2]
+
+    def everything(self, motion: DrawnMotion) -> Floats:
+        """Return points in space between which all happens, shape (n, 3)."""
+        shape, chosen = motion.shape, _spread(motion.time.size)
+        poses, base = frames(motion.rotation[chosen]), motion.base[chosen]
+        around = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+        rings = [
+            np.stack([radius * np.cos(around), radius * np.sin(around), np.full(around.size, height)], axis=-1)
+            for radius, height in ((shape.radius, 0.0), (shape.top_radius, shape.height))
+        ]
+        columns = np.concatenate(rings) @ np.swapaxes(poses, -1, -2) + (base + motion.centre[chosen])[:, None]
+        slabs = np.concatenate([self.slab(0.0), self.slab(-self.thickness)]) + base[:, None]
+        return np.concatenate([columns.reshape(-1, 3), slabs.reshape(-1, 3)]) @ self.turned.T
+
+
+def round_length(length: float) -> float:
+    """Return the largest of 1, 2 and 5 times a power of ten that is no longer than `length`.
+
+    >>> round_length(0.34), round_length(7.0)
+    (0.2, 5.0)
+    """
+    power = 10.0 ** math.floor(math.log10(length))
+    return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= length)
+
+
+def _spread(count: int) -> npt.NDArray[np.intp]:
+    return np.unique(np.linspace(0, count - 1, min(count, _SEEN)).round().astype(int))
+
+
+def _corners(low: Floats, high: Floats, height: float) -> Floats:
+    return np.array(
+        [[low[0], low[1], height], [high[0], low[1], height], [high[0], high[1], height], [low[0], high[1], height]]
+    )

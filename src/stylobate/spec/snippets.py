@@ -1,0 +1,128 @@
+"""A description written for others to read: as TOML, and as the Python that does the same."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import tomlkit
+
+from stylobate.spec.simulation import SimulationDescription
+
+
+def as_toml(values: Mapping[str, Any]) -> str:
+    """Return the TOML file with these plain `values`, such as those of a description; what is None is left out.
+
+    Examples
+    --------
+    >>> print(as_toml({"column": {"shape": "dimensionless", "slenderness": 0.1}, "duration": 20.0}), end="")
+    duration = 20.0
+    <BLANKLINE>
+    [column]
+    shape = "dimensionless"
+    slenderness = 0.1
+    """
+    return tomlkit.dumps(_without_none(values))
+
+
+def as_python(description: SimulationDescription) -> str:
+    """Return a Python program that makes the described run by the public names.
+
+    A record that is put together or processed in another way than by scale, rotation and tail stands as a description.
+
+    Examples
+    --------
+    >>> values = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "tilt": [0.05, 0.0], "duration": 20.0}
+    >>> print(as_python(SimulationDescription.parse(values)), end="")
+    import stylobate as sb
+    <BLANKLINE>
+    column = sb.Column.dimensionless(slenderness=0.1)
+    model = sb.Slender(column)
+    run = sb.simulate(model, tilt=(0.05, 0.0), duration=20.0)
+    print(run.outcome.name, "-", run.reason)
+    """
+    column, model = description.column.model_dump(exclude_defaults=True), description.model
+    shape = str(getattr(description.column, "shape"))  # noqa: B009  every member of the union has one
+    column.pop("shape", None)
+    maker = "sb.Column" if shape == "given" else f"sb.Column.{shape}"
+    class_name = "".join(part.title() for part in model.kind.split("_"))
+    numbers = model.model_dump(exclude={"kind"}, exclude_defaults=True)
+    lines = ["import stylobate as sb", "", f"column = {maker}({_keywords(column)})"]
+    lines.append(f"model = sb.{class_name}({_joined(['column', _keywords(numbers)])})")
+    moved = description.motion.kind != "rest"
+    if moved:
+        lines.append(f"motion = {_motion(description.motion.model_dump(exclude_defaults=True, exclude_none=True))}")
+    lines += _run(description, moved=moved)
+    return "\n".join([*lines, 'print(run.outcome.name, "-", run.reason)', ""])
+
+
+def _run(description: SimulationDescription, *, moved: bool) -> Iterable[str]:
+    """Return the call of `simulate`; the rules are an object of their own."""
+    options = description.model_dump(exclude={"column", "model", "motion", "rules"}, exclude_defaults=True)
+    if options.get("duration", 0.0) is None:  # as long as the record
+        del options["duration"]
+    given = ["model", *(["motion"] if moved else []), _keywords(options)]
+    if description.rules:
+        given.append(f"rules=sb.OutcomeRules({_keywords(description.rules)})")
+    return [f"run = sb.simulate({_joined(given)})"]
+
+
+def _motion(values: Mapping[str, Any]) -> str:
+    """Return the Python of a motion with these plain values."""
+    kind, numbers = str(values.get("kind", "record")), {name: value for name, value in values.items() if name != "kind"}
+    if kind == "record":
+        return _record(numbers)
+    if kind in _CHANGES:
+        return f"{_motion(numbers.pop('motion'))}.{kind}({_changes(kind, numbers)})"
+    if kind in ("sum", "one_of"):
+        members = ", ".join(_motion(member) for member in numbers.pop("motions"))
+        return f"sb.{_CONTAINERS[kind]}({_joined([f'motions=({members},)', _keywords(numbers)])})"
+    maker = _MAKERS.get(kind, f"sb.Pulse.{kind}")
+    return f"{maker}({_keywords(numbers)})"
+
+
+def _record(numbers: dict[str, Any]) -> str:
+    plain = {"sample", "path", "units", "step", "scale", "rotation", "tail", "directions"}
+    several = not isinstance(numbers.get("path", ""), str)
+    if set(numbers) - plain or ("directions" in numbers and not several):
+        return f"sb.spec.RecordMotion.parse({numbers!r}).build()"
+    if "sample" in numbers:
+        made = f"sb.sample_record({numbers['sample']!r})"
+    else:
+        reading = {name: value for name, value in numbers.items() if name in ("units", "step", "directions")}
+        paths = list(numbers["path"]) if several else numbers["path"]
+        read = "sb.read_records" if several else "sb.read_record"
+        made = f"{read}({_joined([repr(paths), _keywords(reading)])})" + ("[0]" if several else "")
+    for name, method in (("scale", "scaled"), ("rotation", "rotated"), ("tail", "with_tail")):
+        made += f".{method}({numbers[name]!r})" if name in numbers else ""
+    return made
+
+
+def _changes(kind: str, numbers: dict[str, Any]) -> str:
+    return _joined([repr(numbers.pop(_CHANGES[kind])), _keywords(numbers)])
+
+
+def _keywords(values: Mapping[str, Any]) -> str:
+    return ", ".join(f"{name}={value!r}" for name, value in values.items())
+
+
+def _joined(parts: Iterable[str]) -> str:
+    return ", ".join(part for part in parts if part)
+
+
+def _without_none(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        name: _without_none(value) if isinstance(value, Mapping) else value
+        for name, value in values.items()
+        if value is not None
+    }
+
+
+_HARMONICS = ("circular", "straight", "elliptic", "vertical", "oblique", "displacement_amplitude", "stroke", "orbit")
+_MAKERS = {kind: f"sb.Harmonic.{kind}" for kind in _HARMONICS} | {
+    "harmonic": "sb.Harmonic",
+    "linear_sweep": "sb.Sweep.linear",
+    "logarithmic_sweep": "sb.Sweep.logarithmic",
+}
+"""What makes the motions of each kind but for pulses, whose kinds are methods of `Pulse`."""
+
+_CHANGES = {"scaled": "factor", "rotated": "angle", "delayed": "delay"}
+_CONTAINERS = {"sum": "motions.Sum", "one_of": "OneOf"}

@@ -1,0 +1,44 @@
+"""A laboratory that listens on a free port of this machine, one for all tests of a module."""
+
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import httpx
+import pytest
+import uvicorn
+
+from stylobate.lab import Limits, create_app
+from stylobate.lab.serving import listening
+
+
+@contextmanager
+def laboratory(limits: Limits | None = None) -> Iterator[str]:
+    """Serve a laboratory in a thread of this process and give its address."""
+    with listening("127.0.0.1", 0) as place:
+        host = f"127.0.0.1:{place.getsockname()[1]}"
+        server = uvicorn.Server(
+            uvicorn.Config(create_app(hosts={host}, limits=limits), log_level="warning", timeout_graceful_shutdown=1)
+        )
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [place]})
+        thread.start()
+        while not server.started:
+            time.sleep(0.02)
+        try:
+            yield f"http://{host}"
+        finally:
+            server.should_exit = True
+            thread.join()
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    with laboratory() as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def client(address) -> Iterator[httpx.Client]:
+    with httpx.Client(base_url=address, timeout=120.0) as found:
+        yield found

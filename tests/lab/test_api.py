@@ -1,0 +1,121 @@
+"""What the laboratory answers is what the library computes."""
+
+import base64
+import math
+
+import numpy as np
+import pytest
+
+import stylobate as sb
+from stylobate.lab.presets import presets
+from stylobate.spec import ResponseDescription, SimulationDescription
+
+# Numbers are sent in nine digits.
+SENT = 1e-8
+
+FREE = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "tilt": [0.05, 0.01], "duration": 20.0}
+CIRCLE = {
+    "column": {"shape": "dimensionless", "slenderness": 0.1},
+    "model": {"kind": "slender", "damping": 0.1},
+    "motion": {"kind": "circular", "acceleration": 0.065, "angular_frequency": 1.8},
+}
+
+
+def described_run(values):
+    setup = SimulationDescription.parse(values).build()
+    return sb.simulate(setup.model, setup.motion, **setup.options)
+
+
+def test_a_run_is_that_of_the_library(client):
+    values = {**CIRCLE, "tilt": [0.04, 0.0], "tilt_rate": [0.0, 0.07], "duration": 30.0}
+    told, run = client.post("/api/simulate", json=values).json(), described_run(values)
+    assert (told["outcome"], told["reason"]) == (run.outcome.name, run.reason)
+    assert told["measures"]["largest_tilt"] == run.measures["largest_tilt"]
+    assert told["series"]["amplitude"] == pytest.approx(run.data["amplitude"].values.tolist(), rel=SENT, abs=1e-12)
+    assert told["series"]["time"][-1] == pytest.approx(30.0)
+
+
+def test_numbers_that_are_not_finite_are_null(client):
+    told = client.post("/api/simulate", json=FREE).json()
+    assert math.isnan(described_run(FREE).data["azimuth"].values[-1]) is (told["series"]["azimuth"][-1] is None)
+    assert all(value is None or math.isfinite(value) for value in told["thresholds"].values())
+
+
+@pytest.mark.parametrize("preset", presets(), ids=lambda preset: preset.identity)
+def test_every_preset_shows_what_it_says(client, preset):
+    told = client.post("/api/simulate", json=preset.description).json()
+    assert told["outcome"] == preset.outcome, told.get("problems", told.get("reason"))
+
+
+def test_the_python_of_a_run_makes_the_same_run(client):
+    names = {}
+    told = client.post("/api/simulate", json={**CIRCLE, "tilt": [0.04, 0.0], "duration": 10.0}).json()
+    exec(told["python"], names)  # noqa: S102  it is what users are given
+    assert names["run"].outcome.name == told["outcome"]
+    assert names["run"].measures["largest_tilt"] == told["measures"]["largest_tilt"]
+
+
+def test_a_description_is_told_without_a_run(client):
+    told = client.post("/api/describe", json={**CIRCLE, "duration": 5.0}).json()
+    assert "sb.Harmonic.circular(" in told["python"]
+    assert told["column"]["slenderness"] == pytest.approx(0.1)
+    assert told["column"]["releasing_acceleration"] == pytest.approx(0.1)
+
+
+def test_response_curves_are_those_of_theory(client):
+    values = {**CIRCLE, "angular_frequency_range": [0.5, 4.0], "points": 50}
+    told = client.post("/api/response", json=values).json()
+    assert ResponseDescription.parse(values).points == len(told["angular_frequency"]) == 50
+    steady = sb.theory.steady_rolling(np.linspace(0.5, 4.0, 50), 0.065, c=0.1, eta=0.1)
+    upper = next(one for one in told["branches"] if one["branch"] == "upper")
+    known = np.isfinite(steady.upper.amplitude)
+    amplitudes = np.array([np.nan if value is None else value for value in upper["amplitude"]])
+    assert np.array_equal(np.isfinite(amplitudes), known)
+    assert amplitudes[known] == pytest.approx(steady.upper.amplitude[known], rel=SENT)
+    assert np.array_equal(np.array(upper["stable"])[known], steady.upper.stable[known])
+
+
+def test_an_uploaded_record_moves_the_base(client):
+    time = np.arange(0.0, 3.0, 0.01)
+    acceleration = 0.3 * np.sin(8.0 * time)
+    content = "\n".join(f"{t:.2f} {a:.6f}" for t, a in zip(time, acceleration, strict=True)).encode()
+    files = [{"name": "made.txt", "content": base64.b64encode(content).decode()}]
+    told = client.post("/api/records", json={"files": files, "units": "g"}).json()
+    assert told["samples"] == len(time)
+    assert told["peaks"]["x"] == pytest.approx(9.80665 * np.abs(acceleration).max(), rel=1e-5)
+    column = {"shape": "solid", "radius": 0.3, "height": 3.0, "density": 2700.0}
+    motion = {"kind": "record", "upload": told["upload"], "scale": 1.5}
+    run = client.post(
+        "/api/simulate", json={"column": column, "motion": motion, "model": {"kind": "wobbling", "damping": 0.05}}
+    ).json()
+    assert run["measures"]["largest_tilt"] > 0.0
+    assert "read_record('made.txt', units='g').scaled(1.5)" in run["python"]
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "units", "reason"),
+    [
+        ("quake.AT2", b"rubbish\r\n", None, "quake.AT2, line 1: not a number: 'rubbish'"),
+        ("quake.txt", b"0.00 0.1\n0.01 nan\n0.02 0.1\n", "g", "line 2"),
+        ("quake.txt", b"0.00 0.1\n0.01 0.2\n0.02 0.1\n", None, "unit"),
+        ("../quake.txt", b"0 0\n", "g", "without a folder"),
+        ("quake.txt", b"", "g", "quake.txt"),
+    ],
+)
+def test_a_broken_record_is_refused_with_one_line(client, name, content, units, reason):
+    files = [{"name": name, "content": base64.b64encode(content).decode()}]
+    answer = client.post("/api/records", json={"files": files, "units": units})
+    assert answer.status_code == 422
+    (problem,) = answer.json()["problems"]
+    assert reason in problem
+    assert "/tmp" not in problem  # noqa: S108  no folder of this machine is told
+
+
+def test_each_mistake_is_told_on_a_line_as_on_the_command_line(client):
+    values = {"column": {"shape": "solid", "radius": -1.0, "height": 3.0, "density": 2700.0}, "duration": -2.0}
+    answer = client.post("/api/simulate", json=values)
+    assert answer.status_code == 422
+    assert sorted(answer.json()["problems"]) == [
+        "column: radius must be positive, got -1.0 m",
+        "duration must be positive, got -2.0 s",
+    ]

@@ -1,0 +1,157 @@
+"""Long work in the background: what comes of it, and that it goes away."""
+
+import time
+
+import httpx
+import numpy as np
+import pytest
+from tests.lab.conftest import laboratory
+
+import stylobate as sb
+from stylobate.lab import Limits
+from stylobate.lab.refining import Refining
+
+CIRCLE = {
+    "column": {"shape": "dimensionless", "slenderness": 0.1},
+    "model": {"kind": "slender", "damping": 0.1},
+    "motion": {"kind": "circular", "acceleration": 0.065, "angular_frequency": 1.8},
+}
+PLANE = {
+    "x": {"name": "angular_frequency", "from": 0.5, "to": 4.0, "number": 12},
+    "y": {"name": "acceleration", "from": 0.05, "to": 0.4, "number": 9},
+}
+ENDLESS = {**CIRCLE, "duration": 3000.0, "tilt": [0.03, 0.0], "map": {p: {**PLANE[p], "number": 150} for p in "xy"}}
+
+
+def begun(client, kind, description):
+    answer = client.post("/api/jobs", json={"kind": kind, "description": description})
+    assert answer.status_code == 202, answer.text
+    return answer.json()["id"]
+
+
+def followed(client, identity, until=("done", "failed", "cancelled")):
+    """Return the job when it has come to one of these states, with all its events."""
+    events, after = [], 0
+    while True:
+        job = client.get(f"/api/jobs/{identity}", params={"after": after}).json()
+        events += job["events"]
+        after = job["next"]
+        if job["state"] in until:
+            return {**job, "events": events}
+        time.sleep(0.05)
+
+
+def test_a_map_fills_in_and_is_that_of_the_library(client):
+    job = followed(client, begun(client, "map", {**CIRCLE, "duration": 40.0, "map": PLANE}))
+    assert (job["state"], job["done"], job["total"]) == ("done", 108, 108)
+    first, *parts = job["events"]
+    assert first["axes"]["x"]["units"] == "rad s-1"
+    strides = [part["stride"] for part in parts]
+    assert strides == sorted(strides, reverse=True)  # from coarse to fine
+    cells = {(i, j): code for part in parts for i, j, code in part["cells"]}
+    model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
+    over = {"angular_frequency": np.linspace(0.5, 4.0, 12), "acceleration": np.linspace(0.05, 0.4, 9)}
+    found = sb.studies.overturning_map(model, motion, over=over, duration=40.0)["outcome"].values
+    assert cells == {(i, j): int(found[i, j]) for i in range(12) for j in range(9)}
+
+
+def test_a_refined_sweep_is_the_plain_one():
+    model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    over = {"tilt_x": np.linspace(-0.12, 0.12, 11), "tilt_y": np.linspace(-0.12, 0.12, 7)}
+    seen = []
+    executor = Refining(lambda stride, places, outcomes: seen.extend(map(tuple, places)))
+    refined = sb.studies.overturning_map(model, None, over=over, duration=30.0, executor=executor)
+    plain = sb.studies.overturning_map(model, None, over=over, duration=30.0)
+    assert refined.equals(plain)
+    assert sorted(seen) == [(i, j) for i in range(11) for j in range(7)]  # each once
+    assert all(i % 8 == j % 8 == 0 for i, j in seen[:2])
+
+
+def test_basins_tell_their_attractors(client):
+    starts = {name: {"name": f"tilt_{name}", "from": -0.12, "to": 0.12, "number": 9} for name in "xy"}
+    job = followed(client, begun(client, "basin", {**CIRCLE, "duration": 300.0, "basin": starts}))
+    assert job["state"] == "done", job["problems"]
+    names = {one["name"] for one in job["result"]["attractors"]}
+    assert {"at rest", "overturned"} <= names
+    assert len(job["result"]["codes"]) == len(job["result"]["codes"][0]) == 9
+
+
+def test_exact_orbits_are_told_with_their_bifurcations(client):
+    job = followed(client, begun(client, "exact", {**CIRCLE, "angular_frequency_range": [1.2, 2.0]}))
+    assert job["state"] == "done", job["problems"]
+    (found,) = job["result"]["bifurcations"]
+    assert found["angular_frequency"] == pytest.approx(sb.theory.critical_frequency(0.065, c=0.1, eta=0.1), abs=1e-6)
+
+
+def test_a_moving_picture_can_be_fetched(client):
+    identity = begun(client, "animation", {**CIRCLE, "tilt": [0.05, 0.0], "duration": 1.0})
+    assert followed(client, identity)["state"] == "done"
+    answer = client.get(f"/api/jobs/{identity}/file")
+    assert answer.headers["content-type"] == "image/gif"
+    assert answer.content.startswith(b"GIF89a")
+
+
+def test_a_mistake_is_told_before_the_job_begins(client):
+    answer = client.post("/api/jobs", json={"kind": "map", "description": {**CIRCLE, "duration": 5.0}})
+    assert answer.status_code == 422
+    assert answer.json()["problems"] == ["map is missing"]
+
+
+def test_what_the_study_refuses_is_told_by_the_job(client):
+    plane = {"x": {"name": "nonsense", "from": 0.0, "to": 1.0, "number": 2}, "y": PLANE["y"]}
+    job = followed(client, begun(client, "map", {**CIRCLE, "duration": 5.0, "map": plane}))
+    assert job["state"] == "failed"
+    assert any("nonsense" in line for line in job["problems"])
+
+
+def test_a_cancelled_job_ends_and_leaves_room_for_the_next(client):
+    for _ in range(3):  # more than run at once
+        identity = begun(client, "map", ENDLESS)
+        followed(client, identity, until=("running",))
+        assert client.delete(f"/api/jobs/{identity}").json()["state"] == "cancelled"
+    job = followed(client, begun(client, "map", {**CIRCLE, "duration": 5.0, "map": PLANE}))
+    assert job["state"] == "done"
+
+
+def test_a_single_run_does_not_wait_for_long_work():
+    limits = Limits(jobs=2, waiting=1)
+    with laboratory(limits) as address, httpx.Client(base_url=address, timeout=120.0) as client:
+        values = {**CIRCLE, "tilt": [0.03, 0.0], "duration": 5.0}
+        client.post("/api/simulate", json=values)
+        jobs = [begun(client, "map", ENDLESS) for _ in range(2)]
+        for job in jobs:
+            followed(client, job, until=("running",))
+        begun(client, "map", ENDLESS)
+        too_many = client.post("/api/jobs", json={"kind": "map", "description": ENDLESS})
+        assert too_many.status_code == 429
+        assert client.post("/api/simulate", json=values).status_code == 200
+        assert client.get("/api/about").status_code == 200
+        states = [client.get(f"/api/jobs/{job}").json()["state"] for job in jobs]
+        assert states == ["running", "running"]  # it did not wait until they were done
+
+
+def test_a_job_that_nobody_asks_for_is_dropped():
+    with laboratory(Limits(abandoned=0.5)) as address, httpx.Client(base_url=address, timeout=120.0) as client:
+        identity = begun(client, "map", ENDLESS)
+        time.sleep(1.5)
+        assert client.get(f"/api/jobs/{identity}").status_code == 404
+
+
+def test_a_run_beyond_its_time_is_given_up_and_the_next_is_not():
+    with laboratory(Limits(run_time=1.0)) as address, httpx.Client(base_url=address, timeout=120.0) as client:
+        slow = {**CIRCLE, "model": {"kind": "slender_rolling", "damping": 0.1}, "tilt": [0.02, 0.0], "duration": 3000.0}
+        answer = client.post("/api/simulate", json=slow)
+        assert answer.status_code == 503
+        assert "given up after 1 s" in answer.json()["problems"][0]
+        assert client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 200
+
+
+def test_runs_that_nobody_waits_for_are_ended():
+    limits = Limits(runs=1, run_time=300.0, wait=20.0)
+    with laboratory(limits) as address, httpx.Client(base_url=address, timeout=120.0) as client:
+        client.post("/api/simulate", json={**CIRCLE, "duration": 1.0})
+        slow = {**CIRCLE, "model": {"kind": "slender_rolling", "damping": 0.1}, "tilt": [0.02, 0.0], "duration": 3000.0}
+        with pytest.raises(httpx.ReadTimeout):
+            client.post("/api/simulate", json=slow, timeout=1.0)
+        assert client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 200

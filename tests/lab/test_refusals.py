@@ -1,0 +1,193 @@
+"""Nothing that is sent to the laboratory breaks it: refusals have a line, and never a traceback."""
+
+import json
+
+import httpx
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from tests.lab.conftest import laboratory
+
+from stylobate.lab import Limits
+
+SMALL = Limits(body=4000, cells=100, points=200, duration=50.0, run_time=10.0)
+
+
+@pytest.fixture(scope="module")
+def client():
+    with laboratory(SMALL) as address, httpx.Client(base_url=address, timeout=120.0) as found:
+        yield found
+
+
+def problems_of(answer):
+    assert answer.headers["content-type"] == "application/json"
+    return answer.json()["problems"]
+
+
+@pytest.mark.parametrize("host", ["evil.example", "127.0.0.1:1", "localhost.evil.example", ""])
+def test_a_foreign_host_is_refused(client, host):
+    answer = client.get("/api/about", headers={"host": host})
+    assert answer.status_code in (400, 403)  # an empty Host is none of HTTP
+
+
+@pytest.mark.parametrize("origin", ["http://evil.example", "null", "https://127.0.0.1", "http://127.0.0.1:1"])
+def test_a_foreign_origin_is_refused(client, origin):
+    answer = client.post("/api/simulate", json={}, headers={"origin": origin})
+    assert answer.status_code == 403
+
+
+def test_its_own_origin_is_welcome(client):
+    answer = client.get("/api/about", headers={"origin": str(client.base_url).rstrip("/")})
+    assert answer.status_code == 200
+
+
+def test_a_request_from_another_site_is_refused(client):
+    assert client.get("/api/about", headers={"sec-fetch-site": "cross-site"}).status_code == 403
+
+
+def test_every_answer_allows_nothing_from_elsewhere(client):
+    for path in ("/", "/api/about", "/nowhere"):
+        headers = client.get(path).headers
+        policy = headers["content-security-policy"]
+        assert "default-src 'none'" in policy
+        assert "unsafe" not in policy
+        assert "http" not in policy
+        assert headers["x-content-type-options"] == "nosniff"
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/../../etc/passwd",
+        "/%2e%2e/%2e%2e/etc/passwd",
+        "/..%2f..%2fetc%2fpasswd",
+        "/page/index.html",
+        "/main.js/../../app.py",
+        "/app.py",
+        "/presets.toml",
+        "//etc/passwd",
+        "/api/jobs/..%2f..%2fetc%2fpasswd",
+        "/api/jobs/none/file",
+    ],
+)
+def test_only_the_files_of_the_page_are_served(client, path):
+    request = client.build_request("GET", "/")
+    request.url = request.url.copy_with(raw_path=path.encode())
+    answer = client.send(request)
+    assert answer.status_code == 404
+    assert "root:" not in answer.text
+
+
+@pytest.mark.parametrize(
+    ("content", "kind", "status"),
+    [
+        (b"{", "application/json", 400),
+        (b"", "application/json", 400),
+        (b"\xff\xfe", "application/json", 400),
+        (b"[" * 3000, "application/json", 400),
+        (b'{"duration": NaN}', "application/json", 400),
+        (b"[]", "application/json", 422),
+        (b'"text"', "application/json", 422),
+        (b"{}", "text/plain", 415),
+        (b"a=1", "application/x-www-form-urlencoded", 415),
+        (b'{"a":"' + b"x" * 5000 + b'"}', "application/json", 413),
+        (b'{"duration": ' + b"9" * 3000 + b"}", "application/json", 422),
+        (b'{"duration": 1e999}', "application/json", 422),
+    ],
+)
+@pytest.mark.parametrize("path", ["/api/simulate", "/api/response", "/api/describe", "/api/jobs", "/api/records"])
+def test_malformed_bodies_are_refused(client, path, content, kind, status):
+    if path == "/api/records" and status == 413:
+        pytest.skip("records may be larger")
+    answer = client.post(path, content=content, headers={"content-type": kind})
+    assert answer.status_code in {status, 400, 422} if len(content) == 3014 else answer.status_code == status
+    assert all("Traceback" not in line for line in problems_of(answer))
+
+
+def test_a_body_of_untold_length_is_cut_at_the_limit(client):
+    def endless():
+        for _ in range(100):
+            yield b"x" * 1000
+
+    answer = client.post("/api/simulate", content=endless(), headers={"content-type": "application/json"})
+    assert answer.status_code == 413
+
+
+def test_another_method_is_refused(client):
+    for method in ("PUT", "DELETE", "PATCH", "GET"):
+        answer = client.request(method, "/api/simulate")
+        assert answer.status_code == 405
+        assert problems_of(answer)
+
+
+@pytest.mark.parametrize("name", ["path", "file_sha256"])
+@pytest.mark.parametrize("wrap", [lambda m: m, lambda m: {"kind": "sum", "motions": [m]}])
+def test_no_file_of_this_machine_is_read(client, name, wrap):
+    motion = wrap({"kind": "record", name: "/etc/passwd"})
+    values = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "motion": motion, "duration": 5.0}
+    (problem,) = problems_of(client.post("/api/simulate", json=values))
+    assert "upload the record" in problem
+
+
+def test_an_upload_that_is_not_here_is_told(client):
+    motion = {"kind": "record", "upload": "0" * 64}
+    values = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "motion": motion, "duration": 5.0}
+    (problem,) = problems_of(client.post("/api/simulate", json=values))
+    assert "upload its files again" in problem
+
+
+@pytest.mark.parametrize(
+    "plane",
+    [
+        {"map": {"x": {"name": "acceleration", "from": 0.1, "to": 0.2, "number": 11}, "y": {"values": [0.0] * 10}}},
+        {"basin": {"random": 101, "over": {"tilt_x": [0.0, 0.1]}}},
+    ],
+)
+def test_a_map_beyond_the_limit_is_refused(client, plane):
+    values = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "duration": 5.0, **plane}
+    kind = next(iter(plane))
+    (problem, *_) = problems_of(client.post("/api/jobs", json={"kind": kind, "description": values}))
+    assert "100 runs" in problem
+
+
+values_of_json = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(max_size=8),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=6), inner, max_size=3),
+    max_leaves=6,
+)
+NAMES = st.sampled_from(
+    ["column", "model", "motion", "tilt", "tilt_rate", "duration", "rules", "samples", "map", "basin", "spin", "rtol"]
+)
+PARTS = st.sampled_from(
+    [
+        {"shape": "dimensionless", "slenderness": 0.1},
+        {"shape": "solid", "radius": 0.1, "height": 1e300, "density": 1.0},
+        {"kind": "slender", "damping": 0.1},
+        {"kind": "sliding"},
+        {"kind": "record", "sample": "el centro 1940", "tail": 1e12},
+        {"kind": "record", "sample": 3},
+        {"kind": "circular", "acceleration": 1e-300, "angular_frequency": 1e300},
+        {"kind": "sum", "motions": [{"kind": "rest"}]},
+        [0.01, 0.0],
+        1e-3,
+        "1",
+    ]
+)
+bodies = st.dictionaries(NAMES, values_of_json | PARTS, max_size=6)
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    body=bodies,
+    path=st.sampled_from(["/api/simulate", "/api/describe", "/api/response", "/api/records", "map", "basin", "exact"]),
+)
+def test_no_values_break_it(client, body, path):
+    if not path.startswith("/"):
+        path, body = "/api/jobs", {"kind": path, "description": body}
+    content = json.dumps(body).replace("Infinity", "1e999")
+    answer = client.post(path, content=content, headers={"content-type": "application/json"})
+    assert answer.status_code in (200, 202, 400, 413, 422, 429, 503)
+    if answer.status_code >= 400:
+        assert problems_of(answer)
+        assert all(line and "\n" not in line and "Traceback" not in line for line in problems_of(answer))
+    assert client.get("/api/about").status_code == 200
