@@ -49,7 +49,7 @@ def as_python(description: SimulationDescription) -> str:
     lines.append(f"model = sb.{class_name}({_joined(['column', _keywords(numbers)])})")
     moved = description.motion.kind != "rest"
     if moved:
-        lines.append(f"motion = {_motion(description.motion.model_dump(exclude_defaults=True, exclude_none=True))}")
+        lines.append(f"motion = {_motion(description.motion)}")
     lines += _run(description, moved=moved)
     return "\n".join([*lines, 'print(run.outcome.name, "-", run.reason)', ""])
 
@@ -65,25 +65,27 @@ def _run(description: SimulationDescription, *, moved: bool) -> Iterable[str]:
     return [f"run = sb.simulate({_joined(given)})"]
 
 
-def _motion(values: Mapping[str, Any]) -> str:
-    """Return the Python of a motion with these plain values."""
-    kind, numbers = str(values.get("kind", "record")), {name: value for name, value in values.items() if name != "kind"}
+def _motion(motion: Any) -> str:
+    """Return the Python of a described motion."""
+    kind = str(motion.kind)
+    numbers = motion.model_dump(exclude={"kind", "motion", "motions"}, exclude_defaults=True, exclude_none=True)
     if kind == "record":
-        return _record(numbers)
+        return _record(motion, numbers)
     if kind in _CHANGES:
-        return f"{_motion(numbers.pop('motion'))}.{kind}({_changes(kind, numbers)})"
-    if kind in ("sum", "one_of"):
-        members = ", ".join(_motion(member) for member in numbers.pop("motions"))
-        return f"sb.{_CONTAINERS[kind]}({_joined([f'motions=({members},)', _keywords(numbers)])})"
+        change = [repr(numbers.pop(_CHANGES[kind])), _keywords(numbers)]
+        return f"{_motion(motion.motion)}.{kind}({_joined(change)})"
+    if kind in _CONTAINERS:
+        members = ", ".join(_motion(member) for member in motion.motions)
+        return f"{_CONTAINERS[kind]}({_joined([f'motions=({members},)', _keywords(numbers)])})"
     maker = _MAKERS.get(kind, f"sb.Pulse.{kind}")
     return f"{maker}({_keywords(numbers)})"
 
 
-def _record(numbers: dict[str, Any]) -> str:
+def _record(motion: Any, numbers: Mapping[str, Any]) -> str:
     plain = {"sample", "path", "units", "step", "scale", "rotation", "tail", "directions"}
     several = not isinstance(numbers.get("path", ""), str)
     if set(numbers) - plain or ("directions" in numbers and not several):
-        return f"sb.spec.RecordMotion.parse({numbers!r}).build()"
+        return f"sb.spec.RecordMotion.parse({motion.values()!r}).build()"
     if "sample" in numbers:
         made = f"sb.sample_record({numbers['sample']!r})"
     else:
@@ -94,10 +96,6 @@ def _record(numbers: dict[str, Any]) -> str:
     for name, method in (("scale", "scaled"), ("rotation", "rotated"), ("tail", "with_tail")):
         made += f".{method}({numbers[name]!r})" if name in numbers else ""
     return made
-
-
-def _changes(kind: str, numbers: dict[str, Any]) -> str:
-    return _joined([repr(numbers.pop(_CHANGES[kind])), _keywords(numbers)])
 
 
 def _keywords(values: Mapping[str, Any]) -> str:
@@ -125,4 +123,4 @@ _MAKERS = {kind: f"sb.Harmonic.{kind}" for kind in _HARMONICS} | {
 """What makes the motions of each kind but for pulses, whose kinds are methods of `Pulse`."""
 
 _CHANGES = {"scaled": "factor", "rotated": "angle", "delayed": "delay"}
-_CONTAINERS = {"sum": "motions.Sum", "one_of": "OneOf"}
+_CONTAINERS = {"sum": "sb.motions.Sum", "one_of": "sb.OneOf"}

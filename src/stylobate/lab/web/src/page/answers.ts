@@ -138,4 +138,3 @@ export interface Received {
   readonly peaks: Readonly<Record<string, number>>;
   readonly provenance: readonly string[];
 }
-

@@ -27,7 +27,8 @@ export const simulate = (description: Part, signal: AbortSignal): Promise<Answer
 export const response = (description: Part, signal: AbortSignal): Promise<ResponseCurves> =>
   call<ResponseCurves>("POST", "/api/response", description, signal);
 
-export const describe = (description: Part): Promise<Described> => call<Described>("POST", "/api/describe", description);
+export const describe = (description: Part): Promise<Described> =>
+  call<Described>("POST", "/api/describe", description);
 
 export const sendRecord = (upload: Part): Promise<Received> => call<Received>("POST", "/api/records", upload);
 

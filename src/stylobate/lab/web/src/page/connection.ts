@@ -1,9 +1,10 @@
-/** Whether the server answers; while it does not, it is asked every two seconds. */
+/** Whether the server answers: asked now and then, and every two seconds while it does not. */
 
-import { about } from "./api";
+import { about, Unreachable } from "./api";
 import { element } from "./dom";
 
-const PAUSE = 2000; // ms
+/** Between two questions [ms]: while it does not answer, and while all is well. */
+const [PAUSE, WATCH] = [2000, 4000];
 
 export class Connection {
   readonly root = element("div", { class: "banner", role: "alert", hidden: true });
@@ -12,11 +13,12 @@ export class Connection {
 
   constructor(back: () => void) {
     this.#back = back;
-    this.root.append("The server does not answer. Start it again with ", element("code", {}, "stylobate lab"), "; the page goes on by itself.");
-  }
-
-  get lost(): boolean {
-    return this.#lost;
+    this.root.append(
+      "The server does not answer. Start it again with ",
+      element("code", {}, "stylobate lab"),
+      "; the page goes on by itself.",
+    );
+    setInterval(() => void this.#watch(), WATCH);
   }
 
   /** Says that the server does not answer, and asks until it does. */
@@ -25,6 +27,16 @@ export class Connection {
     this.#lost = true;
     this.root.hidden = false;
     void this.#ask();
+  }
+
+  /** A page at which nobody pulls asks nothing else, and should tell all the same. */
+  async #watch(): Promise<void> {
+    if (this.#lost || document.hidden) return;
+    try {
+      await about();
+    } catch (error) {
+      if (error instanceof Unreachable) this.lose();
+    }
   }
 
   async #ask(): Promise<void> {

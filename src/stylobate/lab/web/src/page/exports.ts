@@ -9,6 +9,8 @@ import { Job, problemsIn } from "./job";
 import { TextDialog } from "./text-dialog";
 
 export interface Exported {
+  /** The stage of which pictures are taken. */
+  readonly stage: Stage | null;
   /** The description as it is sent. */
   readonly description: () => Part;
   /** The description in the languages of the package. */
@@ -17,8 +19,6 @@ export interface Exported {
 
 export class ExportMenu {
   readonly root: HTMLElement;
-  /** The stage of which pictures are taken. */
-  stage: Stage | null = null;
   readonly #exported: Exported;
   readonly #dialog = new TextDialog();
   readonly #note = element("span", { class: "export-note", "aria-live": "polite" });
@@ -36,7 +36,12 @@ export class ExportMenu {
       this.#item("TOML for the command line…", () => void this.#text("toml")),
       this.#item("Link to this view…", () => this.#link()),
     ];
-    this.#menu = element("details", { class: "menu" }, element("summary", { class: "button" }, "Export"), element("div", { class: "menu-items" }, ...items));
+    this.#menu = element(
+      "details",
+      { class: "menu" },
+      element("summary", { class: "button" }, "Export"),
+      element("div", { class: "menu-items" }, ...items),
+    );
     this.#menu.addEventListener("keydown", (event) => {
       if (event.key === "Escape") this.#close();
     });
@@ -61,7 +66,7 @@ export class ExportMenu {
 
   async #picture(): Promise<void> {
     try {
-      if (this.stage !== null) download(await this.stage.png(), "stylobate.png");
+      if (this.#exported.stage !== null) download(await this.#exported.stage.png(), "stylobate.png");
     } catch (error) {
       this.#tell(error instanceof Error ? error.message : String(error));
     }
@@ -110,7 +115,8 @@ export class ExportMenu {
       const described = await this.#exported.described();
       this.#tell("");
       if (language === "python") this.#dialog.show("The same run in Python", described.python, "run.py");
-      else this.#dialog.show("The same run for the command line: stylobate simulate run.toml", described.toml, "run.toml");
+      else
+        this.#dialog.show("The same run for the command line: stylobate simulate run.toml", described.toml, "run.toml");
     } catch (error) {
       this.#tell(error instanceof Error ? error.message : String(error));
     }

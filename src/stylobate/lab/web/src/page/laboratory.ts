@@ -1,65 +1,59 @@
 /** The page at work: what is asked of the server when the view changes, and where its answers go. */
 
-import { Clock, Stage } from "../viewer/index";
-import type { About, Preset } from "./about";
+import type { Clock, Stage, Theme } from "../viewer/index";
+import type { About } from "./about";
 import { Address } from "./address";
-import type { Answer, Described, JobReport, ResponseCurves } from "./answers";
-import { describe, Refused, response, simulate, Unreachable } from "./api";
-import { Histories } from "./charts/histories";
-import { OrbitChart } from "./charts/orbit";
-import { ResponsePanel } from "./charts/response-panel";
-import { Connection } from "./connection";
+import type { Answer, Described } from "./answers";
+import { describe, Refused, simulate, Unreachable } from "./api";
+import type { ResponsePanel } from "./charts/response-panel";
+import type { Connection } from "./connection";
 import { Controls } from "./controls/controls";
-import type { Description, Part } from "./description";
+import type { Description } from "./description";
 import { written } from "./description";
 import { element } from "./dom";
 import { ExportMenu } from "./exports";
-import { angularFrequency, withAngularFrequency } from "./frequency";
 import { Job, problemsIn } from "./job";
+import { listenToKeys } from "./keys";
 import { Latest } from "./latest";
-import { BrokenLink, toldOf, viewFrom } from "./link";
+import { toldOf } from "./link";
+import { MotionView } from "./motion-view";
 import { paceOf } from "./pace";
-import { PlanePanel } from "./plane/plane-panel";
+import type { PlanePanel } from "./plane/plane-panel";
+import { PlanesAsking } from "./plane/planes-asking";
 import type { PlaneKind } from "./planes";
-import { belongs, defaultPlane, keyOf, quantitiesOf } from "./planes";
 import { namesIn, Problems } from "./problems";
 import type { ColumnScales } from "./quantities";
-import { valueOf, withValue } from "./quantities";
-import { exactRequest, isSlender, planeRequest, responseRequest, sent, usualRange } from "./requests";
-import type { Plane, Tab, View } from "./state";
-import { Store, viewOf } from "./state";
+import { sent } from "./requests";
+import { type JobStart, ResponseAsking } from "./response-asking";
+import type { Tab, View } from "./state";
+import { Store } from "./state";
 import { Tabs } from "./tabs";
-import { ThemeSwitch } from "./theme";
-import { Transport } from "./transport";
-import { Verdict } from "./verdict";
+import type { ThemeSwitch } from "./theme";
+import { firstView, viewOfLink, viewOfPreset } from "./views";
 
-const PLANES = ["map", "basin"] as const;
+/** Before the first answer: the column of the equations. */
+const ANY_COLUMN: ColumnScales = { slenderness: 0.1, frequency_scale: 1 };
 
 export class Laboratory {
-  readonly clock = new Clock();
-  readonly stage: Stage | null;
   readonly #about: About;
   readonly #store: Store;
   readonly #address = new Address();
-  readonly #problems = new Problems();
-  readonly #verdict = new Verdict();
   readonly #connection: Connection;
+  readonly #problems = new Problems();
   readonly #controls: Controls;
-  readonly #transport: Transport;
-  readonly #histories: Histories;
-  readonly #orbit = new OrbitChart();
-  readonly #response: ResponsePanel;
-  readonly #planes: Readonly<Record<PlaneKind, PlanePanel>>;
+  readonly #motion: MotionView;
+  readonly #response: ResponseAsking;
+  readonly #planes: PlanesAsking;
   readonly #tabs: Tabs<Tab>;
   readonly #planesHost = element("div", { class: "planes" });
-  readonly #stageHost = element("div", { class: "stage" });
   readonly #runs: Latest<Description, Answer>;
-  readonly #curves: Latest<Part, ResponseCurves>;
+  #scales = ANY_COLUMN;
   #answer: Answer | null = null;
-  /** Of which case the answer is. */
+  /** Of which case the answer is, and which was asked for last. */
   #shown = "";
-  #scales: ColumnScales = { slenderness: 0.1, frequency_scale: 1 };
-  #asked = { run: "", curves: "", exact: "" };
+  #asked = "";
+  /** What was wrong with the link that was followed, until the reader goes on from there. */
+  #linkProblem: readonly string[] = [];
   /** Whether the view comes from the address: then the map that it had is computed again. */
   #linked = true;
   /** Whether the motion that is due is another case, to be seen from its beginning. */
@@ -70,45 +64,39 @@ export class Laboratory {
     this.#connection = connection;
     const [view, problem] = viewOfLink(location.hash, about);
     this.#store = new Store(view);
+    const edited = (changes: Partial<View>): void => this.#edit(changes);
+    const jumped = (changes: Partial<View>): void => this.#jump(changes);
+    const start: JobStart = (kind, body, report, ended) => this.#job(kind, body, report, ended);
     this.#controls = new Controls(about, view.description, this.#problems.root, {
-      edited: (description) => this.#edit({ description }),
-      jumped: (description) => this.#jump({ description, filled: false }),
-      preset: (preset) => this.#jump(viewOfPreset(preset)),
+      edited: (description) => edited({ description }),
+      jumped: (description) => jumped({ description, filled: false }),
+      preset: (preset) => jumped(viewOfPreset(preset)),
     });
-    this.#transport = new Transport(this.clock, (speed) => this.#edit({ speed }));
-    this.#histories = new Histories((time) => this.clock.seek(time));
-    this.#response = new ResponsePanel({
-      frequency: (value) => this.#setFrequency(value),
-      range: (range) => this.#edit({ range }),
-      exact: (report, ended) => this.#job("exact", this.#exactRequest() ?? {}, report, ended),
-    });
-    this.#planes = { map: this.#planePanel("map"), basin: this.#planePanel("basin") };
-    this.#tabs = new Tabs<Tab>(
-      "Planes",
-      [
-        { name: "orbit", title: "Orbit of the tilt", panel: this.#orbit.root },
-        { name: "map", title: "Overturning map", panel: this.#planes.map.root },
-        { name: "basin", title: "Basin", panel: this.#planes.basin.root },
-      ],
-      (tab) => this.#edit({ tab, filled: tab !== "orbit" && this.#planes[tab].axes !== null }),
-    );
-    const menu = new ExportMenu({ description: () => sent(this.view.description), described: () => this.#described() });
-    this.stage = this.#newStage(theme);
-    menu.stage = this.stage;
-    header.append(menu.root, theme.root);
-    this.#layOut(host);
+    this.#motion = new MotionView(theme.theme, (speed) => edited({ speed }));
+    this.#response = new ResponseAsking(view, this.#scales, { edited, start, lost: () => this.#lose() });
+    this.#planes = new PlanesAsking(about, view, this.#scales, { edited, jumped, start });
+    this.#tabs = this.#newTabs();
     this.#runs = new Latest((description, signal) => simulate(sent(description), signal), {
       answered: (answer, description) => this.#take(answer, written(description)),
       failed: (error) => this.#fail(error),
-      busy: (busy) => this.#stageHost.classList.toggle("busy", busy),
+      busy: (busy) => this.#motion.setBusy(busy),
     });
-    this.#curves = new Latest(response, {
-      answered: (curves) => this.#takeCurves(curves),
-      failed: (error) => this.#failCurves(error),
-    });
-    this.#listen();
+    header.append(this.#newMenu().root, theme.root);
+    this.#planesHost.append(this.#response.panel.root, this.#tabs.root);
+    host.replaceChildren(this.#motion.root, this.#controls.root, this.#motion.histories, this.#planesHost);
+    this.#store.onChange((now) => this.#show(now));
+    window.addEventListener("popstate", () => this.#goTo(location.hash));
+    listenToKeys(this.clock);
     this.#show(view);
-    if (problem !== null) this.#problems.show([problem]);
+    this.#tellLink(problem);
+  }
+
+  get clock(): Clock {
+    return this.#motion.clock;
+  }
+
+  get stage(): Stage | null {
+    return this.#motion.stage;
   }
 
   get view(): View {
@@ -119,146 +107,132 @@ export class Laboratory {
     return this.#answer;
   }
 
-  /** The panel of a map or basin: for those who test the page. */
-  plane(kind: PlaneKind): PlanePanel {
-    return this.#planes[kind];
-  }
-
   get response(): ResponsePanel {
-    return this.#response;
+    return this.#response.panel;
   }
 
-  /** Returns the case in the languages of the package, whether its run has been answered or not. */
-  async #described(): Promise<Described> {
-    const wanted = written(this.view.description);
-    return this.#answer !== null && this.#shown === wanted ? this.#answer : describe(sent(this.view.description));
+  plane(kind: PlaneKind): PlanePanel {
+    return this.#planes.panels[kind];
   }
 
   /** Asks again for all that is shown: the server has been away. */
   refresh(): void {
-    this.#asked = { run: "", curves: "", exact: "" };
+    this.#asked = "";
+    this.#response.forget();
     this.#show(this.view);
+    this.#planes.refill();
   }
 
-  setTheme(theme: "light" | "dark"): void {
-    this.stage?.setTheme(theme);
-    this.#histories.redraw();
-    this.#orbit.redraw();
-    this.#response.redraw();
-    this.#transport.redraw();
-    for (const kind of PLANES) this.#planes[kind].redraw();
+  setTheme(theme: Theme): void {
+    this.#motion.setTheme(theme);
+    this.#response.panel.redraw();
+    this.#planes.redraw();
   }
 
+  /** Changes the view by hand, a little at a time. */
   #edit(changes: Partial<View>): void {
+    this.#linkProblem = [];
     this.#store.change(changes);
     this.#address.replace(this.view);
   }
 
+  /** Goes to another case; the way back leads here. */
   #jump(changes: Partial<View>): void {
     this.#fresh = true;
-    this.#problems.show([]);
+    this.#tellLink(null);
     this.#address.flush();
     this.#store.change(changes);
     this.#address.push(this.view);
+  }
+
+  /** Goes to where the address points: a link, or a step back. */
+  #goTo(link: string): void {
+    const [view, problem] = viewOfLink(link, this.#about);
+    this.#fresh = true;
+    this.#linked = true;
+    this.#store.change(view);
+    this.#tellLink(problem);
   }
 
   #show(view: View): void {
     this.#controls.show(view.description, this.#scales);
     this.#tabs.show(view.tab);
     this.#planesHost.classList.toggle("mapped", view.tab !== "orbit");
-    this.#askRun(view);
-    this.#askCurves(view);
-    this.#showPlanes(view);
     this.#showSpeed(view);
-    this.#response.showFrequency(angularFrequency(view.description.motion));
+    const jump = this.#fresh;
+    this.#ask(view);
+    this.#response.show(view, this.#scales, jump);
+    this.#planes.show(view, this.#scales);
+    // Where the case is shown already, as after a step back to another tab, there is no answer to wait for.
+    if (this.#shown === written(view.description)) this.#settle();
   }
 
-  #askRun(view: View): void {
+  #ask(view: View): void {
     const wanted = written(view.description);
-    if (wanted === this.#asked.run) return;
-    this.#asked.run = wanted;
+    if (wanted === this.#asked) return;
+    this.#asked = wanted;
     this.#runs.want(view.description, { jump: this.#fresh });
   }
 
-  #range(view: View): readonly [number, number] {
-    return view.range ?? usualRange(this.#scales.frequency_scale, angularFrequency(view.description.motion));
-  }
-
-  #exactRequest(): Part | null {
-    return exactRequest(this.view.description, this.#range(this.view));
-  }
-
-  #askCurves(view: View): void {
-    const range = this.#range(view);
-    this.#response.showRange(range);
-    const exact = exactRequest(view.description, range);
-    const exactWanted = exact === null ? "none" : written(exact);
-    if (exactWanted !== this.#asked.exact) this.#response.forgetExact();
-    this.#asked.exact = exactWanted;
-    this.#response.allowExact(exact !== null);
-    const body = responseRequest(view.description, range);
-    const wanted = body === null ? `none ${range.join()}` : written(body);
-    if (wanted === this.#asked.curves) return;
-    this.#asked.curves = wanted;
-    if (body !== null) this.#curves.want(body, { jump: this.#fresh });
-    else {
-      this.#curves.cancel();
-      this.#response.clear("Response curves need a harmonic base motion in the horizontal.");
-    }
-  }
-
   #showSpeed(view: View): void {
-    const speed = view.speed ?? (this.#answer === null ? 1 : paceOf(view.description.motion, this.#answer));
-    this.clock.speed = speed;
-    this.#transport.showSpeed(speed);
+    const usual = this.#answer === null ? 1 : paceOf(view.description.motion, this.#answer);
+    this.#motion.setSpeed(view.speed ?? usual);
   }
 
   #take(answer: Answer, shown: string): void {
     this.#answer = answer;
     this.#shown = shown;
-    this.#problems.show([]);
+    this.#problems.show(this.#linkProblem);
     this.#controls.setWrong(new Set());
-    this.#stageHost.classList.remove("old");
-    const scaled = answer.column.slenderness !== this.#scales.slenderness || answer.column.frequency_scale !== this.#scales.frequency_scale;
-    this.#scales = answer.column;
-    if (scaled) this.#rescale();
-    this.clock.setRange(0, answer.drawn.time.at(-1) ?? 0);
-    this.stage?.show(answer.drawn);
-    this.#histories.show(answer);
-    this.#orbit.show(answer.drawn);
-    this.#verdict.show(answer);
-    this.#transport.showEvents(answer.events);
+    this.#rescale(answer.column);
+    this.#motion.show(answer);
     this.#showSpeed(this.view);
-    if (this.#fresh) this.#begin();
-    this.#follow();
+    if (this.#fresh) this.#motion.begin();
+    this.#settle();
   }
 
   /** What depends on the column's own tilt and frequency, once they are known. */
-  #rescale(): void {
-    this.#controls.show(this.view.description, this.#scales);
-    this.#askCurves(this.view);
-    this.#showPlanes(this.view);
+  #rescale(found: ColumnScales): void {
+    const before = this.#scales;
+    this.#scales = found;
+    if (found.slenderness === before.slenderness && found.frequency_scale === before.frequency_scale) return;
+    this.#controls.show(this.view.description, found);
+    this.#response.show(this.view, found, this.#fresh);
+    this.#planes.show(this.view, found);
   }
 
-  #begin(): void {
+  /** The case that was due is shown. */
+  #settle(): void {
     this.#fresh = false;
-    this.clock.seek(0);
-    this.clock.autoplay();
-    if (this.#linked && this.view.filled && this.view.tab !== "orbit") this.#fill(this.view.tab);
+    if (!this.#linked) return;
     this.#linked = false;
+    this.#planes.refill();
   }
 
   #fail(error: unknown): void {
     if (error instanceof Unreachable) return this.#lose();
     const lines = error instanceof Refused ? error.problems : [String(error)];
     if (lines.some((line) => line.startsWith("motion.upload"))) void this.#restoreRecord();
+    else if (this.#answer === null && this.#linkProblem.length === 0) this.#replaceLink(lines);
     else this.#tellProblems(lines);
   }
 
   #tellProblems(lines: readonly string[]): void {
     this.#problems.show(lines);
     this.#controls.setWrong(namesIn(lines));
-    this.#stageHost.classList.add("old");
+    this.#motion.setOld(this.#answer !== null);
+  }
+
+  #tellLink(problem: string | null): void {
+    this.#linkProblem = problem === null ? [] : [problem];
+    this.#problems.show(this.#linkProblem);
+  }
+
+  /** A link whose case cannot be run leaves nothing to look at: the first preset is shown, and what was wrong. */
+  #replaceLink(lines: readonly string[]): void {
+    this.#fresh = true;
+    this.#store.change(firstView(this.#about));
+    this.#tellLink(toldOf(lines.join(" ")));
   }
 
   /** The server forgets records when it ends; what was uploaded here is sent once more. */
@@ -270,72 +244,11 @@ export class Laboratory {
   }
 
   #lose(): void {
-    this.#asked = { run: "", curves: "", exact: "" };
+    this.#asked = "";
     this.#connection.lose();
   }
 
-  #takeCurves(curves: ResponseCurves): void {
-    this.#response.show(curves, this.#scales.slenderness, this.#range(this.view), isSlender(this.view.description));
-    this.#response.showFrequency(angularFrequency(this.view.description.motion));
-  }
-
-  #failCurves(error: unknown): void {
-    if (error instanceof Unreachable) return this.#lose();
-    this.#response.tell(error instanceof Error ? error.message : String(error)); // the last good curves stay
-  }
-
-  #setFrequency(frequency: number): void {
-    const { description } = this.view;
-    this.#edit({ description: { ...description, motion: withAngularFrequency(description.motion, frequency) } });
-  }
-
-  #planePanel(kind: PlaneKind): PlanePanel {
-    return new PlanePanel(kind, {
-      axes: (plane) => this.#edit({ [kind]: plane, filled: false }),
-      asked: () => {
-        this.#edit({ filled: true, tab: kind });
-        this.#fill(kind);
-      },
-      cancelled: () => this.#edit({ filled: false }),
-      chosen: ([nameX, x], [nameY, y]) => {
-        const description = withValue(withValue(this.view.description, nameX, x), nameY, y);
-        this.#jump({ description, [kind]: this.#plane(kind, this.view) });
-      },
-    });
-  }
-
-  #plane(kind: PlaneKind, view: View): Plane | null {
-    const quantities = quantitiesOf(kind, view.description, this.#about, this.#scales);
-    const given = view[kind];
-    return given !== null && belongs(given, quantities) ? given : defaultPlane(kind, view.description, quantities);
-  }
-
-  #showPlanes(view: View): void {
-    for (const kind of PLANES) {
-      const plane = this.#plane(kind, view);
-      if (plane === null) continue;
-      const quantities = quantitiesOf(kind, view.description, this.#about, this.#scales);
-      const [x, y] = [valueOf(view.description, plane.x.name), valueOf(view.description, plane.y.name)];
-      const values = x === undefined || y === undefined ? null : ([x, y] as const);
-      this.#planes[kind].show(plane, quantities, view.description, values, keyOf(view.description, plane));
-    }
-  }
-
-  #fill(kind: PlaneKind): void {
-    const plane = this.#plane(kind, this.view);
-    if (plane === null) return;
-    // The axes are kept from now on: those that suit the case would move with the motion that is chosen in them.
-    if (this.view[kind] === null) this.#edit({ [kind]: plane });
-    const body = planeRequest(kind, this.view.description, plane);
-    this.#planes[kind].follow((report, ended) => this.#job(kind, body, report, ended));
-  }
-
-  #job(
-    kind: string,
-    body: Part,
-    report: (report: JobReport) => void,
-    ended: (last: JobReport | null, problems: readonly string[]) => void,
-  ): Job {
+  #job(...[kind, body, report, ended]: Parameters<JobStart>): Job {
     return new Job(kind, body, {
       report,
       ended: (last, error) => {
@@ -345,93 +258,31 @@ export class Laboratory {
     });
   }
 
-  #newStage(theme: ThemeSwitch): Stage | null {
-    try {
-      return new Stage(this.#stageHost, { theme: theme.theme });
-    } catch (error) {
-      const reason = error instanceof Error ? error.message : String(error);
-      this.#stageHost.append(element("p", { class: "no-stage" }, reason));
-      return null; // the curves tell the motion all the same
-    }
+  /** Returns the case in the languages of the package, whether its run has been answered or not. */
+  async #described(): Promise<Described> {
+    const { description } = this.view;
+    if (this.#answer !== null && this.#shown === written(description)) return this.#answer;
+    return describe(sent(description));
   }
 
-  #layOut(host: HTMLElement): void {
-    const show = element("section", { class: "show panel", "aria-label": "Motion" }, this.#stageHost, this.#transport.root, this.#verdict.root);
-    const times = element("div", { class: "times" }, this.#histories.tilt.root, this.#histories.demand.root);
-    this.#planesHost.append(this.#response.root, this.#tabs.root);
-    host.replaceChildren(show, this.#controls.root, times, this.#planesHost);
+  #newMenu(): ExportMenu {
+    return new ExportMenu({
+      stage: this.stage,
+      description: () => sent(this.view.description),
+      described: () => this.#described(),
+    });
   }
 
-  #listen(): void {
-    this.#store.onChange((view) => this.#show(view));
-    this.clock.onTick(() => this.#tick());
-    window.addEventListener("popstate", () => this.#goTo(location.hash));
-    document.addEventListener("keydown", (event) => this.#key(event));
-    setInterval(() => this.#transport.describe(), 1000);
-  }
-
-  /** Goes to where the address points: a link, or a step back. */
-  #goTo(link: string): void {
-    const [view, problem] = viewOfLink(link, this.#about);
-    this.#fresh = true;
-    this.#linked = true;
-    this.#store.change(view);
-    this.#problems.show(problem === null ? [] : [problem]);
-  }
-
-  #tick(): void {
-    const { time, to, playing } = this.clock;
-    if (!playing && to > 0 && time >= to && this.#played && this.#transport.repeats) {
-      this.#played = false;
-      this.clock.play();
-      return;
-    }
-    this.#played = playing;
-    this.#follow();
-  }
-
-  /** Whether the clock ran at its last tick: at the end of a run it stops by itself. */
-  #played = false;
-
-  #follow(): void {
-    const { time } = this.clock;
-    this.stage?.setTime(time);
-    this.#histories.setTime(time);
-    this.#orbit.setTime(time);
-    this.#transport.show();
-  }
-
-  #key(event: KeyboardEvent): void {
-    const { target } = event;
-    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || !(target instanceof HTMLElement)) return;
-    if (document.querySelector("dialog[open]") !== null) return;
-    const written = target.closest("input:not([type=range]), select, textarea, button, summary, a, [role=tab]");
-    if (event.key === " " && written === null) {
-      event.preventDefault();
-      this.clock.toggle();
-    }
-    const direction = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
-    if (direction !== 0 && target === document.body) {
-      event.preventDefault();
-      this.clock.seek(this.clock.time + (direction * this.clock.to) / (event.shiftKey ? 20 : 200));
-    }
-  }
-}
-
-function viewOfPreset(preset: Preset): View {
-  return viewOf(preset.description, preset.view ?? {});
-}
-
-/** Returns the view of a link, or that of the first preset with a line that says what is wrong with the link. */
-function viewOfLink(link: string, about: About): [View, string | null] {
-  const [first] = about.presets;
-  if (first === undefined) throw new Error("the server has no presets");
-  const usual = viewOfPreset(first);
-  if (link === "" || link === "#") return [usual, null];
-  try {
-    return [viewFrom(link, about), null];
-  } catch (error) {
-    if (error instanceof BrokenLink) return [usual, toldOf(error)];
-    throw error;
+  #newTabs(): Tabs<Tab> {
+    const { map, basin } = this.#planes.panels;
+    return new Tabs<Tab>(
+      "Planes",
+      [
+        { name: "orbit", title: "Orbit of the tilt", panel: this.#motion.orbit.root },
+        { name: "map", title: "Overturning map", panel: map.root },
+        { name: "basin", title: "Basin", panel: basin.root },
+      ],
+      (tab) => this.#edit({ tab, filled: tab !== "orbit" && this.plane(tab).current }),
+    );
   }
 }

@@ -187,7 +187,7 @@ function planeRead(what: string, text: string): Value {
   return { x: { ...x }, y: { ...y } };
 }
 
-/** Returns the line that tells of a broken link. */
-export function toldOf(broken: BrokenLink): string {
-  return `This link cannot be read: ${broken.message}. The first preset is shown instead.`;
+/** Returns the line that tells of a link that cannot be followed. */
+export function toldOf(reason: string): string {
+  return `This link cannot be followed: ${reason.replace(/\.$/, "")}. The first preset is shown instead.`;
 }

@@ -55,7 +55,10 @@ function offeredKind(kind: Kind): Kind {
 
 /** Returns what a kind is; units and names that follow stand beside the numbers. */
 function inOneSentence(text: string): string {
-  const [first = ""] = text.replaceAll("`", "").replaceAll(/ \[[^\]]*\]/g, "").split(/; |, by its /);
+  const [first = ""] = text
+    .replaceAll("`", "")
+    .replaceAll(/ \[[^\]]*\]/g, "")
+    .split(/; |, by its /);
   return first === "" || first.endsWith(".") ? first : `${first}.`;
 }
 
@@ -63,7 +66,9 @@ function withFirst(parameter: Parameter, first: Readonly<Record<string, Value>>,
   const value = first[parameter.name] ?? (parameter.needed === true ? OF_ANY[parameter.name] : undefined);
   const units = unit === undefined ? {} : { unit };
   if (value !== undefined) return { ...parameter, ...units, default: value };
-  return parameter.needed === true ? { ...parameter, ...units, default: middle(parameter) } : { ...parameter, ...units };
+  return parameter.needed === true
+    ? { ...parameter, ...units, default: middle(parameter) }
+    : { ...parameter, ...units };
 }
 
 /** Returns a value well within the range. */

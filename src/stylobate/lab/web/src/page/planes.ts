@@ -45,7 +45,8 @@ export function keyOf(description: Description, plane: Plane): string {
     model: without(description.model, ...varied),
     motion: without(description.motion, ...varied),
     tilt: varied.includes("tilt_x") && varied.includes("tilt_y") ? null : (description["tilt"] ?? null),
-    tilt_rate: varied.includes("tilt_rate_x") && varied.includes("tilt_rate_y") ? null : (description["tilt_rate"] ?? null),
+    tilt_rate:
+      varied.includes("tilt_rate_x") && varied.includes("tilt_rate_y") ? null : (description["tilt_rate"] ?? null),
     spin: varied.includes("spin") ? null : (description["spin"] ?? null),
     duration: varied.includes("duration") ? null : (description["duration"] ?? null),
     starts,

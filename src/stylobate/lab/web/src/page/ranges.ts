@@ -28,7 +28,9 @@ export const SPREAD = 5;
 /** Returns the position of `value`, 0 to POSITIONS; what lies beyond an end stands at it. */
 export function positionOf(value: number, scale: Scale): number {
   const { from, to, logarithmic } = scale;
-  const share = logarithmic ? Math.log(Math.max(value, from) / from) / Math.log(to / from) : (value - from) / (to - from);
+  const share = logarithmic
+    ? Math.log(Math.max(value, from) / from) / Math.log(to / from)
+    : (value - from) / (to - from);
   return Math.round(Math.min(Math.max(share, 0), 1) * POSITIONS);
 }
 

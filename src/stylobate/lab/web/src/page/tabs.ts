@@ -20,9 +20,18 @@ export class Tabs<Name extends string> {
       const held = element("div", { id: panelId, role: "tabpanel", "aria-labelledby": id, class: "tab-panel" }, panel);
       return { name, tab, panel: held };
     });
-    const list = element("div", { role: "tablist", class: "tabs", "aria-label": label }, ...this.#tabs.map((one) => one.tab));
+    const list = element(
+      "div",
+      { role: "tablist", class: "tabs", "aria-label": label },
+      ...this.#tabs.map((one) => one.tab),
+    );
     list.addEventListener("keydown", (event) => this.#key(event, chosen));
-    this.root = element("section", { class: "panel chart tabbed", "aria-label": label }, list, ...this.#tabs.map((one) => one.panel));
+    this.root = element(
+      "section",
+      { class: "panel chart tabbed", "aria-label": label },
+      list,
+      ...this.#tabs.map((one) => one.panel),
+    );
   }
 
   show(name: Name): void {

@@ -15,7 +15,15 @@ export class Transport {
   readonly #play: HTMLButtonElement;
   readonly #repeat: HTMLButtonElement;
   readonly #speed: HTMLSelectElement;
-  readonly #line = element("input", { type: "range", min: 0, max: STEPS, step: 1, value: 0, class: "slider", "aria-label": "Time" });
+  readonly #line = element("input", {
+    type: "range",
+    min: 0,
+    max: STEPS,
+    step: 1,
+    value: 0,
+    class: "slider",
+    "aria-label": "Time",
+  });
   readonly #ticks = element("canvas", { class: "ticks", "aria-hidden": "true" });
   readonly #time = element("output", { class: "time" });
   #events: Answer["events"] = [];
@@ -25,9 +33,17 @@ export class Transport {
   constructor(clock: Clock, speedChosen: (speed: number) => void) {
     this.#clock = clock;
     this.#play = button("", { class: "icon", "aria-label": "Play" }, () => clock.toggle());
-    this.#repeat = button("↻", { class: "icon", "aria-label": "Repeat", "aria-pressed": "true", title: "Begin again at the end" }, () => this.#toggleRepeat());
+    this.#repeat = button(
+      "↻",
+      { class: "icon", "aria-label": "Repeat", "aria-pressed": "true", title: "Begin again at the end" },
+      () => this.#toggleRepeat(),
+    );
     const id = newId("speed");
-    this.#speed = choice(SPEEDS.map((speed) => [String(speed), `${speed}×`]), { id, title: "Speed" }, (value) => speedChosen(Number(value)));
+    this.#speed = choice(
+      SPEEDS.map((speed) => [String(speed), `${speed}×`]),
+      { id, title: "Speed" },
+      (value) => speedChosen(Number(value)),
+    );
     const line = element("div", { class: "timeline" }, this.#line, this.#ticks);
     const label = element("label", { for: id, class: "visually-hidden" }, "Speed");
     this.root = element("div", { class: "transport" }, this.#play, this.#repeat, label, this.#speed, line, this.#time);
@@ -70,7 +86,10 @@ export class Transport {
 
   /** Tells those who do not see the line what it stands at: not at every frame. */
   describe(): void {
-    this.#line.setAttribute("aria-valuetext", `${clockTime(this.#clock.time, this.#clock.to)} of ${clockTime(this.#clock.to, this.#clock.to)} s`);
+    this.#line.setAttribute(
+      "aria-valuetext",
+      `${clockTime(this.#clock.time, this.#clock.to)} of ${clockTime(this.#clock.to, this.#clock.to)} s`,
+    );
   }
 
   redraw(): void {

@@ -15,7 +15,9 @@ export class Verdict {
     this.#told = text;
     const badge = element("strong", { class: `badge ${answer.outcome.toLowerCase()}` }, capital(answer.told));
     const reason = element("span", { class: "reason" }, `${sentence(answer.reason)}${at}`);
-    const marks = answer.uncertain ? [element("strong", { class: "badge unsure", title: "A small change could alter the outcome" }, "Uncertain")] : [];
+    const marks = answer.uncertain
+      ? [element("strong", { class: "badge unsure", title: "A small change could alter the outcome" }, "Uncertain")]
+      : [];
     const warnings = answer.warnings.map((line) => element("p", { class: "warning" }, sentence(line)));
     this.root.replaceChildren(element("p", {}, badge, ...marks, " ", reason), ...warnings);
   }

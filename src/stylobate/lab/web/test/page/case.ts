@@ -15,16 +15,28 @@ export const ABOUT: About = {
   version: "0",
   limits: {},
   shapes: [
-    { kind: "dimensionless", name: "dimensionless", parameters: [number("slenderness", 0.1, 0.02, 0.5), number("inertia_ratio", 0.75)] },
+    {
+      kind: "dimensionless",
+      name: "dimensionless",
+      parameters: [number("slenderness", 0.1, 0.02, 0.5), number("inertia_ratio", 0.75)],
+    },
     { kind: "solid", name: "solid", parameters: [number("radius", 0.5), number("height", 5), number("density", 2700)] },
   ],
   models: [
     { kind: "slender", name: "slender", parameters: [number("damping", 0, 0, 0.5)] },
-    { kind: "sliding", name: "sliding", parameters: [number("damping", 0, 0, 0.5), number("friction_coefficient", 0.5, 0.02, 1.2)] },
+    {
+      kind: "sliding",
+      name: "sliding",
+      parameters: [number("damping", 0, 0, 0.5), number("friction_coefficient", 0.5, 0.02, 1.2)],
+    },
   ],
   motions: [
     { kind: "circular", name: "circular", parameters: [number("acceleration", 1), number("angular_frequency", 2)] },
-    { kind: "elliptic", name: "elliptic", parameters: [{ name: "amplitude", default: [1, 0.5] }, number("angular_frequency", 2)] },
+    {
+      kind: "elliptic",
+      name: "elliptic",
+      parameters: [{ name: "amplitude", default: [1, 0.5] }, number("angular_frequency", 2)],
+    },
     { kind: "orbit", name: "orbit", parameters: [number("diameter", 0.01), number("rpm", 200)] },
     { kind: "record", name: "record", parameters: [number("scale", 1, 0.1, 4)] },
     { kind: "sum", name: "sum", parameters: [] },

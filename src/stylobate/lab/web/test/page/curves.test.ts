@@ -4,13 +4,31 @@ import { indexAfter, tiltAt } from "../../src/page/charts/orbit";
 import { continuous, heightOf, linesOf } from "../../src/page/charts/response-lines";
 import type { DrawnMotion } from "../../src/viewer/drawn-motion";
 
-const BRANCH = { sense: "anticlockwise", branch: "upper", amplitude: [0.1, 0.08, 0.06, null], phase: [0, -1, -2, null], stable: [false, false, true, null] };
-const CURVES = { angular_frequency: [1, 2, 3, 4], branches: [BRANCH], backbone: [0.1, 0.1, 0.1, 0.1], critical: [], averaged: false };
+const BRANCH = {
+  sense: "anticlockwise",
+  branch: "upper",
+  amplitude: [0.1, 0.08, 0.06, null],
+  phase: [0, -1, -2, null],
+  stable: [false, false, true, null],
+};
+const CURVES = {
+  angular_frequency: [1, 2, 3, 4],
+  branches: [BRANCH],
+  backbone: [0.1, 0.1, 0.1, 0.1],
+  critical: [],
+  averaged: false,
+};
 
 test("every point of a branch is drawn, and the unstable part joins the stable one", () => {
   const [stable, unstable] = linesOf(CURVES, 0.1);
-  assert.deepEqual(stable!.amplitude.map((value) => value !== null), [false, false, true, false]);
-  assert.deepEqual(unstable!.amplitude.map((value) => value !== null), [true, true, true, false]);
+  assert.deepEqual(
+    stable!.amplitude.map((value) => value !== null),
+    [false, false, true, false],
+  );
+  assert.deepEqual(
+    unstable!.amplitude.map((value) => value !== null),
+    [true, true, true, false],
+  );
 });
 
 test("a phase that passes half a turn goes on", () => {
@@ -25,9 +43,25 @@ test("the axis of amplitudes reaches a little beyond the highest point and never
 });
 
 test("the dot of the orbit stands where the motion is, and at its ends before and after", () => {
-  const motion = { time: [0, 1, 3], tilt: [[0, 0], [1, 2], [3, -2]] } as unknown as DrawnMotion;
-  assert.deepEqual([tiltAt(motion, 0.5), tiltAt(motion, 2), tiltAt(motion, 3), tiltAt(motion, -1), tiltAt(motion, 9)], [
-    ...[[0.5, 1], [2, 0], [3, -2], [0, 0], [3, -2]],
-  ]);
+  const motion = {
+    time: [0, 1, 3],
+    tilt: [
+      [0, 0],
+      [1, 2],
+      [3, -2],
+    ],
+  } as unknown as DrawnMotion;
+  assert.deepEqual(
+    [tiltAt(motion, 0.5), tiltAt(motion, 2), tiltAt(motion, 3), tiltAt(motion, -1), tiltAt(motion, 9)],
+    [
+      ...[
+        [0.5, 1],
+        [2, 0],
+        [3, -2],
+        [0, 0],
+        [3, -2],
+      ],
+    ],
+  );
   assert.deepEqual([indexAfter([0, 1, 3], 1), indexAfter([0, 1, 3], 2.9), indexAfter([], 1)], [2, 2, 0]);
 });

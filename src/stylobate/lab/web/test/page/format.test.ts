@@ -20,5 +20,8 @@ test("axes tell their unit unless there is none", () => {
 });
 
 test("one is not several", () => {
-  assert.deepEqual([counted(1, "run"), counted(2, "run"), counted(0, "family", "families")], ["1 run", "2 runs", "0 families"]);
+  assert.deepEqual(
+    [counted(1, "run"), counted(2, "run"), counted(0, "family", "families")],
+    ["1 run", "2 runs", "0 families"],
+  );
 });

@@ -4,7 +4,12 @@ import { Latest } from "../../src/page/latest";
 
 /** A server whose answers are given by hand. */
 function byHand() {
-  const sent: { wanted: number; answer: (text: string) => void; refuse: (error: Error) => void; signal: AbortSignal }[] = [];
+  const sent: {
+    wanted: number;
+    answer: (text: string) => void;
+    refuse: (error: Error) => void;
+    signal: AbortSignal;
+  }[] = [];
   const heard: string[] = [];
   const latest = new Latest<number, string>(
     (wanted, signal) => new Promise((answer, refuse) => sent.push({ wanted, answer, refuse, signal })),
@@ -18,10 +23,16 @@ const soon = () => new Promise((resolve) => setTimeout(resolve, 0));
 test("while one is asked for, only the newest of the others waits", async () => {
   const { sent, heard, latest } = byHand();
   for (const wanted of [1, 2, 3, 4]) latest.want(wanted);
-  assert.deepEqual(sent.map((one) => one.wanted), [1]);
+  assert.deepEqual(
+    sent.map((one) => one.wanted),
+    [1],
+  );
   sent[0]!.answer("one");
   await soon();
-  assert.deepEqual(sent.map((one) => one.wanted), [1, 4]);
+  assert.deepEqual(
+    sent.map((one) => one.wanted),
+    [1, 4],
+  );
   sent[1]!.answer("four");
   await soon();
   assert.deepEqual(heard, ["one", "four"]);

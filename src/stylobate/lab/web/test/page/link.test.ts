@@ -70,6 +70,9 @@ const BROKEN: readonly (readonly [link: string, told: RegExp])[] = [
 
 for (const [link, told] of BROKEN) {
   test(`the link ${link} is told to be broken`, () => {
-    assert.throws(() => viewFrom(link, ABOUT), (error) => error instanceof BrokenLink && told.test(error.message));
+    assert.throws(
+      () => viewFrom(link, ABOUT),
+      (error) => error instanceof BrokenLink && told.test(error.message),
+    );
   });
 }

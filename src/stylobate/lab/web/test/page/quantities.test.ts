@@ -10,12 +10,15 @@ const CASE = VIEW.description;
 const SCALES = { slenderness: 0.1, frequency_scale: 1 };
 
 test("a quantity that is set reads as it was set, and leaves the others as they were", () => {
-  const names = [...quantitiesOf("map", CASE, ABOUT, SCALES), ...quantitiesOf("basin", CASE, ABOUT, SCALES)].map((one) => one.name);
+  const names = [...quantitiesOf("map", CASE, ABOUT, SCALES), ...quantitiesOf("basin", CASE, ABOUT, SCALES)].map(
+    (one) => one.name,
+  );
   assert.ok(names.length >= 8);
   for (const name of names) {
     const changed = withValue(CASE, name, 0.0123);
     assert.equal(valueOf(changed, name), 0.0123, name);
-    for (const other of names) if (other !== name) assert.equal(valueOf(changed, other), valueOf(CASE, other), `${other} after ${name}`);
+    for (const other of names)
+      if (other !== name) assert.equal(valueOf(changed, other), valueOf(CASE, other), `${other} after ${name}`);
   }
 });
 
@@ -52,7 +55,11 @@ test("a basin's picture does not depend on the start that is shown in it", () =>
   assert.equal(keyOf(other, plane), keyOf(CASE, plane));
 });
 
-for (const motion of [CASE.motion, { kind: "orbit", diameter: 0.012, rpm: 200 }, { kind: "stroke", stroke: 0.1, frequency: 2 }]) {
+for (const motion of [
+  CASE.motion,
+  { kind: "orbit", diameter: 0.012, rpm: 200 },
+  { kind: "stroke", stroke: 0.1, frequency: 2 },
+]) {
   test(`the frequency of a ${motion["kind"]} motion is set in the quantity in which it is given`, () => {
     const found = angularFrequency(withAngularFrequency(motion, 7.5))!;
     assert.ok(Math.abs(found - 7.5) < 1e-4);

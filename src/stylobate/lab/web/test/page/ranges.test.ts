@@ -1,13 +1,31 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { niceAbove, niceBelow, POSITIONS, positionOf, scaleAbout, scaleBetween, ticks, valueAt } from "../../src/page/ranges";
+import {
+  niceAbove,
+  niceBelow,
+  POSITIONS,
+  positionOf,
+  scaleAbout,
+  scaleBetween,
+  ticks,
+  valueAt,
+} from "../../src/page/ranges";
 
-const SCALES = [scaleBetween(0, 0.5), scaleBetween(-0.2, 0.2), scaleBetween(0.001, 20), scaleAbout(157.08, 1), scaleAbout(0, 10)];
+const SCALES = [
+  scaleBetween(0, 0.5),
+  scaleBetween(-0.2, 0.2),
+  scaleBetween(0.001, 20),
+  scaleAbout(157.08, 1),
+  scaleAbout(0, 10),
+];
 
 test("a slider that is put where a value stands gives that value to a step", () => {
   for (const scale of SCALES) {
     for (let position = 0; position <= POSITIONS; position += 1) {
-      assert.ok(Math.abs(positionOf(valueAt(position, scale), scale) - position) <= 1, `${position} of ${JSON.stringify(scale)}`);
+      assert.ok(
+        Math.abs(positionOf(valueAt(position, scale), scale) - position) <= 1,
+        `${position} of ${JSON.stringify(scale)}`,
+      );
     }
   }
 });

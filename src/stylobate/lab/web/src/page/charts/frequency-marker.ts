@@ -15,7 +15,12 @@ export interface Extent {
 }
 
 export class FrequencyMarker {
-  readonly root = element("div", { class: "marker", role: "slider", tabindex: 0, "aria-label": "Angular frequency of the base motion" });
+  readonly root = element("div", {
+    class: "marker",
+    role: "slider",
+    tabindex: 0,
+    "aria-label": "Angular frequency of the base motion",
+  });
   readonly #host: HTMLElement;
   readonly #extent: () => Extent;
   readonly #moved: (frequency: number) => void;

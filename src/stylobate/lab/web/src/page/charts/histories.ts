@@ -41,7 +41,8 @@ export class Histories {
       return;
     }
     const largest = largestOf(demand);
-    const level = coefficient === null ? null : { value: coefficient, told: `friction coefficient ${told(coefficient)}` };
+    const level =
+      coefficient === null ? null : { value: coefficient, told: `friction coefficient ${told(coefficient)}` };
     // Where the column hardly presses, the ratio is huge for an instant; the rest is what is to be seen.
     const usual = Math.max(quantile(demand, 0.99) * 1.2, (coefficient ?? 0) * 1.25);
     this.demand.show(time, demand, level, Math.min(largest, usual) || (coefficient ?? 1), `largest ${told(largest)}`);

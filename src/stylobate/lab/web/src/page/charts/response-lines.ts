@@ -43,7 +43,9 @@ export function continuous(phases: Numbers): Numbers {
 
 /** Returns how high the axis of amplitudes reaches: to the highest point, but not far beyond what can be. */
 export function heightOf(lines: readonly ResponseLine[], others: Numbers = []): number {
-  const known = [...lines.flatMap((line) => line.amplitude), ...others].filter((value): value is number => value !== null);
+  const known = [...lines.flatMap((line) => line.amplitude), ...others].filter(
+    (value): value is number => value !== null,
+  );
   const highest = known.reduce((most, value) => Math.max(most, value), 0);
   return highest > 0 ? Math.min(highest * 1.06, HIGHEST) : 1.1;
 }

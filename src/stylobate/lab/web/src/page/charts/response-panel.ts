@@ -14,7 +14,10 @@ export interface ResponseHearing {
   readonly frequency: (value: number) => void;
   readonly range: (range: readonly [number, number] | null) => void;
   /** Starts the search for exact orbits. */
-  readonly exact: (report: (report: JobReport) => void, ended: (last: JobReport | null, problems: readonly string[]) => void) => Job;
+  readonly exact: (
+    report: (report: JobReport) => void,
+    ended: (last: JobReport | null, problems: readonly string[]) => void,
+  ) => Job;
 }
 
 export class ResponsePanel {
@@ -45,15 +48,33 @@ export class ResponsePanel {
     this.#ask = button("Exact orbits", { class: "small" }, () => this.#askExact());
     this.#ask.title = "Follow the periodic orbits of the model itself over the range";
     [this.#from, this.#to] = [this.#rangeField("from"), this.#rangeField("to")];
-    const range = element("span", { class: "range-fields" }, "Ω", this.#from, "–", this.#to, element("span", { class: "unit" }, "rad/s"));
+    const range = element(
+      "span",
+      { class: "range-fields" },
+      "Ω",
+      this.#from,
+      "–",
+      this.#to,
+      element("span", { class: "unit" }, "rad/s"),
+    );
     const heading = element("header", {}, element("h2", {}, "Frequency response"), this.#ask);
     const footer = element("footer", {}, this.#note, range);
     this.#plots.append(this.#amplitudeHost, this.#phaseHost);
-    this.root = element("section", { class: "panel chart response", "aria-label": "Frequency response" }, heading, this.#plots, this.#legend, footer);
+    this.root = element(
+      "section",
+      { class: "panel chart response", "aria-label": "Frequency response" },
+      heading,
+      this.#plots,
+      this.#legend,
+      footer,
+    );
     this.#amplitude = new ResponsePlot("amplitude", this.#amplitudeHost, ["", "|θ|/c"]);
     this.#phase = new ResponsePlot("phase", this.#phaseHost, ["angular frequency [rad/s]", "phase [rad]"]);
     this.#marker = new FrequencyMarker(this.#plots, () => this.#extent(), hearing.frequency);
-    for (const [host, { plot }] of [[this.#amplitudeHost, this.#amplitude], [this.#phaseHost, this.#phase]] as const) {
+    for (const [host, { plot }] of [
+      [this.#amplitudeHost, this.#amplitude],
+      [this.#phaseHost, this.#phase],
+    ] as const) {
       onResize(host, (width, height) => {
         plot.setSize({ width, height });
         this.#marker.show(this.#frequency);
@@ -149,7 +170,8 @@ export class ResponsePanel {
     const curves = this.#curves;
     const lines = curves === null ? [] : linesOf(curves, this.#slenderness);
     const c = this.#slenderness;
-    const tilts = this.#exact?.families.flatMap((one) => one.mean_tilt.map((tilt) => (tilt === null ? null : tilt / c))) ?? [];
+    const tilts =
+      this.#exact?.families.flatMap((one) => one.mean_tilt.map((tilt) => (tilt === null ? null : tilt / c))) ?? [];
     const picture = {
       frequency: curves?.angular_frequency ?? [...this.#range],
       lines,
@@ -162,9 +184,14 @@ export class ResponsePanel {
     };
     this.#amplitude.show(picture);
     this.#phase.show(picture);
-    this.#nameLines(new Set(lines.filter((one) => one.amplitude.some((value) => value !== null)).map((one) => one.sense)));
+    this.#nameLines(
+      new Set(lines.filter((one) => one.amplitude.some((value) => value !== null)).map((one) => one.sense)),
+    );
     const critical = picture.critical.map((one) => told(one, 4)).join(", ");
-    const summary = lines.length === 0 ? "no curves" : `${counted(new Set(lines.map((one) => one.sense)).size, "sense")} of rolling; stable from ${critical || "no frequency"} rad/s on`;
+    const summary =
+      lines.length === 0
+        ? "no curves"
+        : `${counted(new Set(lines.map((one) => one.sense)).size, "sense")} of rolling; stable from ${critical || "no frequency"} rad/s on`;
     this.#amplitudeHost.setAttribute("aria-label", `Amplitude of steady rolling over angular frequency: ${summary}`);
     this.#phaseHost.setAttribute("aria-label", "Phase of steady rolling over angular frequency");
   }
@@ -174,10 +201,11 @@ export class ResponsePanel {
     if (senses.size > 0) items.push(["thin", "muted", "unstable"], ["dotted", "muted", "backbone"]);
     if (this.#exact !== null) items.push(["dot", "green", "exact"], ["diamond", "purple", "bifurcation"]);
     this.#legend.replaceChildren(
-      ...items.map(([kind, colour, text]) => element("li", {}, element("span", { class: `key ${kind} ${colour}` }), text ?? "")),
+      ...items.map(([kind, colour, text]) =>
+        element("li", {}, element("span", { class: `key ${kind} ${colour}` }), text ?? ""),
+      ),
     );
   }
-
 
   #extent(): Extent {
     const { width } = this.#amplitudeHost.getBoundingClientRect();
@@ -207,11 +235,20 @@ export class ResponsePanel {
 
 function toldOfCurves(curves: ResponseCurves, own: boolean): string {
   const how = curves.averaged ? "by averaging" : "in closed form";
-  return own ? `Steady rolling, ${how}.` : `Steady rolling of the slender column that cannot turn, ${how}; this model has none.`;
+  return own
+    ? `Steady rolling, ${how}.`
+    : `Steady rolling of the slender column that cannot turn, ${how}; this model has none.`;
 }
 
 function toldOfExact(exact: ExactResponse): string {
-  const found = exact.bifurcations.map((one) => `${words(one.kind)} at ${told(one.angular_frequency, 5)}`);
   const families = counted(exact.families.length, "family", "families");
-  return `Exact: ${families} of orbits; ${found.length > 0 ? `${found.join(", ")} rad/s` : "no bifurcation in the range"}.`;
+  const kinds = [...new Set(exact.bifurcations.map((one) => one.kind))];
+  const found = kinds.map((kind) => {
+    const places = exact.bifurcations.filter((one) => one.kind === kind).map((one) => one.angular_frequency);
+    return `${words(kind)} at ${places
+      .sort((a, b) => a - b)
+      .map((one) => told(one, 4))
+      .join(", ")}`;
+  });
+  return `${families} of exact orbits; ${found.length > 0 ? `${found.join("; ")} rad/s` : "no bifurcation in the range"}.`;
 }

@@ -50,7 +50,13 @@ export class Controls {
     this.root = element(
       "aside",
       { class: "controls", "aria-label": "Case" },
-      element("div", { class: "panel preset" }, element("label", { for: id }, "Preset"), this.#presets, this.#presetTold),
+      element(
+        "div",
+        { class: "panel preset" },
+        element("label", { for: id }, "Preset"),
+        this.#presets,
+        this.#presetTold,
+      ),
       problems,
       section("Column", this.#forms.column.root),
       section("Model", this.#forms.model.root),
@@ -69,7 +75,8 @@ export class Controls {
     this.#presets.value = preset?.id ?? "";
     this.#presetTold.textContent = preset?.about ?? "";
     this.#presetTold.hidden = !preset?.about;
-    for (const part of ["column", "model", "motion"] as const) this.#forms[part].show(description[part], kindOf(description, part));
+    for (const part of ["column", "model", "motion"] as const)
+      this.#forms[part].show(description[part], kindOf(description, part));
     this.#record.show(description.motion);
     this.#start.show(description, scales);
     const duration = description["duration"];
@@ -87,9 +94,12 @@ export class Controls {
     return new PartForm(LABELS[part], kindsOf(this.#about, part), {
       chosen: (kind) => {
         const chosen = partOfKind(kind, tagOf(part), this.#description[part]);
-        this.#hearing.jumped(this.#fitted({ ...this.#description, [part]: part === "motion" ? this.#withSample(chosen) : chosen }));
+        this.#hearing.jumped(
+          this.#fitted({ ...this.#description, [part]: part === "motion" ? this.#withSample(chosen) : chosen }),
+        );
       },
-      changed: (name: string, value: Value) => this.#hearing.edited(withPartValue(this.#description, part, name, value)),
+      changed: (name: string, value: Value) =>
+        this.#hearing.edited(withPartValue(this.#description, part, name, value)),
     });
   }
 
@@ -112,12 +122,21 @@ export class Controls {
   }
 }
 
-const LABELS: Readonly<Record<PartName, string>> = { column: "Shape of the column", model: "Model", motion: "Base motion" };
+const LABELS: Readonly<Record<PartName, string>> = {
+  column: "Shape of the column",
+  model: "Model",
+  motion: "Base motion",
+};
 
 const USUAL_DURATION = 60; // s
 
 /** Narrow windows have the sections closed: what is to be seen comes first. */
 function section(title: string, ...content: readonly HTMLElement[]): HTMLDetailsElement {
   const open = !matchMedia("(max-width: 759px)").matches;
-  return element("details", { class: "panel section", open }, element("summary", {}, element("h2", {}, title)), ...content);
+  return element(
+    "details",
+    { class: "panel section", open },
+    element("summary", {}, element("h2", {}, title)),
+    ...content,
+  );
 }

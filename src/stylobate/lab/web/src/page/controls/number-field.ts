@@ -54,7 +54,10 @@ export class NumberField {
       this.#reachFor(value);
       this.#slider.value = String(value === null ? 0 : positionOf(value, this.#scale));
     }
-    this.#slider.setAttribute("aria-valuetext", value === null ? (this.#looks.empty ?? "none") : withUnit(value, this.#looks.unit));
+    this.#slider.setAttribute(
+      "aria-valuetext",
+      value === null ? (this.#looks.empty ?? "none") : withUnit(value, this.#looks.unit),
+    );
   }
 
   /** Lets the slider run between other ends. */

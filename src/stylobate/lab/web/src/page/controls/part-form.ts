@@ -108,7 +108,9 @@ export class PartForm {
   #choiceOf(parameter: Parameter, choices: readonly (string | number)[]): Control {
     const { name } = parameter;
     const id = newId(name);
-    const options = choices.map((one) => [String(one), name === "sense" ? SENSES[String(one)] ?? String(one) : words(String(one))] as const);
+    const options = choices.map(
+      (one) => [String(one), name === "sense" ? (SENSES[String(one)] ?? String(one)) : words(String(one))] as const,
+    );
     const select = choice(options, { id }, (text) => {
       const value = choices.find((one) => String(one) === text);
       if (value !== undefined) this.#hearing.changed(name, value);

@@ -78,6 +78,8 @@ export class RecordForm {
 
   /** Asks for the files of an upload that neither the server nor this page has. */
   askAgain(): void {
+    const section = this.root.closest("details");
+    if (section !== null) section.open = true;
     this.#tell("This case needs a record that the server does not hold. Choose its files again.");
   }
 
@@ -100,6 +102,7 @@ export class RecordForm {
   async #send(): Promise<void> {
     const files = [...(this.#files.files ?? [])];
     if (files.length === 0) return;
+    this.#choosing = typeof this.#motion["upload"] !== "string";
     if (files.length > MOST_FILES) {
       this.#tell(`A record has at most ${MOST_FILES} files, one for each direction; ${files.length} were chosen.`);
       return;
@@ -129,6 +132,7 @@ async function base64(file: File): Promise<string> {
   const bytes = new Uint8Array(await file.arrayBuffer());
   const pieces: string[] = [];
   // In pieces: a call takes only so many arguments.
-  for (let at = 0; at < bytes.length; at += 0x8000) pieces.push(String.fromCharCode(...bytes.subarray(at, at + 0x8000)));
+  for (let at = 0; at < bytes.length; at += 0x8000)
+    pieces.push(String.fromCharCode(...bytes.subarray(at, at + 0x8000)));
   return btoa(pieces.join(""));
 }

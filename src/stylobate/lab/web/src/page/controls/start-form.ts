@@ -23,10 +23,20 @@ export class StartForm {
     this.#changed = changed;
     const any: ColumnScales = { slenderness: 0.1, frequency_scale: 1 };
     this.#fields = startQuantities(any).map(
-      (one) => new NumberField({ ...one, range: [one.from, one.to], label: capital(words(one.name)) }, (value) => this.#set(one.name, value ?? 0)),
+      (one) =>
+        new NumberField({ ...one, range: [one.from, one.to], label: capital(words(one.name)) }, (value) =>
+          this.#set(one.name, value ?? 0),
+        ),
     );
     this.#spin = new NumberField(
-      { name: "spin", label: "Spin", symbol: "w_3", unit: "rad/s", range: [-5, 5], hint: "about the axis of the column" },
+      {
+        name: "spin",
+        label: "Spin",
+        symbol: "w_3",
+        unit: "rad/s",
+        range: [-5, 5],
+        hint: "about the axis of the column",
+      },
       (value) => this.#set("spin", value ?? 0),
     );
     this.root.append(...this.#fields.map((one) => one.root), this.#spin.root);
@@ -45,7 +55,8 @@ export class StartForm {
   }
 
   setWrong(names: ReadonlySet<string>): void {
-    for (const field of this.#fields) field.setWrong(names.has(field.name) || names.has(field.name.replace(/_[xy]$/, "")));
+    for (const field of this.#fields)
+      field.setWrong(names.has(field.name) || names.has(field.name.replace(/_[xy]$/, "")));
     this.#spin.setWrong(names.has("spin"));
   }
 

@@ -47,7 +47,13 @@ export class AxisForm {
   }
 
   #end(label: string): HTMLInputElement {
-    const field = element("input", { class: "number tiny", type: "text", inputmode: "decimal", "aria-label": label, autocomplete: "off" });
+    const field = element("input", {
+      class: "number tiny",
+      type: "text",
+      inputmode: "decimal",
+      "aria-label": label,
+      autocomplete: "off",
+    });
     field.addEventListener("change", () => this.#change());
     return field;
   }

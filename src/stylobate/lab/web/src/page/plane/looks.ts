@@ -79,7 +79,9 @@ export function looksOf(names: readonly string[]): readonly Look[] {
     const before = used.get(kind) ?? 0;
     used.set(kind, before + 1);
     const found = LOOKS[kind] ?? look(GREY, rising);
-    return before === 0 ? found : { ...found, texture: MORE[(before - 1) % MORE.length] ?? rising, ink: inkOn(found.colour) };
+    return before === 0
+      ? found
+      : { ...found, texture: MORE[(before - 1) % MORE.length] ?? rising, ink: inkOn(found.colour) };
   });
 }
 

@@ -145,7 +145,8 @@ export class PlaneCanvas {
     const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
     const image = pen.createImageData(w, h);
     const paints = new Map<number, Paint>();
-    for (const [code, look] of this.#picture?.looks ?? []) paints.set(code, { look, colour: rgbOf(look.colour), ink: rgbOf(look.ink) });
+    for (const [code, look] of this.#picture?.looks ?? [])
+      paints.set(code, { look, colour: rgbOf(look.colour), ink: rgbOf(look.ink) });
     for (let py = 0; py < h; py += 1) {
       const iy = cells.height - 1 - Math.floor((py / h) * cells.height);
       for (let px = 0; px < w; px += 1) {
@@ -198,7 +199,10 @@ export class PlaneCanvas {
     if (sx < 0 || sx > 1 || sy < 0 || sy > 1) return;
     const { width, height } = this.#room();
     const [px, py] = [MARGIN.left + sx * width, MARGIN.top + (1 - sy) * height];
-    for (const [colour, thickness] of [["#000000", 5], ["#ffffff", 2.5]] as const) {
+    for (const [colour, thickness] of [
+      ["#000000", 5],
+      ["#ffffff", 2.5],
+    ] as const) {
       pen.strokeStyle = colour;
       pen.lineWidth = thickness;
       pen.beginPath();
@@ -221,7 +225,10 @@ export class PlaneCanvas {
     const [nx, ny] = this.#size();
     const [w, h] = [width / nx, height / ny];
     const [x, y] = [MARGIN.left + ix * w, MARGIN.top + (ny - 1 - iy) * h];
-    for (const [colour, room] of [["#000000", 2.5], ["#ffffff", 1]] as const) {
+    for (const [colour, room] of [
+      ["#000000", 2.5],
+      ["#ffffff", 1],
+    ] as const) {
       pen.strokeStyle = colour;
       pen.lineWidth = 1.5;
       pen.strokeRect(x - room, y - room, w + 2 * room, h + 2 * room);

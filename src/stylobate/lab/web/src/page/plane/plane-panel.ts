@@ -1,8 +1,8 @@
 /** An overturning map or a basin: its axes, its picture while it fills in, what its colours mean. */
 
-import type { Attractor, AxesEvent, CellsEvent, JobReport, PlaneResult, ToldAxis } from "../answers";
+import type { AxesEvent, CellsEvent, JobReport, PlaneResult, ToldAxis } from "../answers";
 import { button, choice, element, newId } from "../dom";
-import { counted, plain, told, withUnit, words } from "../format";
+import { counted, told, withUnit, words } from "../format";
 import type { Job } from "../job";
 import { defaultAxis } from "../planes";
 import type { PlaneKind } from "../planes";
@@ -10,12 +10,10 @@ import type { Quantity } from "../quantities";
 import type { Axis, Plane } from "../state";
 import type { Description } from "../description";
 import { AxisForm } from "./axis-form";
-import { Cells, UNKNOWN } from "./cells";
-import type { Look } from "./looks";
-import { looksOf } from "./looks";
+import { Cells } from "./cells";
+import { Classes } from "./classes";
 import type { Place } from "./plane-canvas";
 import { PlaneCanvas } from "./plane-canvas";
-import { swatch } from "./swatch";
 
 export interface PlaneHearing {
   readonly axes: (plane: Plane) => void;
@@ -33,23 +31,22 @@ export class PlanePanel {
   readonly #forms: { readonly x: AxisForm; readonly y: AxisForm };
   readonly #cells: HTMLSelectElement;
   readonly #summary = element("summary", {});
+  readonly #axesForm = element("details", { class: "axes" });
   readonly #go: HTMLButtonElement;
   readonly #progress = element("progress", { max: 1, hidden: true, "aria-label": "Progress" });
   readonly #readout = element("p", { class: "note readout", "aria-live": "polite" });
   readonly #problem = element("p", { class: "problem", role: "alert", hidden: true });
-  readonly #legend = element("ul", { class: "legend classes" });
+  readonly #classes = new Classes();
   #plane: Plane | null = null;
   #description: Description | null = null;
   #quantities: readonly Quantity[] = [];
   #values: Place | null = null;
   #job: Job | null = null;
+  #complete = false;
   #key = "";
   #shownKey = "";
   #axes: AxesEvent["axes"] | null = null;
   #filled: Cells | null = null;
-  #names: readonly (readonly [number, string])[] = [];
-  #looks: ReadonlyMap<number, Look> = new Map();
-  #attractors: readonly Attractor[] = [];
 
   constructor(kind: PlaneKind, hearing: PlaneHearing) {
     this.#kind = kind;
@@ -61,16 +58,34 @@ export class PlanePanel {
     const change = (place: "x" | "y") => (axis: Axis) => this.#changeAxis(place, axis);
     this.#forms = { x: new AxisForm("x", change("x")), y: new AxisForm("y", change("y")) };
     const id = newId("cells");
-    this.#cells = choice(SIZES.map((size) => [String(size), `${size} × ${size}`]), { id }, (value) => this.#changeSize(Number(value)));
+    this.#cells = choice(
+      SIZES.map((size) => [String(size), `${size} × ${size}`]),
+      { id },
+      (value) => this.#changeSize(Number(value)),
+    );
     this.#go = button("Compute", { class: "primary small" }, () => this.#pressed());
     const size = element("div", { class: "axis-form" }, element("label", { for: id }, "cells"), this.#cells);
-    const axes = element("details", { class: "axes" }, this.#summary, this.#forms.x.root, this.#forms.y.root, size);
-    const bar = element("div", { class: "plane-bar" }, axes, this.#progress, this.#go);
-    this.root = element("div", { class: `plane-panel ${kind}` }, bar, this.#problem, this.#canvas.root, this.#readout, this.#legend);
+    this.#axesForm.append(this.#summary, this.#forms.x.root, this.#forms.y.root, size);
+    const bar = element("div", { class: "plane-bar" }, this.#axesForm, this.#progress, this.#go);
+    this.root = element(
+      "div",
+      { class: `plane-panel ${kind}` },
+      bar,
+      this.#problem,
+      this.#canvas.root,
+      this.#readout,
+      this.#classes.legend,
+    );
   }
 
   /** Shows the axes and the values of the case; a picture of another case is told to be one. */
-  show(plane: Plane, quantities: readonly Quantity[], description: Description, values: Place | null, key: string): void {
+  show(
+    plane: Plane,
+    quantities: readonly Quantity[],
+    description: Description,
+    values: Place | null,
+    key: string,
+  ): void {
     this.#plane = plane;
     this.#description = description;
     this.#quantities = quantities;
@@ -85,17 +100,24 @@ export class PlanePanel {
     this.root.classList.toggle("stale", stale && this.#job === null);
     if (this.#axes === null) this.#rest(plane, quantities);
     else this.#redraw();
-    if (stale && this.#job === null) this.#readout.textContent = "This picture is of an earlier case: compute it again.";
+    if (stale && this.#job === null)
+      this.#readout.textContent = "This picture is of an earlier case: compute it again.";
   }
 
   /** The job that fills the picture from now on. */
-  follow(start: (report: (report: JobReport) => void, ended: (last: JobReport | null, problems: readonly string[]) => void) => Job): void {
+  follow(
+    start: (
+      report: (report: JobReport) => void,
+      ended: (last: JobReport | null, problems: readonly string[]) => void,
+    ) => Job,
+  ): void {
     this.#job?.cancel();
+    this.#complete = false;
     this.#shownKey = this.#key;
-    this.#attractors = [];
     this.#tellProblem([]);
     this.#filled = null;
     this.#go.textContent = "Cancel";
+    this.#axesForm.open = false; // the picture needs the room
     this.#progress.hidden = false;
     this.#progress.removeAttribute("value");
     this.root.classList.remove("stale");
@@ -117,6 +139,11 @@ export class PlanePanel {
 
   get filled(): Cells | null {
     return this.#filled;
+  }
+
+  /** Whether the picture of this case is all there, or on its way. */
+  get current(): boolean {
+    return this.#shownKey === this.#key && (this.#complete || this.#job !== null);
   }
 
   get running(): boolean {
@@ -149,7 +176,7 @@ export class PlanePanel {
       this.#readout.textContent = `${report.done} of ${counted(report.total, "run")}`;
     } else if (report.note) this.#readout.textContent = `${report.note}…`;
     if (report.events.length > 0) {
-      this.#nameClasses();
+      this.#classes.tell(this.#filled);
       this.#redraw();
     }
   }
@@ -157,18 +184,7 @@ export class PlanePanel {
   #begin({ axes, names }: AxesEvent): void {
     this.#axes = axes;
     this.#filled = new Cells(axes.x.values.length, axes.y.values.length);
-    this.#nameCodes(names);
-  }
-
-  #nameCodes(names: readonly (readonly [number, string])[]): void {
-    this.#names = names;
-    const looks = looksOf(names.map(([, name]) => name));
-    const found = new Map<number, Look>();
-    names.forEach(([code], i) => {
-      const look = looks[i];
-      if (look) found.set(code, look);
-    });
-    this.#looks = found;
+    this.#classes.take(names);
   }
 
   #end(last: JobReport | null, problems: readonly string[]): void {
@@ -176,43 +192,48 @@ export class PlanePanel {
     this.#go.textContent = "Compute";
     this.#progress.hidden = true;
     this.#tellProblem(problems);
-    if (last?.state === "done") this.#finish(last.result as PlaneResult | null);
+    this.#complete = last?.state === "done";
+    if (this.#complete) this.#finish((last?.result ?? null) as PlaneResult | null);
     else if (problems.length > 0) this.#readout.textContent = "";
     this.#redraw();
   }
 
   #finish(result: PlaneResult | null): void {
-    const names = result?.names;
-    if (result?.codes && names) {
-      // Starts that reached no attractor have a code below zero.
-      const others: (readonly [number, string])[] = [[-2, "unsettled"], [-1, "not computed"]];
-      this.#nameCodes([...names, ...others]);
+    if (result?.codes && result.names) {
+      this.#classes.takeFinal(result.names, result.attractors ?? []);
       this.#filled?.takeAll(result.codes);
     }
-    this.#attractors = result?.attractors ?? [];
-    const runs = result?.runs ?? 0;
     const unsure = result?.uncertain ? `, ${result.uncertain} of them uncertain` : "";
-    this.#readout.textContent = `${counted(runs, "run")}${unsure}. Click a cell to see its motion.`;
-    this.#nameClasses();
+    this.#readout.textContent = `${counted(result?.runs ?? 0, "run")}${unsure}. Click a cell to see its motion.`;
+    this.#classes.tell(this.#filled);
   }
 
   /** Before anything is computed: the axes alone. */
   #rest(plane: Plane, quantities: readonly Quantity[]): void {
     const toldAxis = (axis: Axis): ToldAxis => ({
       name: axis.name,
-      values: Array.from({ length: axis.number }, (_, i) => axis.from + ((axis.to - axis.from) * i) / (axis.number - 1)),
+      values: Array.from(
+        { length: axis.number },
+        (_, i) => axis.from + ((axis.to - axis.from) * i) / (axis.number - 1),
+      ),
       units: quantities.find((one) => one.name === axis.name)?.unit ?? "",
     });
-    this.#canvas.show({ axes: { x: toldAxis(plane.x), y: toldAxis(plane.y) }, cells: null, looks: new Map() }, this.#values);
+    this.#canvas.show(
+      { axes: { x: toldAxis(plane.x), y: toldAxis(plane.y) }, cells: null, looks: new Map() },
+      this.#values,
+    );
     this.#readout.textContent = HINTS[this.#kind];
   }
 
   #redraw(): void {
     if (this.#axes === null) return;
-    this.#canvas.show({ axes: this.#axes, cells: this.#filled, looks: this.#looks }, this.#shownValues());
+    this.#canvas.show({ axes: this.#axes, cells: this.#filled, looks: this.#classes.looks }, this.#shownValues());
     const kind = this.#kind === "map" ? "Overturning map" : "Basins of attraction";
     const { x, y } = this.#axes;
-    this.#canvas.canvas.setAttribute("aria-label", `${kind} over ${words(x.name)} and ${words(y.name)}; arrow keys point at a cell, Enter starts its motion`);
+    this.#canvas.canvas.setAttribute(
+      "aria-label",
+      `${kind} over ${words(x.name)} and ${words(y.name)}; arrow keys point at a cell, Enter starts its motion`,
+    );
   }
 
   #shownValues(): Place | null {
@@ -220,30 +241,17 @@ export class PlanePanel {
     return x === this.#plane?.x.name && y === this.#plane?.y.name ? this.#values : null;
   }
 
-  #nameClasses(): void {
-    const counts = this.#filled?.counts() ?? new Map<number, number>();
-    const known = [...counts].reduce((sum, [code, count]) => sum + (code === UNKNOWN ? 0 : count), 0);
-    const items = this.#names.flatMap(([code, name], i) => {
-      const [count, look] = [counts.get(code) ?? 0, this.#looks.get(code)];
-      if (count === 0 || look === undefined) return [];
-      const attractor = this.#attractors[i];
-      const text = attractor && attractor.fraction !== null ? shareOf(attractor) : percent(count / known);
-      return [element("li", {}, swatch(look), `${name} ${text}`)];
-    });
-    this.#legend.replaceChildren(...items);
-  }
-
   #point(cell: Place | null): void {
     if (cell === null || this.#axes === null || this.#filled === null) return;
     const { x, y } = this.#axes;
-    const code = this.#filled.at(...cell);
-    const name = code === UNKNOWN ? "not computed yet" : (this.#names.find(([one]) => one === code)?.[1] ?? "");
-    const value = (axis: ToldAxis, index: number): string => `${words(axis.name)} ${withUnit(axis.values[index], axis.units)}`;
+    const name = this.#classes.nameOf(this.#filled.at(...cell));
+    const value = (axis: ToldAxis, index: number): string =>
+      `${words(axis.name)} ${withUnit(axis.values[index], axis.units)}`;
     this.#readout.textContent = `${value(x, cell[0])}, ${value(y, cell[1])}: ${name}`;
   }
 
   #choose([ix, iy]: Place): void {
-    if (this.#axes === null || this.#job === null && this.#shownKey !== this.#key) return;
+    if (this.#axes === null || (this.#job === null && this.#shownKey !== this.#key)) return;
     const { x, y } = this.#axes;
     const [valueX, valueY] = [x.values[ix], y.values[iy]];
     if (valueX !== undefined && valueY !== undefined) this.#hearing.chosen([x.name, valueX], [y.name, valueY]);
@@ -278,14 +286,3 @@ const HINTS: Readonly<Record<PlaneKind, string>> = {
   map: "What becomes of the column over two quantities. Compute it, then click a cell to see its motion.",
   basin: "Where each start leads in the long run. Compute it, then click a start to see its motion.",
 };
-
-function percent(share: number): string {
-  return `${told(100 * share, share < 0.01 ? 1 : 2)} %`;
-}
-
-/** Returns the share of starts that lead to an attractor, with its interval. */
-function shareOf({ fraction, fraction_low: low, fraction_high: high }: Attractor): string {
-  if (fraction === null || low === null || high === null) return "";
-  const whole = (value: number): string => plain(100 * value, 2);
-  return `${percent(fraction)} (${whole(low)} to ${whole(high)})`;
-}

@@ -1,0 +1,102 @@
+/** The motion in all its pictures, led by one clock: stage, histories, orbit, verdict. */
+
+import { Clock, Stage, type Theme } from "../viewer/index";
+import type { Answer } from "./answers";
+import { Histories } from "./charts/histories";
+import { OrbitChart } from "./charts/orbit";
+import { element } from "./dom";
+import { Transport } from "./transport";
+import { Verdict } from "./verdict";
+
+export class MotionView {
+  readonly clock = new Clock();
+  /** Null where the browser draws no 3D; the curves tell the motion all the same. */
+  readonly stage: Stage | null;
+  readonly orbit = new OrbitChart();
+  readonly root: HTMLElement;
+  readonly histories: HTMLElement;
+  readonly #host = element("div", { class: "stage" });
+  readonly #transport: Transport;
+  readonly #verdict = new Verdict();
+  readonly #curves: Histories;
+  /** Whether the clock ran at its last tick: at the end of a run it stops by itself. */
+  #played = false;
+
+  constructor(theme: Theme, speedChosen: (speed: number) => void) {
+    this.#transport = new Transport(this.clock, speedChosen);
+    this.#curves = new Histories((time) => this.clock.seek(time));
+    this.histories = element("div", { class: "times" }, this.#curves.tilt.root, this.#curves.demand.root);
+    this.root = element("section", { class: "show panel", "aria-label": "Motion" });
+    this.root.append(this.#host, this.#transport.root, this.#verdict.root);
+    this.stage = this.#newStage(theme);
+    this.clock.onTick(() => this.#tick());
+    setInterval(() => this.#transport.describe(), 1000);
+  }
+
+  show(answer: Answer): void {
+    this.#host.classList.remove("old");
+    this.clock.setRange(0, answer.drawn.time.at(-1) ?? 0);
+    this.stage?.show(answer.drawn);
+    this.#curves.show(answer);
+    this.orbit.show(answer.drawn);
+    this.#verdict.show(answer);
+    this.#transport.showEvents(answer.events);
+    this.#follow();
+  }
+
+  /** Plays from the beginning, unless the reader asked for less motion. */
+  begin(): void {
+    this.clock.seek(0);
+    this.clock.autoplay();
+  }
+
+  setSpeed(speed: number): void {
+    this.clock.speed = speed;
+    this.#transport.showSpeed(speed);
+  }
+
+  setBusy(busy: boolean): void {
+    this.#host.classList.toggle("busy", busy);
+  }
+
+  /** Tells that what is shown is not the case that was asked for. */
+  setOld(old: boolean): void {
+    this.#host.classList.toggle("old", old);
+  }
+
+  setTheme(theme: Theme): void {
+    this.stage?.setTheme(theme);
+    this.#curves.redraw();
+    this.orbit.redraw();
+    this.#transport.redraw();
+  }
+
+  #newStage(theme: Theme): Stage | null {
+    try {
+      return new Stage(this.#host, { theme });
+    } catch (error) {
+      const reason = error instanceof Error ? error.message : String(error);
+      this.#host.append(element("p", { class: "no-stage" }, reason));
+      return null;
+    }
+  }
+
+  #tick(): void {
+    const { time, to, playing } = this.clock;
+    if (!playing && to > 0 && time >= to && this.#played && this.#transport.repeats) {
+      this.#played = false;
+      this.clock.play();
+      return;
+    }
+    this.#played = playing;
+    this.#follow();
+  }
+
+  #follow(): void {
+    const { time } = this.clock;
+    this.stage?.setTime(time);
+    this.#curves.setTime(time);
+    this.orbit.setTime(time);
+    this.#transport.show();
+  }
+}

@@ -1,0 +1,70 @@
+/** The classes of a plane: what its codes mean, how they look, and the legend that tells both. */
+
+import type { Attractor } from "../answers";
+import { element } from "../dom";
+import { plain, told } from "../format";
+import type { Cells } from "./cells";
+import { UNKNOWN } from "./cells";
+import type { Look } from "./looks";
+import { looksOf } from "./looks";
+import { swatch } from "./swatch";
+
+export type Names = readonly (readonly [code: number, name: string])[];
+
+/** Codes of basins that no attractor has. */
+const WITHOUT_ATTRACTOR: Names = [
+  [-2, "unsettled"],
+  [-1, "not computed"],
+];
+
+export class Classes {
+  readonly legend = element("ul", { class: "legend classes" });
+  #names: Names = [];
+  #looks: ReadonlyMap<number, Look> = new Map();
+  #attractors: readonly Attractor[] = [];
+
+  get looks(): ReadonlyMap<number, Look> {
+    return this.#looks;
+  }
+
+  /** Takes the names of outcomes. */
+  take(names: Names, attractors: readonly Attractor[] = []): void {
+    this.#names = names;
+    this.#attractors = attractors;
+    const looks = looksOf(names.map(([, name]) => name));
+    this.#looks = new Map(names.flatMap(([code], i) => (looks[i] ? [[code, looks[i]] as const] : [])));
+  }
+
+  /** Takes the names that are known at the end: of attractors, or of what a sliding column does. */
+  takeFinal(names: Names, attractors: readonly Attractor[]): void {
+    this.take([...names, ...WITHOUT_ATTRACTOR], attractors);
+  }
+
+  nameOf(code: number): string {
+    if (code === UNKNOWN) return "not computed yet";
+    return this.#names.find(([one]) => one === code)?.[1] ?? "";
+  }
+
+  /** Tells which classes there are among the cells, and how much of the plane they have. */
+  tell(cells: Cells | null): void {
+    const counts = cells?.counts() ?? new Map<number, number>();
+    const known = [...counts].reduce((sum, [code, count]) => sum + (code === UNKNOWN ? 0 : count), 0);
+    const items = this.#names.flatMap(([code, name], i) => {
+      const [count, look] = [counts.get(code) ?? 0, this.#looks.get(code)];
+      if (count === 0 || look === undefined) return [];
+      return [element("li", {}, swatch(look), `${name} ${shareOf(this.#attractors[i]) ?? percent(count / known)}`)];
+    });
+    this.legend.replaceChildren(...items);
+  }
+}
+
+function percent(share: number): string {
+  return `${told(100 * share, share < 0.01 ? 1 : 2)} %`;
+}
+
+/** Returns the share of starts that lead to an attractor, with its interval. */
+function shareOf(attractor: Attractor | undefined): string | null {
+  const { fraction, fraction_low: low, fraction_high: high } = attractor ?? { fraction: null };
+  if (fraction === null || typeof low !== "number" || typeof high !== "number") return null;
+  return `${percent(fraction)} (${plain(100 * low, 2)} to ${plain(100 * high, 2)})`;
+}

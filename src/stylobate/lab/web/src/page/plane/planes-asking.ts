@@ -1,0 +1,92 @@
+/** The overturning map and the basin of the case that is shown, filled in on request. */
+
+import type { About } from "../about";
+import type { Description } from "../description";
+import type { PlaneKind } from "../planes";
+import { belongs, defaultPlane, keyOf, quantitiesOf } from "../planes";
+import type { ColumnScales } from "../quantities";
+import { valueOf, withValue } from "../quantities";
+import { planeRequest } from "../requests";
+import type { JobStart } from "../response-asking";
+import type { Plane, View } from "../state";
+import { PlanePanel } from "./plane-panel";
+
+const KINDS = ["map", "basin"] as const;
+
+export interface PlanesHearing {
+  readonly edited: (changes: Partial<View>) => void;
+  readonly jumped: (changes: Partial<View>) => void;
+  readonly start: JobStart;
+}
+
+export class PlanesAsking {
+  readonly panels: Readonly<Record<PlaneKind, PlanePanel>>;
+  readonly #about: About;
+  readonly #hearing: PlanesHearing;
+  #view: View;
+  #scales: ColumnScales;
+
+  constructor(about: About, view: View, scales: ColumnScales, hearing: PlanesHearing) {
+    this.#about = about;
+    this.#view = view;
+    this.#scales = scales;
+    this.#hearing = hearing;
+    this.panels = { map: this.#panel("map"), basin: this.#panel("basin") };
+  }
+
+  show(view: View, scales: ColumnScales): void {
+    this.#view = view;
+    this.#scales = scales;
+    const { description } = view;
+    for (const kind of KINDS) {
+      const plane = this.#plane(kind);
+      if (plane === null) continue;
+      const quantities = quantitiesOf(kind, description, this.#about, scales);
+      const [x, y] = [valueOf(description, plane.x.name), valueOf(description, plane.y.name)];
+      const values = x === undefined || y === undefined ? null : ([x, y] as const);
+      this.panels[kind].show(plane, quantities, description, values, keyOf(description, plane));
+    }
+  }
+
+  /** Computes the plane of the tab again that the view says was computed, unless it is all there. */
+  refill(): void {
+    const { tab, filled } = this.#view;
+    if (filled && tab !== "orbit" && !this.panels[tab].current) this.#fill(tab);
+  }
+
+  redraw(): void {
+    for (const kind of KINDS) this.panels[kind].redraw();
+  }
+
+  #panel(kind: PlaneKind): PlanePanel {
+    const { edited, jumped } = this.#hearing;
+    return new PlanePanel(kind, {
+      axes: (plane) => edited({ [kind]: plane, filled: false }),
+      asked: () => {
+        edited({ filled: true, tab: kind });
+        this.#fill(kind);
+      },
+      cancelled: () => edited({ filled: false }),
+      chosen: (x, y) => jumped({ description: this.#at(x, y), [kind]: this.#plane(kind) }),
+    });
+  }
+
+  #at([nameX, x]: readonly [string, number], [nameY, y]: readonly [string, number]): Description {
+    return withValue(withValue(this.#view.description, nameX, x), nameY, y);
+  }
+
+  #plane(kind: PlaneKind): Plane | null {
+    const { description, [kind]: given } = this.#view;
+    const quantities = quantitiesOf(kind, description, this.#about, this.#scales);
+    return given !== null && belongs(given, quantities) ? given : defaultPlane(kind, description, quantities);
+  }
+
+  #fill(kind: PlaneKind): void {
+    const plane = this.#plane(kind);
+    if (plane === null) return;
+    // The axes are kept from now on: those that suit the case would move with the motion that is chosen in them.
+    if (this.#view[kind] === null) this.#hearing.edited({ [kind]: plane });
+    const body = planeRequest(kind, this.#view.description, plane);
+    this.panels[kind].follow((report, ended) => this.#hearing.start(kind, body, report, ended));
+  }
+}

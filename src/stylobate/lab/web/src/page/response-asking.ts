@@ -1,0 +1,103 @@
+/** The frequency response of the case that is shown: curves at once, exact orbits on request. */
+
+import type { JobReport, ResponseCurves } from "./answers";
+import { response, Unreachable } from "./api";
+import { ResponsePanel } from "./charts/response-panel";
+import type { Part } from "./description";
+import { written } from "./description";
+import { angularFrequency, withAngularFrequency } from "./frequency";
+import type { Job } from "./job";
+import { Latest } from "./latest";
+import type { ColumnScales } from "./quantities";
+import { exactRequest, isSlender, responseRequest, usualRange } from "./requests";
+import type { View } from "./state";
+
+export type JobStart = (
+  kind: string,
+  body: Part,
+  report: (report: JobReport) => void,
+  ended: (last: JobReport | null, problems: readonly string[]) => void,
+) => Job;
+
+export interface AskingHearing {
+  readonly edited: (changes: Partial<View>) => void;
+  readonly start: JobStart;
+  readonly lost: () => void;
+}
+
+export class ResponseAsking {
+  readonly panel: ResponsePanel;
+  readonly #lost: () => void;
+  readonly #curves: Latest<Part, ResponseCurves>;
+  #view: View;
+  #scales: ColumnScales;
+  #asked = { curves: "", exact: "" };
+
+  constructor(view: View, scales: ColumnScales, { edited, start, lost }: AskingHearing) {
+    this.#view = view;
+    this.#scales = scales;
+    this.#lost = lost;
+    this.panel = new ResponsePanel({
+      frequency: (value) => edited({ description: this.#at(value) }),
+      range: (range) => edited({ range }),
+      exact: (report, ended) => start("exact", exactRequest(this.#view.description, this.#range) ?? {}, report, ended),
+    });
+    this.#curves = new Latest(response, {
+      answered: (curves) => this.#take(curves),
+      failed: (error) => this.#fail(error),
+    });
+  }
+
+  /** Shows the response of a view; a `jump` does not wait for curves that are due. */
+  show(view: View, scales: ColumnScales, jump: boolean): void {
+    this.#view = view;
+    this.#scales = scales;
+    this.panel.showFrequency(angularFrequency(view.description.motion));
+    this.panel.showRange(this.#range);
+    this.#checkExact();
+    this.#ask(jump);
+  }
+
+  /** Forgets what was asked: it is to be asked again. */
+  forget(): void {
+    this.#asked.curves = "";
+  }
+
+  get #range(): readonly [number, number] {
+    const { range, description } = this.#view;
+    return range ?? usualRange(this.#scales.frequency_scale, angularFrequency(description.motion));
+  }
+
+  #at(frequency: number): View["description"] {
+    const { description } = this.#view;
+    return { ...description, motion: withAngularFrequency(description.motion, frequency) };
+  }
+
+  /** Exact orbits of another case are taken away. */
+  #checkExact(): void {
+    const request = exactRequest(this.#view.description, this.#range);
+    const wanted = request === null ? "none" : written(request);
+    if (wanted !== this.#asked.exact) this.panel.forgetExact();
+    this.#asked.exact = wanted;
+    this.panel.allowExact(request !== null);
+  }
+
+  #ask(jump: boolean): void {
+    const body = responseRequest(this.#view.description, this.#range);
+    const wanted = body === null ? `none ${this.#range.join()}` : written(body);
+    if (wanted === this.#asked.curves) return;
+    this.#asked.curves = wanted;
+    if (body !== null) return this.#curves.want(body, { jump });
+    this.#curves.cancel();
+    this.panel.clear("Response curves need a harmonic base motion in the horizontal.");
+  }
+
+  #take(curves: ResponseCurves): void {
+    this.panel.show(curves, this.#scales.slenderness, this.#range, isSlender(this.#view.description));
+  }
+
+  #fail(error: unknown): void {
+    if (error instanceof Unreachable) return this.#lost();
+    this.panel.tell(error instanceof Error ? error.message : String(error)); // the last good curves stay
+  }
+}

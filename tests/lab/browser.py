@@ -1,0 +1,71 @@
+"""A browser of the system for the tests of the page; without one, or without the page, they are skipped."""
+
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import pytest
+from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
+
+from stylobate.lab.pages import page_is_built
+
+REQUIRED = os.environ.get("STYLOBATE_BROWSER") == "required"
+# Drawn by the processor, as on machines without a graphics card.
+DRAWN = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+
+
+def found_browser() -> str:
+    """Return the path of the browser; skip, or fail where a browser is required, if the page cannot be tested."""
+    path = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    missing = "no chromium" if path is None else None if page_is_built() else "the page is not built: make page"
+    if missing and REQUIRED:
+        pytest.fail(missing)
+    if missing:
+        pytest.skip(missing)
+    assert path is not None
+    return path
+
+
+@contextmanager
+def open_browser() -> Iterator[Browser]:
+    """Start the browser, without a window."""
+    path = found_browser()
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=path, args=list(DRAWN))
+        try:
+            yield browser
+        finally:
+            browser.close()
+
+
+def new_page(where: Browser | BrowserContext) -> Page:
+    """Return a new page that waits as long as the first start of a process may take on a busy machine."""
+    page = where.new_page()
+    page.set_default_timeout(120_000.0)
+    return page
+
+
+class Watched:
+    """A page with what it said in its console and which requests left for elsewhere."""
+
+    def __init__(self, page: Page, address: str) -> None:
+        self.page = page
+        self.said: list[str] = []
+        self.foreign: list[str] = []
+        page.on("console", lambda message: self._heard(message.type, message.text))
+        page.on("pageerror", lambda error: self.said.append(str(error)))
+        page.on("request", lambda request: self._seen(request.url, address))
+
+    def _heard(self, kind: str, text: str) -> None:
+        if kind in ("error", "warning") and "GPU stall" not in text:  # of the software that draws
+            self.said.append(text)
+
+    def _seen(self, url: str, address: str) -> None:
+        if not url.startswith((address, "data:", "blob:")):
+            self.foreign.append(url)
+
+
+def shown(page: Page) -> None:
+    """Wait until the page shows the motion of what is set."""
+    page.wait_for_function("() => window.stylobate?.laboratory.answer && !document.querySelector('.stage.busy')")

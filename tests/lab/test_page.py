@@ -1,0 +1,252 @@
+"""The page in a real browser."""
+
+import os
+import re
+import signal
+import statistics
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from tests.lab.browser import Watched, new_page, open_browser, shown
+
+import stylobate as sb
+from stylobate.lab.presets import presets
+from stylobate.lab.serving import listening
+from stylobate.spec import SimulationDescription
+
+PRESETS = {preset.identity: preset for preset in presets()}
+# What the page reads back from the drawn column: doubles, interpolated on samples of seven digits.
+DRAWN = 2e-6
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with open_browser() as found:
+        yield found
+
+
+@pytest.fixture
+def watched(browser, address):
+    context = browser.new_context(viewport={"width": 1280, "height": 860})
+    found = Watched(new_page(context), address)
+    found.page.goto(f"{address}/")
+    shown(found.page)
+    yield found
+    context.close()
+    assert found.foreign == []
+
+
+def moved(page, name, value):
+    """Set the number of this name in its field."""
+    field = page.locator(f"input.number[id^='{name}']").first
+    field.fill(str(value))
+    field.press("Enter")
+
+
+def test_it_loads_without_an_error_and_without_a_request_to_elsewhere(watched):
+    assert watched.said == []
+    assert watched.page.evaluate("() => window.stylobate.laboratory.answer.outcome") == "ROLLING"
+    assert watched.page.get_by_text("once round in each of the last 10 periods").is_visible()
+
+
+@pytest.mark.parametrize("preset", ["spin-up", "shaker", "conveyor", "averaging-fails"])
+def test_the_motion_drawn_is_the_motion_computed(watched, preset):
+    described = PRESETS[preset]
+    page = watched.page
+    page.get_by_label("Preset").select_option(described.title)
+    page.wait_for_function(f"() => window.stylobate.laboratory.answer.outcome === '{described.outcome}'")
+    shown(page)
+    page.evaluate("() => window.stylobate.laboratory.clock.pause()")
+    setup = SimulationDescription.parse(described.description).build()
+    run = sb.simulate(setup.model, setup.motion, **setup.options)
+    times = page.evaluate("() => window.stylobate.laboratory.answer.drawn.time")
+    radius = setup.model.column.radius
+    for time in np.array(times)[np.linspace(0, len(times) - 1, 40).astype(int)][1:-1]:
+        drawn = page.evaluate("t => (window.stylobate.stage.setTime(t), window.stylobate.stage.pose())", float(time))
+        data = run.sample([float(time)]).isel(time=0)
+        assert drawn["tilt"] == pytest.approx(data["tilt"].values, abs=DRAWN)
+        if float(data["amplitude"]) > 1e-6:  # a column that stands touches with all of its rim
+            assert drawn["contact"] == pytest.approx(data["contact_point"].values, abs=DRAWN * max(1.0, radius))
+        if "twist" in data:
+            turned = drawn["twist"] - float(data["twist"])
+            assert np.remainder(turned + np.pi, 2.0 * np.pi) - np.pi == pytest.approx(0.0, abs=5.0 * DRAWN)
+        if "spin" in data:
+            told = page.evaluate(
+                "t => { const d = window.stylobate.laboratory.answer.drawn; return d.spin[d.time.indexOf(t)]; }",
+                float(time),
+            )
+            assert told == pytest.approx(float(data["spin"]), abs=1e-6, rel=1e-6)
+
+
+def test_a_moved_slider_moves_motion_and_curves(watched):
+    page = watched.page
+    before = page.evaluate("() => window.stylobate.laboratory.answer.measures.largest_tilt")
+    slider = page.get_by_label("Damping, slider")
+    slider.focus()
+    with page.expect_response(re.compile("/api/response")), page.expect_response(re.compile("/api/simulate")):
+        slider.press("ArrowRight")
+    page.wait_for_function(f"() => window.stylobate.laboratory.answer.measures.largest_tilt !== {before}")
+    damping = page.evaluate("() => window.stylobate.state().description.model.damping")
+    assert damping > 0.1
+    assert f"damping:{damping}" in page.evaluate("() => decodeURIComponent(location.hash)")
+
+
+def test_a_link_shows_the_same_again(watched, browser, address):
+    page = watched.page
+    moved(page, "acceleration", 0.07)
+    page.wait_for_function("() => location.hash.includes('0.07')")
+    shown(page)
+    other = new_page(browser)
+    other.goto(page.evaluate("() => location.href"))
+    shown(other)
+    for part in ("state()", "laboratory.answer.outcome", "laboratory.answer.measures"):
+        told = f"() => window.stylobate.{part}"
+        assert other.evaluate(told) == page.evaluate(told)
+    other.close()
+
+
+def test_a_broken_link_is_told_and_the_usual_case_shown(browser, address):
+    page = new_page(browser)
+    page.goto(f"{address}/#column=nonsense&motion=circular")
+    shown(page)
+    assert page.get_by_role("alert").filter(has_text="nonsense").is_visible()
+    assert page.evaluate("() => window.stylobate.laboratory.answer.outcome") == "ROLLING"
+    page.close()
+
+
+def test_a_click_in_the_map_starts_that_motion_and_its_link_restores_it(watched, browser):
+    page = watched.page
+    page.get_by_role("tab", name="Overturning map").click()
+    plane = "window.stylobate.laboratory.plane('map')"
+    panel = page.locator(".plane-panel.map")
+    panel.locator("summary").click()
+    panel.get_by_label("cells").select_option(index=0)
+    panel.get_by_role("button", name="Compute").click()
+    page.wait_for_function(f"() => {plane}.axes && !{plane}.running", timeout=180_000)
+    x, y = page.evaluate(f"() => {plane}.clientPlace([3, 1])")
+    axes = page.evaluate(f"() => {plane}.axes")
+    page.mouse.click(x, y)
+    frequency = "window.stylobate.state().description.motion.angular_frequency"
+    page.wait_for_function(f"() => Math.abs({frequency} - {axes['x']['values'][3]}) < 1e-9")
+    shown(page)
+    motion = page.evaluate("() => window.stylobate.state().description.motion")
+    assert motion["acceleration"] == pytest.approx(axes["y"]["values"][1])
+    cell = page.evaluate(f"() => {plane}.filled")
+    assert cell is not None
+    other = new_page(browser)
+    other.goto(page.evaluate("() => location.href"))
+    shown(other)
+    assert other.evaluate("() => window.stylobate.state().description.motion") == motion
+    other.close()
+
+
+def test_a_broken_record_shows_its_one_line(watched):
+    page = watched.page
+    page.get_by_label("Base motion", exact=True).select_option("record")
+    page.locator("input[type=file]").set_input_files(
+        files=[{"name": "quake.AT2", "mimeType": "text/plain", "buffer": b"rubbish\r\n"}]
+    )
+    told = page.get_by_text("quake.AT2, line 1: not a number: 'rubbish'")
+    told.first.wait_for()
+    assert told.first.is_visible()
+
+
+def test_the_keyboard_plays_and_pauses(watched):
+    page = watched.page
+    playing = "() => window.stylobate.laboratory.clock.playing"
+    before = page.evaluate(playing)
+    page.locator("body").press(" ")
+    assert page.evaluate(playing) is not before
+
+
+def test_who_wants_no_motion_gets_none_unasked(browser, address):
+    context = browser.new_context(reduced_motion="reduce")
+    page = new_page(context)
+    page.goto(f"{address}/")
+    shown(page)
+    assert page.evaluate("() => window.stylobate.laboratory.clock.playing") is False
+    context.close()
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_nothing_overflows(browser, address, width, scheme):
+    context = browser.new_context(viewport={"width": width, "height": 844}, color_scheme=scheme)
+    page = new_page(context)
+    page.goto(f"{address}/")
+    shown(page)
+    assert page.evaluate("() => document.documentElement.scrollWidth") <= width
+    context.close()
+
+
+def test_every_control_has_a_name(watched):
+    nameless = watched.page.evaluate(
+        """() => [...document.querySelectorAll('input, select, button, canvas[tabindex]')]
+          .filter(one => one.checkVisibility())
+          .filter(one => !(one.ariaLabel || one.labels?.length || one.textContent.trim() || one.title
+            || one.getAttribute('aria-labelledby')))
+          .map(one => one.outerHTML.slice(0, 80))"""
+    )
+    assert nameless == []
+
+
+def test_the_page_tells_when_the_server_is_gone_and_recovers(browser, tmp_path):
+    with listening("127.0.0.1", 0) as place:
+        port = place.getsockname()[1]
+
+    def served():
+        command = [sys.executable, "-m", "stylobate", "lab", "--no-browser", "--port", str(port)]
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        with process.stdout as told:  # closed once it has told that it answers
+            told.readline()
+        return process
+
+    first = served()
+    page = new_page(browser)
+    try:
+        page.goto(f"http://127.0.0.1:{port}/")
+        shown(page)
+    finally:
+        os.kill(first.pid, signal.SIGKILL)
+        first.wait()
+    page.get_by_label("Damping, slider").press("ArrowRight")
+    banner = page.get_by_text("The server does not answer")
+    banner.wait_for()
+    second = served()
+    try:
+        banner.wait_for(state="hidden", timeout=60_000)
+        damping = page.evaluate("() => window.stylobate.state().description.model.damping")
+        assert damping > 0.1
+        page.wait_for_function(f"() => window.stylobate.laboratory.answer.python.includes('damping={damping})')")
+    finally:
+        second.send_signal(signal.SIGINT)
+        second.wait(timeout=30)
+        page.close()
+
+
+@pytest.mark.slow
+def test_curves_follow_a_slider_and_the_animation_runs(watched):
+    """Times hold for a machine that does nothing else: two cores, drawn by the processor."""
+    page = watched.page
+    page.evaluate("() => window.stylobate.laboratory.clock.play()")
+    page.wait_for_timeout(4000)
+    rates = []
+    for _ in range(5):
+        page.wait_for_timeout(1000)
+        rates.append(page.evaluate("() => window.stylobate.stage.frameRate()"))
+    page.evaluate("() => window.stylobate.laboratory.clock.pause()")
+    slider = page.get_by_label("Damping, slider")
+    slider.focus()
+    took = []
+    for _ in range(15):
+        with page.expect_response(re.compile("/api/response")):
+            page.evaluate(
+                "() => { window.since = performance.now(); window.before = window.stylobate.laboratory.answer; }"
+            )
+            slider.press("ArrowRight")
+        page.wait_for_function("() => window.stylobate.laboratory.answer !== window.before", polling="raf")
+        took.append(page.evaluate("() => performance.now() - window.since"))
+    assert statistics.median(rates) >= 20.0
+    assert statistics.median(took) <= 200.0

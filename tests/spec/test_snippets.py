@@ -1,0 +1,111 @@
+"""A description as a program and as a file does what the description does."""
+
+import tomllib
+
+import numpy as np
+import pytest
+
+import stylobate as sb
+from stylobate.spec import SimulationDescription, as_python, as_toml
+
+COLUMN = {"shape": "dimensionless", "slenderness": 0.1}
+RICKER = {"kind": "ricker", "acceleration": 0.2, "angular_frequency": 3.0}
+STRAIGHT = {"kind": "straight", "acceleration": 0.15, "angular_frequency": 2.0}
+
+CASES = {
+    "free": {"column": COLUMN, "tilt": [0.05, 0.01], "duration": 5.0},
+    "column by its numbers": {
+        "column": {
+            "shape": "given",
+            "radius": 0.1,
+            "mass_height": 1.0,
+            "mass": 2.0,
+            "transverse_inertia": 0.7,
+            "axial_inertia": 0.01,
+            "gravity": 9.8,
+        },
+        "tilt": [0.05, 0.01],
+        "duration": 3.0,
+    },
+    "model with numbers": {
+        "column": {"shape": "frustum", "radius": 0.3, "top_radius": 0.2, "height": 2.0, "density": 2000.0},
+        "model": {"kind": "slender_rolling", "damping": 0.1, "spin_friction": 0.2},
+        "motion": {"kind": "orbit", "diameter": 0.4, "rpm": 40.0},
+        "duration": 4.0,
+    },
+    "rules": {"column": COLUMN, "motion": STRAIGHT, "duration": 30.0, "rules": {"periods": 4.0}},
+    "waves in three directions": {
+        "column": COLUMN,
+        "motion": {"kind": "harmonic", "amplitude": [0.15, 0.1, 0.05], "angular_frequency": 2.0},
+        "duration": 5.0,
+    },
+    "sum of copies": {
+        "column": COLUMN,
+        "motion": {
+            "kind": "sum",
+            "motions": [
+                {"kind": "delayed", "delay": 0.5, "motion": STRAIGHT},
+                {
+                    "kind": "rotated",
+                    "angle": 0.3,
+                    "motion": {"kind": "ricker", "acceleration": 0.2, "angular_frequency": 3.0},
+                },
+                {"kind": "scaled", "factor": 0.5, "vertical": 0.2, "motion": STRAIGHT},
+            ],
+        },
+        "duration": 6.0,
+    },
+    "sweep": {
+        "column": COLUMN,
+        "motion": {"kind": "linear_sweep", "acceleration": 0.15, "frequencies": [0.1, 0.5], "length": 20.0},
+        "duration": 6.0,
+    },
+    "sample record": {
+        "column": {"shape": "solid", "radius": 0.3, "height": 3.0, "density": 2700.0},
+        "model": {"kind": "wobbling", "damping": 0.05},
+        "motion": {"kind": "record", "sample": "el centro 1940", "scale": 0.8, "rotation": 0.4},
+        "duration": 4.0,
+    },
+    "processed record": {
+        "column": {"shape": "solid", "radius": 0.3, "height": 3.0, "density": 2700.0},
+        "motion": {
+            "kind": "record",
+            "sample": "el centro 1940",
+            "processing": [{"method": "trimmed", "begin": 0.0, "end": 5.0}],
+        },
+        "duration": 4.0,
+    },
+}
+
+
+def made(values):
+    setup = SimulationDescription.parse(values).build()
+    return sb.simulate(setup.model, setup.motion, **setup.options)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_program_makes_the_described_run(name):
+    names = {}
+    exec(as_python(SimulationDescription.parse(CASES[name])), names)  # noqa: S102  it is what users are given
+    told, expected = names["run"], made(CASES[name])
+    assert told.outcome is expected.outcome
+    assert told.measures == pytest.approx(expected.measures, nan_ok=True)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_file_holds_the_same_values(name):
+    assert tomllib.loads(as_toml(CASES[name])) == CASES[name]
+
+
+def test_a_record_in_files_is_read_as_it_is_described(tmp_path):
+    for part in "xy":
+        lines = "\n".join(f"{0.01 * i:.2f} {0.1 * (-1) ** i:.3f}" for i in range(50))
+        (tmp_path / f"quake_{part}.txt").write_text(lines)
+    paths = [str(tmp_path / f"quake_{part}.txt") for part in "xy"]
+    motion = {"kind": "record", "path": paths, "units": "g", "directions": {"quake_x.txt": 0.0, "quake_y.txt": 90.0}}
+    values = {"column": {**COLUMN}, "motion": {**motion, "scale": 2.0}, "duration": 1.0}
+    program = as_python(SimulationDescription.parse(values))
+    assert "sb.read_records(" in program
+    names = {}
+    exec(program, names)  # noqa: S102
+    assert np.array_equal(names["motion"].samples, SimulationDescription.parse(values).build().motion.samples)
