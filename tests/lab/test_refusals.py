@@ -104,6 +104,18 @@ def test_malformed_bodies_are_refused(client, path, content, kind, status):
     assert all("Traceback" not in line for line in problems_of(answer))
 
 
+@pytest.mark.parametrize("nested", [lambda v: [v], lambda v: {"motion": v}])
+def test_values_in_values_are_refused_beyond_a_depth(client, nested):
+    value = 1.0
+    for _ in range(300):
+        value = nested(value)
+    for path in ("/api/simulate", "/api/describe", "/api/jobs"):
+        body = {"kind": "map", "description": {"tilt": value}} if path == "/api/jobs" else {"tilt": value}
+        answer = client.post(path, json=body)
+        assert answer.status_code == 422
+        assert "deeper" in problems_of(answer)[0]
+
+
 def test_a_body_of_untold_length_is_cut_at_the_limit(client):
     def endless():
         for _ in range(100):

@@ -9,8 +9,8 @@ from stylobate.lab.limits import Limits
 from stylobate.lab.refusals import RefusedError
 from stylobate.lab.uploads import Upload, Uploads
 
-_DEEPEST = 12
-"""How deep motions may be put into motions, as sums of copies and the like."""
+_DEEPEST = 24
+"""How deep values may lie in values; a copy of a sum of motions takes three."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,20 +45,20 @@ def _with_uploads(
     depth: int = 0,
 ) -> dict[str, Any]:
     """Return `values` with the motion `upload` replaced by its record, wherever it stands."""
-    if depth > _DEEPEST:
-        raise RefusedError(422, [f"motion may hold motions in motions to a depth of {_DEEPEST}; this one goes deeper"])
     if values.get("kind") == "record" or (set(values) & {"path", "upload", "file_sha256"}):
         _refuse_files(values)
         if "upload" in values:
             rest = {name: value for name, value in values.items() if name not in ("kind", "upload")}
             values = {**tell(find(values["upload"])), **rest}
 
-    def inside(value: object) -> object:
+    def inside(value: object, depth: int) -> object:
+        if depth > _DEEPEST:
+            raise RefusedError(422, [f"values may hold values to a depth of {_DEEPEST}; these go deeper"])
         if isinstance(value, Mapping):
-            return _with_uploads(value, find, tell, depth + 1)
-        return [inside(one) for one in value] if isinstance(value, list) else value
+            return _with_uploads(value, find, tell, depth)
+        return [inside(one, depth + 1) for one in value] if isinstance(value, list) else value
 
-    return {name: inside(value) for name, value in values.items()}
+    return {name: inside(value, depth + 1) for name, value in values.items()}
 
 
 def _refuse_files(values: Mapping[str, Any]) -> None:
