@@ -12,7 +12,7 @@ from stylobate.lab.pages import page_is_built
 
 REQUIRED = os.environ.get("STYLOBATE_BROWSER") == "required"
 # Drawn by the processor, as on machines without a graphics card.
-DRAWN = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+DRAWN = ("--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 
 
 def found_browser() -> str:

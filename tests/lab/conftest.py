@@ -34,7 +34,7 @@ def laboratory(limits: Limits | None = None) -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def address() -> Iterator[str]:
-    with laboratory() as found:
+    with laboratory(Limits(run_time=240.0)) as found:  # other tests keep the processors busy
         yield found
 
 

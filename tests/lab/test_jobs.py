@@ -1,5 +1,6 @@
 """Long work in the background: what comes of it, and that it goes away."""
 
+import multiprocessing
 import time
 
 import httpx
@@ -139,19 +140,32 @@ def test_a_job_that_nobody_asks_for_is_dropped():
 
 
 def test_a_run_beyond_its_time_is_given_up_and_the_next_is_not():
-    with laboratory(Limits(run_time=1.0)) as address, httpx.Client(base_url=address, timeout=120.0) as client:
+    with laboratory(Limits(run_time=5.0)) as address, httpx.Client(base_url=address, timeout=120.0) as client:
         slow = {**CIRCLE, "model": {"kind": "slender_rolling", "damping": 0.1}, "tilt": [0.02, 0.0], "duration": 3000.0}
         answer = client.post("/api/simulate", json=slow)
         assert answer.status_code == 503
-        assert "given up after 1 s" in answer.json()["problems"][0]
+        assert "given up after 5 s" in answer.json()["problems"][0]
         assert client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 200
 
 
 def test_runs_that_nobody_waits_for_are_ended():
-    limits = Limits(runs=1, run_time=300.0, wait=20.0)
+    limits = Limits(runs=1, run_time=300.0, wait=120.0)
     with laboratory(limits) as address, httpx.Client(base_url=address, timeout=120.0) as client:
         client.post("/api/simulate", json={**CIRCLE, "duration": 1.0})
         slow = {**CIRCLE, "model": {"kind": "slender_rolling", "damping": 0.1}, "tilt": [0.02, 0.0], "duration": 3000.0}
         with pytest.raises(httpx.ReadTimeout):
             client.post("/api/simulate", json=slow, timeout=1.0)
         assert client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 200
+
+
+def test_a_process_that_dies_is_told_and_replaced():
+    with laboratory(Limits(runs=1, wait=120.0)) as address, httpx.Client(base_url=address, timeout=120.0) as client:
+        values = {**CIRCLE, "tilt": [0.03, 0.0], "duration": 5.0}
+        assert client.post("/api/simulate", json=values).status_code == 200
+        for process in multiprocessing.active_children():
+            process.kill()
+            process.join()
+        lost = client.post("/api/simulate", json=values)
+        assert lost.status_code == 500
+        assert "ended of its own" in lost.json()["problems"][0]
+        assert client.post("/api/simulate", json=values).status_code == 200

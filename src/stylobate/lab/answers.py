@@ -2,6 +2,8 @@
 
 from typing import Any
 
+from stylobate import spec
+from stylobate.lab.described import Described
 from stylobate.lab.plain import numbers, table
 from stylobate.models import Model
 from stylobate.motions import Record
@@ -26,6 +28,12 @@ def plain_run(run: Response, model: Model) -> dict[str, Any]:
         "drawn": drawn_motion(run),
         "series": _series(run, model),
     }
+
+
+def snippets(given: Described) -> dict[str, str]:
+    """Return what is described as a TOML file and as a Python program."""
+    description = spec.SimulationDescription.parse(given.told)
+    return {"toml": spec.as_toml(given.told), "python": spec.as_python(description)}
 
 
 def plain_column(model: Model) -> dict[str, float]:

@@ -2,7 +2,7 @@
 
 import logging
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import anyio
@@ -12,7 +12,7 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
 from stylobate import spec
-from stylobate.lab.answers import plain_column
+from stylobate.lab.answers import plain_column, snippets
 from stylobate.lab.bodies import json_body
 from stylobate.lab.catalogue import about
 from stylobate.lab.crew import Crew
@@ -75,16 +75,15 @@ class Api:
 
         def told() -> dict[str, Any]:
             model = spec.SimulationDescription.parse(given.values).build().model
-            return {**_snippets(given), "column": plain_column(model)}
+            return {**snippets(given), "column": plain_column(model)}
 
         return JSONResponse(await to_thread.run_sync(told))
 
     async def simulate(self, request: Request) -> Response:
         """One run."""
         given = await self._described(request)
-        snippets = await to_thread.run_sync(lambda: _snippets(given))
-        answer = await self._run("run", {"max_steps": self.limits.steps, **given.values}, request)
-        return JSONResponse({**answer, **snippets})
+        limited = replace(given, values={"max_steps": self.limits.steps, **given.values})
+        return Response(await self._run("run", limited, request), media_type="application/json")
 
     async def response(self, request: Request) -> Response:
         """Amplitude and phase of steady rolling over frequency, by theory."""
@@ -136,7 +135,7 @@ class Api:
     async def _described(self, request: Request) -> Described:
         return described(await json_body(request, self.limits.body), self.uploads, self.limits)
 
-    async def _run(self, kind: str, values: dict[str, Any], request: Request) -> dict[str, Any]:
+    async def _run(self, kind: str, values: Any, request: Request) -> Any:
         """Return the result of a task that somebody waits for; it ends when they wait no more, or after its time."""
         answer: Finished | Refused | Broken | None = None
         limits = self.limits
@@ -153,7 +152,6 @@ class Api:
             raise RefusedError(503, [problem]) from None
         match answer:
             case Finished(result):
-                assert isinstance(result, dict)
                 return result
             case Refused(problems):
                 raise RefusedError(422, problems)
@@ -168,8 +166,3 @@ async def _when_gone(request: Request, act: Callable[[], None]) -> None:
     while (await request.receive())["type"] != "http.disconnect":
         pass
     act()
-
-
-def _snippets(given: Described) -> dict[str, str]:
-    description = spec.SimulationDescription.parse(given.told)
-    return {"toml": spec.as_toml(given.told), "python": spec.as_python(description)}

@@ -2,7 +2,7 @@
 
 import multiprocessing
 from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnProcess
@@ -57,8 +57,9 @@ class Crew:
 
     async def warm_up(self) -> None:
         """Have one process ready before the first task."""
-        async with self._worker():
-            pass
+        with suppress(_LostError):
+            async with self._free, self._worker():
+                pass
 
     async def perform(
         self,
@@ -83,9 +84,10 @@ class Crew:
         try:
             told(Note("a process starts"))
             async with self._worker() as worker:
-                worker.connection.send((kind, values))
                 with anyio.fail_after(limit):
-                    return await self._answer(worker, told)
+                    return await self._answer(worker, kind, values, told)
+        except _LostError:
+            return Broken("the process that computed ended of its own, perhaps for want of memory")
         finally:
             self._free.release()
 
@@ -103,7 +105,7 @@ class Crew:
             if worker is None:
                 worker = Worker.started()
                 while not isinstance(await self._heard(worker), Ready):
-                    pass  # what is logged at the start
+                    pass  # what is logged at the start; a process that ends raises
             yield worker
         except BaseException:
             if worker is not None:
@@ -114,7 +116,11 @@ class Crew:
         else:
             worker.end()
 
-    async def _answer(self, worker: Worker, told: Callable[[Told], None]) -> Answer:
+    async def _answer(self, worker: Worker, kind: str, values: Any, told: Callable[[Told], None]) -> Answer:
+        try:
+            worker.connection.send((kind, values))
+        except OSError:
+            raise _LostError from None
         while True:
             message = await self._heard(worker)
             if isinstance(message, (Finished, Refused, Broken)):
@@ -125,4 +131,8 @@ class Crew:
         try:
             return await to_thread.run_sync(worker.connection.recv, limiter=self._threads, abandon_on_cancel=True)
         except (EOFError, OSError):
-            return Broken("the process that computed ended of its own, perhaps for want of memory")
+            raise _LostError from None
+
+
+class _LostError(Exception):
+    """A process ended of its own."""

@@ -13,7 +13,7 @@ from anyio.abc import TaskGroup
 from stylobate.lab.crew import Crew, Told
 from stylobate.lab.limits import Limits
 from stylobate.lab.refusals import RefusedError
-from stylobate.lab.worker import Broken, Event, Finished, Note, Progress
+from stylobate.lab.worker import Broken, Event, Finished, Note, Progress, Refused
 
 
 class State(Enum):
@@ -128,8 +128,8 @@ class Jobs:
                     job.state, job.result = State.DONE, result
                 case Broken(trace):
                     job.state, job.problems = State.FAILED, (broken(trace),)
-                case refused:
-                    job.state, job.problems = State.FAILED, refused.problems
+                case Refused(problems):
+                    job.state, job.problems = State.FAILED, problems
 
 
 def broken(trace: str) -> str:

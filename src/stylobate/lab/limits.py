@@ -44,7 +44,7 @@ class Limits:
     steps: int = 200_000
     points: int = 2000
     cells: int = 40_000
-    run_time: float = 20.0
+    run_time: float = 60.0
     wait: float = 5.0
     runs: int = 3
     jobs: int = 2

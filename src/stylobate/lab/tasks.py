@@ -1,10 +1,12 @@
 """What the processes of the laboratory can compute, by name. Each takes plain values and returns plain values."""
 
+import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from stylobate import engine, spec
-from stylobate.lab.answers import plain_record, plain_run
+from stylobate.lab.answers import plain_record, plain_run, snippets
+from stylobate.lab.described import Described
 from stylobate.lab.worker import Emit, Progress
 
 _LONGEST_PICTURE = 12.0
@@ -13,11 +15,12 @@ _LONGEST_PICTURE = 12.0
 # Imports inside tasks are heavy, and few of the processes do such tasks.
 
 
-def run(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
-    """Return one run, with all that is drawn of it."""
+def run(given: Described, emit: Emit) -> bytes:
+    """Return one run with all that is drawn of it, as JSON: so much is written where nobody else waits for it."""
     del emit
-    setup = spec.SimulationDescription.parse(values).build()
-    return plain_run(engine.simulate(setup.model, setup.motion, **setup.options), setup.model)
+    setup = spec.SimulationDescription.parse(given.values).build()
+    found = engine.simulate(setup.model, setup.motion, **setup.options)
+    return json.dumps({**plain_run(found, setup.model), **snippets(given)}, separators=(",", ":")).encode()
 
 
 def record(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
@@ -60,7 +63,7 @@ def animation(values: Mapping[str, Any], emit: Emit) -> bytes:
 def warm_up() -> None:
     """Import and compile what every run needs."""
     values = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "tilt": [0.02, 0.0], "duration": 1.0}
-    run(values, lambda _: None)
+    run(Described(values, values), lambda _: None)
 
 
 TASKS: Mapping[str, Callable[[Any, Emit], Any]] = {

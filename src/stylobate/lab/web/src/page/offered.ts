@@ -32,6 +32,8 @@ const OF_ANY: Readonly<Record<string, Value>> = { acceleration: 1.5, angular_fre
 
 /** Quantities whose unit is another one in some kinds: an amplitude may be a displacement. */
 const UNITS: Readonly<Record<string, Readonly<Record<string, string>>>> = {
+  elliptic: { amplitude: "m/s²" },
+  harmonic: { amplitude: "m/s²" },
   displacement_amplitude: { amplitude: "m" },
 };
 

@@ -21,7 +21,10 @@ export function quantitiesOf(
 
 /** Returns the plane of the first two quantities: frequency and strength of the motion, or the two tilts. */
 export function defaultPlane(kind: PlaneKind, description: Description, quantities: readonly Quantity[]): Plane | null {
-  const order = kind === "map" ? ["angular_frequency", "acceleration", "scale"] : ["tilt_x", "tilt_y"];
+  const order =
+    kind === "map"
+      ? ["angular_frequency", "acceleration", "scale", "friction_coefficient", "damping"]
+      : ["tilt_x", "tilt_y"];
   const wanted = order.flatMap((name) => quantities.filter((one) => one.name === name));
   const [x, y] = [...wanted, ...quantities.filter((one) => !wanted.includes(one))];
   return x && y ? { x: defaultAxis(x, description), y: defaultAxis(y, description) } : null;

@@ -31,6 +31,14 @@ test("every point of a branch is drawn, and the unstable part joins the stable o
   );
 });
 
+test("two senses that are alike are one line, and those that differ are two", () => {
+  const other = { ...BRANCH, sense: "clockwise" };
+  const alike = linesOf({ ...CURVES, branches: [BRANCH, other] }, 0.1);
+  assert.deepEqual(new Set(alike.map((one) => one.sense)), new Set(["both senses"]));
+  const apart = linesOf({ ...CURVES, branches: [BRANCH, { ...other, amplitude: [0.1, 0.08, 0.05, null] }] }, 0.1);
+  assert.deepEqual(new Set(apart.map((one) => one.sense)), new Set(["anticlockwise", "clockwise"]));
+});
+
 test("a phase that passes half a turn goes on", () => {
   const turned = continuous([3, -3, null, -2.5]).map((value) => value && Number(value.toFixed(3)));
   assert.deepEqual(turned, [3, 3.283, null, 3.783]);

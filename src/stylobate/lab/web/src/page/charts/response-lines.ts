@@ -12,7 +12,7 @@ export interface ResponseLine {
 
 /** Returns two lines for each branch; the unstable ones reach to their stable neighbours, so that no gap is left. */
 export function linesOf(curves: ResponseCurves, slenderness: number): readonly ResponseLine[] {
-  return curves.branches.flatMap((branch) => {
+  return distinct(curves.branches).flatMap((branch) => {
     const amplitude = branch.amplitude.map((value) => (value === null ? null : value / slenderness));
     const phase = continuous(branch.phase);
     return [true, false].map((stable) => ({
@@ -23,6 +23,27 @@ export function linesOf(curves: ResponseCurves, slenderness: number): readonly R
       phase: where(phase, branch, stable),
     }));
   });
+}
+
+/** Returns branches without those of a second sense that cannot be told from the first, as under straight motion. */
+function distinct(branches: readonly ResponseBranch[]): readonly ResponseBranch[] {
+  const senses = [...new Set(branches.map((one) => one.sense))];
+  const [first = [], second = []] = senses.map((sense) => branches.filter((one) => one.sense === sense));
+  const alike = first.length > 0 && first.length === second.length && first.every((one, i) => areAlike(one, second[i]));
+  return alike ? first.map((one) => ({ ...one, sense: BOTH })) : branches;
+}
+
+const BOTH = "both senses";
+
+/** What differs by less [rad] is one line on the screen. */
+const SEEN = 1e-6;
+
+function areAlike(one: ResponseBranch, other: ResponseBranch | undefined): boolean {
+  return (
+    one.branch === other?.branch &&
+    one.amplitude.every((value, i) => Math.abs((value ?? 0) - (other.amplitude[i] ?? 0)) < SEEN) &&
+    one.stable.every((stable, i) => stable === other.stable[i])
+  );
 }
 
 function where(values: Numbers, { stable }: ResponseBranch, wanted: boolean): Numbers {

@@ -191,7 +191,7 @@ export class ResponsePanel {
     const summary =
       lines.length === 0
         ? "no curves"
-        : `${counted(new Set(lines.map((one) => one.sense)).size, "sense")} of rolling; stable from ${critical || "no frequency"} rad/s on`;
+        : `${[...new Set(lines.map((one) => one.sense))].join(" and ")}; stable from ${critical || "no frequency"} rad/s on`;
     this.#amplitudeHost.setAttribute("aria-label", `Amplitude of steady rolling over angular frequency: ${summary}`);
     this.#phaseHost.setAttribute("aria-label", "Phase of steady rolling over angular frequency");
   }

@@ -60,13 +60,11 @@ export class ResponsePlot {
 
   /** The looks are asked for when drawing: which line stands at which place changes with the case. */
   #lineLooks(index: number): uPlot.Series {
-    const stable = index % 2 === 0; // as `linesOf` has them: two branches of one sense, then of the other
-    const second = index >= MOST_LINES / 2;
+    const stable = index % 2 === 0; // as `linesOf` has them
     return {
       stroke: () => themeColour(this.#picture?.lines[index]?.sense === "clockwise" ? "vermilion" : "blue"),
-      // Under a straight motion both senses are alike: the second is drawn finer, on the first.
-      width: stable ? (second ? 1.5 : 3.6) : second ? 1.25 : 1,
-      ...(stable ? {} : { dash: second ? [2, 7] : [5, 4] }),
+      width: stable ? 2.8 : 1,
+      ...(stable ? {} : { dash: [5, 4] }),
       points: { show: false },
       spanGaps: false,
     };
