@@ -27,7 +27,7 @@ def described_run(values):
 
 
 def test_a_run_is_that_of_the_library(client):
-    values = {**CIRCLE, "tilt": [0.04, 0.0], "tilt_rate": [0.0, 0.07], "duration": 30.0}
+    values = {**CIRCLE, "tilt": [0.04, 0.0], "tilt_rate": [0.0, 0.07], "duration": 30.0, "samples": 700}
     told, run = client.post("/api/simulate", json=values).json(), described_run(values)
     assert (told["outcome"], told["reason"]) == (run.outcome.name, run.reason)
     assert told["measures"]["largest_tilt"] == run.measures["largest_tilt"]

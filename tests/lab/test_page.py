@@ -90,7 +90,7 @@ def test_a_moved_slider_moves_motion_and_curves(watched):
     page.wait_for_function(f"() => window.stylobate.laboratory.answer.measures.largest_tilt !== {before}")
     damping = page.evaluate("() => window.stylobate.state().description.model.damping")
     assert damping > 0.1
-    assert f"damping:{damping}" in page.evaluate("() => decodeURIComponent(location.hash)")
+    page.wait_for_function(f"() => decodeURIComponent(location.hash).includes('damping:{damping}')")
 
 
 def test_a_link_shows_the_same_again(watched, browser, address):

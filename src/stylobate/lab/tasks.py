@@ -1,6 +1,7 @@
 """What the processes of the laboratory can compute, by name. Each takes plain values and returns plain values."""
 
 import json
+import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -12,6 +13,8 @@ from stylobate.lab.worker import Emit, Progress
 _LONGEST_PICTURE = 12.0
 """How long a moving picture lasts at most [s]."""
 
+_SAMPLES_PER_PERIOD, _FEWEST_SAMPLES, _MOST_SAMPLES = 48, 601, 2000
+
 # Imports inside tasks are heavy, and few of the processes do such tasks.
 
 
@@ -19,8 +22,16 @@ def run(given: Described, emit: Emit) -> bytes:
     """Return one run with all that is drawn of it, as JSON: so much is written where nobody else waits for it."""
     del emit
     setup = spec.SimulationDescription.parse(given.values).build()
-    found = engine.simulate(setup.model, setup.motion, **setup.options)
+    samples = setup.options["samples"] or _enough(setup)
+    found = engine.simulate(setup.model, setup.motion, **{**setup.options, "samples": samples})
     return json.dumps({**plain_run(found, setup.model), **snippets(given)}, separators=(",", ":")).encode()
+
+
+def _enough(setup: spec.Setup) -> int:
+    """Return how many samples draw a run smoothly: a page shows no more, and waits for each."""
+    frequency = max(setup.motion.highest_frequency, setup.model.column.frequency_scale)
+    swings = setup.options["duration"] * frequency / (2.0 * math.pi)
+    return int(min(max(_SAMPLES_PER_PERIOD * swings, _FEWEST_SAMPLES), _MOST_SAMPLES))
 
 
 def record(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
