@@ -60,7 +60,8 @@ def serve(
 def listening(host: str, port: int) -> socket.socket:
     """Return a socket that listens, or raise FileError."""
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    place = socket.socket(family, socket.SOCK_STREAM)
+    # With the protocol told, asyncio sends answers at once; else each would wait for an acknowledgement of its head.
+    place = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     try:
         place.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         place.bind((host, port))
