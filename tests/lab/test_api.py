@@ -8,6 +8,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.lab.presets import presets
+from stylobate.lab.tasks import speed_of_pictures
 from stylobate.spec import ResponseDescription, SimulationDescription
 
 # Numbers are sent in nine digits.
@@ -119,3 +120,13 @@ def test_each_mistake_is_told_on_a_line_as_on_the_command_line(client):
         "column: radius must be positive, got -1.0 m",
         "duration must be positive, got -2.0 s",
     ]
+
+
+@pytest.mark.parametrize("preset", presets(), ids=lambda preset: preset.identity)
+def test_pictures_of_every_preset_show_each_swing_of_the_base(preset):
+    setup = SimulationDescription.parse(preset.description).build()
+    end = setup.options["duration"]
+    pictures_in_a_second = 25.0 / speed_of_pictures(setup, end)
+    assert pictures_in_a_second * end <= 1400.5
+    if setup.motion.period is not None:
+        assert pictures_in_a_second * setup.motion.period >= 4.0

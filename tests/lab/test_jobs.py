@@ -2,6 +2,7 @@
 
 import multiprocessing
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import httpx
 import numpy as np
@@ -22,6 +23,9 @@ PLANE = {
     "y": {"name": "acceleration", "from": 0.05, "to": 0.4, "number": 9},
 }
 ENDLESS = {**CIRCLE, "duration": 3000.0, "tilt": [0.03, 0.0], "map": {p: {**PLANE[p], "number": 150} for p in "xy"}}
+
+
+SLOW = {**CIRCLE, "model": {"kind": "slender_rolling", "damping": 0.1}, "tilt": [0.02, 0.0], "duration": 3000.0}
 
 
 def begun(client, kind, description):
@@ -141,8 +145,7 @@ def test_a_job_that_nobody_asks_for_is_dropped():
 
 def test_a_run_beyond_its_time_is_given_up_and_the_next_is_not():
     with laboratory(Limits(run_time=5.0)) as address, httpx.Client(base_url=address, timeout=120.0) as client:
-        slow = {**CIRCLE, "model": {"kind": "slender_rolling", "damping": 0.1}, "tilt": [0.02, 0.0], "duration": 3000.0}
-        answer = client.post("/api/simulate", json=slow)
+        answer = client.post("/api/simulate", json=SLOW)
         assert answer.status_code == 503
         assert "given up after 5 s" in answer.json()["problems"][0]
         assert client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 200
@@ -152,20 +155,33 @@ def test_runs_that_nobody_waits_for_are_ended():
     limits = Limits(runs=1, run_time=300.0, wait=120.0)
     with laboratory(limits) as address, httpx.Client(base_url=address, timeout=120.0) as client:
         client.post("/api/simulate", json={**CIRCLE, "duration": 1.0})
-        slow = {**CIRCLE, "model": {"kind": "slender_rolling", "damping": 0.1}, "tilt": [0.02, 0.0], "duration": 3000.0}
         with pytest.raises(httpx.ReadTimeout):
-            client.post("/api/simulate", json=slow, timeout=1.0)
+            client.post("/api/simulate", json=SLOW, timeout=1.0)
         assert client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 200
 
 
 def test_a_process_that_dies_is_told_and_replaced():
-    with laboratory(Limits(runs=1, wait=120.0)) as address, httpx.Client(base_url=address, timeout=120.0) as client:
-        values = {**CIRCLE, "tilt": [0.03, 0.0], "duration": 5.0}
-        assert client.post("/api/simulate", json=values).status_code == 200
+    limits = Limits(runs=1, run_time=300.0, wait=120.0)
+    with (
+        laboratory(limits) as address,
+        httpx.Client(base_url=address, timeout=300.0) as client,
+        ThreadPoolExecutor() as pool,
+    ):
+        assert client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 200
+        answer = pool.submit(client.post, "/api/simulate", json=SLOW)
+        time.sleep(1.0)
         for process in multiprocessing.active_children():
             process.kill()
-            process.join()
-        lost = client.post("/api/simulate", json=values)
+        lost = answer.result()
         assert lost.status_code == 500
         assert "ended of its own" in lost.json()["problems"][0]
-        assert client.post("/api/simulate", json=values).status_code == 200
+        assert client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 200
+
+
+def test_runs_that_are_taken_back_one_after_the_other_keep_nobody_waiting():
+    with laboratory(Limits(run_time=300.0)) as address, httpx.Client(base_url=address, timeout=120.0) as client:
+        assert client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 200
+        for _ in range(6):
+            with pytest.raises(httpx.ReadTimeout):
+                client.post("/api/simulate", json=SLOW, timeout=0.5)
+        assert client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 200

@@ -46,14 +46,14 @@ def create_app(
         del app
         async with AsyncExitStack() as stack:
             folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="stylobate-lab-")))
-            runs, work = Crew(bounds.runs), Crew(bounds.jobs)
-            stack.callback(runs.end)
-            stack.callback(work.end)
             group = await stack.enter_async_context(anyio.create_task_group())
             stack.callback(group.cancel_scope.cancel)
+            runs, work = Crew(bounds.runs, group), Crew(bounds.jobs, group)
+            stack.callback(runs.end)
+            stack.callback(work.end)
             jobs = Jobs(work, bounds, group)
             group.start_soon(jobs.watch)
-            group.start_soon(runs.warm_up)
+            runs.warm_up()
             inner.routes[:] = Api(bounds, runs, jobs, Uploads(folder, bounds.uploads)).routes()
             if ready is not None:
                 ready()

@@ -1,65 +1,98 @@
-"""The processes that compute for the laboratory: as many at once as allowed, ended where nobody waits for them."""
+"""The processes that compute for the laboratory: as many at once as allowed, none kept busy for nobody."""
 
+import math
 import multiprocessing
-from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager, suppress
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnProcess
 from typing import Any
 
 import anyio
-from anyio import CapacityLimiter, Semaphore, to_thread
+from anyio import CapacityLimiter, Event, to_thread
+from anyio.abc import TaskGroup
+from anyio.streams.memory import MemoryObjectReceiveStream, MemoryObjectSendStream
 
-from stylobate.lab.worker import Broken, Event, Finished, Note, Progress, Ready, Refused, work
+from stylobate.lab.worker import Broken, Finished, Found, Note, Progress, Ready, Refused, work
 
-Told = Event | Progress | Note
+Told = Found | Progress | Note
 Answer = Finished | Refused | Broken
 
+GRACE = 1.5
+"""How long a task that nobody waits for any more may take to its end before its process is ended [s].
 
-@dataclass(slots=True)
+A new process takes longer to start than most runs to end.
+"""
+
+
+class LostError(Exception):
+    """A process ended of its own."""
+
+
+@dataclass(slots=True, eq=False)
 class Worker:
-    """One process and the pipe to it."""
+    """One process, the pipe to it, and what came through."""
 
     process: SpawnProcess
     connection: Connection
+    heard: MemoryObjectReceiveStream[Any]
+    hears: MemoryObjectSendStream[Any]
 
     @classmethod
     def started(cls) -> "Worker":
-        """Return a new process; it says that it is ready."""
+        """Return a new process; it says when it is ready."""
         context = multiprocessing.get_context("spawn")
         here, there = context.Pipe()
         process = context.Process(target=work, args=(there,), daemon=True, name="stylobate lab")
         process.start()
         there.close()
-        return cls(process, here)
+        hears, heard = anyio.create_memory_object_stream[Any](math.inf)
+        return cls(process, here, heard, hears)
+
+    async def listen(self, threads: CapacityLimiter) -> None:
+        """Take what the process says, until it ends."""
+        with self.hears:
+            try:
+                while True:
+                    said = await to_thread.run_sync(self.connection.recv, limiter=threads, abandon_on_cancel=True)
+                    self.hears.send_nowait(said)
+            except (EOFError, OSError, anyio.BrokenResourceError):
+                pass
+
+    async def next(self) -> Any:
+        """Return what it says next, or raise LostError."""
+        try:
+            return await self.heard.receive()
+        except (anyio.EndOfStream, anyio.ClosedResourceError):
+            raise LostError from None
 
     def end(self) -> None:
         """End the process, whatever it does."""
         self.process.kill()
         self.connection.close()
         self.process.join()
+        self.heard.close()
 
 
 @dataclass(slots=True)
 class Crew:
-    """At most `limit` processes; those that are idle are kept for the next task."""
+    """At most `limit` processes, which live in tasks of `group`; those that are idle are kept for the next task."""
 
     limit: int
+    group: TaskGroup
+    _all: set[Worker] = field(default_factory=set)
     _idle: list[Worker] = field(default_factory=list)
+    _changed: Event = field(default_factory=Event)
+    _failed: bool = False
     _threads: CapacityLimiter = field(init=False)
-    _free: Semaphore = field(init=False)
-    _open: bool = True
 
     def __post_init__(self) -> None:
-        # A thread waits for each process.
-        self._threads, self._free = CapacityLimiter(self.limit), Semaphore(self.limit)
+        # A thread listens to each process; those that were ended take a moment to fall silent.
+        self._threads = CapacityLimiter(4 * self.limit)
 
-    async def warm_up(self) -> None:
+    def warm_up(self) -> None:
         """Have one process ready before the first task."""
-        with suppress(_LostError):
-            async with self._free, self._worker():
-                pass
+        self._begin()
 
     async def perform(
         self,
@@ -72,67 +105,105 @@ class Crew:
     ) -> Answer:
         """Return how the task of this `kind` ended; what is found on the way is `told`.
 
-        If the caller is cancelled the process is ended with it.
+        If the caller is cancelled, the task is ended unless it ends within the grace.
 
         Raises
         ------
         TimeoutError
             If all processes were busy for longer than `wait` [s], or the task took longer than `limit` [s].
         """
-        with anyio.fail_after(wait):
-            await self._free.acquire()
+        if self._idle or len(self._all) < self.limit:
+            told(Note("a process starts"))  # it will not have to wait for others
         try:
-            told(Note("a process starts"))
-            async with self._worker() as worker:
-                with anyio.fail_after(limit):
-                    return await self._answer(worker, kind, values, told)
-        except _LostError:
-            return Broken("the process that computed ended of its own, perhaps for want of memory")
-        finally:
-            self._free.release()
+            with anyio.fail_after(wait):
+                worker = await self._ready()
+        except LostError:
+            return _ENDED
+        told(Note(""))
+        try:
+            worker.connection.send((kind, values))
+            with anyio.fail_after(limit):
+                answer = await _answer(worker, told)
+        except (LostError, OSError) as error:
+            if isinstance(error, TimeoutError):  # an OSError too
+                self.group.start_soon(self._settle, worker)
+                raise
+            self._discard(worker)
+            return _ENDED
+        except BaseException:
+            self.group.start_soon(self._settle, worker)
+            raise
+        self._release(worker)
+        return answer
 
     def end(self) -> None:
         """End all processes."""
-        self._open = False
-        while self._idle:
-            self._idle.pop().end()
+        for worker in list(self._all):
+            self._discard(worker)
 
-    @asynccontextmanager
-    async def _worker(self) -> AsyncIterator[Worker]:
-        """Lend a process that is ready; one that did not come to the end of its task is ended."""
-        worker = self._idle.pop() if self._idle else None
-        try:
-            if worker is None:
-                worker = Worker.started()
-                while not isinstance(await self._heard(worker), Ready):
-                    pass  # what is logged at the start; a process that ends raises
-            yield worker
-        except BaseException:
-            if worker is not None:
-                worker.end()
-            raise
-        if self._open:
-            self._idle.append(worker)
-        else:
-            worker.end()
-
-    async def _answer(self, worker: Worker, kind: str, values: Any, told: Callable[[Told], None]) -> Answer:
-        try:
-            worker.connection.send((kind, values))
-        except OSError:
-            raise _LostError from None
+    async def _ready(self) -> Worker:
+        """Return an idle process; one more is started where that is allowed."""
         while True:
-            message = await self._heard(worker)
-            if isinstance(message, (Finished, Refused, Broken)):
-                return message
-            told(message)
+            while self._idle:
+                worker = self._idle.pop()
+                if worker.process.is_alive():
+                    return worker
+                self._discard(worker)
+            if self._failed:
+                self._failed = False
+                raise LostError
+            if len(self._all) < self.limit:
+                self._begin()
+            await self._changed.wait()
 
-    async def _heard(self, worker: Worker) -> Any:
+    def _begin(self) -> None:
+        worker = Worker.started()
+        self._all.add(worker)
+        self.group.start_soon(worker.listen, self._threads)
+        self.group.start_soon(self._start, worker)
+
+    async def _start(self, worker: Worker) -> None:
         try:
-            return await to_thread.run_sync(worker.connection.recv, limiter=self._threads, abandon_on_cancel=True)
-        except (EOFError, OSError):
-            raise _LostError from None
+            while not isinstance(await worker.next(), Ready):
+                pass  # what is logged at the start
+        except LostError:
+            self._failed = True
+            self._discard(worker)
+        else:
+            self._release(worker)
+
+    async def _settle(self, worker: Worker) -> None:
+        """Take back a process whose task nobody waits for; one that goes on with it is replaced."""
+        try:
+            with anyio.move_on_after(GRACE):
+                await _answer(worker, lambda _: None)
+                self._release(worker)
+                return
+        except LostError:
+            pass
+        self._discard(worker)
+        self._begin()
+
+    def _release(self, worker: Worker) -> None:
+        self._idle.append(worker)
+        self._tell()
+
+    def _discard(self, worker: Worker) -> None:
+        worker.end()
+        self._all.discard(worker)
+        self._tell()
+
+    def _tell(self) -> None:
+        self._changed.set()
+        self._changed = Event()
 
 
-class _LostError(Exception):
-    """A process ended of its own."""
+_ENDED = Broken("the process that computed ended of its own, perhaps for want of memory")
+
+
+async def _answer(worker: Worker, told: Callable[[Told], None]) -> Answer:
+    while True:
+        message = await worker.next()
+        if isinstance(message, (Finished, Refused, Broken)):
+            return message
+        told(message)

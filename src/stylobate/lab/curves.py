@@ -8,7 +8,7 @@ import xarray as xr
 
 from stylobate import spec, studies
 from stylobate.lab.plain import numbers
-from stylobate.lab.worker import Emit, Event
+from stylobate.lab.worker import Emit, Note
 
 
 def response(values: Mapping[str, Any]) -> dict[str, Any]:
@@ -45,11 +45,11 @@ def plain_curves(curves: xr.Dataset) -> dict[str, Any]:
 
 
 def exact_curves(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
-    """Return the exact orbits that `values` describe; each new one is told by its frequency."""
+    """Return the exact orbits that `values` describe; how far they were followed is told on the way."""
     setup = spec.ResponseDescription.parse(values).build()
 
     def reached(frequency: float) -> None:
-        emit(Event({"angular_frequency": float(frequency)}))
+        emit(Note(f"orbits followed to {frequency:.4g} rad/s"))
 
     low, high = setup.options["range"]
     found = studies.exact_response(setup.model, setup.motion, angular_frequency=(low, high), progress=reached)

@@ -11,7 +11,7 @@ from stylobate import spec, studies
 from stylobate.errors import Outcome, ParameterError
 from stylobate.lab.plain import number, numbers
 from stylobate.lab.refining import Cells, Refining
-from stylobate.lab.worker import Emit, Event, Progress
+from stylobate.lab.worker import Emit, Found, Progress
 from stylobate.results.outcomes import code_of
 from stylobate.studies.sweeps.quantities import attributes_of
 
@@ -56,11 +56,11 @@ def _watched(study: Callable[..., xr.Dataset], setup: spec.Setup, emit: Emit) ->
         for place, (name, values) in zip("xy", over.items(), strict=True)
     }
     names = [[code_of(outcome), outcome.value] for outcome in Outcome]
-    emit(Event({"axes": axes, "names": names}))
+    emit(Found({"axes": axes, "names": names}))
 
     def show(stride: int, places: Cells, outcomes: Cells) -> None:
         cells = np.column_stack([places, outcomes]).tolist()
-        emit(Event({"stride": stride, "cells": cells}))
+        emit(Found({"stride": stride, "cells": cells}))
 
     executor = Refining(show, threads=max(1, (os.cpu_count() or 2) // 2))
     return study(

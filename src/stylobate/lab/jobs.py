@@ -13,7 +13,7 @@ from anyio.abc import TaskGroup
 from stylobate.lab.crew import Crew, Told
 from stylobate.lab.limits import Limits
 from stylobate.lab.refusals import RefusedError
-from stylobate.lab.worker import Broken, Event, Finished, Note, Progress, Refused
+from stylobate.lab.worker import Broken, Finished, Found, Note, Progress, Refused
 
 
 class State(Enum):
@@ -49,7 +49,7 @@ class Job:
         """Take what is told on the way."""
         self.state = State.RUNNING
         match message:
-            case Event(value):
+            case Found(value):
                 self.events.append(value)
             case Progress(done, total):
                 self.done, self.total = done, total
@@ -123,6 +123,7 @@ class Jobs:
     async def _run(self, job: Job, values: Mapping[str, Any]) -> None:
         with job.scope:
             answer = await self.crew.perform(job.kind, values, job.heard)
+            job.note = ""
             match answer:
                 case Finished(result):
                     job.state, job.result = State.DONE, result

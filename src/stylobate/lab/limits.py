@@ -45,7 +45,7 @@ class Limits:
     points: int = 2000
     cells: int = 40_000
     run_time: float = 60.0
-    wait: float = 5.0
+    wait: float = 30.0
     runs: int = 3
     jobs: int = 2
     waiting: int = 8

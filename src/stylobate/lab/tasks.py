@@ -10,8 +10,9 @@ from stylobate.lab.answers import plain_record, plain_run, snippets
 from stylobate.lab.described import Described
 from stylobate.lab.worker import Emit, Progress
 
-_LONGEST_PICTURE = 12.0
-"""How long a moving picture lasts at most [s]."""
+_USUAL_LENGTH = 12.0
+"""How long a moving picture lasts [s], unless its base swings so fast that it must be slower."""
+_PICTURES_PER_SECOND, _PICTURES_PER_PERIOD, _MOST_PICTURES = 25.0, 12.0, 1400
 
 _SAMPLES_PER_PERIOD, _FEWEST_SAMPLES, _MOST_SAMPLES = 48, 601, 2000
 
@@ -67,8 +68,17 @@ def animation(values: Mapping[str, Any], emit: Emit) -> bytes:
 
     setup = spec.SimulationDescription.parse(values).build()
     run = engine.simulate(setup.model, setup.motion, **setup.options)
-    speed = max(1.0, float(run.data["time"][-1]) / _LONGEST_PICTURE)
-    return animate(run, speed=speed).gif(lambda done, total: emit(Progress(done, total)))
+    return animate(run, speed=speed_of_pictures(setup, float(run.data["time"][-1]))).gif(
+        lambda done, total: emit(Progress(done, total))
+    )
+
+
+def speed_of_pictures(setup: spec.Setup, end: float) -> float:
+    """Return how fast a run is shown: in about twelve seconds, but so slowly that each swing of the base is seen."""
+    frequency = setup.motion.highest_frequency / (2.0 * math.pi)
+    swings = setup.motion.period is not None and frequency > 0.0
+    seen = _PICTURES_PER_SECOND / (_PICTURES_PER_PERIOD * frequency) if swings else math.inf
+    return max(min(max(1.0, end / _USUAL_LENGTH), seen), _PICTURES_PER_SECOND * end / _MOST_PICTURES)
 
 
 def warm_up() -> None:

@@ -18,7 +18,7 @@ class Ready:
 
 
 @dataclass(frozen=True, slots=True)
-class Event:
+class Found:
     """Something found on the way."""
 
     value: Mapping[str, Any]

@@ -2,6 +2,7 @@
 
 import base64
 import math
+import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -12,6 +13,7 @@ from PIL import Image
 from stylobate.errors import (
     FileError,
     ParameterError,
+    SeldomMeant,
     require_finite,
     require_positive,
     require_vector,
@@ -29,6 +31,8 @@ from stylobate.results import Response
 _MOST = 1500
 # A GIF's clock runs in hundredths of a second, and viewers slow down what is faster than half of them.
 _FASTEST = 50.0
+# With fewer pictures of each swing of the base one sees another motion.
+_FEWEST_IN_A_PERIOD = 4.0
 # Width and height of pictures [pixels]: smaller ones cannot hold what is written in them.
 _SMALLEST, _LARGEST = (320, 280), (3840, 2160)
 _SUFFIXES = (".gif", ".mp4", ".html")
@@ -173,6 +177,11 @@ def animate(
     FileError
         If the file cannot be written.
 
+    Warns
+    -----
+    SeldomMeant
+        If there are fewer than four pictures of each swing of the base: one then sees another motion.
+
     Examples
     --------
     >>> import stylobate as sb
@@ -189,11 +198,25 @@ def animate(
     look = Look(size=_size(size), view=_view(azimuth, elevation), title=title, pace=pace)
     history = DrawnMotion.of(run, title=title)
     _require_few(float(history.time[-1]), rate, pace)
+    _remark_on_few(run, rate / pace)
     motion = DrawnMotion.of(run, frames_per_second=rate / pace, title=title, most=_MOST)
     animation = Animation(motion=motion, history=history, look=look, frames_per_second=rate)
     if path is not None:
         animation.save(path)
     return animation
+
+
+def _remark_on_few(run: Response, pictures: float) -> None:
+    """Warn of so few `pictures` in a second of the run that its base seems to stand still or to move otherwise."""
+    frequency = run.provenance["motion"].get("angular_frequency")
+    if not isinstance(frequency, float) or pictures * 2.0 * math.pi >= _FEWEST_IN_A_PERIOD * frequency:
+        return
+    least = pictures * 2.0 * math.pi / (_FEWEST_IN_A_PERIOD * frequency)
+    message = (
+        f"the base swings {frequency / (2.0 * math.pi):.4g} times a second, of which {pictures:.4g} pictures a second "
+        f"show too little: make speed {least:.2g} times what it is, or less"
+    )
+    warnings.warn(message, SeldomMeant, stacklevel=3)
 
 
 def checked_path(path: str | Path) -> Path:
