@@ -1,7 +1,9 @@
 """Long work in the background: with progress, events as they come, cancelled or dropped when nobody asks for it."""
 
+import logging
 import secrets
 import time
+import traceback
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
@@ -10,10 +12,13 @@ from typing import Any
 import anyio
 from anyio.abc import TaskGroup
 
-from stylobate.lab.crew import Crew, Told
+from stylobate.lab.crew import Answer, Crew, Told
 from stylobate.lab.limits import Limits
 from stylobate.lab.refusals import RefusedError
 from stylobate.lab.worker import Broken, Finished, Found, Note, Progress, Refused
+
+
+_log = logging.getLogger("stylobate.lab")
 
 
 class State(Enum):
@@ -55,6 +60,18 @@ class Job:
                 self.done, self.total = done, total
             case Note(line):
                 self.note = line
+
+    def end(self, answer: Answer) -> None:
+        """Take how the task ended."""
+        self.note = ""
+        match answer:
+            case Finished(result):
+                self.state, self.result = State.DONE, result
+            case Refused(problems):
+                self.state, self.problems = State.FAILED, problems
+            case Broken(trace):
+                _log.error(trace)
+                self.state, self.problems = State.FAILED, (broken(trace),)
 
     def told(self, after: int) -> dict[str, Any]:
         """Return the job as plain values, with the events from the number `after` on."""
@@ -122,15 +139,11 @@ class Jobs:
 
     async def _run(self, job: Job, values: Mapping[str, Any]) -> None:
         with job.scope:
-            answer = await self.crew.perform(job.kind, values, job.heard)
-            job.note = ""
-            match answer:
-                case Finished(result):
-                    job.state, job.result = State.DONE, result
-                case Broken(trace):
-                    job.state, job.problems = State.FAILED, (broken(trace),)
-                case Refused(problems):
-                    job.state, job.problems = State.FAILED, problems
+            try:
+                answer: Answer = await self.crew.perform(job.kind, values, job.heard)
+            except Exception:  # noqa: BLE001  a mistake in one job is not to end the others
+                answer = Broken(traceback.format_exc())
+            job.end(answer)
 
 
 def broken(trace: str) -> str:

@@ -46,7 +46,7 @@ export class Job {
   }
 
   async #follow(id: string): Promise<void> {
-    for (let after = 0; this.#wanted;) {
+    for (let after = 0; this.#wanted; ) {
       const report = await jobReport(id, after);
       if (!this.#wanted) return;
       after = report.next;

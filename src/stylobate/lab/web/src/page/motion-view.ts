@@ -15,7 +15,7 @@ export class MotionView {
   readonly orbit = new OrbitChart();
   readonly root: HTMLElement;
   readonly histories: HTMLElement;
-  readonly #host = element("div", { class: "stage" });
+  readonly #host = element("div", { class: "stage empty" });
   readonly #transport: Transport;
   readonly #verdict = new Verdict();
   readonly #curves: Histories;
@@ -34,7 +34,7 @@ export class MotionView {
   }
 
   show(answer: Answer): void {
-    this.#host.classList.remove("old");
+    this.#host.classList.remove("old", "empty");
     this.clock.setRange(0, answer.drawn.time.at(-1) ?? 0);
     this.stage?.show(answer.drawn);
     this.#curves.show(answer);

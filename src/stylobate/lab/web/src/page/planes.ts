@@ -5,6 +5,7 @@ import type { Description } from "./description";
 import { without, written } from "./description";
 import type { ColumnScales, Quantity } from "./quantities";
 import { basinQuantities, mapQuantities, rangeAbout, valueOf } from "./quantities";
+import { lengthOf } from "./run-length";
 import type { Axis, Plane } from "./state";
 import { DEFAULT_CELLS } from "./state";
 
@@ -40,7 +41,7 @@ export function belongs(plane: Plane, quantities: readonly Quantity[]): boolean 
 }
 
 /** Returns what a plane's picture depends on: the case but for the two numbers that vary, and the axes. */
-export function keyOf(description: Description, plane: Plane): string {
+export function keyOf(kind: PlaneKind, description: Description, plane: Plane): string {
   const varied = [plane.x.name, plane.y.name];
   const starts = varied.some((name) => name.startsWith("tilt_"));
   const rest = {
@@ -51,7 +52,7 @@ export function keyOf(description: Description, plane: Plane): string {
     tilt_rate:
       varied.includes("tilt_rate_x") && varied.includes("tilt_rate_y") ? null : (description["tilt_rate"] ?? null),
     spin: varied.includes("spin") ? null : (description["spin"] ?? null),
-    duration: varied.includes("duration") ? null : (description["duration"] ?? null),
+    length: varied.includes("duration") ? null : lengthOf(kind, description),
     starts,
     x: { ...plane.x },
     y: { ...plane.y },

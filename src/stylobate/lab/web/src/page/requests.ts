@@ -5,13 +5,11 @@ import { isPart } from "./description";
 import { isHorizontalHarmonic, withoutFrequency } from "./frequency";
 import type { PlaneKind } from "./planes";
 import { niceAbove, niceBelow } from "./ranges";
+import { lengthOf } from "./run-length";
 import type { Plane } from "./state";
 
 /** Points of a response curve: about one to a pixel. */
 const POINTS = 400;
-
-/** How long the runs of a basin last, in periods of the base motion: what has not settled by then is told apart. */
-const BASIN_PERIODS = 200;
 
 /** Returns a description as it is sent: what need not be given and is not, is left out. */
 export function sent(description: Part): Part {
@@ -47,8 +45,6 @@ export function isSlender(description: Description): boolean {
 
 /** Returns the request for a map or a basin. */
 export function planeRequest(kind: PlaneKind, description: Description, plane: Plane): Part {
-  const periodic = isHorizontalHarmonic(description.motion) && kind === "basin";
   const axes = { x: { ...plane.x }, y: { ...plane.y } };
-  const length = periodic ? { duration: null, periods: BASIN_PERIODS } : {};
-  return sent({ ...description, ...length, [kind]: axes });
+  return sent({ ...description, ...lengthOf(kind, description), [kind]: axes });
 }

@@ -1,7 +1,7 @@
 /** The frequency response of the case that is shown: curves at once, exact orbits on request. */
 
-import type { JobReport, ResponseCurves } from "./answers";
-import { response, Unreachable } from "./api";
+import type { JobReport } from "./answers";
+import { describe, response, Unreachable } from "./api";
 import { ResponsePanel } from "./charts/response-panel";
 import type { Part } from "./description";
 import { written } from "./description";
@@ -10,6 +10,8 @@ import type { Job } from "./job";
 import { Latest } from "./latest";
 import type { ColumnScales } from "./quantities";
 import { exactRequest, isSlender, responseRequest, usualRange } from "./requests";
+import type { ScaledCurves } from "./scaled-response";
+import { ScaledResponse } from "./scaled-response";
 import type { View } from "./state";
 
 export type JobStart = (
@@ -28,7 +30,7 @@ export interface AskingHearing {
 export class ResponseAsking {
   readonly panel: ResponsePanel;
   readonly #lost: () => void;
-  readonly #curves: Latest<Part, ResponseCurves>;
+  readonly #curves: Latest<Part, ScaledCurves>;
   #view: View;
   #scales: ColumnScales;
   #asked = { curves: "", exact: "" };
@@ -42,8 +44,9 @@ export class ResponseAsking {
       range: (range) => edited({ range }),
       exact: (report, ended) => start("exact", exactRequest(this.#view.description, this.#range) ?? {}, report, ended),
     });
-    this.#curves = new Latest(response, {
-      answered: (curves) => this.#take(curves),
+    const scaled = new ScaledResponse(response, describe);
+    this.#curves = new Latest((body, signal) => scaled.ask(body, signal), {
+      answered: (found) => this.#take(found),
       failed: (error) => this.#fail(error),
     });
   }
@@ -92,8 +95,8 @@ export class ResponseAsking {
     this.panel.clear("Response curves need a harmonic base motion in the horizontal.");
   }
 
-  #take(curves: ResponseCurves): void {
-    this.panel.show(curves, this.#scales.slenderness, this.#range, isSlender(this.#view.description));
+  #take({ curves, slenderness }: ScaledCurves): void {
+    this.panel.show(curves, slenderness, this.#range, isSlender(this.#view.description));
   }
 
   #fail(error: unknown): void {

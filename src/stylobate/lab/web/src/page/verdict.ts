@@ -4,12 +4,16 @@ import type { Answer } from "./answers";
 import { element } from "./dom";
 import { capital, told } from "./format";
 
+/** Outcomes that tell how far a run was followed, not what became of the column. */
+const UNDECIDED: readonly string[] = ["STILL_MOVING", "LIMIT_REACHED", "FAILED"];
+
 export class Verdict {
   readonly root = element("div", { class: "verdict", "aria-live": "polite", "aria-atomic": "true" });
   #told = "";
 
   show(answer: Answer): void {
-    const at = answer.decided_at === null ? "" : ` Decided at ${told(answer.decided_at, 3)} s.`;
+    const reached = UNDECIDED.includes(answer.outcome) ? "Followed to" : "Decided at";
+    const at = answer.decided_at === null ? "" : ` ${reached} ${told(answer.decided_at, 3)} s.`;
     const text = [answer.outcome, answer.reason, at, answer.uncertain, ...answer.warnings].join("\n");
     if (text === this.#told) return; // what has been read out once is not read out again
     this.#told = text;

@@ -43,16 +43,17 @@ test("a map is over frequency and strength where nothing is said, and holds the 
 test("a picture stays that of its case when a motion in it is chosen, and not when another number moves", () => {
   const plane = defaultPlane("map", CASE, quantitiesOf("map", CASE, ABOUT, SCALES))!;
   const chosen = withValue(withValue(CASE, "angular_frequency", 3), "acceleration", 0.2);
-  assert.equal(keyOf(chosen, plane), keyOf(CASE, plane));
-  for (const name of ["damping", "slenderness", "tilt_x", "duration"]) {
-    assert.notEqual(keyOf(withValue(CASE, name, 0.0321), plane), keyOf(CASE, plane), name);
+  assert.equal(keyOf("map", chosen, plane), keyOf("map", CASE, plane));
+  for (const name of ["damping", "slenderness", "tilt_x"]) {
+    assert.notEqual(keyOf("map", withValue(CASE, name, 0.0321), plane), keyOf("map", CASE, plane), name);
   }
+  assert.notEqual(keyOf("map", withValue(CASE, "duration", 900), plane), keyOf("map", CASE, plane), "duration");
 });
 
 test("a basin's picture does not depend on the start that is shown in it", () => {
   const plane = defaultPlane("basin", CASE, quantitiesOf("basin", CASE, ABOUT, SCALES))!;
   const other = withValue(withValue(CASE, "tilt_x", 0.01), "tilt_y", 0.02);
-  assert.equal(keyOf(other, plane), keyOf(CASE, plane));
+  assert.equal(keyOf("basin", other, plane), keyOf("basin", CASE, plane));
 });
 
 for (const motion of [

@@ -23,7 +23,7 @@ export interface ResponseHearing {
 export class ResponsePanel {
   readonly root: HTMLElement;
   readonly #hearing: ResponseHearing;
-  readonly #plots = element("div", { class: "response-plots" });
+  readonly #plots = element("div", { class: "response-plots empty" });
   readonly #amplitudeHost = element("div", { class: "plot amplitude", role: "img" });
   readonly #phaseHost = element("div", { class: "plot phase", role: "img" });
   readonly #note = element("p", { class: "note", "aria-live": "polite" });
@@ -168,6 +168,7 @@ export class ResponsePanel {
 
   #draw(): void {
     const curves = this.#curves;
+    this.#plots.classList.toggle("empty", curves === null); // without curves there is nothing to read off
     const lines = curves === null ? [] : linesOf(curves, this.#slenderness);
     const c = this.#slenderness;
     const tilts =

@@ -1,11 +1,13 @@
 /** The column of controls: preset, column, model, base motion, start and length. */
 
-import type { About, Preset } from "../about";
-import { kindsOf } from "../about";
+import type { About, Kind, Preset } from "../about";
+import { kindNamed, kindsOf } from "../about";
 import type { Description, Part, PartName, Value } from "../description";
 import { kindOf, tagOf, withPartValue, written } from "../description";
 import { choice, element, newId } from "../dom";
+import { angularFrequency, withAngularFrequency } from "../frequency";
 import type { ColumnScales } from "../quantities";
+import { KeptNumbers } from "./kept-numbers";
 import { NumberField } from "./number-field";
 import { PartForm, partOfKind } from "./part-form";
 import { RecordForm } from "./record-form";
@@ -29,6 +31,11 @@ export class Controls {
   readonly #record: RecordForm;
   readonly #start: StartForm;
   readonly #duration: NumberField;
+  readonly #kept: Readonly<Record<PartName, KeptNumbers>> = {
+    column: new KeptNumbers(),
+    model: new KeptNumbers(),
+    motion: new KeptNumbers(),
+  };
   #description: Description;
 
   constructor(about: About, first: Description, problems: HTMLElement, hearing: ControlsHearing) {
@@ -93,7 +100,7 @@ export class Controls {
   #form(part: PartName): PartForm {
     return new PartForm(LABELS[part], kindsOf(this.#about, part), {
       chosen: (kind) => {
-        const chosen = partOfKind(kind, tagOf(part), this.#description[part]);
+        const chosen = this.#ofKind(part, kind);
         this.#hearing.jumped(
           this.#fitted({ ...this.#description, [part]: part === "motion" ? this.#withSample(chosen) : chosen }),
         );
@@ -101,6 +108,17 @@ export class Controls {
       changed: (name: string, value: Value) =>
         this.#hearing.edited(withPartValue(this.#description, part, name, value)),
     });
+  }
+
+  /** Returns the part as one of another kind, with what it has in common with those before; a motion goes as fast. */
+  #ofKind(part: PartName, kind: Kind): Part {
+    const before = this.#description[part];
+    const kept = this.#kept[part];
+    const known = kindNamed(this.#about, part, kindOf(this.#description, part));
+    if (known !== undefined) kept.keep(known, before);
+    const found = partOfKind(kind, tagOf(part), kept.of(kind));
+    const frequency = part === "motion" ? angularFrequency(before) : null;
+    return frequency === null ? found : withAngularFrequency(found, frequency);
   }
 
   /** A record needs to be one: the first sample, until another is chosen. */
@@ -118,7 +136,9 @@ export class Controls {
 
   #choosePreset(id: string): void {
     const preset = this.#about.presets.find((one) => one.id === id);
-    if (preset) this.#hearing.preset(preset);
+    if (preset === undefined) return;
+    for (const kept of Object.values(this.#kept)) kept.forget();
+    this.#hearing.preset(preset);
   }
 }
 

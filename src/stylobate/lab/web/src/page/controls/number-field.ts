@@ -28,6 +28,10 @@ export class NumberField {
   readonly #changed: (value: number | null) => void;
   readonly #looks: NumberLooks;
   #scale: Scale;
+  /** What the number is, whatever is being written. */
+  #value: number | null = null;
+  /** Whether what is being written is no number. */
+  #unread = false;
 
   constructor(looks: NumberLooks, changed: (value: number | null) => void) {
     this.name = looks.name;
@@ -49,7 +53,8 @@ export class NumberField {
 
   /** Shows a value, unless it is being written. */
   show(value: number | null): void {
-    if (document.activeElement !== this.#field) this.#field.value = value === null ? "" : plain(value, SHOWN);
+    this.#value = value;
+    if (document.activeElement !== this.#field) this.#write();
     if (!this.#slider.matches(":active")) {
       this.#reachFor(value);
       this.#slider.value = String(value === null ? 0 : positionOf(value, this.#scale));
@@ -67,8 +72,9 @@ export class NumberField {
 
   /** Marks the field as the one that a problem is about, or clears the mark. */
   setWrong(wrong: boolean): void {
-    this.#field.toggleAttribute("aria-invalid", wrong);
-    if (wrong) this.#field.setAttribute("aria-invalid", "true");
+    const marked = wrong || this.#unread; // an answer to the number before says nothing of what is being written
+    if (marked) this.#field.setAttribute("aria-invalid", "true");
+    else this.#field.removeAttribute("aria-invalid");
   }
 
   /** Moves the ends of a slider that has none of its own, once its value is near or beyond one. */
@@ -100,6 +106,7 @@ export class NumberField {
       this.#slider.value = String(positionOf(value, this.#scale));
     });
     this.#field.addEventListener("input", () => this.#read());
+    this.#field.addEventListener("blur", () => this.#restore());
     this.#field.addEventListener("keydown", (event) => {
       if (event.key === "ArrowUp" || event.key === "ArrowDown") this.#step(event);
     });
@@ -110,10 +117,23 @@ export class NumberField {
     const value = Number(text);
     const empty = text === "";
     const wrong = empty ? this.#looks.empty === undefined : !Number.isFinite(value);
+    this.#unread = wrong;
     this.setWrong(wrong);
     if (wrong) return;
     this.#slider.value = String(empty ? 0 : positionOf(value, this.#scale));
     this.#changed(empty ? null : value);
+  }
+
+  /** What is no number is not kept: the field tells what is shown. */
+  #restore(): void {
+    if (!this.#unread) return;
+    this.#unread = false;
+    this.setWrong(false);
+    this.#write();
+  }
+
+  #write(): void {
+    this.#field.value = this.#value === null ? "" : plain(this.#value, SHOWN);
   }
 
   #step(event: KeyboardEvent): void {
@@ -132,7 +152,7 @@ export class NumberField {
 }
 
 /** Significant digits in the field; the value itself has all that it was given. */
-const SHOWN = 5;
+const SHOWN = 6;
 
 /** How near an end counts as at it, in positions of the slider. */
 const EDGE = 8;

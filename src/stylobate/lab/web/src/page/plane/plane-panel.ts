@@ -194,7 +194,7 @@ export class PlanePanel {
     this.#tellProblem(problems);
     this.#complete = last?.state === "done";
     if (this.#complete) this.#finish((last?.result ?? null) as PlaneResult | null);
-    else if (problems.length > 0) this.#readout.textContent = "";
+    else this.#readout.textContent = ""; // a job that has ended does nothing any more
     this.#redraw();
   }
 

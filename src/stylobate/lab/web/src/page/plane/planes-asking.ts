@@ -8,6 +8,7 @@ import type { ColumnScales } from "../quantities";
 import { valueOf, withValue } from "../quantities";
 import { planeRequest } from "../requests";
 import type { JobStart } from "../response-asking";
+import { withLength } from "../run-length";
 import type { Plane, View } from "../state";
 import { PlanePanel } from "./plane-panel";
 
@@ -44,7 +45,7 @@ export class PlanesAsking {
       const quantities = quantitiesOf(kind, description, this.#about, scales);
       const [x, y] = [valueOf(description, plane.x.name), valueOf(description, plane.y.name)];
       const values = x === undefined || y === undefined ? null : ([x, y] as const);
-      this.panels[kind].show(plane, quantities, description, values, keyOf(description, plane));
+      this.panels[kind].show(plane, quantities, description, values, keyOf(kind, description, plane));
     }
   }
 
@@ -67,12 +68,16 @@ export class PlanesAsking {
         this.#fill(kind);
       },
       cancelled: () => edited({ filled: false }),
-      chosen: (x, y) => jumped({ description: this.#at(x, y), [kind]: this.#plane(kind) }),
+      chosen: (x, y) => jumped({ description: this.#at(kind, x, y), [kind]: this.#plane(kind) }),
     });
   }
 
-  #at([nameX, x]: readonly [string, number], [nameY, y]: readonly [string, number]): Description {
-    return withValue(withValue(this.#view.description, nameX, x), nameY, y);
+  /** Returns the case of a cell, followed as long as the cell's own run was: what is seen is what the cell tells. */
+  #at(kind: PlaneKind, [nameX, x]: readonly [string, number], [nameY, y]: readonly [string, number]): Description {
+    const { description } = this.#view;
+    const longest = this.#about.limits["duration"];
+    const chosen = withValue(withValue(description, nameX, x), nameY, y);
+    return withLength(kind, description, chosen, typeof longest === "number" ? longest : Infinity);
   }
 
   #plane(kind: PlaneKind): Plane | null {
