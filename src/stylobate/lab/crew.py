@@ -84,6 +84,7 @@ class Crew:
     _idle: list[Worker] = field(default_factory=list)
     _changed: Event = field(default_factory=Event)
     _failed: bool = False
+    _open: bool = True
     _threads: CapacityLimiter = field(init=False)
 
     def __post_init__(self) -> None:
@@ -137,7 +138,8 @@ class Crew:
         return answer
 
     def end(self) -> None:
-        """End all processes."""
+        """End all processes, for good."""
+        self._open = False
         for worker in list(self._all):
             self._discard(worker)
 
@@ -157,6 +159,8 @@ class Crew:
             await self._changed.wait()
 
     def _begin(self) -> None:
+        if not self._open:
+            return
         worker = Worker.started()
         self._all.add(worker)
         self.group.start_soon(worker.listen, self._threads)
@@ -185,12 +189,14 @@ class Crew:
         self._begin()
 
     def _release(self, worker: Worker) -> None:
-        self._idle.append(worker)
+        if worker in self._all:
+            self._idle.append(worker)
         self._tell()
 
     def _discard(self, worker: Worker) -> None:
-        worker.end()
-        self._all.discard(worker)
+        if worker in self._all:
+            self._all.remove(worker)
+            worker.end()
         self._tell()
 
     def _tell(self) -> None:

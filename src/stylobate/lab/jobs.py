@@ -17,7 +17,6 @@ from stylobate.lab.limits import Limits
 from stylobate.lab.refusals import RefusedError
 from stylobate.lab.worker import Broken, Finished, Found, Note, Progress, Refused
 
-
 _log = logging.getLogger("stylobate.lab")
 
 
