@@ -7,22 +7,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.results.plain import plain_numbers
+
 _DIGITS = 9
 """Digits that are sent: a page shows fewer."""
 
 
 def numbers(values: npt.ArrayLike) -> list[Any]:
     """Return an array as lists, None where a number is not finite."""
-    array = np.asarray(values)
-    if array.dtype.kind != "f":
-        return list(array.tolist())
-    finite = np.isfinite(array)
-    rounded = np.zeros(array.shape)
-    scale = 10.0 ** (_DIGITS - 1 - np.floor(np.log10(np.where(finite & (array != 0.0), np.abs(array), 1.0))))
-    rounded[finite] = (np.round(array * scale) / scale)[finite]
-    told = rounded.astype(object)
-    told[~finite] = None
-    return list(told.tolist())
+    return plain_numbers(values, _DIGITS)
 
 
 def number(value: float) -> float | None:

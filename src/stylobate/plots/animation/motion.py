@@ -13,6 +13,7 @@ from stylobate.errors import Outcome, ParameterError, require_positive
 from stylobate.plots.pose import Floats, base_centres, quaternions
 from stylobate.plots.shape import Shape
 from stylobate.results import Response
+from stylobate.results.plain import plain_numbers
 
 # No more instants than this, however long the run: a page holds them all.
 _MOST = 2000
@@ -250,17 +251,4 @@ def _directions(tilt: Floats) -> Floats:
 
 
 def _plain(values: Floats | None) -> list[Any] | None:
-    """Return lists of numbers with seven significant digits, None in place of what is not finite."""
-    if values is None:
-        return None
-    finite = np.isfinite(values)
-    known = np.where(finite & (values != 0.0), values, 1.0)
-    places = _DIGITS - 1 - np.floor(np.log10(np.abs(known)))
-    # Powers of ten up to 10²² are exact, so that the quotient is the double nearest to the short decimal.
-    scale = 10.0 ** np.clip(places, 0, 22)
-    rounded = np.where(values == 0.0, 0.0, np.rint(known * scale) / scale)
-    if finite.all():
-        return list(rounded.tolist())
-    found = rounded.astype(object)
-    found[~finite] = None
-    return list(found.tolist())
+    return None if values is None else plain_numbers(values, _DIGITS)

@@ -1,0 +1,30 @@
+"""Arrays as plain numbers that JSON can hold."""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+
+def plain_numbers(values: npt.ArrayLike, digits: int) -> list[Any]:
+    """Return an array as lists of numbers with so many significant digits, None in place of what is not finite.
+
+    Examples
+    --------
+    >>> plain_numbers([0.123456, float("nan"), 5e-324], 3)
+    [0.123, None, 0.0]
+    """
+    array = np.asarray(values)
+    if array.dtype.kind != "f":
+        return list(array.tolist())
+    finite = np.isfinite(array)
+    known = np.where(finite & (array != 0.0), array, 1.0)
+    places = digits - 1 - np.floor(np.log10(np.abs(known)))
+    # Powers of ten up to 10²² are exact, so that the quotient is the double nearest to the short decimal.
+    scale = 10.0 ** np.clip(places, 0, 22)
+    rounded = np.where(array == 0.0, 0.0, np.rint(known * scale) / scale)
+    if finite.all():
+        return list(rounded.tolist())
+    told = rounded.astype(object)
+    told[~finite] = None
+    return list(told.tolist())
