@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from stylobate.engine.flow.tableau import Status
 from stylobate.orbits.arclength import Floats, Point, corrected
-from stylobate.orbits.conditions import CONDITIONS
+from stylobate.orbits.conditions import Condition, conditions_between
 from stylobate.orbits.normal_forms import (
     PeriodMap,
     critical_vectors,
@@ -89,15 +89,10 @@ class Bifurcation:
 def between(first: Point, second: Point, sense: Floats) -> tuple[Bifurcation, ...]:
     """Return the bifurcations between two points that follow each other, in their order."""
     found = []
-    conditions = dict(CONDITIONS)
-    if without_friction(first.multipliers) or without_friction(second.multipliers):
-        # There 1/μ goes with each multiplier μ: Π(μ_i μ_j − 1) is zero, and its sign that of rounding.
-        del conditions["Neimark-Sacker"]
-    ends = {name: (condition(first, sense), condition(second, sense)) for name, condition in conditions.items()}
-    for name, (before, after) in ends.items():
-        if not before * after < 0.0:
+    for name, condition in conditions_between(first, second).items():
+        if not condition(first, sense) * condition(second, sense) < 0.0:
             continue
-        located = _located(first, second, sense, name)
+        located = _located(first, second, sense, condition)
         if located is not None:
             bifurcation = _told(located, sense, name)
             if bifurcation is not None:
@@ -105,8 +100,7 @@ def between(first: Point, second: Point, sense: Floats) -> tuple[Bifurcation, ..
     return tuple(sorted(found, key=lambda one: float((one.point.u - first.u) @ sense)))
 
 
-def _located(first: Point, second: Point, sense: Floats, name: str) -> Point | None:
-    condition = CONDITIONS[name]
+def _located(first: Point, second: Point, sense: Floats, condition: Condition) -> Point | None:
     length = float((second.u - first.u) @ sense)
     points: dict[float, Point] = {0.0: first, length: second}
 

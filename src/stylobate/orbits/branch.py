@@ -231,8 +231,12 @@ def continue_branch(
         raise NoOrbitError(message)
     up = np.zeros_like(start.u)
     up[-1] = 1.0
-    seen = None if progress is None else (lambda point: progress(point.value))
-    return branch_through(start, up, (low, high), control, seen, both_ways=both_ways)
+    return branch_through(start, up, (low, high), control, seen_by(progress), both_ways=both_ways)
+
+
+def seen_by(progress: Callable[[float], None] | None) -> Callable[[Point], None] | None:
+    """Return what hears of points, if `progress` is to hear of their parameters."""
+    return None if progress is None else (lambda point: progress(point.value))
 
 
 def taken_up(orbit: PeriodicOrbit, parameter: str, value: float, span: float) -> Point | Status:

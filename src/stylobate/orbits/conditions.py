@@ -6,6 +6,7 @@ from itertools import combinations
 import numpy as np
 
 from stylobate.orbits.arclength import Floats, Point
+from stylobate.orbits.orbit import least_are_rounding, without_friction
 
 
 def fold(point: Point, direction: Floats) -> float:
@@ -41,6 +42,15 @@ def neimark_sacker(point: Point, _: Floats) -> float:
     return float(np.prod([first * second - 1.0 for first, second in pairs]).real)
 
 
+def complex_pairs(point: Point, _: Floats) -> float:
+    """Return Π(|μ|² − 1) over complex pairs, zero where one is on the unit circle."""
+    return float(np.prod([abs(one) ** 2 - 1.0 for one in _upper(point)]))
+
+
+def _upper(point: Point) -> list[complex]:
+    return [complex(one) for one in point.map_multipliers if one.imag > 0.0]
+
+
 Condition = Callable[[Point, Floats], float]
 
 CONDITIONS: dict[str, Condition] = {
@@ -49,3 +59,18 @@ CONDITIONS: dict[str, Condition] = {
     "period doubling": period_doubling,
     "Neimark-Sacker": neimark_sacker,
 }
+
+
+def conditions_between(first: Point, second: Point) -> dict[str, Condition]:
+    """Return the conditions whose signs tell of bifurcations between two points that follow each other."""
+    found = dict(CONDITIONS)
+    ends = (first, second)
+    if any(without_friction(point.multipliers) for point in ends):
+        # There 1/μ goes with each multiplier μ: Π(μ_i μ_j − 1) is zero, and its sign that of rounding.
+        del found["Neimark-Sacker"]
+    elif any(least_are_rounding(point.multipliers) for point in ends):
+        # So is the sign of the product of the largest and the least; a complex pair is known all the same.
+        del found["Neimark-Sacker"]
+        if len(_upper(first)) == len(_upper(second)) > 0:
+            found["Neimark-Sacker"] = complex_pairs
+    return found

@@ -33,9 +33,17 @@ def without_friction(multipliers: Complexes) -> bool:
 
     Each of them is told to 1e-9, and a large one leaves its rounding in the least.
     """
-    rounding = _ROUNDING * float(np.abs(multipliers).max()) ** 2
-    allowed = len(multipliers) * _NEUTRAL + min(rounding, _UNTOLD)
+    allowed = len(multipliers) * _NEUTRAL + min(_rounding_of_product(multipliers), _UNTOLD)
     return bool(abs(np.prod(multipliers) - 1.0) <= allowed)
+
+
+def least_are_rounding(multipliers: Complexes) -> bool:
+    """Return whether the least multiplier is no more than the rounding of the largest, and their product too."""
+    return _rounding_of_product(multipliers) > _UNTOLD
+
+
+def _rounding_of_product(multipliers: Complexes) -> float:
+    return _ROUNDING * float(np.abs(multipliers).max()) ** 2
 
 
 def is_stable(multipliers: Complexes) -> bool:

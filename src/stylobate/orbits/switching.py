@@ -1,5 +1,7 @@
 """From a bifurcation to the family that is born there."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from stylobate.engine.flow.tableau import Status
@@ -7,7 +9,7 @@ from stylobate.errors import NoOrbitError, ParameterError
 from stylobate.orbits.arclength import Family, Point, corrected
 from stylobate.orbits.arguments import control_of, enclosing, require_bifurcation
 from stylobate.orbits.bifurcations import Bifurcation, Kind
-from stylobate.orbits.branch import Branch, branch_through
+from stylobate.orbits.branch import Branch, branch_through, seen_by
 from stylobate.orbits.shooting import arcs_of
 from stylobate.orbits.tracing import StepControl
 
@@ -21,6 +23,7 @@ def switch_branch(
     bounds: tuple[float, float],
     opposite: bool = False,
     control: StepControl | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Branch:
     """Return the family that crosses or leaves another one at a bifurcation.
 
@@ -32,7 +35,7 @@ def switch_branch(
         Between which values of the parameter it is followed, away from the bifurcation.
     opposite
         Of a pitchfork: take the mirror image, half a period later, of what is taken else.
-    control
+    control, progress
         As in `continue_branch`.
 
     Raises
@@ -67,7 +70,7 @@ def switch_branch(
         # On the old family the plane across the disturbance is met at no distance from it.
         if not isinstance(found, Status) and _apart(found[0], here, normal) > 0.5 * off:
             start = found[0]
-            return branch_through(start, normal, bounds, control, both_ways=False)
+            return branch_through(start, normal, bounds, control, seen_by(progress), both_ways=False)
         off *= 2.0
     message = f"no orbit of the family born at {old.name} = {point.value!r} was reached; give another bifurcation"
     raise NoOrbitError(message)

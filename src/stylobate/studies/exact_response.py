@@ -91,7 +91,7 @@ def exact_response(
         _require_of(orbit, model, motion, (low, high))
     main = continue_branch(orbit, "angular_frequency", bounds=(low, high), control=control, progress=progress)
     families = [Followed("rolling" if orbit.turns != 0.0 else "periodic", main)]
-    families += list(born(main, (low, high), generations, control))
+    families += list(born(main, (low, high), generations, control, progress))
     found = _joined(families)
     if orbit.turns != 0.0:
         found = found.assign(_by_theory(model, motion, low, high, 1 if orbit.turns > 0.0 else -1))

@@ -1,6 +1,6 @@
 """Families of orbits as they are drawn: each followed once, and told between its bifurcations."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -30,7 +30,11 @@ class Followed:
 
 
 def born(
-    branch: Branch, bounds: tuple[float, float], generations: int, control: StepControl | None
+    branch: Branch,
+    bounds: tuple[float, float],
+    generations: int,
+    control: StepControl | None,
+    progress: Callable[[float], None] | None = None,
 ) -> Iterator[Followed]:
     """Follow what is born on a branch, once for each pair of images, and once what begins and ends on the branch."""
     if generations <= 0:
@@ -43,14 +47,14 @@ def born(
             probe = switch_branch(one, bounds=bounds, control=replace(control or StepControl(), most=_PROBED))
             if any(_meet(probe, other) for other in siblings):
                 continue
-            whole = switch_branch(one, bounds=bounds, control=control)
+            whole = switch_branch(one, bounds=bounds, control=control, progress=progress)
         except NoOrbitError:
             continue
         siblings.append(whole)
         family = _from_birth_to_death(whole, one, branch.bifurcations)
         name = "asymmetric" if one.kind is Kind.PITCHFORK else f"period {family.path[0].family.periods}"
         yield Followed(f"{name}, from {one.parameter:.6g} rad/s", family)
-        yield from born(family, bounds, generations - 1, control)
+        yield from born(family, bounds, generations - 1, control, progress)
 
 
 def told_between_bifurcations(branch: Branch) -> Branch:
