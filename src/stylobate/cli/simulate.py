@@ -10,8 +10,9 @@ from stylobate.cli.output import check_writable, print_json, print_table, save_f
 from stylobate.cli.source import read_source
 
 if TYPE_CHECKING:
-    from stylobate.models import Model
+    from stylobate.column import Column
     from stylobate.results import Response
+    from stylobate.results.summary import Rows
 
 Source = Annotated[
     Path | None, typer.Argument(help="TOML description, or a saved run (.nc) to repeat", show_default=False)
@@ -110,7 +111,7 @@ def simulate(
     if as_json:
         print_json(_summary(run))
     else:
-        print_table("run", [*_column_rows(setup.model), *_rows(run)])
+        print_table("run", _rows(run, setup.model.column))
 
 
 def _summary(run: "Response") -> dict[str, Any]:
@@ -128,60 +129,11 @@ def _summary(run: "Response") -> dict[str, Any]:
     }
 
 
-def _column_rows(model: "Model") -> list[tuple[str, str]]:
-    column = model.column
-    return [
-        ("column", f"c = {column.slenderness:.5g}, ω0 = {column.frequency_scale:.5g} rad/s, {column.mass:.6g} kg"),
-        ("released above", f"{column.slenderness * column.gravity:.5g} m/s² of horizontal acceleration"),
-    ]
+def _rows(run: "Response", column: "Column") -> "Rows":
+    from stylobate.results.summary import column_rows, measure_rows, verdict_rows  # noqa: PLC0415
 
+    warnings = [("warning", warning) for warning in run.warnings]
+    return [*column_rows(column), *verdict_rows(run), *measure_rows(run), *warnings]
 
-def _rows(run: "Response") -> list[tuple[str, str]]:
-    events = ", ".join(f"{event.kind} at {event.time:.4f} s" for event in run.events[:_SHOWN])
-    more = f", and {len(run.events) - _SHOWN} more" if len(run.events) > _SHOWN else ""
-    measures = run.measures
-    rows = [
-        ("outcome", run.outcome.value + (" (uncertain)" if run.uncertain else "")),
-        ("because", run.reason),
-        ("decided at", f"{run.decided_at:.4f} s"),
-        ("largest tilt", f"{measures['largest_tilt']:.6g} rad, {measures['largest_tilt_over_c']:.4g} c"),
-        ("at", f"{measures['time_of_largest_tilt']:.4f} s"),
-        ("turns of the contact point", f"{measures['turns']:.3f}"),
-        ("events", (events + more) or "none"),
-        ("steps", f"{measures['steps']:.0f}"),
-    ]
-    if "mean_rolling_rate" in measures:
-        rows.insert(6, ("mean rolling rate", f"{measures['mean_rolling_rate']:.6g} rad/s"))
-    return [*rows, *_contact_rows(run), *_demand_rows(run), *(("warning", warning) for warning in run.warnings)]
-
-
-def _contact_rows(run: "Response") -> list[tuple[str, str]]:
-    """Return how the column was on the plane and where it came to, of a model that slides."""
-    measures = run.measures
-    if "residual_displacement" not in measures:
-        return []
-    kinds = ("resting", "sliding", "rolling", "slipping", "flying")
-    times = ", ".join(f"{kind} {measures[f'time_{kind}']:.4g} s" for kind in kinds if measures[f"time_{kind}"] > 0.0)
-    moved = ", ".join(f"{measures[f'residual_displacement_{axis}']:.4g} m along {axis}" for axis in "xy")
-    return [
-        ("time", times),
-        ("moved by", moved),
-        ("twisted by", f"{measures['residual_twist']:.4g} rad"),
-        ("slipped", f"{measures['slip_distance']:.4g} m in all"),
-        ("impacts", f"{measures['impacts']:.0f}"),
-    ]
-
-
-def _demand_rows(run: "Response") -> list[tuple[str, str]]:
-    measures = run.measures
-    rows = [
-        ("needs a friction coefficient of", "largest_friction_demand", ""),
-        ("and to resist pivoting with", "largest_pivoting_demand", " of normal force times radius"),
-        ("least normal force", "least_normal_force", " of the weight"),
-    ]
-    return [(label, f"{measures[name]:.4g}{unit}") for label, name, unit in rows if name in measures]
-
-
-_SHOWN = 4
 
 __all__ = ["simulate"]

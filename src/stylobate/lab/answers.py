@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 from stylobate import spec
 from stylobate.lab.described import Described
 from stylobate.lab.plain import numbers, table
@@ -9,6 +11,7 @@ from stylobate.models import Model
 from stylobate.motions import Record
 from stylobate.plots.animation import drawn_motion
 from stylobate.results import Response
+from stylobate.results.summary import column_rows, measure_rows
 
 
 def plain_run(run: Response, model: Model) -> dict[str, Any]:
@@ -23,6 +26,7 @@ def plain_run(run: Response, model: Model) -> dict[str, Any]:
         "warnings": list(run.warnings),
         "events": [{"kind": event.kind, "time": event.time} for event in run.events],
         "measures": table(run.measures),
+        "summary": [*column_rows(model.column), *measure_rows(run)],
         "thresholds": table(run.thresholds),
         "column": plain_column(model),
         "drawn": drawn_motion(run),
@@ -50,13 +54,22 @@ def plain_column(model: Model) -> dict[str, float]:
 
 
 def _series(run: Response, model: Model) -> dict[str, Any]:
-    data, column = run.data, model.column
-    told = {"time": numbers(data["time"]), "base_acceleration": numbers(data["base_acceleration"])}
-    kept = ("amplitude", "azimuth", "rolling_rate", "friction_demand", "pivoting_demand", "contact")
-    told |= {name: numbers(data[name]) for name in kept if name in data}
+    """Return the histories that a page draws: numbers over time, lengths along the plane from where they began."""
+    data = run.data
+    told = {name: numbers(data[name]) for name in _HISTORIES if name in data}
     if "normal_force" in data:
-        told["normal_force"] = numbers(data["normal_force"] / (column.mass * column.gravity))
+        told["normal_force"] = numbers(data["normal_force"] / (model.column.mass * model.column.gravity))
+    if "footprint" in data:
+        told["displacement"] = numbers(data["footprint"] - data["footprint"][0])
+    if "slip_velocity" in data:
+        told["slip_speed"] = numbers(np.hypot(*data["slip_velocity"].transpose("axis", "time").to_numpy()))
     return told
+
+
+_HISTORIES = (
+    *("time", "base_acceleration", "amplitude", "azimuth", "rolling_rate", "spin"),
+    *("friction_demand", "pivoting_demand", "contact", "clearance"),
+)
 
 
 def plain_record(record: Record) -> dict[str, Any]:

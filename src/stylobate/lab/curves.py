@@ -9,6 +9,10 @@ import xarray as xr
 from stylobate import spec, studies
 from stylobate.lab.plain import numbers
 from stylobate.lab.worker import Emit, Note
+from stylobate.orbits import StepControl
+
+_ORBITS = 400
+"""Of a family each way: a plot shows no more, and close to the upright families go on for thousands."""
 
 
 def response(values: Mapping[str, Any]) -> dict[str, Any]:
@@ -52,7 +56,10 @@ def exact_curves(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
         emit(Note(f"orbits followed to {frequency:.4g} rad/s"))
 
     low, high = setup.options["range"]
-    found = studies.exact_response(setup.model, setup.motion, angular_frequency=(low, high), progress=reached)
+    control = StepControl(most=_ORBITS)
+    found = studies.exact_response(
+        setup.model, setup.motion, angular_frequency=(low, high), control=control, progress=reached
+    )
     return plain_exact(found)
 
 

@@ -1,6 +1,6 @@
 /** What the server answers. Numbers that are not finite come as null. */
 
-import type { DrawnMotion, Triple } from "../viewer/drawn-motion";
+import type { DrawnMotion, Pair, Triple } from "../viewer/drawn-motion";
 import type { Value } from "./description";
 
 export type Numbers = readonly (number | null)[];
@@ -10,10 +10,16 @@ export interface Series {
   readonly amplitude: Numbers;
   readonly azimuth: Numbers;
   readonly rolling_rate: Numbers;
-  readonly friction_demand?: Numbers | null;
-  readonly pivoting_demand?: Numbers | null;
-  readonly normal_force?: Numbers | null;
-  readonly base_acceleration?: readonly Triple[] | null;
+  readonly base_acceleration: readonly Triple[];
+  readonly spin?: Numbers;
+  readonly friction_demand?: Numbers;
+  readonly pivoting_demand?: Numbers;
+  /** Over the weight. */
+  readonly normal_force?: Numbers;
+  /** Of the centre of the footprint, from where it began. */
+  readonly displacement?: readonly Pair[];
+  readonly slip_speed?: Numbers;
+  readonly clearance?: Numbers;
 }
 
 export interface ColumnTold {
@@ -38,6 +44,8 @@ export interface Answer extends Described {
   readonly planar: boolean;
   readonly warnings: readonly string[];
   readonly events: readonly { readonly kind: string; readonly time: number }[];
+  /** Numbers of the column and the run, to read: label, and what is told. */
+  readonly summary: readonly (readonly [string, string])[];
   readonly measures: Readonly<Record<string, number | null>>;
   readonly thresholds: Readonly<Record<string, number | null>>;
   readonly column: ColumnTold;

@@ -3,6 +3,7 @@
 import type { Stage } from "../viewer/index";
 import type { Described } from "./answers";
 import { jobFile } from "./api";
+import { captioned } from "./captioned";
 import type { Part } from "./description";
 import { button, download, element } from "./dom";
 import { Job, problemsIn } from "./job";
@@ -11,6 +12,8 @@ import { TextDialog } from "./text-dialog";
 export interface Exported {
   /** The stage of which pictures are taken. */
   readonly stage: Stage | null;
+  /** What they show, in lines that stand below them. */
+  readonly caption: () => readonly string[];
   /** The description as it is sent. */
   readonly description: () => Part;
   /** The description in the languages of the package. */
@@ -66,7 +69,8 @@ export class ExportMenu {
 
   async #picture(): Promise<void> {
     try {
-      if (this.#exported.stage !== null) download(await this.#exported.stage.png(), "stylobate.png");
+      const { stage, caption } = this.#exported;
+      if (stage !== null) download(await captioned(await stage.png(), caption()), "stylobate.png");
     } catch (error) {
       this.#tell(error instanceof Error ? error.message : String(error));
     }

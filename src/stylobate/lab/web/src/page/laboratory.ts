@@ -12,7 +12,9 @@ import type { Description } from "./description";
 import { written } from "./description";
 import { element } from "./dom";
 import { ExportMenu } from "./exports";
+import { angularFrequency } from "./frequency";
 import { Job, problemsIn } from "./job";
+import { clockTime } from "./format";
 import { listenToKeys } from "./keys";
 import { Latest } from "./latest";
 import { toldOf } from "./link";
@@ -21,6 +23,7 @@ import { paceOf } from "./pace";
 import type { PlanePanel } from "./plane/plane-panel";
 import { PlanesAsking } from "./plane/planes-asking";
 import type { PlaneKind } from "./planes";
+import { isPlaneKind } from "./planes";
 import { namesIn, Problems } from "./problems";
 import type { ColumnScales } from "./quantities";
 import { sent } from "./requests";
@@ -29,6 +32,7 @@ import type { Tab, View } from "./state";
 import { Store } from "./state";
 import { Tabs } from "./tabs";
 import type { ThemeSwitch } from "./theme";
+import { verdictOf } from "./verdict";
 import { firstView, viewOfLink, viewOfPreset } from "./views";
 
 /** Before the first answer: the column of the equations. */
@@ -72,7 +76,10 @@ export class Laboratory {
       jumped: (description) => jumped({ description, filled: false }),
       preset: (preset) => jumped(viewOfPreset(preset)),
     });
-    this.#motion = new MotionView(theme.theme, (speed) => edited({ speed }));
+    this.#motion = new MotionView(theme.theme, {
+      speed: (speed) => edited({ speed }),
+      histories: (histories) => edited({ histories }),
+    });
     this.#response = new ResponseAsking(view, this.#scales, { edited, start, lost: () => this.#lose() });
     this.#planes = new PlanesAsking(about, view, this.#scales, { edited, jumped, start });
     this.#tabs = this.#newTabs();
@@ -157,7 +164,8 @@ export class Laboratory {
   #show(view: View): void {
     this.#controls.show(view.description, this.#scales);
     this.#tabs.show(view.tab);
-    this.#planesHost.classList.toggle("mapped", view.tab !== "orbit");
+    this.#planesHost.classList.toggle("mapped", isPlaneKind(view.tab));
+    this.#motion.setHistories(view.histories);
     this.#showSpeed(view);
     const jump = this.#fresh;
     this.#ask(view);
@@ -185,7 +193,7 @@ export class Laboratory {
     this.#problems.show(this.#linkProblem);
     this.#controls.setWrong(new Set());
     this.#rescale(answer.column);
-    this.#motion.show(answer);
+    this.#motion.show(answer, angularFrequency(this.view.description.motion));
     this.#showSpeed(this.view);
     if (this.#fresh) this.#motion.begin();
     this.#settle();
@@ -268,9 +276,16 @@ export class Laboratory {
   #newMenu(): ExportMenu {
     return new ExportMenu({
       stage: this.stage,
+      caption: () => this.#caption(),
       description: () => sent(this.view.description),
       described: () => this.#described(),
     });
+  }
+
+  #caption(): readonly string[] {
+    const { time, to } = this.clock;
+    const at = `At ${clockTime(time, to)}\u00a0s of ${clockTime(to, to)}\u00a0s.`;
+    return this.#answer === null ? [] : [`${verdictOf(this.#answer)} ${at}`];
   }
 
   #newTabs(): Tabs<Tab> {
@@ -281,8 +296,9 @@ export class Laboratory {
         { name: "orbit", title: "Orbit of the tilt", panel: this.#motion.orbit.root },
         { name: "map", title: "Overturning map", panel: map.root },
         { name: "basin", title: "Basin", panel: basin.root },
+        { name: "numbers", title: "Numbers", panel: this.#motion.numbers.root },
       ],
-      (tab) => this.#edit({ tab, filled: tab !== "orbit" && this.plane(tab).current }),
+      (tab) => this.#edit({ tab, filled: isPlaneKind(tab) && this.plane(tab).current }),
     );
   }
 }

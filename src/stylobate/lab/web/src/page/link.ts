@@ -11,7 +11,7 @@ import { kindNamed } from "./about";
 import type { Description, Part, PartName, Value } from "./description";
 import { isPart, isVector, PARTS, tagOf } from "./description";
 import type { Axis, Plane, View } from "./state";
-import { isRange, TABS, viewOf } from "./state";
+import { historiesFrom, isRange, TABS, viewOf } from "./state";
 
 /** A link that cannot be read; the message says why in one line. */
 export class BrokenLink extends Error {}
@@ -26,6 +26,7 @@ export function linkOf(view: View): string {
   if (view.range !== null) items.push(`range=${view.range.join()}`);
   if (view.map !== null) items.push(`map=${planeWritten(view.map)}`);
   if (view.basin !== null) items.push(`basin=${planeWritten(view.basin)}`);
+  if (view.histories !== null) items.push(`histories=${view.histories.join()}`);
   if (view.tab !== "orbit") items.push(`tab=${view.tab}`);
   if (view.filled) items.push("filled=true");
   if (view.speed !== null) items.push(`speed=${view.speed}`);
@@ -68,6 +69,11 @@ const LOOKS: Readonly<Record<string, (text: string) => Value>> = {
   },
   map: (text) => planeRead("map", text),
   basin: (text) => planeRead("basin", text),
+  histories: (text) => {
+    const pair = historiesFrom(text.split(","));
+    if (pair === null) throw new BrokenLink(`histories must be two quantities of a run, got ${text}`);
+    return pair;
+  },
   tab: (text) => {
     if (!(TABS as readonly string[]).includes(text)) throw new BrokenLink(`tab must be one of ${TABS.join(", ")}`);
     return text;

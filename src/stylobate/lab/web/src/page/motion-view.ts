@@ -2,11 +2,19 @@
 
 import { Clock, Stage, type Theme } from "../viewer/index";
 import type { Answer } from "./answers";
+import type { HistoryPair } from "./charts/histories";
 import { Histories } from "./charts/histories";
 import { OrbitChart } from "./charts/orbit";
 import { element } from "./dom";
+import { Elapsed } from "./elapsed";
+import { NumbersTable } from "./numbers-table";
 import { Transport } from "./transport";
 import { Verdict } from "./verdict";
+
+export interface MotionHearing {
+  readonly speed: (speed: number) => void;
+  readonly histories: (pair: HistoryPair) => void;
+}
 
 export class MotionView {
   readonly clock = new Clock();
@@ -15,31 +23,37 @@ export class MotionView {
   readonly orbit = new OrbitChart();
   readonly root: HTMLElement;
   readonly histories: HTMLElement;
+  readonly numbers = new NumbersTable();
   readonly #host = element("div", { class: "stage empty" });
   readonly #transport: Transport;
   readonly #verdict = new Verdict();
   readonly #curves: Histories;
+  readonly #waiting = element("p", { class: "waiting-note", hidden: true });
+  readonly #elapsed = new Elapsed((told) => (this.#waiting.textContent = told));
   /** Whether the clock ran at its last tick: at the end of a run it stops by itself. */
   #played = false;
 
-  constructor(theme: Theme, speedChosen: (speed: number) => void) {
-    this.#transport = new Transport(this.clock, speedChosen);
-    this.#curves = new Histories((time) => this.clock.seek(time));
-    this.histories = element("div", { class: "times" }, this.#curves.tilt.root, this.#curves.demand.root);
+  constructor(theme: Theme, { speed, histories }: MotionHearing) {
+    this.#transport = new Transport(this.clock, speed);
+    this.#curves = new Histories({ seek: (time) => this.clock.seek(time), chosen: histories });
+    this.histories = this.#curves.root;
     this.root = element("section", { class: "show panel", "aria-label": "Motion" });
     this.root.append(this.#host, this.#transport.root, this.#verdict.root);
     this.stage = this.#newStage(theme);
+    this.#host.append(this.#waiting);
     this.clock.onTick(() => this.#tick());
     setInterval(() => this.#transport.describe(), 1000);
   }
 
-  show(answer: Answer): void {
+  /** Shows a run; `frequency` is that of its base motion [rad/s], where it has one. */
+  show(answer: Answer, frequency: number | null): void {
     this.#host.classList.remove("old", "empty");
     this.clock.setRange(0, answer.drawn.time.at(-1) ?? 0);
     this.stage?.show(answer.drawn);
-    this.#curves.show(answer);
+    this.#curves.show(answer, frequency);
     this.orbit.show(answer.drawn);
     this.#verdict.show(answer);
+    this.numbers.show(answer);
     this.#transport.showEvents(answer.events);
     this.#follow();
   }
@@ -50,6 +64,11 @@ export class MotionView {
     this.clock.autoplay();
   }
 
+  /** Chooses what is drawn over time; null: what suits the run. */
+  setHistories(pair: HistoryPair | null): void {
+    this.#curves.choose(pair);
+  }
+
   setSpeed(speed: number): void {
     this.clock.speed = speed;
     this.#transport.showSpeed(speed);
@@ -57,6 +76,9 @@ export class MotionView {
 
   setBusy(busy: boolean): void {
     this.#host.classList.toggle("busy", busy);
+    this.#waiting.hidden = !busy;
+    if (busy) this.#elapsed.begin("computing…");
+    else this.#elapsed.end();
   }
 
   /** Tells that what is shown is not the case that was asked for. */

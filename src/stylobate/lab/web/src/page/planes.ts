@@ -6,10 +6,14 @@ import { without, written } from "./description";
 import type { ColumnScales, Quantity } from "./quantities";
 import { basinQuantities, mapQuantities, rangeAbout, valueOf } from "./quantities";
 import { lengthOf } from "./run-length";
-import type { Axis, Plane } from "./state";
+import type { Axis, Plane, Tab } from "./state";
 import { DEFAULT_CELLS } from "./state";
 
 export type PlaneKind = "map" | "basin";
+
+export function isPlaneKind(tab: Tab): tab is PlaneKind {
+  return tab === "map" || tab === "basin";
+}
 
 export function quantitiesOf(
   kind: PlaneKind,

@@ -1,6 +1,8 @@
 /** What is looked at: one immutable value, from which the page and its address follow. */
 
 import type { Description, Value } from "./description";
+import type { HistoryPair } from "./charts/histories";
+import { isHistoryName } from "./charts/history-kinds";
 import { isPart, isVector } from "./description";
 
 /** Values of one quantity, evenly spaced. */
@@ -16,7 +18,7 @@ export interface Plane {
   readonly y: Axis;
 }
 
-export const TABS = ["orbit", "map", "basin"] as const;
+export const TABS = ["orbit", "map", "basin", "numbers"] as const;
 export type Tab = (typeof TABS)[number];
 
 export interface View {
@@ -26,6 +28,8 @@ export interface View {
   /** Axes of the overturning map and of the basin; null: chosen to suit the case. */
   readonly map: Plane | null;
   readonly basin: Plane | null;
+  /** What is drawn over time; null: chosen to suit the run. */
+  readonly histories: HistoryPair | null;
   readonly tab: Tab;
   /** Whether the map or basin of the tab has been asked for: a link to it computes it again. */
   readonly filled: boolean;
@@ -45,6 +49,7 @@ export function viewOf(description: Description, looks: Readonly<Record<string, 
     range: isRange(range) ? range : null,
     map: planeFrom(looks["map"]),
     basin: planeFrom(looks["basin"]),
+    histories: historiesFrom(looks["histories"]),
     tab,
     filled: looks["filled"] === true,
     speed: typeof speed === "number" && speed > 0 ? speed : null,
@@ -55,6 +60,14 @@ export function isRange(value: Value | undefined): value is readonly [number, nu
   if (!isVector(value) || value.length !== 2) return false;
   const [low, high] = value;
   return typeof low === "number" && typeof high === "number" && 0 < low && low < high;
+}
+
+export function historiesFrom(value: Value | undefined): HistoryPair | null {
+  if (!isVector(value) || value.length !== 2) return null;
+  const [above, below] = value;
+  const known = (name: Value | undefined) => (typeof name === "string" && isHistoryName(name) ? name : null);
+  const [first, second] = [known(above), known(below)];
+  return first !== null && second !== null ? [first, second] : null;
 }
 
 export function planeFrom(value: Value | undefined): Plane | null {

@@ -12,8 +12,7 @@ export class Verdict {
   #told = "";
 
   show(answer: Answer): void {
-    const reached = UNDECIDED.includes(answer.outcome) ? "Followed to" : "Decided at";
-    const at = answer.decided_at === null ? "" : ` ${reached} ${told(answer.decided_at, 3)} s.`;
+    const at = decisionOf(answer);
     const text = [answer.outcome, answer.reason, at, answer.uncertain, ...answer.warnings].join("\n");
     if (text === this.#told) return; // what has been read out once is not read out again
     this.#told = text;
@@ -25,6 +24,16 @@ export class Verdict {
     const warnings = answer.warnings.map((line) => element("p", { class: "warning" }, sentence(line)));
     this.root.replaceChildren(element("p", {}, badge, ...marks, " ", reason), ...warnings);
   }
+}
+
+/** Returns the verdict in plain text. */
+export function verdictOf(answer: Answer): string {
+  return `${capital(answer.told)}: ${answer.reason.replace(/[.]$/, "")}.${decisionOf(answer)}`;
+}
+
+function decisionOf({ outcome, decided_at: at }: Answer): string {
+  const reached = UNDECIDED.includes(outcome) ? "Followed to" : "Decided at";
+  return at === null ? "" : ` ${reached} ${told(at, 3)}\u00a0s.`;
 }
 
 function sentence(line: string): string {

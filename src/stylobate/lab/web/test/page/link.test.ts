@@ -21,7 +21,16 @@ test("a link brings back the view it was made of", () => {
   const axis = { from: 0.5, to: 6, number: 48 };
   const map = { x: { name: "angular_frequency", ...axis }, y: { name: "acceleration", ...axis } };
   const basin = { x: { name: "tilt_x", ...axis, from: -0.1 }, y: { name: "tilt_y", ...axis, from: -1e-7 } };
-  const view: View = { ...VIEW, range: [0.2, 4], map, basin, tab: "map", filled: true, speed: 0.25 };
+  const view: View = {
+    ...VIEW,
+    range: [0.2, 4],
+    map,
+    basin,
+    tab: "map",
+    filled: true,
+    speed: 0.25,
+    histories: ["base_x", "tilt"],
+  };
   assert.deepEqual(again(view), view);
   assert.deepEqual(again(VIEW), VIEW);
 });

@@ -1,66 +1,66 @@
-/** Tilt and demand on the contact over time. */
+/** Two quantities of the run over time: tilt and demand on the contact, or what the reader chooses. */
 
-import type { Answer, Numbers } from "../answers";
-import { told } from "../format";
+import type { Answer } from "../answers";
+import { element } from "../dom";
+import type { History, HistoryName } from "./history-kinds";
+import { chosenHistories, historiesOf } from "./history-kinds";
 import { TimeChart } from "./time-chart";
 
-export class Histories {
-  readonly tilt: TimeChart;
-  readonly demand: TimeChart;
+export type HistoryPair = readonly [HistoryName, HistoryName];
 
-  constructor(seek: (time: number) => void) {
-    this.tilt = new TimeChart({ title: "Tilt", label: "|θ|/c", timeLabel: "", colour: "blue" }, seek);
-    this.demand = new TimeChart(
-      { title: "Friction needed at the contact", label: "T/N", timeLabel: "time [s]", colour: "green" },
-      seek,
-    );
+export interface HistoriesHearing {
+  readonly seek: (time: number) => void;
+  readonly chosen: (pair: HistoryPair) => void;
+}
+
+export class Histories {
+  readonly root: HTMLElement;
+  readonly #above: TimeChart;
+  readonly #below: TimeChart;
+  #time: readonly number[] = [];
+  #offered: readonly History[] = [];
+  #wanted: HistoryPair | null = null;
+
+  constructor({ seek, chosen }: HistoriesHearing) {
+    this.#above = new TimeChart("Upper history", "", { seek, chosen: (name) => chosen(this.#with(name, 0)) });
+    this.#below = new TimeChart("Lower history", "time [s]", { seek, chosen: (name) => chosen(this.#with(name, 1)) });
+    this.root = element("div", { class: "times" }, this.#above.root, this.#below.root);
   }
 
-  show(answer: Answer): void {
-    const { time, amplitude, friction_demand: demand } = answer.series;
-    const c = answer.column.slenderness;
-    const tilt = amplitude.map((value) => (value === null ? null : value / c));
-    const largest = largestOf(tilt);
-    this.tilt.show(time, tilt, levelOne(largest), Math.min(largest, FARTHEST), `largest ${told(largest)} c`);
-    this.#showDemand(time, demand ?? null, answer.drawn.friction_coefficient);
+  /** Shows what is told of a run; `frequency` is that of its base motion [rad/s], where it has one. */
+  show(answer: Answer, frequency: number | null): void {
+    this.#time = answer.series.time;
+    this.#offered = historiesOf(answer, frequency);
+    this.#draw();
+  }
+
+  /** Chooses what is shown; null: what suits the run. */
+  choose(wanted: HistoryPair | null): void {
+    if (wanted?.join() === this.#wanted?.join()) return;
+    this.#wanted = wanted;
+    this.#draw();
   }
 
   setTime(time: number): void {
-    this.tilt.setTime(time);
-    this.demand.setTime(time);
+    this.#above.setTime(time);
+    this.#below.setTime(time);
   }
 
   redraw(): void {
-    this.tilt.redraw();
-    this.demand.redraw();
+    this.#above.redraw();
+    this.#below.redraw();
   }
 
-  #showDemand(time: readonly number[], demand: Numbers | null, coefficient: number | null): void {
-    if (demand === null) {
-      this.demand.show([], [], null, 1, "this model tells no forces at the contact");
-      return;
-    }
-    const largest = largestOf(demand);
-    const level =
-      coefficient === null ? null : { value: coefficient, told: `friction coefficient ${told(coefficient)}` };
-    // Where the column hardly presses, the ratio is huge for an instant; the rest is what is to be seen.
-    const usual = Math.max(quantile(demand, 0.99) * 1.2, (coefficient ?? 0) * 1.25);
-    this.demand.show(time, demand, level, Math.min(largest, usual) || (coefficient ?? 1), `largest ${told(largest)}`);
+  #draw(): void {
+    if (this.#offered.length === 0) return;
+    const [above, below] = chosenHistories(this.#offered, this.#wanted);
+    const names = this.#offered.map(({ name }) => name);
+    if (above) this.#above.show(this.#time, above, names);
+    if (below) this.#below.show(this.#time, below, names);
   }
-}
 
-/** In units of c: what falls is seen to leave, and what came before is still seen. */
-const FARTHEST = 2.5;
-
-function levelOne(largest: number): { value: number; told: string } | null {
-  return largest > 0.7 ? { value: 1, told: "c" } : null;
-}
-
-export function largestOf(values: Numbers): number {
-  return values.reduce<number>((most, value) => (value !== null && value > most ? value : most), 0);
-}
-
-export function quantile(values: Numbers, share: number): number {
-  const known = values.filter((value): value is number => value !== null).sort((a, b) => a - b);
-  return known[Math.floor(share * (known.length - 1))] ?? 0;
+  #with(name: HistoryName, place: 0 | 1): HistoryPair {
+    const [above, below] = chosenHistories(this.#offered, this.#wanted).map((one) => one?.name ?? "tilt");
+    return place === 0 ? [name, below ?? "tilt"] : [above ?? "tilt", name];
+  }
 }

@@ -13,7 +13,7 @@ const MARGIN = { left: 46, right: 10, top: 8, bottom: 34 };
 export class OrbitChart {
   readonly root: HTMLElement;
   readonly #canvas = element("canvas", { role: "img" });
-  readonly #dot = element("div", { class: "orbit-dot" });
+  readonly #dot = element("div", { class: "orbit-dot", hidden: true });
   #motion: DrawnMotion | null = null;
   #width = 0;
   #height = 0;

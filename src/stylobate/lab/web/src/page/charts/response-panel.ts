@@ -2,7 +2,8 @@
 
 import type { ExactResponse, JobReport, ResponseCurves } from "../answers";
 import { button, element, newId, onResize } from "../dom";
-import { counted, plain, told, words } from "../format";
+import { Elapsed } from "../elapsed";
+import { capital, counted, plain, told, words } from "../format";
 import type { Job } from "../job";
 import type { Extent } from "./frequency-marker";
 import { FrequencyMarker } from "./frequency-marker";
@@ -37,6 +38,7 @@ export class ResponsePanel {
   #curves: ResponseCurves | null = null;
   #exact: ExactResponse | null = null;
   #job: Job | null = null;
+  readonly #elapsed = new Elapsed((told) => this.tell(told));
   #range: readonly [number, number] = [0.2, 4];
   #slenderness = 0.1;
   #frequency: number | null = null;
@@ -85,6 +87,7 @@ export class ResponsePanel {
   /** Shows curves over their range; `own` tells whether they are those of the model that is chosen. */
   show(curves: ResponseCurves, slenderness: number, range: readonly [number, number], own: boolean): void {
     this.#curves = curves;
+    this.root.classList.remove("none");
     this.#slenderness = slenderness;
     this.showRange(range);
     this.#about = toldOfCurves(curves, own);
@@ -96,6 +99,7 @@ export class ResponsePanel {
   clear(reason: string): void {
     this.#curves = null;
     this.tell(reason);
+    this.root.classList.add("none");
     this.#draw();
   }
 
@@ -119,6 +123,7 @@ export class ResponsePanel {
   forgetExact(): void {
     this.#job?.cancel();
     this.#job = null;
+    this.#elapsed.end();
     this.#ask.textContent = "Exact orbits";
     if (this.#exact === null) return;
     this.#exact = null;
@@ -145,10 +150,10 @@ export class ResponsePanel {
       return;
     }
     this.#ask.textContent = "Cancel";
-    this.tell("Exact orbits are being followed…");
+    this.#elapsed.begin("Exact orbits are being followed…");
     this.#job = this.#hearing.exact(
       ({ note }) => {
-        if (note) this.tell(note);
+        if (note) this.#elapsed.begin(`${capital(note)}…`);
       },
       (last, problems) => this.#found(last, problems),
     );
@@ -156,6 +161,7 @@ export class ResponsePanel {
 
   #found(last: JobReport | null, problems: readonly string[]): void {
     this.#job = null;
+    this.#elapsed.end();
     this.#ask.textContent = "Exact orbits";
     if (last?.state !== "done") {
       this.tell(problems.join(" "));
@@ -187,6 +193,7 @@ export class ResponsePanel {
     this.#phase.show(picture);
     this.#nameLines(
       new Set(lines.filter((one) => one.amplitude.some((value) => value !== null)).map((one) => one.sense)),
+      picture.critical.some((one) => this.#range[0] < one && one < this.#range[1]),
     );
     const critical = picture.critical.map((one) => told(one, 4)).join(", ");
     const summary =
@@ -197,9 +204,14 @@ export class ResponsePanel {
     this.#phaseHost.setAttribute("aria-label", "Phase of steady rolling over angular frequency");
   }
 
-  #nameLines(senses: ReadonlySet<string>): void {
-    const items = [...senses].map((sense) => ["line", sense === "clockwise" ? "vermilion" : "blue", sense]);
+  #nameLines(senses: ReadonlySet<string>, critical: boolean): void {
+    const items = [...senses].map((sense) => [
+      "line",
+      sense === "clockwise" ? "vermilion" : "blue",
+      `stable, ${sense}`,
+    ]);
     if (senses.size > 0) items.push(["thin", "muted", "unstable"], ["dotted", "muted", "backbone"]);
+    if (critical) items.push(["upright", "muted", "critical frequency"]);
     if (this.#exact !== null) items.push(["dot", "green", "exact"], ["diamond", "purple", "bifurcation"]);
     this.#legend.replaceChildren(
       ...items.map(([kind, colour, text]) =>
@@ -238,7 +250,7 @@ function toldOfCurves(curves: ResponseCurves, own: boolean): string {
   const how = curves.averaged ? "by averaging" : "in closed form";
   return own
     ? `Steady rolling, ${how}.`
-    : `Steady rolling of the slender column that cannot turn, ${how}; this model has none.`;
+    : `Steady rolling of the slender column that cannot turn, ${how}; exact orbits are of this model.`;
 }
 
 function toldOfExact(exact: ExactResponse): string {

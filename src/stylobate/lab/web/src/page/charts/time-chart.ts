@@ -1,47 +1,41 @@
 /** A quantity over the time of the run, with a line where the clock stands; a click sets the clock. */
 
 import uPlot from "uplot";
-import type { Numbers } from "../answers";
-import { element, onResize, themeColour } from "../dom";
+import { choice, element, onResize, themeColour } from "../dom";
 import { told } from "../format";
+import type { History, HistoryName } from "./history-kinds";
+import { HISTORIES, isHistoryName } from "./history-kinds";
 import { across, PLAIN, upright } from "./plot-looks";
 
-export interface TimeChartLooks {
-  readonly title: string;
-  /** Name of the vertical axis. */
-  readonly label: string;
-  /** Name of the horizontal axis, empty where that of the plot below stands for both. */
-  readonly timeLabel: string;
-  /** Name of a colour of the theme. */
-  readonly colour: string;
+export interface TimeChartHearing {
+  readonly seek: (time: number) => void;
+  readonly chosen: (name: HistoryName) => void;
 }
 
-/** A level that the quantity is held against. */
-export interface Level {
-  readonly value: number;
-  readonly told: string;
-}
+/** Room above and below what is drawn, in parts of its height. */
+const ROOM = 0.06;
 
 export class TimeChart {
   readonly root: HTMLElement;
-  readonly #looks: TimeChartLooks;
-  readonly #host = element("div", { class: "plot" });
+  readonly #hearing: TimeChartHearing;
+  readonly #kind: HTMLSelectElement;
+  readonly #host = element("div", { class: "plot", role: "img" });
   readonly #note = element("span", { class: "note" });
   readonly #head = element("div", { class: "playhead" });
   readonly #plot: uPlot;
-  readonly #seek: (time: number) => void;
-  #level: Level | null = null;
-  #highest = 1;
-  #resting = "";
+  #history: History | null = null;
+  #offered = "";
   #time = 0;
 
-  constructor(looks: TimeChartLooks, seek: (time: number) => void) {
-    this.#looks = looks;
-    this.#seek = seek;
-    const heading = element("header", {}, element("h2", {}, looks.title), this.#note);
-    this.root = element("section", { class: "panel chart time-chart", "aria-label": looks.title }, heading, this.#host);
-    this.#host.setAttribute("role", "img");
-    this.#plot = this.#made();
+  /** `timeLabel` is empty where that of the plot below stands for both. */
+  constructor(name: string, timeLabel: string, hearing: TimeChartHearing) {
+    this.#hearing = hearing;
+    this.#kind = choice([], { class: "title", "aria-label": name }, (value) => {
+      if (isHistoryName(value)) hearing.chosen(value);
+    });
+    const heading = element("header", {}, this.#kind, this.#note);
+    this.root = element("section", { class: "panel chart time-chart", "aria-label": name }, heading, this.#host);
+    this.#plot = this.#made(timeLabel);
     this.#plot.over.append(this.#head);
     this.#plot.over.addEventListener("click", (event) => this.#clicked(event));
     onResize(this.#host, (width, height) => {
@@ -50,13 +44,14 @@ export class TimeChart {
     });
   }
 
-  /** Shows a history, with the level it is held against; what is higher than `highest` is cut off. */
-  show(time: readonly number[], values: Numbers, level: Level | null, highest: number, note: string): void {
-    this.#level = level;
-    this.#highest = highest > 0 ? highest : 1;
-    this.#resting = note;
-    this.#note.textContent = note;
-    this.#host.setAttribute("aria-label", `${this.#looks.title}: ${note}`);
+  /** Shows a history, one of those that are offered. */
+  show(time: readonly number[], history: History, offered: readonly HistoryName[]): void {
+    this.#history = history;
+    this.#offer(offered);
+    this.#kind.value = history.name;
+    this.#note.textContent = history.note;
+    this.#host.setAttribute("aria-label", `${HISTORIES[history.name]}: ${history.note}`);
+    const { level, values } = history;
     const levels = level === null ? [] : time.map(() => level.value);
     this.#plot.setData([time as number[], values as number[], levels]);
     this.setTime(this.#time);
@@ -73,18 +68,24 @@ export class TimeChart {
     this.#plot.redraw(false);
   }
 
-  #made(): uPlot {
-    const { label, timeLabel, colour } = this.#looks;
+  #offer(offered: readonly HistoryName[]): void {
+    const listed = offered.join();
+    if (listed === this.#offered) return; // an open list keeps its place
+    this.#offered = listed;
+    this.#kind.replaceChildren(...offered.map((name) => element("option", { value: name }, HISTORIES[name])));
+  }
+
+  #made(timeLabel: string): uPlot {
     return new uPlot(
       {
         ...PLAIN,
         width: 400,
         height: 120,
-        scales: { x: { time: false }, y: { range: () => [0, this.#highest * 1.06] } },
-        axes: [across(timeLabel), upright(label)],
+        scales: { x: { time: false }, y: { range: () => this.#limits() } },
+        axes: [across(timeLabel), { ...upright(" "), label: () => this.#history?.label ?? "" }],
         series: [
           {},
-          { stroke: () => themeColour(colour), width: 1.5, points: { show: false } },
+          { stroke: () => themeColour(this.#history?.colour ?? "blue"), width: 1.5, points: { show: false } },
           { stroke: () => themeColour("vermilion"), width: 1.25, dash: [6, 4], points: { show: false } },
         ],
         hooks: { setCursor: [(plot) => this.#read(plot)], draw: [(plot) => this.#nameLevel(plot)] },
@@ -94,31 +95,40 @@ export class TimeChart {
     );
   }
 
+  #limits(): [number, number] {
+    const [low, high] = this.#history?.limits ?? [0, 1];
+    if (!(high > low)) return [low, low + 1];
+    const room = (high - low) * ROOM;
+    return [low < 0 ? low - room : low, high + room];
+  }
+
   /** Tells the value below the pointer. */
   #read(plot: uPlot): void {
     const { idx } = plot.cursor;
     const value = idx === null || idx === undefined ? undefined : plot.data[1]?.[idx];
     const time = idx === null || idx === undefined ? undefined : plot.data[0]?.[idx];
     const found = value !== undefined && time !== undefined;
-    this.#note.textContent = found ? `${told(value)} at ${told(time, 4)} s` : this.#resting;
+    this.#note.textContent = found ? `${told(value)} at ${told(time, 4)} s` : (this.#history?.note ?? "");
   }
 
   #nameLevel(plot: uPlot): void {
-    if (this.#level === null || this.#level.value > this.#highest * 1.06) return;
+    const level = this.#history?.level ?? null;
+    const [low, high] = this.#limits();
+    if (level === null || level.value > high || level.value < low) return;
     const { ctx, bbox } = plot;
     ctx.save();
     ctx.fillStyle = themeColour("vermilion");
     ctx.font = `${11 * uPlot.pxRatio}px system-ui, sans-serif`;
     ctx.textAlign = "right";
-    const place = plot.valToPos(this.#level.value, "y", true);
+    const place = plot.valToPos(level.value, "y", true);
     const room = place - bbox.top > 14 * uPlot.pxRatio;
     ctx.textBaseline = room ? "bottom" : "top";
-    ctx.fillText(this.#level.told, bbox.left + bbox.width - 3, place + (room ? -2 : 3));
+    ctx.fillText(level.told, bbox.left + bbox.width - 3, place + (room ? -2 : 3));
     ctx.restore();
   }
 
   #clicked(event: MouseEvent): void {
     const place = event.clientX - this.#plot.over.getBoundingClientRect().left;
-    this.#seek(this.#plot.posToVal(place, "x"));
+    this.#hearing.seek(this.#plot.posToVal(place, "x"));
   }
 }

@@ -2,7 +2,8 @@
 
 import type { AxesEvent, CellsEvent, JobReport, PlaneResult, ToldAxis } from "../answers";
 import { button, choice, element, newId } from "../dom";
-import { counted, told, withUnit, words } from "../format";
+import { capital, counted, told, withUnit, words } from "../format";
+import { Elapsed } from "../elapsed";
 import type { Job } from "../job";
 import { defaultAxis } from "../planes";
 import type { PlaneKind } from "../planes";
@@ -42,6 +43,7 @@ export class PlanePanel {
   #quantities: readonly Quantity[] = [];
   #values: Place | null = null;
   #job: Job | null = null;
+  readonly #elapsed = new Elapsed((told) => (this.#readout.textContent = told));
   #complete = false;
   #key = "";
   #shownKey = "";
@@ -121,7 +123,7 @@ export class PlanePanel {
     this.#progress.hidden = false;
     this.#progress.removeAttribute("value");
     this.root.classList.remove("stale");
-    this.#readout.textContent = "Starting…";
+    this.#elapsed.begin("Starting…");
     this.#job = start(
       (report) => this.#take(report),
       (last, problems) => this.#end(last, problems),
@@ -173,8 +175,9 @@ export class PlanePanel {
     if (report.total > 0) {
       this.#progress.max = report.total;
       this.#progress.value = report.done;
+      this.#elapsed.end();
       this.#readout.textContent = `${report.done} of ${counted(report.total, "run")}`;
-    } else if (report.note) this.#readout.textContent = `${report.note}…`;
+    } else if (report.note) this.#elapsed.begin(`${capital(report.note)}…`);
     if (report.events.length > 0) {
       this.#classes.tell(this.#filled);
       this.#redraw();
@@ -189,6 +192,7 @@ export class PlanePanel {
 
   #end(last: JobReport | null, problems: readonly string[]): void {
     this.#job = null;
+    this.#elapsed.end();
     this.#go.textContent = "Compute";
     this.#progress.hidden = true;
     this.#tellProblem(problems);

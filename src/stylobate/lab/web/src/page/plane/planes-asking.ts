@@ -3,7 +3,7 @@
 import type { About } from "../about";
 import type { Description } from "../description";
 import type { PlaneKind } from "../planes";
-import { belongs, defaultPlane, keyOf, quantitiesOf } from "../planes";
+import { belongs, defaultPlane, isPlaneKind, keyOf, quantitiesOf } from "../planes";
 import type { ColumnScales } from "../quantities";
 import { valueOf, withValue } from "../quantities";
 import { planeRequest } from "../requests";
@@ -52,7 +52,7 @@ export class PlanesAsking {
   /** Computes the plane of the tab again that the view says was computed, unless it is all there. */
   refill(): void {
     const { tab, filled } = this.#view;
-    if (filled && tab !== "orbit" && !this.panels[tab].current) this.#fill(tab);
+    if (filled && isPlaneKind(tab) && !this.panels[tab].current) this.#fill(tab);
   }
 
   redraw(): void {

@@ -1,0 +1,36 @@
+/** Tells how long something takes, once it takes long: seldom enough to be read out. */
+
+const SECOND = 1000;
+const STEP = 5; // s
+
+export class Elapsed {
+  readonly #tell: (told: string) => void;
+  #text = "";
+  #begun = 0;
+  #timer: number | null = null;
+
+  constructor(tell: (told: string) => void) {
+    this.#tell = tell;
+  }
+
+  /** Tells `text` now and with the time since the first one of the row. */
+  begin(text: string): void {
+    if (this.#timer !== null && text === this.#text) return;
+    this.#text = text;
+    if (this.#timer === null) {
+      this.#begun = performance.now();
+      this.#timer = window.setInterval(() => this.#tick(), STEP * SECOND);
+    }
+    this.#tick();
+  }
+
+  end(): void {
+    if (this.#timer !== null) window.clearInterval(this.#timer);
+    this.#timer = null;
+  }
+
+  #tick(): void {
+    const seconds = Math.round((performance.now() - this.#begun) / SECOND);
+    this.#tell(seconds < STEP ? this.#text : `${this.#text} ${seconds} s`);
+  }
+}

@@ -1,0 +1,16 @@
+/** The numbers of the column and of the run, as the command line tells them. */
+
+import type { Answer } from "./answers";
+import { element } from "./dom";
+import { capital } from "./format";
+
+export class NumbersTable {
+  readonly root = element("div", { class: "numbers", tabindex: 0, role: "region", "aria-label": "Numbers of the run" });
+
+  show({ summary }: Answer): void {
+    const rows = summary.map(([label, text]) =>
+      element("tr", {}, element("th", { scope: "row" }, capital(label)), element("td", {}, text)),
+    );
+    this.root.replaceChildren(element("table", {}, element("tbody", {}, ...rows)));
+  }
+}

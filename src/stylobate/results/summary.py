@@ -1,0 +1,87 @@
+"""What became of a run, in lines to read: the same on the command line and in the laboratory."""
+
+import math
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from stylobate.column import Column
+    from stylobate.results.response import Response
+
+Rows = list[tuple[str, str]]
+"""Labels, and what is told of each."""
+
+
+def column_rows(column: "Column") -> Rows:
+    """Return the numbers of the column that decide."""
+    return [
+        ("column", f"c = {column.slenderness:.5g}, ω0 = {column.frequency_scale:.5g} rad/s, {column.mass:.6g} kg"),
+        ("released above", f"{column.slenderness * column.gravity:.5g} m/s² of horizontal acceleration"),
+    ]
+
+
+def verdict_rows(run: "Response") -> Rows:
+    """Return what became of the column, why, and when that was decided."""
+    return [
+        ("outcome", run.outcome.value + (" (uncertain)" if run.uncertain else "")),
+        ("because", run.reason),
+        ("decided at", f"{run.decided_at:.4f} s"),
+    ]
+
+
+def measure_rows(run: "Response") -> Rows:
+    """Return the summary numbers of `run`: its tilt, where it came to, and what the contact had to bear."""
+    return [*_motion_rows(run), *_contact_rows(run), *_demand_rows(run)]
+
+
+def _motion_rows(run: "Response") -> Rows:
+    measures = run.measures
+    rows = [
+        ("largest tilt", f"{measures['largest_tilt']:.6g} rad, {measures['largest_tilt_over_c']:.4g} c"),
+        ("reached at", f"{measures['time_of_largest_tilt']:.4f} s"),
+        ("turns of the contact point", f"{measures['turns']:.3f}"),
+    ]
+    if "mean_rolling_rate" in measures:
+        rows.append(("mean rolling rate", f"{measures['mean_rolling_rate']:.6g} rad/s"))
+    return [*rows, ("events", _events(run)), ("steps", f"{measures['steps']:.0f}")]
+
+
+def _events(run: "Response") -> str:
+    told = [f"{event.kind} at {event.time:.4f} s" for event in run.events[:_SHOWN]]
+    if len(run.events) > _SHOWN:
+        told.append(f"and {len(run.events) - _SHOWN} more")
+    return ", ".join(told) or "none"
+
+
+def _contact_rows(run: "Response") -> Rows:
+    """Return how the column was on the plane and where it came to, of a model that slides."""
+    measures = run.measures
+    if "residual_displacement" not in measures:
+        return []
+    kinds = ("resting", "sliding", "rolling", "slipping", "flying")
+    times = ", ".join(f"{kind} {measures[f'time_{kind}']:.4g} s" for kind in kinds if measures[f"time_{kind}"] > 0.0)
+    moved = ", ".join(f"{measures[f'residual_displacement_{axis}']:.4g} m along {axis}" for axis in "xy")
+    return [
+        ("time", times),
+        ("moved by", moved),
+        ("twisted by", f"{measures['residual_twist']:.4g} rad"),
+        ("slipped", f"{measures['slip_distance']:.4g} m in all"),
+        ("impacts", f"{measures['impacts']:.0f}"),
+    ]
+
+
+def _demand_rows(run: "Response") -> Rows:
+    measures = run.measures
+    rows = [
+        ("needs a friction coefficient of", "largest_friction_demand", ""),
+        ("and to resist pivoting with", "largest_pivoting_demand", " of normal force times radius"),
+        ("least normal force", "least_normal_force", " of the weight"),
+    ]
+    return [(label, _bounded(measures[name], unit)) for label, name, unit in rows if name in measures]
+
+
+def _bounded(value: float, unit: str) -> str:
+    return f"{value:.4g}{unit}" if math.isfinite(value) else "no bound: nothing presses on the base"
+
+
+_SHOWN = 4
+"""Events that are told one by one."""
