@@ -14,6 +14,7 @@ from tests.lab.browser import Watched, new_page, open_browser, shown
 import stylobate as sb
 from stylobate.lab.presets import presets
 from stylobate.lab.serving import listening
+from stylobate.results.summary import measure_rows
 from stylobate.spec import SimulationDescription
 
 PRESETS = {preset.identity: preset for preset in presets()}
@@ -105,6 +106,33 @@ def test_a_link_shows_the_same_again(watched, browser, address):
         told = f"() => window.stylobate.{part}"
         assert other.evaluate(told) == page.evaluate(told)
     other.close()
+
+
+def test_what_is_drawn_over_time_is_chosen_and_kept_in_the_link(watched, browser):
+    page = watched.page
+    page.get_by_role("combobox", name="Lower history").select_option("Base acceleration along x")
+    page.wait_for_function("() => location.hash.includes('histories=tilt,base_x')")
+    other = new_page(browser)
+    other.goto(page.evaluate("() => location.href"))
+    shown(other)
+    chosen = "() => [...document.querySelectorAll('.time-chart select')].map(one => one.value)"
+    assert other.evaluate(chosen) == ["tilt", "base_x"]
+    other.close()
+
+
+def test_a_part_that_slides_shows_how_far_and_the_numbers_of_the_command_line(watched):
+    page = watched.page
+    preset = PRESETS["conveyor"]
+    page.get_by_label("Preset").select_option(preset.title)
+    page.wait_for_function(f"() => window.stylobate.laboratory.answer.outcome === '{preset.outcome}'")
+    upper = page.get_by_role("combobox", name="Upper history")
+    assert upper.evaluate("one => one.value") == "displacement_x"
+    page.get_by_role("tab", name="Numbers").click()
+    setup = SimulationDescription.parse(preset.description).build()
+    rows = measure_rows(sb.simulate(setup.model, setup.motion, **setup.options))
+    table = page.get_by_role("region", name="Numbers of the run")
+    moved_by = next(text for label, text in rows if label == "moved by")
+    assert table.get_by_text(moved_by, exact=True).is_visible()
 
 
 def test_a_broken_link_is_told_and_the_usual_case_shown(browser, address):

@@ -4,11 +4,11 @@ import type { Description, Part } from "./description";
 import { angularFrequency, isHorizontalHarmonic } from "./frequency";
 import type { PlaneKind } from "./planes";
 
-/** What has not settled in so many periods of the base motion is told apart in a basin. */
-const BASIN_PERIODS = 200;
+/** Rolling with usual damping has settled in so many periods of the base motion; what has not is told apart. */
+const SETTLED = 200;
 
-/** The fewest periods of the base motion after which a column that stands counts as standing in a map. */
-const MAP_PERIODS = 60;
+/** The fewest periods of a base motion under which nothing rolls, after which a column that stands counts as standing. */
+const STANDS = 60;
 
 const TURN = 2 * Math.PI;
 
@@ -27,7 +27,7 @@ export function withLength(kind: PlaneKind, of: Description, chosen: Description
 }
 
 function basinPeriods({ motion }: Description): number | null {
-  return isHorizontalHarmonic(motion) ? BASIN_PERIODS : null;
+  return isHorizontalHarmonic(motion) ? SETTLED : null;
 }
 
 /** Where the case lasts longer than is needed, its runs in the map last as many periods as it does. */
@@ -35,7 +35,7 @@ function mapPeriods({ motion, duration }: Description): number | null {
   const frequency = angularFrequency(motion);
   if (frequency === null || !(frequency > 0)) return null;
   const own = typeof duration === "number" ? (duration * frequency) / TURN : 0;
-  return Math.max(Number(own.toPrecision(DIGITS - 2)), MAP_PERIODS);
+  return Math.max(Number(own.toPrecision(DIGITS - 2)), isHorizontalHarmonic(motion) ? SETTLED : STANDS);
 }
 
 /** Of a duration; the periods that follow from it are rounded more coarsely, so that they come back the same. */

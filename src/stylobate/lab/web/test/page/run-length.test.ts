@@ -38,10 +38,18 @@ test("a map stays that of its case when a motion is chosen in it, and another in
   }
 });
 
-test("a map follows its runs for sixty periods at least, and a longer case as long as it lasts", () => {
-  assert.deepEqual(lengthOf("map", CASE), { duration: null, periods: 60 });
+test("a map follows rolling until it has settled, other motions for sixty periods, and a longer case as it lasts", () => {
+  assert.deepEqual(lengthOf("map", CASE), { duration: null, periods: 200 });
+  const thrown = { ...CASE, motion: { kind: "vertical", acceleration: 2, angular_frequency: 30 }, duration: 1 };
+  assert.deepEqual(lengthOf("map", thrown), { duration: null, periods: 60 });
   const long = { ...CASE, duration: 900 };
   assert.ok(Math.abs(Number(lengthOf("map", long)["periods"]) / periodsIn(long) - 1) < 1e-3);
+});
+
+test("a start that is chosen in a basin leaves the map of the case as it is", () => {
+  const chosen = withLength("map", CASE, CASE, Infinity);
+  const start = withLength("basin", chosen, withValue(chosen, "tilt_x", 0.05), Infinity);
+  assert.equal(start["duration"], chosen["duration"]);
 });
 
 test("under a motion that has no period the runs of a plane last as long as the case, and so does what is chosen", () => {
