@@ -3,14 +3,14 @@
 import "uplot/dist/uPlot.min.css";
 import "./styles.css";
 import type { Stage } from "../viewer/index";
-import type { About } from "./about";
-import { about } from "./api";
-import { Connection } from "./connection";
-import { byId } from "./dom";
+import type { About } from "./case/about";
+import { about } from "./server/api";
+import { Connection } from "./server/connection";
+import { byId } from "./frame/dom";
 import { Laboratory } from "./laboratory";
-import { offered } from "./offered";
-import type { View } from "./state";
-import { ThemeSwitch } from "./theme";
+import { offered } from "./case/offered";
+import type { View } from "./view/state";
+import { ThemeSwitch } from "./frame/theme";
 
 /** What those who test the page, or look into it, can ask it. */
 export interface Handle {

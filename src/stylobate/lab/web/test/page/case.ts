@@ -1,8 +1,8 @@
 /** A server's word of itself, and a view, for tests. */
 
-import type { About } from "../../src/page/about";
-import type { View } from "../../src/page/state";
-import { viewOf } from "../../src/page/state";
+import type { About } from "../../src/page/case/about";
+import type { View } from "../../src/page/view/state";
+import { viewOf } from "../../src/page/view/state";
 
 const number = (name: string, usual: number | null, from: number | null = null, to: number | null = null) => ({
   name,

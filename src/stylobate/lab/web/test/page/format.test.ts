@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { axisLabel, counted, plain, told, unitWritten, withUnit } from "../../src/page/format";
+import { axisLabel, counted, plain, told, unitWritten, withUnit } from "../../src/page/frame/format";
 
 test("numbers have the digits that are asked for and no idle zeros", () => {
   assert.deepEqual([plain(0.1 + 0.2), plain(2700), plain(1 / 3, 3), plain(1e-9)], ["0.3", "2700", "0.333", "1e-9"]);

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { Answer, Series } from "../../src/page/answers";
-import { brokenAt } from "../../src/page/captioned";
+import type { Answer, Series } from "../../src/page/server/answers";
+import { brokenAt } from "../../src/page/frame/captioned";
 import { chosenHistories, historiesOf } from "../../src/page/charts/history-kinds";
 
 const STILL: Series = {

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { Kind, Parameter } from "../../src/page/about";
+import type { Kind, Parameter } from "../../src/page/case/about";
 import { KeptNumbers } from "../../src/page/controls/kept-numbers";
 import { partOfKind } from "../../src/page/controls/part-form";
 

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { mock, test } from "node:test";
-import { Latest } from "../../src/page/latest";
+import { Latest } from "../../src/page/server/latest";
 
 /** A server whose answers are given by hand. */
 function byHand() {

@@ -1,8 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { Description, Part } from "../../src/page/description";
-import { BrokenLink, linkOf, viewFrom } from "../../src/page/link";
-import { viewOf, type View } from "../../src/page/state";
+import type { Description, Part } from "../../src/page/case/description";
+import { BrokenLink, linkOf, viewFrom } from "../../src/page/view/link";
+import { viewOf, type View } from "../../src/page/view/state";
 import { ABOUT, VIEW } from "./case";
 
 const again = (view: View): View => viewFrom(`#${linkOf(view)}`, ABOUT);

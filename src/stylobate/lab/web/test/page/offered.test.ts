@@ -1,8 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { About, Kind, Parameter } from "../../src/page/about";
+import type { About, Kind, Parameter } from "../../src/page/case/about";
 import { partOfKind } from "../../src/page/controls/part-form";
-import { offered } from "../../src/page/offered";
+import { offered } from "../../src/page/case/offered";
 import { ABOUT } from "./case";
 
 const needed = (name: string, from: number | null = null, to: number | null = null): Parameter => ({

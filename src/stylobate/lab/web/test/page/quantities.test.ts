@@ -1,9 +1,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { angularFrequency, isHorizontalHarmonic, withAngularFrequency } from "../../src/page/frequency";
-import { belongs, defaultPlane, keyOf, quantitiesOf } from "../../src/page/planes";
-import { valueOf, withValue } from "../../src/page/quantities";
-import { exactRequest, planeRequest, responseRequest, usualRange } from "../../src/page/requests";
+import { angularFrequency, isHorizontalHarmonic, withAngularFrequency } from "../../src/page/case/frequency";
+import { belongs, defaultPlane, keyOf, quantitiesOf } from "../../src/page/plane/planes";
+import { valueOf, withValue } from "../../src/page/case/quantities";
+import { exactRequest, planeRequest, responseRequest, usualRange } from "../../src/page/server/requests";
 import { ABOUT, VIEW } from "./case";
 
 const CASE = VIEW.description;

@@ -9,7 +9,7 @@ import {
   scaleBetween,
   ticks,
   valueAt,
-} from "../../src/page/ranges";
+} from "../../src/page/case/ranges";
 
 const SCALES = [
   scaleBetween(0, 0.5),

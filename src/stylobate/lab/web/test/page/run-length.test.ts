@@ -1,10 +1,10 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { Description } from "../../src/page/description";
-import { angularFrequency } from "../../src/page/frequency";
-import { keyOf } from "../../src/page/planes";
-import { withValue } from "../../src/page/quantities";
-import { lengthOf, withLength } from "../../src/page/run-length";
+import type { Description } from "../../src/page/case/description";
+import { angularFrequency } from "../../src/page/case/frequency";
+import { keyOf } from "../../src/page/plane/planes";
+import { withValue } from "../../src/page/case/quantities";
+import { lengthOf, withLength } from "../../src/page/case/run-length";
 import { VIEW } from "./case";
 
 const CASE = VIEW.description;

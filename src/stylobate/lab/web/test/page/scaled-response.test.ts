@@ -1,8 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { Described, ResponseCurves } from "../../src/page/answers";
-import type { Part } from "../../src/page/description";
-import { ScaledResponse } from "../../src/page/scaled-response";
+import type { Described, ResponseCurves } from "../../src/page/server/answers";
+import type { Part } from "../../src/page/case/description";
+import { ScaledResponse } from "../../src/page/server/scaled-response";
 
 const CURVES: ResponseCurves = { angular_frequency: [], branches: [], backbone: [], critical: [], averaged: true };
 const SIGNAL = new AbortController().signal;

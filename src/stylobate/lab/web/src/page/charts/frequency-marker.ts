@@ -1,8 +1,8 @@
 /** The frequency of the motion that is shown, as a line across the response that is drawn along by hand or keys. */
 
-import { element } from "../dom";
-import { withUnit } from "../format";
-import { rounded } from "../ranges";
+import { element } from "../frame/dom";
+import { withUnit } from "../frame/format";
+import { rounded } from "../case/ranges";
 
 /** The part of the range that an arrow key moves the marker by, and a page key. */
 const [STEP, PAGE] = [1 / 200, 1 / 20];

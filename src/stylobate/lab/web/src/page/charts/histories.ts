@@ -1,7 +1,7 @@
 /** Two quantities of the run over time: tilt and demand on the contact, or what the reader chooses. */
 
-import type { Answer } from "../answers";
-import { element } from "../dom";
+import type { Answer } from "../server/answers";
+import { element } from "../frame/dom";
 import type { History, HistoryName } from "./history-kinds";
 import { chosenHistories, historiesOf } from "./history-kinds";
 import { TimeChart } from "./time-chart";

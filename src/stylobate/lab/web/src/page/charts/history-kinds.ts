@@ -1,7 +1,7 @@
 /** What can be drawn over the time of a run: its quantities, as far as its model tells them. */
 
-import type { Answer, Numbers, Series } from "../answers";
-import { told } from "../format";
+import type { Answer, Numbers, Series } from "../server/answers";
+import { told } from "../frame/format";
 
 /** A level that a quantity is held against. */
 export interface Level {

@@ -1,9 +1,9 @@
 /** The path of the tilt vector, seen from above, within the circle |θ| = c beyond which nothing holds the column. */
 
 import type { DrawnMotion } from "../../viewer/drawn-motion";
-import { element, onResize, themeColour } from "../dom";
-import { told } from "../format";
-import { ticks } from "../ranges";
+import { element, onResize, themeColour } from "../frame/dom";
+import { told } from "../frame/format";
+import { ticks } from "../case/ranges";
 
 /** In units of c: what falls is seen to leave, and what came before is still seen. */
 const FARTHEST = 2;

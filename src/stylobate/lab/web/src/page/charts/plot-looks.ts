@@ -1,8 +1,8 @@
 /** How all plots look: axes, grid and lettering in the colours of the theme. */
 
 import type uPlot from "uplot";
-import { themeColour } from "../dom";
-import { told } from "../format";
+import { themeColour } from "../frame/dom";
+import { told } from "../frame/format";
 
 export const LETTERING = '11px system-ui, -apple-system, "Segoe UI", Roboto, sans-serif';
 

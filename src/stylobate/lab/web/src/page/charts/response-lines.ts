@@ -1,6 +1,6 @@
 /** Response curves as the lines that are drawn: for each branch what is stable, and what is not. */
 
-import type { Numbers, ResponseBranch, ResponseCurves } from "../answers";
+import type { Numbers, ResponseBranch, ResponseCurves } from "../server/answers";
 
 export interface ResponseLine {
   readonly stable: boolean;

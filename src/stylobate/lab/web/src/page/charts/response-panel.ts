@@ -1,10 +1,10 @@
 /** The frequency response: curves of theory, exact orbits on request, and the frequency that is shown. */
 
-import type { ExactResponse, JobReport, ResponseCurves } from "../answers";
-import { button, element, newId, onResize } from "../dom";
-import { Elapsed } from "../elapsed";
-import { capital, counted, plain, told, words } from "../format";
-import type { Job } from "../job";
+import type { ExactResponse, JobReport, ResponseCurves } from "../server/answers";
+import { button, element, newId, onResize } from "../frame/dom";
+import { Elapsed } from "../frame/elapsed";
+import { capital, counted, plain, told, words } from "../frame/format";
+import type { Job } from "../server/job";
 import type { Extent } from "./frequency-marker";
 import { FrequencyMarker } from "./frequency-marker";
 import { AXIS_WIDTH } from "./plot-looks";

@@ -1,8 +1,8 @@
 /** One of the two plots of the frequency response: amplitude or phase over angular frequency. */
 
 import uPlot from "uplot";
-import type { ExactResponse, Numbers } from "../answers";
-import { themeColour } from "../dom";
+import type { ExactResponse, Numbers } from "../server/answers";
+import { themeColour } from "../frame/dom";
 import { across, PLAIN, upright } from "./plot-looks";
 import type { ResponseLine } from "./response-lines";
 import { continuous } from "./response-lines";

@@ -1,8 +1,8 @@
 /** A quantity over the time of the run, with a line where the clock stands; a click sets the clock. */
 
 import uPlot from "uplot";
-import { choice, element, onResize, themeColour } from "../dom";
-import { told } from "../format";
+import { choice, element, onResize, themeColour } from "../frame/dom";
+import { told } from "../frame/format";
 import type { History, HistoryName } from "./history-kinds";
 import { HISTORIES, isHistoryName } from "./history-kinds";
 import { across, PLAIN, upright } from "./plot-looks";

@@ -1,12 +1,12 @@
 /** The column of controls: preset, column, model, base motion, start and length. */
 
-import type { About, Kind, Preset } from "../about";
-import { kindNamed, kindsOf } from "../about";
-import type { Description, Part, PartName, Value } from "../description";
-import { kindOf, tagOf, withPartValue, written } from "../description";
-import { choice, element, newId } from "../dom";
-import { angularFrequency, withAngularFrequency } from "../frequency";
-import type { ColumnScales } from "../quantities";
+import type { About, Kind, Preset } from "../case/about";
+import { kindNamed, kindsOf } from "../case/about";
+import type { Description, Part, PartName, Value } from "../case/description";
+import { kindOf, tagOf, withPartValue, written } from "../case/description";
+import { choice, element, newId } from "../frame/dom";
+import { angularFrequency, withAngularFrequency } from "../case/frequency";
+import type { ColumnScales } from "../case/quantities";
 import { KeptNumbers } from "./kept-numbers";
 import { NumberField } from "./number-field";
 import { PartForm, partOfKind } from "./part-form";

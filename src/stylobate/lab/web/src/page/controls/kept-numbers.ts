@@ -1,7 +1,7 @@
 /** The numbers of the kinds that a part has been of: another kind that has them too begins with them. */
 
-import type { Kind, Parameter } from "../about";
-import type { Part, Value } from "../description";
+import type { Kind, Parameter } from "../case/about";
+import type { Part, Value } from "../case/description";
 
 export class KeptNumbers {
   readonly #values = new Map<string, Value>();

@@ -1,9 +1,9 @@
 /** A number: its name, a slider for the hand and a field for the exact value. */
 
-import { element, newId } from "../dom";
-import { plain, withUnit } from "../format";
-import type { Scale } from "../ranges";
-import { POSITIONS, positionOf, scaleAbout, scaleBetween, valueAt } from "../ranges";
+import { element, newId } from "../frame/dom";
+import { plain, withUnit } from "../frame/format";
+import type { Scale } from "../case/ranges";
+import { POSITIONS, positionOf, scaleAbout, scaleBetween, valueAt } from "../case/ranges";
 
 export interface NumberLooks {
   readonly name: string;

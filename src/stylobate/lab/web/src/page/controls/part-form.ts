@@ -1,12 +1,12 @@
 /** The controls of a column, a model or a motion: which kind, and the numbers that this kind has. */
 
-import type { Kind, Parameter } from "../about";
-import type { Part, Value } from "../description";
-import { isVector } from "../description";
-import { choice, element, newId } from "../dom";
-import { capital, words } from "../format";
-import { firstTop } from "../quantities";
-import { niceAbove } from "../ranges";
+import type { Kind, Parameter } from "../case/about";
+import type { Part, Value } from "../case/description";
+import { isVector } from "../case/description";
+import { choice, element, newId } from "../frame/dom";
+import { capital, words } from "../frame/format";
+import { firstTop } from "../case/quantities";
+import { niceAbove } from "../case/ranges";
 import { NumberField } from "./number-field";
 
 interface Control {

@@ -1,11 +1,11 @@
 /** Which record: one that comes with the package, or files of the user's own. */
 
-import type { About } from "../about";
-import type { Received } from "../answers";
-import { Refused, sendRecord, Unreachable } from "../api";
-import type { Part, Value } from "../description";
-import { button, choice, element, newId } from "../dom";
-import { capital, told, withUnit } from "../format";
+import type { About } from "../case/about";
+import type { Received } from "../server/answers";
+import { Refused, sendRecord, Unreachable } from "../server/api";
+import type { Part, Value } from "../case/description";
+import { button, choice, element, newId } from "../frame/dom";
+import { capital, told, withUnit } from "../frame/format";
 
 const UNITS = [
   ["", "unit: from the file"],

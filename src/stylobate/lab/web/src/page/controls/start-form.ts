@@ -1,12 +1,12 @@
 /** The start of the motion and its length. */
 
-import type { Description } from "../description";
-import { kindOf } from "../description";
-import { element } from "../dom";
-import { capital, words } from "../format";
-import type { ColumnScales } from "../quantities";
-import { startQuantities, valueOf, withValue } from "../quantities";
-import { niceAbove } from "../ranges";
+import type { Description } from "../case/description";
+import { kindOf } from "../case/description";
+import { element } from "../frame/dom";
+import { capital, words } from "../frame/format";
+import type { ColumnScales } from "../case/quantities";
+import { startQuantities, valueOf, withValue } from "../case/quantities";
+import { niceAbove } from "../case/ranges";
 import { NumberField } from "./number-field";
 
 /** Models of columns that may turn about their axis. */

@@ -1,9 +1,9 @@
 /** One axis of a map: which quantity, from where to where. */
 
-import { element, newId } from "../dom";
-import { plain, unitWritten, words } from "../format";
-import type { Quantity } from "../quantities";
-import type { Axis } from "../state";
+import { element, newId } from "../frame/dom";
+import { plain, unitWritten, words } from "../frame/format";
+import type { Quantity } from "../case/quantities";
+import type { Axis } from "../view/state";
 
 export class AxisForm {
   readonly root: HTMLElement;

@@ -1,6 +1,6 @@
 /** The cells of a plane that fills in from coarse to fine. */
 
-import type { CellsEvent } from "../answers";
+import type { CellsEvent } from "../server/answers";
 
 /** No code of the server's: nothing is known of the cell yet. */
 export const UNKNOWN = -128;

@@ -1,8 +1,8 @@
 /** The classes of a plane: what its codes mean, how they look, and the legend that tells both. */
 
-import type { Attractor } from "../answers";
-import { element } from "../dom";
-import { plain, told } from "../format";
+import type { Attractor } from "../server/answers";
+import { element } from "../frame/dom";
+import { plain, told } from "../frame/format";
 import type { Cells } from "./cells";
 import { UNKNOWN } from "./cells";
 import type { Look } from "./looks";

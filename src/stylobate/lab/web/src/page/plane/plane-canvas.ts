@@ -1,9 +1,9 @@
 /** A map or basin on a canvas: cells in the looks of their classes, axes with units, the motion that is shown. */
 
-import type { AxesEvent, ToldAxis } from "../answers";
-import { element, onResize, themeColour } from "../dom";
-import { axisLabel, told } from "../format";
-import { ticks } from "../ranges";
+import type { AxesEvent, ToldAxis } from "../server/answers";
+import { element, onResize, themeColour } from "../frame/dom";
+import { axisLabel, told } from "../frame/format";
+import { ticks } from "../case/ranges";
 import type { Cells } from "./cells";
 import { UNKNOWN } from "./cells";
 import type { Look, Rgb } from "./looks";

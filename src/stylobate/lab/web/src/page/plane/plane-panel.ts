@@ -1,15 +1,15 @@
 /** An overturning map or a basin: its axes, its picture while it fills in, what its colours mean. */
 
-import type { AxesEvent, CellsEvent, JobReport, PlaneResult, ToldAxis } from "../answers";
-import { button, choice, element, newId } from "../dom";
-import { capital, counted, told, withUnit, words } from "../format";
-import { Elapsed } from "../elapsed";
-import type { Job } from "../job";
-import { defaultAxis } from "../planes";
-import type { PlaneKind } from "../planes";
-import type { Quantity } from "../quantities";
-import type { Axis, Plane } from "../state";
-import type { Description } from "../description";
+import type { AxesEvent, CellsEvent, JobReport, PlaneResult, ToldAxis } from "../server/answers";
+import { button, choice, element, newId } from "../frame/dom";
+import { capital, counted, told, withUnit, words } from "../frame/format";
+import { Elapsed } from "../frame/elapsed";
+import type { Job } from "../server/job";
+import { defaultAxis } from "./planes";
+import type { PlaneKind } from "./planes";
+import type { Quantity } from "../case/quantities";
+import type { Axis, Plane } from "../view/state";
+import type { Description } from "../case/description";
 import { AxisForm } from "./axis-form";
 import { Cells } from "./cells";
 import { Classes } from "./classes";

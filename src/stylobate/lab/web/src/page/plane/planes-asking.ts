@@ -1,15 +1,15 @@
 /** The overturning map and the basin of the case that is shown, filled in on request. */
 
-import type { About } from "../about";
-import type { Description } from "../description";
-import type { PlaneKind } from "../planes";
-import { belongs, defaultPlane, isPlaneKind, keyOf, quantitiesOf } from "../planes";
-import type { ColumnScales } from "../quantities";
-import { valueOf, withValue } from "../quantities";
-import { planeRequest } from "../requests";
-import type { JobStart } from "../response-asking";
-import { withLength } from "../run-length";
-import type { Plane, View } from "../state";
+import type { About } from "../case/about";
+import type { Description } from "../case/description";
+import type { PlaneKind } from "./planes";
+import { belongs, defaultPlane, isPlaneKind, keyOf, quantitiesOf } from "./planes";
+import type { ColumnScales } from "../case/quantities";
+import { valueOf, withValue } from "../case/quantities";
+import { planeRequest } from "../server/requests";
+import type { JobStart } from "../charts/response-asking";
+import { withLength } from "../case/run-length";
+import type { Plane, View } from "../view/state";
 import { PlanePanel } from "./plane-panel";
 
 const KINDS = ["map", "basin"] as const;

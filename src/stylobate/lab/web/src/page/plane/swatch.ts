@@ -1,6 +1,6 @@
 /** A small piece of a look, for legends. */
 
-import { element } from "../dom";
+import { element } from "../frame/dom";
 import type { Look } from "./looks";
 import { rgbOf } from "./looks";
 

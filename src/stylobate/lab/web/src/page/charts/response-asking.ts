@@ -1,18 +1,18 @@
 /** The frequency response of the case that is shown: curves at once, exact orbits on request. */
 
-import type { JobReport } from "./answers";
-import { describe, response, Unreachable } from "./api";
-import { ResponsePanel } from "./charts/response-panel";
-import type { Part } from "./description";
-import { written } from "./description";
-import { angularFrequency, withAngularFrequency } from "./frequency";
-import type { Job } from "./job";
-import { Latest } from "./latest";
-import type { ColumnScales } from "./quantities";
-import { exactRequest, isSlender, responseRequest, usualRange } from "./requests";
-import type { ScaledCurves } from "./scaled-response";
-import { ScaledResponse } from "./scaled-response";
-import type { View } from "./state";
+import type { JobReport } from "../server/answers";
+import { describe, response, Unreachable } from "../server/api";
+import { ResponsePanel } from "./response-panel";
+import type { Part } from "../case/description";
+import { written } from "../case/description";
+import { angularFrequency, withAngularFrequency } from "../case/frequency";
+import type { Job } from "../server/job";
+import { Latest } from "../server/latest";
+import type { ColumnScales } from "../case/quantities";
+import { exactRequest, isSlender, responseRequest, usualRange } from "../server/requests";
+import type { ScaledCurves } from "../server/scaled-response";
+import { ScaledResponse } from "../server/scaled-response";
+import type { View } from "../view/state";
 
 export type JobStart = (
   kind: string,

@@ -1,7 +1,7 @@
 /** Whether the server answers: asked now and then, and every two seconds while it does not. */
 
 import { about, Unreachable } from "./api";
-import { element } from "./dom";
+import { element } from "../frame/dom";
 
 /** Between two questions [ms]: while it does not answer, and while all is well. */
 const [PAUSE, WATCH] = [2000, 4000];

@@ -1,6 +1,6 @@
 /** Light or dark: what the reader's system asks for, until the reader says otherwise. */
 
-import type { Theme } from "../viewer/index";
+import type { Theme } from "../../viewer/index";
 import { button } from "./dom";
 
 const KEY = "stylobate-theme";

@@ -1,8 +1,8 @@
 /** What became of the column, in a line that is read out. */
 
-import type { Answer } from "./answers";
-import { element } from "./dom";
-import { capital, told } from "./format";
+import type { Answer } from "../server/answers";
+import { element } from "../frame/dom";
+import { capital, told } from "../frame/format";
 
 /** Outcomes that tell how far a run was followed, not what became of the column. */
 const UNDECIDED: readonly string[] = ["STILL_MOVING", "LIMIT_REACHED", "FAILED"];

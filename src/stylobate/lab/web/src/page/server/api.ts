@@ -1,7 +1,7 @@
 /** Questions to the server, and the two ways in which they fail. */
 
-import type { About } from "./about";
-import type { Part, Value } from "./description";
+import type { About } from "../case/about";
+import type { Part, Value } from "../case/description";
 import type { Answer, Described, JobReport, Received, ResponseCurves } from "./answers";
 
 /** The server refused: a line for each thing that was wrong. */

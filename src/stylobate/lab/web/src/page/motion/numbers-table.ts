@@ -1,8 +1,8 @@
 /** The numbers of the column and of the run, as the command line tells them. */
 
-import type { Answer } from "./answers";
-import { element } from "./dom";
-import { capital } from "./format";
+import type { Answer } from "../server/answers";
+import { element } from "../frame/dom";
+import { capital } from "../frame/format";
 
 export class NumbersTable {
   readonly root = element("div", { class: "numbers", tabindex: 0, role: "region", "aria-label": "Numbers of the run" });

@@ -1,12 +1,12 @@
 /** The motion in all its pictures, led by one clock: stage, histories, orbit, verdict. */
 
-import { Clock, Stage, type Theme } from "../viewer/index";
-import type { Answer } from "./answers";
-import type { HistoryPair } from "./charts/histories";
-import { Histories } from "./charts/histories";
-import { OrbitChart } from "./charts/orbit";
-import { element } from "./dom";
-import { Elapsed } from "./elapsed";
+import { Clock, Stage, type Theme } from "../../viewer/index";
+import type { Answer } from "../server/answers";
+import type { HistoryPair } from "../charts/histories";
+import { Histories } from "../charts/histories";
+import { OrbitChart } from "../charts/orbit";
+import { element } from "../frame/dom";
+import { Elapsed } from "../frame/elapsed";
 import { NumbersTable } from "./numbers-table";
 import { Transport } from "./transport";
 import { Verdict } from "./verdict";

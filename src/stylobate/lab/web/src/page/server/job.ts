@@ -2,7 +2,7 @@
 
 import type { JobReport } from "./answers";
 import { cancelJob, jobReport, startJob } from "./api";
-import type { Part } from "./description";
+import type { Part } from "../case/description";
 
 /** Between two questions after a job [ms]: often enough to see a map fill in. */
 const PAUSE = 200;

@@ -1,7 +1,7 @@
 /** What the server answers. Numbers that are not finite come as null. */
 
-import type { DrawnMotion, Pair, Triple } from "../viewer/drawn-motion";
-import type { Value } from "./description";
+import type { DrawnMotion, Pair, Triple } from "../../viewer/drawn-motion";
+import type { Value } from "../case/description";
 
 export type Numbers = readonly (number | null)[];
 

@@ -2,7 +2,7 @@
 
 import type { Description, Part } from "./description";
 import { angularFrequency, isHorizontalHarmonic } from "./frequency";
-import type { PlaneKind } from "./planes";
+import type { PlaneKind } from "../plane/planes";
 
 /** Rolling with usual damping has settled in so many periods of the base motion; what has not is told apart. */
 const SETTLED = 200;

@@ -1,12 +1,12 @@
 /** The menu of what can be taken along: pictures, the same run as Python or TOML, a link. */
 
-import type { Stage } from "../viewer/index";
-import type { Described } from "./answers";
-import { jobFile } from "./api";
+import type { Stage } from "../../viewer/index";
+import type { Described } from "../server/answers";
+import { jobFile } from "../server/api";
 import { captioned } from "./captioned";
-import type { Part } from "./description";
+import type { Part } from "../case/description";
 import { button, download, element } from "./dom";
-import { Job, problemsIn } from "./job";
+import { Job, problemsIn } from "../server/job";
 import { TextDialog } from "./text-dialog";
 
 export interface Exported {

@@ -6,10 +6,10 @@
  * A part is its kind and its numbers; a vector in it is written `0.1/0.2`, what has parts of its own as JSON after `~`.
  */
 
-import type { About } from "./about";
-import { kindNamed } from "./about";
-import type { Description, Part, PartName, Value } from "./description";
-import { isPart, isVector, PARTS, tagOf } from "./description";
+import type { About } from "../case/about";
+import { kindNamed } from "../case/about";
+import type { Description, Part, PartName, Value } from "../case/description";
+import { isPart, isVector, PARTS, tagOf } from "../case/description";
 import type { Axis, Plane, View } from "./state";
 import { historiesFrom, isRange, TABS, viewOf } from "./state";
 

@@ -1,10 +1,10 @@
 /** Play, pause, speed and the line of time, with a tick for each event. */
 
-import type { Clock } from "../viewer/index";
-import type { Answer } from "./answers";
-import { button, choice, element, newId, onResize, themeColour } from "./dom";
-import { clockTime, told, words } from "./format";
-import { SPEEDS } from "./state";
+import type { Clock } from "../../viewer/index";
+import type { Answer } from "../server/answers";
+import { button, choice, element, newId, onResize, themeColour } from "../frame/dom";
+import { clockTime, told, words } from "../frame/format";
+import { SPEEDS } from "../view/state";
 
 /** Steps of the line of time: finer than its pixels. */
 const STEPS = 2000;

@@ -1,13 +1,13 @@
 /** Axes of maps and basins that suit a case where none are told. */
 
-import type { About } from "./about";
-import type { Description } from "./description";
-import { without, written } from "./description";
-import type { ColumnScales, Quantity } from "./quantities";
-import { basinQuantities, mapQuantities, rangeAbout, valueOf } from "./quantities";
-import { lengthOf } from "./run-length";
-import type { Axis, Plane, Tab } from "./state";
-import { DEFAULT_CELLS } from "./state";
+import type { About } from "../case/about";
+import type { Description } from "../case/description";
+import { without, written } from "../case/description";
+import type { ColumnScales, Quantity } from "../case/quantities";
+import { basinQuantities, mapQuantities, rangeAbout, valueOf } from "../case/quantities";
+import { lengthOf } from "../case/run-length";
+import type { Axis, Plane, Tab } from "../view/state";
+import { DEFAULT_CELLS } from "../view/state";
 
 export type PlaneKind = "map" | "basin";
 

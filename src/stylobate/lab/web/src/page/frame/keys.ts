@@ -1,6 +1,6 @@
 /** Keys of the whole page: space plays and pauses, arrows go through the time; what has the focus comes first. */
 
-import type { Clock } from "../viewer/index";
+import type { Clock } from "../../viewer/index";
 
 /** What takes the space bar for itself, and what the arrows. */
 const PRESSED = "input:not([type=range]), select, textarea, button, summary, a";

@@ -1,6 +1,6 @@
 /** The views of presets and of links. */
 
-import type { About, Preset } from "./about";
+import type { About, Preset } from "../case/about";
 import { BrokenLink, toldOf, viewFrom } from "./link";
 import type { View } from "./state";
 import { viewOf } from "./state";

@@ -1,9 +1,9 @@
 /** What is looked at: one immutable value, from which the page and its address follow. */
 
-import type { Description, Value } from "./description";
-import type { HistoryPair } from "./charts/histories";
-import { isHistoryName } from "./charts/history-kinds";
-import { isPart, isVector } from "./description";
+import type { Description, Value } from "../case/description";
+import type { HistoryPair } from "../charts/histories";
+import { isHistoryName } from "../charts/history-kinds";
+import { isPart, isVector } from "../case/description";
 
 /** Values of one quantity, evenly spaced. */
 export interface Axis {

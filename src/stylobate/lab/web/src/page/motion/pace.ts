@@ -1,9 +1,9 @@
 /** The speed at which a motion is well seen. */
 
-import type { Answer } from "./answers";
-import type { Part } from "./description";
-import { angularFrequency } from "./frequency";
-import { SPEEDS } from "./state";
+import type { Answer } from "../server/answers";
+import type { Part } from "../case/description";
+import { angularFrequency } from "../case/frequency";
+import { SPEEDS } from "../view/state";
 
 /** How long a period of the base motion, or of the column's own time, should take on the screen [s]. */
 const SEEN = 2;

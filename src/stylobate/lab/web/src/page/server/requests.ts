@@ -1,12 +1,12 @@
 /** What is asked for a view: the bodies of the requests. */
 
-import type { Description, Part, Value } from "./description";
-import { isPart } from "./description";
-import { isHorizontalHarmonic, withoutFrequency } from "./frequency";
-import type { PlaneKind } from "./planes";
-import { niceAbove, niceBelow } from "./ranges";
-import { lengthOf } from "./run-length";
-import type { Plane } from "./state";
+import type { Description, Part, Value } from "../case/description";
+import { isPart } from "../case/description";
+import { isHorizontalHarmonic, withoutFrequency } from "../case/frequency";
+import type { PlaneKind } from "../plane/planes";
+import { niceAbove, niceBelow } from "../case/ranges";
+import { lengthOf } from "../case/run-length";
+import type { Plane } from "../view/state";
 
 /** Points of a response curve: about one to a pixel. */
 const POINTS = 400;

@@ -1,8 +1,8 @@
 /** Response curves with the slenderness of the very column that they are of: they are drawn in units of it. */
 
 import type { Described, ResponseCurves } from "./answers";
-import type { Part } from "./description";
-import { isPart, written } from "./description";
+import type { Part } from "../case/description";
+import { isPart, written } from "../case/description";
 
 export interface ScaledCurves {
   readonly curves: ResponseCurves;
