@@ -13,7 +13,8 @@ from anyio import CapacityLimiter, Event, to_thread
 from anyio.abc import TaskGroup
 from anyio.streams.memory import MemoryObjectReceiveStream, MemoryObjectSendStream
 
-from stylobate.lab.worker import Broken, Finished, Found, Note, Progress, Ready, Refused, work
+from stylobate.lab.messages import Broken, Finished, Found, Note, Progress, Ready, Refused
+from stylobate.lab.worker import work
 
 Told = Found | Progress | Note
 Answer = Finished | Refused | Broken

@@ -7,8 +7,8 @@ import numpy as np
 import xarray as xr
 
 from stylobate import spec, studies
+from stylobate.lab.messages import Emit, Note
 from stylobate.lab.plain import numbers
-from stylobate.lab.worker import Emit, Note
 from stylobate.orbits import StepControl
 
 _ORBITS = 400

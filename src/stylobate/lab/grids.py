@@ -9,9 +9,9 @@ import xarray as xr
 
 from stylobate import spec, studies
 from stylobate.errors import Outcome, ParameterError
+from stylobate.lab.messages import Emit, Found, Progress
 from stylobate.lab.plain import number, numbers
 from stylobate.lab.refining import Cells, Refining
-from stylobate.lab.worker import Emit, Found, Progress
 from stylobate.results.outcomes import code_of
 from stylobate.studies.sweeps.quantities import attributes_of
 

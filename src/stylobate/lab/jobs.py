@@ -14,8 +14,8 @@ from anyio.abc import TaskGroup
 
 from stylobate.lab.crew import Answer, Crew, Told
 from stylobate.lab.limits import Limits
+from stylobate.lab.messages import Broken, Finished, Found, Note, Progress, Refused
 from stylobate.lab.refusals import RefusedError
-from stylobate.lab.worker import Broken, Finished, Found, Note, Progress, Refused
 
 _log = logging.getLogger("stylobate.lab")
 

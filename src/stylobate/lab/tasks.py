@@ -8,7 +8,7 @@ from typing import Any
 from stylobate import engine, spec
 from stylobate.lab.answers import plain_record, plain_run, snippets
 from stylobate.lab.described import Described
-from stylobate.lab.worker import Emit, Progress
+from stylobate.lab.messages import Emit, Progress
 
 _USUAL_LENGTH = 12.0
 """How long a moving picture lasts [s], unless its base swings so fast that it must be slower."""

@@ -4,60 +4,11 @@ import logging
 import os
 import signal
 import traceback
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable
 from multiprocessing.connection import Connection
 from typing import Any
 
-Emit = Callable[[Any], None]
-
-
-@dataclass(frozen=True, slots=True)
-class Ready:
-    """The process has started and waits for tasks."""
-
-
-@dataclass(frozen=True, slots=True)
-class Found:
-    """Something found on the way."""
-
-    value: Mapping[str, Any]
-
-
-@dataclass(frozen=True, slots=True)
-class Progress:
-    """So many of all runs are done."""
-
-    done: int
-    total: int
-
-
-@dataclass(frozen=True, slots=True)
-class Note:
-    """One line about what goes on, such as that a kernel is compiled."""
-
-    line: str
-
-
-@dataclass(frozen=True, slots=True)
-class Finished:
-    """The task is done."""
-
-    result: Any
-
-
-@dataclass(frozen=True, slots=True)
-class Refused:
-    """The task cannot be done, one line for each reason."""
-
-    problems: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Broken:
-    """The task failed by a mistake of the program's own; the traceback is for its developers."""
-
-    trace: str
+from stylobate.lab.messages import Broken, Emit, Finished, Note, Ready, Refused
 
 
 def work(connection: Connection) -> None:

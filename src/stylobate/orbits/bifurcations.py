@@ -10,13 +10,14 @@ from scipy.optimize import brentq
 from stylobate.engine.flow.tableau import Status
 from stylobate.orbits.arclength import Floats, Point, corrected
 from stylobate.orbits.conditions import Condition, conditions_between
+from stylobate.orbits.multipliers import without_friction
 from stylobate.orbits.normal_forms import (
     PeriodMap,
     critical_vectors,
     neimark_sacker_coefficient,
     period_doubling_coefficient,
 )
-from stylobate.orbits.orbit import PeriodicOrbit, without_friction
+from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.shooting import shots
 
 # Along the family, in its units: the parameter is located better than this times the width of its bounds.

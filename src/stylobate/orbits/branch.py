@@ -16,7 +16,8 @@ from stylobate.errors import NoOrbitError, ParameterError, require_finite
 from stylobate.orbits.arclength import Family, Floats, Point, on_family
 from stylobate.orbits.arguments import control_of, enclosing, require_followed, require_orbit
 from stylobate.orbits.bifurcations import Bifurcation, between, orbit_at
-from stylobate.orbits.orbit import PeriodicOrbit, is_stable
+from stylobate.orbits.multipliers import is_stable
+from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.shooting import WHY_LOST, arcs_of
 from stylobate.orbits.tracing import End, StepControl, Stretch, trace
 from stylobate.spec import provenance_of_run

@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 
 from stylobate.orbits.arclength import Floats, Point
-from stylobate.orbits.orbit import least_are_rounding, without_friction
+from stylobate.orbits.multipliers import least_are_rounding, without_friction
 
 
 def fold(point: Point, direction: Floats) -> float:

@@ -11,6 +11,7 @@ from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.engine.forcing import common_line
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
+from stylobate.orbits.multipliers import is_stable
 from stylobate.orbits.shooting import Shots
 
 Floats = npt.NDArray[np.float64]
@@ -21,35 +22,6 @@ _SAMPLES = 128
 _SAME = 1e-7
 # A state in a plane this near to the upright [c] is in a passage of it; what is [turns] a little later.
 _PASSING, _LATER = 1e-9, 0.03
-# A multiplier this near to the unit circle cannot be told from one on it.
-_NEUTRAL = 1e-9
-# Rounding of the product of all multipliers, as measured without friction, is this times the square of the largest;
-# beyond the last number it tells nothing about friction.
-_ROUNDING, _UNTOLD = 1e-14, 0.1
-
-
-def without_friction(multipliers: Complexes) -> bool:
-    """Return whether volumes of states keep their size: the product of all multipliers is 1.
-
-    Each of them is told to 1e-9, and a large one leaves its rounding in the least.
-    """
-    allowed = len(multipliers) * _NEUTRAL + min(_rounding_of_product(multipliers), _UNTOLD)
-    return bool(abs(np.prod(multipliers) - 1.0) <= allowed)
-
-
-def least_are_rounding(multipliers: Complexes) -> bool:
-    """Return whether the least multiplier is no more than the rounding of the largest, and their product too."""
-    return _rounding_of_product(multipliers) > _UNTOLD
-
-
-def _rounding_of_product(multipliers: Complexes) -> float:
-    return _ROUNDING * float(np.abs(multipliers).max()) ** 2
-
-
-def is_stable(multipliers: Complexes) -> bool:
-    """Return whether all multipliers lie inside the unit circle; without friction, whether none lies outside it."""
-    margin = _NEUTRAL if without_friction(multipliers) else -_NEUTRAL
-    return bool(np.abs(multipliers).max() < 1.0 + margin)
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from stylobate.orbits import (
     continue_branch,
 )
 from stylobate.orbits.arguments import require_subject
-from stylobate.orbits.orbit import is_stable
+from stylobate.orbits.multipliers import is_stable
 from stylobate.spec import provenance_of_run
 from stylobate.studies.families import told_between_bifurcations
 from stylobate.studies.first_orbit import first_orbit

@@ -2,7 +2,7 @@
 
 import type { Description, Part } from "./description";
 import { angularFrequency, isHorizontalHarmonic } from "./frequency";
-import type { PlaneKind } from "../plane/planes";
+import type { PlaneKind } from "../view/state";
 
 /** Rolling with usual damping has settled in so many periods of the base motion; what has not is told apart. */
 const SETTLED = 200;

@@ -2,14 +2,14 @@
 
 import type { About } from "../case/about";
 import type { Description } from "../case/description";
-import type { PlaneKind } from "./planes";
-import { belongs, defaultPlane, isPlaneKind, keyOf, quantitiesOf } from "./planes";
+import { belongs, defaultPlane, keyOf, quantitiesOf } from "./planes";
 import type { ColumnScales } from "../case/quantities";
 import { valueOf, withValue } from "../case/quantities";
 import { planeRequest } from "../server/requests";
 import type { JobStart } from "../charts/response-asking";
 import { withLength } from "../case/run-length";
-import type { Plane, View } from "../view/state";
+import type { Plane, PlaneKind, View } from "../view/state";
+import { isPlaneKind } from "../view/state";
 import { PlanePanel } from "./plane-panel";
 
 const KINDS = ["map", "basin"] as const;

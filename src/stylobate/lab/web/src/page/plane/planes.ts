@@ -6,14 +6,8 @@ import { without, written } from "../case/description";
 import type { ColumnScales, Quantity } from "../case/quantities";
 import { basinQuantities, mapQuantities, rangeAbout, valueOf } from "../case/quantities";
 import { lengthOf } from "../case/run-length";
-import type { Axis, Plane, Tab } from "../view/state";
+import type { Axis, Plane, PlaneKind } from "../view/state";
 import { DEFAULT_CELLS } from "../view/state";
-
-export type PlaneKind = "map" | "basin";
-
-export function isPlaneKind(tab: Tab): tab is PlaneKind {
-  return tab === "map" || tab === "basin";
-}
 
 export function quantitiesOf(
   kind: PlaneKind,

@@ -3,10 +3,9 @@
 import type { Description, Part, Value } from "../case/description";
 import { isPart } from "../case/description";
 import { isHorizontalHarmonic, withoutFrequency } from "../case/frequency";
-import type { PlaneKind } from "../plane/planes";
 import { niceAbove, niceBelow } from "../case/ranges";
 import { lengthOf } from "../case/run-length";
-import type { Plane } from "../view/state";
+import type { Plane, PlaneKind } from "../view/state";
 
 /** Points of a response curve: about one to a pixel. */
 const POINTS = 400;

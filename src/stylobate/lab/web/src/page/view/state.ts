@@ -21,6 +21,13 @@ export interface Plane {
 export const TABS = ["orbit", "map", "basin", "numbers"] as const;
 export type Tab = (typeof TABS)[number];
 
+/** The tabs with a plane of cells. */
+export type PlaneKind = Extract<Tab, "map" | "basin">;
+
+export function isPlaneKind(tab: Tab): tab is PlaneKind {
+  return tab === "map" || tab === "basin";
+}
+
 export interface View {
   readonly description: Description;
   /** Angular frequencies of the response [rad/s]; null: chosen to suit the column. */
