@@ -9,6 +9,7 @@ from stylobate.errors import ParameterError, UnsupportedError, require_finite
 from stylobate.models import Model
 from stylobate.motions import BaseMotion, Harmonic
 from stylobate.motions.combined import Sum, Transformed
+from stylobate.motions.frequency import frequency_of, has_frequency_of_its_own, is_pulse, with_frequency
 from stylobate.motions.one_of import number_of, with_choice
 
 COLUMN_NAMES = (
@@ -30,6 +31,7 @@ ELLIPSE_NAMES = ("amplitude_x", "amplitude_y", "amplitude_z", "phase_difference"
 """Of one harmonic motion, before all others; ensembles do not vary them."""
 
 _OF_HARMONICS = ("angular_frequency", "start_phase")
+"""Of which a pulse has the first."""
 
 # What a name changes besides itself: with the other it would be said twice, and differently.
 _CONTRARY = {"slenderness": ("radius",), "size": ("radius", "mass_height")}
@@ -85,8 +87,8 @@ def with_parameters(model: Model, motion: BaseMotion, /, **values: float) -> tup
         slenderness (by its radius), size (all lengths times it). Of the model: its own fields, such as damping. Of the
         motion, applied in this order: motion (which of those in a `OneOf`); of a harmonic motion amplitude_x,
         amplitude_y, amplitude_z [m/s²] and phase_difference (phase of y less that of x) [rad]; angular_frequency
-        [rad/s], start_phase [rad], acceleration [m/s²] (its largest horizontal one; of a sum, the sum of those of its
-        parts), scale (a factor), rotation [rad] about the vertical, delay [s].
+        [rad/s], of a pulse too; start_phase [rad], acceleration [m/s²] (its largest horizontal one; of a sum, the sum
+        of those of its parts), scale (a factor), rotation [rad] about the vertical, delay [s].
 
     Raises
     ------
@@ -134,6 +136,8 @@ def changed_motion(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotio
     if "motion" in values:
         motion = _one_of(motion, values["motion"])
     harmonic = {name: values[name] for name in (*ELLIPSE_NAMES, *_OF_HARMONICS) if name in values}
+    if "angular_frequency" in harmonic and is_pulse(motion):
+        motion = with_frequency(motion, harmonic.pop("angular_frequency"))
     if harmonic:
         motion = _changed_harmonic(motion, harmonic)
     if "acceleration" in values:
@@ -180,7 +184,8 @@ def harmonic_part(motion: BaseMotion, name: str) -> Harmonic:
     if isinstance(motion, Transformed):
         return harmonic_part(motion.motion, name)
     if type(motion) is not Harmonic:
-        message = f"{name} can be changed in a Harmonic motion only; {_said(motion)}"
+        where = "a Harmonic motion or a pulse" if name == "angular_frequency" else "a Harmonic motion"
+        message = f"{name} can be changed in {where} only; {_said(motion)}"
         raise UnsupportedError(message)
     return motion
 
@@ -237,6 +242,8 @@ def _holder(model: Model, motion: BaseMotion, name: str) -> tuple[object, str]:
         return model.column, name
     if name in model_names(model):
         return model, name
+    if name == "angular_frequency" and has_frequency_of_its_own(motion):
+        return SimpleNamespace(angular_frequency=frequency_of(motion)), name
     harmonic = harmonic_part(motion, name)
     if name in _OF_HARMONICS:
         return harmonic, name

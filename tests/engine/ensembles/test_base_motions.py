@@ -211,3 +211,11 @@ class Broken(BaseMotion):
 def test_a_motion_that_breaks_its_promises_is_told(motion, told):
     with pytest.raises(ParameterError, match=told):
         sb.simulate_ensemble(STONE, motion, tilt=(0.03, 0.0), duration=1.0)
+
+
+def test_a_run_that_ends_before_its_pulse_begins_is_followed():
+    late = sb.Pulse.sinusoidal(acceleration=2.5, angular_frequency=4.0, phase=0.4, start=0.7)
+    model = sb.Slender(sb.Column.solid(radius=0.2, height=2.0, density=2700.0))
+    runs = sb.simulate_ensemble(model, late, duration=[0.4, 0.5], tilt=[[0.01, 0.0], [0.0, 0.0]])
+    alone = sb.simulate(model, late, duration=0.4, tilt=(0.01, 0.0))
+    assert float(runs["end_tilt"].isel(run=0, axis=0)) == pytest.approx(float(alone.data["tilt"][-1, 0]), abs=1e-9)

@@ -11,15 +11,18 @@ import numpy.typing as npt
 from stylobate.engine.ensembles.harmonics import Term, Terms, factors, terms_of
 from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.polynomials import Table, one_after_another, tabulated
+from stylobate.engine.ensembles.stretched import tabulated_alike
 from stylobate.engine.lanes.forcing_source import ForcingSource, Harmonics, Polynomials
 from stylobate.engine.parameters import changed_motion, harmonic_part, largest_acceleration
 from stylobate.engine.thresholds import least_rest_energy
 from stylobate.errors import require_positive
 from stylobate.motions import BaseMotion
+from stylobate.motions.frequency import is_pulse, with_frequency
 from stylobate.motions.one_of import members_of
 
 Floats = npt.NDArray[np.float64]
 
+_NONE = np.empty(0)
 _NO_PIECES = np.zeros((1, 5))
 
 
@@ -27,12 +30,14 @@ _NO_PIECES = np.zeros((1, 5))
 class MotionPlan:
     """How an ensemble's base motion is evaluated: decided once, so that all its runs are computed alike.
 
-    `members` are the motions of which each run has one. `terms` is None for motions that are tabulated, in `table`, one
-    after another: each begins at its piece of `first`, and has so many as `lengths` tells.
+    `members` are the motions of which each run has one: of a pulse whose frequency varies, those of the `frequencies`,
+    in rising order. `terms` is None for motions that are tabulated, in `table`, one after another: each begins at its
+    piece of `first`, and has so many as `lengths` tells.
     """
 
     motion: BaseMotion
     members: tuple[BaseMotion, ...]
+    frequencies: Floats
     terms: tuple[Term, ...] | None
     table: Table | None
     first: npt.NDArray[np.intp]
@@ -52,14 +57,16 @@ class MotionPlan:
         UnsupportedError
             If the motion lacks a number that is to be changed, or cannot be tabulated.
         """
-        for name in ("angular_frequency", "start_phase"):
+        of_pulse = "angular_frequency" in values and is_pulse(motion)
+        for name in ("start_phase",) if of_pulse else ("angular_frequency", "start_phase"):
             if name in values:
                 harmonic_part(motion, name)
         if "angular_frequency" in values:
             require_positive("angular_frequency", values["angular_frequency"].min(initial=1.0), "rad/s")
         for number in np.unique(values.get("motion", ())):
             changed_motion(motion, {"motion": float(number)})
-        members = members_of(motion) if "motion" in values else (motion,)
+        frequencies = np.unique(values["angular_frequency"]) if of_pulse else _NONE
+        members = _members(motion, values, frequencies)
         scaled = "acceleration" in values
         base = np.array([largest_acceleration(member) if scaled else 1.0 for member in members])
         vertical = any(bound != 0.0 for member in members for bound in member.vertical_range(0.0))
@@ -68,16 +75,19 @@ class MotionPlan:
         if terms is not None:
             windowed = "delay" in values or any(term.ramp > 0.0 or term.onset > 0.0 for term in terms)
             vertical = any(term.amplitude[2] != 0.0 for term in terms)
-            return cls(motion, members, terms, None, nowhere, nowhere, windowed, vertical, base)
+            return cls(motion, members, frequencies, terms, None, nowhere, nowhere, windowed, vertical, base)
         least_delay = values["delay"].min(initial=0.0) if "delay" in values else 0.0
         end = float(duration.max(initial=1e-300)) - float(least_delay)
-        tables = [tabulated(member, end) for member in members]
+        tables = tabulated_alike(members, end) if of_pulse else [tabulated(member, end) for member in members]
         lengths = np.array([len(table.rows) for table in tables])
         table = one_after_another(tables)
-        return cls(motion, members, None, table, np.cumsum(lengths) - lengths, lengths, False, vertical, base)
+        first = np.cumsum(lengths) - lengths
+        return cls(motion, members, frequencies, None, table, first, lengths, False, vertical, base)
 
     def member(self, values: Mapping[str, Floats], count: int) -> npt.NDArray[np.intp]:
         """Return which of the `members` each of `count` runs has."""
+        if self.frequencies.size > 0:
+            return np.searchsorted(self.frequencies, values["angular_frequency"])
         return values["motion"].astype(np.intp) if "motion" in values else np.zeros(count, dtype=np.intp)
 
     def source(self, *, planar: bool) -> ForcingSource:
@@ -144,7 +154,7 @@ class MotionColumns:
             phase = np.zeros(count)
             forward = backward = np.full(count, np.nan)
         period = each(lambda motion: motion.period or 0.0)
-        if "angular_frequency" in values:
+        if "angular_frequency" in values and plan.frequencies.size == 0:
             period = 2.0 * math.pi / values["angular_frequency"]
         return cls(
             columns=columns,
@@ -161,6 +171,12 @@ class MotionColumns:
             forward=forward,
             backward=backward,
         )
+
+
+def _members(motion: BaseMotion, values: Mapping[str, Floats], frequencies: Floats) -> tuple[BaseMotion, ...]:
+    if frequencies.size > 0:
+        return tuple(with_frequency(motion, frequency) for frequency in frequencies.tolist())
+    return members_of(motion) if "motion" in values else (motion,)
 
 
 def _single_frequency(terms: Terms, motion: BaseMotion) -> tuple[Floats, Floats, Floats, Floats]:

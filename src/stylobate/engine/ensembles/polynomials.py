@@ -85,8 +85,9 @@ def tabulated(motion: BaseMotion, end: float) -> Table:
         raise UnsupportedError(message)
     size = max(motion.largest_horizontal(0.0), *map(abs, motion.vertical_range(0.0)))
     pieces: list[tuple[float, float, Floats]] = []
+    after = next((time for time in motion.breaks if time >= end), math.inf)
     for low, high in zip(edges, [*edges[1:], math.inf], strict=True):
-        cuts = _cuts(low, high, longest, end)
+        cuts = np.minimum(_cuts(low, high, longest, end), after)  # no piece goes over a break
         for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
             pieces += _fitted(motion, a, b, size, _HALVINGS)
     starts, ends, coefficients = zip(*pieces, strict=True)

@@ -13,8 +13,8 @@ from stylobate.engine.parameters import with_parameters
 from stylobate.errors import ParameterError, require_positive
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
+from stylobate.motions.frequency import frequency_of
 from stylobate.motions.one_of import members_of
-from stylobate.studies.spectra.pulse_frequency import frequency_of, is_pulse, of_frequencies
 from stylobate.studies.sweeps import Sweep
 from stylobate.studies.sweeps.quantities import OF_A_RUN, Floats, attributes_of, check_quantities, checked_values
 from stylobate.studies.sweeps.recipe import RunOptions
@@ -29,7 +29,7 @@ Near the edge of a band a column stays near its balance, which it leaves as e^(p
 its other side: after 20/p still, within about 10⁻⁶ of the edge; after 40/p, within 10⁻¹².
 """
 
-_FREQUENCY, _MOTION = "angular_frequency", "motion"
+_MOTION = "motion"
 # What normalizes a spectrum, for each case.
 _NUMBERS: Mapping[str, Mapping[str, str]] = {
     "frequency_parameter": {"units": "rad s-1", "long_name": "frequency parameter p"},
@@ -59,7 +59,7 @@ class Cases:
     def of(
         cls, model: Model, motion: BaseMotion, over: Mapping[str, npt.ArrayLike] | None, *, scaled: bool = False
     ) -> Self:
-        """Return the cases `over` these values; the pulse of each frequency is one of several motions.
+        """Return the cases `over` these values.
 
         Parameters
         ----------
@@ -83,10 +83,6 @@ class Cases:
         axes = {name: checked_values("over", name, values) for name, values in over.items()}
         meshes = np.meshgrid(*axes.values(), indexing="ij") if axes else []
         values = {name: mesh.ravel() for name, mesh in zip(axes, meshes, strict=True)}
-        if _FREQUENCY in axes and is_pulse(motion):
-            motion = of_frequencies(motion, axes[_FREQUENCY].tolist())
-            place = {frequency: number for number, frequency in enumerate(axes[_FREQUENCY].tolist())}
-            values[_MOTION] = np.array([place[one] for one in values.pop(_FREQUENCY).tolist()], dtype=float)
         return cls(model, motion, axes, values, _numbers(model, motion, values))
 
     @property

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from stylobate.errors import ParameterError, require_positive, require_vector
 from stylobate.models import Model
 from stylobate.motions import BASE_AT_REST, BaseMotion
+from stylobate.motions.frequency import is_pulse
 from stylobate.results import OutcomeRules
 from stylobate.spec import provenance_of_run
 from stylobate.studies.sweeps.blocks import Blocks
@@ -201,6 +202,7 @@ class Sweep:
             object.__setattr__(self, "duration", require_positive("duration", self.duration, "s"))
         if self.periods is not None:
             object.__setattr__(self, "periods", require_positive("periods", self.periods))
-            if "angular_frequency" not in self.design.names and self.motion.period is None:
+            varied = "angular_frequency" in self.design.names and not is_pulse(self.motion)
+            if not varied and self.motion.period is None:
                 message = f"periods needs a periodic base motion; give duration [s] for {self.motion!r}"
                 raise ParameterError(message)

@@ -4,8 +4,10 @@ import math
 from dataclasses import fields, is_dataclass, replace
 
 from stylobate.errors import UnsupportedError
-from stylobate.motions import BaseMotion, Harmonic, OneOf, Pulse
+from stylobate.motions.base import BaseMotion
 from stylobate.motions.combined import Following, Transformed
+from stylobate.motions.harmonic import Harmonic
+from stylobate.motions.pulses.pulse import Pulse
 
 
 def frequency_of(motion: BaseMotion) -> float:
@@ -27,11 +29,18 @@ def is_pulse(motion: BaseMotion) -> bool:
     return is_pulse(motion.motion) if isinstance(motion, Transformed) else isinstance(motion, Pulse)
 
 
+def has_frequency_of_its_own(motion: BaseMotion) -> bool:
+    """Return whether `motion` is one pulse with a frequency that can be changed: not all are told by theirs."""
+    return is_pulse(motion) and not math.isnan(frequency_of(motion))
+
+
 def with_frequency(motion: BaseMotion, angular_frequency: float) -> BaseMotion:
     """Return the same pulse of another frequency [rad/s]: its other numbers, such as the acceleration, stay.
 
     Raises
     ------
+    ParameterError
+        If the frequency is not positive.
     UnsupportedError
         If it has none.
     """
@@ -43,15 +52,10 @@ def with_frequency(motion: BaseMotion, angular_frequency: float) -> BaseMotion:
     elif "frequency" in names:
         changed = {"frequency": angular_frequency / (2.0 * math.pi)}
     else:
-        message = f"angular_frequency can be changed in a pulse or a harmonic motion only; got {motion!r}"
+        message = f"angular_frequency can be changed in a pulse that is told by its frequency only; got {motion!r}"
         raise UnsupportedError(message)
     assert isinstance(motion, Pulse)
     return replace(motion, waveform=replace(motion.waveform, **changed))  # type: ignore[type-var]  # a dataclass
-
-
-def of_frequencies(motion: BaseMotion, frequencies: list[float]) -> OneOf:
-    """Return one of the same pulse at these `frequencies` [rad/s]."""
-    return OneOf(motions=tuple(with_frequency(motion, frequency) for frequency in frequencies))
 
 
 def _numbers(pulse: Pulse) -> tuple[str, ...]:

@@ -1,0 +1,62 @@
+"""Tables of one pulse at many frequencies: the first is fitted, the others are the same, stretched in time."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.engine.ensembles.polynomials import Table, tabulated
+from stylobate.motions import BaseMotion
+from stylobate.motions.base import ACCELERATION
+
+Floats = npt.NDArray[np.float64]
+
+# A stretched table is that of a motion if it meets it to this part of the largest acceleration, in the middle of each
+# piece and at its quarters: no worse than a fit.
+_MEETS = 1e-10
+_BEYOND = 1.0 + 1e-9
+_LOOKED_AT = np.array([-0.5, 0.0, 0.5])
+
+
+def tabulated_alike(motions: Sequence[BaseMotion], end: float) -> list[Table]:
+    """Return the tables of `motions` from t = 0 to `end` [s]; those that are the first one stretched are not fitted.
+
+    Raises
+    ------
+    UnsupportedError
+        If one is not smooth between its breaks.
+    """
+    first = motions[0]
+    table = tabulated(first, max(end, _edges(first)[-1] * _BEYOND))  # to its end: others may be there sooner
+    return [table, *(_stretched(table, first, motion, end) or tabulated(motion, end) for motion in motions[1:])]
+
+
+def _edges(motion: BaseMotion) -> Floats:
+    return np.array([0.0, *(time for time in motion.breaks if time > 0.0)])
+
+
+def _stretched(table: Table, of: BaseMotion, motion: BaseMotion, end: float) -> Table | None:
+    """Return the table of a motion that goes between its breaks as another does; None if it does not."""
+    before, after = _edges(of), _edges(motion)
+    size = of.largest_horizontal(0.0)
+    if len(before) != len(after) or len(before) == 1 or not size > 0.0:
+        return None
+    going = table.rows[:, 1] <= before[-1]
+    if np.any(table.coefficients[~going]):
+        return None  # it never ends
+    strength = motion.largest_horizontal(0.0) / size
+    spans = np.interp(table.rows[going, :2], before, after)
+    rest = (after[-1], max(end, after[-1] + 1.0))
+    coefficients = np.append(strength * table.coefficients[going], np.zeros((1, *table.coefficients.shape[1:])), axis=0)
+    bounds = np.append(strength * table.rows[going, 2:5], np.zeros((1, 3)), axis=0)
+    found = Table.of(np.vstack([spans, rest]), bounds, coefficients)
+    return found if _meets(found, motion, size * strength) else None
+
+
+def _meets(table: Table, motion: BaseMotion, size: float) -> bool:
+    middle, half = 0.5 * table.rows[:, :2].sum(axis=1), 0.5 * (table.rows[:, 1] - table.rows[:, 0])
+    times = middle[:, np.newaxis] + half[:, np.newaxis] * _LOOKED_AT
+    powers = _LOOKED_AT ** np.arange(table.degree + 1)[:, np.newaxis]
+    told = table.coefficients @ powers  # piece, axis, time
+    wanted = np.stack(motion.derivative(times.ravel(), ACCELERATION)).reshape(3, *times.shape).transpose(1, 0, 2)
+    return bool(np.abs(told - wanted).max() <= _MEETS * size)

@@ -1,0 +1,122 @@
+"""A pulse whose frequency varies: each run is that under the pulse of its frequency."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+import stylobate as sb
+from stylobate.engine.ensembles.polynomials import tabulated
+from stylobate.engine.ensembles.stretched import tabulated_alike
+from stylobate.errors import ParameterError, UnsupportedError
+from stylobate.motions.frequency import with_frequency
+from stylobate.motions.pulses import Waveform
+
+MODEL = sb.Slender(sb.Column.solid(radius=0.2, height=2.0, density=2700.0), damping=0.05)
+P = sb.Pulse
+PULSES = {
+    "one sine": P.one_sine(acceleration=2.5, angular_frequency=4.0, vertical=0.3),
+    "late sine": P.sinusoidal(acceleration=2.5, angular_frequency=4.0, phase=0.4, cycles=1.6, start=0.7),
+    "ricker": P.ricker(acceleration=2.5, angular_frequency=4.0, direction=0.6),
+    "gabor": P.gabor(velocity=0.6, frequency=0.7, phase=0.4, oscillations=1.7),
+    "turned": P.type_b(velocity=0.7, angular_frequency=4.0).rotated(0.3).scaled(1.2),
+}
+FREQUENCIES = np.array([9.0, 2.5, 4.0, 6.0, 2.5])
+# Of the largest acceleration: what each of two tables may miss the motion by.
+FITTED = 2e-10
+
+every_pulse = pytest.mark.parametrize("pulse", PULSES.values(), ids=PULSES)
+
+
+def acceleration_of(table, time):
+    """Return the acceleration that a table tells, shape (3, n)."""
+    piece = np.searchsorted(table.rows[:, 0], time, side="right") - 1
+    begin, end = table.rows[piece, :2].T
+    place = (time - 0.5 * (begin + end)) / (0.5 * (end - begin))
+    powers = place[:, np.newaxis] ** np.arange(table.degree + 1)
+    return np.einsum("nap,np->an", table.coefficients[piece], powers)
+
+
+@every_pulse
+def test_each_run_is_that_under_the_pulse_of_its_frequency(pulse):
+    runs = sb.simulate_ensemble(MODEL, pulse, duration=6.0, parameters={"angular_frequency": FREQUENCIES})
+    moved = 0
+    for run, frequency in zip((runs.isel(run=i) for i in range(runs.sizes["run"])), FREQUENCIES, strict=True):
+        alone = sb.simulate(MODEL, with_frequency(pulse, float(frequency)), duration=6.0)
+        assert sb.results.outcome_of(run["outcome"]) == alone.outcome
+        if alone.outcome is not sb.Outcome.OVERTURNED:  # else it ends with a step of the method's
+            assert float(run["largest_tilt"]) == pytest.approx(alone.measures["largest_tilt"], rel=1e-6, abs=1e-9)
+        moved += alone.measures["largest_tilt"] > 0.0
+    assert moved >= 3
+
+
+@every_pulse
+@pytest.mark.parametrize("end", [0.4, 6.0])
+def test_a_stretched_table_is_that_of_the_pulse_itself_whatever_its_end(pulse, end):
+    members = [with_frequency(pulse, frequency) for frequency in (2.5, 4.0, 9.0)]
+    time = np.linspace(0.0, end, 500)[:-1]
+    for member, table in zip(members, tabulated_alike(members, end), strict=True):
+        size = member.largest_horizontal(0.0)
+        assert np.abs(acceleration_of(table, time) - member.acceleration(time).T).max() <= FITTED * size
+        own = tabulated(member, end)
+        assert table.rows[-1, 1] >= end
+        assert table.rows[0, 2:5] == pytest.approx(own.rows[0, 2:5], rel=1e-9)
+
+
+@dataclass(frozen=True)
+class Hump(Waveform):
+    """Of a height that falls with its frequency, and a shape that goes with it: no two are alike."""
+
+    angular_frequency: float
+
+    duration = 2.0
+    highest_frequency = 12.0
+
+    def derivative(self, time, order):
+        assert order == 2
+        return np.sin(np.pi * time / 2.0) ** 2 * np.exp(-self.angular_frequency * time)
+
+    def turning_points(self):
+        time = np.linspace(0.0, 2.0, 20001)
+        values = self.derivative(time, 2)
+        best = int(values.argmax())
+        return ((float(time[best]), float(values[best])),)
+
+
+def test_a_pulse_that_is_another_at_each_frequency_is_not_stretched():
+    members = [with_frequency(P(waveform=Hump(1.0)), frequency) for frequency in (1.0, 3.0)]
+    time = np.linspace(0.01, 1.99, 200)
+    for member, table in zip(members, tabulated_alike(members, 3.0), strict=True):
+        wanted = member.waveform.derivative(time, 2)
+        assert np.abs(acceleration_of(table, time)[0] - wanted).max() <= FITTED * wanted.max()
+
+
+def test_the_frequency_of_a_pulse_is_changed_and_told_by_its_name():
+    pulse = PULSES["late sine"].scaled(2.0)
+    _, faster = sb.with_parameters(MODEL, pulse, angular_frequency=8.0)
+    assert faster.duration - 0.7 == pytest.approx(0.5 * (pulse.duration - 0.7))
+    assert faster.largest_horizontal(0.0) == pytest.approx(pulse.largest_horizontal(0.0))
+
+
+def test_a_map_over_the_frequency_of_a_pulse_has_its_runs():
+    over = {"angular_frequency": [2.5, 9.0], "acceleration": [0.5, 4.0, 12.0]}
+    plane = sb.studies.overturning_map(MODEL, PULSES["one sine"], over=over, duration=5.0)
+    found = plane["outcome"].transpose("angular_frequency", "acceleration").values
+    for row, frequency in zip(found, over["angular_frequency"], strict=True):
+        for code, acceleration in zip(row, over["acceleration"], strict=True):
+            one = P.one_sine(acceleration=acceleration, angular_frequency=frequency, vertical=0.3)
+            assert sb.results.outcome_of(code) == sb.simulate(MODEL, one, duration=5.0).outcome
+    assert len(np.unique(found)) > 1
+
+
+def test_what_has_no_frequency_is_refused_with_a_word():
+    record = sb.sample_record()
+    with pytest.raises(UnsupportedError, match="angular_frequency can be changed in a Harmonic motion or a pulse only"):
+        sb.simulate_ensemble(MODEL, record, duration=1.0, parameters={"angular_frequency": [2.0]})
+    with pytest.raises(ParameterError, match="angular_frequency must be positive"):
+        sb.simulate_ensemble(MODEL, PULSES["ricker"], duration=1.0, parameters={"angular_frequency": [0.0]})
+    over = {"angular_frequency": [2.0], "acceleration": [1.0]}
+    with pytest.raises(ParameterError, match="periods needs a periodic base motion"):
+        sb.studies.overturning_map(MODEL, PULSES["ricker"], over=over, periods=3.0)
+    with pytest.raises(UnsupportedError, match="start_phase can be changed in a Harmonic motion only"):
+        sb.simulate_ensemble(MODEL, PULSES["ricker"], duration=1.0, parameters={"start_phase": [0.0]})
