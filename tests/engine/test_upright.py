@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import stylobate as sb
+from stylobate.engine.moving import Mover
+from stylobate.engine.watch import Reason
 
 C = 0.1
 
@@ -136,3 +138,21 @@ def test_a_close_passage_is_uncertain_out_of_a_plane_and_certain_within_one():
     assert not across.planar
     assert within.planar
     assert not within.uncertain
+
+
+def test_a_passage_at_the_very_end_of_a_run_ends_it(monkeypatch):
+    model = sb.SlenderRolling(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    start = {"tilt": (0.03, 0.0), "tilt_rate": (0.0, 1e-9)}
+    followed, legs = Mover.in_space, []
+
+    def noted(self, *arguments, **options):
+        legs.append(followed(self, *arguments, **options))
+        return legs[-1]
+
+    monkeypatch.setattr(Mover, "in_space", noted)
+    sb.simulate(model, duration=30.0, **start)
+    first = next(leg for leg in legs if leg.reason is Reason.CROSSED)
+    monkeypatch.setattr(Mover, "in_space", lambda *_, **__: first)
+    run = sb.simulate(model, duration=first.piece.end, **start)
+    assert run.outcome is sb.Outcome.STILL_MOVING
+    assert float(run.data["time"][-1]) == first.piece.end

@@ -156,7 +156,7 @@ class Course:
             leg = self.mover.in_space(self._time, state, stop, lean, self._budget(), begins=begins)
             self._take(leg)
             begins = False
-            if leg.reason is Reason.CROSSED:
+            if leg.reason is Reason.CROSSED and self._time < self.stop:
                 hop = self.mover.over_the_upright(self._time, leg.state, self._next_stop(), self._lean(leg.state))
                 if hop is not None:
                     self._take(hop)
