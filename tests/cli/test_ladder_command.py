@@ -48,6 +48,24 @@ def test_the_table_has_a_row_for_each_level_and_says_how_they_converge(capsys, t
     assert saved.stat().st_size > 10_000
 
 
+def test_demands_without_bound_are_told_in_words_and_are_null_in_json(tmp_path, capsys):
+    description = tmp_path / "thrown.toml"
+    description.write_text(
+        "tilt = [0.05, 0.0]\ntilt_rate = [0.0, 0.03]\nduration = 5.0\n"
+        'column = { shape = "dimensionless", slenderness = 0.1 }\nmodel = { kind = "slender", damping = 0.1 }\n'
+        'motion = { kind = "oblique", acceleration = 1.6, angular_frequency = 3.0, angle = 1.2 }\n'
+    )
+    assert run(["ladder", str(description)]) == 0
+    (slender,) = [line for line in capsys.readouterr().out.splitlines() if line.startswith("│ slender  ")]
+    assert slender.count("unbounded") == 2
+    printed = {}
+    for command in ("ladder", "simulate"):
+        assert run([command, str(description), "--json"]) == 0
+        printed[command] = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)  # Infinity is no JSON
+    assert printed["ladder"]["largest_friction_demand"][0] is None
+    assert printed["simulate"]["measures"]["largest_friction_demand"] is None
+
+
 def test_a_file_of_simulate_serves_the_ladder(tmp_path, capsys):
     description = tmp_path / "run.toml"
     description.write_text(

@@ -63,3 +63,10 @@ def test_a_column_beyond_its_balance_is_not_told_to_be_safe():
     falling = sb.simulate(MODELS[1], tilt=(1.0001 * COLUMN.tipping_angle, 0.0), tilt_rate=(-1e-3, 0.0), duration=0.01)
     assert falling.outcome is Outcome.STILL_MOVING
     assert falling.reason.endswith("it may yet overturn: follow it longer")
+
+
+def test_times_before_and_after_the_base_motion_are_told_in_seconds():
+    weak = 0.6 * SINE
+    before, after = (sb.simulate(MODELS[0], weak, duration=weak.duration + t).reason for t in (-0.25, 0.25))
+    assert "0.25 s before the base motion stops" in before
+    assert "0.25 s after the base motion stopped" in after

@@ -1,6 +1,7 @@
 """Each outcome, by its rule, and nothing else by that rule."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -204,3 +205,13 @@ def test_rules_are_arguments_and_are_reported():
     assert strict.outcome is sb.Outcome.STILL_MOVING
     assert usual.outcome is sb.Outcome.ROLLING
     assert strict.thresholds["repeat_tolerance"] == 1e-12
+
+
+@pytest.mark.parametrize("theta", [1.7, 3.0, 11.3])
+def test_a_run_that_is_too_short_says_for_how_long_it_is_to_be_followed(theta):
+    _, short = roll(theta, 0.065, 5)
+    assert "shorter than the 11 periods" in short.reason
+    asked = float(re.search(r"set duration to at least (\S+) s$", short.reason)[1])
+    for duration, enough in ((asked, True), (0.998 * asked, False)):
+        _, run = roll(theta, 0.065, duration * theta / (2.0 * math.pi))
+        assert ("is shorter than" not in run.reason) is enough

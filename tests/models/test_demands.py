@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
+from stylobate.models.contact import LEAST_FORCE, per_normal_force
 
 from .same_body import body_of, shaken_in_space, state_of
 
@@ -99,6 +100,44 @@ def test_a_column_that_is_thrown_down_fast_would_lift_off():
         infinite = np.isinf(run.data["friction_demand"].to_numpy())
         np.testing.assert_array_equal(infinite, run.data["normal_force"].to_numpy() <= 0.0)
         assert math.isinf(run.measures["largest_friction_demand"]) is lifts
+
+
+# Whose normal force, m(g + a_z) to leading order, vanishes as the column lifts off, where rounding decides its sign.
+LIFTED = [
+    model(sb.Column.dimensionless(0.1), damping=0.05) for model in (sb.Slender, sb.SlenderRolling)
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("model", LIFTED, ids=lambda model: model.name)
+@pytest.mark.parametrize("frequency", [2.0, 3.0, 3.1, 4.7])
+def test_the_demand_of_a_run_that_lifts_off_is_unbounded_and_no_number_made_of_rounding(model, frequency, tmp_path):
+    throw = sb.Harmonic.oblique(acceleration=1.6, angular_frequency=frequency, angle=1.2)
+    run = sb.simulate(model, throw, tilt=(0.05, 0.0), tilt_rate=(0.0, 0.03), duration=30.0, friction_coefficient=0.3)
+    assert run.outcome is sb.Outcome.LIFTED_OFF
+    assert any("without bound where nothing presses on the base" in line for line in run.warnings)
+    assert run.measures["largest_friction_demand"] == math.inf
+    demand = run.data["friction_demand"].to_numpy()
+    assert demand[np.isfinite(demand)].max() < 1.0 / LEAST_FORCE
+    assert sb.load(run.save(tmp_path / "run.nc")).measures["largest_friction_demand"] == math.inf
+
+
+def test_a_ratio_to_no_normal_force_is_infinite_and_of_two_forces_that_are_none_nothing():
+    rounding = 1e-3 * LEAST_FORCE
+    forces = np.array([0.2, 0.2, 0.2, 0.2, rounding, 0.0])
+    normals = np.array([0.5, rounding, 0.0, -0.1, rounding, 0.0])
+    assert per_normal_force(forces, normals).tolist() == [0.4, math.inf, math.inf, math.inf, 0.0, 0.0]
+
+
+def test_nothing_is_demanded_of_a_contact_in_flight():
+    hop = sb.Harmonic.oblique(acceleration=1.6, angular_frequency=3.0, angle=1.2)
+    model = sb.Sliding(sb.Column.dimensionless(0.1), friction_coefficient=0.3, damping=0.05, restitution=0.3)
+    data = sb.simulate(model, hop, tilt=(0.05, 0.0), tilt_rate=(0.0, 0.03), duration=3.0).data
+    flies = data["contact"].to_numpy() == sb.Contact.FLYING
+    assert 0 < flies.sum() < flies.size
+    for name in ("friction_demand", "pivoting_demand"):
+        np.testing.assert_array_equal(np.isnan(data[name].to_numpy()), flies)
+    # On the plane friction gives what it can at most.
+    assert data["friction_demand"].to_numpy()[~flies].max() <= 0.3 * (1.0 + 1e-9)
 
 
 def test_a_column_that_only_stands_has_no_demands_of_motion():

@@ -153,7 +153,7 @@ def _row(at: "xr.Dataset", c: float, *, several: bool) -> list[str]:
 
 
 def _cell(value: float) -> str:
-    return "" if np.isnan(value) else f"{value:.4g}"
+    return "" if np.isnan(value) else "unbounded" if np.isinf(value) else f"{value:.4g}"
 
 
 def _warnings(found: "xr.Dataset") -> list[tuple[str, str]]:

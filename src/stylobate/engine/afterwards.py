@@ -46,10 +46,10 @@ def told_of_its_end(data: xr.Dataset, column: Column, motion: BaseMotion) -> str
     """
     end = float(data["time"][-1])
     if end < motion.duration:
-        return f"it moved to the end of the run, {motion.duration - end:.4g} s before that of the base motion; {_OPEN}"
-    after = (end - motion.duration) * column.frequency_parameter
+        return f"{_MOVED}, {motion.duration - end:.4g} s before the base motion stops; {_OPEN}"
+    after = end - motion.duration
     followed = motion.duration > 0.0 and after > 0.0
-    moved = f"it moved to the end of the run, {after:.3g}/p after that of the base motion" if followed else _MOVED
+    moved = f"{_MOVED}, {after:.4g} s after the base motion stopped" if followed else _MOVED
     share = _share_of_the_balance(data, column)
     if share < 1.0 and float(data["amplitude"][-1]) < column.tipping_angle:
         return f"{moved}, but cannot overturn any more: it has {100.0 * share:.2g} % of the energy that takes"

@@ -63,7 +63,7 @@ class Demands:
             when = _first(time, moving & (series["largest_friction_demand"] > friction_coefficient))
             warnings.append(
                 f"it would slip{when}: more friction is needed than friction_coefficient {friction_coefficient:.4g} "
-                f"gives, at most {demand:.4g} times the normal force in all of the run; this model never slips"
+                f"gives, {_told(demand)}; this model never slips"
             )
         return cls(measures, tuple(warnings))
 
@@ -93,6 +93,14 @@ def _seen(
             "largest_pivoting_demand": pivoting,
             "least_normal_force": downwards,
         },
+    )
+
+
+def _told(demand: float) -> str:
+    return (
+        f"at most {demand:.4g} times the normal force in all of the run"
+        if np.isfinite(demand)
+        else "without bound where nothing presses on the base"
     )
 
 

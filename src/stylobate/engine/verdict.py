@@ -47,13 +47,15 @@ _VERDICTS = {
     Ground.NO_PERIOD: (Outcome.STILL_MOVING, "it moved to the end of the run"),
     Ground.SHORT: (
         Outcome.STILL_MOVING,
-        "the run is shorter than the {more} periods of the base motion by which a steady motion is told",
+        "the run is shorter than the {more} periods of the base motion by which a steady motion is told; "
+        "set duration to at least {steady:.4g} s",
     ),
     Ground.ROLLS: (Outcome.ROLLING, "it rolled once round in each of the last {n} periods and repeats"),
     Ground.ROCKS: (Outcome.ROCKING, "it repeats over the last {n} periods without travelling round"),
     Ground.SHORT_FOR_MODULATION: (
         Outcome.STILL_MOVING,
-        "the run is shorter than the {twice} periods of the base motion by which modulation is told",
+        "the run is shorter than the {twice} periods of the base motion by which modulation is told; "
+        "set duration to at least {modulated:.4g} s",
     ),
     Ground.DRIFTS: (Outcome.STILL_MOVING, "its last {both} periods are no steady motion"),
     Ground.MODULATED: (Outcome.MODULATED, "it rolls at the mean rate of the base motion, its tilt modulated"),
@@ -134,10 +136,11 @@ def long_term(
     """Judge the last periods of a run that neither stands nor overturned; `period` is that of the forcing, or None."""
     n = rules.periods
     if period is None:
-        return _verdict_on(Ground.NO_PERIOD, n, {})
+        return _verdict_on(Ground.NO_PERIOD, n, 0.0, {})
+    seconds = period * model.time_scale
     end = trajectory.end * (1.0 + SLACK)
     if end < (n + 1) * period:
-        return _verdict_on(Ground.SHORT, n, {})
+        return _verdict_on(Ground.SHORT, n, seconds, {})
     late = _Window.of(model, trajectory, trajectory.end, n, period)
     turned = 0.0 if planar else late.turned
     measures = {
@@ -156,12 +159,26 @@ def long_term(
         measures |= {"modulation_change": change, "rolling_rate_error": drift / n}
     tilt = late.least_tilt / model.column.slenderness
     evidence = Evidence(turned, tilt, late.repetition, repetition_before, drift)
-    return _verdict_on(Ground(int(grounds(evidence, rules))), n, measures)
+    return _verdict_on(Ground(int(grounds(evidence, rules))), n, seconds, measures)
 
 
-def _verdict_on(ground: Ground, n: int, measures: dict[str, float]) -> Verdict:
+def _verdict_on(ground: Ground, n: int, period: float, measures: dict[str, float]) -> Verdict:
+    """Return the verdict on `ground`, told by n periods of the base motion of this length [s]."""
     outcome, reason = _VERDICTS[ground]
-    return Verdict(outcome, reason.format(n=n, more=n + 1, both=2 * n, twice=2 * n + 1), measures)
+    needed = {"steady": _rounded_up((n + 1) * period), "modulated": _rounded_up((2 * n + 1) * period)}
+    return Verdict(outcome, reason.format(n=n, more=n + 1, both=2 * n, twice=2 * n + 1, **needed), measures)
+
+
+def _rounded_up(value: float) -> float:
+    """Return the least number of four digits that is not less than `value`, which is not negative.
+
+    >>> _rounded_up(43.98229715), _rounded_up(0.0)
+    (43.99, 0.0)
+    """
+    if value == 0.0:
+        return 0.0
+    digits = 3 - math.floor(math.log10(value))
+    return math.ceil(value * 10.0**digits * (1.0 - SLACK)) / 10.0**digits
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,14 +5,34 @@ import numpy.typing as npt
 
 from stylobate.models.model import Floats, Model, Output
 
+LEAST_FORCE = 1e-8
+"""The part of the weight below which a force is none.
+
+A normal force is what weight and inertia leave over, each about as large as the weight and known to the usual tolerance
+of a run, `rtol`: below it nothing is told from lift-off, and a ratio to it is made of rounding.
+"""
+
+
+def per_normal_force(force: Floats, normal: Floats) -> Floats:
+    """Return a force or moment over the normal force: infinite where there is no normal force to bear it.
+
+    Parameters
+    ----------
+    force, normal
+        In units of the weight; where both are none there is no demand.
+    """
+    presses = normal > LEAST_FORCE
+    ratio = force / np.where(presses, normal, 1.0)
+    return np.where(presses, ratio, np.where(force > LEAST_FORCE, np.inf, 0.0))
+
 
 def contact_outputs(
     model: Model, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]
 ) -> dict[str, Output]:
     """Return the normal force [N], the friction that is needed over it, and the moment about the vertical over N r.
 
-    Where the normal force is not positive the column would lift off: the demands are infinite there. At rest there is
-    no moment.
+    Where there is no normal force the column lifts off, or would: the demands are infinite there (`per_normal_force`).
+    At rest there is no moment.
 
     Parameters
     ----------
@@ -31,9 +51,7 @@ def contact_outputs(
     normal = np.where(resting, 1.0 + accelerations[2], normal)
     friction = np.where(resting, np.hypot(*accelerations[:2]), friction)
     moment = np.where(resting, 0.0, moment)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        per_normal = np.where(normal > 0.0, 1.0 / normal, np.inf)
-        demands = [np.where(force > 0.0, force * per_normal, 0.0) for force in (friction, moment)]
+    demands = [per_normal_force(force, normal) for force in (friction, moment)]
     return {
         "normal_force": Output(column.mass * column.gravity * normal, "N", "normal force at the contact"),
         "friction_demand": Output(demands[0], "1", "friction force over normal force"),

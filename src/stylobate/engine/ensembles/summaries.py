@@ -17,6 +17,7 @@ from stylobate.engine.tolerances import CLOSE_PASSAGE
 from stylobate.engine.verdict import Evidence, Ground, grounds, outcome_on
 from stylobate.errors import Outcome
 from stylobate.models import Model
+from stylobate.models.contact import LEAST_FORCE
 from stylobate.results.outcomes import NOT_COMPUTED, code_of, outcome_attributes
 
 Floats = npt.NDArray[np.float64]
@@ -204,7 +205,7 @@ def _leans(batch: Batch) -> tuple[Floats, Floats]:
 def _demands(batch: Batch) -> Arrays:
     """Return the extremes of what the contact had to bear; NaN of runs that never moved."""
     normal = batch.log(Log.NORMAL)
-    moved, lifts = np.isfinite(normal), normal <= 0.0
+    moved, lifts = np.isfinite(normal), normal <= LEAST_FORCE
     found = [batch.log(column) for column in (Log.FRICTION, Log.PIVOTING)]
     found = [np.where(moved, np.where(lifts & (load > 0.0), np.inf, load), np.nan) for load in found]
     return dict(zip(_DEMANDS, (*found, np.where(moved, normal, np.nan)), strict=True))

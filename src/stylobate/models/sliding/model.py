@@ -13,7 +13,7 @@ from stylobate.column import Column
 from stylobate.errors import ParameterError, require_finite, require_positive
 from stylobate.models import finite_tilt, tilt_vector
 from stylobate.models.checks import require_column, require_frictions, require_loss
-from stylobate.models.contact import path_outputs
+from stylobate.models.contact import path_outputs, per_normal_force
 from stylobate.models.model import RELEASE_MARGIN, Floats, Model, Output
 from stylobate.models.sliding.equations import MARGINS, contact_loads, margins, rates
 from stylobate.models.sliding.lift_off import lifted
@@ -214,7 +214,10 @@ class Sliding(Model):
         return _EVENTS.get((Contact(before), Contact(after)), "")
 
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
-        """Return spin, twist, footprint, kind of contact, slip, the height of the lowest point, forces and energy."""
+        """Return spin, twist, footprint, kind of contact, slip, the height of the lowest point, forces and energy.
+
+        Nothing is demanded of a contact that is not there: friction and pivoting demand are NaN in flight.
+        """
         del resting
         column, scale, numbers = self.column, self.time_scale, self.numbers
         length, named = column.mass_height, State(*states)
@@ -228,9 +231,10 @@ class Sliding(Model):
         touches = kind != Contact.FLYING
         slip = np.where(touches, states[8:10], 0.0).T * length / scale
         normal = weight * found[:, 5]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            demand = np.where(normal > 0.0, np.hypot(found[:, 6], found[:, 7]) / found[:, 5], 0.0)
-            pivoting = np.where(normal > 0.0, np.abs(found[:, 8]) / (found[:, 5] * numbers.c), 0.0)
+        demand, pivoting = (
+            np.where(touches, per_normal_force(load, found[:, 5]), np.nan)
+            for load in (np.hypot(found[:, 6], found[:, 7]), np.abs(found[:, 8]) / numbers.c)
+        )
         return {
             "contact": Output(
                 kind, "1", "kind of contact: " + ", ".join(f"{k.value} {k.name.lower()}" for k in Contact)
