@@ -152,7 +152,7 @@ def test_the_records_of_a_folder_are_those_that_read_records_finds(quakes):
         ({"path": ["a", "b", "c", "d"]}, "path must name one to three files of one event, got 4"),
         ({"sample": "el centro 1940", "units": "g"}, "units does not belong to a sample"),
         ({"path": ["first_NS.txt", "second_000.txt"], "units": "g", "step": 0.01}, "one event, got first, second"),
-        ({"path": "first_NS.txt", "step": 0.01}, "the file does not tell its unit; give units="),
+        ({"path": "first_NS.txt", "step": 0.01}, "the file does not tell its unit: state units"),
         ({"path": "first_NS.txt", "units": "furlong", "step": 0.01}, "units must be"),
         ({"path": "first_NS.txt", "units": "g"}, "a single column tells no time step"),
         ({"path": "none.txt"}, "cannot read"),

@@ -90,9 +90,19 @@ def test_lengths_that_differ_are_trimmed_or_padded_with_a_note(tmp_path, waves):
     assert "padded with zeros to 200 samples: a_NS.txt 200, a_EW.txt 195" in long.provenance
 
 
+def test_a_component_that_points_nowhere_is_asked_for_its_direction_in_words(tmp_path, waves):
+    paths = [table(tmp_path, "a.txt", waves[0]), table(tmp_path, "a_EW.txt", waves[1])]
+    with pytest.raises(FileError, match=r"a\.txt: which way it points is not told: state directions, its azimuth"):
+        sb.read_records(paths, "g")
+    (record,) = sb.read_records(paths, "g", directions={"a.txt": 0.0})
+    assert record.axes == ("x", "y")
+
+
 def test_steps_that_differ_are_refused_or_resampled_to_the_finest(tmp_path, waves):
     paths = [table(tmp_path, "a_NS.txt", waves[0]), table(tmp_path, "a_EW.txt", waves[1], step=0.02)]
-    with pytest.raises(FileError, match=r"a: time steps differ \(a_NS.txt 0.01 s, a_EW.txt 0.02 s\); steps="):
+    with pytest.raises(
+        FileError, match=r"a: time steps differ \(a_NS.txt 0.01 s, a_EW.txt 0.02 s\); state steps to be res"
+    ):
         sb.read_records(paths, "g")
     (record,) = sb.read_records(paths, "g", steps=Steps.RESAMPLE)
     assert record.step == 0.01

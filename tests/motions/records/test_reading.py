@@ -3,6 +3,7 @@
 import builtins
 import gzip
 import math
+import re
 
 import numpy as np
 import pytest
@@ -71,7 +72,7 @@ def test_units_are_those_that_are_given(tmp_path, units, factor):
 
 def test_units_are_never_guessed(tmp_path):
     path = written(tmp_path, "a.txt", TABLE)
-    with pytest.raises(FileError, match=r'a\.txt: the file does not tell its unit; give units="g"'):
+    with pytest.raises(FileError, match=r'a\.txt: the file does not tell its unit: state units, "g", "m/s²"'):
         sb.read_record(path)
     with pytest.raises(ParameterError, match=r"units must be .* got 'furlong'"):
         sb.read_record(path, "furlong")
@@ -82,7 +83,7 @@ def test_units_are_never_guessed(tmp_path):
 def test_a_single_column_needs_its_step(tmp_path):
     path = written(tmp_path, "a.txt", "# remark\n" + "\n".join(map(str, VALUES)))
     assert sb.read_record(path, "g", step=0.01).duration == pytest.approx(0.06)
-    with pytest.raises(FileError, match=r"a\.txt, line 2: a single column tells no time step; give step="):
+    with pytest.raises(FileError, match=r"a\.txt, line 2: a single column tells no time step: state step, in s"):
         sb.read_record(path, "g")
 
 
@@ -93,7 +94,9 @@ def test_csv_columns_are_found_by_name(tmp_path):
     record = sb.read_record(path, columns=columns)
     np.testing.assert_allclose(record.samples, 0.01 * np.outer(np.arange(5), [1.0, 0.0, 2.0]), rtol=1e-15)
     assert record.step == 0.1
-    with pytest.raises(FileError, match=r"a\.csv, line 1: which column is the acceleration\? give columns="):
+    with pytest.raises(
+        FileError, match=r"a\.csv, line 1: which of Time, North, West, Up is the acceleration\? state columns"
+    ):
         sb.read_record(path)
     with pytest.raises(FileError, match=r"line 1: no column 'East' for 'x': the columns are Time, North, West, Up"):
         sb.read_record(path, columns={"x": "East"})
@@ -160,7 +163,7 @@ BROKEN = {
     "csv": ("time,x\n0,1\n1,2,3\n", "g", r"line 3: 3 columns, the first line names 2"),
     "csv units": ("time,x [g],y [m/s2]\n0,1,1\n1,2,2\n", None, r"line 1: columns of different units"),
     "csv unit": ("time,x [stone]\n0,1\n1,2\n", None, r"line 1: unknown unit among 'stone'"),
-    "csv time": ("x [g],y [g]\n0,1\n1,2\n", None, r"line 1: no column of times, and no step= given"),
+    "csv time": ("x [g],y [g]\n0,1\n1,2\n", None, r"line 1: no column of times: state step"),
     "csv token": ("time,x [g]\n0,1\n1,two\n", None, r"line 3: not a number: 'two'"),
 }
 
@@ -180,6 +183,36 @@ def test_files_that_cannot_be_opened_are_named(tmp_path):
     cut = written(tmp_path, "cut.gz", gzip.compress(NEW.encode())[:60])
     with pytest.raises(FileError, match=r"cut\.gz: cannot be read"):
         sb.read_record(cut)
+
+
+@pytest.mark.parametrize("name", ["quake.AT2", "quake.at2.gz"])
+@pytest.mark.parametrize("asked", [None, RecordFormat.AT2])
+def test_bytes_that_are_called_at2_are_told_to_be_none(tmp_path, name, asked):
+    noise = np.random.default_rng(5).bytes(5000)
+    path = written(tmp_path, name, gzip.compress(noise) if name.endswith("gz") else noise)
+    with pytest.raises(FileError) as raised:
+        sb.read_record(path, "g", format=asked)
+    assert str(raised.value) == f"{path}: no AT2 file: it is no text, and has no header with NPTS and DT"
+
+
+# Messages are read on the command line and on the page too, where nothing is written name=value.
+AS_ARGUMENT = re.compile(r"\b(units|step|columns|axis|directions|lengths|steps|format) ?=")
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "remedy"),
+    [
+        ("a.txt", TABLE, "state units"),
+        ("a.csv", "time,x\n0,1\n1,2\n", "state units"),
+        ("a.txt", "1\n2\n3\n", "state step, in s"),
+        ("a.csv", "x [g],y [g]\n0,1\n1,2\n", "state step, the time step in s"),
+        ("a.csv", "t,north,east\n0,1,2\n1,2,3\n", "state columns, or name it x or acceleration"),
+    ],
+)
+def test_what_is_not_told_is_asked_for_in_words_that_hold_for_every_reader(tmp_path, name, content, remedy):
+    with pytest.raises(FileError, match=remedy) as raised:
+        sb.read_record(written(tmp_path, name, content))
+    assert not AS_ARGUMENT.search(str(raised.value))
 
 
 def test_a_given_step_must_be_that_of_the_times(tmp_path):
@@ -207,7 +240,9 @@ def test_without_obspy_its_formats_name_the_extra(tmp_path, monkeypatch):
 
     monkeypatch.setattr(builtins, "__import__", missing)
     path = written(tmp_path, "a.mseed", b"000001D \x00\x01\x02")
-    with pytest.raises(UnsupportedError, match=r'a\.mseed: only ObsPy .* pip install "stylobate\[records\]"'):
+    with pytest.raises(
+        UnsupportedError, match=r'a\.mseed: no text; .* ObsPy reads it: pip install "stylobate\[records\]"'
+    ):
         sb.read_record(path, "g")
 
 

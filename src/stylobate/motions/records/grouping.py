@@ -143,7 +143,10 @@ def _together(event: str, parts: list[_Part], lengths: Lengths, steps: Steps) ->
         return replace(parts[0].record, name=event)
     for part in parts:
         if part.direction is None:
-            message = f'{part.path}: which way it points is not told; give directions={{"{part.path.name}": …}}'
+            message = (
+                f"{part.path}: which way it points is not told: state directions, its azimuth in degrees or up, or end "
+                "its name with that, such as _NS, _090 or _UP"
+            )
             raise FileError(message)
     up = [part for part in parts if part.direction is not None and part.direction.vertical]
     flat = sorted((part for part in parts if part not in up), key=_azimuth)
@@ -193,7 +196,7 @@ def _alike(event: str, parts: list[_Part], lengths: Lengths, steps: Steps) -> tu
     if any(abs(record.step / finest - 1.0) > _SAME_STEP for record in records):
         if steps is Steps.REFUSE:
             told = ", ".join(f"{part.path.name} {part.record.step:g} s" for part in parts)
-            message = f"{event}: time steps differ ({told}); steps=Steps.RESAMPLE makes them alike"
+            message = f"{event}: time steps differ ({told}); state steps to be resampled, or make them alike"
             raise FileError(message)
         records = [record.resampled(finest) for record in records]
     if len({record.start for record in records}) > 1:

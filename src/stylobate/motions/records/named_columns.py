@@ -62,7 +62,7 @@ def read_csv(text: Text, columns: Mapping[str, str] | None, step: float | None) 
     if "time" in by_name:
         start, step = equal_steps(text, by_name["time"], places, step)
     elif step is None:
-        raise text.fault(first, "no column of times, and no step= given")
+        raise text.fault(first, "no column of times: state step, the time step in s")
     samples = np.stack([by_name.get(axis, np.zeros(len(body))) for axis in AXES], axis=-1)
     single = chosen.keys() & set(AXES) == {"x"}
     return Component(
@@ -87,7 +87,8 @@ def _chosen(text: Text, line: int, names: list[str], columns: Mapping[str, str] 
     if not chosen.keys() & set(AXES):
         likely = [place for place in others if lower[place] in _ACCELERATION] or others
         if len(likely) != 1:
-            raise text.fault(line, f"which column is the acceleration? give columns=; they are {', '.join(names)}")
+            told = ", ".join(names)
+            raise text.fault(line, f"which of {told} is the acceleration? state columns, or name it x or acceleration")
         chosen["x"] = likely[0]
     return chosen
 

@@ -16,7 +16,7 @@ from stylobate.motions.records.lines import Text, is_binary, read_bytes
 from stylobate.motions.records.named_columns import is_csv, read_csv
 from stylobate.motions.records.record import AXES, Floats, Record
 from stylobate.motions.records.tables import read_table
-from stylobate.motions.records.units import in_si, require_unit
+from stylobate.motions.records.units import KNOWN, in_si, require_unit
 from stylobate.motions.records.waveforms import read_waveform
 
 # Horizontal and vertical peaks of strong earthquakes are below, but for a few close to the fault [g].
@@ -88,6 +88,9 @@ def read_component(
 ) -> Component:
     """Return what the file gives, in its own units."""
     content = read_bytes(path)
+    if is_binary(content) and format in (None, RecordFormat.AT2) and _is_called_at2(path):
+        message = f"{path}: no AT2 file: it is no text, and has no header with NPTS and DT"
+        raise FileError(message)
     if format is RecordFormat.WAVEFORM or (
         format is None and (is_binary(content) or content.startswith(b"Origin Time"))
     ):
@@ -103,6 +106,10 @@ def read_component(
     if format is RecordFormat.CSV or (format is None and (columns is not None or is_csv(text))):
         return read_csv(text, columns, step)
     return read_table(text, step)
+
+
+def _is_called_at2(path: Path) -> bool:
+    return path.name.lower().removesuffix(".gz").endswith(".at2")
 
 
 def as_record(component: Component, path: Path, units: str | None, axis: str | None) -> Record:
@@ -151,7 +158,7 @@ def name_of(path: Path) -> str:
 def _scale(component: Component, path: Path, units: str | None) -> tuple[float, str]:
     given = None if units is None else require_unit(units)
     if component.unit is None and given is None:
-        message = f'{path}: the file does not tell its unit; give units="g", "m/s²" or "cm/s²"'
+        message = f"{path}: the file does not tell its unit: state units, {KNOWN}"
         raise FileError(message)
     if component.unit is not None and given is not None and component.unit != given:
         message = f"{path}: units must be left out or {component.unit!r}, which the file says, got {units!r}"

@@ -4,6 +4,9 @@ from stylobate.column import STANDARD_GRAVITY
 from stylobate.errors import ParameterError
 
 _FACTORS = {"g": STANDARD_GRAVITY, "m/s²": 1.0, "cm/s²": 0.01, "mm/s²": 0.001}
+KNOWN = '"g", "m/s²" (m/s2), "cm/s²" (cm/s2, gal) or "mm/s²"'
+"""The units, as messages list them."""
+
 _SPELLINGS = {
     "g": "g",
     "m/s2": "m/s²",
@@ -39,7 +42,7 @@ def require_unit(text: str) -> str:
     """
     unit = unit_of(text) if isinstance(text, str) else None
     if unit is None:
-        message = f'units must be "g", "m/s²" (m/s2), "cm/s²" (cm/s2, gal) or "mm/s²", got {text!r}'
+        message = f"units must be {KNOWN}, got {text!r}"
         raise ParameterError(message)
     return unit
 

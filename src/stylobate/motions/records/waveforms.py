@@ -31,7 +31,7 @@ def read_waveform(path: Path, content: bytes) -> Component:
     try:
         import obspy  # noqa: PLC0415  an extra, slow to import
     except ImportError:
-        message = f'{path}: only ObsPy reads this format; install it by: pip install "stylobate[records]"'
+        message = f'{path}: no text; if it is a record, ObsPy reads it: pip install "stylobate[records]"'
         raise UnsupportedError(message) from None
     try:
         stream = obspy.read(io.BytesIO(content))
