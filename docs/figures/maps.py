@@ -33,7 +33,10 @@ def fractions() -> xr.Dataset:
     """What random starts come to as the amplitude grows."""
     line = sb.Harmonic.straight(acceleration=0.1, angular_frequency=6.0)
     along = {"acceleration": np.linspace(0.02, 0.4, 39)}
-    return sb.studies.basin_fractions(MODEL, line, along=along, over=BOX, count=1500, periods=400.0)
+    far = sb.studies.AttractorRules(branch_tolerance=2.0)  # as its values are apart
+    return sb.studies.basin_fractions(
+        MODEL, line, along=along, over=BOX, count=1500, periods=400.0, attractor_rules=far
+    )
 
 
 def erosion() -> xr.Dataset:

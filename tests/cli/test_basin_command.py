@@ -30,8 +30,16 @@ def test_a_grid_is_that_of_basins(tmp_path, capsys, saved):
     xr.testing.assert_equal(saved(path), found)
     assert [one["name"] for one in told["attractors"]] == found["attractor_name"].values.tolist()
     assert [one["fraction"] for one in told["attractors"]] == found["fraction"].values.tolist()
-    assert sum(one["count"] for one in told["attractors"]) + told["unsettled"] == told["computed"] == 72
+    assert sum(one["count"] for one in told["attractors"]) == told["computed"] == 72
     assert drawn.stat().st_size > 10_000
+
+
+def test_runs_that_have_not_settled_are_a_row_of_the_table_with_their_remedy(capsys):
+    assert run([*BASIN, *GRID, "--periods", "20"]) == 0
+    printed = capsys.readouterr().out
+    (row,) = [line for line in printed.splitlines() if line.startswith("│ not settled")]
+    assert " % " in row
+    assert printed.rstrip().endswith("with more strobes, 32 at least")
 
 
 def test_a_random_sample_is_that_of_basins(tmp_path, capsys, saved):

@@ -12,7 +12,7 @@ from matplotlib.patches import Ellipse, PathPatch
 import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
 from stylobate.plots.cells import cell_edges
-from stylobate.plots.classes import KIND_LOOKS, OUTCOME_LOOKS, UNFINISHED
+from stylobate.plots.classes import KIND_LOOKS, OUTCOME_LOOKS, UNFINISHED, attractor_classes
 from stylobate.plots.labels import axis_label
 from stylobate.results.outcomes import code_of
 from stylobate.studies.boundary import exponent_of
@@ -193,6 +193,34 @@ def test_fractions_at_a_single_value_are_bars():
     low, high = axes.get_xlim()
     assert low < lower.get_x() < 0.1 < lower.get_x() + lower.get_width() < high
     assert axes.get_xticks().tolist() == [0.1]
+
+
+def test_every_band_of_fractions_is_named_inside_the_figure():
+    count = 26
+    dims, share = ("damping", "attractor_index"), np.full((2, count), 1.0 / count)
+    named = dict.fromkeys(("attractor_kind", "attractor_name"), ("attractor_index", ["rocking"] * count))
+    many = a_share([0.1, 0.2])[["computed", "unsettled"]].assign(
+        dict.fromkeys(("fraction", "fraction_low", "fraction_high"), (dims, share)) | named
+    )
+    figure = sb.plot(many)
+    figure.canvas.draw()
+    (legend,) = figure.legends
+    box, whole = legend.get_window_extent(), figure.bbox
+    assert len(legend.get_texts()) == count + 1
+    assert whole.y0 <= box.y0 < box.y1 <= whole.y1
+
+
+def test_what_has_not_settled_looks_like_what_still_moves():
+    names = ["at rest", "not settled"]
+    named = dict.fromkeys(("attractor_kind", "attractor_name"), ("attractor_index", names))
+    shares = a_share([0.1, 0.2]).assign(named)
+    *known, unfinished = attractor_classes(shares)
+    assert [one.name for one in known] == names
+    assert known[-1].look == OUTCOME_LOOKS[Outcome.STILL_MOVING]
+    assert known[-1].look.texture
+    assert unfinished.code == -1
+    (legend,) = sb.plot(shares).legends
+    assert "not settled" in [text.get_text() for text in legend.get_texts()]
 
 
 @pytest.mark.parametrize("along", [[0.1, 0.2, 0.5], [0.01, 0.1, 1.0]])

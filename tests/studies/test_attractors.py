@@ -86,7 +86,8 @@ def test_a_torus_goes_on_and_a_spiral_does_not():
     strobes = np.stack([states(1) * turns, states(1) + states(1) * turns * damped, states(1) * turns / damped])
     # In the 16 strobes from one half to the other 0.99^16 = 0.85 is left, beyond the tolerance of a tenth.
     assert keeps_moving(strobes, RULES).tolist() == [True, False, False]
-    assert not keeps_moving(1e-3 * strobes, RULES).any()
+    assert keeps_moving(1e-2 * strobes, RULES).tolist() == [True, False, False]
+    assert not keeps_moving(1e-4 * strobes, RULES).any()  # what repeats to the tolerance does not go on
 
 
 def test_chaotic_runs_are_settled_but_for_their_scatter():
@@ -98,8 +99,19 @@ def test_chaotic_runs_are_settled_but_for_their_scatter():
         iterates.append(x)
     series = np.stack(iterates[-STROBES:], axis=1)
     moving = keeps_moving(np.stack([series, series], axis=-1).astype(complex), RULES)
-    # Three standard errors leave out 0.3 % of normal means, a few times that with 15 differences to each.
-    assert moving.mean() > 0.98
+    # Three standard errors leave out 0.3 % of normal means, a few times that with 15 differences to each; and the
+    # closest of eight returns comes ever closer by chance more often than one that is told beforehand.
+    assert moving.mean() > 0.93
+
+
+@pytest.mark.parametrize("period", [2, 3, 5, 8])
+@pytest.mark.parametrize("rate", [0.97, 0.9, 0.7])
+def test_a_run_that_nears_an_orbit_of_several_periods_does_not_go_on(period, rate):
+    # From strobe to strobe it moves by as much at first as at last: only its returns shrink.
+    off = 0.1 * states(1) * rate ** np.arange(STROBES)[:, np.newaxis]
+    run = (repeated(states(period)) + off)[np.newaxis]
+    assert repeating_periods(run, RULES)[0] == 0
+    assert not keeps_moving(run, RULES).any()
 
 
 def test_few_strobes_do_not_tell_that_a_motion_goes_on():
@@ -163,8 +175,9 @@ def test_every_kind_of_attractor_is_found_and_listed_in_one_order():
         (Outcome.STILL_MOVING, drifting, -0.35, "aperiodic clockwise"),
         (Outcome.STILL_MOVING, drifting, 0.01, "aperiodic"),
         (Outcome.STILL_MOVING, drifting, 0.98, "modulated anticlockwise"),
-        (Outcome.STILL_MOVING, creeping, 0.2, None),
-        (Outcome.FAILED, wandering, np.nan, None),
+        (Outcome.STILL_MOVING, creeping, 0.2, "not settled"),
+        (Outcome.MODULATED, creeping, 1.0, "not settled"),
+        (Outcome.FAILED, wandering, np.nan, "not settled"),
         (None, ended, np.nan, None),
     ]
     outcomes, strobes, turns, names = zip(*table, strict=True)
@@ -179,13 +192,17 @@ def test_every_kind_of_attractor_is_found_and_listed_in_one_order():
         "aperiodic clockwise",
         "aperiodic",
         "overturned",
+        "not settled",
     ]
     labels = found["attractor"].values
     assert [listed[label] if label >= 0 else None for label in labels] == list(names)
-    assert labels[-3:].tolist() == [UNSETTLED, UNSETTLED, -1]
-    assert int(found["computed"]) == len(table) - 1
-    assert int(found["unsettled"]) == 2
-    assert int(found["count"].sum()) == len(table) - 3
+    assert labels[-1] == -1
+    assert int(found["computed"]) == int(found["count"].sum()) == len(table) - 1
+    assert int(found["unsettled"]) == int(found["count"][-1]) == 3
+    assert "more strobes" in found["unsettled"].attrs["comment"]
+    assert float(found["fraction"].sum()) == pytest.approx(1.0, rel=1e-15)
+    assert np.isnan(found["attractor_mean_tilt"].values[-1])
+    assert found["attractor"].attrs["flag_meanings"].split()[-1] == "not_settled"
 
 
 def test_a_column_that_stands_for_a_part_of_each_period_rocks():
@@ -270,8 +287,9 @@ def test_orbits_whose_turns_become_known_are_named_and_listed_anew():
 def test_unsettled_runs_widen_the_intervals_of_the_fractions_upwards():
     labels = np.array([0] * 6 + [1] * 2 + [UNSETTLED] * 2)
     found = shares(Found((attractor("rocking", 1.0), attractor("rocking", 2.0)), labels), 0.95)
-    np.testing.assert_array_equal(found["fraction_low"], wilson_interval([6, 2], 10)[0])
-    np.testing.assert_array_equal(found["fraction_high"], wilson_interval([8, 4], 10)[1])
+    # Of what has not settled, listed last, nothing is open.
+    np.testing.assert_array_equal(found["fraction_low"], wilson_interval([6, 2, 2], 10)[0])
+    np.testing.assert_array_equal(found["fraction_high"], wilson_interval([8, 4, 2], 10)[1])
 
 
 def attractor(kind, place, period=1):

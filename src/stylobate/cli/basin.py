@@ -148,12 +148,14 @@ def _check_names(options: Mapping[str, Any]) -> None:
 def _labelled(saved: "xr.Dataset", source: Path | None, confidence: float | None) -> "xr.Dataset":
     """Return saved basins; the runs of a store with the attractor that each has come to."""
     from stylobate import spec, studies  # noqa: PLC0415
+    from stylobate.studies.finding import NOT_SETTLED  # noqa: PLC0415
     from stylobate.studies.proportions import fraction_interval  # noqa: PLC0415
 
     if "attractor_name" in saved:
         if confidence is None:
             return saved
-        low, high = fraction_interval(saved["count"], saved["unsettled"], saved["computed"], confidence=confidence)
+        unknown = saved["unsettled"].where(saved["attractor_kind"] != NOT_SETTLED, 0)
+        low, high = fraction_interval(saved["count"], unknown, saved["computed"], confidence=confidence)
         ends = {"fraction_low": ("attractor_index", low), "fraction_high": ("attractor_index", high)}
         return saved.assign(ends).assign_attrs(confidence=confidence)
     if "strobe_tilt" not in saved:
@@ -207,8 +209,9 @@ def _print(found: "xr.Dataset") -> None:
         )
         for one in told["attractors"]
     ]
-    if told["unsettled"]:
-        share = 100.0 * told["unsettled"] / told["computed"]
-        rows.append(("unsettled", "", "", str(told["unsettled"]), f"{share:.2f} %", ""))
     title = counted(told["runs"], "start") + (f", {told['computed']} done" if told["computed"] < told["runs"] else "")
     print_table(title, rows, ("attractor", "turns a period", "mean tilt", "starts", "fraction", confidence))
+    if told["unsettled"]:
+        from stylobate.studies.finding import REMEDY  # noqa: PLC0415  heavy, as above
+
+        print(REMEDY)

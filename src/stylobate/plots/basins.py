@@ -111,7 +111,7 @@ def _draw_fractions(axes: Axes, found: xr.Dataset) -> None:
 def _runs(found: xr.Dataset) -> str:
     unsettled = int(found["unsettled"])
     told = counted(int(found["computed"]), "start")
-    return f"{told}, {unsettled} of them unsettled" if unsettled else told
+    return f"{told}, {unsettled} of them not settled" if unsettled else told
 
 
 def _draw_orbits(axes: Axes, found: xr.Dataset) -> None:

@@ -64,12 +64,10 @@ KIND_LOOKS = {
     "overturned": _OVERTURNED,
     "tilt limit reached": OUTCOME_LOOKS[Outcome.LIMIT_REACHED],
     "lifted off": OUTCOME_LOOKS[Outcome.LIFTED_OFF],
+    "not settled": _UNSETTLED,
 }
 # Textures of the second, third … attractor of a kind; after the last they begin again.
 _MORE_TEXTURES = ("///", "...", "|||", "---", "ooo", "+++")
-
-UNSETTLED = -2
-"""The label of a run that reached no attractor."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,12 +110,12 @@ def contact_classes(found: xr.Dataset) -> tuple[MapClass, ...]:
 
 
 def attractor_classes(found: xr.Dataset) -> tuple[MapClass, ...]:
-    """Return the classes of the attractors in a table over `attractor_index`, of unsettled runs, and of no runs."""
+    """Return the classes of the attractors in a table over `attractor_index`, those not settled too, and of no runs."""
     kinds = [str(kind) for kind in found["attractor_kind"].to_numpy()]
     names = [str(name) for name in found["attractor_name"].to_numpy()]
     looks = _looks(kinds)
     known = (MapClass(code, name, look) for code, (name, look) in enumerate(zip(names, looks, strict=True)))
-    return (*known, MapClass(UNSETTLED, "unsettled", _UNSETTLED), _UNFINISHED_CLASS)
+    return (*known, _UNFINISHED_CLASS)
 
 
 def _looks(kinds: Sequence[str]) -> list[Look]:

@@ -16,6 +16,8 @@ from stylobate.plots.labels import axis_label
 from stylobate.plots.style import BLACK, new_figure, styled
 
 _HEIGHT = 4.2
+# Height of a line of the legend [inches], which has one for each band, two for their intervals, and its edges.
+_ENTRY = 0.19
 # Bands thinner than this part of the height have no bar: it would stand for a line.
 _SEEN = 0.005
 # Room beside the first and last value, in widths of the bands.
@@ -27,22 +29,19 @@ def plot_fractions(found: xr.Dataset) -> Figure:
     """Return a figure of basin fractions along a parameter, stacked.
 
     A single value has a bar for its bands. The line on the upper edge of a band is the interval of that band's own
-    height. Unsettled runs fill what is left to
-    the top; values not computed stay white.
+    height. Runs that have not settled are the topmost band; values not computed stay white.
     """
-    figure = new_figure(_HEIGHT)
-    axes = figure.subplots()
     (name,) = found["computed"].dims
     ordered = found.sortby(str(name)).isel({str(name): found.sortby(str(name))["computed"].to_numpy() > 0})
     x, classes = ordered[str(name)].to_numpy(), attractor_classes(found)[:-1]
     fraction = ordered["fraction"].transpose(name, "attractor_index").to_numpy()
-    unsettled = ordered["unsettled"].to_numpy() / ordered["computed"].to_numpy()
-    bands = np.column_stack([fraction, unsettled])
-    tops = np.cumsum(bands, axis=1)
+    tops = np.cumsum(fraction, axis=1)
+    figure = new_figure(max(_HEIGHT, _ENTRY * (int(fraction.any(axis=0).sum()) + 3)))
+    axes = figure.subplots()
     legend: list[Patch | Line2D] = []
     for place, one in enumerate(classes):
-        if bands[:, place].any():
-            _draw_band(axes, x, tops[:, place] - bands[:, place], tops[:, place], one.look)
+        if fraction[:, place].any():
+            _draw_band(axes, x, tops[:, place] - fraction[:, place], tops[:, place], one.look)
             legend.append(Patch(label=one.name, **fill_options(one.look)))
     below = fraction - ordered["fraction_low"].transpose(name, "attractor_index").to_numpy()
     above = ordered["fraction_high"].transpose(name, "attractor_index").to_numpy() - fraction

@@ -12,7 +12,15 @@ from stylobate.errors import require_whole
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 from stylobate.results.outcomes import NOT_COMPUTED
-from stylobate.studies.finding import UNSETTLED, Attractor, Found, find_attractors, names_of, with_turns
+from stylobate.studies.finding import (
+    NOT_SETTLED,
+    REMEDY,
+    Attractor,
+    Found,
+    find_attractors,
+    names_of,
+    with_turns,
+)
 from stylobate.studies.labelled_sweeps import labelled_sweep
 from stylobate.studies.orbit_paths import orbit_paths, turns_of_paths
 from stylobate.studies.proportions import fraction_interval
@@ -109,8 +117,11 @@ def label_attractors(
     A run that moves to its end is on a periodic orbit if its strobed states repeat, after up to half as many periods
     as there are strobes. Orbits are one if their strobed states agree wherever they begin. A motion that goes on
     without repeating is modulated rolling if it turns once round with each period of the forcing, else aperiodic:
-    quasi-periodic or chaotic. Those are told apart by their sense only. A run of none of these is unsettled: it still
-    creeps, and may only want more time.
+    quasi-periodic or chaotic. Those are told apart by their sense only. A run of none of these has "not settled": it
+    still creeps, or there are too few strobes to tell; more periods and more strobes will.
+
+    The strobes alone decide, not the outcome of a run, which rests on its last periods: those may hold too little of a
+    slow modulation to tell it, and the run is STILL_MOVING by itself.
 
     Parameters
     ----------
@@ -122,20 +133,20 @@ def label_attractors(
     rules
         When states repeat, when two orbits are one, when a motion has settled.
     confidence
-        Of the intervals of the fractions (Wilson's), which count none of the unsettled runs to an attractor at their
+        Of the intervals of the fractions (Wilson's), which count none of the runs not settled to an attractor at their
         lower end and all at their upper end. Runs on a grid are taken as if drawn at random, which makes
         their intervals too wide rather than too narrow where basins are larger than the cells.
 
     Returns
     -------
     xarray.Dataset
-        The runs with `attractor`, −2 where unsettled and −1 where not computed, the strobed states left out; and over
-        `attractor_index`, by kind and size: `attractor_name`, `attractor_kind`, `attractor_period` [forcing periods,
-        0 for none], `attractor_turns` [a forcing period; NaN where not
-        known, see `Attractor`], mean and largest tilt [rad], its strobed states
+        The runs with `attractor`, −1 where not computed, the strobed states left out; and over `attractor_index`, by
+        kind and size, those "not settled" last: `attractor_name`, `attractor_kind`, `attractor_period` [forcing
+        periods, 0 for none], `attractor_turns` [a forcing period; NaN where not known, see `Attractor`], mean and
+        largest tilt [rad], its strobed states
         `attractor_tilt` [rad] and `attractor_tilt_rate` [rad/s] over `orbit_point` (those that lean farthest first),
         `orbit_tilt` along its path, `count`, `fraction` of all runs computed, `fraction_low` and `fraction_high`.
-        `unsettled` and `computed` count runs.
+        `unsettled` and `computed` count runs; fractions add up to one.
 
     Raises
     ------
@@ -143,7 +154,7 @@ def label_attractors(
         If the runs were followed without strobes.
     """
     chosen, scales = rules or AttractorRules(), OrbitScales.of(model, motion)
-    found = find_attractors(runs, scales, chosen)
+    found = find_attractors(runs, scales, chosen).listed()
     paths = orbit_paths(model, motion, found.attractors, scales)
     found, order = with_turns(found, turns_of_paths(paths, found.attractors), chosen.match_tolerance)
     labels = found.labels.astype(np.int16)
@@ -192,14 +203,16 @@ def attractor_table(attractors: Sequence[Attractor], scales: OrbitScales) -> xr.
 def shares(found: Found, confidence: float) -> xr.Dataset:
     """Return how many runs came to each attractor, and the fraction with its interval.
 
-    Where an unsettled run would come to is not known: the lower end counts none of them to the attractor, the upper
-    end all.
+    Where a run that has not settled would come to is not known: the lower end counts none of them to the attractor, the
+    upper end all.
     """
+    found = found.listed()
     labels = found.labels.ravel()
     count = np.array([np.count_nonzero(labels == place) for place in range(len(found.attractors))], dtype=np.int64)
     computed = int(np.count_nonzero(labels != NOT_COMPUTED))
-    unsettled = int(np.count_nonzero(labels == UNSETTLED))
-    low, high = fraction_interval(count, unsettled, computed, confidence=confidence)
+    rest = np.array([attractor.kind == NOT_SETTLED for attractor in found.attractors], dtype=bool)
+    unsettled = int(count[rest].sum())
+    low, high = fraction_interval(count, np.where(rest, 0, unsettled), computed, confidence=confidence)
     interval = f"end of the {100.0 * confidence:g} % interval of the fraction"
     return xr.Dataset(
         {
@@ -207,7 +220,7 @@ def shares(found: Found, confidence: float) -> xr.Dataset:
             "fraction": (_TABLE, count / max(computed, 1), {"units": "1", "long_name": "fraction of the runs"}),
             "fraction_low": (_TABLE, low, {"units": "1", "long_name": f"lower {interval}"}),
             "fraction_high": (_TABLE, high, {"units": "1", "long_name": f"upper {interval}"}),
-            "unsettled": ((), unsettled, {"units": "1", "long_name": "unsettled runs"}),
+            "unsettled": ((), unsettled, {"units": "1", "long_name": "runs that have not settled", "comment": REMEDY}),
             "computed": ((), computed, {"units": "1", "long_name": "runs computed"}),
         }
     )
@@ -226,9 +239,9 @@ def rule_attributes(rules: AttractorRules, confidence: float) -> dict[str, Any]:
 
 
 def _label_attributes(found: Found) -> dict[str, Any]:
-    names = ["unsettled", "not computed", *names_of(found.attractors)]
+    names = ["not computed", *names_of(found.attractors)]
     return {
         "long_name": "attractor",
-        "flag_values": np.arange(UNSETTLED, len(found.attractors), dtype=np.int16),
+        "flag_values": np.arange(NOT_COMPUTED, len(found.attractors), dtype=np.int16),
         "flag_meanings": " ".join(name.replace(",", "").replace(" ", "_") for name in names),
     }

@@ -16,7 +16,7 @@ from stylobate.motions import BASE_AT_REST, BaseMotion
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.attractors import attractor_table, rule_attributes
 from stylobate.studies.branches import Branches, follow_branches
-from stylobate.studies.finding import UNSETTLED, Found, find_attractors
+from stylobate.studies.finding import NOT_SETTLED, REMEDY, Found, find_attractors
 from stylobate.studies.labelled_sweeps import labelled_sweep
 from stylobate.studies.proportions import fraction_interval, require_confidence
 from stylobate.studies.strobe_count import with_strobes
@@ -79,9 +79,9 @@ def basin_fractions(
     -------
     xarray.Dataset
         Of kind "basin fractions", over the parameter and `attractor_index`: `count`, `fraction` of the runs computed
-        with `fraction_low` and `fraction_high` (none, and all, of the unsettled runs counted to it), `present` where
+        with `fraction_low` and `fraction_high` (none, and all, of the runs not settled counted to it), `present` where
         the attractor was found and there `mean_tilt` [rad] of its runs and its strobed states; over the parameter
-        `unsettled` and `computed` count runs.
+        `unsettled` and `computed` count runs. Those "not settled" are listed last.
 
     Raises
     ------
@@ -126,7 +126,7 @@ def fractions_along(
     """
     count = runs.sizes["run"] // max(len(scales), 1)
     blocks = [runs.isel(run=slice(i * count, (i + 1) * count)) for i in range(len(scales))]
-    found = [find_attractors(block, unit, rules) for block, unit in zip(blocks, scales, strict=True)]
+    found = [find_attractors(block, unit, rules).listed() for block, unit in zip(blocks, scales, strict=True)]
     branches = follow_branches([one.attractors for one in found], rules.branch_tolerance)
     values = runs[name].to_numpy()[::count]
     return (
@@ -150,10 +150,12 @@ def _fractions(name: str, found: Sequence[Found], branches: Branches, confidence
         present[i, list(places)] = True
         count[i, list(places)] = [np.count_nonzero(one.labels == label) for label in range(len(places))]
     computed = np.array([np.count_nonzero(one.labels != NOT_COMPUTED) for one in found])
-    unsettled = np.array([np.count_nonzero(one.labels == UNSETTLED) for one in found])
+    rest = np.array([branch.kind == NOT_SETTLED for branch in branches.last], dtype=bool)
+    unsettled = count[:, rest].sum(axis=1)
     known = computed[:, np.newaxis] > 0
     total = np.maximum(computed, 1)[:, np.newaxis]
-    low, high = fraction_interval(count, unsettled[:, np.newaxis], total, confidence=confidence)
+    unknown = np.where(rest, 0, unsettled[:, np.newaxis])
+    low, high = fraction_interval(count, unknown, total, confidence=confidence)
     dims, interval = (name, "attractor_index"), f"end of its {100.0 * confidence:g} % interval"
     return xr.Dataset(
         {
@@ -162,7 +164,11 @@ def _fractions(name: str, found: Sequence[Found], branches: Branches, confidence
             "fraction": (dims, np.where(known, count / total, np.nan), {"units": "1", "long_name": "basin fraction"}),
             "fraction_low": (dims, np.where(known, low, np.nan), {"units": "1", "long_name": f"lower {interval}"}),
             "fraction_high": (dims, np.where(known, high, np.nan), {"units": "1", "long_name": f"upper {interval}"}),
-            "unsettled": (name, unsettled, {"units": "1", "long_name": "unsettled runs"}),
+            "unsettled": (
+                name,
+                unsettled,
+                {"units": "1", "long_name": "runs that have not settled", "comment": REMEDY},
+            ),
             "computed": (name, computed, {"units": "1", "long_name": "runs computed"}),
         }
     )

@@ -10,12 +10,9 @@ from stylobate.engine import simulate_ensemble
 from stylobate.errors import ParameterError, require_positive, require_whole
 from stylobate.orbits import Bifurcation
 from stylobate.orbits.arguments import require_bifurcation
-from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.spec import provenance_of_run
 from stylobate.studies.attractors import label_attractors
 from stylobate.studies.sweeps.quantities import attributes_of
-
-_UNSETTLED = "unsettled"
 
 
 def fates(
@@ -51,7 +48,7 @@ def fates(
     -------
     xarray.Dataset
         `count` over the parameter and `fate`: overturned, at rest, rolling, modulated and so on, told as by
-        `label_attractors`, with the length of orbits that take more than one period; and `unsettled`.
+        `label_attractors`, with the length of orbits that take more than one period; and those not settled.
 
     Raises
     ------
@@ -108,5 +105,4 @@ def _counted(labelled: xr.Dataset) -> dict[str, int]:
     ):
         name = f"{kind}, period {period}" if period > 1 else str(kind)
         counts[name] = counts.get(name, 0) + int(number)
-    rest = int((labelled["attractor"] != NOT_COMPUTED).sum()) - sum(counts.values())
-    return counts | ({_UNSETTLED: rest} if rest else {})
+    return counts

@@ -26,6 +26,10 @@ from stylobate.studies.strobes import (
 UNSETTLED = -2
 """The label of a run that has reached no attractor by its end: followed longer it may."""
 
+NOT_SETTLED = "not settled"
+"""What such runs are listed as, beside the attractors."""
+REMEDY = "not settled: follow them for more periods and with more strobes, 32 at least"
+
 AT_REST, ROCKING, OVERTURNED = "at rest", "rocking", "overturned"
 ROLLING = {1: "rolling anticlockwise", -1: "rolling clockwise"}
 MODULATED = {1: "modulated anticlockwise", -1: "modulated clockwise"}
@@ -36,7 +40,7 @@ ENDINGS = {
     Outcome.LIFTED_OFF: "lifted off",
 }
 
-KINDS = (AT_REST, *ROLLING.values(), ROCKING, *MODULATED.values(), *APERIODIC.values(), *ENDINGS.values())
+KINDS = (AT_REST, *ROLLING.values(), ROCKING, *MODULATED.values(), *APERIODIC.values(), *ENDINGS.values(), NOT_SETTLED)
 """All kinds, in the order in which attractors are listed."""
 
 # Mean turns of the contact point in a forcing period that are told from none, and from one: half a turn in ten.
@@ -80,14 +84,24 @@ class Found:
     attractors: tuple[Attractor, ...]
     labels: Integers
 
+    def listed(self) -> "Found":
+        """Return the same with the runs that have not settled listed last, if there are any, as if an attractor."""
+        unsettled = self.labels == UNSETTLED
+        if not unsettled.any():
+            return self
+        place = len(self.attractors)
+        row = Attractor(NOT_SETTLED, 0, np.nan, np.nan, np.empty((0, 2), dtype=complex))
+        return Found((*self.attractors, row), np.where(unsettled, place, self.labels))
+
 
 def find_attractors(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules) -> Found:
     """Return the attractors that `runs` of one column under one base motion have come to, and which run came to which.
 
     At rest, overturned and what else ends a run is told by the outcome. A run that moves to its end is on a periodic
     orbit if its strobed states repeat; orbits are told apart by the set of their strobed states. A motion that goes on
-    without repeating is modulated rolling if it turns with the forcing, else aperiodic (quasi-periodic or chaotic),
-    and told by its sense; all others are unsettled. A column that stands at every strobe counts as at rest.
+    without repeating (`keeps_moving`) is modulated rolling if it turns with the forcing, else aperiodic (quasi-periodic
+    or chaotic), and told by its sense; all others are unsettled, whatever the outcome of the run alone. A column that
+    stands at every strobe counts as at rest.
 
     Parameters
     ----------
@@ -203,11 +217,10 @@ def _orbits(
 
 
 def _unrepeated(runs: _Flat, candidates: Integers, rules: AttractorRules) -> Iterator[tuple[Attractor, Integers]]:
-    told = runs.outcome[candidates] == code_of(Outcome.MODULATED)
-    settled = candidates[told | keeps_moving(runs.strobes[candidates], rules)]
+    settled = candidates[keeps_moving(runs.strobes[candidates], rules)]
     turns = runs.turns[settled]
     senses = np.where(np.abs(turns) > _TURNING, np.sign(turns), 0.0)
-    with_forcing = (np.abs(np.abs(turns) - 1.0) < _TURNING) | (runs.outcome[settled] == code_of(Outcome.MODULATED))
+    with_forcing = np.abs(np.abs(turns) - 1.0) < _TURNING
     for kinds, chosen in ((MODULATED, with_forcing), (APERIODIC, ~with_forcing)):
         for sense, kind in kinds.items():
             members = settled[chosen & (senses == sense)]

@@ -9,7 +9,7 @@ import xarray as xr
 from stylobate.engine import simulate_ensemble
 from stylobate.models import Model
 from stylobate.motions import BaseMotion, Harmonic
-from stylobate.studies.finding import ENDINGS, Attractor
+from stylobate.studies.finding import Attractor
 from stylobate.studies.strobes import Floats, OrbitScales
 
 # Turn from one sample to the next up to which it is certain to which side it went.
@@ -37,14 +37,14 @@ def orbit_paths(
     xarray.Dataset
         `orbit_tilt` (attractor_index, orbit_sample, axis) [rad], at equal times over the period (20 forcing periods
         for one that does not repeat); `attractor_mean_tilt` and `attractor_largest_tilt` (attractor_index) [rad]. NaN
-        where the attractor ends a run or its path is not known.
+        where the attractor ends a run, has not been reached, or its path is not known.
     """
     tilt = np.full((len(attractors), _SAMPLES, 2), np.nan)
     mean = np.array([attractor.mean_tilt for attractor in attractors])
     standing = np.array([attractor.mean_tilt == 0.0 for attractor in attractors], dtype=bool)
     tilt[standing] = 0.0
     steady = _steady(motion)
-    moving = [i for i, found in enumerate(attractors) if found.kind not in ENDINGS.values() and not standing[i]]
+    moving = [i for i, found in enumerate(attractors) if len(found.states) and not standing[i]]
     if steady is not None and moving:
         tilt[moving] = _followed(model, steady, [attractors[i] for i in moving], scales)
         amplitude = np.hypot(tilt[moving, :, 0], tilt[moving, :, 1])

@@ -21,6 +21,10 @@ _LEAST = 1e-12
 
 # Differences in each half of the strobes that give their mean and its error: of 32 strobes.
 _ENOUGH_DIFFERENCES = 15
+# An orbit that a run may be nearing has at most this part of the strobes for its period, so that its returns are many …
+_RETURNS = 4
+# … and returns to within this part of what the run moves from strobe to strobe.
+_NEAR = 0.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,7 +44,8 @@ class AttractorRules:
         is watched, and one that spirals in must not pass for an orbit of several periods.
     settled_tolerance
         A run that does not repeat is settled if the differences of successive strobed states are as large, in the
-        geometric mean, in the second half of the strobes as in the first, to this part …
+        geometric mean, in the second half of the strobes as in the first, to this part; and if those after k strobes,
+        where they are small beside the former, do not shrink by more: else it nears an orbit of k periods …
     sampling_errors
         … or to so many standard errors of the two means: the few differences of a chaotic run scatter, and their
         means with them, while those of a run that creeps shrink one after the other. Told from 32 strobes or more.
@@ -132,23 +137,58 @@ def repeating_periods(strobes: Complexes, rules: AttractorRules) -> tuple[Intege
 
 
 def keeps_moving(strobes: Complexes, rules: AttractorRules) -> npt.NDArray[np.bool_]:
-    """Return which motions go on as they are, without repeating: neither dying down nor growing, shape (n,).
+    """Return which motions go on as they are, without repeating: they neither die down, grow nor near an orbit.
 
     Told from the differences of successive strobed states (`strobes` of shape (n, m, 2)): those of a run that creeps
     towards an orbit shrink from the first half of the strobes to the second. In the logarithm a constant rate of decay
     ρ is a straight line: over h differences in each half the means differ by ρh, √(6h) of their standard errors (10
     for h = 16) whatever the rate, while those of a stationary run differ by about one. Fewer than 15 differences in
-    each half (32 strobes) tell too little: no run of them counts as going on.
+    each half (32 strobes) tell too little: no run of them counts as going on. Nor does one that moves from strobe to
+    strobe by no more than what counts as repeating.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (n,).
     """
-    steps = np.abs(np.diff(strobes, axis=1)).max(axis=2)
-    half = steps.shape[1] // 2
-    if half < _ENOUGH_DIFFERENCES:
+    if (strobes.shape[1] - 1) // 2 < _ENOUGH_DIFFERENCES:
         return np.zeros(len(strobes), dtype=bool)
-    before, after = (np.log(np.maximum(part, _LEAST)) for part in (steps[:, :half], steps[:, -half:]))
-    change = np.abs(after.mean(axis=1) - before.mean(axis=1))
+    steps = _differences(strobes, 1)
+    half = steps.shape[1] // 2
+    growth, bound = _growth(steps, rules)
+    moves = np.sqrt(np.mean(steps[:, -half:] ** 2, axis=1)) > rules.repeat_tolerance
+    return np.asarray((np.abs(growth) < bound) & moves & ~_nears_an_orbit(strobes, rules))
+
+
+def _nears_an_orbit(strobes: Complexes, rules: AttractorRules) -> npt.NDArray[np.bool_]:
+    """Return which runs near an orbit of several periods, shape (n,).
+
+    From strobe to strobe they move as the orbit does, by as much from first to last. But after its k periods they come
+    back closely, and ever more so. Told of the k after which a run comes back most closely.
+    """
+    periods = range(1, max(strobes.shape[1] // _RETURNS, 1) + 1)
+    returns = [_differences(strobes, k) for k in periods]
+    sizes = np.stack([np.log(each).mean(axis=1) for each in returns])
+    shrinks = np.stack([-growth > bound for growth, bound in (_growth(each, rules) for each in returns)])
+    closest = sizes.argmin(axis=0)
+    each_run = np.arange(len(strobes))
+    near = sizes[closest, each_run] < sizes[0] + np.log(_NEAR)
+    return np.asarray(near & shrinks[closest, each_run])
+
+
+def _differences(strobes: Complexes, periods: int) -> Floats:
+    """Return how far apart states are that lie so many periods from each other, shape (n, m − periods)."""
+    apart = np.abs(strobes[:, periods:] - strobes[:, :-periods]).max(axis=2)
+    return np.asarray(np.maximum(apart, _LEAST))
+
+
+def _growth(differences: Floats, rules: AttractorRules) -> tuple[Floats, Floats]:
+    """Return by how much the logarithm of differences grows from the first half to the second, and what is nothing."""
+    half = differences.shape[1] // 2
+    before, after = np.log(differences[:, :half]), np.log(differences[:, -half:])
     error = np.sqrt((before.var(axis=1) + after.var(axis=1)) / (half - 1))
-    settled = change < np.maximum(np.log1p(rules.settled_tolerance), rules.sampling_errors * error)
-    return np.asarray(settled & (np.sqrt(np.mean(steps[:, -half:] ** 2, axis=1)) > rules.match_tolerance))
+    bound = np.maximum(np.log1p(rules.settled_tolerance), rules.sampling_errors * error)
+    return after.mean(axis=1) - before.mean(axis=1), bound
 
 
 def is_flat(cycle: Complexes, tolerance: float) -> bool:

@@ -49,7 +49,7 @@ test("no two classes of a picture look the same", () => {
       "rocking 2",
       "rocking 3",
     ],
-    ...["modulated anticlockwise", "aperiodic", "overturned", "unsettled", "something new"],
+    ...["modulated anticlockwise", "aperiodic", "overturned", "not settled", "something new"],
   ];
   const looks = looksOf(names).map(({ colour, texture }) => {
     const pixels = Array.from({ length: 144 }, (_, i) => (texture?.(i % 12, Math.floor(i / 12)) ? 1 : 0));

@@ -11,11 +11,8 @@ import { swatch } from "./swatch";
 
 export type Names = readonly (readonly [code: number, name: string])[];
 
-/** Codes of basins that no attractor has. */
-const WITHOUT_ATTRACTOR: Names = [
-  [-2, "unsettled"],
-  [-1, "not computed"],
-];
+/** The code of cells of a basin that no run was made of. */
+const NOT_COMPUTED: Names = [[-1, "not computed"]];
 
 export class Classes {
   readonly legend = element("ul", { class: "legend classes" });
@@ -37,7 +34,7 @@ export class Classes {
 
   /** Takes the names that are known at the end: of attractors, or of what a sliding column does. */
   takeFinal(names: Names, attractors: readonly Attractor[]): void {
-    this.take([...names, ...WITHOUT_ATTRACTOR], attractors);
+    this.take([...names, ...NOT_COMPUTED], attractors);
   }
 
   nameOf(code: number): string {

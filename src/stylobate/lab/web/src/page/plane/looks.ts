@@ -45,7 +45,7 @@ const LOOKS: Readonly<Record<string, Look>> = {
   rolling: look(AMBER),
   modulated: look(SEA, dotted),
   "still moving": UNSETTLED,
-  unsettled: UNSETTLED,
+  "not settled": UNSETTLED,
   overturned: look(NIGHT),
   "limit reached": look(NIGHT, rising),
   "tilt limit reached": look(NIGHT, rising),
