@@ -4,8 +4,10 @@ import tomllib
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import stylobate as sb
+from stylobate.lab.presets import presets
 from stylobate.spec import SimulationDescription, as_python, as_toml
 
 COLUMN = {"shape": "dimensionless", "slenderness": 0.1}
@@ -83,13 +85,64 @@ def made(values):
     return sb.simulate(setup.model, setup.motion, **setup.options)
 
 
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    """Programs draw into the folder they are run in."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run_by(program):
+    names = {}
+    exec(program, names)  # noqa: S102  it is what users are given
+    return names["run"]
+
+
 @pytest.mark.parametrize("name", CASES)
 def test_the_program_makes_the_described_run(name):
-    names = {}
-    exec(as_python(SimulationDescription.parse(CASES[name])), names)  # noqa: S102  it is what users are given
-    told, expected = names["run"], made(CASES[name])
+    told, expected = run_by(as_python(SimulationDescription.parse(CASES[name]))), made(CASES[name])
     assert told.outcome is expected.outcome
     assert told.measures == pytest.approx(expected.measures, nan_ok=True)
+
+
+@pytest.mark.parametrize("preset", presets(), ids=lambda preset: preset.identity)
+def test_the_program_of_a_preset_shows_what_the_preset_says_and_draws_it(preset, folder):
+    run = run_by(as_python(SimulationDescription.parse(preset.description)))
+    assert run.outcome.name == preset.outcome
+    with Image.open(folder / "run.png") as drawn:
+        assert np.ptp(np.asarray(drawn.convert("L"))) > 200  # from black ink to white paper
+
+
+QUAKE, READ = {"kind": "record", "sample": "el centro 1940"}, "sb.sample_record('el centro 1940')"
+
+
+@pytest.mark.parametrize(
+    ("motion", "told"),
+    [
+        (QUAKE | {"scale": 1.0, "rotation": 0.0, "tail": 0.0}, READ),
+        (QUAKE | {"scale": 1.0, "rotation": 0.4}, f"{READ}.rotated(0.4)"),
+        ({"kind": "rotated", "angle": 0.0, "motion": {"kind": "delayed", "delay": 0.0, "motion": QUAKE}}, READ),
+        ({"kind": "scaled", "factor": 1.0, "vertical": 1.0, "motion": QUAKE}, READ),
+        (
+            {"kind": "scaled", "factor": 2.0, "vertical": 1.0, "motion": QUAKE},
+            f"{READ}.scaled(2.0, vertical=1.0)",
+        ),
+        (
+            {"kind": "scaled", "factor": 1.0, "vertical": 0.0, "motion": QUAKE},
+            f"{READ}.scaled(1.0, vertical=0.0)",
+        ),
+    ],
+)
+def test_what_changes_nothing_is_not_written(motion, told):
+    program = as_python(SimulationDescription.parse({"column": COLUMN, "motion": motion, "duration": 5.0}))
+    assert f"motion = {told}\n" in program
+
+
+def test_a_processed_record_is_written_without_what_changes_nothing():
+    motion = QUAKE | {"scale": 1.0, "rotation": 0.4, "processing": [{"method": "inverted"}]}
+    program = as_python(SimulationDescription.parse({"column": COLUMN, "motion": motion, "duration": 5.0}))
+    assert "'rotation': 0.4" in program
+    assert "scale" not in program
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -24,9 +24,10 @@ def as_toml(values: Mapping[str, Any]) -> str:
 
 
 def as_python(description: SimulationDescription) -> str:
-    """Return a Python program that makes the described run by the public names.
+    """Return a Python program that makes the described run by the public names, and draws it.
 
-    A record that is put together or processed in another way than by scale, rotation and tail stands as a description.
+    What changes nothing is left out. A record that is put together or processed in another way than by scale, rotation
+    and tail stands as a description.
 
     Examples
     --------
@@ -38,6 +39,7 @@ def as_python(description: SimulationDescription) -> str:
     model = sb.Slender(column)
     run = sb.simulate(model, tilt=(0.05, 0.0), duration=20.0)
     print(run.outcome.name, "-", run.reason)
+    sb.plot(run).savefig("run.png")
     """
     column, model = description.column.model_dump(exclude_defaults=True), description.model
     shape = str(getattr(description.column, "shape"))  # noqa: B009  every member of the union has one
@@ -51,7 +53,7 @@ def as_python(description: SimulationDescription) -> str:
     if moved:
         lines.append(f"motion = {_motion(description.motion)}")
     lines += _run(description, moved=moved)
-    return "\n".join([*lines, 'print(run.outcome.name, "-", run.reason)', ""])
+    return "\n".join([*lines, *_SHOWN, ""])
 
 
 def _run(description: SimulationDescription, *, moved: bool) -> Iterable[str]:
@@ -72,8 +74,7 @@ def _motion(motion: Any) -> str:
     if kind == "record":
         return _record(motion, numbers)
     if kind in _CHANGES:
-        change = [repr(numbers.pop(_CHANGES[kind])), _keywords(numbers)]
-        return f"{_motion(motion.motion)}.{kind}({_joined(change)})"
+        return _motion(motion.motion) + _changed(kind, numbers)
     if kind in _CONTAINERS:
         members = ", ".join(_motion(member) for member in motion.motions)
         return f"{_CONTAINERS[kind]}({_joined([f'motions=({members},)', _keywords(numbers)])})"
@@ -85,7 +86,9 @@ def _record(motion: Any, numbers: Mapping[str, Any]) -> str:
     plain = {"sample", "path", "units", "step", "scale", "rotation", "tail", "directions"}
     several = not isinstance(numbers.get("path", ""), str)
     if set(numbers) - plain or ("directions" in numbers and not several):
-        return f"sb.spec.RecordMotion.parse({motion.values()!r}).build()"
+        unchanged = {name for name, kind in _LAST.items() if numbers.get(name) == _CHANGES[kind][1]}
+        values = {name: value for name, value in motion.values().items() if name not in unchanged}
+        return f"sb.spec.RecordMotion.parse({values!r}).build()"
     if "sample" in numbers:
         made = f"sb.sample_record({numbers['sample']!r})"
     else:
@@ -93,9 +96,20 @@ def _record(motion: Any, numbers: Mapping[str, Any]) -> str:
         paths = list(numbers["path"]) if several else numbers["path"]
         read = "sb.read_records" if several else "sb.read_record"
         made = f"{read}({_joined([repr(paths), _keywords(reading)])})" + ("[0]" if several else "")
-    for name, method in (("scale", "scaled"), ("rotation", "rotated"), ("tail", "with_tail")):
-        made += f".{method}({numbers[name]!r})" if name in numbers else ""
+    for name, kind in _LAST.items():
+        made += _changed(kind, {_CHANGES[kind][0]: numbers[name]}) if name in numbers else ""
     return made
+
+
+def _changed(kind: str, numbers: Mapping[str, Any]) -> str:
+    """Return the call that changes a motion; none where its number leaves all as it is."""
+    name, neutral = _CHANGES[kind]
+    change = numbers[name]
+    # A vertical component is scaled as the others are, where nothing else is told.
+    apart = {other: value for other, value in numbers.items() if other != name and value != change}
+    if change == neutral and not apart:
+        return ""
+    return f".{kind}({_joined([repr(change), _keywords(apart)])})"
 
 
 def _keywords(values: Mapping[str, Any]) -> str:
@@ -122,5 +136,18 @@ _MAKERS = {kind: f"sb.Harmonic.{kind}" for kind in _HARMONICS} | {
 }
 """What makes the motions of each kind but for pulses, whose kinds are methods of `Pulse`."""
 
-_CHANGES = {"scaled": "factor", "rotated": "angle", "delayed": "delay"}
+_CHANGES = {
+    "scaled": ("factor", 1.0),
+    "rotated": ("angle", 0.0),
+    "delayed": ("delay", 0.0),
+    "with_tail": ("length", 0.0),
+}
+"""Of each change of a motion its number, and that which changes nothing."""
+
+_LAST = {"scale": "scaled", "rotation": "rotated", "tail": "with_tail"}
+"""The changes that a record may have at last, in their order."""
+
+_SHOWN = ('print(run.outcome.name, "-", run.reason)', 'sb.plot(run).savefig("run.png")')
+"""The end of each program: what became of the column, and its history as a figure."""
+
 _CONTAINERS = {"sum": "sb.motions.Sum", "one_of": "sb.OneOf"}

@@ -1,14 +1,16 @@
 """What is seen in the pictures is where the motion says it is."""
 
 import math
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import ImageDraw
 
 import stylobate as sb
-from stylobate.plots.animation import DrawnMotion
+from stylobate.plots.animation import DrawnMotion, palette
 from stylobate.plots.animation.body import MARK, Body
 from stylobate.plots.animation.canvas import FINE, rgb
 from stylobate.plots.animation.lens import Lens
@@ -19,7 +21,6 @@ from stylobate.plots.animation.trace import Trace
 from stylobate.plots.axonometry import View
 from stylobate.plots.pose import frames
 from stylobate.plots.shape import Shape
-from stylobate.plots.style import BLUE, VERMILION
 
 LOOK = Look(size=(480, 360), view=View(math.radians(-68.0), math.radians(20.0)))
 DISC = sb.Column.solid(radius=0.1, height=0.05, density=2700.0)
@@ -66,7 +67,7 @@ def test_the_contact_point_is_painted_where_it_is(painter, motion, index):
     x, y = painter.lens.pixels(at) / FINE
     picture = np.asarray(painter.picture(index)).astype(int)
     near = picture[round(y) - 6 : round(y) + 7, round(x) - 6 : round(x) + 7]
-    strong = np.abs(near - rgb(VERMILION)).sum(axis=-1) < 30
+    strong = np.abs(near - palette.CONTACT_POINT).sum(axis=-1) < 30
     # A dot of radius 4.5 pixels, or a ring of the same.
     assert strong.sum() >= 12
     assert np.argwhere(strong).mean(axis=0) == pytest.approx([6.0, 6.0], abs=1.5)
@@ -88,13 +89,13 @@ def test_the_mark_turns_with_the_column(motion):
         for one in (upright, replace(upright, twist=motion.twist + 0.5 * math.pi))
     )
 
-    def centre_of_blue(picture):
-        found = np.argwhere((picture[..., 2] > 1.6 * picture[..., 0]) & (picture[..., 2] > 60))
+    def centre_of_mark(picture):
+        found = np.argwhere((picture[..., 0] > 1.6 * picture[..., 2]) & (picture[..., 0] > 60))
         found = found[found[:, 0] < LOOK.size[1] - 92]
         return found.mean(axis=0)
 
     # From the side that faces the viewer to the right, anticlockwise from above.
-    assert centre_of_blue(turned)[1] > centre_of_blue(first)[1] + 20
+    assert centre_of_mark(turned)[1] > centre_of_mark(first)[1] + 20
 
 
 def test_the_same_instant_is_always_the_same_picture(painter):
@@ -194,8 +195,37 @@ def test_any_view_from_above_can_be_painted(motion, elevation):
     assert Painter.of(motion, motion, look).picture(0).size == LOOK.size
 
 
-def test_blue_and_vermilion_are_those_of_all_figures():
-    assert (rgb(BLUE), rgb(VERMILION)) == ((0, 114, 178), (213, 94, 0))
+# What the page shows and pictures do not: the rim's visits, the path of the tip, and how its lights mix.
+ON_THE_PAGE_ALONE = {"rim", "tip", "tipOld", "sun", "sky", "earth"}
+
+
+def test_one_thing_has_one_colour_in_pictures_and_on_the_page():
+    sources = Path(sb.__file__).parent / "lab/web/src"
+    if not sources.exists():
+        pytest.skip("the page's sources are not here")
+    (source,) = sources.rglob("palette.ts")
+    text = source.read_text(encoding="utf-8")
+    named = dict(re.findall(r'^const (\w+) = "(#\w+)";', text, re.MULTILINE))
+    light = text.partition("const LIGHT: Palette = {")[2].partition("};")[0]
+    page = dict(re.findall(r"^  (\w+): (.+),$", light, re.MULTILINE))
+    assert page.keys() >= ON_THE_PAGE_ALONE | {"mark", "contact"}
+    told = {name: value for name, value in page.items() if name not in ON_THE_PAGE_ALONE}
+    own = {name: getattr(palette, re.sub("([A-Z])", r"_\1", name).upper()) for name in told}
+    assert own == {
+        name: float(value) if "." in value else rgb(named.get(value, value.strip('"'))) for name, value in told.items()
+    }
+
+
+def test_the_footprint_of_a_column_that_stands_has_the_colour_of_what_touches(motion):
+    upright = replace(motion, tilt=0.0 * motion.tilt)
+
+    def blue(resting):
+        one = replace(upright, resting=np.full_like(motion.resting, resting))
+        painted = np.asarray(Painter.of(one, one, LOOK).picture(0)).astype(int)[: LOOK.size[1] - 92]
+        return int((painted[..., 2] - painted[..., 0] > 60).sum())
+
+    assert blue(True) > 20
+    assert blue(False) == 0
 
 
 @pytest.mark.parametrize("title", [None, "a title", "a title " * 30])

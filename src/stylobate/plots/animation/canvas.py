@@ -1,4 +1,4 @@
-"""What is drawn on: pictures twice as fine as they are shown, the colours of things, and letters."""
+"""What is drawn on: pictures twice as fine as they are shown, and letters."""
 
 from functools import lru_cache
 from pathlib import Path
@@ -14,12 +14,6 @@ FINE = 2
 """Pixels that are drawn for each that is shown, along either side: their mean smooths edges."""
 
 Colour = tuple[int, ...]
-
-PAPER, GROUND_MARK = (248, 248, 246), (205, 205, 200)
-SLAB, SLAB_EDGE, SLAB_LINE = (238, 235, 228), (150, 146, 138), (213, 209, 200)
-SLAB_LIT, SLAB_DARK = (201, 197, 188), (182, 177, 167)
-STONE, INK, PALE = (255, 248, 235), (38, 38, 38), (118, 118, 118)
-SHADE, GROUND_SHADE = (40, 42, 52, 62), (206, 206, 206)
 
 
 def rgb(colour: str) -> Colour:

@@ -6,10 +6,10 @@ import numpy as np
 from PIL import ImageDraw
 
 from stylobate.errors import Outcome
-from stylobate.plots.animation import canvas
 from stylobate.plots.animation.canvas import FINE, letters, rgb
 from stylobate.plots.animation.lens import Lens
 from stylobate.plots.animation.motion import DrawnMotion, verdict_of
+from stylobate.plots.animation.palette import INK, PALE
 from stylobate.plots.animation.scene import round_length
 from stylobate.plots.style import VERMILION
 
@@ -43,12 +43,12 @@ def write_lines(
     below = left
     if title:
         told = _shortened(draw, title, _NOTE, right - left)
-        draw.text((left, _BELOW), told, fill=canvas.PALE, font=letters(_NOTE), anchor="ls")
+        draw.text((left, _BELOW), told, fill=PALE, font=letters(_NOTE), anchor="ls")
         below = left + round(draw.textlength(told, font=letters(_NOTE)))
     if index == motion.time.size - 1:
         _write_outcome(draw, motion.outcome, state, below, right)
     elif not math.isclose(pace, 1.0):
-        draw.text((right, _LINE), f"speed × {pace:.3g}", fill=canvas.PALE, font=letters(_NOTE), anchor="rs")
+        draw.text((right, _LINE), f"speed × {pace:.3g}", fill=PALE, font=letters(_NOTE), anchor="rs")
 
 
 def _write_state(draw: ImageDraw.ImageDraw, motion: DrawnMotion, index: int, left: int) -> float:
@@ -57,10 +57,10 @@ def _write_state(draw: ImageDraw.ImageDraw, motion: DrawnMotion, index: int, lef
     # Three digits of the time at the end, and no less than seconds.
     digits = max(0, 2 - math.floor(math.log10(motion.time[-1])))
     told = f"{motion.time[index]:.{digits}f} s    tilt {tilt / motion.shape.slenderness:.2f} c"
-    draw.text((left, _LINE), told, fill=canvas.INK, font=letters(_TEXT), anchor="ls")
+    draw.text((left, _LINE), told, fill=INK, font=letters(_TEXT), anchor="ls")
     at = left + draw.textlength(f"{told}   ", font=letters(_TEXT))
     degrees = f"{math.degrees(tilt):.1f}°"
-    draw.text((at, _LINE), degrees, fill=canvas.PALE, font=letters(_NOTE), anchor="ls")
+    draw.text((at, _LINE), degrees, fill=PALE, font=letters(_NOTE), anchor="ls")
     return at + draw.textlength(degrees, font=letters(_NOTE))
 
 
@@ -69,7 +69,7 @@ def _write_outcome(draw: ImageDraw.ImageDraw, outcome: Outcome, state: float, ti
     told, font = verdict_of(outcome), letters(_TEXT, bold=True)
     needed = right - draw.textlength(told, font=font) - _GAP
     line = _LINE if needed > state else _BELOW if needed > title else 2 * _BELOW - _LINE
-    colour = rgb(VERMILION) if outcome in _FALLS else canvas.INK
+    colour = rgb(VERMILION) if outcome in _FALLS else INK
     draw.text((right, line), told, fill=colour, font=font, anchor="rs")
 
 
@@ -99,11 +99,11 @@ def write_scales(draw: ImageDraw.ImageDraw, lens: Lens, grid: float, ends: tuple
     length = round_length(_BAR * (ends[1] - ends[0]) / scale)
     left, right = ends[1] - length * scale, ends[1]
     font = letters(_SMALL)
-    draw.line((left, floor, right, floor), fill=canvas.INK, width=2)
+    draw.line((left, floor, right, floor), fill=INK, width=2)
     for end in (left, right):
-        draw.line((end, floor - 4, end, floor + 4), fill=canvas.INK, width=1)
-    draw.text((float(np.mean([left, right])), floor - 6), _metres(length), fill=canvas.INK, font=font, anchor="mb")
-    draw.text((ends[0], floor + 4), f"grid {_metres(grid)}", fill=canvas.PALE, font=font, anchor="lb")
+        draw.line((end, floor - 4, end, floor + 4), fill=INK, width=1)
+    draw.text((float(np.mean([left, right])), floor - 6), _metres(length), fill=INK, font=font, anchor="mb")
+    draw.text((ends[0], floor + 4), f"grid {_metres(grid)}", fill=PALE, font=font, anchor="lb")
 
 
 def _metres(length: float) -> str:

@@ -8,16 +8,17 @@ from io import BytesIO
 import numpy as np
 from PIL import Image
 
-from stylobate.plots.animation.canvas import INK, PAPER, rgb
-from stylobate.plots.style import BLUE, VERMILION
+from stylobate.plots.animation.palette import BACKGROUND, CONTACT, CONTACT_POINT, MARK, mixed
 
 Progress = Callable[[int, int], None]
 
 # Colours that all pictures share, and the number of one more, which stands for what does not change.
 _COLOURS = 96
 _UNCHANGED = _COLOURS
+# Levels between the colours for which Pillow finds the nearest one.
+_MESH = 4
 # Colours that a dot or a line has, and the parts of them where its edge is smoothed.
-_STRONG, _PARTS = (rgb(VERMILION), rgb(BLUE), INK), (1.0, 0.7, 0.4)
+_STRONG, _PARTS = (MARK, CONTACT, CONTACT_POINT), (1.0, 0.7, 0.4)
 # The format: bytes of the header, before the shared colours, and in it the flags that tell their number; behind them a
 # control block and a comma, after which the place of the picture stands; and what ends a file.
 _HEADER, _FLAGS, _PLACE, _COMMA, _TRAILER = 13, 10, 9, 0x2C, b";"
@@ -83,16 +84,13 @@ def _palette(pictures: Sequence[Image.Image]) -> Image.Image:
     sheet = Image.new("RGB", (width, height * len(pictures)))
     for row, one in enumerate(pictures):
         sheet.paste(one, (0, row * height))
-    strong = [
-        round(part * ink + (1.0 - part) * paper)
-        for colour in _STRONG
-        for part in _PARTS
-        for ink, paper in zip(colour, PAPER, strict=True)
-    ]
+    strong = [number for colour in _STRONG for part in _PARTS for number in mixed(BACKGROUND, colour, part)]
     left = _COLOURS - len(strong) // 3
-    others = sheet.quantize(left, method=Image.Quantize.MEDIANCUT).getpalette() or []
+    others = np.array(sheet.quantize(left, method=Image.Quantize.MEDIANCUT).getpalette()).reshape(-1, 3)[:left]
+    # Pillow looks up the nearest of them on a grid: what lies within its mesh of the background would take its place.
+    others[np.abs(others - BACKGROUND).max(axis=1) <= _MESH] = BACKGROUND
     found = Image.new("P", (1, 1))
-    found.putpalette([*strong, *others[: 3 * left]])
+    found.putpalette([*strong, *others.ravel().tolist()])
     return found
 
 

@@ -5,9 +5,9 @@ import math
 import numpy as np
 from PIL import Image, ImageDraw
 
-from stylobate.plots.animation import canvas
 from stylobate.plots.animation.canvas import FINE, line
 from stylobate.plots.animation.lens import Lens
+from stylobate.plots.animation.palette import BACKGROUND, GROUND_LINE, mixed
 from stylobate.plots.animation.scene import Scene, round_length
 from stylobate.plots.pose import Floats
 
@@ -30,7 +30,7 @@ def backdrop(size: tuple[int, int], scene: Scene, lens: Lens, above: int, below:
         Strips that stay empty [pixels as shown].
     """
     width, height = (FINE * pixels for pixels in size)
-    picture = Image.new("RGB", (width, height), canvas.PAPER)
+    picture = Image.new("RGB", (width, height), BACKGROUND)
     draw = ImageDraw.Draw(picture)
     step = round_length(FINE * _APART / lens.scale) * 2.0
     middle = lens.pixels(np.array([0.0, 0.0, scene.ground]))
@@ -39,7 +39,7 @@ def backdrop(size: tuple[int, int], scene: Scene, lens: Lens, above: int, below:
         if not (0 <= x <= width and above * FINE < y < height - below * FINE):
             continue
         strength = float(np.clip(1.0 - (middle[1] - y) / (_FADE * height), 0.0, 1.0))
-        colour = tuple(round(p + strength * (m - p)) for p, m in zip(canvas.PAPER, canvas.GROUND_MARK, strict=True))
+        colour = mixed(BACKGROUND, GROUND_LINE, strength)
         for along in (0, 1):
             ends = np.repeat(mark[None], 2, axis=0)
             ends[:, along] += (-_ARM * step, _ARM * step)

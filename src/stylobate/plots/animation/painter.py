@@ -6,9 +6,9 @@ from typing import Self
 import numpy as np
 from PIL import Image, ImageDraw
 
-from stylobate.plots.animation import canvas, captions
+from stylobate.plots.animation import captions, palette
 from stylobate.plots.animation.body import COARSE, Body
-from stylobate.plots.animation.canvas import FINE, circle, disc, line, polygon, rgb
+from stylobate.plots.animation.canvas import FINE, circle, disc, line, polygon
 from stylobate.plots.animation.ground import backdrop, slab_lines
 from stylobate.plots.animation.lens import Lens
 from stylobate.plots.animation.motion import DrawnMotion
@@ -19,7 +19,6 @@ from stylobate.plots.animation.strip import Strip
 from stylobate.plots.animation.trace import Trace
 from stylobate.plots.axonometry import View, hull
 from stylobate.plots.pose import Floats, frames
-from stylobate.plots.style import BLUE, VERMILION
 
 # Room about the scene [pixels as shown]: at the sides, above for a line of text, below for the history of the tilt.
 _EDGE, _ABOVE, _BELOW = 22, 46, 92
@@ -126,25 +125,26 @@ class Painter:
         upper, lower = (scene.slab(height) @ scene.turned.T + base for height in (0.0, -scene.thickness))
         for solid in (np.concatenate([upper, lower]), rims):
             cast = shadow(solid, self.light, _UP, scene.ground)
-            polygon(draw, hull(lens.pixels(cast)), canvas.GROUND_SHADE)
+            polygon(draw, hull(lens.pixels(cast)), palette.GROUND_SHADE)
         for first in range(4):
             second = (first + 1) % 4
             outward = np.cross(upper[second] - upper[first], scene.normal)
             if outward @ lens.eye > 0.0:
                 side = np.stack([upper[first], upper[second], lower[second], lower[first]])
-                polygon(draw, lens.pixels(side), canvas.SLAB_LIT if outward @ self.light > 0.0 else canvas.SLAB_DARK)
+                polygon(draw, lens.pixels(side), palette.SLAB_LIT if outward @ self.light > 0.0 else palette.SLAB_SIDE)
         top = lens.pixels(upper)
-        polygon(draw, top, canvas.SLAB)
+        polygon(draw, top, palette.SLAB)
         for ends in lens.pixels(slab_lines(scene) @ scene.turned.T + base):
-            line(draw, ends, canvas.SLAB_LINE, FINE)
-        line(draw, np.concatenate([top, top[:1]]), canvas.SLAB_EDGE, FINE)
+            line(draw, ends, palette.SLAB_LINE, FINE)
+        line(draw, np.concatenate([top, top[:1]]), palette.SLAB_SIDE, FINE)
         cast = (shadow(rims - base, self.light, scene.normal, 0.0) @ scene.turned)[:, :2]
-        polygon(draw, self._seen(clipped(hull(cast), scene.low, scene.high), base), canvas.SHADE)
+        polygon(draw, self._seen(clipped(hull(cast), scene.low, scene.high), base), palette.SHADE)
 
     def _draw_on_slab(self, draw: ImageDraw.ImageDraw, index: int, base: Floats) -> None:
         """Draw the footprint circle and the path of the contact point."""
         footprint = circle(self.motion.footprint[index], self.motion.shape.radius)
-        line(draw, self._seen(footprint, base), canvas.PALE, FINE)
+        colour = palette.CONTACT if self.motion.resting[index] else palette.FOOTPRINT
+        line(draw, self._seen(footprint, base), colour, FINE)
         self.trace.draw(draw, float(self.motion.time[index]), self.lens.shift(base))
 
     def _draw_column(self, draw: ImageDraw.ImageDraw, frame: Floats, centre: Floats) -> None:
@@ -154,7 +154,7 @@ class Painter:
         facets = np.concatenate([bottom, next_bottom, next_top, top], axis=1)
         # Facets that are seen run anticlockwise in space, and pixels are counted downwards.
         seen = _cross(next_bottom - bottom, top - bottom) < 0.0
-        stone = np.where(body.marked[:, None], rgb(BLUE), canvas.STONE).astype(float)
+        stone = np.where(body.marked[:, None], palette.MARK, palette.STONE).astype(float)
         colours = lit(stone, body.normals @ frame.T, self.light).astype(int)
         for facet, colour in zip(facets[seen].tolist(), colours[seen].tolist(), strict=True):
             draw.polygon(facet, fill=tuple(colour))
@@ -164,13 +164,13 @@ class Painter:
 
     def _draw_face(self, draw: ImageDraw.ImageDraw, rim: Floats, outward: Floats) -> None:
         """Draw the top or the base, with a wedge from its centre to the marked flute."""
-        faces = lit(np.array([canvas.STONE, rgb(BLUE)], dtype=float), np.stack([outward, outward]), self.light)
+        faces = lit(np.array([palette.STONE, palette.MARK], dtype=float), np.stack([outward, outward]), self.light)
         stone, mark = (tuple(face) for face in faces.astype(int).tolist())
         polygon(draw, rim, stone)
         flute = rim[: int(self.body.marked.sum()) + 1]
         polygon(draw, np.concatenate([rim.mean(axis=0)[None], flute]), mark)
         edge = rim[::COARSE]
-        line(draw, np.concatenate([edge, edge[:1]]), canvas.SLAB_EDGE, FINE)
+        line(draw, np.concatenate([edge, edge[:1]]), palette.SLAB_SIDE, FINE)
 
     def _draw_contact(self, draw: ImageDraw.ImageDraw, index: int, base: Floats, frame: Floats) -> None:
         """Draw the contact point, if there is one: as a ring where the column stands before it."""
@@ -184,9 +184,9 @@ class Painter:
         hidden = axis @ self.lens.eye > 0.0 > outward @ self.lens.eye
         at = self._seen(self.motion.contact_point[index][None], base)[0]
         if hidden:
-            disc(draw, at, _DOT, None, rgb(VERMILION))
+            disc(draw, at, _DOT, None, palette.CONTACT_POINT)
         else:
-            disc(draw, at, _DOT, rgb(VERMILION), canvas.PAPER)
+            disc(draw, at, _DOT, palette.CONTACT_POINT, palette.BACKGROUND)
 
     def _seen(self, points: Floats, base: Floats) -> Floats:
         """Return the pixels of points on the slab, given in its plane, shape (n, 2), or in its frame, shape (n, 3)."""

@@ -7,14 +7,14 @@ from typing import Self
 import numpy as np
 from PIL import ImageDraw
 
+from stylobate.plots.animation import palette
 from stylobate.plots.animation.body import MARK
-from stylobate.plots.animation.canvas import FINE, PALE, SLAB, SLAB_EDGE, circle, disc, letters, line, rgb
+from stylobate.plots.animation.canvas import FINE, circle, disc, letters, line
 from stylobate.plots.animation.lens import Lens
 from stylobate.plots.animation.motion import DrawnMotion
 from stylobate.plots.animation.trace import Trace
 from stylobate.plots.axonometry import View
 from stylobate.plots.pose import Floats
-from stylobate.plots.style import BLUE, VERMILION
 
 SIDE = 132
 """Of the square it fills [pixels as shown]."""
@@ -68,25 +68,27 @@ class Plan:
     def draw_behind(self, draw: ImageDraw.ImageDraw) -> None:
         """Draw the square."""
         corners = (*self.low.tolist(), *self.high.tolist())
-        draw.rounded_rectangle(corners, radius=FINE * _CORNER, fill=SLAB, outline=SLAB_EDGE, width=1)
+        draw.rounded_rectangle(corners, radius=FINE * _CORNER, fill=palette.SLAB, outline=palette.SLAB_SIDE, width=1)
 
     def draw(self, draw: ImageDraw.ImageDraw, motion: DrawnMotion, index: int) -> None:
         """Draw one instant of `motion`."""
         radius, centre = motion.shape.radius, motion.footprint[index]
-        line(draw, self.lens.pixels(_flat(circle(centre, radius))), PALE, FINE)
+        colour = palette.CONTACT if motion.resting[index] else palette.FOOTPRINT
+        line(draw, self.lens.pixels(_flat(circle(centre, radius))), colour, FINE)
         turn = motion.twist[index] + MARK
         marked = np.array([math.cos(turn), math.sin(turn)]) * radius
         ends = np.stack([centre + _INWARDS * marked, centre + marked])
-        line(draw, self.lens.pixels(_flat(ends)), rgb(BLUE), 3 * FINE)
+        line(draw, self.lens.pixels(_flat(ends)), palette.MARK, 3 * FINE)
         self.trace.draw(draw, float(motion.time[index]), np.zeros(2))
         if motion.on_rim[index]:
-            disc(draw, self.lens.pixels(_flat(motion.contact_point[index][None]))[0], 4.5 * FINE, rgb(VERMILION), SLAB)
+            at = self.lens.pixels(_flat(motion.contact_point[index][None]))[0]
+            disc(draw, at, 4.5 * FINE, palette.CONTACT_POINT, palette.SLAB)
 
     def write(self, draw: ImageDraw.ImageDraw) -> None:
         """Write what it is below it; `draw` is of the picture as it is shown."""
         middle = float(self.low[0] + self.high[0]) / 2.0 / FINE
         at = (middle, float(self.high[1]) / FINE + 4)
-        draw.text(at, "from above", fill=PALE, font=letters(_FONT), anchor="ma")
+        draw.text(at, "from above", fill=palette.PALE, font=letters(_FONT), anchor="ma")
 
 
 def _flat(points: Floats) -> Floats:

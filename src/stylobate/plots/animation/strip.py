@@ -6,8 +6,9 @@ from typing import Self
 import numpy as np
 from PIL import ImageDraw
 
-from stylobate.plots.animation.canvas import FINE, INK, PALE, disc, letters, line, rgb
+from stylobate.plots.animation.canvas import FINE, disc, letters, line, rgb
 from stylobate.plots.animation.motion import DrawnMotion
+from stylobate.plots.animation.palette import INK, PALE
 from stylobate.plots.pose import Floats
 from stylobate.plots.style import BLUE
 

@@ -7,11 +7,11 @@ import numpy as np
 import numpy.typing as npt
 from PIL import ImageDraw
 
-from stylobate.plots.animation.canvas import FINE, line, rgb
+from stylobate.plots.animation.canvas import FINE, line
 from stylobate.plots.animation.lens import Lens
 from stylobate.plots.animation.motion import DrawnMotion
+from stylobate.plots.animation.palette import CONTACT, CONTACT_OLD
 from stylobate.plots.pose import Floats
-from stylobate.plots.style import VERMILION
 
 # A contact that can change moves less than this between instants, in radii, unless it leaps.
 _LEAP = 0.5
@@ -19,7 +19,6 @@ _LEAP = 0.5
 _CHORD = 0.1
 # Of the path the latest part is drawn bold, this part of what is shown of the motion; older ones are pale.
 _LATEST = 0.08
-_BOLD, _OLD = rgb(VERMILION), (236, 178, 140)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,10 +64,10 @@ class Trace:
         """Draw what there is of the path at `time`, moved by `shift` with the base."""
         begun = [(times, points) for times, points in zip(self.times, self.points, strict=True) if times[0] < time]
         for times, points in begun:
-            line(draw, points[: np.searchsorted(times, time, side="right")] + shift, _OLD, FINE)
+            line(draw, points[: np.searchsorted(times, time, side="right")] + shift, CONTACT_OLD, FINE)
         for times, points in begun:
             first, last = np.searchsorted(times, [time - self.latest, time], side="right")
-            line(draw, points[first:last] + shift, _BOLD, 2 * FINE)
+            line(draw, points[first:last] + shift, CONTACT, 2 * FINE)
 
 
 def _touching(motion: DrawnMotion) -> list[npt.NDArray[np.intp]]:
