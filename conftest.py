@@ -2,13 +2,17 @@
 
 import os
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from doctest import ELLIPSIS, NORMALIZE_WHITESPACE
 from pathlib import Path
 from typing import Any
 
+import pytest
 from sybil import Sybil
 from sybil.parsers.myst import PythonCodeBlockParser, SkipParser
+
+# pytest puts a module that it imports first in the place of the function of that name in its package.
+import stylobate.studies  # noqa: F401
 
 # Parts of kernels make sense behind the head that is written for each kernel only.
 collect_ignore_glob = ["src/stylobate/engine/lanes/pattern/*", "src/stylobate/engine/flow/pattern.py"]
@@ -25,10 +29,29 @@ def _leave_folder(namespace: Mapping[str, Any]) -> None:
     namespace["_folder"].cleanup()
 
 
-pytest_collect_file = Sybil(
-    parsers=[PythonCodeBlockParser(doctest_optionflags=ELLIPSIS | NORMALIZE_WHITESPACE), SkipParser()],
-    patterns=["README.md", "docs/*.md", "docs/*/*.md"],
-    excludes=["docs/_build/*"],
-    setup=_enter_folder,
-    teardown=_leave_folder,
+@pytest.fixture(scope="session")
+def laboratory() -> Iterator[str]:
+    """The address of a laboratory that is served."""
+    from tests.lab.conftest import laboratory as served  # noqa: PLC0415  heavy, and for one page only
+
+    with served() as address:
+        yield address
+
+
+def _pages(patterns: Sequence[str], excludes: Sequence[str] = (), fixtures: Sequence[str] = ()) -> Sybil:
+    return Sybil(
+        parsers=[PythonCodeBlockParser(doctest_optionflags=ELLIPSIS | NORMALIZE_WHITESPACE), SkipParser()],
+        patterns=patterns,
+        excludes=["docs/_build/*", *excludes],
+        setup=_enter_folder,
+        teardown=_leave_folder,
+        fixtures=fixtures,
+    )
+
+
+_OF_THE_LABORATORY = "docs/laboratory.md"
+
+pytest_collect_file = (
+    _pages(["README.md", "docs/*.md", "docs/*/*.md"], excludes=[_OF_THE_LABORATORY])
+    + _pages([_OF_THE_LABORATORY], fixtures=["laboratory"])
 ).pytest()

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 import httpx
 import pytest
 import uvicorn
+from tests.lab.conformity import conforms
 
 from stylobate.lab import Limits, create_app
 from stylobate.lab.serving import listening
@@ -32,6 +33,11 @@ def laboratory(limits: Limits | None = None) -> Iterator[str]:
             thread.join()
 
 
+def client_of(address: str, timeout: float = 120.0) -> httpx.Client:
+    """Return a client that raises where an answer is not what the laboratory's description says."""
+    return httpx.Client(base_url=address, timeout=timeout, event_hooks={"response": [conforms]})
+
+
 @pytest.fixture(scope="module")
 def address() -> Iterator[str]:
     with laboratory(Limits(run_time=240.0)) as found:  # other tests keep the processors busy
@@ -40,5 +46,5 @@ def address() -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def client(address) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=address, timeout=120.0) as found:
+    with client_of(address) as found:
         yield found

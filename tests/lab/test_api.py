@@ -48,7 +48,8 @@ def test_every_preset_shows_what_it_says(client, preset):
     assert told["outcome"] == preset.outcome, told.get("problems", told.get("reason"))
 
 
-def test_the_python_of_a_run_makes_the_same_run(client):
+def test_the_python_of_a_run_makes_the_same_run(client, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # where it draws the run
     names = {}
     told = client.post("/api/simulate", json={**CIRCLE, "tilt": [0.04, 0.0], "duration": 10.0}).json()
     exec(told["python"], names)  # noqa: S102  it is what users are given

@@ -4,13 +4,15 @@ import multiprocessing
 import time
 from concurrent.futures import ThreadPoolExecutor
 
+import anyio
 import httpx
 import numpy as np
 import pytest
-from tests.lab.conftest import laboratory
+from tests.lab.conftest import client_of, laboratory
 
 import stylobate as sb
 from stylobate.lab import Limits
+from stylobate.lab.crew import LostError, Worker
 from stylobate.lab.refining import Refining
 
 CIRCLE = {
@@ -121,7 +123,7 @@ def test_a_cancelled_job_ends_and_leaves_room_for_the_next(client):
 
 def test_a_single_run_does_not_wait_for_long_work():
     limits = Limits(jobs=2, waiting=1)
-    with laboratory(limits) as address, httpx.Client(base_url=address, timeout=120.0) as client:
+    with laboratory(limits) as address, client_of(address) as client:
         values = {**CIRCLE, "tilt": [0.03, 0.0], "duration": 5.0}
         client.post("/api/simulate", json=values)
         jobs = [begun(client, "map", ENDLESS) for _ in range(2)]
@@ -137,14 +139,14 @@ def test_a_single_run_does_not_wait_for_long_work():
 
 
 def test_a_job_that_nobody_asks_for_is_dropped():
-    with laboratory(Limits(abandoned=0.5)) as address, httpx.Client(base_url=address, timeout=120.0) as client:
+    with laboratory(Limits(abandoned=0.5)) as address, client_of(address) as client:
         identity = begun(client, "map", ENDLESS)
         time.sleep(1.5)
         assert client.get(f"/api/jobs/{identity}").status_code == 404
 
 
 def test_a_run_beyond_its_time_is_given_up_and_the_next_is_not():
-    with laboratory(Limits(run_time=5.0)) as address, httpx.Client(base_url=address, timeout=120.0) as client:
+    with laboratory(Limits(run_time=5.0)) as address, client_of(address) as client:
         answer = client.post("/api/simulate", json=SLOW)
         assert answer.status_code == 503
         assert "given up after 5 s" in answer.json()["problems"][0]
@@ -153,7 +155,7 @@ def test_a_run_beyond_its_time_is_given_up_and_the_next_is_not():
 
 def test_runs_that_nobody_waits_for_are_ended():
     limits = Limits(runs=1, run_time=300.0, wait=120.0)
-    with laboratory(limits) as address, httpx.Client(base_url=address, timeout=120.0) as client:
+    with laboratory(limits) as address, client_of(address) as client:
         client.post("/api/simulate", json={**CIRCLE, "duration": 1.0})
         with pytest.raises(httpx.ReadTimeout):
             client.post("/api/simulate", json=SLOW, timeout=1.0)
@@ -164,7 +166,7 @@ def test_a_process_that_dies_is_told_and_replaced():
     limits = Limits(runs=1, run_time=300.0, wait=120.0)
     with (
         laboratory(limits) as address,
-        httpx.Client(base_url=address, timeout=300.0) as client,
+        client_of(address, timeout=300.0) as client,
         ThreadPoolExecutor() as pool,
     ):
         assert client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 200
@@ -179,9 +181,24 @@ def test_a_process_that_dies_is_told_and_replaced():
 
 
 def test_runs_that_are_taken_back_one_after_the_other_keep_nobody_waiting():
-    with laboratory(Limits(run_time=300.0)) as address, httpx.Client(base_url=address, timeout=120.0) as client:
+    with laboratory(Limits(run_time=300.0)) as address, client_of(address) as client:
         assert client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 200
         for _ in range(6):
             with pytest.raises(httpx.ReadTimeout):
                 client.post("/api/simulate", json=SLOW, timeout=0.5)
         assert client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 200
+
+
+def test_a_pipe_that_is_closed_while_it_is_read_ends_its_process_only():
+    class Closed:
+        def recv(self):
+            raise TypeError
+
+    async def listen():
+        hears, heard = anyio.create_memory_object_stream(1)
+        worker = Worker(None, Closed(), heard, hears)
+        await worker.listen(anyio.CapacityLimiter(1))
+        with heard, pytest.raises(LostError):
+            await worker.next()
+
+    anyio.run(listen)

@@ -1,12 +1,13 @@
 """Nothing that is sent to the laboratory breaks it: refusals have a line, and never a traceback."""
 
+import base64
 import json
+import time
 
-import httpx
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from tests.lab.conftest import laboratory
+from tests.lab.conftest import client_of, laboratory
 
 from stylobate.lab import Limits
 
@@ -15,7 +16,8 @@ SMALL = Limits(body=4000, cells=100, points=200, duration=50.0, run_time=10.0)
 
 @pytest.fixture(scope="module")
 def client():
-    with laboratory(SMALL) as address, httpx.Client(base_url=address, timeout=120.0) as found:
+    with laboratory(SMALL) as address, client_of(address) as found:
+        found.post("/api/simulate", json={"column": {"shape": "dimensionless", "slenderness": 0.1}, "duration": 1.0})
         yield found
 
 
@@ -160,6 +162,75 @@ def test_a_map_beyond_the_limit_is_refused(client, plane):
     kind = next(iter(plane))
     (problem, *_) = problems_of(client.post("/api/jobs", json={"kind": kind, "description": values}))
     assert "100 runs" in problem
+
+
+PULSE = {"kind": "sinusoidal", "acceleration": 1.0, "angular_frequency": 1.0}
+QUAKE = {"kind": "record", "sample": "el centro 1940"}
+SWEEP = {"kind": "linear_sweep", "acceleration": 1.0, "frequencies": [1.0, 1e9], "length": 1e6}
+
+
+@pytest.mark.parametrize(
+    ("motion", "told"),
+    [
+        ({**PULSE, "cycles": 1e14}, "cycles must be at most 1000"),
+        (
+            {"kind": "gabor", "velocity": 1.0, "frequency": 1.0, "oscillations": 1e12},
+            "oscillations must be at most 100",
+        ),
+        ({"kind": "sum", "motions": [{"kind": "rest"}] * 101}, "made of 100 motions"),
+        ({"kind": "sum", "motions": [{"kind": "sum", "motions": [{"kind": "rest"}] * 40}] * 3}, "made of 100 motions"),
+        (SWEEP, "a sweep may have 200000 cycles"),
+        ({**QUAKE, "tail": 1e12}, "4000000 samples"),
+        ({**QUAKE, "tail": "1e12"}, "4000000 samples"),
+        ({**QUAKE, "tail": "1" + "0" * 60}, "motion.tail must be zero or between 1e-30 and 1e+15 in size"),
+        ({"kind": "sum", "motions": [{**QUAKE, "tail": 5e4}] * 3}, "4000000 samples"),
+        ({**QUAKE, "processing": [{"method": "padded", "before": 1e9}]}, "4000000 samples"),
+        ({**QUAKE, "processing": [{"method": "with_tail", "length": 1e9}]}, "4000000 samples"),
+        ({**QUAKE, "processing": [{"method": "resampled", "step": 2e-5}] * 2, "tail": 100.0}, "4000000 samples"),
+        ({**QUAKE, "processing": [{"method": "filtered", "highpass": 1e-9}]}, "4000000 samples"),
+        ({**QUAKE, "processing": [{"method": "filtered", "highpass": 0.1, "order": 10**6}]}, "order may be at most 20"),
+        ({**QUAKE, "processing": [{"method": "baseline_corrected", "degree": 10**6}]}, "degree may be at most 20"),
+        ({**PULSE, "acceleration": 1e40}, "motion.acceleration must be zero or between 1e-30 and 1e+15 in size"),
+        ({**PULSE, "angular_frequency": 1e-300}, "motion.angular_frequency must be zero or between"),
+    ],
+)
+def test_what_would_take_long_to_build_is_refused_at_once(client, motion, told):
+    values = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "motion": motion, "duration": 5.0}
+    begun = time.monotonic()
+    answers = [client.post(path, json=values) for path in ("/api/describe", "/api/simulate")]
+    answers.append(client.post("/api/jobs", json={"kind": "animation", "description": values}))
+    assert time.monotonic() - begun < 5.0
+    for answer in answers[:2] if "cycles must" in told or "oscillations" in told else answers:
+        assert answer.status_code == 422
+        (problem,) = problems_of(answer)
+        assert told in problem
+
+
+def test_an_uploaded_record_of_many_samples_is_refused(client):
+    content = base64.b64encode(b"0.1\n" * 500).decode()
+    upload = client.post(
+        "/api/records", json={"files": [{"name": "made.txt", "content": content}], "units": "g", "step": 1e-6}
+    ).json()["upload"]
+    column = {"shape": "dimensionless", "slenderness": 0.1}
+    for tail, status in ((1.0, 200), (100.0, 422)):
+        motion = {"kind": "record", "upload": upload, "tail": tail}
+        answer = client.post("/api/describe", json={"column": column, "motion": motion, "duration": 5.0})
+        assert answer.status_code == status, answer.text
+    assert "1e+08; shorten tail" in problems_of(answer)[0]
+
+
+def test_numbers_beyond_those_of_the_machine_are_told(client):
+    column = {"shape": "given", "radius": 1e15, "mass_height": 1e15, "mass": 1e15}
+    inertia = {"transverse_inertia": 1e-30, "axial_inertia": 1e-30}
+    answer = client.post(
+        "/api/response",
+        json={
+            "column": {**column, **inertia},
+            "motion": {"kind": "circular", "acceleration": 1e15, "angular_frequency": 1e15},
+            "angular_frequency_range": [1e-30, 1e15],
+        },
+    )
+    assert answer.status_code in (200, 422)
 
 
 values_of_json = st.recursive(

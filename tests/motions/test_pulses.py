@@ -322,16 +322,20 @@ def test_times_of_any_shape_give_vectors_of_that_shape(pulse, shape):
         (P.one_sine, {"acceleration": 1.0, "angular_frequency": 1.0, "start": -1.0}, "start"),
         (P.one_sine, {"acceleration": 1.0, "angular_frequency": 1.0, "vertical": math.nan}, "vertical"),
         (P.sinusoidal, {"acceleration": 1.0, "angular_frequency": 1.0, "cycles": 0.0}, "cycles"),
+        (P.sinusoidal, {"acceleration": 1.0, "angular_frequency": 1.0, "cycles": 1e18}, "cycles"),
         (P.sinusoidal, {"acceleration": 1.0, "angular_frequency": 1.0, "phase": math.inf}, "phase"),
         (P.type_a, {"velocity": math.nan, "angular_frequency": 1.0}, "velocity"),
         (P.type_b, {"velocity": 1.0, "angular_frequency": -1.0}, "angular_frequency"),
         (P.type_c, {"velocity": 1.0, "angular_frequency": 1.0, "cycles": 0}, "cycles"),
         (P.type_c, {"velocity": 1.0, "angular_frequency": 1.0, "cycles": 1.5}, "cycles"),
+        (P.type_c, {"velocity": 1.0, "angular_frequency": 1.0, "cycles": 10**18}, "cycles"),
         (P.ricker, {"acceleration": 1.0, "angular_frequency": -2.0}, "angular_frequency"),
         (P.antisymmetric_ricker, {"acceleration": "x", "angular_frequency": 2.0}, "acceleration"),
         (P.gabor, {"velocity": 1.0, "frequency": 0.0, "oscillations": 1.0}, "frequency"),
         (P.gabor, {"velocity": 1.0, "frequency": 1.0, "oscillations": 0.0}, "oscillations"),
         (P.mavroeidis_papageorgiou, {"velocity": 1.0, "frequency": 1.0, "oscillations": 1.0}, "oscillations"),
+        (P.gabor, {"velocity": 1.0, "frequency": 1.0, "oscillations": 1e9}, "oscillations"),
+        (P.mavroeidis_papageorgiou, {"velocity": 1.0, "frequency": 1.0, "oscillations": 1e9}, "oscillations"),
         (P.mavroeidis_papageorgiou, {"velocity": 1.0, "frequency": -1.0, "oscillations": 2.0}, "frequency"),
         (P, {"waveform": math.sin}, "waveform"),
     ],
@@ -340,6 +344,13 @@ def test_impossible_numbers_are_refused_by_name(make, options, name):
     with pytest.raises(ParameterError, match=rf"^{name}\b") as caught:
         make(**options)
     assert "got" in str(caught.value)
+
+
+def test_a_pulse_has_a_thousand_cycles_at_most():
+    pulse = P.sinusoidal(acceleration=A, angular_frequency=2.0 * math.pi, cycles=1000)
+    assert pulse.duration == pytest.approx(1000.0)
+    with pytest.raises(ParameterError, match=r"at most 1000, got 1000\.5: a pulse is short; use Harmonic for steady"):
+        P.sinusoidal(acceleration=A, angular_frequency=2.0 * math.pi, cycles=1000.5)
 
 
 @dataclass(frozen=True, slots=True)

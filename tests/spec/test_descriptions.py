@@ -221,6 +221,10 @@ def test_all_mistakes_are_told_at_once():
             {"column": {"shape": "dimensionless", "slenderness": -0.1}},
             ["column: slenderness must be positive, got -0.1"],
         ),
+        (
+            {"column": {"shape": "solid", "radius": 1e200, "height": 1e200, "density": 1e200}},
+            ["column: its numbers are too large or too small to compute with; check their units"],
+        ),
         ({"model": {"damping": -1.0}}, ["model: damping must be zero or positive, got -1.0"]),
         ({"motion": {**CIRCULAR, "sense": 3}}, ["motion: sense must be +1"]),
         ({"motion": {**CIRCULAR, "angular_frequency": 0.0}}, ["motion: angular_frequency must be positive, got 0.0"]),

@@ -20,10 +20,10 @@ from stylobate.lab.curves import response
 from stylobate.lab.described import Described, described
 from stylobate.lab.jobs import Jobs, broken
 from stylobate.lab.limits import Limits
+from stylobate.lab.messages import Broken, Finished, Refused
 from stylobate.lab.refusals import RefusedError
 from stylobate.lab.schema import schema
 from stylobate.lab.uploads import Uploads
-from stylobate.lab.worker import Broken, Finished, Refused
 
 _log = logging.getLogger("stylobate.lab")
 
@@ -100,6 +100,7 @@ class Api:
             self.uploads.drop(upload)
             folder = f"{upload.paths[0].parent}/"
             raise RefusedError(error.status, [line.replace(folder, "") for line in error.problems]) from None
+        self.uploads.measured(upload, answer["samples"], answer["step"])
         return JSONResponse({"upload": upload.digest, **answer})
 
     async def begin(self, request: Request) -> Response:

@@ -57,8 +57,8 @@ class Worker:
                 while True:
                     said = await to_thread.run_sync(self.connection.recv, limiter=threads, abandon_on_cancel=True)
                     self.hears.send_nowait(said)
-            except (EOFError, OSError, anyio.BrokenResourceError):
-                pass
+            except (EOFError, OSError, TypeError, anyio.BrokenResourceError):
+                pass  # a pipe that is closed here between two parts of what is read has no number: TypeError
 
     async def next(self) -> Any:
         """Return what it says next, or raise LostError."""

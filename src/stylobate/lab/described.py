@@ -7,6 +7,7 @@ from typing import Any
 
 from stylobate.lab.limits import Limits
 from stylobate.lab.refusals import RefusedError
+from stylobate.lab.sizes import number_of, problems_of_size
 from stylobate.lab.uploads import Upload, Uploads
 
 _DEEPEST = 24
@@ -29,13 +30,14 @@ def described(body: Mapping[str, Any], uploads: Uploads, limits: Limits) -> Desc
     RefusedError
         If it names files of this machine, an upload that is not here, or exceeds a limit.
     """
-    problems = list(_beyond(body, limits))
-    if problems:
-        raise RefusedError(422, problems)
-    return Described(
+    found = Described(
         dict(_with_uploads(body, lambda digest: uploads[digest], Upload.motion)),
         dict(_with_uploads(body, lambda digest: uploads[digest], Upload.told)),
     )
+    problems = [*_beyond(body, limits), *problems_of_size(body, uploads, limits)]
+    if problems:
+        raise RefusedError(422, problems)
+    return found
 
 
 def _with_uploads(
@@ -79,11 +81,11 @@ def _beyond(body: Mapping[str, Any], limits: Limits) -> list[str]:
     problems = [
         f"{name} may be at most {bound:g} {unit} here, got {body[name]!r}; use stylobate in Python for more"
         for name, (bound, unit) in bounds.items()
-        if _number(body.get(name)) > bound
+        if number_of(body.get(name)) > bound
     ]
     plane = body.get("map") or body.get("basin")
     axes = [plane.get(place) for place in "xy"] if isinstance(plane, Mapping) else []
-    cells = _number(plane.get("random")) if isinstance(plane, Mapping) else 0.0
+    cells = number_of(plane.get("random")) if isinstance(plane, Mapping) else 0.0
     if any(axes):
         cells = max(cells, math.prod(_length(axis) for axis in axes))
     if cells > limits.cells:
@@ -95,11 +97,4 @@ def _length(axis: object) -> float:
     if not isinstance(axis, Mapping):
         return 1.0
     listed = axis.get("values")
-    return len(listed) if isinstance(listed, list) else max(_number(axis.get("number")), 1.0)
-
-
-def _number(value: object) -> float:
-    try:
-        return float(value) if isinstance(value, (int, float, str)) else 0.0
-    except (ValueError, OverflowError):
-        return math.inf if isinstance(value, int) else 0.0
+    return len(listed) if isinstance(listed, list) else max(number_of(axis.get("number")), 1.0)

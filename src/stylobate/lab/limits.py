@@ -23,10 +23,15 @@ class Limits:
         Frequencies of a response curve.
     cells
         Runs of a map or basin.
+    motions
+        Motions of which a base motion is made.
+    record_samples
+        Samples of all its records together.
     run_time
         How long a single run may be computed [s].
     wait
-        How long a single run may wait for one of the processes that compute them [s].
+        How long a single run may wait for one of the processes that compute them [s]; on a busy machine they start
+        slowly.
     runs
         Single runs computed at once.
     jobs
@@ -44,8 +49,10 @@ class Limits:
     steps: int = 200_000
     points: int = 2000
     cells: int = 40_000
+    motions: int = 100
+    record_samples: int = 4_000_000
     run_time: float = 60.0
-    wait: float = 30.0
+    wait: float = 120.0
     runs: int = 3
     jobs: int = 2
     waiting: int = 8

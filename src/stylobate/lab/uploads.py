@@ -6,7 +6,7 @@ import hashlib
 import shutil
 from collections import OrderedDict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any
 
@@ -18,11 +18,13 @@ _LONGEST_NAME = 120
 
 @dataclass(frozen=True, slots=True)
 class Upload:
-    """The files of one event, as they are on disk, and how they are to be read."""
+    """The files of one event, as they are on disk, how they are to be read, and how many samples that gives."""
 
     digest: str
     paths: tuple[Path, ...]
     reading: Mapping[str, Any]
+    samples: int = 0
+    step: float = 0.0
 
     @property
     def size(self) -> int:
@@ -84,6 +86,10 @@ class Uploads:
         self._known.move_to_end(known)
         self._make_room()
         return self._known[known]
+
+    def measured(self, upload: Upload, samples: int, step: float) -> None:
+        """Remember how many samples an upload has, and the `step` between them [s]."""
+        self._known[upload.digest] = replace(upload, samples=samples, step=step)
 
     def drop(self, upload: Upload) -> None:
         """Forget an upload, and its files."""

@@ -48,7 +48,10 @@ def built(name: str, build: Callable[[], _T], problems: list[str]) -> _T | None:
         return build()
     except ParameterError as error:
         problems.append(f"{name}: {error}")
-        return None
+    except ArithmeticError:
+        # Each number can be; what follows from all of them is beyond the numbers a machine has.
+        problems.append(f"{name}: its numbers are too large or too small to compute with; check their units")
+    return None
 
 
 def _line(problem: Any) -> str:

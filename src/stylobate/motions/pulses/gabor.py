@@ -9,7 +9,14 @@ from stylobate.errors import require_finite, require_positive
 from stylobate.motions.base import ACCELERATION, VELOCITY
 from stylobate.motions.pulses.quadrature import integral
 from stylobate.motions.pulses.ricker import BAND, CUT
-from stylobate.motions.pulses.waveform import Floats, Waveform, found_turning_points, unseen
+from stylobate.motions.pulses.waveform import (
+    MOST_OSCILLATIONS,
+    Floats,
+    Waveform,
+    found_turning_points,
+    require_few,
+    unseen,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,12 +32,12 @@ class Gabor(Waveform):
     phase
         ν [rad]: 0 for a velocity with a peak in the middle, ±π/2 for one that passes zero there.
     oscillations
-        γ: one standard deviation of the bell is γ/(2πf).
+        γ, at most 100: one standard deviation of the bell is γ/(2πf).
 
     Raises
     ------
     ParameterError
-        If a number is not finite, or the frequency or `oscillations` not positive.
+        If a number is not finite, the frequency or `oscillations` not positive, or `oscillations` above 100.
 
     Notes
     -----
@@ -48,7 +55,7 @@ class Gabor(Waveform):
         object.__setattr__(self, "velocity", require_finite("velocity", self.velocity, "m/s"))
         object.__setattr__(self, "frequency", require_positive("frequency", self.frequency, "Hz"))
         object.__setattr__(self, "phase", require_finite("phase", self.phase, "rad"))
-        object.__setattr__(self, "oscillations", require_positive("oscillations", self.oscillations))
+        object.__setattr__(self, "oscillations", require_few("oscillations", self.oscillations, MOST_OSCILLATIONS))
 
     @property
     def deviation(self) -> float:

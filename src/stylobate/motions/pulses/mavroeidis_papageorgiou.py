@@ -7,7 +7,14 @@ import numpy as np
 
 from stylobate.errors import ParameterError, require_finite, require_positive
 from stylobate.motions.base import ACCELERATION, VELOCITY
-from stylobate.motions.pulses.waveform import Floats, Waveform, found_turning_points, unseen
+from stylobate.motions.pulses.waveform import (
+    MOST_OSCILLATIONS,
+    Floats,
+    Waveform,
+    found_turning_points,
+    require_few,
+    unseen,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,12 +30,12 @@ class MavroeidisPapageorgiou(Waveform):
     phase
         ν [rad]: 0 for a velocity with a peak in the middle, ±π/2 for one that passes zero there.
     oscillations
-        γ, above 1: about the number of oscillations.
+        γ, above 1 and at most 100: about the number of oscillations.
 
     Raises
     ------
     ParameterError
-        If a number is not finite, the frequency not positive, or `oscillations` 1 or less.
+        If a number is not finite, the frequency not positive, or `oscillations` 1 or less or above 100.
 
     Notes
     -----
@@ -46,7 +53,7 @@ class MavroeidisPapageorgiou(Waveform):
         object.__setattr__(self, "velocity", require_finite("velocity", self.velocity, "m/s"))
         object.__setattr__(self, "frequency", require_positive("frequency", self.frequency, "Hz"))
         object.__setattr__(self, "phase", require_finite("phase", self.phase, "rad"))
-        oscillations = require_finite("oscillations", self.oscillations)
+        oscillations = require_few("oscillations", self.oscillations, MOST_OSCILLATIONS)
         if oscillations <= 1.0:
             message = f"oscillations must be above 1, got {oscillations!r}: a bell is longer than an oscillation"
             raise ParameterError(message)

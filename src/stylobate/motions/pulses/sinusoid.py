@@ -7,7 +7,10 @@ import numpy as np
 
 from stylobate.errors import require_finite, require_positive
 from stylobate.motions.base import ACCELERATION, VELOCITY
-from stylobate.motions.pulses.waveform import Floats, Waveform
+from stylobate.motions.pulses.waveform import Floats, Waveform, require_few
+
+MOST_CYCLES = 1000.0
+"""A longer pulse is steady shaking."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,12 +26,12 @@ class Sinusoid(Waveform):
     phase
         φ [rad]; π/2 for a cosine.
     cycles
-        n, whole or not.
+        n, whole or not; at most 1000.
 
     Raises
     ------
     ParameterError
-        If a number is not finite, or the frequency or `cycles` not positive.
+        If a number is not finite, the frequency or `cycles` not positive, or `cycles` above 1000.
     """
 
     acceleration: float
@@ -41,7 +44,7 @@ class Sinusoid(Waveform):
         frequency = require_positive("angular_frequency", self.angular_frequency, "rad/s")
         object.__setattr__(self, "angular_frequency", frequency)
         object.__setattr__(self, "phase", require_finite("phase", self.phase, "rad"))
-        object.__setattr__(self, "cycles", require_positive("cycles", self.cycles))
+        object.__setattr__(self, "cycles", require_few("cycles", self.cycles, MOST_CYCLES))
 
     @property
     def duration(self) -> float:

@@ -1,0 +1,28 @@
+"""The description of the laboratory's endpoints for programs: OpenAPI, requests as the descriptions have them."""
+
+from importlib.metadata import version
+from typing import Any
+
+from stylobate.lab.limits import Limits
+from stylobate.lab.schema.catalogue import CATALOGUE
+from stylobate.lab.schema.curves import CURVES
+from stylobate.lab.schema.endpoints import paths
+from stylobate.lab.schema.jobs import JOBS
+from stylobate.lab.schema.requests import components
+from stylobate.lab.schema.runs import RUNS
+from stylobate.lab.sizes import LEAST, MOST
+
+
+def schema(limits: Limits) -> dict[str, Any]:
+    """Return the endpoints as OpenAPI 3.1."""
+    return {
+        "openapi": "3.1.0",
+        "info": {
+            "title": "The laboratory of stylobate",
+            "version": version("stylobate"),
+            "description": f"Requests may have {limits.body} bytes, those with records {limits.records}. "
+            f"Numbers are in SI units, angles in rad, of sizes from {LEAST:g} to {MOST:g} or zero.",
+        },
+        "paths": paths(),
+        "components": {"schemas": {**components(limits), **CATALOGUE, **RUNS, **CURVES, **JOBS}},
+    }

@@ -1,0 +1,223 @@
+"""What can be asked for: the descriptions of the command line, but for files of this machine, within the limits."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import fields
+from typing import Any
+
+from stylobate import spec
+from stylobate.lab.limits import Limits
+from stylobate.lab.numbers import NUMBERS
+from stylobate.lab.schema.notation import Schema, listed, or_none, ref, table, text
+from stylobate.lab.sizes import HIGHEST_DEGREE, LEAST, MOST
+from stylobate.motions.pulses.sinusoid import MOST_CYCLES
+from stylobate.motions.pulses.waveform import MOST_OSCILLATIONS
+from stylobate.results import OutcomeRules
+from stylobate.spec.description import Description
+from stylobate.spec.motions import PULSES
+
+_DESCRIPTIONS: dict[str, type[Description]] = {
+    "Simulation": spec.SimulationDescription,
+    "Response": spec.ResponseDescription,
+    "Map": spec.MapDescription,
+    "Basin": spec.BasinDescription,
+}
+
+_OF_JOBS = {"exact": "Response", "map": "Map", "basin": "Basin", "animation": "Simulation"}
+
+_TOLD = {
+    "tilt": "at the start, along x and y [rad]",
+    "tilt_rate": "at the start [rad/s]",
+    "spin": "angular velocity about the axis at the start [rad/s]",
+    "twist": "angle of turn about the axis at the start [rad]",
+    "position": "of the contact at the start [m]",
+    "velocity": "at the start, of a model that slides [m/s]",
+    "clearance": "height above the base at the start, of a model that flies [m]",
+    "duration": "how long [s]; may be left out under a record or a pulse",
+    "periods": "how long, in periods of the base motion, in place of duration",
+    "friction_coefficient": "of the contact, for a warning where a run needs more",
+    "rtol": "relative tolerance of the integration",
+    "atol": "absolute tolerance [rad]",
+    "tilt_limit": "at which a run ends [rad]",
+    "rest_energy": "below which the column comes to rest, over m g h c²",
+    "max_steps": "of the integration",
+    "samples": "of the history; enough to draw it by default",
+    "rules": "numbers of the rules by which outcomes are told",
+    "demands": "whether to tell what the contact must bear",
+    "method": "of the integration",
+    "strobes": "states once a period that are compared",
+    "confidence": "of the intervals",
+    "angular_frequency_range": "from, to [rad/s]",
+    "points": "frequencies of the curves",
+}
+
+
+_TAGS = ("shape", "kind", "method")
+"""By these columns, models and motions, and steps of processing are told apart."""
+
+_POSITIVE = (
+    *("radius", "height", "density", "inner_radius", "top_radius", "mass", "mass_height", "gravity"),
+    *("transverse_inertia", "axial_inertia", "slenderness", "inertia_ratio", "axial_ratio"),
+    *("friction_coefficient", "static_friction_coefficient"),
+    *("angular_frequency", "frequency", "rpm", "stroke", "diameter", "length", "cycles", "oscillations"),
+    *("duration", "periods", "rtol", "atol", "tilt_limit"),
+)
+_NOT_NEGATIVE = (
+    *("damping", "spin_friction", "rolling_resistance", "restitution", "passage_tilt", "ramp", "start"),
+    *("rest_energy", "clearance", "tail"),
+)
+_ENDING = ("record", *PULSES)
+_OF_MOTIONS = ("sum", "one_of", "scaled", "rotated", "delayed")
+_HAS_RESPONSE = ("circular", "straight", "elliptic", "displacement_amplitude", "stroke", "orbit", "harmonic")
+
+_RULE: Schema = {"type": "number", "minimum": LEAST}
+
+_BOUNDS: dict[str, Schema] = {
+    **{name: {"minimum": LEAST} for name in _POSITIVE},
+    **{name: {"minimum": 0} for name in _NOT_NEGATIVE},
+    "restitution": {"minimum": 0, "maximum": 1},
+    "cycles": {"minimum": LEAST, "maximum": MOST_CYCLES},
+    "oscillations": {"minimum": LEAST, "maximum": MOST_OSCILLATIONS},
+    "sense": {"enum": [1, -1]},
+    "max_steps": {"minimum": 1},
+    **{name: {"minimum": 2} for name in ("samples", "strobes", "points")},
+    **{name: {"minimum": 1, "maximum": HIGHEST_DEGREE} for name in ("order", "degree")},
+}
+"""What numbers can be; of some more is asked, which the refusal tells."""
+
+
+def components(limits: Limits) -> dict[str, Schema]:
+    """Return the components of all that can be sent."""
+    found: dict[str, Schema] = {}
+    for name, description in _DESCRIPTIONS.items():
+        told = description.model_json_schema(ref_template="#/components/schemas/{model}")
+        found |= {part: _part(schema) for part, schema in told.pop("$defs", {}).items()}
+        found[name] = _within(told, limits)
+    found["RecordMotion"] = _uploaded(found["RecordMotion"])
+    return {**{name: _finite(schema) for name, schema in found.items()}, "Record": _RECORD, "JobDescription": _job()}
+
+
+def _finite(schema: Any) -> Any:
+    """Return a schema in which numbers have bounds, at any depth."""
+    if isinstance(schema, list):
+        return [_finite(part) for part in schema]
+    if not isinstance(schema, dict):
+        return schema
+    bounds = {"minimum": -MOST, "maximum": MOST} if schema.get("type") == "number" else {}
+    return {**bounds, **{name: _finite(part) for name, part in schema.items()}}
+
+
+def _within(told: Schema, limits: Limits) -> Schema:
+    """Return the schema of a description with what its numbers are, and the limits."""
+    most = {
+        "duration": limits.duration,
+        "max_steps": limits.steps,
+        "samples": limits.steps,
+        "points": limits.points,
+        "strobes": limits.points,
+    }
+    properties: dict[str, Schema] = told["properties"]
+    for name, schema in properties.items():
+        if name in _TOLD:
+            schema["description"] = _TOLD[name]
+        _bound(name, schema)
+        if name in most:
+            _of_numbers(schema)["maximum"] = most[name]
+    if "rules" in properties:
+        properties["rules"] = table(_TOLD["rules"], {}, {field.name: _RULE for field in fields(OutcomeRules)})
+    if "angular_frequency_range" in properties:
+        properties["motion"] = _only(properties["motion"], _HAS_RESPONSE)
+    if "duration" in told["required"]:
+        return _until_the_end(told)
+    return told
+
+
+def _until_the_end(told: Schema) -> Schema:
+    """Return the schema of a run, which needs a duration unless its motion is a record or a pulse, or of such."""
+    ending = {"type": "object", "properties": {"kind": {"enum": [*_ENDING, *_OF_MOTIONS]}}}
+    lasting = [
+        {"required": ["duration"], "properties": {"duration": {"type": "number"}}},
+        {"required": ["motion"], "properties": {"motion": ending}},
+    ]
+    return {**told, "required": [name for name in told["required"] if name != "duration"], "anyOf": lasting}
+
+
+def _only(union: Schema, kinds: Collection[str]) -> Schema:
+    """Return the union of those motions that are of these `kinds`."""
+    mapping = {kind: place for kind, place in union["discriminator"]["mapping"].items() if kind in kinds}
+    places = [{"$ref": place} for place in dict.fromkeys(mapping.values())]
+    return {**union, "discriminator": {**union["discriminator"], "mapping": mapping}, "oneOf": places}
+
+
+def _part(schema: Schema) -> Schema:
+    """Return the schema of a column, a model, a motion or a step with what its numbers are and can be."""
+    properties = schema.get("properties", {})
+    own = not {"motion", "motions", "method"} & set(properties)  # motions of motions and steps tell it themselves
+    for name, told in properties.items():
+        if own:
+            told |= {**_described(name), **told}
+        if own or name in ("order", "degree"):
+            _bound(name, told)
+    tags = [tag for tag in _TAGS if tag in properties]
+    required = [*tags, *(name for name in schema.get("required", []) if name not in tags)]
+    return {**schema, **({"required": required} if required else {})}
+
+
+def _bound(name: str, schema: Schema) -> None:
+    if name in _BOUNDS:
+        _of_numbers(schema).update(_BOUNDS[name])
+
+
+def _of_numbers(schema: Schema) -> Schema:
+    """Return the part of a schema that is of numbers, where there may be null too."""
+    parts: list[Schema] = schema.get("anyOf", [schema])
+    return next(part for part in parts if part["type"] != "null")
+
+
+def _described(name: str) -> Schema:
+    number = NUMBERS.get(name)
+    if number is None or not number.about:
+        return {}
+    return {"description": f"{number.about} [{number.unit}]" if number.unit else number.about}
+
+
+def _uploaded(record: Schema) -> Schema:
+    """Return the schema of a record that is uploaded rather than read from a path."""
+    digest = or_none(text("digest of an uploaded record"))
+    kept: Mapping[str, Any] = {
+        name: told for name, told in record["properties"].items() if name not in ("path", "file_sha256")
+    }
+    about = "A record: one that was uploaded (`upload`), or the `sample` that comes with the package; one of them."
+    return {**record, "description": about, "properties": {**kept, "upload": digest}}
+
+
+def _job() -> Schema:
+    """Return the schema of a request for a job: which description it takes depends on its kind."""
+    kinds = [
+        table("", {"kind": {"const": kind}, "description": ref(description)}) for kind, description in _OF_JOBS.items()
+    ]
+    return {"description": "Long work of some kind, and of what.", "oneOf": kinds}
+
+
+_BASE64 = "^(?:[A-Za-z0-9+/]{4})*(?:[A-Za-z0-9+/]{2}==|[A-Za-z0-9+/]{3}=)?$"
+
+_RECORD = table(
+    "The files of a record, its components.",
+    {
+        "files": listed(
+            "of one event",
+            table(
+                "",
+                {
+                    "name": text("without a folder", pattern=r"^[A-Za-z0-9_-][A-Za-z0-9_. -]*$", maxLength=120),
+                    "content": text("of the file", contentEncoding="base64", pattern=_BASE64),
+                },
+            ),
+            most=3,
+            minItems=1,
+        )
+    },
+    {
+        "units": or_none(text("of the acceleration, such as g or cm/s²; null where the file tells it")),
+        "step": {"type": ["number", "null"], "description": "between samples [s]; null where the file tells it"},
+    },
+)
