@@ -42,9 +42,9 @@ def contact_outputs(
         As for `Model.outputs`.
     """
     assert model.contact is not None
-    column, moving = model.column, states[: len(model.state_names)]
+    column, moving, parameters = model.column, states[: len(model.state_names)], model.parameters
     found = [
-        model.contact(*state, *push, *model.parameters)
+        model.contact(*state, *push, *parameters)
         for state, push in zip(moving.T.tolist(), accelerations.T.tolist(), strict=True)
     ]
     normal, friction, moment = np.array(found).reshape(-1, 3).T

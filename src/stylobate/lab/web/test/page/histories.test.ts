@@ -2,7 +2,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Answer, Series } from "../../src/page/server/answers";
 import { brokenAt } from "../../src/page/frame/captioned";
-import { chosenHistories, historiesOf } from "../../src/page/charts/history-kinds";
+import type { HistoryName, Told } from "../../src/page/charts/history-kinds";
+import { chosenHistories, historyOf, offeredHistories } from "../../src/page/charts/history-kinds";
 
 const STILL: Series = {
   time: [0, 1, 2],
@@ -16,20 +17,15 @@ const STILL: Series = {
   ],
 };
 
-function answer(series: Partial<Series>): Answer {
-  return {
-    series: { ...STILL, ...series },
-    column: { slenderness: 0.1 },
-    drawn: { friction_coefficient: 0.4 },
-  } as unknown as Answer;
+function told(series: Partial<Series>, frequency: number | null = null): Told {
+  const rest = { column: { slenderness: 0.1 }, drawn: { friction_coefficient: 0.4 } };
+  return { answer: { series: { ...STILL, ...series }, ...rest } as unknown as Answer, frequency };
 }
 
-const usual = (series: Partial<Series>) =>
-  chosenHistories(historiesOf(answer(series), null), null).map((one) => one?.name);
+const usual = (series: Partial<Series>): readonly HistoryName[] => chosenHistories(told(series), null);
 
 test("only what a run tells is offered, and of the base only the directions in which it moves", () => {
-  const names = historiesOf(answer({}), null).map(({ name }) => name);
-  assert.deepEqual(names, ["tilt", "base_y"]);
+  assert.deepEqual(offeredHistories(told({})), ["tilt", "base_y"]);
 });
 
 test("a column that tilts shows its tilt, and what its contact must bear or else how it rolls", () => {
@@ -49,9 +45,10 @@ test("a column that slides upright shows how far it came, in the direction in wh
 });
 
 test("what is chosen is shown where the run has it, and what suits the run where not", () => {
-  const offered = historiesOf(answer({ rolling_rate: [1, 1, 1] }), null);
-  const names = chosenHistories(offered, ["base_y", "slip_speed"]).map((one) => one?.name);
-  assert.deepEqual(names, ["base_y", "rolling_rate"]);
+  assert.deepEqual(chosenHistories(told({ rolling_rate: [1, 1, 1] }), ["base_y", "slip_speed"]), [
+    "base_y",
+    "rolling_rate",
+  ]);
 });
 
 test("short lengths are told in millimetres, from where they began to where they end", () => {
@@ -60,21 +57,21 @@ test("short lengths are told in millimetres, from where they began to where they
     [-0.002, 0],
     [0.016, 0],
   ] as const;
-  const x = historiesOf(answer({ displacement }), null).find(({ name }) => name === "displacement_x");
-  assert.equal(x?.label, "x [mm]");
-  assert.deepEqual(x?.values, [0, -2, 16]);
-  assert.equal(x?.note, "−2 to 16 mm, at the end 16");
+  const x = historyOf("displacement_x", told({ displacement }));
+  assert.equal(x.label, "x [mm]");
+  assert.deepEqual(x.values, [0, -2, 16]);
+  assert.equal(x.note, "−2 to 16 mm, at the end 16");
 });
 
 test("the rate of rolling is held against that of the base, in its own sense", () => {
-  const clockwise = historiesOf(answer({ rolling_rate: [-2, -1.9, -2.1] }), 2);
-  assert.equal(clockwise.find(({ name }) => name === "rolling_rate")?.level?.value, -2);
+  const clockwise = historyOf("rolling_rate", told({ rolling_rate: [-2, -1.9, -2.1] }, 2));
+  assert.equal(clockwise.level?.value, -2);
 });
 
 test("friction at the instant of lifting off hides nothing of what it was before", () => {
   const before = Array.from({ length: 200 }, () => 0.2);
-  const [, demand] = historiesOf(answer({ friction_demand: [...before, 2e13] }), null);
-  assert.ok((demand?.limits[1] ?? Infinity) <= 0.5);
+  const demand = historyOf("friction_demand", told({ friction_demand: [...before, 2e13] }));
+  assert.ok(demand.limits[1] <= 0.5);
 });
 
 test("a line that is too long is broken between words, and no word is lost", () => {

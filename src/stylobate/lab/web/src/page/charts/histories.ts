@@ -2,11 +2,9 @@
 
 import type { Answer } from "../server/answers";
 import { element } from "../frame/dom";
-import type { History, HistoryName } from "./history-kinds";
-import { chosenHistories, historiesOf } from "./history-kinds";
+import type { HistoryName, HistoryPair, Told } from "./history-kinds";
+import { chosenHistories, historyOf, offeredHistories } from "./history-kinds";
 import { TimeChart } from "./time-chart";
-
-export type HistoryPair = readonly [HistoryName, HistoryName];
 
 export interface HistoriesHearing {
   readonly seek: (time: number) => void;
@@ -17,8 +15,7 @@ export class Histories {
   readonly root: HTMLElement;
   readonly #above: TimeChart;
   readonly #below: TimeChart;
-  #time: readonly number[] = [];
-  #offered: readonly History[] = [];
+  #told: Told | null = null;
   #wanted: HistoryPair | null = null;
 
   constructor({ seek, chosen }: HistoriesHearing) {
@@ -29,8 +26,7 @@ export class Histories {
 
   /** Shows what is told of a run; `frequency` is that of its base motion [rad/s], where it has one. */
   show(answer: Answer, frequency: number | null): void {
-    this.#time = answer.series.time;
-    this.#offered = historiesOf(answer, frequency);
+    this.#told = { answer, frequency };
     this.#draw();
   }
 
@@ -52,15 +48,17 @@ export class Histories {
   }
 
   #draw(): void {
-    if (this.#offered.length === 0) return;
-    const [above, below] = chosenHistories(this.#offered, this.#wanted);
-    const names = this.#offered.map(({ name }) => name);
-    if (above) this.#above.show(this.#time, above, names);
-    if (below) this.#below.show(this.#time, below, names);
+    const told = this.#told;
+    if (told === null) return;
+    const { time } = told.answer.series;
+    const [offered, [above, below]] = [offeredHistories(told), chosenHistories(told, this.#wanted)];
+    this.#above.show(time, historyOf(above, told), offered);
+    this.#below.show(time, historyOf(below, told), offered);
   }
 
   #with(name: HistoryName, place: 0 | 1): HistoryPair {
-    const [above, below] = chosenHistories(this.#offered, this.#wanted).map((one) => one?.name ?? "tilt");
-    return place === 0 ? [name, below ?? "tilt"] : [above ?? "tilt", name];
+    const [above, below] =
+      this.#told === null ? (["tilt", "tilt"] as const) : chosenHistories(this.#told, this.#wanted);
+    return place === 0 ? [name, below] : [above, name];
   }
 }

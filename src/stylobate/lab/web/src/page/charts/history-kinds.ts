@@ -41,6 +41,9 @@ export const HISTORIES = {
 } as const;
 
 export type HistoryName = keyof typeof HISTORIES;
+export type HistoryPair = readonly [HistoryName, HistoryName];
+
+const NAMES = Object.keys(HISTORIES) as readonly HistoryName[];
 
 export function isHistoryName(name: string): name is HistoryName {
   return Object.hasOwn(HISTORIES, name);
@@ -51,124 +54,138 @@ const FARTHEST = 2.5;
 /** A tilt that no plot shows, in units of c: the column stands. */
 const UPRIGHT = 1e-3;
 
-/** Returns the quantities that are told of a run; `frequency` is that of its base motion [rad/s], where it has one. */
-export function historiesOf(answer: Answer, frequency: number | null): readonly History[] {
-  const made = MAKERS.map((make) => make(answer, frequency));
-  return made.filter((one) => one !== null).filter((one) => one.values.some((value) => value !== null));
+/** What is told of a run, of which `frequency` is that of the base motion [rad/s], where it has one. */
+export interface Told {
+  readonly answer: Answer;
+  readonly frequency: number | null;
+}
+
+/** Returns the quantities that are told of a run; of the base, the directions in which it moves. */
+export function offeredHistories({ answer: { series } }: Told): readonly HistoryName[] {
+  return NAMES.filter((name) => {
+    const { values, place } = SOURCES[name];
+    return series[values]?.some((one) => tells(one, place)) ?? false;
+  });
+}
+
+function tells(value: number | null | Numbers, place: number | null): boolean {
+  return place === null ? value !== null : typeof value === "object" && Boolean(value?.[place]);
 }
 
 /** Returns the two quantities that tell most of a run: those of `wanted` that it has, else what suits it. */
-export function chosenHistories(
-  offered: readonly History[],
-  wanted: readonly [HistoryName, HistoryName] | null,
-): readonly [History | undefined, History | undefined] {
-  const find = (name: HistoryName | undefined): History | undefined => offered.find((one) => one.name === name);
-  const [above, below] = usualNames(offered);
-  return [find(wanted?.[0]) ?? find(above), find(wanted?.[1]) ?? find(below)];
-}
-
-function usualNames(offered: readonly History[]): readonly [HistoryName, HistoryName | undefined] {
-  const has = (name: HistoryName): boolean => offered.some((one) => one.name === name);
+export function chosenHistories(told: Told, wanted: HistoryPair | null): readonly [HistoryName, HistoryName] {
+  const offered = offeredHistories(told);
+  const has = (name: HistoryName): boolean => offered.includes(name);
   const order: readonly HistoryName[] = ["friction_demand", "rolling_rate", "base_x", "base_y", "base_z"];
-  const below = order.find(has);
-  return [slidesOnly(offered) ? farthestMoved(offered) : "tilt", below];
+  const [above, below] = [usualAbove(told.answer), order.find(has) ?? "tilt"];
+  if (wanted === null) return [above, below];
+  return [has(wanted[0]) ? wanted[0] : above, has(wanted[1]) ? wanted[1] : below];
 }
 
-/** Tells whether the column stands all the time and moves on its base: then its tilt tells nothing. */
-function slidesOnly(offered: readonly History[]): boolean {
-  const tilt = offered.find((one) => one.name === "tilt");
-  return tilt !== undefined && largestOf(tilt.values) < UPRIGHT && reachOf(offered, farthestMoved(offered)) > 0;
+/** Where the column stands all the time and moves on its base its tilt tells nothing: then how far it came. */
+function usualAbove({ series, column }: Answer): HistoryName {
+  if (!series.displacement || largestOf(series.amplitude) >= UPRIGHT * column.slenderness) return "tilt";
+  const [x, y] = ([0, 1] as const).map((place) => largestOf(along(series.displacement!, place).map(magnitude)));
+  if (!x && !y) return "tilt";
+  return y! > x! ? "displacement_y" : "displacement_x";
 }
 
-function farthestMoved(offered: readonly History[]): HistoryName {
-  const [x, y] = [reachOf(offered, "displacement_x"), reachOf(offered, "displacement_y")];
-  return y > x ? "displacement_y" : "displacement_x";
+/** Returns a quantity that is told of a run, ready to be drawn. */
+export function historyOf(name: HistoryName, { answer, frequency }: Told): History {
+  const { series, column, drawn } = answer;
+  const { values: source, place } = SOURCES[name];
+  const found = series[source] ?? [];
+  const values = place === null ? (found as Numbers) : along(found as readonly Numbers[], place);
+  switch (name) {
+    case "tilt":
+      return tilt(scaled(values, 1 / column.slenderness));
+    case "rolling_rate":
+      return rollingRate(values, frequency);
+    case "friction_demand":
+      return demand(name, "T/N", values, drawn.friction_coefficient);
+    case "pivoting_demand":
+      return demand(name, "M/(N r)", values, null);
+    case "normal_force":
+      return { ...signed(name, "green", "N/(m g)", "", values), level: { value: 1, told: "weight" } };
+    case "displacement_x":
+      return length(name, "x", values);
+    case "displacement_y":
+      return length(name, "y", values);
+    case "clearance":
+      return length(name, "clearance", values);
+    case "slip_speed":
+      return signed(name, "vermilion", "|v|", "m/s", values);
+    case "spin":
+      return signed(name, "purple", "spin", "rad/s", values);
+    default:
+      return signed(name, "muted", name.replace("base_", "a"), "m/s²", values);
+  }
 }
 
-function reachOf(offered: readonly History[], name: HistoryName): number {
-  const [low, high] = offered.find((one) => one.name === name)?.limits ?? [0, 0];
-  return high - low;
+/** Where the numbers of each quantity stand: a history, and which of its components. */
+const SOURCES: Readonly<Record<HistoryName, { readonly values: keyof Series; readonly place: number | null }>> = {
+  tilt: { values: "amplitude", place: null },
+  rolling_rate: { values: "rolling_rate", place: null },
+  spin: { values: "spin", place: null },
+  friction_demand: { values: "friction_demand", place: null },
+  pivoting_demand: { values: "pivoting_demand", place: null },
+  normal_force: { values: "normal_force", place: null },
+  displacement_x: { values: "displacement", place: 0 },
+  displacement_y: { values: "displacement", place: 1 },
+  slip_speed: { values: "slip_speed", place: null },
+  clearance: { values: "clearance", place: null },
+  base_x: { values: "base_acceleration", place: 0 },
+  base_y: { values: "base_acceleration", place: 1 },
+  base_z: { values: "base_acceleration", place: 2 },
+};
+
+function tilt(values: Numbers): History {
+  const largest = largestOf(values);
+  return {
+    ...{ name: "tilt", label: "|θ|/c", colour: "blue", values, note: `largest ${told(largest)} c` },
+    level: largest > 0.7 ? { value: 1, told: "c" } : null,
+    limits: [0, Math.min(largest, FARTHEST)],
+  };
 }
 
-type Maker = (answer: Answer, frequency: number | null) => History | null;
-
-const MAKERS: readonly Maker[] = [
-  ({ series, column }) => {
-    const values = scaled(series.amplitude, 1 / column.slenderness);
-    const largest = largestOf(values);
-    const level = largest > 0.7 ? { value: 1, told: "c" } : null;
-    const limits = [0, Math.min(largest, FARTHEST)] as const;
-    return { name: "tilt", label: "|θ|/c", colour: "blue", values, level, limits, note: `largest ${told(largest)} c` };
-  },
-  ({ series }, frequency) => {
-    const made = signed("rolling_rate", "purple", "ψ̇", "rad/s", series.rolling_rate);
-    const mean = middleOf(series.rolling_rate);
-    if (frequency === null || made === null) return made;
-    return { ...made, level: { value: mean < 0 ? -frequency : frequency, told: "Ω of the base" } };
-  },
-  ({ series }) => signed("spin", "purple", "spin", "rad/s", series.spin),
-  ({ series, drawn }) => demand("friction_demand", "T/N", series, drawn.friction_coefficient),
-  ({ series }) => demand("pivoting_demand", "M/(N r)", series, null),
-  ({ series }) => {
-    const made = signed("normal_force", "green", "N/(m g)", "", series.normal_force);
-    return made && { ...made, level: { value: 1, told: "weight" } };
-  },
-  ({ series }) => length("displacement_x", "x", along(series.displacement, 0)),
-  ({ series }) => length("displacement_y", "y", along(series.displacement, 1)),
-  ({ series }) => signed("slip_speed", "vermilion", "|v|", "m/s", series.slip_speed),
-  ({ series }) => length("clearance", "clearance", series.clearance),
-  ...(["x", "y", "z"] as const).map(
-    (axis, index): Maker =>
-      ({ series }) => {
-        const values = along(series.base_acceleration, index);
-        if (values === null || values.every((value) => value === 0)) return null;
-        return signed(`base_${axis}`, "muted", `a${axis}`, "m/s²", values);
-      },
-  ),
-];
+function rollingRate(values: Numbers, frequency: number | null): History {
+  const made = signed("rolling_rate", "purple", "ψ̇", "rad/s", values);
+  if (frequency === null) return made;
+  const backwards = quantile(values, 0.5) < 0;
+  return { ...made, level: { value: backwards ? -frequency : frequency, told: "Ω of the base" } };
+}
 
 /** Friction or pivoting over what presses: where the column hardly presses, huge for an instant, and cut off. */
-function demand(
-  name: "friction_demand" | "pivoting_demand",
-  label: string,
-  series: Series,
-  coefficient: number | null,
-): History | null {
-  const values = series[name];
-  if (!values) return null;
+function demand(name: HistoryName, label: string, values: Numbers, coefficient: number | null): History {
   const largest = largestOf(values);
-  const level = coefficient === null ? null : { value: coefficient, told: `friction coefficient ${told(coefficient)}` };
   const usual = Math.max(quantile(values, 0.99) * 1.2, (coefficient ?? 0) * 1.25);
-  const limits = [0, Math.min(largest, usual) || (coefficient ?? 1)] as const;
-  return { name, label, colour: "green", values, level, limits, note: `largest ${told(largest)}` };
+  return {
+    ...{ name, label, colour: "green", values, note: `largest ${told(largest)}` },
+    level: coefficient === null ? null : { value: coefficient, told: `friction coefficient ${told(coefficient)}` },
+    limits: [0, Math.min(largest, usual) || (coefficient ?? 1)],
+  };
 }
 
 /** A quantity of either sign; what it does in rare instants is cut off where it would hide the rest. */
-function signed(
-  name: HistoryName,
-  colour: string,
-  label: string,
-  unit: string,
-  values: Numbers | null | undefined,
-): History | null {
-  if (!values) return null;
+function signed(name: HistoryName, colour: string, label: string, unit: string, values: Numbers): History {
   const [least, largest] = [-largestOf(scaled(values, -1)), largestOf(values)];
   const usual = 1.5 * quantile(values.map(magnitude), 0.99);
-  const limits = [Math.max(least, -usual), Math.min(largest, usual)] as const;
   const note = least < 0 ? `${told(least)} to ${told(largest)} ${unit}` : `largest ${told(largest)} ${unit}`;
-  return { name, label: unit ? `${label} [${unit}]` : label, colour, values, level: null, limits, note: note.trim() };
+  return {
+    ...{ name, label: unit ? `${label} [${unit}]` : label, colour, values, level: null, note: note.trim() },
+    limits: [Math.max(least, -usual), Math.min(largest, usual)],
+  };
 }
 
 /** A length, in the unit in which its numbers are short. */
-function length(name: HistoryName, label: string, values: Numbers | null | undefined): History | null {
-  if (!values) return null;
+function length(name: HistoryName, label: string, values: Numbers): History {
   const fine = largestOf(values.map(magnitude)) < 0.1;
   const made = signed(name, "blue", label, fine ? "mm" : "m", fine ? scaled(values, 1000) : values);
-  return made && { ...made, note: `${made.note}, at the end ${told(made.values.at(-1))}` };
+  return { ...made, note: `${made.note}, at the end ${told(made.values.at(-1))}` };
 }
 
-function along(vectors: readonly (readonly (number | null)[])[] | null | undefined, index: number): Numbers | null {
-  return vectors?.map((vector) => vector[index] ?? null) ?? null;
+function along(vectors: readonly (readonly (number | null)[])[], place: number): Numbers {
+  return vectors.map((vector) => vector[place] ?? null);
 }
 
 function scaled(values: Numbers, factor: number): Numbers {
@@ -177,10 +194,6 @@ function scaled(values: Numbers, factor: number): Numbers {
 
 function magnitude(value: number | null): number | null {
   return value === null ? null : Math.abs(value);
-}
-
-function middleOf(values: Numbers): number {
-  return quantile(values, 0.5);
 }
 
 export function largestOf(values: Numbers): number {

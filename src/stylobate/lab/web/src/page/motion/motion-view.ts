@@ -2,7 +2,7 @@
 
 import { Clock, Stage, type Theme } from "../../viewer/index";
 import type { Answer } from "../server/answers";
-import type { HistoryPair } from "../charts/histories";
+import type { HistoryPair } from "../charts/history-kinds";
 import { Histories } from "../charts/histories";
 import { OrbitChart } from "../charts/orbit";
 import { element } from "../frame/dom";

@@ -1,7 +1,7 @@
 /** What is looked at: one immutable value, from which the page and its address follow. */
 
 import type { Description, Value } from "../case/description";
-import type { HistoryPair } from "../charts/histories";
+import type { HistoryPair } from "../charts/history-kinds";
 import { isHistoryName } from "../charts/history-kinds";
 import { isPart, isVector } from "../case/description";
 
