@@ -76,7 +76,9 @@ def test_runs_of_an_ensemble_are_those_alone(name, motion):
     for index, run in enumerate(alone):
         for demand in DEMANDS:
             # Parabolas through the quarters of a step, of cubics between its ends: steps of about a tenth of a period.
-            assert float(runs[demand][index]) == pytest.approx(run.measures[demand], rel=2e-3, abs=1e-9)
+            # They err by parts of the weight: a demand over a small normal force by so many times more.
+            close = 2e-3 * max(1.0, run.measures[demand])
+            assert float(runs[demand][index]) == pytest.approx(run.measures[demand], rel=close, abs=1e-9)
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name.values[0] in {"wobbling", "rolling"}])
