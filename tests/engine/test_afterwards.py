@@ -70,3 +70,12 @@ def test_times_before_and_after_the_base_motion_are_told_in_seconds():
     before, after = (sb.simulate(MODELS[0], weak, duration=weak.duration + t).reason for t in (-0.25, 0.25))
     assert "0.25 s before the base motion stops" in before
     assert "0.25 s after the base motion stopped" in after
+
+
+def test_a_column_that_stands_before_the_end_of_its_pulse_is_not_told_to_be_safe():
+    vase = sb.Rolling(sb.Column.frustum(radius=0.05, top_radius=0.09, height=0.45, density=1800.0), damping=0.03)
+    pulse = sb.Pulse.ricker(acceleration=5.0, angular_frequency=2.0)
+    early = sb.simulate(vase, pulse, duration=4.0)
+    assert early.outcome is sb.Outcome.AT_REST
+    assert "before the base motion stops; it may yet be released: follow it longer" in early.reason
+    assert sb.simulate(vase, pulse).outcome is sb.Outcome.OVERTURNED

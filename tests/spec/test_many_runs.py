@@ -1,6 +1,7 @@
 """Descriptions of maps and basins: their axes and samples, and what they share with that of a run."""
 
 import json
+import math
 
 import numpy as np
 import pytest
@@ -107,3 +108,17 @@ def test_mistakes_in_an_axis_are_told_with_its_place(axis, told):
         MapDescription.parse({**MAP, "map": {**AXES, "x": axis}, "motion": CIRCULAR}).build()
     (problem,) = caught.value.problems
     assert told in problem
+
+
+def test_a_map_over_the_frequency_of_a_pulse_follows_the_slowest_to_its_end():
+    values = {
+        "column": {"shape": "solid", "radius": 0.1, "height": 1.0, "density": 2000.0},
+        "motion": {"kind": "one_sine", "acceleration": 3.0, "angular_frequency": 10.0},
+        "map": {
+            "x": {"name": "angular_frequency", "from": 2.0, "to": 20.0, "number": 3},
+            "y": {"name": "acceleration", "from": 1.0, "to": 9.0, "number": 3},
+        },
+    }
+    setup = MapDescription.parse(values).build()
+    slowest = 2.0 * math.pi / 2.0
+    assert setup.options["duration"] == pytest.approx(slowest + 20.0 / setup.model.column.frequency_parameter)

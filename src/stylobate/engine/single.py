@@ -214,6 +214,9 @@ _ENDINGS = {
 }
 
 
+_RELEASED = "it may yet be released: follow it longer"
+
+
 def _verdict(model: Model, motion: BaseMotion, course: Course, rules: OutcomeRules) -> Verdict:
     if course.ended is Reason.FAILED:
         return Verdict(Outcome.FAILED, f"the integration stopped: {course.failure}", {})
@@ -225,7 +228,10 @@ def _verdict(model: Model, motion: BaseMotion, course: Course, rules: OutcomeRul
     if course.stands:
         releases = sum(event.kind == "release" for event in course.events)
         before = f", released {counted(releases, 'time')} before" if releases else ""
-        return Verdict(Outcome.AT_REST, f"it stands at the end of the run{before}", {})
+        left = motion.duration - course.trajectory.end * model.time_scale
+        to_come = math.isfinite(left) and left > 0.0
+        told = f", {left:.4g} s before the base motion stops; {_RELEASED}" if to_come else ""
+        return Verdict(Outcome.AT_REST, f"it stands at the end of the run{before}{told}", {})
     period = None if motion.period is None else motion.period / model.time_scale
     return long_term(model, course.trajectory, period, rules, planar=course.planar)
 

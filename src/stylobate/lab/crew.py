@@ -115,7 +115,7 @@ class Crew:
             If all processes were busy for longer than `wait` [s], or the task took longer than `limit` [s].
         """
         if self._idle or len(self._all) < self.limit:
-            told(Note("a process starts"))  # it will not have to wait for others
+            told(Note("a process starts, which takes long the first time"))  # it will not have to wait for others
         try:
             with anyio.fail_after(wait):
                 worker = await self._ready()

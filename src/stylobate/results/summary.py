@@ -14,7 +14,7 @@ Rows = list[tuple[str, str]]
 def column_rows(column: "Column") -> Rows:
     """Return the numbers of the column that decide."""
     return [
-        ("column", f"c = {column.slenderness:.5g}, ω0 = {column.frequency_scale:.5g} rad/s, {column.mass:.6g} kg"),
+        ("column", f"c = {column.slenderness:.5g}, ω0 = {column.frequency_scale:.5g} rad/s, mass {column.mass:.6g} kg"),
         ("released above", f"{column.slenderness * column.gravity:.5g} m/s² of horizontal acceleration"),
     ]
 
@@ -35,11 +35,10 @@ def measure_rows(run: "Response") -> Rows:
 
 def _motion_rows(run: "Response") -> Rows:
     measures = run.measures
-    rows = [
-        ("largest tilt", f"{measures['largest_tilt']:.6g} rad, {measures['largest_tilt_over_c']:.4g} c"),
-        ("reached at", f"{measures['time_of_largest_tilt']:.4f} s"),
-        ("turns of the contact point", f"{measures['turns']:.3f}"),
-    ]
+    rows = [("largest tilt", f"{measures['largest_tilt']:.6g} rad, {measures['largest_tilt_over_c']:.4g} c")]
+    if measures["largest_tilt"] > 0.0:
+        rows.append(("reached at", f"{measures['time_of_largest_tilt']:.4f} s"))
+        rows.append(("turns of the contact point", f"{measures['turns']:.3f}"))
     if "mean_rolling_rate" in measures:
         rows.append(("mean rolling rate", f"{measures['mean_rolling_rate']:.6g} rad/s"))
     return [*rows, ("events", _events(run)), ("steps", f"{measures['steps']:.0f}")]

@@ -3,10 +3,11 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, Self
 
+from stylobate.motions.frequency import is_pulse, with_frequency
 from stylobate.spec.axis import Axis
 from stylobate.spec.description import Description, built
 from stylobate.spec.many_runs import ManyRuns, common_values, name_of, refuse_design, with_numbers_that_vary
-from stylobate.spec.simulation import Setup
+from stylobate.spec.simulation import Setup, duration_with_tail
 
 
 class Plane(Description):
@@ -65,4 +66,8 @@ class MapDescription(ManyRuns):
             problems.append(f"map.x and map.y must differ, got {x.name!r} in both")
         problems += self.problems_of_the_length((x.name, y.name))
         model, motion, options = self.common(problems, (x.name, y.name))
+        frequencies = over.get("angular_frequency")
+        if frequencies is not None and self.duration is None and self.periods is None and is_pulse(motion):
+            # Each to the end of its own pulse: that of the lowest frequency lasts longest.
+            options["duration"] = duration_with_tail(model, with_frequency(motion, float(frequencies.min())))
         return Setup(model, motion, {"over": over, **options})

@@ -115,7 +115,7 @@ class DrawnMotion:
             friction_coefficient=None if coefficient is None else float(coefficient),
             outcome=run.outcome,
             decided_at=run.decided_at,
-            title=f"{verdict_of(run.outcome)}: {run.reason}" if title is None else title,
+            title=f"{verdict_of(run.outcome)}: {_without_advice(run.reason)}" if title is None else title,
         )
 
     @property
@@ -198,6 +198,11 @@ def drawn_motion(run: Response, *, frames_per_second: float | None = None, title
 def verdict_of(outcome: Outcome) -> str:
     """Return the outcome in words; the motion of a column that overturns ends before its fall."""
     return "cannot come back" if outcome is Outcome.OVERTURNED else outcome.value
+
+
+def _without_advice(reason: str) -> str:
+    """Return what became of a run, without what to do about it: that is for who made it."""
+    return reason.partition(";")[0]
 
 
 def _require_run(run: Response) -> None:

@@ -9,7 +9,7 @@ import type { ResponsePanel } from "./charts/response-panel";
 import type { Connection } from "./server/connection";
 import { Controls } from "./controls/controls";
 import type { Description } from "./case/description";
-import { written } from "./case/description";
+import { toldOfCase, written } from "./case/description";
 import { element } from "./frame/dom";
 import { ExportMenu } from "./frame/exports";
 import { angularFrequency } from "./case/frequency";
@@ -177,6 +177,7 @@ export class Laboratory {
     const wanted = written(view.description);
     if (wanted === this.#asked) return;
     this.#asked = wanted;
+    if (this.#fresh && this.#answer !== null) this.#motion.setStale(true);
     this.#runs.want(view.description, { jump: this.#fresh });
   }
 
@@ -191,6 +192,7 @@ export class Laboratory {
     this.#problems.show(this.#linkProblem);
     this.#controls.setWrong(new Set());
     this.#rescale(answer.column);
+    this.#motion.setStale(false);
     this.#motion.show(answer, angularFrequency(this.view.description.motion));
     this.#showSpeed(this.view);
     if (this.#fresh) this.#motion.begin();
@@ -224,6 +226,7 @@ export class Laboratory {
   }
 
   #tellProblems(lines: readonly string[]): void {
+    this.#motion.setStale(false);
     this.#problems.show(lines);
     this.#controls.setWrong(namesIn(lines));
     this.#motion.setOld(this.#answer !== null);
@@ -283,7 +286,7 @@ export class Laboratory {
   #caption(): readonly string[] {
     const { time, to } = this.clock;
     const at = `At ${clockTime(time, to)}\u00a0s of ${clockTime(to, to)}\u00a0s.`;
-    return this.#answer === null ? [] : [`${verdictOf(this.#answer)} ${at}`];
+    return this.#answer === null ? [] : [`${verdictOf(this.#answer)} ${at}`, toldOfCase(this.view.description)];
   }
 
   #newTabs(): Tabs<Tab> {

@@ -18,7 +18,7 @@ const STILL: Series = {
 };
 
 function told(series: Partial<Series>, frequency: number | null = null): Told {
-  const rest = { column: { slenderness: 0.1 }, drawn: { friction_coefficient: 0.4 } };
+  const rest = { column: { slenderness: 0.1 }, drawn: { friction_coefficient: 0.4 }, measures: {} };
   return { answer: { series: { ...STILL, ...series }, ...rest } as unknown as Answer, frequency };
 }
 

@@ -48,3 +48,22 @@ export function written(value: Value): string {
   const names = Object.keys(value).sort();
   return `{${names.map((name) => `${name}:${written(value[name] ?? null)}`).join()}}`;
 }
+
+/** Returns the case in one line: kinds with their numbers. */
+export function toldOfCase(description: Description): string {
+  const told = ([name, value]: [string, Value]): string => `${name.replaceAll("_", " ")} ${String(value)}`;
+  const parts = PARTS.map((part) => {
+    const tag = tagOf(part);
+    const numbers = Object.entries(description[part]).filter(([name, value]) => name !== tag && isSimple(value));
+    return [kindOf(description, part).replaceAll("_", " "), ...numbers.map(told)].join(", ");
+  });
+  const start = (["tilt", "tilt_rate", "spin"] as const).flatMap((name) => {
+    const value = description[name];
+    return value === undefined || value === null ? [] : [told([name, value])];
+  });
+  return `${[...parts, ...start].join("; ")}. SI units.`;
+}
+
+function isSimple(value: Value): boolean {
+  return typeof value === "number" || typeof value === "string" || isVector(value);
+}

@@ -102,9 +102,9 @@ export function historyOf(name: HistoryName, { answer, frequency }: Told): Histo
     case "rolling_rate":
       return rollingRate(values, frequency);
     case "friction_demand":
-      return demand(name, "T/N", values, drawn.friction_coefficient);
+      return demand(name, "T/N", values, drawn.friction_coefficient, answer.measures["largest_friction_demand"]);
     case "pivoting_demand":
-      return demand(name, "M/(N r)", values, null);
+      return demand(name, "M/(N r)", values, null, answer.measures["largest_pivoting_demand"]);
     case "normal_force":
       return { ...signed(name, "green", "N/(m g)", "", values), level: { value: 1, told: "weight" } };
     case "displacement_x":
@@ -156,11 +156,19 @@ function rollingRate(values: Numbers, frequency: number | null): History {
 }
 
 /** Friction or pivoting over what presses: where the column hardly presses, huge for an instant, and cut off. */
-function demand(name: HistoryName, label: string, values: Numbers, coefficient: number | null): History {
+function demand(
+  name: HistoryName,
+  label: string,
+  values: Numbers,
+  coefficient: number | null,
+  measured: number | null | undefined,
+): History {
   const largest = largestOf(values);
+  // What is measured of a run is found between its samples too, where the contact bears most for a moment.
+  const most = measured === null ? "without bound" : told(Math.max(measured ?? 0, largest));
   const usual = Math.max(quantile(values, 0.99) * 1.2, (coefficient ?? 0) * 1.25);
   return {
-    ...{ name, label, colour: "green", values, note: `largest ${told(largest)}` },
+    ...{ name, label, colour: "green", values, note: `largest ${most}` },
     level: coefficient === null ? null : { value: coefficient, told: `friction coefficient ${told(coefficient)}` },
     limits: [0, Math.min(largest, usual) || (coefficient ?? 1)],
   };

@@ -127,6 +127,7 @@ export class ResponsePanel {
     this.#ask.textContent = "Exact orbits";
     if (this.#exact === null) return;
     this.#exact = null;
+    this.tell(this.#about);
     this.#draw();
   }
 
@@ -212,7 +213,8 @@ export class ResponsePanel {
     ]);
     if (senses.size > 0) items.push(["thin", "muted", "unstable"], ["dotted", "muted", "backbone"]);
     if (critical) items.push(["upright", "muted", "critical frequency"]);
-    if (this.#exact !== null) items.push(["dot", "green", "exact"], ["diamond", "purple", "bifurcation"]);
+    if (this.#exact !== null)
+      items.push(["dot", "green", "exact"], ["ring", "green", "exact, unstable"], ["diamond", "purple", "bifurcation"]);
     this.#legend.replaceChildren(
       ...items.map(([kind, colour, text]) =>
         element("li", {}, element("span", { class: `key ${kind} ${colour}` }), text ?? ""),

@@ -5,7 +5,7 @@ import { kindNamed, kindsOf } from "../case/about";
 import type { Description, Part, PartName, Value } from "../case/description";
 import { kindOf, tagOf, withPartValue, written } from "../case/description";
 import { choice, element, newId } from "../frame/dom";
-import { angularFrequency, withAngularFrequency } from "../case/frequency";
+import { angularFrequency, ends, withAngularFrequency } from "../case/frequency";
 import type { ColumnScales } from "../case/quantities";
 import { KeptNumbers } from "./kept-numbers";
 import { NumberField } from "./number-field";
@@ -37,6 +37,7 @@ export class Controls {
     motion: new KeptNumbers(),
   };
   #description: Description;
+  readonly #toy = element("p", { class: "hint warning", hidden: true }, TOY);
 
   constructor(about: About, first: Description, problems: HTMLElement, hearing: ControlsHearing) {
     this.#about = about;
@@ -48,9 +49,10 @@ export class Controls {
     this.#forms = { column: this.#form("column"), model: this.#form("model"), motion: this.#form("motion") };
     this.#record = new RecordForm(about, (motion) => hearing.jumped({ ...this.#description, motion }));
     this.#forms.motion.root.insertBefore(this.#record.root, this.#forms.motion.root.lastElementChild);
+    this.#forms.motion.root.append(this.#toy);
     this.#start = new StartForm((description) => hearing.edited(description));
     this.#duration = new NumberField(
-      { name: "duration", label: "Duration", symbol: "t", unit: "s", range: null, top: 60, empty: "by record" },
+      { name: "duration", label: "Duration", symbol: "t", unit: "s", range: null, top: 60, empty: "by motion" },
       (value) => hearing.edited({ ...this.#description, duration: value }),
     );
     const length = element("div", { class: "fields" }, this.#duration.root);
@@ -85,6 +87,7 @@ export class Controls {
     for (const part of ["column", "model", "motion"] as const)
       this.#forms[part].show(description[part], kindOf(description, part));
     this.#record.show(description.motion);
+    this.#toy.hidden = !isToy(description);
     this.#start.show(description, scales);
     const duration = description["duration"];
     this.#duration.show(typeof duration === "number" ? duration : null);
@@ -127,10 +130,9 @@ export class Controls {
     return motion["kind"] === "record" && sample !== undefined ? { ...motion, sample } : motion;
   }
 
-  /** A run under a record lasts as long as that; any other needs a length. */
+  /** A run under a motion that ends lasts as long as that and a while longer; any other needs a length. */
   #fitted(description: Description): Description {
-    const record = description.motion["kind"] === "record";
-    if (record) return { ...description, duration: null };
+    if (ends(description.motion)) return { ...description, duration: null };
     return { ...description, duration: description["duration"] ?? USUAL_DURATION };
   }
 
@@ -147,6 +149,13 @@ const LABELS: Readonly<Record<PartName, string>> = {
   model: "Model",
   motion: "Base motion",
 };
+
+/** The column of the equations has its own unit of acceleration, and records have m/s². */
+function isToy({ column, motion }: Description): boolean {
+  return column["shape"] === "dimensionless" && motion["kind"] === "record";
+}
+
+const TOY = "This column has g = 1 m/s², and the record is in m/s²: choose a shape with lengths, such as solid.";
 
 const USUAL_DURATION = 60; // s
 

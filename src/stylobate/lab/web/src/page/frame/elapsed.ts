@@ -2,10 +2,12 @@
 
 const SECOND = 1000;
 const STEP = 5; // s
+const LONG = 10; // s
 
 export class Elapsed {
   readonly #tell: (told: string) => void;
   #text = "";
+  #later = "";
   #begun = 0;
   #timer: number | null = null;
 
@@ -13,10 +15,11 @@ export class Elapsed {
     this.#tell = tell;
   }
 
-  /** Tells `text` now and with the time since the first one of the row. */
-  begin(text: string): void {
+  /** Tells `text`, after ten seconds `later`, now and with the time since the first one of the row. */
+  begin(text: string, later = text): void {
     if (this.#timer !== null && text === this.#text) return;
     this.#text = text;
+    this.#later = later;
     if (this.#timer === null) {
       this.#begun = performance.now();
       this.#timer = window.setInterval(() => this.#tick(), STEP * SECOND);
@@ -31,6 +34,6 @@ export class Elapsed {
 
   #tick(): void {
     const seconds = Math.round((performance.now() - this.#begun) / SECOND);
-    this.#tell(seconds < STEP ? this.#text : `${this.#text} ${seconds} s`);
+    this.#tell(seconds < STEP ? this.#text : `${seconds < LONG ? this.#text : this.#later} ${seconds} s`);
   }
 }

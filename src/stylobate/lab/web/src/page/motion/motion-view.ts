@@ -11,6 +11,9 @@ import { NumbersTable } from "./numbers-table";
 import { Transport } from "./transport";
 import { Verdict } from "./verdict";
 
+/** What is told of a run that takes long. */
+const FIRST = "computing… a model's first run on a machine takes long;";
+
 export interface MotionHearing {
   readonly speed: (speed: number) => void;
   readonly histories: (pair: HistoryPair) => void;
@@ -77,13 +80,19 @@ export class MotionView {
   setBusy(busy: boolean): void {
     this.#host.classList.toggle("busy", busy);
     this.#waiting.hidden = !busy;
-    if (busy) this.#elapsed.begin("computing…");
+    if (busy) this.#elapsed.begin("computing…", FIRST);
     else this.#elapsed.end();
   }
 
   /** Tells that what is shown is not the case that was asked for. */
   setOld(old: boolean): void {
     this.#host.classList.toggle("old", old);
+  }
+
+  /** Tells that what is shown is the case before, while another one is on its way. */
+  setStale(stale: boolean): void {
+    this.root.classList.toggle("stale", stale);
+    this.histories.classList.toggle("stale", stale);
   }
 
   setTheme(theme: Theme): void {

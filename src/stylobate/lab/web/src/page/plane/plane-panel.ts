@@ -8,7 +8,8 @@ import type { Job } from "../server/job";
 import { defaultAxis } from "./planes";
 import type { Quantity } from "../case/quantities";
 import type { Axis, Plane, PlaneKind } from "../view/state";
-import type { Description } from "../case/description";
+import type { Description, Part } from "../case/description";
+import { lengthOf } from "../case/run-length";
 import { AxisForm } from "./axis-form";
 import { Cells } from "./cells";
 import { Classes } from "./classes";
@@ -48,6 +49,8 @@ export class PlanePanel {
   #shownKey = "";
   #axes: AxesEvent["axes"] | null = null;
   #filled: Cells | null = null;
+  /** How long the runs of the picture last. */
+  #length = "";
 
   constructor(kind: PlaneKind, hearing: PlaneHearing) {
     this.#kind = kind;
@@ -115,6 +118,7 @@ export class PlanePanel {
     this.#job?.cancel();
     this.#complete = false;
     this.#shownKey = this.#key;
+    this.#length = this.#description === null ? "" : toldOfLength(lengthOf(this.#kind, this.#description));
     this.#tellProblem([]);
     this.#filled = null;
     this.#go.textContent = "Cancel";
@@ -207,7 +211,7 @@ export class PlanePanel {
       this.#filled?.takeAll(result.codes);
     }
     const unsure = result?.uncertain ? `, ${result.uncertain} of them uncertain` : "";
-    this.#readout.textContent = `${counted(result?.runs ?? 0, "run")}${unsure}. Click a cell to see its motion.`;
+    this.#readout.textContent = `${counted(result?.runs ?? 0, "run")}${this.#length}${unsure}. Click a cell to see its motion.`;
     this.#classes.tell(this.#filled);
   }
 
@@ -289,3 +293,8 @@ const HINTS: Readonly<Record<PlaneKind, string>> = {
   map: "What becomes of the column over two quantities. Compute it, then click a cell to see its motion.",
   basin: "Where each start leads in the long run. Compute it, then click a start to see its motion.",
 };
+
+function toldOfLength({ periods, duration }: Part): string {
+  if (typeof periods === "number") return ` of ${told(periods)} periods of the base`;
+  return typeof duration === "number" ? ` of ${withUnit(duration, "s")}` : "";
+}
