@@ -135,6 +135,25 @@ def test_a_part_that_slides_shows_how_far_and_the_numbers_of_the_command_line(wa
     assert table.get_by_text(moved_by, exact=True).is_visible()
 
 
+def test_while_another_case_is_computed_the_one_before_is_dimmed(watched):
+    page = watched.page
+    page.evaluate(
+        """() => {
+            const fetched = window.fetch;
+            window.fetch = async (...asked) => {
+                if (String(asked[0]).includes("simulate")) await new Promise((done) => setTimeout(done, 3000));
+                return fetched(...asked);
+            };
+        }"""
+    )
+    page.get_by_label("Preset").select_option(PRESETS["vase"].title)
+    picture = "() => Number(getComputedStyle(document.querySelector('.stage canvas')).opacity)"
+    page.wait_for_function(f"() => ({picture})() < 0.5")
+    assert page.evaluate("() => window.stylobate.laboratory.answer.outcome") == "ROLLING"
+    page.wait_for_function("() => window.stylobate.laboratory.answer.outcome === 'AT_REST'")
+    page.wait_for_function(f"() => ({picture})() === 1")
+
+
 def test_a_broken_link_is_told_and_the_usual_case_shown(browser, address):
     page = new_page(browser)
     page.goto(f"{address}/#column=nonsense&motion=circular")
