@@ -112,8 +112,9 @@ def require_plane(model: Model, motion: BaseMotion, tilt: tuple[float, float], t
 
 def out_of_plane(model: Model, tilt: Sequence[float], tilt_rate: Sequence[float]) -> ParameterError:
     """Return what is said of a start and a base motion that lie in no vertical plane."""
+    given = ", ".join(f"{name} ({x:.5g}, {y:.5g})" for name, (x, y) in (("tilt", tilt), ("tilt_rate", tilt_rate)))
     message = (
-        f"tilt, tilt_rate and motion must lie in one vertical plane for model {model.name}; "
-        f"with tilt {tuple(tilt)!r} and tilt_rate {tuple(tilt_rate)!r} they do not"
+        f"tilt, tilt_rate and motion must lie in one vertical plane for model {model.name}; with {given} they do not: "
+        "give all of them the same direction"
     )
     return ParameterError(message)

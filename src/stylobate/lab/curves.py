@@ -1,12 +1,14 @@
 """Response curves, of theory and of exact orbits, as plain values."""
 
 from collections.abc import Mapping
+from itertools import count
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from stylobate import spec, studies
+from stylobate.counted import counted
 from stylobate.lab.messages import Emit, Note
 from stylobate.lab.plain import numbers
 from stylobate.orbits import StepControl
@@ -53,8 +55,10 @@ def exact_curves(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     """Return the exact orbits that `values` describe; how far they were followed is told on the way."""
     setup = spec.ResponseDescription.parse(values).build()
 
+    number = count(1)
+
     def reached(frequency: float) -> None:
-        emit(Note(f"orbits followed to {frequency:.4g} rad/s"))
+        emit(Note(f"{counted(next(number), 'exact orbit')} found, the last at {frequency:.4g} rad/s"))
 
     low, high = setup.options["range"]
     control = StepControl(most=_ORBITS)

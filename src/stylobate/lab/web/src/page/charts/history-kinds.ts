@@ -51,6 +51,7 @@ export function isHistoryName(name: string): name is HistoryName {
 
 /** In units of c: what falls is seen to leave, and what came before is still seen. */
 const FARTHEST = 2.5;
+const OFF = ", off the scale";
 /** A tilt that no plot shows, in units of c: the column stands. */
 const UPRIGHT = 1e-3;
 
@@ -142,7 +143,8 @@ const SOURCES: Readonly<Record<HistoryName, { readonly values: keyof Series; rea
 function tilt(values: Numbers): History {
   const largest = largestOf(values);
   return {
-    ...{ name: "tilt", label: "|θ|/c", colour: "blue", values, note: `largest ${told(largest)} c` },
+    ...{ name: "tilt", label: "|θ|/c", colour: "blue", values },
+    note: `largest ${told(largest)} c${largest > FARTHEST ? OFF : ""}`,
     level: largest > 0.7 ? { value: 1, told: "c" } : null,
     limits: [0, Math.min(largest, FARTHEST)],
   };
@@ -167,8 +169,9 @@ function demand(
   // What is measured of a run is found between its samples too, where the contact bears most for a moment.
   const most = measured === null ? "without bound" : told(Math.max(measured ?? 0, largest));
   const usual = Math.max(quantile(values, 0.99) * 1.2, (coefficient ?? 0) * 1.25);
+  const off = largest > usual && largest > 0 ? OFF : "";
   return {
-    ...{ name, label, colour: "green", values, note: `largest ${most}` },
+    ...{ name, label, colour: "green", values, note: `largest ${most}${off}` },
     level: coefficient === null ? null : { value: coefficient, told: `friction coefficient ${told(coefficient)}` },
     limits: [0, Math.min(largest, usual) || (coefficient ?? 1)],
   };

@@ -117,13 +117,19 @@ export class TimeChart {
     if (level === null || level.value > high || level.value < low) return;
     const { ctx, bbox } = plot;
     ctx.save();
-    ctx.fillStyle = themeColour("vermilion");
     ctx.font = `${11 * uPlot.pxRatio}px system-ui, sans-serif`;
     ctx.textAlign = "right";
     const place = plot.valToPos(level.value, "y", true);
     const room = place - bbox.top > 14 * uPlot.pxRatio;
     ctx.textBaseline = room ? "bottom" : "top";
-    ctx.fillText(level.told, bbox.left + bbox.width - 3, place + (room ? -2 : 3));
+    const [right, line] = [bbox.left + bbox.width - 3, place + (room ? -2 : 3)];
+    const [width, height] = [ctx.measureText(level.told).width + 4, 13 * uPlot.pxRatio];
+    ctx.globalAlpha = 0.8; // the curve may run below it
+    ctx.fillStyle = themeColour("panel");
+    ctx.fillRect(right - width + 2, room ? line - height : line, width, height);
+    ctx.globalAlpha = 1;
+    ctx.fillStyle = themeColour("vermilion");
+    ctx.fillText(level.told, right, line);
     ctx.restore();
   }
 
