@@ -131,13 +131,13 @@ class _Extremes:
     def _below(self, kind: int) -> Callable[[float], float]:
         model, trajectory = self.model, self.trajectory
         assert model.contact is not None
-        contact = model.contact
+        contact, parameters = model.contact, model.parameters
 
         def below(tau: float) -> float:
             if bool(trajectory.resting(np.array([tau]))[0]):
                 return 0.0 if kind < _NORMAL else np.inf
             state = trajectory.states(np.array([tau]))[: len(model.state_names), 0].tolist()
-            normal, friction, moment = contact(*state, *self.forcing.at(tau), *model.parameters)
+            normal, friction, moment = contact(*state, *self.forcing.at(tau), *parameters)
             if kind == _NORMAL:
                 return normal
             return -(friction, moment)[kind] / normal if normal > 0.0 else -np.inf

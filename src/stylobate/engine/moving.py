@@ -232,8 +232,7 @@ class Mover:
         return tilt > _GROWN * self.model.column.slenderness or radial < 0.0
 
     def _grazes(self, state: Floats) -> bool:
-        column = state[:, np.newaxis]
-        (x, y), (vx, vy) = self.model.tilt(column)[:, 0], self.model.tilt_rate(column)[:, 0]
+        x, y, vx, vy = self._lean(state)
         c, speed = self.model.column.slenderness, math.hypot(vx, vy)
         inward = x * vx + y * vy < 0.0
         return bool(
@@ -255,7 +254,8 @@ class Mover:
 
     def _counts(self, state: Floats) -> bool:
         """Return whether a passage that ends in `state` is none of a column as slow as one at rest."""
-        return not self.watch.is_slow(float(np.hypot(*self.model.tilt_rate(state[:, np.newaxis])[:, 0])))
+        _, _, vx, vy = self._lean(state)
+        return not self.watch.is_slow(math.hypot(vx, vy))
 
     def _loses_at(self, passage: tuple[float, float], steps: Steps) -> bool:
         """Return whether a passage within the last step costs energy; one just passed is not passed again."""
@@ -265,9 +265,14 @@ class Mover:
 
     def _radial(self, state: Floats) -> tuple[float, float]:
         """Return |α| and α·α̇ of one state."""
-        column = state[:, np.newaxis]
-        (x, y), (vx, vy) = self.model.tilt(column)[:, 0].tolist(), self.model.tilt_rate(column)[:, 0].tolist()
+        x, y, vx, vy = self._lean(state)
         return math.hypot(x, y), x * vx + y * vy
+
+    def _lean(self, state: Floats) -> tuple[float, float, float, float]:
+        """Return tilt vector and rate of one state, as floats: asked for several times in each step."""
+        model = self.model
+        x, y, vx, vy = model.lean(*state.tolist()[: len(model.state_names)], *model.parameters)
+        return x, y, vx, vy
 
     def _space_leg(
         self, steps: Steps, end: Floats, azimuth: float, reason: Reason, least: float, failure: str = ""
