@@ -131,3 +131,9 @@ def test_pictures_of_every_preset_show_each_swing_of_the_base(preset):
     assert pictures_in_a_second * end <= 1400.5
     if setup.motion.period is not None:
         assert pictures_in_a_second * setup.motion.period >= 4.0
+
+
+def test_it_tells_which_motions_come_to_an_end(client):
+    ends = {kind["kind"]: kind["ends"] for kind in client.get("/api/about").json()["motions"]}
+    assert {"record", "ricker", "gabor", "half_sine"} <= {kind for kind, does in ends.items() if does}
+    assert {"rest", "circular", "linear_sweep"} <= {kind for kind, does in ends.items() if not does}

@@ -135,6 +135,16 @@ def test_a_part_that_slides_shows_how_far_and_the_numbers_of_the_command_line(wa
     assert table.get_by_text(moved_by, exact=True).is_visible()
 
 
+def test_a_run_under_a_pulse_lasts_as_long_as_that_and_one_under_shaking_needs_a_length(watched):
+    page = watched.page
+    duration = "window.stylobate.state().description.duration"
+    motions = page.get_by_label("Base motion", exact=True)
+    motions.select_option("ricker")
+    page.wait_for_function(f"() => {duration} === null")
+    motions.select_option("circular")
+    page.wait_for_function(f"() => {duration} > 0")
+
+
 def test_while_another_case_is_computed_the_one_before_is_dimmed(watched):
     page = watched.page
     page.evaluate(

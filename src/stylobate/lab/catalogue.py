@@ -17,6 +17,7 @@ from stylobate.spec.columns import ColumnDescription
 from stylobate.spec.description import Description
 from stylobate.spec.models import DESCRIBED_MODELS
 from stylobate.spec.motions import MotionDescription
+from stylobate.spec.simulation import is_to_end
 
 # Motions made of motions, and records, have controls of their own or are for files.
 _NO_CONTROLS = frozenset({"sum", "one_of", "scaled", "rotated", "delayed"})
@@ -24,7 +25,11 @@ _NO_CONTROLS = frozenset({"sum", "one_of", "scaled", "rotated", "delayed"})
 
 def about(limits: Limits) -> dict[str, Any]:
     """Return what there is to choose from, as plain values."""
-    motions = (kind for kind in _kinds(_members(MotionDescription), "kind") if kind["kind"] not in _NO_CONTROLS)
+    motions = (
+        {**kind, "ends": is_to_end(kind)}
+        for kind in _kinds(_members(MotionDescription), "kind")
+        if kind["kind"] not in _NO_CONTROLS
+    )
     return {
         "version": version("stylobate"),
         "limits": asdict(limits),

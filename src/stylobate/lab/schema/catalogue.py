@@ -29,6 +29,7 @@ _KIND = table(
         "about": text("a line about it"),
         "parameters": listed("its numbers", _PARAMETER),
     },
+    {"ends": flag("of motions: whether it comes to an end, so that a run needs no duration")},
 )
 
 

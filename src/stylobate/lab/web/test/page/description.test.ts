@@ -1,7 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { toldOfCase } from "../../src/page/case/description";
-import { ends } from "../../src/page/case/frequency";
 import { VIEW } from "./case";
 
 test("a case is told in one line, with all that makes it", () => {
@@ -9,13 +8,5 @@ test("a case is told in one line, with all that makes it", () => {
     toldOfCase(VIEW.description),
     "dimensionless, slenderness 0.1; slender, damping 0.1; circular, acceleration 0.065, angular frequency 1.8; " +
       "tilt 0.0386,-0.004; tilt rate -0.0075,0.0695. SI units.",
-  );
-});
-
-test("pulses and records end, and shaking does not", () => {
-  const kinds = ["ricker", "gabor", "record", "circular", "rest", "linear_sweep"];
-  assert.deepEqual(
-    kinds.map((kind) => ends({ kind })),
-    [true, true, true, false, false, false],
   );
 });

@@ -18,16 +18,6 @@ const HELD_IN: Readonly<Record<string, readonly [string, number]>> = {
   orbit: ["rpm", TURN / 60],
 };
 
-/** Pulses, and what was recorded: motions that end. */
-const ENDING: readonly string[] = [
-  ...["half_sine", "half_cosine", "one_sine", "one_cosine", "sinusoidal", "type_a", "type_b", "type_c"],
-  ...["ricker", "antisymmetric_ricker", "gabor", "mavroeidis_papageorgiou", "record"],
-];
-
-export function ends(motion: Part): boolean {
-  return ENDING.includes(String(motion["kind"]));
-}
-
 /** Returns the angular frequency [rad/s], or null for a motion that has none. */
 export function angularFrequency(motion: Part): number | null {
   const held = HELD_IN[String(motion["kind"])];

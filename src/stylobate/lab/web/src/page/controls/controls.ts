@@ -5,7 +5,7 @@ import { kindNamed, kindsOf } from "../case/about";
 import type { Description, Part, PartName, Value } from "../case/description";
 import { kindOf, tagOf, withPartValue, written } from "../case/description";
 import { choice, element, newId } from "../frame/dom";
-import { angularFrequency, ends, withAngularFrequency } from "../case/frequency";
+import { angularFrequency, withAngularFrequency } from "../case/frequency";
 import type { ColumnScales } from "../case/quantities";
 import { KeptNumbers } from "./kept-numbers";
 import { NumberField } from "./number-field";
@@ -132,7 +132,8 @@ export class Controls {
 
   /** A run under a motion that ends lasts as long as that and a while longer; any other needs a length. */
   #fitted(description: Description): Description {
-    if (ends(description.motion)) return { ...description, duration: null };
+    const ends = kindNamed(this.#about, "motion", kindOf(description, "motion"))?.ends === true;
+    if (ends) return { ...description, duration: null };
     return { ...description, duration: description["duration"] ?? USUAL_DURATION };
   }
 
