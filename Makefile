@@ -4,10 +4,10 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo lab page test test-all lint docs bench clean
+.PHONY: help demo lab page test test-all test-lowest test-newest lint docs bench clean
 
 help:  ## list the targets
-	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 12
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
 
 $(BIN)/python:
 	@command -v $(PYTHON) >/dev/null || { echo "$(PYTHON) not found: install Python 3.11 or newer, or name one: make PYTHON=python3.12"; exit 1; }
@@ -49,6 +49,25 @@ test: $(VENV)/.core $(VENV)/.test  ## the tests; those of the page need `make pa
 test-all: $(VENV)/.core $(VENV)/.test  ## the tests, the slow ones included
 	$(BIN)/python -m pytest -n auto -m ""
 
+# An environment for the lowest versions that pyproject.toml allows, and one for the newest: .venv-lowest, .venv-newest.
+UV := .venv-uv/bin/uv
+
+$(UV): | $(BIN)/python
+	$(BIN)/python -m venv .venv-uv
+	.venv-uv/bin/python -m pip install --quiet uv
+
+define test-with
+	$(UV) venv --quiet --clear --python $(BIN)/python .venv-$(1)
+	VIRTUAL_ENV=.venv-$(1) $(UV) pip install --quiet --resolution $(2) --editable '.[cluster,records,video]' --group test
+	.venv-$(1)/bin/python -m pytest -n auto
+endef
+
+test-lowest: $(UV)  ## the tests, with the lowest version of each dependency that pyproject.toml allows
+	$(call test-with,lowest,lowest-direct)
+
+test-newest: $(UV)  ## the tests, with the newest version of each dependency that pyproject.toml allows
+	$(call test-with,newest,highest)
+
 lint: $(VENV)/.core $(VENV)/.test $(VENV)/.lint  ## style, types, import contracts
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
@@ -68,4 +87,4 @@ bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks, beside the engines that c
 	$(BIN)/python -m benchmarks.orbits
 
 clean:  ## remove what the targets made
-	rm -rf $(VENV) docs/_build stylobate-paper
+	rm -rf $(VENV) .venv-* docs/_build stylobate-paper

@@ -7,6 +7,7 @@ import pytest
 
 from stylobate import errors
 from stylobate.errors import (
+    LARGEST_SEED,
     DescriptionError,
     FileError,
     Outcome,
@@ -17,6 +18,7 @@ from stylobate.errors import (
     require_not_negative,
     require_positive,
     require_vector,
+    require_whole,
 )
 
 
@@ -39,7 +41,7 @@ def test_a_description_error_has_one_line_for_each_problem():
     ("check", "accepted", "refused", "demand"),
     [
         (require_finite, [-1.0, 0, 5], [math.nan, math.inf, -math.inf], "must be finite"),
-        (require_positive, [1e-300, 5], [0.0, -1.0, math.nan, math.inf], "must be positive"),
+        (require_positive, [1e-30, 1e15, 5], [0.0, -1.0, math.nan, math.inf], "must be positive"),
         (require_not_negative, [0.0, -0.0, 5], [-1e-300, math.nan, math.inf], "must be zero or positive"),
     ],
 )
@@ -90,3 +92,26 @@ def test_outcomes_are_ten_and_each_is_explained():
         "SLID",
     ]
     assert "StylobateError" in errors.__doc__
+
+
+@pytest.mark.parametrize("check", [require_finite, require_positive, require_not_negative])
+def test_sizes_whose_products_are_no_numbers_are_refused_with_the_bound(check):
+    with pytest.raises(ParameterError) as caught:
+        check("width", 2e20, "m")
+    assert str(caught.value) == "width: too large to compute with (got 2e+20 m). Give at most 1e+15 m; check the unit."
+    if check is not require_positive:
+        assert check("width", 1e-300, "m") == 1e-300
+
+
+def test_what_divides_is_refused_where_it_is_too_small_and_what_grows_with_volume_is_not():
+    with pytest.raises(ParameterError) as caught:
+        require_positive("width", 1e-31, "m")
+    assert str(caught.value) == "width: too small to compute with (got 1e-31 m). Give at least 1e-30 m; check the unit."
+    assert require_positive("mass", 1e-100, "kg") == 1e-100
+
+
+def test_counts_beyond_memory_are_refused_and_large_integers_keep_all_digits():
+    assert require_whole("seed", 2**62 + 1, least=0, most=LARGEST_SEED) == 2**62 + 1
+    with pytest.raises(ParameterError) as caught:
+        require_whole("samples", 2_000_000_000, least=2)
+    assert str(caught.value) == ("samples: too large (got 2000000000). Give at most 10000000: each takes memory.")

@@ -4,10 +4,12 @@
 
     StylobateError
     ├── ParameterError (ValueError)    a number or an option that no column, motion or run can have
-    │   └── DescriptionError           the same in a TOML or JSON description: one line for each mistake
+    │   ├── DescriptionError           the same in a TOML or JSON description: one line for each mistake
+    │   └── ModelError                 a model whose members contradict each other: one line for each mistake
     ├── UnsupportedError               a study asks for what a model lacks
     ├── NoOrbitError                   no periodic orbit was reached from a guess
-    └── FileError                      a file that cannot be read or written
+    ├── FileError                      a file that cannot be read or written
+    └── WorkerLostError                a worker process that ended before its result
 
     Interrupted (KeyboardInterrupt)    Ctrl-C in the middle of many runs; carries what had been computed
     SeldomMeant (UserWarning)          input that can be, but is more likely a slip
@@ -18,7 +20,27 @@ Misuse is an exception. What the physics does, numerical failure included, is an
 import math
 from collections.abc import Sequence
 from enum import Enum
-from typing import Any
+from typing import Any, NamedTuple
+
+SMALLEST, LARGEST = 1e-30, 1e15
+"""Sizes of numbers other than zero: those of columns are far within, and their products within those of a double."""
+
+
+class Most(NamedTuple):
+    """How large a count may be, and why."""
+
+    number: int
+    reason: str
+
+
+MOST_NUMBERS = Most(10_000_000, "each takes memory")
+MOST_RUNS = Most(10**12, "a million a second take 12 days")
+MOST_STEPS = Most(2**31 - 1, "steps are counted in 32 bits")
+MOST_THREADS = Most(4096, "no machine has more cores")
+LARGEST_SEED = Most(2**63, "seeds have 63 bits")
+
+# What grows with the third to fifth power of a length.
+_SIZES = dict.fromkeys(("kg", "kg m²", "kg m2"), (1e-150, 1e150))
 
 
 class StylobateError(Exception):
@@ -43,6 +65,20 @@ class DescriptionError(ParameterError):
         super().__init__("\n".join(self.problems))
 
 
+class ModelError(ParameterError):
+    """A model of a user's own whose members contradict each other or its equations.
+
+    Attributes
+    ----------
+    problems
+        One line for each mistake.
+    """
+
+    def __init__(self, problems: Sequence[str]) -> None:
+        self.problems = tuple(problems)
+        super().__init__("\n".join(self.problems))
+
+
 class UnsupportedError(StylobateError):
     """A study or run asks for something the model does not provide."""
 
@@ -53,6 +89,10 @@ class NoOrbitError(StylobateError):
 
 class FileError(StylobateError):
     """A file that cannot be read or written; the message names it."""
+
+
+class WorkerLostError(StylobateError):
+    """A worker process ended before its result, for example because memory ran out."""
 
 
 class Interrupted(KeyboardInterrupt):
@@ -104,6 +144,7 @@ def require_finite(name: str, value: float, unit: str = "") -> float:
     if not math.isfinite(number):
         message = f"{name} must be finite, got {_quantity(value, unit)}"
         raise ParameterError(message)
+    require_size(name, number, unit)
     return number
 
 
@@ -113,6 +154,7 @@ def require_positive(name: str, value: float, unit: str = "") -> float:
     if not (math.isfinite(number) and number > 0.0):
         message = f"{name} must be positive, got {_quantity(value, unit)}"
         raise ParameterError(message)
+    require_size(name, number, unit, zero=False)
     return number
 
 
@@ -122,6 +164,7 @@ def require_not_negative(name: str, value: float, unit: str = "") -> float:
     if not (math.isfinite(number) and number >= 0.0):
         message = f"{name} must be zero or positive, got {_quantity(value, unit)}"
         raise ParameterError(message)
+    require_size(name, number, unit)
     return number
 
 
@@ -137,13 +180,27 @@ def require_vector(name: str, value: Sequence[float], length: int, unit: str = "
     return tuple(require_finite(f"{name}[{i}]", number, unit) for i, number in enumerate(numbers))
 
 
-def require_whole(name: str, value: int, *, least: int) -> int:
-    """Return `value` as an int, or raise ParameterError unless it is a whole number of `least` or more."""
+def require_whole(name: str, value: int, *, least: int, most: Most = MOST_NUMBERS) -> int:
+    """Return `value` as an int, or raise ParameterError unless it is a whole number from `least` to `most`."""
     number = _as_float(name, value)
     if not (number >= least and number.is_integer()):
         message = f"{name} must be a whole number of at least {least}, got {value!r}"
         raise ParameterError(message)
-    return int(number)
+    if number > most.number:
+        message = f"{name}: too large (got {value!r}). Give at most {most.number}: {most.reason}."
+        raise ParameterError(message)
+    return int(value)
+
+
+def require_size(name: str, number: float, unit: str = "", *, zero: bool = True) -> None:
+    """Raise ParameterError for a number so large or small that its products overflow; with `zero` only if large."""
+    low, high = _SIZES.get(unit, (SMALLEST, LARGEST))
+    if (zero or abs(number) >= low) and abs(number) <= high:
+        return
+    problem, limit = ("too large", f"at most {high:g}") if abs(number) > high else ("too small", f"at least {low:g}")
+    of = f" {unit}" if unit else ""
+    message = f"{name}: {problem} to compute with (got {_quantity(number, unit)}). Give {limit}{of}; check the unit."
+    raise ParameterError(message)
 
 
 def _as_float(name: str, value: float) -> float:

@@ -1,9 +1,11 @@
 """`stylobate assess`: a study in, a report out; interrupted, shown again, refused."""
 
+import hashlib
 import json
 
 import numpy as np
 import pytest
+from filelock import FileLock
 
 from stylobate import studies
 from stylobate.cli.main import run
@@ -61,14 +63,15 @@ def test_a_study_gives_a_report_that_is_kept_and_shown_again(study, tmp_path, ca
     folder = tmp_path / "out"
     assert run(["assess", str(study), "--folder", str(folder)]) == 0
     told = capsys.readouterr()
-    assert "As recorded (scale 1) it overturned under 1 of 2 records" in told.out
+    assert "tank: NOT shown safe: Overturned at the recorded level under 1 of 2 records (strong)." in told.out
+    assert f"study.toml, SHA-256 {hashlib.sha256(study.read_bytes()).hexdigest()}" in told.out
     assert "tank: verdicts" in told.err
     assert "stylobate: drawing figures" in told.err
     for name in ("report.html", "summary.txt", "assessment.nc", "tables/verdicts.csv", "figures/margins-1.png"):
         assert (folder / name).stat().st_size > 0
     drawn = (folder / "report.html").read_text(encoding="utf-8")
     assert run(["assess", str(study), "--folder", str(folder)]) == 0
-    assert f"stylobate: 5 of 5 parts were kept in {folder / 'store'} and not computed" in capsys.readouterr().err
+    assert f"stylobate: 6 of 6 parts were kept in {folder / 'store'} and not computed" in capsys.readouterr().err
     assert (folder / "report.html").read_text(encoding="utf-8") == drawn
     assert all(name in drawn for name in ("strong", "weak", "SHA-256"))
     monkeypatch.setattr(studies, "assess", None)  # nothing is computed to show it again
@@ -76,7 +79,12 @@ def test_a_study_gives_a_report_that_is_kept_and_shown_again(study, tmp_path, ca
     summary = json.loads(capsys.readouterr().out)["summary"]
     assert summary[0]["overturned it"] == "1"
     assert (tmp_path / "again" / "report.html").read_text(encoding="utf-8") == drawn
-    # A study of another title does not overwrite it.
+    # A damaged assessment is written again, a study of another title does not overwrite it.
+    saved = (folder / "assessment.nc").read_bytes()
+    (folder / "assessment.nc").write_bytes(saved[: len(saved) // 2])
+    monkeypatch.undo()
+    assert run(["assess", str(study), "--folder", str(folder)]) == 0
+    assert (folder / "assessment.nc").read_bytes() == saved
     study.write_text(STUDY.replace("One column", "Another"), encoding="utf-8")
     assert run(["assess", str(study), "--folder", str(folder)]) == 2
     assert "holds the assessment 'One column'; name another folder" in capsys.readouterr().err
@@ -90,6 +98,42 @@ def test_an_interrupted_assessment_says_how_to_go_on(study, tmp_path, capsys, mo
     monkeypatch.setattr(studies, "assess", stop)
     assert run(["assess", str(study), "--folder", str(tmp_path / "out")]) == 130
     assert "the same command goes on from there" in capsys.readouterr().err
+
+
+def test_the_report_lies_beside_the_study_and_the_first_line_says_where(study, tmp_path, capsys, monkeypatch):
+    def stop(*_, **__):
+        raise KeyboardInterrupt
+
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    monkeypatch.setattr(studies, "assess", stop)
+    assert run(["assess", "../study.toml"]) == 130
+    assert capsys.readouterr().err.startswith("stylobate: writing into ../study-assessment\n")
+    assert (tmp_path / "study-assessment" / "store").is_dir()
+    assert not list(elsewhere.iterdir())
+
+
+@pytest.mark.parametrize("held", ["out", "out/store"])
+def test_a_second_assessment_in_a_folder_is_refused_before_its_work(held, study, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(studies, "assess", None)
+    (tmp_path / held).mkdir(parents=True)
+    with FileLock(tmp_path / held / ".lock"):
+        assert run(["assess", str(study), "--folder", str(tmp_path / "out")]) == 2
+    told = capsys.readouterr().err.splitlines()
+    assert told[1:] == [
+        f"stylobate: {tmp_path / held}: another assessment writes into it. Wait for its end, or name another folder."
+    ]
+
+
+def test_how_to_compute_is_refused_where_nothing_is_computed(tmp_path, capsys):
+    saved = tmp_path / "assessment.nc"
+    saved.touch()
+    assert run(["assess", str(saved), "--threads", "2"]) == 2
+    assert capsys.readouterr().err == (
+        f"stylobate: --threads: assess does not use it to show {saved}, for which it computes nothing (got 2). "
+        "Leave it out.\n"
+    )
 
 
 @pytest.mark.parametrize(

@@ -56,7 +56,10 @@ def test_a_store_is_shown_as_a_drift_and_repeated_with_other_numbers(tmp_path, c
     ("arguments", "line"),
     [
         (["--late", "12"], "periods must be at least one more than late, which is 12; got 12.0"),
-        (["--model", "rolling"], "model rolling holds its contact: a drift needs one that slips, such as Sliding"),
+        (
+            ["--model", "rolling"],
+            "--friction-coefficient: only model sliding uses it in drift (got 0.2). Choose --model sliding",
+        ),
         (["--y", "acceleration", "1", "2", "2"], "drift.x and drift.y must differ, got 'acceleration' in both"),
         (["--y", "tilt-z", "1", "2", "2"], "drift.y"),
     ],

@@ -67,9 +67,14 @@ def folder(tmp_path):
         samples = np.hanning(80)[:, np.newaxis] * rng.normal(size=(80, 3)) * (1.5, 1.5, 0.3)
         record = sb.Record(samples=samples, step=0.02, name=f"q{seed}")
         sb.records.write_csv(record, tmp_path / "quakes" / f"q{seed}.csv")
-    (tmp_path / "site.csv").write_text("intensity,rate\n# of the site\n0.5,1e-2\n2.0; 1e-3\n8.0 5e-5\n")
-    (tmp_path / "bent.csv").write_text("0.5,1e-3\n2.0,1e-2\n")
+    (tmp_path / "site.csv").write_text("intensity RotD50,rate\n# of the site\n0.5,1e-2\n2.0; 1e-3\n8.0 5e-5\n")
+    (tmp_path / "bent.csv").write_text("PGA/(g tan α) RotD50, rate\n0.5,1e-3\n2.0,1e-2\n")
     (tmp_path / "velocity.csv").write_text("PGV [1], rate\n0.5,1e-2\n2.0,1e-3\n")
+    (tmp_path / "weak.csv").write_text("PGA/(g tan α), rate\n0.001,1e-1\n0.01,1e-2\n")
+    (tmp_path / "any.csv").write_text("intensity RotD50 [g], rate\n0.5,1e-2\n2.0,1e-3\n")
+    (tmp_path / "vague.csv").write_text("0.5,1e-2\n2.0,1e-3\n")
+    (tmp_path / "geometric.csv").write_text("PGA/(g tan α), geometric mean, rate\n0.5,1e-2\n2.0,1e-3\n")
+    (tmp_path / "chances.csv").write_text("intensity RotD50, probability in 50 years\n0.5,0.4\n2.0,0.05\n8.0,0.0025\n")
     (tmp_path / "study.toml").write_text(STUDY)
     return tmp_path
 
@@ -110,14 +115,14 @@ def test_a_described_study_is_that_of_its_parts(folder):
     np.testing.assert_array_equal(runs["largest_tilt"], same["largest_tilt"])
     fits = study.fits(runs)
     assert fits.attrs["counting"] == Counting.FIRST.value
-    curve = HazardCurve(intensity=HAZARD["intensity"], rate=HAZARD["rate"], units="1", quantity="PGA/(g tan α)")
+    curve = HazardCurve(**HAZARD, units="1", quantity="PGA/(g tan α)")
     rates = study.rates(fits)
     np.testing.assert_array_equal(rates["annual_rate"], annual_rate(fits, curve)["annual_rate"])
     assert study.parts(runs).attrs["limit_state"] == "overturning"
     assert study.parts(runs.isel(property_sample=0)) is None
 
 
-HAZARD = {"intensity": [0.5, 2.0, 8.0], "rate": [1e-2, 1e-3, 5e-5]}
+HAZARD = {"intensity": [0.5, 2.0, 8.0], "rate": [1e-2, 1e-3, 5e-5], "component": "RotD50"}
 
 
 def test_saved_runs_are_fitted_anew_and_repeated(folder, capsys, saved, monkeypatch):
@@ -142,15 +147,32 @@ def test_a_rate_beyond_the_hazard_is_not_told_as_a_fact(folder, capsys, monkeypa
     monkeypatch.chdir(folder)
     assert run(["fragility", "study.toml", "--output", "runs.nc"]) == 0
     capsys.readouterr()
-    (folder / "weak.csv").write_text("PGA/(g tan α), rate\n0.001,1e-1\n0.01,1e-2\n")
-    assert run(["fragility", "runs.nc", "--hazard", "weak.csv"]) == 0
+    assert run(["fragility", "runs.nc", "--hazard", "weak.csv", "--hazard-component", "RotD50"]) == 0
     told = capsys.readouterr().out
     assert "annual rate of 'overturning': not told, for the hazard curve ends at 0.01, and" in told
     assert "of the rate lies beyond; it is between" in told
-    assert run(["fragility", "runs.nc", "--hazard", "weak.csv", "--json"]) == 0
+    assert run(["fragility", "runs.nc", "--hazard", "weak.csv", "--hazard-component", "RotD50", "--json"]) == 0
     states = {one["name"]: one for one in json.loads(capsys.readouterr().out)["limit_states"]}
     assert states["overturning"]["annual_rate"] is states["overturning"]["probability"] is None
     assert states["overturning"]["rate_high"] < 0.011
+
+
+def test_probabilities_of_exceedance_are_read_as_such_and_the_table_says_so(folder, capsys, monkeypatch):
+    monkeypatch.chdir(folder)
+    assert run(["fragility", "study.toml", "--output", "runs.nc"]) == 0
+    table = capsys.readouterr().out
+    assert "over the PGA/(g tan α), RotD50" in table
+    assert "hazard: PGA/(g tan α), RotD50\n" in table
+    assert run(["fragility", "runs.nc", "--hazard", "chances.csv"]) == 0
+    words = "rates from probabilities of exceedance in 50 years, taken as those of a Poisson process"
+    assert words in capsys.readouterr().out
+    openquake = "# investigation_time=50.0, imt='{}'\nlon,lat,depth,poe-0.1,poe-1.6,poe-25.6\n1,2,0,0.5,0.05,0.001\n"
+    (folder / "site.csv").write_text(openquake.format("PGA"))
+    pga = ["--intensity", "peak ground acceleration", "--hazard", "site.csv", "--hazard-component", "RotD50", "--json"]
+    assert run(["fragility", "study.toml", *pga, "--hazard-site", "1,2"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["intensity"] == {"name": "peak ground acceleration, RotD50", "component": "RotD50", "units": "m s-2"}
+    assert 0.0 < found["limit_states"][-1]["annual_rate"] < -np.log1p(-0.5) / 50.0
 
 
 def test_a_dispersion_of_nothing_reads_as_none_seen():
@@ -199,15 +221,31 @@ def test_what_was_interrupted_is_fitted_as_far_as_it_is_known_and_goes_on(folder
         (["--hazard", "study.toml"], "study.toml holds no numbers"),
         (
             ["--intensity", "peak ground acceleration"],
-            "fragility.hazard does not tell the unit of its intensity; ",
+            "fragility.hazard does not state the unit of its intensity; ",
         ),
         (["--hazard-units", "m/s"], "is of an intensity in m/s, the fragility of 'PGA/(g tan α)' in 1"),
-        (["--hazard", "bent.csv"], "fragility.hazard: rate must not increase with intensity"),
-        (["--hazard", "velocity.csv"], "fragility.hazard is of 'peak ground velocity', the fragility of"),
+        (["--hazard", "bent.csv"], "bent.csv, line 3: annual rate must not increase with intensity"),
+        (["--hazard", "velocity.csv"], "fragility.hazard uses 'peak ground velocity', but the fragility uses"),
+        (["--hazard", "vague.csv"], "vague.csv: the columns are not named, so rates cannot be told apart"),
+        (["--hazard", "geometric.csv"], "fragility.hazard: horizontal component 'geometric mean', but the fragility"),
+        (
+            ["--component", "larger component"],
+            "fragility.hazard: horizontal component 'RotD50', but the fragility uses",
+        ),
+        (
+            ["--hazard", "weak.csv"],
+            "fragility.hazard: horizontal component not stated, but the fragility uses 'RotD50'",
+        ),
+        (
+            ["--intensity", "peak ground acceleration", "--hazard", "any.csv"],
+            "fragility.hazard: intensity measure not stated. Name it in the first line of",
+        ),
+        (["--hazard-site", "here"], "--hazard-site: no number and no LON,LAT (got 'here')"),
+        (["--hazard-component", "mean"], "component: unknown definition of the horizontal component (got 'mean')"),
         (["--spread", "colour=0.1"], "spreads: colour is not known here"),
         (["--property-samples", "0"], "fragility.samples and fragility.spreads go together"),
         (["--intensity", "magnitude"], "intensity must be 'peak ground acceleration'"),
-        (["--records", "nowhere"], "nowhere: No such file or directory"),
+        (["--records", "nowhere"], "nowhere: cannot be read: No such file"),
         (["--figure", "f.doc"], "--figure must end with"),
     ],
 )
@@ -230,7 +268,7 @@ def test_a_description_tells_all_its_mistakes():
         FragilityDescription.parse(values).build()
     for words in ("duration is not known", "number must be", "go together", "years must be", "a file of them"):
         assert words in str(told.value)
-    assert "quakes: No such file or directory" in str(told.value)
+    assert "quakes: cannot be read: No such file" in str(told.value)
 
 
 def test_names_that_are_not_known_are_told_as_they_stand_in_the_file():

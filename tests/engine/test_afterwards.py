@@ -79,3 +79,81 @@ def test_a_column_that_stands_before_the_end_of_its_pulse_is_not_told_to_be_safe
     assert early.outcome is sb.Outcome.AT_REST
     assert "before the base motion stops; it may yet be released: follow it longer" in early.reason
     assert sb.simulate(vase, pulse).outcome is sb.Outcome.OVERTURNED
+
+
+slender_rates, slender_planar = sb.Slender.rates, sb.Slender.planar_rates
+
+
+class Leaning(sb.Slender):
+    """A slender column on a base that gives way, or holds it: the moment −kα of a spring beside that of the weight."""
+
+    k = -0.5
+    contact = None
+
+    @staticmethod
+    def rates(x, y, vx, vy, ax, ay, az, c, eta, k):
+        _, _, bx, by = slender_rates(x, y, vx, vy, ax, ay, az, c, eta, 0.75)
+        return vx, vy, bx - k * x, by - k * y
+
+    @staticmethod
+    def planar_rates(tilt, rate, side, horizontal, vertical, c, eta, k):
+        return rate, slender_planar(tilt, rate, side, horizontal, vertical, c, eta)[1] - k * tilt
+
+    @staticmethod
+    def no_return_tilt(largest, least, c, eta, k):
+        return math.inf if 1.0 + least <= k else (c * (1.0 + least) + largest) / (1.0 + least - k)
+
+    @property
+    def parameters(self):
+        return self.column.slenderness, self.damping, self.k
+
+
+class Balanced(Leaning):
+    """The same with its own energy and balance, c/(1 − k)."""
+
+    def energy(self, states):
+        stored = 0.5 * self.k * (states[0] ** 2 + states[1] ** 2)
+        return sb.Slender.energy(self, states) + stored * self.column.base_inertia / self.time_scale**2
+
+    @property
+    def balance(self):
+        c, unit = self.column.slenderness, self.column.base_inertia / self.time_scale**2
+        return sb.models.Balance(tilt=c / (1.0 - self.k), energy=0.5 * c * c * unit / (1.0 - self.k))
+
+
+def pushed_outwards(cls, share_of_bare_balance):
+    # ½Ȧ² + cA − ½A² is this share of ½c².
+    column = sb.Column.dimensionless(0.1)
+    rate = math.sqrt(0.01 * share_of_bare_balance - 0.2 * 0.02 + 0.02**2)
+    start = {"tilt": (0.02, 0.0), "tilt_rate": (rate, 0.0)}
+    return sb.simulate(cls(column), **start, duration=0.2), sb.simulate(cls(column), **start, duration=20.0)
+
+
+def test_a_model_of_other_equations_does_not_inherit_the_claim_that_it_cannot_overturn_any_more():
+    early, later = pushed_outwards(Leaning, 0.91)
+    assert early.reason.endswith("it may yet overturn: follow it longer")
+    assert later.outcome is Outcome.OVERTURNED
+
+
+def test_a_model_that_states_its_own_balance_makes_the_claim_where_it_is_true():
+    sb.models.check(Balanced(COLUMN))
+    early, later = pushed_outwards(Balanced, 0.91)
+    assert early.reason.endswith("it may yet overturn: follow it longer")
+    assert later.outcome is Outcome.OVERTURNED
+    early, later = pushed_outwards(Balanced, 0.6)
+    share = (0.6 * 0.5 * 0.01 - 0.5 * 0.5 * 0.02**2) / (0.5 * 0.01 / 1.5)
+    assert f"cannot overturn any more: it has {100.0 * share:.2g} % of the energy that takes" in early.reason
+    assert later.outcome is Outcome.STILL_MOVING
+
+
+def test_a_model_that_can_never_overturn_can_say_so():
+    class Held(Balanced):
+        k = 1.2
+
+        @property
+        def balance(self):
+            return sb.models.Balance(tilt=math.inf, energy=math.inf)
+
+    sb.models.check(Held(COLUMN))
+    run = sb.simulate(Held(sb.Column.dimensionless(0.1)), tilt=(0.3, 0.0), tilt_rate=(0.0, 0.3), duration=1.0)
+    assert "cannot overturn any more: it has 0 % of the energy that takes" in run.reason

@@ -127,6 +127,8 @@ class Counted(sb.Slender):
 
     planar_rates: ClassVar = None
     contact: ClassVar = None
+    departure: ClassVar = None
+    passage: ClassVar = None
 
     def outputs(self, states, accelerations, resting):
         return {}

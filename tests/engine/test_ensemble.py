@@ -250,7 +250,7 @@ def slowing(vx, vy, k):
 @dataclass(frozen=True, slots=True)
 class Dragged(sb.Slender):
     name: ClassVar[str] = "dragged"
-    planar_rates = None
+    planar_rates = contact = None
 
     @staticmethod
     def rates(x, y, vx, vy, ax, ay, az, c, eta, _kappa):

@@ -194,3 +194,29 @@ def test_a_limit_of_the_tilt_ends_a_run_there():
 def test_what_it_cannot_do_is_told(asked):
     with pytest.raises(UnsupportedError, match="changes between kinds of contact"):
         ensemble(duration=1.0, **asked)
+
+
+def test_a_slip_that_turns_within_a_step_is_not_stopped():
+    friction = np.geomspace(1e-4, 0.03, 40)
+    runs, exact = (
+        ensemble(acceleration=1.0, parameters={"friction_coefficient": friction}, duration=20.0, rtol=rtol)
+        for rtol in (1e-5, RTOL)
+    )
+    np.testing.assert_allclose(runs["end_footprint"], exact["end_footprint"], atol=1e-3)
+    one = sb.simulate(
+        Sliding(COLUMN, friction_coefficient=float(friction[20])),
+        sb.Harmonic.circular(acceleration=1.0, angular_frequency=3.0),
+        duration=20.0,
+        rtol=RTOL,
+    )
+    np.testing.assert_allclose(exact["end_footprint"][20], one.data["footprint"][-1], atol=1e-6)
+    np.testing.assert_array_equal(runs["slips"], 0)
+
+
+def test_without_friction_a_base_slides_as_in_single_runs():
+    runs = ensemble(parameters={"friction_coefficient": np.array([0.0, 0.3])}, duration=5.0)
+    one = sb.simulate(Sliding(COLUMN, friction_coefficient=0.0), CIRCLE, duration=5.0, rtol=RTOL)
+    np.testing.assert_allclose(runs["end_footprint"][0], one.data["footprint"][-1], atol=1e-9)
+    assert runs["outcome"].to_numpy().tolist() == [
+        sb.results.code_of(kind) for kind in (sb.Outcome.SLID, sb.Outcome.AT_REST)
+    ]

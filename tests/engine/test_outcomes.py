@@ -193,6 +193,14 @@ def test_a_run_out_of_steps_has_failed_and_says_why(max_steps):
     assert run.decided_at < 100.0
 
 
+def test_a_run_out_of_steps_by_close_passages_without_loss_names_them_and_the_remedy():
+    column = sb.Column.dimensionless(slenderness=0.1)
+    start = {"tilt": (0.02, 0.0), "tilt_rate": (-0.05, 1e-7), "duration": 100.0, "max_steps": 40}
+    reasons = [sb.simulate(sb.Rolling(column, restitution=e), **start).reason for e in (1.0, 0.99)]
+    assert ["set restitution below 1" in reason for reason in reasons] == [True, False]
+    assert all("step limit" in reason for reason in reasons)
+
+
 def test_free_motion_that_goes_on_is_still_moving():
     run = sb.simulate(model(0.0), tilt=(0.05, 0.0), tilt_rate=(0.0, 0.02), duration=10.0)
     assert run.outcome is sb.Outcome.STILL_MOVING
@@ -215,3 +223,17 @@ def test_a_run_that_is_too_short_says_for_how_long_it_is_to_be_followed(theta):
     for duration, enough in ((asked, True), (0.998 * asked, False)):
         _, run = roll(theta, 0.065, duration * theta / (2.0 * math.pi))
         assert ("is shorter than" not in run.reason) is enough
+
+
+FIRM = sb.Column.dimensionless(C)
+
+
+@pytest.mark.parametrize(
+    "column",
+    [sb.Slender(FIRM), sb.Wobbling(FIRM), sb.Rolling(FIRM), sb.Sliding(FIRM, friction_coefficient=0.5)],
+    ids=lambda column: column.name,
+)
+def test_rates_that_overflow_end_a_run(column):
+    violent = sb.Harmonic.circular(acceleration=1e15, angular_frequency=1.8)
+    run = sb.simulate(column, violent, duration=2.0)
+    assert run.outcome in (sb.Outcome.FAILED, sb.Outcome.OVERTURNED, sb.Outcome.LIFTED_OFF)

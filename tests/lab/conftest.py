@@ -7,11 +7,10 @@ from contextlib import contextmanager
 
 import httpx
 import pytest
-import uvicorn
 from tests.lab.conformity import conforms
 
 from stylobate.lab import Limits, create_app
-from stylobate.lab.serving import listening
+from stylobate.lab.serving import listening, server_of
 
 
 @contextmanager
@@ -19,9 +18,7 @@ def laboratory(limits: Limits | None = None) -> Iterator[str]:
     """Serve a laboratory in a thread of this process and give its address."""
     with listening("127.0.0.1", 0) as place:
         host = f"127.0.0.1:{place.getsockname()[1]}"
-        server = uvicorn.Server(
-            uvicorn.Config(create_app(hosts={host}, limits=limits), log_level="warning", timeout_graceful_shutdown=1)
-        )
+        server = server_of(create_app(hosts={host}, limits=limits), limits)
         thread = threading.Thread(target=server.run, kwargs={"sockets": [place]})
         thread.start()
         while not server.started:

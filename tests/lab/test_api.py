@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
+from stylobate.lab import Limits
 from stylobate.lab.presets import presets
 from stylobate.lab.tasks import speed_of_pictures
 from stylobate.spec import ResponseDescription, SimulationDescription
@@ -48,6 +49,19 @@ def test_every_preset_shows_what_it_says(client, preset):
     assert told["outcome"] == preset.outcome, told.get("problems", told.get("reason"))
 
 
+def test_the_spin_up_is_certain_and_keeps_its_contact():
+    preset = next(one for one in presets() if one.identity == "spin-up")
+    run = described_run(preset.description)
+    assert (run.uncertain, run.warnings) == (False, ())
+
+
+def test_another_start_of_the_spin_up_comes_to_rest_in_few_steps():
+    preset = next(one for one in presets() if one.identity == "spin-up")
+    run = described_run({**preset.description, "tilt": [0.03, 0.0], "duration": 60.0})
+    assert run.outcome is sb.Outcome.AT_REST
+    assert run.measures["steps"] < Limits().usual_steps / 10
+
+
 def test_the_python_of_a_run_makes_the_same_run(client, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)  # where it draws the run
     names = {}
@@ -75,6 +89,26 @@ def test_response_curves_are_those_of_theory(client):
     assert np.array_equal(np.isfinite(amplitudes), known)
     assert amplitudes[known] == pytest.approx(steady.upper.amplitude[known], rel=SENT)
     assert np.array_equal(np.array(upper["stable"])[known], steady.upper.stable[known])
+
+
+@pytest.mark.parametrize("branch", ["upper", "lower"])
+def test_a_start_on_a_branch_is_that_of_theory(client, branch):
+    told = client.post("/api/start", json={**CIRCLE, "branch": branch}).json()
+    setup = SimulationDescription.parse({**CIRCLE, "duration": 1.0}).build()
+    start = sb.studies.steady_start(setup.model, setup.motion, branch=branch)
+    assert told == {"tilt": pytest.approx(start["tilt"]), "tilt_rate": pytest.approx(start["tilt_rate"]), "spin": 0.0}
+
+
+def test_a_start_on_a_branch_that_is_not_there_is_refused_in_one_line(client):
+    weak = {
+        **CIRCLE,
+        "model": {"kind": "slender", "damping": 0.5},
+        "motion": {**CIRCLE["motion"], "acceleration": 1e-3},
+    }
+    for case in (weak, {**CIRCLE, "motion": {"kind": "rest"}}, {**CIRCLE, "model": {"kind": "planar_rocking"}}):
+        answer = client.post("/api/start", json=case)
+        assert answer.status_code == 422
+        assert len(answer.json()["problems"]) == 1
 
 
 def test_an_uploaded_record_moves_the_base(client):
@@ -135,5 +169,5 @@ def test_pictures_of_every_preset_show_each_swing_of_the_base(preset):
 
 def test_it_tells_which_motions_come_to_an_end(client):
     ends = {kind["kind"]: kind["ends"] for kind in client.get("/api/about").json()["motions"]}
-    assert {"record", "ricker", "gabor", "half_sine"} <= {kind for kind, does in ends.items() if does}
-    assert {"rest", "circular", "linear_sweep"} <= {kind for kind, does in ends.items() if not does}
+    assert {"record", "ricker", "gabor", "half_sine", "linear_sweep"} <= {kind for kind, does in ends.items() if does}
+    assert {"rest", "circular", "vertical"} <= {kind for kind, does in ends.items() if not does}

@@ -11,7 +11,7 @@ from tests.lab.conftest import client_of, laboratory
 from stylobate.lab import Limits
 from stylobate.lab.presets import presets
 from stylobate.lab.schema import schema
-from stylobate.lab.schema.examples import JOBS, RESPONSES
+from stylobate.lab.schema.examples import JOBS, RESPONSES, STARTS
 from stylobate.lab.sizes import LEAST, MOST
 
 SMALL = Limits(body=20_000, cells=200, points=100, duration=5.0, steps=1000, run_time=4.0, waiting=1000)
@@ -113,6 +113,7 @@ REQUESTS = [
     *(("/api/simulate", body) for body in BODIES),
     *(("/api/describe", body) for body in BODIES),
     *(("/api/response", body) for body in RESPONSES.values()),
+    *(("/api/start", body) for body in STARTS.values()),
     *(("/api/jobs", body) for body in JOBS.values()),
 ]
 ODD = st.sampled_from(

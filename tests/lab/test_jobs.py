@@ -87,6 +87,13 @@ def test_basins_tell_their_attractors(client):
 def test_exact_orbits_are_told_with_their_bifurcations(client):
     job = followed(client, begun(client, "exact", {**CIRCLE, "angular_frequency_range": [1.2, 2.0]}))
     assert job["state"] == "done", job["problems"]
+    (family,) = job["result"]["families"]
+    last = {name: values[-1] for name, values in family.items() if name != "name"}
+    motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=last["angular_frequency"])
+    model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    run = sb.simulate(model, motion, tilt=last["tilt"], tilt_rate=last["tilt_rate"], duration=10.0)
+    for measure in ("least_tilt", "largest_tilt"):  # circular rolling: one tilt all the time
+        assert run.measures[measure] == pytest.approx(last["mean_tilt"], rel=1e-5)
     (found,) = job["result"]["bifurcations"]
     assert found["angular_frequency"] == pytest.approx(sb.theory.critical_frequency(0.065, c=0.1, eta=0.1), abs=1e-6)
 
@@ -129,7 +136,8 @@ def test_a_single_run_does_not_wait_for_long_work():
         jobs = [begun(client, "map", ENDLESS) for _ in range(2)]
         for job in jobs:
             followed(client, job, until=("running",))
-        begun(client, "map", ENDLESS)
+        third = begun(client, "map", ENDLESS)
+        assert client.get(f"/api/jobs/{third}").json()["note"] == "waits for 2 other jobs"
         too_many = client.post("/api/jobs", json={"kind": "map", "description": ENDLESS})
         assert too_many.status_code == 429
         assert client.post("/api/simulate", json=values).status_code == 200
@@ -145,12 +153,20 @@ def test_a_job_that_nobody_asks_for_is_dropped():
         assert client.get(f"/api/jobs/{identity}").status_code == 404
 
 
-def test_a_run_beyond_its_time_is_given_up_and_the_next_is_not():
-    with laboratory(Limits(run_time=5.0)) as address, client_of(address) as client:
-        answer = client.post("/api/simulate", json=SLOW)
-        assert answer.status_code == 503
-        assert "given up after 5 s" in answer.json()["problems"][0]
-        assert client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 200
+def test_a_run_beyond_its_time_and_one_without_a_process_get_two_answers():
+    limits = Limits(runs=1, run_time=5.0, wait=0.5)
+    with laboratory(limits) as address, client_of(address) as client, ThreadPoolExecutor() as pool:
+        while client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 503:
+            pass  # the first process starts
+        slow = pool.submit(client.post, "/api/simulate", json=SLOW)
+        time.sleep(1.0)
+        busy = client.post("/api/simulate", json={**CIRCLE, "duration": 1.0})
+        assert (busy.status_code, "busy for 0.5 s" in busy.json()["problems"][0]) == (503, True)
+        assert slow.result().status_code == 504
+        assert "given up after 5 s" in slow.result().json()["problems"][0]
+        while (answer := client.post("/api/simulate", json={**CIRCLE, "duration": 1.0})).status_code == 503:
+            pass
+        assert answer.status_code == 200
 
 
 def test_runs_that_nobody_waits_for_are_ended():
@@ -175,8 +191,10 @@ def test_a_process_that_dies_is_told_and_replaced():
         for process in multiprocessing.active_children():
             process.kill()
         lost = answer.result()
-        assert lost.status_code == 500
-        assert "ended of its own" in lost.json()["problems"][0]
+        assert lost.status_code == 502
+        (problem,) = lost.json()["problems"]
+        assert "ended by signal 9" in problem
+        assert "report" not in problem
         assert client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 200
 
 

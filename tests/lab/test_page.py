@@ -199,6 +199,71 @@ def test_a_click_in_the_map_starts_that_motion_and_its_link_restores_it(watched,
     other.close()
 
 
+AXES = {
+    "x": {"name": "angular_frequency", "values": [1.0, 2.0, 3.0], "units": "rad s-1"},
+    "y": {"name": "acceleration", "values": [0.02, 0.05, 0.1], "units": "m s-2"},
+}
+
+
+def job_that_never_ends(page, note=""):
+    """Answer the page's jobs with one that never ends, and return the requests that end it."""
+    ended = []
+    events = [{"axes": AXES, "names": [[1, "overturned"]]}, {"stride": 1, "cells": [[1, 1, 1]]}]
+    done = 0 if note else 1
+
+    def answer(route):
+        request = route.request
+        if request.method == "DELETE":
+            ended.append(request.url)
+        report = {
+            "id": "one",
+            "kind": "map",
+            "state": "running",
+            "done": done,
+            "total": 9,
+            "note": note,
+            "events": events if "after=0" in request.url else [],
+            "next": 2,
+            "problems": [],
+            "result": None,
+        }
+        route.fulfill(status=202 if request.method == "POST" else 200, json=report)
+
+    page.route(re.compile(r"/api/jobs"), answer)
+    page.get_by_role("tab", name="Overturning map").click()  # of the slender model: it fills in unasked
+    return ended
+
+
+def test_a_map_of_an_earlier_case_is_marked_cancelled_and_no_longer_clickable(watched):
+    page = watched.page
+    ended = job_that_never_ends(page)
+    plane = "window.stylobate.laboratory.plane('map')"
+    page.wait_for_function(f"() => {plane}.filled")
+    moved(page, "damping", 0.2)
+    panel = page.locator(".plane-panel.map.stale")
+    panel.get_by_text("This picture is of an earlier case").wait_for()
+    assert len(ended) == 1
+    shown(page)  # the start is on the branch at the new damping
+    before = page.evaluate("() => window.stylobate.state().description")
+    page.mouse.click(*page.evaluate(f"() => {plane}.clientPlace([2, 2])"))
+    assert page.evaluate("() => window.stylobate.state().description") == before
+
+
+def test_a_map_that_has_computed_nothing_yet_says_why(watched):
+    job_that_never_ends(watched.page, note="compiling rolling, space motion")
+    watched.page.locator(".plane-panel.map .readout").get_by_text("Compiling rolling, space motion…").wait_for()
+
+
+def test_a_run_that_takes_long_is_cancelled(watched):
+    page = watched.page
+    page.route(re.compile("/api/simulate"), lambda route: None)  # never answered
+    moved(page, "damping", 0.2)
+    with page.expect_event("requestfailed", lambda request: "simulate" in request.url):
+        page.locator(".stage").get_by_role("button", name="Cancel").click()
+    assert page.get_by_text("The run was cancelled.").first.is_visible()
+    page.wait_for_function("() => !document.querySelector('.stage.busy')")
+
+
 def test_a_broken_record_shows_its_one_line(watched):
     page = watched.page
     page.get_by_label("Base motion", exact=True).select_option("record")

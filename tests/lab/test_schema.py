@@ -11,6 +11,7 @@ from tests.lab.conformity import DOCUMENT, component, conforms, endpoint, mistak
 from stylobate.lab import Limits
 from stylobate.lab.api import Api
 from stylobate.lab.presets import presets
+from stylobate.spec.columns import implied_shape
 
 OPERATIONS = [
     (path, method, told)
@@ -210,7 +211,10 @@ def test_the_schema_excludes_nothing_that_the_laboratory_accepts(client, body):
     excluded = [one for one in changed(body) if not component("Simulation").is_valid(one)]
     assert excluded
     for one in excluded:
-        # A model without its kind is a slender one: a schema of one of several cannot say so.
-        model = {"kind": "slender", **one["model"]} if "model" in one else None
-        if model is None or component("Simulation").is_valid({**one, "model": model}) is False:
+        # A model without its kind is a slender one, a column without its shape has the shape that its numbers imply:
+        # a schema of one of several cannot say so.
+        whole = {**one, **({"model": {"kind": "slender", **one["model"]}} if "model" in one else {})}
+        if "column" in one:
+            whole["column"] = {"shape": implied_shape(one["column"]) or "solid", **one["column"]}
+        if not component("Simulation").is_valid(whole):
             assert client.post("/api/describe", json=one).status_code == 422, one

@@ -3,16 +3,22 @@
 import os
 import re
 import signal
+import socket
 import subprocess
 import sys
+import time
+from contextlib import ExitStack
+from pathlib import Path
 
 import httpx
+import pytest
 
-from stylobate.lab.serving import listening
+from stylobate.lab.serving import listening, own_names
 
 
-def started(*options):
-    command = [sys.executable, "-m", "stylobate", "lab", "--no-browser", *options]
+def started(*options, before="import runpy; "):
+    program = f"{before}runpy.run_module('stylobate', run_name='__main__', alter_sys=True)"
+    command = [sys.executable, "-c", program, "lab", "--no-browser", *options]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
@@ -25,6 +31,49 @@ def test_it_tells_its_address_answers_there_and_ends_on_ctrl_c():
     finally:
         os.kill(process.pid, signal.SIGINT)
         _, told = process.communicate(timeout=30)
+    assert "Traceback" not in told
+
+
+def processor_time(process):
+    """Return the processor time of a process without its children [s]."""
+    fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc and sets the limit of descriptors of another process")
+def test_half_open_connections_exhaust_neither_descriptors_nor_a_core():
+    limited = "import resource, runpy; resource.setrlimit(resource.RLIMIT_NOFILE, (128, 128)); "
+    process = started("--port", "0", before=limited)
+    try:
+        address = re.search(r"http://127\.0\.0\.1:(\d+)/", process.stdout.readline())
+        with ExitStack() as held:
+            for _ in range(200):
+                place = held.enter_context(socket.create_connection(("127.0.0.1", int(address[1])), timeout=60.0))
+                place.sendall(b"GET / HTTP/1.1\r\n")
+            assert httpx.get(f"{address[0]}api/about", timeout=60.0).status_code == 200
+            begun = processor_time(process)
+            time.sleep(1.0)
+            assert processor_time(process) - begun < 0.5
+    finally:
+        os.kill(process.pid, signal.SIGINT)
+        _, told = process.communicate(timeout=60)
+    assert "Too many open files" not in told
+    assert "Traceback" not in told
+
+
+def test_at_an_address_for_other_machines_the_token_opens_it_under_the_names_of_this_machine():
+    process = started("--port", "0", "--host", "0.0.0.0")  # noqa: S104
+    try:
+        address = httpx.URL(re.search(r"http://\S+\?token=\S+", process.stdout.readline())[0])
+        assert address.host == own_names()[0]
+        local, token = f"http://127.0.0.1:{address.port}/api/about", address.params
+        for name, status in ((address.host, 200), (socket.gethostname(), 200), ("evil.example", 403)):
+            assert httpx.get(local, params=token, headers={"host": f"{name}:{address.port}"}).status_code == status
+        assert httpx.get(local).status_code == 401
+    finally:
+        os.kill(process.pid, signal.SIGINT)
+        _, told = process.communicate(timeout=60)
+    assert "other machines can reach" in told
     assert "Traceback" not in told
 
 

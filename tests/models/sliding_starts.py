@@ -29,10 +29,11 @@ class Start:
         return self.motion.acceleration(time)
 
 
-def random_start(seed, *, patch=0.0, airborne=False, restitution=0.0, static=1.0):
-    """Return a `Start` on a base that shakes in all directions; `static` is μs over μk."""
+def random_start(seed, *, patch=0.0, airborne=False, restitution=0.0, static=1.0, friction=None):
+    """Return a `Start` on a base that shakes in all directions; `static` is μs over μk, `friction` μk if not random."""
     rng = np.random.default_rng(seed)
     c, kappa, axial, mu = rng.uniform([0.1, 0.6, 0.4, 0.05], [0.4, 0.8, 0.8, 0.35])
+    mu = mu if friction is None else friction
     length, gravity = rng.uniform([0.2, 1.0], [2.0, 10.0])
     inertia = length**2 / kappa
     column = sb.Column(

@@ -140,14 +140,14 @@ def test_nothing_is_demanded_of_a_contact_in_flight():
     assert data["friction_demand"].to_numpy()[~flies].max() <= 0.3 * (1.0 + 1e-9)
 
 
-def test_a_column_that_only_stands_has_no_demands_of_motion():
+def test_a_column_that_only_stands_needs_the_friction_of_its_base():
     run = sb.simulate(MODELS["rolling"], CIRCLE, duration=2.0, friction_coefficient=0.01)
     assert bool(run.data["resting"].all())
-    assert run.warnings == ()
-    assert "largest_friction_demand" not in run.measures
+    assert run.measures["largest_friction_demand"] == pytest.approx(0.05, rel=1e-12)
+    assert run.warnings[0].startswith("it would slip from 0 s on")
 
 
-def test_demands_are_told_from_the_motion_only_where_a_column_stands_too():
+def test_the_largest_demand_is_that_of_the_motion_where_moving_needs_more_than_standing():
     # A standing column needs |a_h|/g = 0.9 c; a brief push releases it, and the demand of the motion is what counts.
     motion = sb.Harmonic.circular(acceleration=1.05 * C * COLUMN.gravity, angular_frequency=2.0 * SCALE, ramp=8.0)
     run = sb.simulate(sb.Wobbling(COLUMN, damping=0.1), motion, duration=12.0)
@@ -212,3 +212,51 @@ def test_what_the_contact_bears_for_a_moment_is_not_missed(spin, least):
     assert run.measures["largest_friction_demand"] >= float(fine["friction_demand"].max()) * (1.0 - 1e-6)
     assert run.measures["least_normal_force"] <= float(fine["normal_force"].min()) + 1e-6
     assert len(run.warnings) == (2 if run.measures["least_normal_force"] < 0.0 else 1)
+
+
+# Friction demand |a_h|/(g + a_z) is a statement on the base alone while the column stands on it.
+STOUT = sb.Slender(sb.Column.dimensionless(0.4), damping=0.1)
+BELOW_UPLIFT = {
+    "straight": (sb.Harmonic.straight(acceleration=0.3, angular_frequency=2.0), 0.3),
+    "beside a vertical": (
+        sb.Harmonic.straight(acceleration=0.2, angular_frequency=2.0)
+        + sb.Harmonic.vertical(acceleration=0.4, angular_frequency=2.0, start_phase=math.pi),
+        0.2 / 0.6,
+    ),
+    "pulse": (sb.Pulse.half_sine(acceleration=0.35, angular_frequency=3.0), 0.35),
+}
+
+
+@pytest.mark.parametrize("name", BELOW_UPLIFT)
+def test_a_column_that_stands_needs_the_friction_of_a_body_that_moves_with_the_base(name):
+    motion, expected = BELOW_UPLIFT[name]
+    run = sb.simulate(STOUT, motion, duration=20.0, friction_coefficient=0.9 * expected)
+    runs = sb.simulate_ensemble(STOUT, motion, duration=[20.0], demands=True)
+    assert not run.events
+    assert run.measures["largest_friction_demand"] == pytest.approx(expected, rel=1e-9)
+    # Parabolas through 64 samples to a period: the next term is (2π/128)⁴/4! of the height.
+    assert float(runs["largest_friction_demand"][0]) == pytest.approx(expected, rel=1e-6)
+    assert run.measures["largest_pivoting_demand"] == 0.0
+    (line,) = run.warnings
+    assert "slides before it rocks" in line
+    assert sb.simulate(STOUT, motion, duration=20.0, friction_coefficient=1.1 * expected).warnings == ()
+
+
+def test_standing_before_release_needs_the_friction_at_which_rocking_begins():
+    # The base motion passes c g on its way up: the column stands until then, with the demand c.
+    motion = sb.Pulse.half_sine(acceleration=0.405, angular_frequency=3.0)
+    run = sb.simulate(STOUT, motion, duration=20.0)
+    runs = sb.simulate_ensemble(STOUT, motion, duration=[20.0], demands=True)
+    assert run.events[0].kind == "release"
+    for demand in (run.measures["largest_friction_demand"], float(runs["largest_friction_demand"][0])):
+        assert demand >= 0.4 * (1.0 - 1e-9)
+
+
+def test_the_base_slides_under_a_standing_column_when_the_record_first_needs_more_than_there_is():
+    motion = sb.Record(samples=[0.0, 0.1, -0.3, 0.3, 0.0], step=1.0)
+    run = sb.simulate(STOUT, motion, duration=10.0, friction_coefficient=0.2)
+    runs = sb.simulate_ensemble(STOUT, motion, duration=[10.0], demands=True)
+    assert run.measures["largest_friction_demand"] == pytest.approx(0.3, rel=1e-15)
+    assert float(runs["largest_friction_demand"][0]) == pytest.approx(0.3, rel=1e-15)
+    # From 0.1 at 1 s to -0.3 at 2 s: |a| = 0.2 at 1.75 s.
+    assert "from 1.75 s on" in run.warnings[0]

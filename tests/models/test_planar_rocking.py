@@ -191,3 +191,27 @@ def test_bad_numbers_are_refused_in_one_line(make, told):
         make()
     assert str(refusal.value).startswith(told)
     assert "\n" not in str(refusal.value)
+
+
+def test_every_impact_is_an_event_at_a_change_of_side_and_is_counted():
+    block = sb.PlanarRocking.block(width=0.6, height=3.0, density=2400.0)
+    run = sb.simulate(block, tilt=(0.1, 0.0), duration=10.0)
+    impacts = [event.time for event in run.events if event.kind == "impact"]
+    fine = run.sample(np.linspace(0.0, 10.0, 20_001))
+    side = np.sign(fine["tilt"][:, 0].to_numpy())
+    changes = fine["time"].to_numpy()[:-1][side[1:] * side[:-1] < 0.0]
+    assert len(changes) == 17
+    assert run.measures["impacts"] == len(impacts) == len(changes)
+    np.testing.assert_allclose(impacts, changes, rtol=0.0, atol=1e-3)
+    # Each leaves the part e of the speed with which it was reached.
+    before, after = (run.sample(np.array(impacts) + t)["tilt_rate"][:, 0].to_numpy() for t in (-1e-7, 1e-7))
+    np.testing.assert_allclose(after / before, block.impact_restitution, rtol=1e-5)
+
+
+def test_a_passage_in_a_plane_that_costs_no_energy_is_an_event_too():
+    free = sb.simulate(sb.Slender(sb.Column.dimensionless(0.1)), tilt=(0.05, 0.0), duration=10.0)
+    kinds = {event.kind for event in free.events}
+    assert kinds == {"passage"}
+    assert free.measures["impacts"] == 0.0
+    tilt = free.sample([event.time for event in free.events])["tilt"][:, 0]
+    assert np.abs(tilt).max() < 1e-9

@@ -193,7 +193,7 @@ def test_free_motion_conserves_energy(spin):
 
 
 def energy(model, state):
-    return model._energy(np.array(state)[:, np.newaxis])[0] / (
+    return model.energy(np.array(state)[:, np.newaxis])[0] / (
         model.column.mass * model.column.gravity * model.column.mass_height
     )
 

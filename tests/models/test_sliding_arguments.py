@@ -19,12 +19,11 @@ def refused(match, call):
 @pytest.mark.parametrize(
     ("name", "value", "match"),
     [
-        ("friction_coefficient", 0.0, "friction_coefficient must be positive"),
-        ("friction_coefficient", -0.1, "friction_coefficient must be positive"),
-        ("friction_coefficient", math.inf, "friction_coefficient must be positive"),
+        ("friction_coefficient", -0.1, "friction_coefficient must be zero or positive"),
+        ("friction_coefficient", math.inf, "friction_coefficient must be zero or positive"),
         ("friction_coefficient", "rough", "friction_coefficient"),
         ("static_friction_coefficient", 0.4, "static_friction_coefficient must not be below the kinetic 0.5"),
-        ("static_friction_coefficient", math.nan, "static_friction_coefficient must be positive"),
+        ("static_friction_coefficient", math.nan, "static_friction_coefficient must be zero or positive"),
         ("patch", -0.1, "patch must be zero or positive"),
         ("patch", math.inf, "patch must"),
         ("restitution", 1.1, "restitution must lie between 0 and 1"),

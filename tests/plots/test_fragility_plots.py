@@ -18,7 +18,7 @@ def reached():
     capacity = rng.normal(0.0, 0.4, (20, 1))
     states = [np.log(SCALE.values / median) > capacity for median in (2.0, 4.0)]
     states.append(np.zeros_like(states[0]))
-    labels = {"limit_state": ["uplift", "overturning", "never"]}
+    labels = {"limit_state": ["tilt 0.001 α", "overturning", "never"]}
     found = xr.DataArray(states, dims=("limit_state", "record", "scale"), coords=labels)
     found[1, 0] = [0, 0, 1, 0, 0, 1, 1, 1, 1]
     return found

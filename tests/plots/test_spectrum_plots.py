@@ -7,6 +7,7 @@ from matplotlib.patches import PathPatch
 
 import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
+from stylobate.plots.band_regions import UNDECIDED
 from stylobate.plots.cells import cell_edges
 from stylobate.plots.classes import OUTCOME_LOOKS
 from stylobate.plots.style import VERMILION
@@ -53,6 +54,11 @@ def boxes(axes, colour):
     return sorted(found)
 
 
+def heights(axes, colour):
+    """Return bottom and top of all boxes of this colour, each once."""
+    return {(round(float(low), 9), round(float(high), 9)) for *_, low, high in boxes(axes, colour)}
+
+
 def rgb(text):
     return [int(text[i : i + 2], 16) / 255.0 for i in (1, 3, 5)]
 
@@ -83,13 +89,22 @@ def test_the_order_of_the_values_does_not_matter():
     np.testing.assert_allclose(one, other)
 
 
-def test_what_is_not_known_is_not_drawn_as_safe():
-    figure = sb.plot(bands({"damping": [0.1, 0.2]}, [SAFE, FALLEN, FALLEN, LIFTED], uncertain=[0]))
-    assert {"not known", "tells nothing: 2 runs", "uncertain: 2 runs"} <= set(legend_of(figure))
+def test_what_is_undecided_is_drawn_by_itself_and_neither_safe_nor_overturned():
+    # Safe, overturned, undecided, safe again, overturned, undecided, at the scales 1, 2 ... 6.
+    figure = sb.plot(bands({"damping": [0.1, 0.2]}, [SAFE, FALLEN, LIFTED, SAFE, FALLEN, LIFTED], uncertain=[0]))
+    assert {"not decided: lifted off", "not decided: 4 runs", "uncertain: 2 runs"} <= set(legend_of(figure))
     (axes,) = figure.axes
-    hatched = [patch for patch in axes.patches if patch.get_hatch() == "//////"]
-    tops = [patch.get_path().vertices[:, 1] for patch in hatched]
-    np.testing.assert_allclose([np.min(tops), np.max(tops)], [3.0, 4.0], rtol=1e-12)
+    grey, again = rgb(UNDECIDED.colour), rgb("#DCEBF5")
+    assert heights(axes, grey) == {(2.0, 4.0), (5.0, 6.0)}
+    assert not heights(axes, again)
+    assert all(low == high for *_, low, high in boxes(axes, DARK))
+
+
+def test_what_stands_above_an_undecided_stretch_is_safe_again_if_something_overturned_below():
+    (axes,) = sb.plot(bands({"damping": [0.1, 0.2]}, [FALLEN, LIFTED, SAFE, SAFE])).axes
+    assert heights(axes, rgb("#DCEBF5")) == {(3.0, 4.0)}
+    (axes,) = sb.plot(bands({"damping": [0.1, 0.2]}, [SAFE, LIFTED, SAFE, FALLEN])).axes
+    assert not boxes(axes, rgb("#DCEBF5"))
 
 
 def test_a_record_is_drawn_by_its_scale_over_the_size_a_panel_for_each_slenderness():

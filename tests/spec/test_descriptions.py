@@ -164,7 +164,7 @@ CIRCULAR = {"kind": "circular", "acceleration": 1.0, "angular_frequency": 1.0}
         ({"tilt": 0.1}, ["tilt"]),
         ({"max_steps": 1.5}, ["max_steps"]),
         ({"column": 3}, ["column"]),
-        ({"column": {}}, ["column.shape"]),
+        ({"column": {}}, ["column.density", "column.height", "column.radius"]),
         ({"column": {"shape": "cube"}}, ["column.shape"]),
         ({"column": {"shape": "solid", "radius": 0.5, "hight": 3.0, "density": "x"}}, None),
         ({"model": {"damping": "x"}}, ["model.damping"]),
@@ -223,7 +223,7 @@ def test_all_mistakes_are_told_at_once():
         ),
         (
             {"column": {"shape": "solid", "radius": 1e200, "height": 1e200, "density": 1e200}},
-            ["column: its numbers are too large or too small to compute with; check their units"],
+            ["column: radius: too large to compute with (got 1e+200 m). Give at most 1e+15 m; check the unit."],
         ),
         ({"model": {"damping": -1.0}}, ["model: damping must be zero or positive, got -1.0"]),
         ({"motion": {**CIRCULAR, "sense": 3}}, ["motion: sense must be +1"]),

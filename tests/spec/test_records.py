@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.errors import DescriptionError, FileError, ParameterError, UnsupportedError
+from stylobate.errors import DescriptionError, FileError, ParameterError, SeldomMeant, UnsupportedError
 from stylobate.spec import (
     MapDescription,
     RecordMotion,
@@ -42,7 +42,7 @@ def quakes(tmp_path):
     folder = tmp_path / "quakes"
     folder.mkdir()
     rng = np.random.default_rng(1)
-    for name in ("first_NS", "first_EW", "first_UP", "second_000", "second_090"):
+    for name in ("first_NS", "first_EW", "first_UP", "second_NS", "second_EW"):
         np.savetxt(folder / f"{name}.txt", rng.normal(scale=0.1, size=250))
     return folder
 
@@ -68,7 +68,7 @@ def test_a_record_described_is_the_record_read_in_python_wherever_the_program_ru
 
 
 def test_a_single_file_is_read_as_read_record_reads_it(quakes):
-    path = quakes / "second_090.txt"
+    path = quakes / "second_EW.txt"
     found = RecordMotion(path=str(path), units="cm/s2", step=0.02, axis="y").build()
     assert found == sb.read_record(path, "cm/s2", step=0.02, axis="y")
     assert RecordMotion(sample="el centro 1940").build() == sb.sample_record("el centro 1940")
@@ -77,19 +77,19 @@ def test_a_single_file_is_read_as_read_record_reads_it(quakes):
 @pytest.mark.parametrize("method", PROCESSING)
 def test_every_method_can_be_described_and_what_was_done_in_python_is_remembered(method, quakes):
     options, apply = PROCESSING[method]
-    raw = RecordMotion(path=str(quakes / "second_000.txt"), units="g", step=0.01)
+    raw = RecordMotion(path=str(quakes / "second_NS.txt"), units="g", step=0.01, single=True)
     step = {"method": method, **options}
     in_file = RecordMotion.parse({**raw.values(), "processing": [step]}).build()
     in_python = apply(raw.build())
-    expected = apply(sb.read_record(quakes / "second_000.txt", "g", step=0.01))
+    expected = apply(sb.read_record(quakes / "second_NS.txt", "g", step=0.01))
     for found in (in_file, in_python, in_python.description.build(), pickle.loads(pickle.dumps(in_python))):  # noqa: S301  our own
         assert found == expected
         assert found.provenance == expected.provenance
 
 
 def test_a_saved_run_rebuilds_its_record_and_refuses_a_changed_file(quakes):
-    path = quakes / "second_000.txt"
-    record = RecordMotion(path=str(path), units="g", step=0.01, scale=0.5).build().inverted()
+    path = quakes / "second_NS.txt"
+    record = RecordMotion(path=str(path), units="g", step=0.01, scale=0.5, single=True).build().inverted()
     run = sb.simulate(MODEL, record, duration=1.0)
     stored = json.loads(json.dumps(dict(run.provenance)))
     assert description_of(stored).build().motion == record
@@ -97,7 +97,7 @@ def test_a_saved_run_rebuilds_its_record_and_refuses_a_changed_file(quakes):
     with pytest.raises(DescriptionError, match="has changed since the result was saved: its SHA-256 was"):
         description_of(stored).build()
     path.unlink()
-    with pytest.raises(FileError, match=r"cannot read .*second_000\.txt"):
+    with pytest.raises(FileError, match=r"cannot read .*second_NS\.txt"):
         description_of(stored).build()
 
 
@@ -109,16 +109,16 @@ def test_several_records_are_one_motion_of_a_saved_result(quakes):
 
 
 def test_a_record_read_in_python_is_told_and_cannot_be_repeated(quakes):
-    record = sb.read_record(quakes / "second_000.txt", "g", step=0.01).scaled(2.0)
+    record = sb.read_record(quakes / "second_NS.txt", "g", step=0.01).scaled(2.0)
     stored = provenance_of_run(MODEL, record, duration=1.0)
-    assert stored["motion"]["processing"] == ["read from second_000.txt, in g as given", "scaled by 2.0"]
+    assert stored["motion"]["processing"] == ["read from second_NS.txt, in g as given", "scaled by 2.0"]
     assert stored["motion"]["digest"] == record.digest
-    with pytest.raises(UnsupportedError, match=r"the record 'second_000', read in Python.*kind = \"record\""):
+    with pytest.raises(UnsupportedError, match=r"the record 'second_NS', read in Python.*kind = \"record\""):
         description_of(stored)
 
 
 def test_without_a_duration_a_run_outlasts_its_record_by_twenty_time_scales(quakes):
-    motion = {"kind": "record", "path": str(quakes / "second_000.txt"), "units": "g", "step": 0.01}
+    motion = {"kind": "record", "path": str(quakes / "second_NS.txt"), "units": "g", "step": 0.01, "single": True}
     column = {"shape": "solid", "radius": 0.3, "height": 3.0, "density": 2700.0}
     expected = 2.49 + 20.0 / MODEL.column.frequency_parameter
     run = SimulationDescription.parse({"column": column, "motion": motion}).build()
@@ -137,7 +137,7 @@ def test_the_records_of_a_folder_are_those_that_read_records_finds(quakes):
         found = RecordsDescription(source=source, units="g", step=0.01).build()
         assert list(found) == [record.name for record in expected] == ["first", "second"]
         assert tuple(found.values()) == expected
-    turned = {"second_000.txt": 30, "second_090.txt": 120}
+    turned = {"second_NS.txt": 30, "second_EW.txt": 120}
     (first, second) = RecordsDescription(source=str(quakes), units="g", step=0.01, directions=turned).build().values()
     assert (first, second) == sb.read_records(quakes, "g", step=0.01, directions=turned)
     sample = RecordsDescription(samples=("el centro 1940",), only=("el centro 1940",)).build()
@@ -151,12 +151,15 @@ def test_the_records_of_a_folder_are_those_that_read_records_finds(quakes):
         ({"path": "a", "sample": "el centro 1940"}, "must be given, one of them"),
         ({"path": ["a", "b", "c", "d"]}, "path must name one to three files of one event, got 4"),
         ({"sample": "el centro 1940", "units": "g"}, "units does not belong to a sample"),
-        ({"path": ["first_NS.txt", "second_000.txt"], "units": "g", "step": 0.01}, "one event, got first, second"),
+        (
+            {"path": ["first_NS.txt", "second_NS.txt"], "units": "g", "step": 0.01},
+            "must be perpendicular, or nearly so",
+        ),
         ({"path": "first_NS.txt", "step": 0.01}, "the file does not tell its unit: state units"),
         ({"path": "first_NS.txt", "units": "furlong", "step": 0.01}, "units must be"),
         ({"path": "first_NS.txt", "units": "g"}, "a single column tells no time step"),
         ({"path": "none.txt"}, "cannot read"),
-        ({"path": ["first_NS.txt", "first_EW.txt"], "columns": {"x": "a"}}, "columns does not belong to files"),
+        ({"path": ["first_NS.txt", "first_EW.txt"], "axis": "x"}, "axis does not belong to files"),
     ],
 )
 def test_what_is_no_record_is_told_in_one_line(values, told, quakes):
@@ -173,7 +176,7 @@ def test_each_record_that_cannot_be_read_is_one_line(quakes):
     with pytest.raises(DescriptionError) as caught:
         RecordsDescription(source=str(quakes), step=0.01).build()
     assert len(caught.value.problems) == 3
-    with pytest.raises(DescriptionError, match="'third' is none of the records; they are first, second"):
+    with pytest.raises(DescriptionError, match=r"no record has this name \(got 'third'\). Choose from first, second"):
         RecordsDescription(source=str(quakes / "*.txt"), units="g", step=0.01, only=("third",)).build()
     with pytest.raises(DescriptionError, match="no file has such a name"):
         RecordsDescription(source=str(quakes / "*.AT2")).build()
@@ -195,3 +198,55 @@ def test_mistakes_name_their_fields():
             }
         )
     assert sorted(line.split(" ")[0] for line in caught.value.problems) == ["motion.processing.0.low", "motion.unit"]
+
+
+def test_events_that_a_study_lists_are_those_that_read_records_is_given(quakes):
+    np.savetxt(quakes / "left.txt", np.sin(np.arange(50.0)))
+    np.savetxt(quakes / "right.txt", np.cos(np.arange(50.0)))
+    files = [str(quakes / "left.txt"), str(quakes / "right.txt")]
+    event = {"files": files, "directions": [0, "E"], "name": "mine"}
+    source = str(quakes)  # the listed files are in it, and are not read twice
+    description = RecordsDescription.parse({"source": source, "event": [event], "units": "g", "step": 0.01})
+    found = description.build()
+    expected = sb.read_records(
+        {"mine": files, "first": f"{quakes}/first*", "second": f"{quakes}/second*"},
+        "g",
+        step=0.01,
+        directions={"left.txt": 0, "right.txt": 90},
+    )
+    assert tuple(found.values()) == tuple(sorted(expected, key=lambda record: record.name))
+    assert list(found) == ["first", "mine", "second"]
+    again = json.loads(json.dumps(found["mine"].description.values()))
+    assert RecordMotion.parse(again).build() == found["mine"]
+    assert RecordMotion.parse(again).build().name == "mine"
+    short = {**event, "directions": [0]}
+    with pytest.raises(DescriptionError, match=r"directions: one for each file is needed \(got 1 for 2 files\)"):
+        RecordsDescription.parse({"event": [short], "units": "g", "step": 0.01}).build()
+
+
+def test_files_of_listed_events_are_found_from_the_folder_of_the_study(quakes, tmp_path):
+    text = '[records]\nunits = "g"\nstep = 0.01\n[[records.event]]\nfiles = ["quakes/first_*.txt"]\n'
+    (tmp_path / "study.toml").write_text(text, encoding="utf-8")
+    values = read_description(tmp_path / "study.toml")["records"]
+    (record,) = RecordsDescription.parse(values).build().values()
+    assert (record,) == sb.read_records(quakes.glob("first*"), "g", step=0.01)
+
+
+def test_a_component_alone_is_remarked_on_wherever_it_is_described(quakes):
+    path = str(quakes / "second_NS.txt")
+    reading = {"units": "g", "step": 0.01}
+    for build in (
+        RecordMotion(path=path, **reading).build,
+        RecordsDescription(source=path, **reading).build,
+    ):
+        with pytest.warns(SeldomMeant, match="one horizontal component"):
+            build()
+    assert RecordMotion(path=path, single=True, **reading).build().axes == ("x",)
+    assert list(RecordsDescription(source=path, single=True, **reading).build()) == ["second"]
+
+
+@pytest.mark.parametrize("chosen", sb.records.RecordFormat)
+def test_every_format_of_records_can_be_described(tmp_path, chosen):
+    path = tmp_path / "study.toml"
+    path.write_text(f'kind = "record"\npath = "a.txt"\nformat = "{chosen.name.lower()}"\n', encoding="utf-8")
+    assert RecordMotion.parse(read_description(path)).format == chosen.name.lower()

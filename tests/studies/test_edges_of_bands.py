@@ -94,13 +94,41 @@ def test_the_halvings_announced_are_those_made():
     assert runs == Edges.between(tell(np.array([SCALES]))).halvings(1e-3)
 
 
-def test_runs_that_tell_nothing_are_passed_over_and_stop_the_halving():
-    scan, edges, _ = searched(outcomes_of([3.0], unknown=[(2.4, 3.5)]), SCALES, 1e-3)
+def test_undecided_runs_part_bands_and_are_halved_like_every_other_edge():
+    # Overturns from 1.7 to 2.9 and from 4 to 6.5; undecided inside both, and where the second ends.
+    hidden = [(2.1, 2.7), (5.0, 7.0)]
+    scan, edges, _ = searched(outcomes_of([1.7, 2.9, 4.0, 6.5], unknown=hidden), SCALES, 1e-6)
     found = bands(scan, edges)
-    assert int(found["unknown"]) == np.count_nonzero((SCALES > 2.4) & (SCALES < 3.5)) > 0
-    assert found["safe_below"].item() < 2.4
-    assert found["band_from"].item() > 3.5
-    assert found["uncertain_below"].all()
+    np.testing.assert_allclose(found["band_from"], [1.7, 2.7, 4.0], rtol=1e-6)
+    np.testing.assert_allclose(found["band_to"], [2.1, 2.9, 5.0], rtol=1e-6)
+    assert found["open_above"].values.tolist() == found["undecided_above"].values.tolist() == [True, False, True]
+    assert found["open_below"].values.tolist() == found["undecided_below"].values.tolist() == [False, True, False]
+    # No edge to an undecided run is called safe on its other side.
+    assert found["safe_above"].isnull().values.tolist() == [True, False, True]
+    assert found["safe_below"].isnull().values.tolist() == [False, True, False]
+    assert found["uncertain_above"].values.tolist() == [True, False, True]
+    np.testing.assert_allclose(found["undecided_from"], [2.1, 5.0], rtol=1e-6)
+    np.testing.assert_allclose(found["undecided_to"], [2.7, 7.0], rtol=1e-6)
+    assert float(found["decided_to"]) == float(found["undecided_from"][0])
+    assert int(found["unknown"]) == sum(np.count_nonzero((low < SCALES) & (high > SCALES)) for low, high in hidden)
+
+
+@pytest.mark.parametrize(
+    ("hidden", "decided_to", "stretches"),
+    [([(0.0, 2.4)], np.nan, [(1.0, 2.4)]), ([(7.0, 20.0)], 7.0, [(7.0, 10.0)]), ([(0.0, 20.0)], np.nan, [(1.0, 10.0)])],
+)
+def test_undecided_runs_at_an_end_of_the_scan_reach_to_it(hidden, decided_to, stretches):
+    found = bands(*searched(outcomes_of([30.0], unknown=hidden), SCALES, 1e-6)[:2])
+    assert int(found["bands"]) == 0
+    np.testing.assert_allclose(found["decided_to"], decided_to, rtol=1e-6)
+    shown = np.stack([found["undecided_from"], found["undecided_to"]], axis=-1)
+    np.testing.assert_allclose(shown, stretches, rtol=1e-6)
+
+
+def test_a_scan_that_is_decided_throughout_has_no_undecided_stretch():
+    found = bands(*searched(outcomes_of([1.7, 2.9]), SCALES, 1e-3)[:2])
+    assert found["undecided_from"].isnull().all()
+    assert float(found["decided_to"]) == SCALES[-1]
 
 
 @pytest.mark.parametrize("states", [[1, 1, 1], [UNKNOWN] * 3, [0, 0, 0]])

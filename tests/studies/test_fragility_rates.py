@@ -1,15 +1,21 @@
 """Annual rates: fragility and hazard brought together."""
 
 import logging
+import math
 
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.special import ndtr
 
+import stylobate as sb
 from stylobate.errors import ParameterError
+from stylobate.motions.base import ACCELERATION
+from stylobate.motions.records import HorizontalComponent
+from stylobate.motions.records.peaks import horizontal_peak
 from stylobate.studies import HazardCurve, annual_rate, fit_fragility, lognormal_fragility
 
 BENT = HazardCurve(intensity=[0.2, 1.0, 3.0, 5.0, 20.0], rate=[0.2, 2e-2, 3e-3, 6e-4, 2e-6])
@@ -118,7 +124,8 @@ def test_a_limit_state_without_a_fit_has_no_rate():
         ([1.0], [0.1], "intensity must be a list of two or more numbers"),
         ([1.0, 2.0], [0.1], "rate must be a list of two or more numbers"),
         ([1.0, 2.0], [0.1, 0.05, 0.01], "rate must have one number for each intensity, got 3 for 2"),
-        ([2.0, 1.0], [0.1, 0.05], "intensity must increase, got 1.0"),
+        ([2.0, 1.0, 2.0], [0.1, 0.05, 0.1], "intensity must hold different values, got 2.0 twice"),
+        ([2.0, 1.0], [0.1, 0.05], "rate must not increase with intensity, got 0.1 at 2.0 after 0.05 at 1.0"),
         ([1.0, 2.0], [0.1, 0.2], "rate must not increase with intensity, got 0.2"),
         ([1.0, 2.0], [0.1, 0.0], "rate must be positive and finite, got 0.0"),
     ],
@@ -141,6 +148,74 @@ def test_points_that_are_no_hazard_curve_are_refused(intensity, rate, message):
 def test_mistakes_are_told(arguments, options, message):
     with pytest.raises(ParameterError, match=message):
         annual_rate(*arguments, **options)
+
+
+def test_probabilities_of_exceedance_are_rates_of_a_poisson_process():
+    rate = np.array([2e-2, 1e-3, 4e-5])
+    for years in (1.0, 50.0, 475.0):
+        curve = HazardCurve.of_probabilities([1.0, 3.0, 9.0], 1.0 - np.exp(-rate * years), investigation_time=years)
+        np.testing.assert_allclose(curve.rate, rate, rtol=1e-10)
+        assert f"in {years:g} years" in curve.origin
+    # 0.63, 0.33, 0.1 and 0.02 in 50 years, taken for annual rates, are too large by fifty times and more.
+    fragility = lognormal_fragility(4.0, 0.4)
+    intensity, probability = [0.5, 1.0, 4.0, 9.0], [0.63, 0.33, 0.1, 0.02]
+    right = annual_rate(fragility, HazardCurve.of_probabilities(intensity, probability, investigation_time=50.0))
+    wrong = annual_rate(fragility, HazardCurve(intensity=intensity, rate=probability))
+    assert float(wrong["annual_rate"][0]) > 40.0 * float(right["annual_rate"][0])
+    assert "50 years" in right.attrs["hazard_origin"]
+
+
+def test_points_of_probability_0_or_1_are_left_out_and_others_beyond_are_refused():
+    curve = HazardCurve.of_probabilities([0.1, 1.0, 3.0, 9.0], [1.0, 0.5, 0.1, 0.0], investigation_time=50.0)
+    assert curve.intensity == (1.0, 3.0)
+    with pytest.raises(ParameterError, match=r"probability must be between 0 and 1, got 63\.0; divide"):
+        HazardCurve.of_probabilities([1.0, 3.0], [63.0, 10.0], investigation_time=50.0)
+    with pytest.raises(ParameterError, match="probability must have one number for each intensity, got 2 for 3"):
+        HazardCurve.of_probabilities([1.0, 3.0, 4.0], [0.1, 0.2], investigation_time=50.0)
+    with pytest.raises(ParameterError, match="investigation_time must be positive"):
+        HazardCurve.of_probabilities([1.0, 3.0], [0.2, 0.1], investigation_time=0.0)
+
+
+@pytest.mark.parametrize(
+    ("fragility", "hazard", "message"),
+    [
+        (
+            "RotD50",
+            "geometric mean",
+            r"hazard: horizontal component 'geometric mean', but the fragility uses 'RotD50'\. Fit",
+        ),
+        ("RotD50", None, r"hazard: horizontal component not stated, but the fragility uses 'RotD50'\. State"),
+        (None, "RotD50", r"fragility: horizontal component not stated, but the hazard uses 'RotD50'\. State"),
+    ],
+)
+def test_fragility_and_hazard_must_state_one_horizontal_component(fragility, hazard, message):
+    curve = {"intensity": [1.0, 10.0], "rate": [1e-2, 1e-4]}
+    with pytest.raises(ParameterError, match=message):
+        annual_rate(lognormal_fragility(3.0, 0.4, component=fragility), HazardCurve(**curve, component=hazard))
+    for same in (fragility, hazard):
+        found = annual_rate(lognormal_fragility(3.0, 0.4, component=same), HazardCurve(**curve, component=same))
+        assert found["hazard_intensity"].attrs.get("component") == same
+        assert found["hazard_intensity"].attrs["long_name"] == ("intensity" if same is None else f"intensity, {same}")
+
+
+def test_a_fragility_over_the_vector_underestimates_the_rate_of_a_hazard_in_rotd50():
+    # One hazard, of RotD50. A column whose capacity is a scale of each record, whatever measures the record.
+    rng = np.random.default_rng(2)
+    records = [sb.Record(samples=rng.normal(size=(200, 2)) * (1.0, 0.7), step=0.02, name=f"{k}") for k in range(40)]
+    scale = xr.DataArray(np.geomspace(0.3, 3.0, 15), dims="scale")
+    capacity = xr.DataArray(np.exp(rng.normal(0.0, 0.4, 40)), dims="record")
+    rates, medians = {}, {}
+    for name in ("RotD50", "RotD100", "geometric mean"):
+        peaks = [horizontal_peak(record, ACCELERATION, HorizontalComponent.named(name)) for record in records]
+        intensity = (xr.DataArray(peaks, dims="record") * scale).assign_attrs(units="m s-2", component=name)
+        fits = fit_fragility(intensity, scale > capacity)
+        hazard = HazardCurve(intensity=[0.5, 5.0], rate=[1e-1, 1e-4], units="m s-2", component=name)
+        rates[name], medians[name] = float(annual_rate(fits, hazard)["annual_rate"][0]), float(fits["median"][0])
+        assert fits["median"].attrs["component"] == name
+    assert medians["geometric mean"] < medians["RotD50"] * 1.05
+    assert 1.05 * medians["RotD50"] < medians["RotD100"] < math.sqrt(2.0) * medians["RotD50"]
+    # λ ~ x⁻³: rates differ by about the cube of the ratio of the medians.
+    assert rates["RotD100"] < rates["RotD50"] / 1.05**3
 
 
 def test_a_hazard_curve_keeps_its_numbers():

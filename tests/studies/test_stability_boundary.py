@@ -94,7 +94,7 @@ def test_averaging_errs_the_more_the_larger_the_acceleration():
         ({"bounds": (0.1, 0.2), "values": [0.3]}, "values must lie between the bounds"),
         ({"bounds": (0.1, 0.2), "values": []}, "values must lie between the bounds"),
         ({"bounds": (0.1, 0.2), "parameter": "colour"}, "colour"),
-        ({"bounds": (-0.1, 0.2)}, "bounds must not be negative for acceleration"),
+        ({"bounds": (-0.1, 0.2)}, "bounds: values of acceleration must be zero or positive .got -0.1"),
         ({"bounds": (0.1, 0.2), "angular_frequency": (0.0, 3.0)}, "angular_frequency must rise from above zero"),
         ({"bounds": (0.0, 0.2), "parameter": "damping"}, "damping must be positive"),
     ],
@@ -147,7 +147,7 @@ def test_without_friction_exact_rolling_is_neutrally_stable_where_averaging_says
     [
         ({"values": [0.1], "angular_frequency": [3.0, 1.0]}, "must be two or more frequencies that rise"),
         ({"values": [], "angular_frequency": [1.0, 3.0]}, "values must hold"),
-        ({"values": [-0.1, 0.1], "angular_frequency": [1.0, 3.0]}, "values must not be negative"),
+        ({"values": [-0.1, 0.1], "angular_frequency": [1.0, 3.0]}, "values of acceleration must be zero or positive"),
     ],
 )
 def test_a_map_that_cannot_be_is_told_in_one_line(options, told):

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import stylobate as sb
@@ -62,7 +63,7 @@ def overturns(a, theta, end, restitution):
 
 @pytest.mark.parametrize("theta", [0.3, 1.0, 2.0, 5.0, 20.0])
 @pytest.mark.parametrize(
-    ("least", "half_turns"), [(theory.half_sine_overturning, 1.0), (theory.one_sine_overturning, 2.0)]
+    ("least", "half_turns"), [(theory.half_sine_overturning, 1.0), (theory.one_sine_overturning_without_impact, 2.0)]
 )
 def test_arcs_begin_to_overturn_without_impact_at_the_closed_form(least, half_turns, theta):
     a, end = float(least(theta, 1.0)), half_turns * math.pi / theta
@@ -76,7 +77,92 @@ def test_one_sine_overturns_with_an_impact_below_a_gap_and_without_above_it():
     end = 2.0 * math.pi / 5.0
     for a, impacts in ((3.0185, None), (3.0187, 1), (6.3180, 1), (6.3182, None), (7.1680, None), (7.1682, 0)):
         assert overturns(a, 5.0, end, 0.9) == impacts
-    assert float(theory.one_sine_overturning(5.0, 1.0)) == pytest.approx(7.168, abs=5e-4)
+    assert float(theory.one_sine_overturning_without_impact(5.0, 1.0)) == pytest.approx(7.168, abs=5e-4)
+    band = theory.one_sine_overturning_after_impact(5.0, 1.0, restitution=0.9)
+    np.testing.assert_allclose(band, [3.0186, 6.3181], atol=5e-5)
+
+
+@pytest.mark.parametrize("restitution", [0.7, 0.9, 0.98])
+@pytest.mark.parametrize("theta", [0.5, 1.0, 2.0, 3.0, 5.0, 7.0])
+def test_arcs_overturn_after_one_impact_within_the_band_and_nowhere_beside_it(theta, restitution):
+    end = 2.0 * math.pi / theta
+    lowest, highest = (float(a) for a in theory.one_sine_overturning_after_impact(theta, 1.0, restitution=restitution))
+    without = float(theory.one_sine_overturning_without_impact(theta, 1.0))
+    if math.isnan(lowest):
+        amplitudes = np.linspace(1.2, 0.9999 * without, 60)
+        assert all(overturns(a, theta, end, restitution) is None for a in amplitudes)
+        return
+    # Rounding grows by exp(3π/2θ) during the pulse, 1e4 where it is longest.
+    for edge, inwards in ((lowest, 1.0), (highest, -1.0)):
+        assert overturns(edge * (1.0 + inwards * 1e-9), theta, end, restitution) == 1
+        assert overturns(edge * (1.0 - inwards * 1e-9), theta, end, restitution) is None
+    assert all(overturns(a, theta, end, restitution) == 1 for a in np.linspace(lowest, highest, 22)[1:-1])
+    assert all(overturns(a, theta, end, restitution) is None for a in np.linspace(highest, without, 7)[1:-1])
+
+
+def integrated(a, theta, restitution):
+    """Return whether the piecewise linear block overturns, by Runge and Kutta from impact to impact, 40/p long."""
+    end = 2.0 * math.pi / theta
+    now, state, side = math.asin(1.0 / a) / theta, np.array([0.0, 0.0]), 1.0
+    while now < end + 40.0:
+
+        def rates(tau, y, side=side):
+            return [y[1], y[0] - side + (a * math.sin(theta * tau) if tau < end else 0.0)]
+
+        def landing(tau, y, side=side, since=now):
+            return side * y[0] if tau > since + 1e-6 else 1.0
+
+        def fallen(tau, y):
+            return abs(y[0]) - 50.0
+
+        landing.terminal = fallen.terminal = True
+        until = end if now < end else end + 40.0
+        run = solve_ivp(
+            rates, (now, until), state, events=(landing, fallen), rtol=1e-11, atol=1e-13, method="DOP853", max_step=0.05
+        )
+        now, state = float(run.t[-1]), run.y[:, -1]
+        if run.t_events[1].size:
+            return True
+        if run.t_events[0].size:
+            state, side = np.array([0.0, restitution * state[1]]), -side
+        if abs(state[0]) + abs(state[1]) < 1e-3 and now > end:
+            return False
+    return False
+
+
+@pytest.mark.parametrize(("theta", "restitution"), [(5.0, 0.9), (2.0, 0.8)])
+def test_the_band_after_an_impact_is_that_of_integrated_equations(theta, restitution):
+    lowest, highest = (float(a) for a in theory.one_sine_overturning_after_impact(theta, 1.0, restitution=restitution))
+    for edge, inwards in ((lowest, 1.0), (highest, -1.0)):
+        assert integrated(edge * (1.0 + inwards * 1e-6), theta, restitution)
+        assert not integrated(edge * (1.0 - inwards * 1e-6), theta, restitution)
+
+
+def test_the_band_after_an_impact_reaches_the_one_without_where_an_impact_takes_nothing_and_narrows_with_it():
+    theta, c = np.array([0.3, 1.0, 3.0, 8.0])[:, np.newaxis], np.array([0.1, 0.2])
+    lowest, highest = theory.one_sine_overturning_after_impact(theta, c, restitution=1.0)
+    np.testing.assert_allclose(highest, theory.one_sine_overturning_without_impact(theta, c), rtol=1e-7)
+    less, more = (theory.one_sine_overturning_after_impact(theta, c, restitution=e) for e in (0.95, 0.97))
+    assert np.all(lowest < more[0])
+    assert np.all(more[0] < less[0])
+    assert np.all(less[1] < more[1])
+    assert np.all(more[1] < highest)
+    np.testing.assert_allclose(less[0][:, 1], 2.0 * less[0][:, 0], rtol=1e-14)
+
+
+def test_no_band_is_reported_where_an_impact_takes_too_much_or_rounding_hides_it():
+    for theta, restitution in ((5.0, 0.84), (10.0, 0.9), (0.05, 0.9)):
+        assert np.isnan(theory.one_sine_overturning_after_impact(theta, 1.0, restitution=restitution)).all()
+    assert np.isfinite(theory.one_sine_overturning_after_impact(5.0, 1.0, restitution=0.841)).all()
+
+
+@pytest.mark.parametrize(
+    ("restitution", "message"),
+    [(1.1, r"restitution: at most 1 \(got 1.1\)"), (0.0, "restitution must be positive, got 0.0")],
+)
+def test_restitutions_that_cannot_be_are_refused(restitution, message):
+    with pytest.raises(ParameterError, match=message):
+        theory.one_sine_overturning_after_impact(5.0, 1.0, restitution=restitution)
 
 
 def outcome(model, make, a, theta):
@@ -102,7 +188,7 @@ def test_the_engine_has_the_two_ways_to_overturn_by_one_sine(a, falls):
     assert (found is sb.Outcome.OVERTURNED) is falls
 
 
-@pytest.mark.parametrize("least", [theory.half_sine_overturning, theory.one_sine_overturning])
+@pytest.mark.parametrize("least", [theory.half_sine_overturning, theory.one_sine_overturning_without_impact])
 def test_long_pulses_need_only_release_and_short_ones_an_impulse(least):
     assert float(least(0.02, 0.1)) == pytest.approx(0.1, rel=1e-3)
     values = least(np.geomspace(0.1, 100.0, 31), 1.0)
@@ -116,7 +202,7 @@ def test_a_short_half_sine_must_give_the_velocity_that_carries_over_the_edge():
     assert float(theory.half_sine_overturning(theta, 1.0)) == pytest.approx(0.5 * theta, rel=1e-3)
 
 
-@pytest.mark.parametrize("least", [theory.half_sine_overturning, theory.one_sine_overturning])
+@pytest.mark.parametrize("least", [theory.half_sine_overturning, theory.one_sine_overturning_without_impact])
 @pytest.mark.parametrize(("values", "name"), [((0.0, 1.0), "theta"), ((1.0, -1.0), "c"), ((math.nan, 1.0), "theta")])
 def test_impossible_numbers_are_refused_by_name(least, values, name):
     with pytest.raises(ParameterError, match=rf"^{name}\b"):

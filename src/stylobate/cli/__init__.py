@@ -1,5 +1,8 @@
 """The command line: one file a command."""
 
-from stylobate.cli.main import main
+from stylobate.cli.interrupts import interrupted_by_signals
+
+with interrupted_by_signals():
+    from stylobate.cli.main import main
 
 __all__ = ["main"]

@@ -1,24 +1,32 @@
 """`stylobate assess`: columns under a folder of records, with a report that others can read."""
 
+import hashlib
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from stylobate.cli.assess_progress import parts_done
-from stylobate.cli.many_runs import INTERRUPTED
+from stylobate.cli.given import Given
+from stylobate.cli.interrupts import INTERRUPTED
 from stylobate.cli.options import Json, ThreadCount
 from stylobate.cli.output import NETCDF, check_place, print_json, print_table
 from stylobate.errors import FileError, Interrupted
 
 if TYPE_CHECKING:
     from stylobate.results.assessment import Assessment
+    from stylobate.spec import AssessmentSetup
 
 Source = Annotated[Path, typer.Argument(help="the study, a TOML file; or a saved assessment (.nc) to show again")]
 Folder = Annotated[
     Path | None,
-    typer.Option(help="where to write report, tables and figures [default: NAME-assessment]", show_default=False),
+    typer.Option(
+        help="where to write report, tables and figures [default: NAME-assessment beside the study]", show_default=False
+    ),
 ]
 Store = Annotated[
     Path | None, typer.Option(help="what keeps the parts computed [default: FOLDER/store]", show_default=False)
@@ -28,7 +36,12 @@ _SHOWN = ("column", "scale", "did not overturn it", "overturned it", "not decide
 
 
 def assess(
-    source: Source, folder: Folder = None, store: Store = None, threads: ThreadCount = None, as_json: Json = False
+    context: typer.Context,
+    source: Source,
+    folder: Folder = None,
+    store: Store = None,
+    threads: ThreadCount = None,
+    as_json: Json = False,
 ) -> None:
     """Tell whether columns survive records, how close it was, and how sure that is.
 
@@ -45,13 +58,21 @@ def assess(
     if not source.is_file():
         message = f"cannot read {source}: No such file or directory"
         raise FileError(message)
-    target = folder or Path(f"{source.stem}-assessment")
+    given = Given.of(context)
+    target = given["folder"] or source.with_name(f"{source.stem}-assessment")
     check_place(target / "report.html" if target.exists() else target)
-    found = _loaded(source) if source.suffix == NETCDF else _computed(source, target, store, threads)
-    with parts_done() as progress:
-        report = plots.assessment_report(
-            found, target, progress=lambda done, total: progress("drawing figures", done, total)
-        )
+    setup = None
+    if source.suffix == NETCDF:
+        given.refuse_unused(f"to show {source}, for which it computes nothing")
+    else:
+        setup = _described(source, target)
+    print(f"stylobate: writing into {target}", file=sys.stderr)
+    with _alone_in(target):
+        found = _loaded(source) if setup is None else _computed(setup, store or target / "store", threads)
+        with parts_done() as progress:
+            report = plots.assessment_report(
+                found, target, progress=lambda done, total: progress("drawing figures", done, total)
+            )
     summary = plots.assessment_tables(found)["summary"]
     if as_json:
         print_json({"summary": _rows(summary), "setting": found.setting, "report": str(report)})
@@ -63,20 +84,55 @@ def assess(
         print(f"report: {report}")
 
 
+@contextmanager
+def _alone_in(folder: Path) -> Iterator[None]:
+    """Hold the folder while this process writes into it.
+
+    Raises
+    ------
+    FileError
+        If another process holds it.
+    """
+    from filelock import FileLock, Timeout  # noqa: PLC0415  as above
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        lock = FileLock(folder.resolve() / ".lock", timeout=0, is_singleton=True)
+        lock.acquire()
+    except Timeout:
+        message = f"{folder}: another assessment writes into it. Wait for its end, or name another folder."
+        raise FileError(message) from None
+    except OSError as error:
+        message = f"cannot write {folder}: {error.strerror or error}"
+        raise FileError(message) from None
+    try:
+        yield
+    finally:
+        lock.release()
+
+
 def _loaded(source: Path) -> "Assessment":
     from stylobate.results import Assessment  # noqa: PLC0415
 
     return Assessment.load(source)
 
 
-def _computed(source: Path, target: Path, place: Path | None, threads: int | None) -> "Assessment":
-    from stylobate import spec, studies  # noqa: PLC0415
+def _described(source: Path, target: Path) -> "AssessmentSetup":
+    from stylobate import spec  # noqa: PLC0415
 
     description = spec.AssessDescription.parse(spec.read_description(source))
     _refuse_folder_of_another(target, description.title)
-    setup, store = description.build(), place or target / "store"
+    setup = description.build()
+    digest = hashlib.sha256(source.read_bytes()).hexdigest()
+    setup.options["details"] = replace(setup.options["details"], study_file=source.name, study_sha256=digest)
+    return setup
+
+
+def _computed(setup: "AssessmentSetup", store: Path, threads: int | None) -> "Assessment":
+    from stylobate import studies  # noqa: PLC0415
+
     try:
-        with parts_done() as progress:
+        with _alone_in(store), parts_done() as progress:
             return studies.assess(
                 setup.columns,
                 setup.records,
@@ -93,7 +149,13 @@ def _computed(source: Path, target: Path, place: Path | None, threads: int | Non
 def _refuse_folder_of_another(target: Path, title: str) -> None:
     """Raise FileError if the folder holds the report of a study of another title."""
     earlier = target / "assessment.nc"
-    if earlier.is_file() and (other := _loaded(earlier).setting["title"]) != title:
+    if not earlier.is_file():
+        return
+    try:
+        other = _loaded(earlier).setting["title"]
+    except FileError:  # damaged: written again
+        return
+    if other != title:
         message = f"{target} holds the assessment {other!r}; name another folder with --folder, or remove it"
         raise FileError(message)
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stylobate.cli import options as opt
+from stylobate.cli.given import Given
 from stylobate.cli.many_runs import check_outputs, computed, end, is_to_compute, write
 from stylobate.cli.output import print_json, print_table
 from stylobate.cli.saved import axes_of, open_saved, plain_axes, provenance_of
@@ -35,6 +36,7 @@ Strobes = Annotated[int | None, typer.Option(help="last states kept, one a perio
 Confidence = Annotated[float | None, typer.Option(help="of the intervals of the fractions, 0.95 by default")]
 
 
+@opt.with_waveforms
 def basin(
     context: typer.Context,
     source: Source = None,
@@ -86,6 +88,8 @@ def basin(
     start_phase: opt.StartPhase = None,
     ramp: opt.Ramp = None,
     record: opt.RecordFiles = None,
+    record_direction: opt.RecordDirections = None,
+    single: opt.Single = None,
     sample_record: opt.SampleRecord = None,
     units: opt.Units = None,
     step: opt.TimeStep = None,
@@ -109,12 +113,12 @@ def basin(
 
     stylobate basin basin.toml --random 10000 --seed 1 --over tilt-x -0.08 0.08 --over tilt-rate-x -0.1 0.1
     """
-    given, complete = context.params, True
+    given, complete = Given.of(context), True
     check_outputs(given)
     saved = open_saved(source)
     if not is_to_compute(saved, given):
         assert saved is not None
-        found = _labelled(saved, source, confidence)
+        found = _labelled(saved, source, given["confidence"])
     else:
         from stylobate import spec  # noqa: PLC0415  heavy imports wait until the options are read
 
@@ -122,8 +126,9 @@ def basin(
             described = read_source(source)
         else:
             described = spec.BasinDescription.of_saved(provenance_of(saved), axes_of(saved)).values()
-        values = opt.overlay_axes(opt.overlay(described, given, opt.RUN_NAMES), given, "basin")
-        setup = spec.BasinDescription.parse(opt.overlay_sample(values, given, "basin")).build()
+        kind = spec.BasinDescription
+        values = opt.overlay_sample(opt.overlay(described, given, kind.model_fields), given, "basin")
+        setup = kind.parse(opt.overlay_axes(values, given, "basin")).build()
         from stylobate import studies  # noqa: PLC0415  … and the heaviest until they can be used
 
         _check_names(setup.options)

@@ -7,9 +7,11 @@ import numpy as np
 import typer
 
 from stylobate.cli import options as opt
+from stylobate.cli.given import Given
 from stylobate.cli.output import check_writable, print_json, print_table, save_figure
 from stylobate.cli.response import plain_curves, save_curves
 from stylobate.cli.source import read_source
+from stylobate.errors import ParameterError
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -19,7 +21,9 @@ _ROWS = 9
 Source = Annotated[Path | None, typer.Argument(help="TOML description", show_default=False)]
 Frequencies = Annotated[tuple[float, float] | None, typer.Option(help="lowest and highest angular frequency [rad/s]")]
 Parameter = Annotated[str, typer.Option(help="second parameter: acceleration, amplitude-y, damping, slenderness …")]
-Bounds = Annotated[tuple[float, float], typer.Option(help="its lowest and highest value, SI")]
+Bounds = Annotated[
+    tuple[float, float] | None, typer.Option(help="its lowest and highest value, SI; needed", show_default=False)
+]
 Exactly = Annotated[
     list[float] | None,
     typer.Option("--at", help="value of it at which rolling is looked at first; repeat it, five across by default"),
@@ -29,8 +33,7 @@ Exactly = Annotated[
 def boundary(
     context: typer.Context,
     source: Source = None,
-    *,
-    bounds: Bounds,
+    bounds: Bounds = None,
     parameter: Parameter = "acceleration",
     at: Exactly = None,
     angular_frequency_range: Frequencies = None,
@@ -68,17 +71,21 @@ def boundary(
     """
     from stylobate import plots, spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
 
-    check_writable(figure, output)
-    values = opt.overlay(read_source(source), context.params, ("angular_frequency_range",))
+    given = Given.of(context)
+    check_writable(given["figure"], given["output"])
+    if bounds is None:
+        message = f"--bounds: missing. Give the lowest and the highest {parameter}: --bounds LOW HIGH."
+        raise ParameterError(message)
+    values = opt.overlay(read_source(source), given, spec.ResponseDescription.model_fields)
     setup = spec.ResponseDescription.parse(values).build()
-    found = studies.stability_boundary(
-        setup.model,
-        setup.motion,
-        parameter=parameter.replace("-", "_"),
-        bounds=bounds,
-        angular_frequency=setup.options["range"],
-        values=at or None,
-    )
+    options = {
+        "parameter": given["parameter"].replace("-", "_"),
+        "bounds": given["bounds"],
+        "angular_frequency": setup.options["range"],
+        "values": given["at"] or None,
+    }
+    given.refuse_unused()
+    found = studies.stability_boundary(setup.model, setup.motion, **options)
     if output is not None:
         save_curves(found, output)
     if figure is not None:

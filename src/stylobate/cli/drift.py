@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stylobate.cli import options as opt
+from stylobate.cli.given import Given
 from stylobate.cli.many_runs import check_outputs, computed, end, is_to_compute, write
 from stylobate.cli.output import print_json, print_table
 from stylobate.cli.saved import axes_of, open_saved, plain_axes, provenance_of
@@ -100,7 +101,7 @@ def drift(
     from stylobate import spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
     from stylobate.studies.sweeps.quantities import check_quantities  # noqa: PLC0415
 
-    given, complete = context.params, True
+    given, complete = Given.of(context), True
     check_outputs(given)
     saved = open_saved(source)
     if not is_to_compute(saved, given):
@@ -111,7 +112,8 @@ def drift(
             described = {"model": {"kind": "sliding"}, **read_source(source)}
         else:
             described = spec.DriftDescription.of_saved(provenance_of(saved), axes_of(saved)).values()
-        values = opt.overlay_axes(opt.overlay(described, given, opt.RUN_NAMES), given, "drift")
+        fields = spec.DriftDescription.model_fields
+        values = opt.overlay_axes(opt.overlay(described, given, fields), given, "drift")
         if not values.get("drift"):
             message = "drift.x is missing: what varies, such as --x acceleration 2 30 29"
             raise ParameterError(message)

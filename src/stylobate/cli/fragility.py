@@ -9,9 +9,10 @@ import typer
 
 from stylobate.cli import options as opt
 from stylobate.cli.fragility_table import print_fits, summary
+from stylobate.cli.given import Given
 from stylobate.cli.many_runs import check_outputs, computed, end, is_to_compute
 from stylobate.cli.output import STORE, check_writable, print_json, save_figure
-from stylobate.cli.saved import open_saved, save_dataset
+from stylobate.cli.saved import open_saved
 from stylobate.cli.source import read_source
 from stylobate.errors import FileError, ParameterError
 
@@ -33,7 +34,9 @@ def _option(text: str, metavar: str | None = None) -> Any:
 Records = Annotated[
     list[str] | None, _option("a folder of records, a pattern such as 'quakes/*.AT2', or a file; may be repeated")
 ]
-SampleRecords = Annotated[list[str] | None, _option('a record that comes with the package: "el centro 1940"')]
+SampleRecords = Annotated[
+    list[str] | None, _option('a record that comes with the package: "el centro 1940", or "… corrected"')
+]
 ScaleRange = Annotated[
     tuple[float, float, int] | None, _option("factors of the records: from, to, how many", "FROM TO NUMBER")
 ]
@@ -41,6 +44,13 @@ ScalesSpacing = Annotated[str | None, _option("log (by default) or linear")]
 Intensity = Annotated[
     str | None,
     _option("'peak ground acceleration' (by default), 'peak ground velocity', 'PGA/(g tan α)' or 'p PGV/(g tan α)'"),
+]
+Component = Annotated[
+    str | None,
+    _option(
+        "definition of the horizontal component of the intensity: RotD50 (by default), RotD100 (the vector), "
+        "'geometric mean' or 'larger component'"
+    ),
 ]
 Vertical = Annotated[str | None, _option("whether vertical components act: on (by default), off or both")]
 FreeTail = Annotated[float | None, _option("how long columns are followed after a record [s]; by default 20/p")]
@@ -55,9 +65,19 @@ CountingRule = Annotated[
 Confidence = Annotated[float | None, _option("of intervals [default: 0.95]")]
 Resamples = Annotated[int | None, _option("how often records are drawn anew for intervals [default: 1000]")]
 HazardFile = Annotated[
-    Path | None, _option("a file of two columns: intensity, annual rate of exceedance; first line: PGA [g], rate [1/a]")
+    Path | None,
+    _option(
+        "a hazard curve of OpenQuake, or a file of two columns: intensity, annual rate or probability of exceedance; "
+        "first line: PGA RotD50 [g], annual rate [1/a], or … probability in 50 years"
+    ),
 ]
-HazardUnits = Annotated[str | None, _option("of the intensities of the hazard, where its file tells none: g, m/s2 …")]
+HazardUnits = Annotated[str | None, _option("of the intensities of the hazard, where its file states none: g, m/s2 …")]
+HazardComponent = Annotated[
+    str | None, _option("horizontal component of the hazard, where its file states none: RotD50, 'geometric mean' …")
+]
+HazardSite = Annotated[
+    str | None, _option("which site of a table of OpenQuake: its number, from 0, or LON,LAT", "NUMBER|LON,LAT")
+]
 Years = Annotated[float | None, _option("for which the probability is told [default: 50]")]
 RunsFigure = Annotated[
     Path | None,
@@ -72,9 +92,11 @@ def fragility(
     sample_records: SampleRecords = None,
     units: opt.Units = None,
     step: opt.TimeStep = None,
+    single: opt.Single = None,
     scales: ScaleRange = None,
     scales_spacing: ScalesSpacing = None,
     intensity: Intensity = None,
+    component: Component = None,
     vertical: Vertical = None,
     free_tail: FreeTail = None,
     spread: Spread = None,
@@ -85,6 +107,8 @@ def fragility(
     resamples: Resamples = None,
     hazard: HazardFile = None,
     hazard_units: HazardUnits = None,
+    hazard_component: HazardComponent = None,
+    hazard_site: HazardSite = None,
     years: Years = None,
     tilt: opt.Tilt = None,
     tilt_rate: opt.TiltRate = None,
@@ -133,14 +157,13 @@ def fragility(
     """
     from stylobate import spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
 
-    given, complete = dict(context.params), True
+    given, complete = Given.of(context), True
     check_outputs(given)
-    check_writable(runs_figure)
+    check_writable(given["runs_figure"])
     saved = _saved(source)
     values = _overlay(_described(source) if saved is None else _description(saved, source), given)
     description = spec.FragilityDescription.parse(values)
-    changing = {name: value for name, value in given.items() if name not in _OF_FITS}
-    if not is_to_compute(saved, changing):
+    if not is_to_compute(saved, given, shown_with=_OF_FITS):
         assert saved is not None
         found, study = saved, studies.FragilityStudy.of(description.build(read=False))
     else:
@@ -157,8 +180,9 @@ def fragility(
     end(found, given, complete=complete)
 
 
+_OF_HAZARD = ("hazard", "hazard_units", "hazard_component", "hazard_site")
 # What changes the fits and not the runs.
-_OF_FITS = ("counting", "confidence", "resamples", "hazard", "hazard_units", "years", "runs_figure")
+_OF_FITS = ("counting", "confidence", "resamples", *_OF_HAZARD, "years", "runs_figure")
 
 
 def _saved(source: Path | None) -> "xr.Dataset | None":
@@ -194,11 +218,12 @@ def _described(source: Path | None) -> dict[str, Any]:
     return {**values, "fragility": {**dict(table or {}), "hazard": anchored}}
 
 
-def _overlay(described: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
+def _overlay(described: Mapping[str, Any], given: Given) -> dict[str, Any]:
     """Return the values `described` with the options laid over them."""
-    own = {name: value for name, value in given.items() if name not in ("records", "units", "step")}
-    values = opt.overlay(described, own, opt.RUN_NAMES)
-    values.pop("confidence", None)
+    from stylobate.spec import FragilityDescription  # noqa: PLC0415
+
+    own = given.without("records", "units", "step", "single")
+    values = opt.overlay(described, own, FragilityDescription.model_fields)
     if not values.get("motion"):
         values.pop("motion", None)
     return {**values, "records": _records(values.get("records"), given), "fragility": _table(values, given)}
@@ -207,13 +232,14 @@ def _overlay(described: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str
 def _records(described: Any, given: Mapping[str, Any]) -> Any:
     table = dict(described) if isinstance(described, Mapping) else {"source": described} if described else {}
     if given["records"] or given["sample_records"]:
-        table = {name: value for name, value in table.items() if name not in ("source", "samples", "only")}
+        table = {name: value for name, value in table.items() if name not in ("source", "event", "samples", "only")}
     if given["records"]:
         table["source"] = given["records"][0] if len(given["records"]) == 1 else tuple(given["records"])
     if given["sample_records"]:
         table["samples"] = tuple(given["sample_records"])
-    table |= {name: given[name] for name in ("units", "step") if given[name] is not None}
     source = table.get("source")
+    if source is not None:  # samples know their units
+        table |= {name: given[name] for name in ("units", "step", "single") if given[name] is not None}
     if isinstance(source, str):
         table["source"] = str(Path(source).absolute())
     elif isinstance(source, (list, tuple)):
@@ -232,8 +258,7 @@ def _table(values: Mapping[str, Any], given: Mapping[str, Any]) -> Any:
     if given["scales"] is not None:
         first, last, number = given["scales"]
         table["scales"] = {"from": first, "to": last, "number": number}
-    if given["scales_spacing"] is not None:
-        table["scales"] = {**table.get("scales", {}), "spacing": given["scales_spacing"]}
+    table |= opt.overlay_spacing(table, "scales", given)
     if given["vertical"] is not None:
         if given["vertical"] not in _VERTICAL:
             message = f"--vertical must be on, off or both, got {given['vertical']!r}"
@@ -243,7 +268,8 @@ def _table(values: Mapping[str, Any], given: Mapping[str, Any]) -> Any:
         table["spreads"] = dict(_spread(text) for text in given["spread"])
     table |= _hazard(table.get("hazard"), given)
     names = {"free_tail": "tail", "property_samples": "samples"}
-    for name in ("intensity", "seed", "counting", "confidence", "resamples", "years", *names):
+    rates = ("years",) if table.get("hazard") is not None else ()
+    for name in ("intensity", "component", "seed", "counting", "confidence", "resamples", *rates, *names):
         if given[name] is not None:
             table[names.get(name, name)] = given[name]
     return table
@@ -251,12 +277,22 @@ def _table(values: Mapping[str, Any], given: Mapping[str, Any]) -> Any:
 
 def _hazard(described: Any, given: Mapping[str, Any]) -> dict[str, Any]:
     """Return the hazard, if the options say something of it."""
-    own = {} if given["hazard"] is None else {"file": str(given["hazard"].absolute())}
-    if given["hazard_units"] is not None:
-        own["units"] = given["hazard_units"]
+    own: dict[str, Any] = {} if given["hazard"] is None else {"file": str(given["hazard"].absolute())}
+    own |= {name: given[f"hazard_{name}"] for name in ("units", "component") if given[f"hazard_{name}"] is not None}
+    if given["hazard_site"] is not None:
+        own["site"] = _site(given["hazard_site"])
     # Another file is another curve: nothing of what is described is of it.
     kept = dict(described) if isinstance(described, Mapping) and given["hazard"] is None else {}
     return {"hazard": {**kept, **own}} if own else {}
+
+
+def _site(text: str) -> int | list[float]:
+    """Return the number of a site, or its longitude and latitude."""
+    try:
+        return [float(part) for part in text.split(",")] if "," in text else int(text)
+    except ValueError:
+        message = f"--hazard-site: no number and no LON,LAT (got {text!r}). Give one of them, such as 0 or 22.35,37.95."
+        raise ParameterError(message) from None
 
 
 def _spread(text: str) -> tuple[str, dict[str, Any]]:
@@ -268,7 +304,7 @@ def _spread(text: str) -> tuple[str, dict[str, Any]]:
         raise ParameterError(message) from None
 
 
-def _computed(study: "FragilityStudy", given: Mapping[str, Any]) -> "tuple[xr.Dataset, bool]":
+def _computed(study: "FragilityStudy", given: Given) -> "tuple[xr.Dataset, bool]":
     from stylobate import spec  # noqa: PLC0415
     from stylobate.motions import BASE_AT_REST  # noqa: PLC0415
 
@@ -281,7 +317,9 @@ def _computed(study: "FragilityStudy", given: Mapping[str, Any]) -> "tuple[xr.Da
 def _write(found: "xr.Dataset", fits: "xr.Dataset", given: Mapping[str, Any]) -> None:
     output: Path | None = given["output"]
     if output is not None and output.suffix != STORE:
-        save_dataset(found, output)
+        from stylobate.results import write_netcdf  # noqa: PLC0415
+
+        write_netcdf(found, output)
     for result, path in ((fits, given["figure"]), (found, given["runs_figure"])):
         if path is not None:
             from stylobate import plots  # noqa: PLC0415

@@ -19,7 +19,11 @@ def summary(
     """Return runs, fits, parts of the dispersion and annual rates as plain values, for JSON."""
     return {
         "kind": "fragility",
-        "intensity": {"name": found.attrs["intensity"], "units": fits["median"].attrs.get("units", "1")},
+        "intensity": {
+            "name": found.attrs["intensity"],
+            "component": fits["median"].attrs.get("component"),
+            "units": fits["median"].attrs.get("units", "1"),
+        },
         "records": [str(name) for name in found["record"].to_numpy().ravel()],
         "scales": found["scale"].to_numpy().tolist(),
         "limit_states": [_row(fits, rates, place) for place in range(fits.sizes["limit_state"])],
@@ -77,8 +81,9 @@ def print_fits(found: "xr.Dataset", fits: "xr.Dataset", parts: "xr.Dataset | Non
         print(f"not monotone: {worst} of {records} records are safe again at a higher scale than one that is not")
     if parts is not None:
         print(told_parts(parts))
-    for line in _told_rates(told) if rates is not None else []:
-        print(line)
+    if rates is not None:
+        for line in (*_of_hazard(rates), *_told_rates(told)):
+            print(line)
 
 
 _UNITS = {"m s-2": " [m/s²]", "m s-1": " [m/s]"}
@@ -114,7 +119,27 @@ def _rate_cells(row: Mapping[str, Any]) -> list[str]:
         return ["not told", "not told"]
     if not math.isfinite(row["annual_rate"]):
         return ["", ""]
-    return [f"{row['annual_rate']:.2e}", f"{100.0 * row['probability']:.2g} %"]
+    return [f"{row['annual_rate']:.2e}", _percent(row["probability"])]
+
+
+def _percent(probability: float) -> str:
+    """Return a probability in percent, of two digits; one near certainty is no certainty.
+
+    >>> _percent(0.036), _percent(0.5), _percent(0.9999), _percent(1.0)
+    ('3.6 %', '50 %', '> 99.9 %', '> 99.9 %')
+    """
+    if probability > _NEARLY_CERTAIN:
+        return "> 99.9 %"
+    return f"{100.0 * probability:.2g} %" if probability < _MANY else f"{100.0 * probability:.1f} %"
+
+
+_MANY, _NEARLY_CERTAIN = 0.95, 0.999
+
+
+def _of_hazard(rates: "xr.Dataset") -> list[str]:
+    """Return what the hazard curve is of, and where its rates come from."""
+    origin = str(rates.attrs["hazard_origin"])
+    return [f"hazard: {rates['hazard_intensity'].attrs['long_name']}" + (f"; rates from {origin}" if origin else "")]
 
 
 def _told_rates(rows: Sequence[Mapping[str, Any]]) -> list[str]:

@@ -7,7 +7,9 @@ from typing import Annotated
 import typer
 
 Port = Annotated[int, typer.Option(help="port to listen on; 0 for any that is free")]
-Host = Annotated[str, typer.Option(help="address to listen on; by default this machine's own programs only")]
+Host = Annotated[
+    str, typer.Option(help="address to listen on, 0.0.0.0 for all; by default this machine's own programs only")
+]
 AllowHost = Annotated[
     list[str] | None,
     typer.Option(help="another name by which browsers reach it; repeat it", metavar="NAME", show_default=False),
@@ -20,7 +22,7 @@ def lab(
 ) -> None:
     """Open the laboratory: set column and base motion in the browser, and watch it stand, rock, roll or fall.
 
-    It serves this machine only and loads nothing from the network. Ctrl-C ends it. Example:
+    It serves this machine only, unless --host is given, and loads nothing from the network. Ctrl-C ends it. Example:
 
     stylobate lab --port 9000 --no-browser
     """
@@ -28,7 +30,8 @@ def lab(
     from stylobate.lab.serving import LOOPBACK, serve  # noqa: PLC0415
 
     if host not in LOOPBACK:
-        print(f"stylobate: {host} is reached from other machines too; whoever reaches it can use it", file=sys.stderr)
+        message = "other machines can reach the laboratory; the token in its address lets them use it"
+        print(f"stylobate: {message}", file=sys.stderr)
     if not page_is_built():
         print(NO_PAGE, file=sys.stderr)
 

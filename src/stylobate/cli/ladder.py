@@ -8,6 +8,7 @@ import numpy as np
 import typer
 
 from stylobate.cli import options as opt
+from stylobate.cli.given import Given
 from stylobate.cli.output import check_writable, print_json, print_table, save_figure
 from stylobate.cli.response import plain_curves, save_curves
 from stylobate.cli.source import read_source
@@ -25,6 +26,7 @@ NoModel = Annotated[str | None, typer.Option("--model", hidden=True)]
 Reference = Annotated[str | None, typer.Option(help="level from which differences are taken, rolling by default")]
 
 
+@opt.with_waveforms
 def ladder(
     context: typer.Context,
     source: Source = None,
@@ -88,9 +90,11 @@ def ladder(
     if any(not 0.0 < c < math.inf for c in scaled_to or ()):
         message = f"--scaled-to must be followed by a positive slenderness, got {', '.join(map(str, scaled_to or ()))}"
         raise ParameterError(message)
-    check_writable(figure, output)
-    values = opt.overlay(read_source(source), context.params, opt.RUN_NAMES)
-    setup = spec.LadderDescription.parse(opt.overlay_ladder(values, context.params)).build()
+    given = Given.of(context)
+    check_writable(given["figure"], given["output"])
+    values = opt.overlay(read_source(source), given, spec.LadderDescription.model_fields)
+    setup = spec.LadderDescription.parse(opt.overlay_ladder(values, given)).build()
+    given.refuse_unused()
     options = setup.options
     if figure is not None and options["samples"] is None:
         options = {**options, "samples": _DRAWN}

@@ -12,17 +12,20 @@ from stylobate.cli.basin import basin
 from stylobate.cli.boundary import boundary
 from stylobate.cli.drift import drift
 from stylobate.cli.fragility import fragility
+from stylobate.cli.given import with_values
+from stylobate.cli.interrupts import INTERRUPTED, interrupted_by_signals
 from stylobate.cli.lab import lab
 from stylobate.cli.ladder import ladder
-from stylobate.cli.many_runs import INTERRUPTED
 from stylobate.cli.map import overturning_map
 from stylobate.cli.options import joined_ranges
 from stylobate.cli.paper import paper
+from stylobate.cli.progress import log_lines
+from stylobate.cli.records import records
 from stylobate.cli.response import response
 from stylobate.cli.simulate import simulate
 from stylobate.cli.spectrum import spectrum
 from stylobate.cli.usage import told
-from stylobate.errors import DescriptionError, SeldomMeant, StylobateError
+from stylobate.errors import DescriptionError, ModelError, SeldomMeant, StylobateError
 
 _BAD_INPUT = 2
 
@@ -58,19 +61,20 @@ def _options(
 
 
 for command in (paper, simulate, ladder, response, boundary):
-    app.command()(command)
-app.command("map")(overturning_map)
-app.command()(basin)
-app.command()(drift)
-app.command()(assess)
-app.command()(spectrum)
-app.command()(fragility)
-app.command()(lab)
+    app.command()(with_values(command))
+app.command("map")(with_values(overturning_map))
+for command in (basin, drift, records, assess, spectrum, fragility, lab):
+    app.command()(with_values(command))
 
 
 def main() -> None:
     """Run the command line and end the process; bad input ends with status 2 and one line for each mistake."""
-    sys.exit(run(sys.argv[1:]))
+    with interrupted_by_signals():
+        try:
+            status = run(sys.argv[1:])
+        except KeyboardInterrupt:  # before or after the command itself
+            status = INTERRUPTED
+    sys.exit(status)
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -78,7 +82,8 @@ def run(arguments: Sequence[str]) -> int:
     with warnings.catch_warnings():
         warnings.simplefilter("always", SeldomMeant)
         warnings.showwarning = _show_warning
-        return _run(joined_ranges(arguments) or ["--help"])
+        with log_lines():
+            return _run(joined_ranges(arguments) or ["--help"])
 
 
 def _show_warning(message: Warning | str, *rest: Any, **more: Any) -> None:
@@ -87,15 +92,20 @@ def _show_warning(message: Warning | str, *rest: Any, **more: Any) -> None:
 
 
 def _run(arguments: Sequence[str]) -> int:
+    if any("\0" in argument for argument in arguments):
+        return _tell(["the command line: an argument holds a NUL character. Remove it."])
     program = typer.main.get_command(app)
     try:
         status = program.main(arguments, prog_name="stylobate", standalone_mode=False)
     except _UsageError as error:
         return _tell([told(error, program)])
-    except DescriptionError as error:
+    except (DescriptionError, ModelError) as error:
         return _tell(error.problems)
     except StylobateError as error:
         return _tell([str(error)])
+    except OSError as error:  # a name that no system accepts, or a disk that fails
+        reason = error.strerror or str(error)
+        return _tell([f"{error.filename}: cannot be used ({reason}). Name another one." if error.filename else reason])
     except (KeyboardInterrupt, typer.Abort):
         status = INTERRUPTED
     if status == INTERRUPTED:
@@ -105,5 +115,6 @@ def _run(arguments: Sequence[str]) -> int:
 
 def _tell(problems: Sequence[str]) -> int:
     for problem in problems:
-        print(f"stylobate: {problem}", file=sys.stderr)
+        line = problem.replace("\n", "\\n")  # of a name that holds one
+        print(f"stylobate: {line}", file=sys.stderr)
     return _BAD_INPUT

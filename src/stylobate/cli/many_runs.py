@@ -1,15 +1,16 @@
 """What `map` and `basin` share: many runs computed with progress, to the end or to Ctrl-C, and written."""
 
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
 
+from stylobate.cli.given import Given
+from stylobate.cli.interrupts import INTERRUPTED
 from stylobate.cli.output import STORE, check_writable, save_figure
 from stylobate.cli.progress import runs_done
-from stylobate.cli.saved import save_dataset
 from stylobate.errors import Interrupted, ParameterError, StylobateError
 
 if TYPE_CHECKING:
@@ -18,16 +19,33 @@ if TYPE_CHECKING:
     from stylobate.spec import Setup
     from stylobate.studies import Dask, Threads
 
-INTERRUPTED = 130
-
 # Options that do not change what is computed.
-_HOW = ("source", "figure", "output", "as_json", "resume", "executor", "threads", "confidence")
+_HOW = ("source", "figure", "output", "as_json", "resume", "executor", "threads")
 
 
-def is_to_compute(saved: "xr.Dataset | None", given: Mapping[str, Any]) -> bool:
-    """Return whether there is something to compute: `saved` results are only shown unless options change them."""
-    changes = any(value not in (None, [], ()) for name, value in given.items() if name not in _HOW)
-    return saved is None or changes or given["resume"] or _is_store(given["output"])
+def is_to_compute(saved: "xr.Dataset | None", given: Given, *, shown_with: Sequence[str] = ("confidence",)) -> bool:
+    """Return whether there is something to compute: `saved` results are only shown unless options change them.
+
+    Parameters
+    ----------
+    saved
+        The results, or None.
+    given
+        The options.
+    shown_with
+        Names of options that change what is shown of saved results, and not the runs.
+
+    Raises
+    ------
+    DescriptionError
+        If results are only shown and an option says how to compute them.
+    """
+    changes = any(name not in (*_HOW, *shown_with) for name in given.flags)
+    if saved is None or changes or given["resume"] or _is_store(given["output"]):
+        return True
+    given.use(*shown_with)
+    given.refuse_unused(f"to show {given['source']}, for which it computes nothing")
+    return False
 
 
 def check_outputs(given: Mapping[str, Any]) -> None:
@@ -44,17 +62,19 @@ def check_axes(section: str, setup: "Setup") -> None:
         checked_values(f"{section}.{place}", name, values)
 
 
-def computed(
-    study: Callable[..., "xr.Dataset"], setup: "Setup", given: Mapping[str, Any], what: str
-) -> "tuple[xr.Dataset, bool]":
+def computed(study: Callable[..., "xr.Dataset"], setup: "Setup", given: Given, what: str) -> "tuple[xr.Dataset, bool]":
     """Return what `study` finds, and whether it was computed to its end: False after Ctrl-C.
 
     Raises
     ------
     StylobateError
-        If the options say contrary things, the store cannot be used, or the study refuses.
+        If the options contradict each other, nothing uses one of them, the store cannot be used, or the study refuses.
+    typer.Exit
+        After Ctrl-C before any run was done: there is nothing to write.
     """
-    store, executor = _store(given), _executor(given["executor"], given["threads"])
+    store, resume = _store(given), given["resume"]
+    executor = _executor(given["executor"], given["threads"])
+    given.refuse_unused()
     try:
         with runs_done(what) as progress:
             found = study(
@@ -63,10 +83,13 @@ def computed(
                 **setup.options,
                 store=store,
                 executor=executor,
-                resume=given["resume"],
+                resume=resume,
                 progress=progress,
             )
     except Interrupted as stop:
+        if store is None and not (stop.partial["outcome"] >= 0).any():
+            print("stylobate: no run is done, and nothing is written", file=sys.stderr)
+            raise typer.Exit(INTERRUPTED) from None
         return stop.partial, False
     except StylobateError as error:
         raise StylobateError(str(error).replace("resume=True", "--resume")) from None
@@ -77,7 +100,9 @@ def write(found: "xr.Dataset", given: Mapping[str, Any]) -> None:
     """Write what was found into the files asked for; a store holds it already."""
     output: Path | None = given["output"]
     if output is not None and not _is_store(output):
-        save_dataset(found, output)
+        from stylobate.results import write_netcdf  # noqa: PLC0415  heavy imports wait until they are needed
+
+        write_netcdf(found, output)
     if given["figure"] is not None:
         from stylobate import plots  # noqa: PLC0415  heavy imports wait until they are needed
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stylobate.cli import options as opt
+from stylobate.cli.given import Given
 from stylobate.cli.many_runs import check_axes, check_outputs, computed, end, is_to_compute, write
 from stylobate.cli.output import print_json, print_table
 from stylobate.cli.saved import axes_of, open_saved, plain_axes, provenance_of
@@ -23,6 +24,7 @@ Source = Annotated[
 ]
 
 
+@opt.with_waveforms
 def overturning_map(
     context: typer.Context,
     source: Source = None,
@@ -75,6 +77,8 @@ def overturning_map(
     start_phase: opt.StartPhase = None,
     ramp: opt.Ramp = None,
     record: opt.RecordFiles = None,
+    record_direction: opt.RecordDirections = None,
+    single: opt.Single = None,
     sample_record: opt.SampleRecord = None,
     units: opt.Units = None,
     step: opt.TimeStep = None,
@@ -100,7 +104,7 @@ def overturning_map(
 
     stylobate map map.zarr --resume
     """
-    given, complete = context.params, True
+    given, complete = Given.of(context), True
     check_outputs(given)
     saved = open_saved(source)
     if not is_to_compute(saved, given):
@@ -113,8 +117,9 @@ def overturning_map(
             described = read_source(source)
         else:
             described = spec.MapDescription.of_saved(provenance_of(saved), axes_of(saved)).values()
-        values = opt.overlay_axes(opt.overlay(described, given, opt.RUN_NAMES), given, "map")
-        setup = spec.MapDescription.parse(values).build()
+        kind = spec.MapDescription
+        values = opt.overlay_axes(opt.overlay(described, given, kind.model_fields), given, "map")
+        setup = kind.parse(values).build()
         from stylobate import studies  # noqa: PLC0415  … and the heaviest until they can be used
 
         check_axes("map", setup)

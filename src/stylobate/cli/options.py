@@ -1,6 +1,8 @@
 """Options that commands share, and how they join with a TOML file: same names, options win."""
 
-from collections.abc import Mapping, Sequence
+import inspect
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import wraps
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -86,20 +88,28 @@ Patch = Annotated[float | None, _option("radius of the contact of sliding, in ra
 Incline = Annotated[float | None, _option("angle of the plane of sliding to the horizontal [rad]", _MODEL)]
 InclineDirection = Annotated[float | None, _option("azimuth of the way down [rad]", _MODEL)]
 
+MOTIONS_IN_FILES = ("harmonic", "displacement_amplitude", "sum", "one_of", "scaled", "rotated", "delayed")
+"""Kinds of base motion whose numbers no option gives."""
+
 Motion = Annotated[
     str | None,
     _option(
-        "rest, circular, straight, elliptic, vertical, oblique, stroke, orbit or record; a file knows more kinds",
+        "rest, circular, straight, elliptic, vertical, oblique, stroke, orbit or record; a pulse: half-sine, "
+        "half-cosine, one-sine, one-cosine, sinusoidal, type-a, type-b, type-c, ricker, antisymmetric-ricker, gabor, "
+        "mavroeidis-papageorgiou; linear-sweep or logarithmic-sweep; in a file also "
+        + ", ".join(MOTIONS_IN_FILES).replace("_", "-"),
         _MOTION,
     ),
 ]
 HarmonicMotion = Annotated[str | None, _option("circular, straight or elliptic; a file knows more kinds", _MOTION)]
 Acceleration = Annotated[float | None, _option("acceleration amplitude [m/s²]", _MOTION)]
 AngularFrequency = Annotated[float | None, _option("angular frequency [rad/s]", _MOTION)]
-Frequency = Annotated[float | None, _option("frequency of a stroke [Hz]", _MOTION)]
+Frequency = Annotated[
+    float | None, _option("frequency of a stroke, a gabor or a mavroeidis-papageorgiou [Hz]", _MOTION)
+]
 Amplitude = Annotated[tuple[float, float] | None, _option("two amplitudes of an ellipse [m/s²]", _MOTION)]
-Phase = Annotated[float | None, _option("phase of the second axis of an ellipse [rad]", _MOTION)]
-Direction = Annotated[float | None, _option("direction of a straight motion [rad]", _MOTION)]
+Phase = Annotated[float | None, _option("phase of the second axis of an ellipse, or of a pulse [rad]", _MOTION)]
+Direction = Annotated[float | None, _option("direction of a motion along a line [rad]", _MOTION)]
 Angle = Annotated[float | None, _option("angle at which an oblique motion rises [rad]", _MOTION)]
 Sense = Annotated[int | None, _option("1 anticlockwise, -1 clockwise", _MOTION)]
 Stroke = Annotated[float | None, _option("stroke from peak to peak [m]", _MOTION)]
@@ -108,16 +118,58 @@ Rpm = Annotated[float | None, _option("turns a minute of an orbit", _MOTION)]
 StartPhase = Annotated[float | None, _option("phase at the start [rad]", _MOTION)]
 Ramp = Annotated[float | None, _option("time over which the amplitude rises [s]", _MOTION)]
 
+_WAVEFORMS: Mapping[str, Any] = {
+    "pulse_velocity": Annotated[float | None, _option("velocity of a type-a, -b, -c or wavelet pulse [m/s]", _MOTION)],
+    "cycles": Annotated[float | None, _option("number of cycles of a sinusoidal or type-c pulse", _MOTION)],
+    "oscillations": Annotated[float | None, _option("oscillations of a gabor or mavroeidis-papageorgiou", _MOTION)],
+    "displacement": Annotated[float | None, _option("displacement amplitude of a sine sweep [m]", _MOTION)],
+    "frequencies": Annotated[
+        tuple[float, float] | None, _option("first and last frequency of a sine sweep [Hz]", _MOTION)
+    ],
+    "length": Annotated[float | None, _option("how long a sine sweep lasts [s]", _MOTION)],
+    "start": Annotated[float | None, _option("when a pulse or a sine sweep starts [s]", _MOTION)],
+    "vertical": Annotated[float | None, _option("vertical over horizontal of a pulse or a sine sweep", _MOTION)],
+}
+
+
+def with_waveforms(command: Callable[..., None]) -> Callable[..., None]:
+    """Add the numbers of pulses and sine sweeps to the options of a `command`, which reads them from its context."""
+    signature = inspect.signature(command)
+    own = list(signature.parameters.values())
+    place = list(signature.parameters).index("ramp")
+    more = [own[place].replace(name=name, annotation=one) for name, one in _WAVEFORMS.items()]
+
+    @wraps(command)
+    def taking(**given: Any) -> None:
+        command(**{name: value for name, value in given.items() if name not in _WAVEFORMS})
+
+    joined = signature.replace(parameters=[*own[: place + 1], *more, *own[place + 1 :]])
+    taking.__signature__ = joined  # type: ignore[attr-defined]  # what typer reads
+    return taking
+
+
 RecordFiles = Annotated[
     list[Path] | None,
     typer.Option(
-        help="a file of a record; once more for each component of the same event",
+        help="a file of a record; once more for each component of the same event, whatever its name",
         rich_help_panel=_MOTION,
         show_default=False,
         callback=_readable,
     ),
 ]
-SampleRecord = Annotated[str | None, _option('a record that comes with the package: "el centro 1940"', _MOTION)]
+RecordDirections = Annotated[
+    list[str] | None,
+    _option("direction of a component, once for each --record, in their order: an azimuth, up, N10E, L …", _MOTION),
+]
+Single = Annotated[
+    bool | None,
+    typer.Option(
+        "--single", help="one component alone is meant: no warning", rich_help_panel=_MOTION, show_default=False
+    ),
+]
+SampleRecord = Annotated[
+    str | None, _option('a record that comes with the package: "el centro 1940", or "… corrected"', _MOTION)
+]
 Units = Annotated[str | None, _option("of a record whose file tells none: g, m/s2 or cm/s2", _MOTION)]
 TimeStep = Annotated[float | None, _option("time step of a record whose file tells none [s]", _MOTION)]
 Scale = Annotated[float | None, _option("factor of a record", _MOTION)]
@@ -136,27 +188,8 @@ Executor = Annotated[
 ThreadCount = Annotated[int | None, _option("threads to run on; all cores by default", _COMPUTING)]
 Json = Annotated[bool, typer.Option("--json", help="print JSON instead of a table", rich_help_panel=_OUTPUT)]
 
-RUN_NAMES = (
-    "tilt",
-    "tilt_rate",
-    "duration",
-    "periods",
-    "method",
-    "rtol",
-    "tilt_limit",
-    "rest_energy",
-    "max_steps",
-    "samples",
-    "strobes",
-    "confidence",
-    "spin",
-    "twist",
-    "position",
-    "velocity",
-    "clearance",
-    "friction_coefficient",
-)
 _COLUMN_NAMES = ("shape", "radius", "height", "density", "inner_radius", "top_radius", "slenderness", "gravity")
+_TABLES = ("column", "model", "motion", "records")
 _MODEL_NAMES = (
     "damping",
     "spin_friction",
@@ -183,13 +216,13 @@ _MOTION_NAMES = (
     "rpm",
     "start_phase",
     "ramp",
+    *(name for name in _WAVEFORMS if name != "pulse_velocity"),
 )
-_RECORD_NAMES = ("units", "step", "scale", "rotation", "tail")
-_SHAPES = {"slenderness": "dimensionless", "inner_radius": "hollow", "top_radius": "frustum"}
+_RECORD_NAMES = ("units", "step", "single", "scale", "rotation", "tail")
 
 
-def overlay(described: Mapping[str, Any], given: Mapping[str, Any], run_names: tuple[str, ...]) -> dict[str, Any]:
-    """Return the values `described` in a file with those `given` as options laid over them.
+def overlay(described: Mapping[str, Any], given: Mapping[str, Any], fields: Iterable[str]) -> dict[str, Any]:
+    """Lay the options `given` over the values `described` in a file.
 
     Parameters
     ----------
@@ -197,21 +230,23 @@ def overlay(described: Mapping[str, Any], given: Mapping[str, Any], run_names: t
         Values of a TOML file, or nothing.
     given
         All options of the command by name; None is not given.
-    run_names
-        Names of the options that stand at the top of a description.
+    fields
+        Names that the description knows at its top: options that it does not know are not read.
     """
     values = dict(described)
     _section(values, "column", _column(values.get("column"), _pick(given, _COLUMN_NAMES)), tag="shape")
     _section(values, "model", _model(values, given))
-    motion = {**({"kind": given["motion"]} if given.get("motion") else {}), **_pick(given, _MOTION_NAMES)}
-    _section(values, "motion", {**motion, **_record(given)}, tag="kind")
-    chosen = _pick(given, run_names)
-    if _slides(values.get("model")) and "friction_coefficient" in chosen:
-        values["model"] = {**values["model"], "friction_coefficient": chosen.pop("friction_coefficient")}
+    _section(values, "motion", _motion(values.get("motion"), given), tag="kind")
+    slides = _slides(values.get("model"))
+    chosen = _pick(given, [name for name in fields if name not in (*_TABLES, *(_CONTACT if slides else ()))])
     for name, other in (("duration", "periods"), ("periods", "duration")):
         if name in chosen and other not in chosen:
             values.pop(other, None)  # how long is said in one way
     return values | chosen
+
+
+# A number of the model where that slides, of the run otherwise: see `FrictionCoefficient`.
+_CONTACT = ("friction_coefficient",)
 
 
 def _slides(model: Any) -> bool:
@@ -219,20 +254,56 @@ def _slides(model: Any) -> bool:
     return isinstance(model, Mapping) and model.get("kind") == "sliding"
 
 
-def _record(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the options of a record; its files tell that the motion is one."""
+def _motion(described: Any, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the options of the base motion, with underscores for hyphens.
+
+    Raises
+    ------
+    ParameterError
+        If its numbers can be given in a file only, and the file describes another motion.
+    """
+    options = _pick(given, _MOTION_NAMES)
+    if given.get("pulse_velocity") is not None:
+        options["velocity"] = given["pulse_velocity"]  # --velocity is that of the column at the start
+    if not given.get("motion"):
+        return {**options, **_record(described, given)}
+    kind = given["motion"].replace("-", "_")
+    if kind in MOTIONS_IN_FILES and not (isinstance(described, Mapping) and described.get("kind") == kind):
+        message = (
+            f"--motion: no options give the numbers of this motion (got {given['motion']}). "
+            f'Describe it in a file: [motion], kind = "{kind}".'
+        )
+        raise ParameterError(message)
+    return {"kind": kind, **options, **_record(described, given)}
+
+
+def _record(described: Any, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the options of a record: its files make the motion one, and only files can lack a component."""
+    known = described if isinstance(described, Mapping) else {}
     files = [str(path) for path in given.get("record") or ()]
     which: dict[str, Any] = {"path": files[0] if len(files) == 1 else files} if files else {}
     if given.get("sample_record"):
         which["sample"] = given["sample_record"]
+    if given.get("record_direction"):
+        which["directions"] = [_azimuth_or_name(text) for text in given["record_direction"]]
     kind = {"kind": "record"} if which and not given.get("motion") else {}
-    return {**kind, **which, **_pick(given, _RECORD_NAMES)}
+    of_files = ("path" in which) or ("sample" not in which and "path" in known)
+    return {**kind, **which, **_pick(given, [name for name in _RECORD_NAMES if of_files or name != "single"])}
+
+
+def _azimuth_or_name(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def _column(described: Any, options: dict[str, Any]) -> dict[str, Any]:
     """Return the options of the column with its shape told; they may not change the shape of a file unasked."""
-    implied = next((shape for name, shape in _SHAPES.items() if name in options), None)
-    before = described.get("shape", "solid") if isinstance(described, Mapping) else None
+    from stylobate.spec.columns import implied_shape  # noqa: PLC0415  heavy imports wait until the options are read
+
+    implied = implied_shape(options)
+    before = described.get("shape", implied_shape(described) or "solid") if isinstance(described, Mapping) else None
     if not options or "shape" in options:
         return options
     if before is None:
@@ -255,17 +326,17 @@ def _model(values: dict[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
     """
     from stylobate.spec.models import known_values  # noqa: PLC0415  heavy imports wait until the options are read
 
-    options = _pick(given, _MODEL_NAMES)
-    if "constraint" in options:
-        options["constraint"] = options["constraint"].replace("-", "_")
     described = values.get("model", {})
     if given.get("model") and isinstance(described, Mapping):
         kind = given["model"].replace("-", "_")
         values["model"] = {**known_values(described, kind), "kind": kind}
+    options = _pick(given, (*_MODEL_NAMES, *(_CONTACT if _slides(values.get("model")) else ())))
+    if "constraint" in options:
+        options["constraint"] = options["constraint"].replace("-", "_")
     return options
 
 
-def _pick(given: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
+def _pick(given: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
     return {name: given[name] for name in names if given.get(name) is not None}
 
 
@@ -298,10 +369,16 @@ def overlay_axes(described: Mapping[str, Any], given: Mapping[str, Any], section
         if given.get(place) is not None:
             name, first, last, number = given[place]
             table[place] = {"name": name, "from": first, "to": last, "number": number}
-        spacing = given.get(f"{place}_spacing")
-        if spacing is not None:
-            table[place] = {**table.get(place, {}), "spacing": spacing}
+        table |= overlay_spacing(table, place, given)
     return {**values, section: table} if table else values
+
+
+def overlay_spacing(table: Mapping[str, Any], name: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the axis `name` of this `table` with its spacing, if that is `given`; listed values have none."""
+    described = table.get(name)
+    if not isinstance(described, Mapping) or "values" in described or given.get(f"{name}_spacing") is None:
+        return {}
+    return {name: {**described, "spacing": given[f"{name}_spacing"]}}
 
 
 def overlay_late(described: Mapping[str, Any], given: Mapping[str, Any], section: str) -> dict[str, Any]:
@@ -313,13 +390,15 @@ def overlay_late(described: Mapping[str, Any], given: Mapping[str, Any], section
 
 def overlay_sample(described: Mapping[str, Any], given: Mapping[str, Any], section: str) -> dict[str, Any]:
     """Return the values `described` with the random sample `given` as options random, seed and over in a table."""
-    values, sample = dict(described), _pick(given, ("random", "seed"))
+    values, sample = dict(described), _pick(given, ("random",))
     ranges = dict(_range(text) for text in given.get("over") or ())
     table = values.get(section, {})
+    if "random" in sample or (isinstance(table, Mapping) and table.get("random") is not None):
+        sample |= _pick(given, ("seed",))  # nothing is drawn for a grid
     if not (sample or ranges) or not isinstance(table, Mapping):
         return values
     if "random" in sample:  # instead of a grid that the file describes
-        table = {name: value for name, value in table.items() if name not in ("x", "y") or given.get(name) is not None}
+        table = {name: value for name, value in table.items() if name not in ("x", "y")}
     return {**values, section: {**table, **sample, **({"over": ranges} if ranges else {})}}
 
 

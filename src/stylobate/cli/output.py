@@ -5,10 +5,12 @@ import math
 import os
 import sys
 from collections.abc import Sequence
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stylobate.errors import FileError, ParameterError
+from stylobate.files import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -68,8 +70,8 @@ def check_writable(figure: Path | None, output: Path | None = None, *, stores: b
         if output.suffix not in endings:
             message = f"--output must end with {' or '.join(endings)}, got {str(output)!r}"
             raise ParameterError(message)
-        if output.suffix == STORE:  # a folder, perhaps one that is to be continued
-            output = output.with_name(f"{output.name}.part")
+        if output.suffix == STORE and output.is_dir():  # to be continued; if it is complete, nothing is written
+            output = None
     for path in (figure, output):
         if path is not None:
             check_place(path)
@@ -92,14 +94,13 @@ def save_figure(figure: "Figure", path: Path) -> None:
     FileError
         If it cannot be written or the ending is no format for figures.
     """
+    drawn = BytesIO()
     try:
-        figure.savefig(path, dpi=180)
-    except OSError as error:
-        message = f"cannot write {path}: {error.strerror or error}"
-        raise FileError(message) from None
+        figure.savefig(drawn, format=path.suffix.removeprefix(".").lower(), dpi=180)
     except ValueError as error:
         message = f"cannot draw into {path}: {error}"
         raise FileError(message) from None
+    write_whole(path, drawn.getvalue())
 
 
 def _finite(values: Any) -> Any:

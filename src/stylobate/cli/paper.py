@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from stylobate.cli.output import check_place, print_json, print_table
+from stylobate.cli.paper_progress import sections_done
 
 Folder = Annotated[Path, typer.Option(help="where to write figures, data and report.html")]
 Workers = Annotated[int | None, typer.Option(help="processes to use; all cores by default", show_default=False, min=1)]
@@ -16,25 +17,18 @@ Json = Annotated[bool, typer.Option("--json", help="print JSON instead of a tabl
 def paper(folder: Folder = Path("stylobate-paper"), workers: Workers = None, as_json: Json = False) -> None:
     """Reproduce the source paper: draw its figures, measure its claims, correct its misprints.
 
-    Writes figures, their data and one self-contained page, report.html, into a folder, and prints what became of
-    every claim. Takes less than a minute on two cores. Ends with status 1 if a claim could not be confirmed.
-    """
-    from rich.console import Console  # noqa: PLC0415  heavy imports wait until the options are read
-    from rich.progress import Progress  # noqa: PLC0415
+    Writes figures, their data and one self-contained page, report.html, into a folder, and prints the verdict on
+    every claim. Takes about a minute on two cores. Ends with status 1 if a claim could not be confirmed.
 
-    from stylobate import plots, studies  # noqa: PLC0415
+    The folder keeps each finished section: after Ctrl-C the same command computes only the others.
+    """
+    from stylobate import plots, studies  # noqa: PLC0415  heavy imports wait until the options are read
     from stylobate.results import Verdict  # noqa: PLC0415
 
     check_place(folder / "report.html" if folder.exists() else folder)
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("checking the paper", total=None)
-
-        def advance(heading: str, done: int, total: int) -> None:
-            bar.update(task, completed=done, total=total + 1, description=heading)
-
-        check = studies.check_paper(workers=workers or os.cpu_count() or 1, progress=advance)
-        bar.update(task, description="drawing")
-        report = plots.paper_report(check, folder)
+    with sections_done() as progress:
+        check = studies.check_paper(workers=workers or os.cpu_count() or 1, progress=progress, folder=folder)
+    report = plots.paper_report(check, folder)
     rows = [(f.source, f.statement, f.measured, f.verdict.value) for f in check.findings]
     if as_json:
         print_json([dict(zip(("source", "statement", "measured", "verdict"), row, strict=True)) for row in rows])

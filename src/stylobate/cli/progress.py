@@ -2,6 +2,7 @@
 
 import logging
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -29,7 +30,7 @@ def runs_done(what: str) -> Iterator[Callable[[int, int], None]]:
     )
     with (
         Progress(*columns, console=console, transient=True, disable=not sys.stderr.isatty()) as bar,
-        _warnings_on(console),
+        _handled_by(_OnConsole(console)),
     ):
         task = bar.add_task(what, total=None, rate="")
 
@@ -41,11 +42,37 @@ def runs_done(what: str) -> Iterator[Callable[[int, int], None]]:
         yield advance
 
 
+@contextmanager
+def log_lines() -> Iterator[None]:
+    """Print warnings of the library on stderr, and of what it reports while it computes a line every few seconds."""
+    with _handled_by(_Lines()):
+        yield
+
+
+class _Lines(logging.Handler):
+    """Prints records one to a line; reports below warnings after so much processor time without another."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._last = time.process_time()
+
+    def emit(self, record: logging.LogRecord) -> None:
+        now = time.process_time()
+        if record.levelno < logging.WARNING and now - self._last < _QUIET:
+            return
+        self._last = now
+        print(f"stylobate: {record.getMessage()}", file=sys.stderr, flush=True)
+
+
+# Processor time that a computation may take without a line [s].
+_QUIET = 4.0
+
+
 class _OnConsole(logging.Handler):
     """Prints records above the line that moves."""
 
     def __init__(self, console: "Console") -> None:
-        super().__init__()
+        super().__init__(logging.WARNING)
         self._console = console
 
     def emit(self, record: logging.LogRecord) -> None:
@@ -53,10 +80,14 @@ class _OnConsole(logging.Handler):
 
 
 @contextmanager
-def _warnings_on(console: "Console") -> Iterator[None]:
-    log, handler = logging.getLogger("stylobate"), _OnConsole(console)
-    log.addHandler(handler)
+def _handled_by(handler: logging.Handler) -> Iterator[None]:
+    """Let this handler alone print what the library logs."""
+    log = logging.getLogger("stylobate")
+    before = log.handlers[:], log.level
+    log.handlers = [handler]
+    log.setLevel(logging.INFO)
     try:
         yield
     finally:
-        log.removeHandler(handler)
+        log.handlers = before[0]
+        log.setLevel(before[1])

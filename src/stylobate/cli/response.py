@@ -7,14 +7,14 @@ import numpy as np
 import typer
 
 from stylobate.cli import options as opt
+from stylobate.cli.given import Given
 from stylobate.cli.output import check_writable, print_json, print_table, save_figure
 from stylobate.cli.source import read_source
-from stylobate.errors import FileError, ParameterError
+from stylobate.errors import ParameterError
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_RANGE_NAMES = ("angular_frequency_range", "points")
 _ROWS = 17
 
 Source = Annotated[Path | None, typer.Argument(help="TOML description", show_default=False)]
@@ -67,12 +67,14 @@ def response(
     """
     from stylobate import plots, spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
 
-    check_writable(figure, output)
-    if exact and points is not None:
+    given = Given.of(context)
+    check_writable(given["figure"], given["output"])
+    if given["exact"] and points is not None:
         message = "--points counts the frequencies of theory; leave it out with --exact, which chooses its own steps"
         raise ParameterError(message)
-    values = opt.overlay(read_source(source), context.params, _RANGE_NAMES)
+    values = opt.overlay(read_source(source), given, spec.ResponseDescription.model_fields)
     setup = spec.ResponseDescription.parse(values).build()
+    given.refuse_unused()
     low, high = setup.options["range"]
     if exact:
         curves = studies.exact_response(setup.model, setup.motion, angular_frequency=(low, high))
@@ -134,12 +136,10 @@ def _stable_ranges(curves: "xr.Dataset") -> list[list[str]]:
 
 def save_curves(curves: "xr.Dataset", path: Path) -> None:
     """Write curves to a netCDF file, which knows no truth values."""
-    try:
-        flags = {name: data.astype("int8") for name, data in curves.data_vars.items() if data.dtype == bool}
-        curves.assign(flags).to_netcdf(path, engine="h5netcdf")
-    except OSError as error:
-        message = f"cannot write {path}: {error.strerror or error}"
-        raise FileError(message) from None
+    from stylobate.results import write_netcdf  # noqa: PLC0415  heavy imports wait until they are needed
+
+    flags = {name: data.astype("int8") for name, data in curves.data_vars.items() if data.dtype == bool}
+    write_netcdf(curves.assign(flags), path)
 
 
 def plain_curves(curves: "xr.Dataset") -> dict[str, Any]:

@@ -29,7 +29,9 @@ def open_saved(source: Path | None) -> "xr.Dataset | None":
         from stylobate import studies  # noqa: PLC0415  heavy imports wait until the options are read
 
         return _relocated(studies.open_sweep(source, load=True), source)
-    data = _read(source)
+    from stylobate.results import read_dataset  # noqa: PLC0415
+
+    data = read_dataset(source)
     if "outcome" not in data.data_vars or "provenance" not in data.attrs:
         message = f"{source} holds no map or basins saved by stylobate"
         raise FileError(message)
@@ -41,17 +43,6 @@ def _relocated(data: "xr.Dataset", source: Path) -> "xr.Dataset":
     from stylobate import spec  # noqa: PLC0415
 
     return data.assign_attrs(provenance=json.dumps(spec.relocated(provenance_of(data), source.parent)))
-
-
-def _read(path: Path) -> "xr.Dataset":
-    import xarray as xr  # noqa: PLC0415
-
-    try:
-        with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as stored:
-            return stored.load()
-    except (OSError, ValueError) as error:
-        message = f"cannot read {path}: {getattr(error, 'strerror', None) or error}"
-        raise FileError(message) from None
 
 
 def provenance_of(data: "xr.Dataset") -> dict[str, Any]:
@@ -71,23 +62,6 @@ def axes_of(data: "xr.Dataset") -> dict[str, list[float]]:
     """Return the values along each dimension of the runs in `data`, by name; none for a random sample."""
     names = [str(dim) for dim in data["outcome"].dims]
     return {name: data[name].to_numpy().tolist() for name in names if name in data.coords}
-
-
-def save_dataset(data: "xr.Dataset", path: Path) -> None:
-    """Write `data` into the netCDF file `path`: the whole of it or nothing.
-
-    Raises
-    ------
-    FileError
-        If it cannot be written.
-    """
-    beside = path.with_name(f"{path.name}.part")
-    try:
-        data.to_netcdf(beside, engine="h5netcdf")
-        beside.replace(path)
-    except OSError as error:
-        message = f"cannot write {path}: {error.strerror or error}"
-        raise FileError(message) from None
 
 
 def plain_axes(data: "xr.Dataset") -> Mapping[str, Any]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stylobate.cli import options as opt
+from stylobate.cli.given import Given
 from stylobate.cli.output import check_writable, print_json, print_table, save_figure
 from stylobate.cli.source import read_source
 
@@ -19,6 +20,7 @@ Source = Annotated[
 ]
 
 
+@opt.with_waveforms
 def simulate(
     context: typer.Context,
     source: Source = None,
@@ -70,6 +72,8 @@ def simulate(
     start_phase: opt.StartPhase = None,
     ramp: opt.Ramp = None,
     record: opt.RecordFiles = None,
+    record_direction: opt.RecordDirections = None,
+    single: opt.Single = None,
     sample_record: opt.SampleRecord = None,
     units: opt.Units = None,
     step: opt.TimeStep = None,
@@ -91,14 +95,16 @@ def simulate(
 
     stylobate simulate --radius 0.3 --height 3 --density 2700 --record quake_NS.txt --record quake_EW.txt --units g
 
-    A run under a record or a pulse needs no duration: it goes on for a free tail of 20/p after it.
+    A run under a record, a pulse or a sine sweep needs no duration: it goes on for a free tail of 20/p after it.
     """
-    check_writable(figure, output)
+    given = Given.of(context)
+    check_writable(given["figure"], given["output"])
     described = read_source(source)
     from stylobate import spec  # noqa: PLC0415  heavy imports wait until the options are read
 
-    description = spec.SimulationDescription.parse(opt.overlay(described, context.params, opt.RUN_NAMES))
-    setup = description.build()
+    kind = spec.SimulationDescription
+    setup = kind.parse(opt.overlay(described, given, kind.model_fields)).build()
+    given.refuse_unused()
     from stylobate import engine  # noqa: PLC0415  … and the heaviest until they can be used
 
     run = engine.simulate(setup.model, setup.motion, **setup.options)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stylobate.cli import options as opt
+from stylobate.cli.given import Given
 from stylobate.cli.many_runs import check_axes, check_outputs, computed, end, is_to_compute, write
 from stylobate.cli.output import STORE, print_json, print_table
 from stylobate.cli.saved import axes_of, model_named, open_saved, provenance_of
@@ -43,6 +44,7 @@ FreeTail = Annotated[float | None, _option("how long to follow after the base mo
 _ROWS, _FIRST = 40, 12
 
 
+@opt.with_waveforms
 def spectrum(
     context: typer.Context,
     source: Source = None,
@@ -98,6 +100,8 @@ def spectrum(
     start_phase: opt.StartPhase = None,
     ramp: opt.Ramp = None,
     record: opt.RecordFiles = None,
+    record_direction: opt.RecordDirections = None,
+    single: opt.Single = None,
     sample_record: opt.SampleRecord = None,
     units: opt.Units = None,
     step: opt.TimeStep = None,
@@ -122,7 +126,7 @@ def spectrum(
     stylobate spectrum --radius 0.5 --height 5 --density 2000 --damping 0.05 --sample-record "el centro 1940"
     --x size 0.2 4 12 --x-spacing log --rocking --output rocking.nc
     """
-    given, complete = dict(context.params), True
+    given, complete = Given.of(context), True
     check_outputs(given)
     saved = _saved(source)
     if not is_to_compute(saved, given):
@@ -132,10 +136,9 @@ def spectrum(
         from stylobate import spec  # noqa: PLC0415  heavy imports wait until the options are read
 
         described = read_source(source) if saved is None else _description(saved)
-        if motion is not None:
-            given["motion"] = motion.replace("-", "_")
-        values = opt.overlay_axes(opt.overlay(described, given, opt.RUN_NAMES), given, "spectrum")
-        description = spec.SpectrumDescription.parse(_overlay(values, given))
+        kind = spec.SpectrumDescription
+        values = opt.overlay_axes(opt.overlay(described, given, kind.model_fields), given, "spectrum")
+        description = kind.parse(_overlay(values, given))
         setup = description.build()
         from stylobate import studies  # noqa: PLC0415  … and the heaviest until they can be used
 
@@ -184,11 +187,15 @@ def _overlay(values: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, A
     if given["scales"] is not None:
         first, last, number = given["scales"]
         table["scales"] = {"from": first, "to": last, "number": number}
-    if given["scales_spacing"] is not None:
-        table["scales"] = {**table.get("scales", {}), "spacing": given["scales_spacing"]}
+    table |= opt.overlay_spacing(table, "scales", given)
     names = {"rocking": "rocking", "width": "width", "free_tail": "tail"}
     table |= {name: given[option] for option, name in names.items() if given[option] is not None}
-    return {**values, "spectrum": table}
+    kept = dict(values)
+    if given["duration"] is None and given["free_tail"] is not None:
+        kept.pop("duration", None)  # how long is said in one way
+    if given["duration"] is not None and given["free_tail"] is None:
+        table.pop("tail", None)
+    return {**kept, "spectrum": table}
 
 
 def _summary(found: "xr.Dataset") -> dict[str, Any]:

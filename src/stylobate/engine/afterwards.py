@@ -1,17 +1,16 @@
-"""How long a run lasts where that is not told, and what may yet come of a column that moves when its run ends."""
+"""Choose the duration of a run, and decide whether a column that moves at its end could overturn later."""
 
 import math
 
-import xarray as xr
+import numpy as np
 
-from stylobate.column import Column
+from stylobate.engine.forcing import Floats
+from stylobate.engine.trajectory import Trajectory
 from stylobate.errors import ParameterError, require_positive
 from stylobate.models import Model
+from stylobate.models.inheritance import belongs_to_equations
 from stylobate.motions import BaseMotion
 from stylobate.spec.simulation import duration_with_tail
-
-# What models call the energy that free motion can only lose.
-_ENERGY = {"long_name": "energy above rest", "units": "J"}
 
 
 def duration_of(duration: float | None, model: Model, motion: BaseMotion) -> float:
@@ -31,27 +30,20 @@ def duration_of(duration: float | None, model: Model, motion: BaseMotion) -> flo
     return duration_with_tail(model, motion)
 
 
-def told_of_its_end(data: xr.Dataset, column: Column, motion: BaseMotion) -> str:
-    """Return what is known of a column that moves at the end of its run: whether it can yet overturn.
+def survivor_reason(model: Model, motion: BaseMotion, trajectory: Trajectory) -> str:
+    """Return the reason of a column that moves at the end of its run: whether it could overturn later.
 
-    After a base motion the energy of a column can only fall. With less than it has at rest on its balance, on this side
-    of it, it cannot overturn any more.
-
-    Parameters
-    ----------
-    data
-        The history of the run.
-    column, motion
-        What was followed.
+    After a base motion the energy of a column can only fall. With less energy than at its balance, on this side of it,
+    it cannot overturn any more. A model without a `balance` of its own makes no such claim.
     """
-    end = float(data["time"][-1])
+    end = trajectory.end * model.time_scale
     if end < motion.duration:
         return f"{_MOVED}, {motion.duration - end:.4g} s before the base motion stops; {_OPEN}"
     after = end - motion.duration
     followed = motion.duration > 0.0 and after > 0.0
     moved = f"{_MOVED}, {after:.4g} s after the base motion stopped" if followed else _MOVED
-    share = _share_of_the_balance(data, column)
-    if share < 1.0 and float(data["amplitude"][-1]) < column.tipping_angle:
+    share = _share_of_the_balance(model, trajectory.states(np.array([trajectory.end])))
+    if share < 1.0:
         return f"{moved}, but cannot overturn any more: it has {100.0 * share:.2g} % of the energy that takes"
     return f"{moved}; {_OPEN}"
 
@@ -60,9 +52,10 @@ _MOVED = "it moved to the end of the run"
 _OPEN = "it may yet overturn: follow it longer"
 
 
-def _share_of_the_balance(data: xr.Dataset, column: Column) -> float:
-    """Return the energy at the end over that on the balance, m g (R − h); infinite where the model tells none."""
-    energy = data.get("energy")
-    if energy is None or any(energy.attrs.get(name) != value for name, value in _ENERGY.items()):
+def _share_of_the_balance(model: Model, state: Floats) -> float:
+    """Return the energy over that at the balance; infinite beyond the balance, and without a claim of the model."""
+    balance, energy = model.balance, model.energy(state)
+    if balance is None or energy is None or not belongs_to_equations(type(model), "balance", "energy"):
         return math.inf
-    return float(energy[-1]) / (column.mass * column.gravity * (column.rim_distance - column.mass_height))
+    tilt = float(np.hypot(*model.tilt(state)[:, 0]))
+    return float(energy[0]) / balance.energy if tilt < balance.tilt else math.inf

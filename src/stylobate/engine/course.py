@@ -8,7 +8,8 @@ import numpy as np
 
 from stylobate.engine.forcing import Forcing, common_line
 from stylobate.engine.moving import Leg, Mover
-from stylobate.engine.resting import departure, release_time, rest_piece, stays_for_good
+from stylobate.engine.pace import unseen
+from stylobate.engine.resting import departure, release_within, rest_piece, stays_for_good
 from stylobate.engine.tolerances import FIRST_STEP_OFF
 from stylobate.engine.trajectory import Piece, Trajectory, nearest_turn
 from stylobate.engine.watch import Reason
@@ -85,7 +86,12 @@ class Course:
     def _stand(self, held: tuple[float, ...]) -> tuple[float, ...] | None:
         # Stands until the motion releases the column; returns the state of departure, or None.
         start = self._time
-        release = release_time(self.model, self.forcing, start, self.stop)
+        most = self.mover.method.max_steps
+        release, known = release_within(self.model, self.forcing, start, self.stop, most)
+        if release is None and not known:
+            self.ended, self.failure = Reason.FAILED, unseen(most)
+            self._add(rest_piece(held, start, self.stop))
+            return None
         if release is None:
             if stays_for_good(self.model, self.forcing, start):
                 self.ended = Reason.RESTED
@@ -135,7 +141,9 @@ class Course:
             if leg.reason not in (Reason.CROSSED, Reason.STOP):
                 return None
             state = leg.state
-            self.crossed |= leg.reason is Reason.CROSSED
+            if leg.reason is Reason.CROSSED:
+                self.crossed = True
+                self._note("impact" if self.model.loss_tilt > 0.0 else "passage", self._time)
             if leg.reason is Reason.CROSSED and self.model.loss_tilt > 0.0:
                 state = self._struck_in_plane(leg.state, line)
         return None
@@ -189,7 +197,9 @@ class Course:
         self.least_passage = min(self.least_passage, leg.least_tilt)
         if leg.reason is Reason.RESTED:
             self._note("rest", self._time)
-        elif leg.reason not in (Reason.CROSSED, Reason.STOP, Reason.STRUCK):
+        elif leg.reason is Reason.STRUCK:
+            self._note("impact", self._time)
+        elif leg.reason not in (Reason.CROSSED, Reason.STOP):
             self.ended, self.failure = leg.reason, leg.failure
             self._note(leg.reason.name.lower(), self._time)
 

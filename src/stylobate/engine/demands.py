@@ -1,30 +1,37 @@
-"""What the contact had to bear in a run: the largest demands, and what a real contact would not have borne."""
+"""Find the largest demands on the contact in a run, and warn of what a real contact would not have borne."""
 
-from collections.abc import Callable
+import math
 from dataclasses import dataclass
+from enum import IntEnum
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 from scipy.optimize import minimize_scalar
 
 from stylobate.engine.forcing import Floats, Forcing
+from stylobate.engine.standing import loads_while_standing
 from stylobate.engine.trajectory import Trajectory
 from stylobate.models import Model
-from stylobate.models.contact import contact_outputs
+from stylobate.models.contact import contact_outputs, per_normal_force
 
-Bools = npt.NDArray[np.bool_]
+
+class Load(IntEnum):
+    """A load of the contact; the normal force is counted downwards, so that the largest of each is sought."""
+
+    FRICTION = 0
+    PIVOTING = 1
+    PULL = 2
 
 
 @dataclass(frozen=True, slots=True)
 class Demands:
-    """The largest demands on the contact of a run while the column moves.
+    """The largest demands on the contact in a run, while the column moves and while it stands.
 
     Parameters
     ----------
     measures
-        `largest_friction_demand`, `largest_pivoting_demand` and `least_normal_force`, the last over m g; empty where
-        the model does not tell, or the column never moved.
+        `largest_friction_demand`, `largest_pivoting_demand` and `least_normal_force`, the last over m g; empty if the
+        model defines no contact forces.
     warnings
         A line for each thing that a real contact would not have borne.
     """
@@ -43,60 +50,31 @@ class Demands:
     ) -> "Demands":
         """Return the demands of a run, sought on dense output about the largest at the samples in `data` and the steps.
 
-        Close to the upright the contact bears most for a moment that steps resolve and samples may miss.
+        Close to the vertical the contact bears most for a moment that steps resolve and samples may miss.
         """
-        if model.contact is None or model.switches or "friction_demand" not in data or bool(data["resting"].all()):
+        if model.contact is None or model.switches or "friction_demand" not in data:
             return cls({}, ())
-        tau, moving, series = _seen(model, forcing, trajectory, data)
-        extremes = _Extremes(model, forcing, trajectory)
+        loads = _Loads.of(model, forcing, trajectory, data)
+        friction, pivoting, pull = (loads.largest(load) for load in Load)
         measures = {
-            name: extremes.largest(kind, tau, np.where(moving, values, -np.inf))
-            for kind, (name, values) in enumerate(series.items())
+            "largest_friction_demand": friction,
+            "largest_pivoting_demand": pivoting,
+            "least_normal_force": -pull,
         }
-        measures["least_normal_force"] *= -1.0
-        time, warnings = tau * model.time_scale, []
-        if measures["least_normal_force"] <= 0.0:
-            when = _first(time, moving & (series["least_normal_force"] >= 0.0))
+        warnings = []
+        if pull >= 0.0:
+            when = _from(loads.first_beyond(Load.PULL, 0.0))
             warnings.append(f"it would lift off{when}: the contact would have to pull, which this model lets it do")
-        demand = measures["largest_friction_demand"]
-        if friction_coefficient is not None and demand > friction_coefficient:
-            when = _first(time, moving & (series["largest_friction_demand"] > friction_coefficient))
+        if friction_coefficient is not None and friction > friction_coefficient:
+            when = _from(loads.first_beyond(Load.FRICTION, friction_coefficient))
             warnings.append(
                 f"it would slip{when}: more friction is needed than friction_coefficient {friction_coefficient:.4g} "
-                f"gives, {_told(demand)}; this model never slips"
+                f"gives, {_in_words(friction)}; this model never slips{_before_rocking(model, friction_coefficient)}"
             )
         return cls(measures, tuple(warnings))
 
 
-def _seen(
-    model: Model, forcing: Forcing, trajectory: Trajectory, data: xr.Dataset
-) -> tuple[Floats, Bools, dict[str, Floats]]:
-    """Return the times of the samples and the steps, where the column moves, and what the contact bears there.
-
-    The least normal force is counted downwards.
-    """
-    steps = np.concatenate([piece.nodes for piece in trajectory.pieces])
-    resting = trajectory.resting(steps)
-    loads = contact_outputs(model, trajectory.states(steps), forcing.along(steps), resting)
-    tau, order = np.unique(np.append(data["time"].to_numpy() / model.time_scale, steps), return_index=True)
-    friction, pivoting, normal = (
-        np.append(data[name].to_numpy(), loads[name].values)[order]
-        for name in ("friction_demand", "pivoting_demand", "normal_force")
-    )
-    moving = ~np.append(data["resting"].to_numpy(), resting)[order]
-    downwards = -normal / (model.column.mass * model.column.gravity)
-    return (
-        tau,
-        moving,
-        {
-            "largest_friction_demand": friction,
-            "largest_pivoting_demand": pivoting,
-            "least_normal_force": downwards,
-        },
-    )
-
-
-def _told(demand: float) -> str:
+def _in_words(demand: float) -> str:
     return (
         f"at most {demand:.4g} times the normal force in all of the run"
         if np.isfinite(demand)
@@ -104,45 +82,97 @@ def _told(demand: float) -> str:
     )
 
 
-def _first(time: Floats, where: Bools) -> str:
-    return f" from {time[np.argmax(where)]:.4g} s on" if where.any() else " for a moment"
+def _before_rocking(model: Model, friction_coefficient: float) -> str:
+    capacity = model.rest_capacity
+    if friction_coefficient >= capacity:
+        return ""
+    return (
+        f", but with less friction than {capacity:.4g}, at which rocking begins, the column slides before it rocks: "
+        "this run does not describe it; use model sliding"
+    )
+
+
+def _from(time: float | None) -> str:
+    return " for a moment" if time is None else f" from {time:.5g} s on"
 
 
 @dataclass(frozen=True, slots=True)
-class _Extremes:
-    """Finds extremes of what the contact bears, between samples."""
+class _Loads:
+    """What the contact bears in a run: at samples and steps, and at any other time.
+
+    Parameters
+    ----------
+    tau, values
+        Times, and the loads there, shape (3, n), numbered by `Load`.
+    """
 
     model: Model
     forcing: Forcing
     trajectory: Trajectory
+    tau: Floats
+    values: Floats
 
-    def largest(self, kind: int, tau: Floats, values: Floats) -> float:
-        """Return the largest value of one kind: friction over normal force, moment over it, normal force downwards."""
+    @classmethod
+    def of(cls, model: Model, forcing: Forcing, trajectory: Trajectory, data: xr.Dataset) -> "_Loads":
+        """Take the loads at the samples in `data`, at the ends of the steps, and closely where the column stands."""
+        steps = np.concatenate([piece.nodes for piece in trajectory.pieces])
+        outputs = contact_outputs(model, trajectory.states(steps), forcing.along(steps), trajectory.resting(steps))
+        weight = model.column.mass * model.column.gravity
+        moving = np.stack(
+            [
+                np.append(data[name].to_numpy(), outputs[name].values) / unit
+                for name, unit in (("friction_demand", 1.0), ("pivoting_demand", 1.0), ("normal_force", -weight))
+            ]
+        )
+        stands = [loads_while_standing(forcing, piece.start, piece.end) for piece in trajectory.pieces if piece.resting]
+        still = [np.stack([one.friction, np.zeros_like(one.friction), -one.normal]) for one in stands]
+        times = [data["time"].to_numpy() / model.time_scale, steps, *(one.tau for one in stands)]
+        tau, order = np.unique(np.concatenate(times), return_index=True)
+        return cls(model, forcing, trajectory, tau, np.concatenate([moving, *still], axis=1)[:, order])
+
+    def largest(self, load: Load) -> float:
+        """Return the largest value of a load, sought about the largest one known."""
+        values = self.values[load]
         top = int(np.argmax(values))
         at_top = float(values[top])
         if not np.isfinite(at_top):
             return at_top
-        low, high = float(tau[max(top - 1, 0)]), float(tau[min(top + 1, tau.size - 1)])
+        low, high = float(self.tau[max(top - 1, 0)]), float(self.tau[min(top + 1, self.tau.size - 1)])
         bounds = (low, min(high, self.trajectory.end))
         with np.errstate(invalid="ignore", over="ignore"):  # infinite next to rest, and where the ground would pull
-            found = minimize_scalar(self._below(kind), bounds=bounds, method="bounded", options={"xatol": 1e-9})
+            found = minimize_scalar(
+                lambda t: -self.at(load, t), bounds=bounds, method="bounded", options={"xatol": 1e-9}
+            )
         return max(at_top, -float(found.fun))
 
-    def _below(self, kind: int) -> Callable[[float], float]:
-        model, trajectory = self.model, self.trajectory
-        assert model.contact is not None
-        contact, parameters = model.contact, model.parameters
+    def first_beyond(self, load: Load, limit: float) -> float | None:
+        """Return when a load first exceeds a limit [s]; None if it does so between two of the times only."""
+        beyond = np.flatnonzero(self.values[load] > limit)
+        if not beyond.size:
+            return None
+        first = int(beyond[0])
+        high = float(self.tau[first])
+        low = float(self.tau[first - 1]) if first else high
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            if self.at(load, middle) > limit:
+                high = middle
+            else:
+                low = middle
+        return high * self.model.time_scale
 
-        def below(tau: float) -> float:
-            if bool(trajectory.resting(np.array([tau]))[0]):
-                return 0.0 if kind < _NORMAL else np.inf
-            state = trajectory.states(np.array([tau]))[: len(model.state_names), 0].tolist()
-            normal, friction, moment = contact(*state, *self.forcing.at(tau), *parameters)
-            if kind == _NORMAL:
-                return normal
-            return -(friction, moment)[kind] / normal if normal > 0.0 else -np.inf
+    def at(self, load: Load, tau: float) -> float:
+        """Return a load at any time of the run."""
+        model, push = self.model, self.forcing.at(tau)
+        if bool(self.trajectory.resting(np.array([tau]))[0]):
+            normal, friction, moment = 1.0 + push[2], math.hypot(push[0], push[1]), 0.0
+        else:
+            assert model.contact is not None
+            state = self.trajectory.states(np.array([tau]))[: len(model.state_names), 0].tolist()
+            normal, friction, moment = model.contact(*state, *push, *model.parameters)
+        if load is Load.PULL:
+            return -normal
+        return float(per_normal_force(np.array(friction if load is Load.FRICTION else moment), np.array(normal)))
 
-        return below
 
-
-_NORMAL = 2
+_HALVINGS = 50

@@ -10,7 +10,8 @@ from scipy.integrate import DOP853, OdeSolution
 from scipy.optimize import brentq
 
 from stylobate.engine.forcing import Floats, Forcing
-from stylobate.engine.steps import Steps, back_at_upright, just_before
+from stylobate.engine.pace import report, step_limit
+from stylobate.engine.steps import Steps, attempted, back_at_upright, just_before, with_finite_step
 from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET
 from stylobate.engine.trajectory import Piece, unwrapped_azimuths
 from stylobate.engine.watch import Reason, Watch
@@ -22,8 +23,8 @@ _GROWN = 1e-3
 # Passages of the upright closer than this are measured [units of c].
 _PASSAGE = 0.1
 
-# A least tilt so early in a step [of its length] is the one at which the step begins.
-_PASSED = 1e-6
+# A tilt that falls by less than this part of its speed does not fall: it is least there, as `pattern/passages` has it.
+_JUST_MET = 1e-6
 
 # The contact point is followed in turns of at most this angle [rad], each step cut into at most so many parts.
 _NODE_TURN, _MOST_PARTS = 0.5, 64
@@ -31,12 +32,13 @@ _NODE_TURN, _MOST_PARTS = 0.5, 64
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Method:
-    """How to integrate: tolerances of DOP853, its longest step and the most steps of a run."""
+    """How to integrate: tolerances of DOP853, its longest step, the most steps and the end of a run."""
 
     rtol: float
     atol: float
     max_step: float
     max_steps: int
+    end: float = math.inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +77,7 @@ class Mover:
         steps = Steps(start)
         least = math.inf
         while solver.status == "running":
+            self._report(budget - len(steps.dense), solver.t)
             if len(steps.dense) >= budget:
                 return self._space_leg(
                     steps,
@@ -82,17 +85,17 @@ class Mover:
                     azimuth,
                     Reason.FAILED,
                     least,
-                    "its step limit is reached; raise max_steps, shorten the run or loosen rtol",
+                    step_limit(self.method.max_steps),
                 )
             before = solver.y
-            failure = solver.step()
+            failure = attempted(solver)
             if failure is not None:
                 return self._space_leg(steps, solver.y, azimuth, Reason.FAILED, least, failure)
             dense = steps.add(solver)
             passage = self._passage(before, steps, solver.y)
             least = min(least, passage[1] if self._counts(solver.y) else math.inf)
             events = [self.watch.first_event(steps.times[-2], solver.t, dense)]
-            events.append((passage[0], Reason.STRUCK) if self._loses_at(passage, steps) else None)
+            events.append((passage[0], Reason.STRUCK) if self._loses_at(passage, before) else None)
             found = [event for event in events if event is not None]
             if found:
                 time, reason = min(found, key=lambda event: event[0])
@@ -184,13 +187,14 @@ class Mover:
             return self._planar_leg(steps, end, reason, plane, side, failure)
 
         while solver.status == "running":
+            self._report(budget - len(steps.dense), solver.t)
             if len(steps.dense) >= budget:
                 return leg(
                     solver.y,
                     Reason.FAILED,
-                    "its step limit is reached; raise max_steps, shorten the run or loosen rtol",
+                    step_limit(self.method.max_steps),
                 )
-            failure = solver.step()
+            failure = attempted(solver)
             if failure is not None:
                 return leg(solver.y, Reason.FAILED, failure)
             dense = steps.add(solver)
@@ -212,6 +216,10 @@ class Mover:
                 return leg(np.array([0.0, speed]), Reason.RESTED if rests else Reason.CROSSED)
         return leg(solver.y, Reason.STOP)
 
+    def _report(self, left: int, tau: float) -> None:
+        method, scale = self.method, self.forcing.time_scale
+        report(left, method.max_steps, tau * scale, method.end * scale)
+
     def _solver(
         self,
         derivative: Callable[[float, Floats], Floats],
@@ -221,7 +229,9 @@ class Mover:
         atol: float,
     ) -> DOP853:
         method = self.method
-        return DOP853(derivative, start, np.array(state), stop, max_step=method.max_step, rtol=method.rtol, atol=atol)
+        return with_finite_step(
+            DOP853(derivative, start, np.array(state), stop, max_step=method.max_step, rtol=method.rtol, atol=atol)
+        )
 
     def _beginning_atol(self, state: tuple[float, ...]) -> float:
         tilt = self._radial(np.array(state))[0]
@@ -257,11 +267,11 @@ class Mover:
         _, _, vx, vy = self._lean(state)
         return not self.watch.is_slow(math.hypot(vx, vy))
 
-    def _loses_at(self, passage: tuple[float, float], steps: Steps) -> bool:
-        """Return whether a passage within the last step costs energy; one just passed is not passed again."""
-        time, tilt = passage
-        new = len(steps.dense) > 1 or time - steps.times[-2] > _PASSED * (steps.times[-1] - steps.times[-2])
-        return tilt < self.model.loss_tilt and new
+    def _loses_at(self, passage: tuple[float, float], before: Floats) -> bool:
+        """Return whether a passage in the step from the state `before` costs energy; one just met is not met again."""
+        x, y, vx, vy = self._lean(before)
+        falls = x * vx + y * vy < -_JUST_MET * math.hypot(x, y) * math.hypot(vx, vy)
+        return passage[1] < self.model.loss_tilt and falls
 
     def _radial(self, state: Floats) -> tuple[float, float]:
         """Return |α| and α·α̇ of one state."""

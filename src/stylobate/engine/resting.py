@@ -6,13 +6,16 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from stylobate.engine.forcing import Floats, Forcing
+from stylobate.engine.tolerances import SAMPLES_PER_PERIOD
 from stylobate.engine.trajectory import Piece
 from stylobate.errors import UnsupportedError
 from stylobate.models import Model, Push
 
-# Samples to the shortest period of the base motion, and samples looked at together.
-_SAMPLES_PER_PERIOD = 64
+# Samples looked at together.
 _BLOCK = 4096
+
+# So many common periods show what a motion that repeats does, whatever the phase at which they begin.
+_PERIODS = 2.0
 
 # What counts as the same moment [samples].
 _MOMENT = 1e-6
@@ -37,7 +40,7 @@ def release_time(model: Model, forcing: Forcing, start: float, end: float) -> fl
     if stays_for_good(model, forcing, start):
         return None
     frequency = forcing.highest_frequency
-    spacing = 2.0 * math.pi / (frequency * _SAMPLES_PER_PERIOD) if frequency > 0.0 else end - start
+    spacing = 2.0 * math.pi / (frequency * SAMPLES_PER_PERIOD) if frequency > 0.0 else end - start
     # An excess that is gone a moment later is the rounding of the instant at which the column came to rest.
     moment = start + _MOMENT * spacing
     if _excess(model, forcing, start) > 0.0:
@@ -54,6 +57,24 @@ def release_time(model: Model, forcing: Forcing, start: float, end: float) -> fl
             # Blocks share two samples, so that a peak at a seam is seen.
             start = stop if block_end == stop else block_end - spacing
     return None
+
+
+def release_within(model: Model, forcing: Forcing, start: float, end: float, steps: int) -> tuple[float | None, bool]:
+    """Return when the base motion releases the column, and whether all of [start, end) has been looked at.
+
+    So many periods of the base motion are looked at as a run may take `steps`: a column that moves takes two in each.
+    A motion that repeats within these, its ramp and other breaks over, is known for good.
+    """
+    if not forcing.highest_frequency > 0.0 or stays_for_good(model, forcing, start):
+        return release_time(model, forcing, start, end), True
+    seen = start + steps * 2.0 * math.pi / forcing.highest_frequency
+    if end <= seen:
+        return release_time(model, forcing, start, end), True
+    begun = max((start, *forcing.stops(end)[:-1]))
+    period = math.inf if forcing.motion.period is None else forcing.motion.period / forcing.time_scale
+    repeats = begun + _PERIODS * period < seen
+    found = release_time(model, forcing, start, begun + _PERIODS * period if repeats else seen)
+    return found, repeats or found is not None
 
 
 def departure_lapse(forcing: Forcing) -> float:

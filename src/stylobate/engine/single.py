@@ -2,24 +2,28 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
 from stylobate.counted import counted
-from stylobate.engine.afterwards import duration_of, told_of_its_end
+from stylobate.engine.afterwards import duration_of, survivor_reason
 from stylobate.engine.course import Course
+from stylobate.engine.doubt import FALLEN, finer_rest, in_doubt, other_tolerance
 from stylobate.engine.forcing import Forcing
 from stylobate.engine.history import history
+from stylobate.engine.motion_checks import check_kinds, check_motion
 from stylobate.engine.moving import Method, Mover
+from stylobate.engine.pace import announce, expected_steps
 from stylobate.engine.starts import Turning, require_plane
 from stylobate.engine.switching.course import SwitchingCourse
 from stylobate.engine.switching.verdict import Account, switching_verdict
-from stylobate.engine.thresholds import Thresholds, is_rest, rest_is_coarse, thresholds_of
+from stylobate.engine.thresholds import Thresholds, is_rest, rest_is_coarse, thresholds_of, without_dust
 from stylobate.engine.tolerances import ATOL_SHARE, CLOSE_PASSAGE, RTOL_RANGE
 from stylobate.engine.verdict import Verdict, long_term
 from stylobate.engine.watch import Reason, Watch
 from stylobate.errors import (
+    MOST_STEPS,
     Outcome,
     ParameterError,
     require_positive,
@@ -27,13 +31,10 @@ from stylobate.errors import (
     require_whole,
 )
 from stylobate.models import Model
+from stylobate.models.consistency import check_once
 from stylobate.motions import BASE_AT_REST, BaseMotion
-from stylobate.motions.base import ACCELERATION
 from stylobate.results import OutcomeRules, Response
 from stylobate.spec import provenance_of_run
-
-# Times at which the promises of a motion are checked before a run.
-_MOTION_SAMPLES, _COMPONENTS = 257, 3
 
 
 def simulate(
@@ -56,6 +57,7 @@ def simulate(
     max_steps: int = 200_000,
     samples: int | None = None,
     rules: OutcomeRules | None = None,
+    recheck: bool = True,
 ) -> Response:
     """Follow one column from a start to its outcome.
 
@@ -82,7 +84,7 @@ def simulate(
         [m/s], and its height above it [m].
     duration
         How long to follow it [s]; where it is left out, to a free tail of 20/p after a base motion that ends, such as a
-        record or a pulse.
+        record, a pulse or a sine sweep.
     friction_coefficient
         Of the contact: where more friction is needed the result warns. Models that slip have their own.
     rtol, atol
@@ -91,14 +93,20 @@ def simulate(
         A tilt that ends the run [rad]; none by default.
     rest_energy
         ε: with friction, rest is entered below the energy ε c² where the base motion holds the column down. By default
-        the smaller of 1e-4 and 0.015/θ², θ being the highest dimensionless frequency of the base motion; where that
-        can release the column again, also a hundredth of the energy with which it does, but not below 1e-8.
+        the smaller of 1e-4 and 0.015/θ², θ being the mean dimensionless frequency of the base motion; if that can
+        release the column again, at most a hundredth of the energy with which it does, but not below 1e-8, and not
+        below 1e-5 under a record or a brief motion.
     max_steps
-        Steps after which the run ends as FAILED.
+        Steps after which the run ends as FAILED. The log warns beforehand where more are expected.
     samples
         Number of samples in `data`; by default enough to draw every swing.
     rules
         When a motion counts as rolling, rocking or modulated.
+    recheck
+        Repeat a run in doubt with a hundredth of the rest energy and ten times the tolerance: one that was released
+        again after it had come to rest and then overturned or tilted beyond half of its tipping angle, that came back
+        from 0.95 of its tipping angle or more, or that overturned after 40/p or more. If the column then overturns
+        instead of surviving, or the other way round, the result is `uncertain`, and a warning says so.
 
     Returns
     -------
@@ -122,7 +130,8 @@ def simulate(
     """
     require_nouns(model, motion, rules)
     moved = BASE_AT_REST if motion is None else motion
-    start_tilt = _pair("tilt", tilt, "rad")
+    x, y = without_dust(np.array(_pair("tilt", tilt, "rad"))).tolist()
+    start_tilt = (x, y)
     if math.hypot(*start_tilt) >= math.pi / 2.0:
         message = f"tilt must be below π/2 rad in length (angles are in rad, not degrees), got {start_tilt!r}"
         raise ParameterError(message)
@@ -144,16 +153,14 @@ def simulate(
     if at_rest:
         start_tilt = start_rate = (0.0, 0.0)
     require_plane(model, moved, start_tilt, start_rate)
-    course: Course | SwitchingCourse
     if model.switches:
-        course = SwitchingCourse(model, forcing, method, thresholds, duration / model.time_scale)
-        course.follow(turning.begun(model, start_tilt, start_rate))
-        verdict = switching_verdict(model, moved, course, rules)
+        state = turning.begun(model, start_tilt, start_rate)
     else:
-        mover = Mover(model, forcing, Watch(model, forcing, thresholds), method)
-        course = Course(model, forcing, mover, duration / model.time_scale)
-        course.follow(turning.added_to(model, model.start(start_tilt, start_rate)))
-        verdict = _verdict(model, moved, course, rules)
+        state = turning.added_to(model, model.start(start_tilt, start_rate))
+    end = duration / model.time_scale
+    announce(expected_steps(model, forcing.highest_frequency, end), method.max_steps)
+    run = _Run(model, forcing, replace(method, end=end), thresholds, end, rules)
+    course, verdict = run.follow(state)
     recorded = history(
         model,
         moved,
@@ -162,16 +169,17 @@ def simulate(
         planar=course.planar,
         friction_coefficient=friction_coefficient,
     )
+    doubts = run.repeated_otherwise(state, course, verdict, recorded.measures["largest_tilt"]) if recheck else ()
     freed = verdict.outcome is Outcome.STILL_MOVING and math.isfinite(moved.duration) and not model.switches
     return Response(
         outcome=verdict.outcome,
-        reason=told_of_its_end(recorded.data, model.column, moved) if freed else verdict.reason,
+        reason=survivor_reason(model, moved, course.trajectory) if freed else verdict.reason,
         decided_at=_decided_at(course, verdict, duration),
-        uncertain=_is_uncertain(model, forcing, course, thresholds),
+        uncertain=_is_uncertain(model, forcing, course, thresholds) or bool(doubts),
         planar=course.planar,
         data=recorded.data,
         events=tuple(course.events),
-        warnings=recorded.warnings,
+        warnings=(*recorded.warnings, *doubts),
         thresholds={
             "close_passage": CLOSE_PASSAGE,
             "passage_tilt": model.loss_tilt,
@@ -183,6 +191,7 @@ def simulate(
             **recorded.measures,
             "least_tilt": 0.0 if course.crossed else min(recorded.measures["least_tilt"], course.least_passage),
             "least_passage": course.least_passage,
+            "impacts": float(sum(event.kind == "impact" for event in course.events)),
             **verdict.measures,
             **(Account.of(course).measures if isinstance(course, SwitchingCourse) else {}),
         },
@@ -201,9 +210,59 @@ def simulate(
             max_steps=method.max_steps,
             samples=samples,
             rules=asdict(rules),
+            recheck=bool(recheck),
         ),
         sampler=recorded.sampler,
     )
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """A run but for its initial state: how it is followed, and repeated with other numbers if it is in doubt."""
+
+    model: Model
+    forcing: Forcing
+    method: Method
+    thresholds: Thresholds
+    stop: float
+    rules: OutcomeRules
+
+    def follow(self, state: tuple[float, ...]) -> tuple[Course | SwitchingCourse, Verdict]:
+        """Integrate from `state` to the end."""
+        model, forcing, motion = self.model, self.forcing, self.forcing.motion
+        if model.switches:
+            switching = SwitchingCourse(model, forcing, self.method, self.thresholds, self.stop)
+            switching.follow(state)
+            return switching, switching_verdict(model, motion, switching, self.rules)
+        mover = Mover(model, forcing, Watch(model, forcing, self.thresholds), self.method)
+        course = Course(model, forcing, mover, self.stop)
+        course.follow(state)
+        return course, _verdict(model, motion, course, self.rules)
+
+    def repeated_otherwise(
+        self, state: tuple[float, ...], course: Course | SwitchingCourse, verdict: Verdict, largest_tilt: float
+    ) -> tuple[str, ...]:
+        """Repeat a run in doubt; return a warning if it then has another outcome."""
+        overturned = verdict.outcome in FALLEN
+        doubtful = in_doubt(
+            overturned=overturned,
+            decided=course.trajectory.end,
+            largest_tilt=largest_tilt,
+            released_again=course.released_from_rest,
+            slenderness=self.model.column.slenderness,
+        )
+        if verdict.outcome is Outcome.FAILED or not doubtful:
+            return ()
+        rtol = other_tolerance(self.method.rtol)
+        method = replace(self.method, rtol=rtol, atol=self.method.atol * (rtol / self.method.rtol))
+        other = replace(self, method=method, thresholds=finer_rest(self.thresholds))
+        outcome = other.follow(state)[1].outcome
+        if outcome is not Outcome.FAILED and (outcome in FALLEN) == overturned:
+            return ()
+        return (
+            f"the outcome depends on numbers of the integration: with rest_energy {other.thresholds.rest_energy:.2g} "
+            f"and rtol {rtol:.2g} it is {outcome.name}",
+        )
 
 
 _ENDINGS = {
@@ -219,7 +278,8 @@ _RELEASED = "it may yet be released: follow it longer"
 
 def _verdict(model: Model, motion: BaseMotion, course: Course, rules: OutcomeRules) -> Verdict:
     if course.ended is Reason.FAILED:
-        return Verdict(Outcome.FAILED, f"the integration stopped: {course.failure}", {})
+        racing = _RACING if _races(model, course) else ""
+        return Verdict(Outcome.FAILED, f"the integration stopped: {course.failure}{racing}", {})
     unproved = math.isinf(model.least_safe_tilt(*_bounds(course.forcing)))
     if course.ended is Reason.OVERTURNED and unproved:
         return Verdict(Outcome.OVERTURNED, "its tilt reached π/2, which counts as overturned", {})
@@ -234,6 +294,20 @@ def _verdict(model: Model, motion: BaseMotion, course: Course, rules: OutcomeRul
         return Verdict(Outcome.AT_REST, f"it stands at the end of the run{before}{told}", {})
     period = None if motion.period is None else motion.period / model.time_scale
     return long_term(model, course.trajectory, period, rules, planar=course.planar)
+
+
+_RACING = (
+    "; it passes the vertical so closely that the contact point races round the rim, and no passage costs energy: "
+    "set restitution below 1"
+)
+_RACES = 1e-3
+"""Passages of the vertical closer than this take many steps [units of c]."""
+
+
+def _races(model: Model, course: Course) -> bool:
+    """Return whether close passages without loss, which the model could have, explain the number of steps."""
+    lossless = model.struck is not None and model.loss_tilt == 0.0
+    return lossless and course.least_passage < _RACES * model.column.slenderness
 
 
 def _bounds(forcing: Forcing) -> tuple[float, float]:
@@ -263,29 +337,12 @@ def method_of(model: Model, motion: BaseMotion, rtol: float, atol: float | None,
         message = f"rtol must lie between {low!r} and {high!r}, got {rtol!r}"
         raise ParameterError(message)
     atol = ATOL_SHARE * rtol * model.column.slenderness if atol is None else require_positive("atol", atol, "rad")
-    max_steps = require_whole("max_steps", max_steps, least=1)
+    max_steps = require_whole("max_steps", max_steps, least=1, most=MOST_STEPS)
     # Half the shortest period: no step can miss the forcing.
     frequency = motion.highest_frequency * model.time_scale
     return Method(
         rtol=rtol, atol=atol, max_step=math.pi / frequency if frequency > 0.0 else math.inf, max_steps=max_steps
     )
-
-
-def check_motion(motion: BaseMotion, duration: float) -> None:
-    """Raise ParameterError if `motion` breaks a promise: better told here than by a wrong outcome."""
-    time = np.linspace(0.0, duration, _MOTION_SAMPLES)
-    parts = motion.derivative(time, ACCELERATION)
-    if len(parts) != _COMPONENTS or any(np.shape(part) != time.shape for part in parts):
-        message = f"motion.derivative must return three arrays of the shape of time, got {parts!r}"
-        raise ParameterError(message)
-    broken = ~np.isfinite(np.stack(parts)).all(axis=0)
-    if broken.any():
-        message = f"motion must have a finite acceleration, got {parts[0][broken][0]!r} at t = {time[broken][0]!r} s"
-        raise ParameterError(message)
-    largest, bound = float(np.hypot(parts[0], parts[1]).max()), motion.largest_horizontal(0.0)
-    if not largest <= bound * (1.0 + 1e-9):
-        message = f"motion.largest_horizontal must bound |a_h|, got {bound!r} m/s² although |a_h| reaches {largest!r}"
-        raise ParameterError(message)
 
 
 def _pair(name: str, value: Sequence[float], unit: str) -> tuple[float, float]:
@@ -298,9 +355,12 @@ def require_nouns(model: Model, motion: BaseMotion | None, rules: OutcomeRules |
     if not isinstance(model, Model):
         message = f"model must be a model such as Slender(column), got {model!r}"
         raise ParameterError(message)
+    check_once(model)
     if motion is not None and not isinstance(motion, BaseMotion):
         message = f"motion must be a base motion such as Harmonic.circular(...) or None, got {motion!r}"
         raise ParameterError(message)
+    if motion is not None:
+        check_kinds(motion)
     if rules is not None and not isinstance(rules, OutcomeRules):
         message = f"rules must be OutcomeRules(...) or None, got {rules!r}"
         raise ParameterError(message)

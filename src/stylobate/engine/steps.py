@@ -1,8 +1,13 @@
 """Accepted steps of an integrator, and what is found on their dense output."""
 
+import math
+from typing import Any, TypeVar
+
 import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver
 from scipy.optimize import brentq
+
+_Solver = TypeVar("_Solver", bound=Any)
 
 # Points of a step at which a planar motion is looked at for a swing over the upright and back.
 _DIP_SAMPLES = 9
@@ -12,6 +17,25 @@ _SHORTEST = 1e-15
 
 # A swing shorter than this part of a step leaves the column at rest on its base.
 _SMALLEST_SWING = 1e-12
+
+
+def with_finite_step(solver: _Solver) -> _Solver:
+    """Return the solver with a first step that is a number.
+
+    SciPy's guess of the first step is NaN where the squares of the rates overflow. A NaN never becomes shorter than the
+    shortest step, so that the first step would be tried for ever. The whole way, tried first, is shortened until it
+    fits, or until the solver fails.
+    """
+    if not math.isfinite(solver.h_abs):
+        solver.h_abs = abs(solver.t_bound - solver.t)
+    return solver
+
+
+def attempted(solver: OdeSolver) -> str | None:
+    """Make a step and return why it failed, or None; trial steps that overflow are shortened without a warning."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        failure = solver.step()
+    return None if failure is None else str(failure)
 
 
 class Steps:
@@ -27,6 +51,10 @@ class Steps:
         self.times.append(float(solver.t))
         self.dense.append(dense)
         return dense
+
+    def drop(self) -> None:
+        """Forget the last step."""
+        del self.times[-1], self.dense[-1]
 
     def cut(self, time: float) -> None:
         """End the last step at `time`, where an event was found; no step is left without extent."""

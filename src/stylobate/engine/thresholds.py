@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.engine.forcing import Floats, Forcing
-from stylobate.errors import require_not_negative, require_positive
+from stylobate.errors import SMALLEST, require_not_negative, require_positive
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 
@@ -22,6 +22,11 @@ _REST_ENERGY_HOP, _LEAST_REST_ENERGY, _LEAST_IF_BRIEF, _BRIEF = 0.01, 1e-8, 1e-5
 
 # A start nearer to rest than this, tilt and rate in units of c, is the rounding of one at rest.
 _ROUNDED_REST = 1e-14
+
+
+def without_dust(tilt: Floats) -> Floats:
+    """Return the tilts of starts [rad], zero for components too small to be squared and divided by."""
+    return np.where(np.abs(tilt) < SMALLEST, 0.0, tilt)
 
 
 def is_rest(tilt: Floats, tilt_rate: Floats, slenderness: npt.ArrayLike, time_scale: npt.ArrayLike) -> Bools:

@@ -18,7 +18,14 @@ HOP_OFFSET = 1e-9
 """… and with the path leading past it at less than this [units of c], it is passed in closed form."""
 SLIP_SHARE = 1e-3
 """While a contact slips the absolute tolerance of the slip is this part of the usual one."""
+SLIP_TURNS = 10.0
+"""Where slip along a heading ends, slip across it of more than so many tolerances is a slip that has turned."""
+SLIP_SHORTER = 0.9
+"""The step in which it turned is made again, over this part of the way to where it ended along its heading."""
 HOPS_APART = 5.0
 """How small a part of the force on a column near rest may change during one hop: one over this."""
 STILL = 1e-5
 """A column of less energy than this [c²] that nothing to come can release is at rest however its force may change."""
+
+SAMPLES_PER_PERIOD = 64
+"""Samples to the shortest period of the base motion by which releases and loads of a standing column are sought."""

@@ -15,14 +15,16 @@ from stylobate import spec
 from stylobate.lab.answers import plain_column, snippets
 from stylobate.lab.bodies import json_body
 from stylobate.lab.catalogue import about
-from stylobate.lab.crew import Crew
+from stylobate.lab.crew import Answer, BusyError, Crew
 from stylobate.lab.curves import response
 from stylobate.lab.described import Described, described
 from stylobate.lab.jobs import Jobs, broken
 from stylobate.lab.limits import Limits
-from stylobate.lab.messages import Broken, Finished, Refused
+from stylobate.lab.messages import Broken, Finished, Lost, Refused
 from stylobate.lab.refusals import RefusedError
 from stylobate.lab.schema import schema
+from stylobate.lab.sizes import beyond_size
+from stylobate.lab.starts import start
 from stylobate.lab.uploads import Uploads
 
 _log = logging.getLogger("stylobate.lab")
@@ -52,6 +54,7 @@ class Api:
             Route("/api/describe", self.describe, methods=["POST"]),
             Route("/api/simulate", self.simulate, methods=["POST"]),
             Route("/api/response", self.response, methods=["POST"]),
+            Route("/api/start", self.start, methods=["POST"]),
             Route("/api/records", self.upload, methods=["POST"]),
             Route("/api/jobs", self.begin, methods=["POST"]),
             Route("/api/jobs/{identity:str}", self.follow, methods=["GET"]),
@@ -82,7 +85,7 @@ class Api:
     async def simulate(self, request: Request) -> Response:
         """One run."""
         given = await self._described(request)
-        limited = replace(given, values={"max_steps": self.limits.steps, **given.values})
+        limited = replace(given, values={"max_steps": min(self.limits.usual_steps, self.limits.steps), **given.values})
         return Response(await self._run("run", limited, request), media_type="application/json")
 
     async def response(self, request: Request) -> Response:
@@ -90,9 +93,17 @@ class Api:
         given = await self._described(request)
         return JSONResponse(await to_thread.run_sync(lambda: response(given.values)))
 
+    async def start(self, request: Request) -> Response:
+        """The start on steady rolling, by theory."""
+        given = await self._described(request)
+        return JSONResponse(await to_thread.run_sync(lambda: start(given.values)))
+
     async def upload(self, request: Request) -> Response:
         """Keep the files of a record and tell what they hold."""
         body = await json_body(request, self.limits.records)
+        problems = beyond_size({name: value for name, value in body.items() if name != "files"})
+        if problems:
+            raise RefusedError(422, problems)
         upload = await to_thread.run_sync(self.uploads.add, body)
         try:
             answer = await self._run("record", upload.motion(), request)
@@ -120,11 +131,12 @@ class Api:
         after = request.query_params.get("after", "0")
         if not (after.isascii() and after.isdigit() and len(after) < 10):  # noqa: PLR2004  digits of a count
             raise RefusedError(422, [f"after must be a number of events, got {after!r}"])
-        return JSONResponse(self.jobs[request.path_params["identity"]].told(int(after)))
+        return JSONResponse(self.jobs.report(request.path_params["identity"], int(after)))
 
     async def cancel(self, request: Request) -> Response:
         """Cancel a job."""
-        return JSONResponse(self.jobs.cancel(request.path_params["identity"]).told(0) | {"events": []})
+        job = self.jobs.cancel(request.path_params["identity"])
+        return JSONResponse(self.jobs.report(job.identity, 0) | {"events": []})
 
     async def file(self, request: Request) -> Response:
         """The picture that a job has made."""
@@ -138,24 +150,26 @@ class Api:
 
     async def _run(self, kind: str, values: Any, request: Request) -> Any:
         """Return the result of a task that somebody waits for; it ends when they wait no more, or after its time."""
-        answer: Finished | Refused | Broken | None = None
+        answer: Answer | None = None
         limits = self.limits
         try:
             async with anyio.create_task_group() as group:
                 group.start_soon(_when_gone, request, group.cancel_scope.cancel)
                 answer = await self.runs.perform(kind, values, lambda _: None, wait=limits.wait, limit=limits.run_time)
                 group.cancel_scope.cancel()
-        except* TimeoutError:
-            problem = (
-                f"the run was given up after {limits.run_time:g} s: shorten its duration or run it in Python; "
-                "where other pages are at work, try again"
-            )
+        except* BusyError:
+            problem = f"all {limits.runs} worker processes were busy for {limits.wait:g} s. Try again."
             raise RefusedError(503, [problem]) from None
+        except* TimeoutError:
+            problem = f"the run was given up after {limits.run_time:g} s. Shorten its duration or run it in Python."
+            raise RefusedError(504, [problem]) from None
         match answer:
             case Finished(result):
                 return result
             case Refused(problems):
                 raise RefusedError(422, problems)
+            case Lost():
+                raise RefusedError(502, [answer.problem])
             case Broken(trace):
                 _log.error(trace)
                 raise RefusedError(500, [broken(trace)])

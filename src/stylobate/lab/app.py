@@ -25,7 +25,11 @@ from stylobate.lab.uploads import Uploads
 
 
 def create_app(
-    *, hosts: Collection[str], limits: Limits | None = None, ready: Callable[[], object] | None = None
+    *,
+    hosts: Collection[str],
+    token: str | None = None,
+    limits: Limits | None = None,
+    ready: Callable[[], object] | None = None,
 ) -> Starlette:
     """Return the application, for a server that knows ASGI.
 
@@ -33,6 +37,8 @@ def create_app(
     ----------
     hosts
         Values of the header Host under which it is reached, such as "127.0.0.1:8642"; others are refused.
+    token
+        What requests must show, where other machines can reach it.
     limits
         How much it may be asked for.
     ready
@@ -54,14 +60,14 @@ def create_app(
             jobs = Jobs(work, bounds, group)
             group.start_soon(jobs.watch)
             runs.warm_up()
-            inner.routes[:] = Api(bounds, runs, jobs, Uploads(folder, bounds.uploads)).routes()
+            inner.routes[:] = Api(bounds, runs, jobs, Uploads(folder, bounds.uploads, bounds.unpacked)).routes()
             if ready is not None:
                 ready()
             yield
 
     return Starlette(
         routes=[*page_routes(), Mount("/", app=inner)],
-        middleware=[Middleware(Guard, hosts=hosts)],
+        middleware=[Middleware(Guard, hosts=hosts, token=token)],
         exception_handlers={
             RefusedError: _refusal,
             StylobateError: _mistake,

@@ -38,7 +38,13 @@ def about(limits: Limits) -> dict[str, Any]:
         "motions": list(motions),
         "samples": [{"name": name, "about": "sample record"} for name in sample_names()],
         "presets": [
-            {"id": one.identity, "title": one.title, "about": one.about, "description": one.description}
+            {
+                "id": one.identity,
+                "title": one.title,
+                "about": one.about,
+                "description": one.description,
+                "view": one.view,
+            }
             for one in presets()
         ],
         "outcomes": [{"name": one.name, "value": one.value, "code": code_of(one)} for one in Outcome],

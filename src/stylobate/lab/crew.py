@@ -13,11 +13,11 @@ from anyio import CapacityLimiter, Event, to_thread
 from anyio.abc import TaskGroup
 from anyio.streams.memory import MemoryObjectReceiveStream, MemoryObjectSendStream
 
-from stylobate.lab.messages import Broken, Finished, Found, Note, Progress, Ready, Refused
+from stylobate.lab.messages import Broken, Finished, Found, Lost, Note, Progress, Ready, Refused
 from stylobate.lab.worker import work
 
 Told = Found | Progress | Note
-Answer = Finished | Refused | Broken
+Answer = Finished | Refused | Broken | Lost
 
 GRACE = 1.5
 """How long a task that nobody waits for any more may take to its end before its process is ended [s].
@@ -27,7 +27,21 @@ A new process takes longer to start than most runs to end.
 
 
 class LostError(Exception):
-    """A process ended of its own."""
+    """A process ended before it answered.
+
+    Attributes
+    ----------
+    exit_code
+        Its exit code, where that is known.
+    """
+
+    def __init__(self, exit_code: int | None = None) -> None:
+        self.exit_code = exit_code
+        super().__init__(exit_code)
+
+
+class BusyError(Exception):
+    """No process became free in time."""
 
 
 @dataclass(slots=True, eq=False)
@@ -84,7 +98,7 @@ class Crew:
     _all: set[Worker] = field(default_factory=set)
     _idle: list[Worker] = field(default_factory=list)
     _changed: Event = field(default_factory=Event)
-    _failed: bool = False
+    _failed: LostError | None = None
     _open: bool = True
     _threads: CapacityLimiter = field(init=False)
 
@@ -111,16 +125,20 @@ class Crew:
 
         Raises
         ------
+        BusyError
+            If all processes were busy for longer than `wait` [s].
         TimeoutError
-            If all processes were busy for longer than `wait` [s], or the task took longer than `limit` [s].
+            If the task took longer than `limit` [s].
         """
         if self._idle or len(self._all) < self.limit:
             told(Note("a process starts, which takes long the first time"))  # it will not have to wait for others
         try:
             with anyio.fail_after(wait):
                 worker = await self._ready()
-        except LostError:
-            return _ENDED
+        except TimeoutError:
+            raise BusyError from None
+        except LostError as error:
+            return Lost(error.exit_code)
         told(Note(""))
         try:
             worker.connection.send((kind, values))
@@ -131,7 +149,7 @@ class Crew:
                 self.group.start_soon(self._settle, worker)
                 raise
             self._discard(worker)
-            return _ENDED
+            return Lost(worker.process.exitcode)
         except BaseException:
             self.group.start_soon(self._settle, worker)
             raise
@@ -152,9 +170,9 @@ class Crew:
                 if worker.process.is_alive():
                     return worker
                 self._discard(worker)
-            if self._failed:
-                self._failed = False
-                raise LostError
+            if self._failed is not None:
+                failed, self._failed = self._failed, None
+                raise failed
             if len(self._all) < self.limit:
                 self._begin()
             await self._changed.wait()
@@ -172,8 +190,8 @@ class Crew:
             while not isinstance(await worker.next(), Ready):
                 pass  # what is logged at the start
         except LostError:
-            self._failed = True
             self._discard(worker)
+            self._failed = LostError(worker.process.exitcode)
         else:
             self._release(worker)
 
@@ -203,9 +221,6 @@ class Crew:
     def _tell(self) -> None:
         self._changed.set()
         self._changed = Event()
-
-
-_ENDED = Broken("the process that computed ended of its own, perhaps for want of memory")
 
 
 async def _answer(worker: Worker, told: Callable[[Told], None]) -> Answer:

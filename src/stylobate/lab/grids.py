@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import xarray as xr
 
 from stylobate import spec, studies
 from stylobate.errors import Outcome, ParameterError
+from stylobate.lab.case_axes import case_map, case_numbers, units_of
 from stylobate.lab.messages import Emit, Found, Progress
 from stylobate.lab.plain import number, numbers
 from stylobate.lab.refining import Cells, Refining
@@ -20,9 +22,12 @@ def overturning_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     """Return what becomes of the column over two quantities; of a model that slides, what it does."""
     setup = spec.MapDescription.parse(values).build()
     study = studies.contact_map if setup.model.switches else studies.overturning_map
-    found = _watched(study, setup, emit)
+    if case_numbers(values, setup.options["over"]):
+        found = _watched(partial(case_map, setup, values), setup, emit, keywords={}, flat=True)
+    else:
+        found = _watched(partial(study, setup.model, setup.motion), setup, emit, keywords=setup.options)
     if "contact_class" in found:
-        return _finer(found, "contact_class", found["class_name"].to_numpy())
+        return _finer(found, "contact_class", found["class_name"].to_numpy(), setup)
     return _counts(found, [outcome.value for outcome in Outcome])
 
 
@@ -32,8 +37,9 @@ def basin_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     if "count" in setup.options:
         message = "basin.random is for the command line; the laboratory draws a grid: give basin.x and basin.y"
         raise ParameterError(message)
-    found = _watched(studies.basins, setup, emit)
-    told = _finer(found, "attractor", found["attractor_name"].to_numpy())
+    study = partial(studies.basins, setup.model, setup.motion)
+    found = _watched(study, setup, emit, keywords=setup.options)
+    told = _finer(found, "attractor", found["attractor_name"].to_numpy(), setup)
     told["attractors"] = [_attractor(found.isel(attractor_index=i)) for i in range(found.sizes["attractor_index"])]
     return told
 
@@ -48,11 +54,13 @@ def _attractor(one: xr.Dataset) -> dict[str, Any]:
     }
 
 
-def _watched(study: Callable[..., xr.Dataset], setup: spec.Setup, emit: Emit) -> xr.Dataset:
-    """Return what `study` finds; the outcomes are told as they come."""
+def _watched(
+    study: Callable[..., xr.Dataset], setup: spec.Setup, emit: Emit, *, keywords: Mapping[str, Any], flat: bool = False
+) -> xr.Dataset:
+    """Run `study` and emit the outcomes as they come; a study whose runs lie in one row is `flat`."""
     over = setup.options["over"]
     axes = {
-        place: {"name": name, "values": numbers(values), **attributes_of(name)}
+        place: {"name": name, "values": numbers(values), **(attributes_of(name) or {"units": units_of(name)})}
         for place, (name, values) in zip("xy", over.items(), strict=True)
     }
     names = [[code_of(outcome), outcome.value] for outcome in Outcome]
@@ -62,19 +70,19 @@ def _watched(study: Callable[..., xr.Dataset], setup: spec.Setup, emit: Emit) ->
         cells = np.column_stack([places, outcomes]).tolist()
         emit(Found({"stride": stride, "cells": cells}))
 
-    executor = Refining(show, threads=max(1, (os.cpu_count() or 2) // 2))
+    shape = tuple(len(values) for values in over.values()) if flat else None
+    executor = Refining(show, threads=max(1, (os.cpu_count() or 2) // 2), shape=shape)
     return study(
-        setup.model,
-        setup.motion,
-        **setup.options,
+        **keywords,
         executor=executor,
         progress=lambda done, total: emit(Progress(done, total)),
     )
 
 
-def _finer(found: xr.Dataset, variable: str, names: Any) -> dict[str, Any]:
+def _finer(found: xr.Dataset, variable: str, names: Any, setup: spec.Setup) -> dict[str, Any]:
     """Return the cells once more, by what is known of them at the end."""
     codes = found[variable].transpose(*found["outcome"].dims).to_numpy()
+    codes = codes.reshape([len(values) for values in setup.options["over"].values()])
     listed = [[index, str(name)] for index, name in enumerate(names)]
     return {"codes": codes.tolist(), "names": listed, **_counts(found, None)}
 

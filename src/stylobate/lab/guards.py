@@ -1,9 +1,11 @@
 """Who may speak with the laboratory: pages it served itself, in a browser on this machine."""
 
+import secrets
 from collections.abc import Collection
 
-from starlette.datastructures import Headers, MutableHeaders
-from starlette.responses import JSONResponse
+from starlette.datastructures import MutableHeaders
+from starlette.requests import Request
+from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 _POLICY = (
@@ -21,12 +23,27 @@ _HEADERS = {
     "Cache-Control": "no-store",
 }
 
+_PAGE = ("/", "/index.html")
+
+_UNKNOWN = (
+    "token: missing or wrong. Open the address that `stylobate lab` printed, or send the header "
+    "Authorization: Bearer with its token."
+)
+
+
+def _follows_a_link(request: Request) -> bool:
+    """Return whether a browser opens the page in a tab of its own, from wherever the link was."""
+    headers, navigation = request.headers, {"sec-fetch-mode": "navigate", "sec-fetch-dest": "document"}
+    opens = request.method == "GET" and request.url.path in _PAGE
+    return opens and all(headers.get(name) == value for name, value in navigation.items())
+
 
 class Guard:
     """Middleware that refuses foreign hosts and origins and lets pages load nothing from elsewhere.
 
     A site that the user visits may send requests to this machine, and may point a name of its own at it (rebinding of
-    DNS): the first has a foreign Origin, the second a foreign Host.
+    DNS): the first has a foreign Origin, the second a foreign Host. A link on another site opens the page, nothing
+    else.
 
     Parameters
     ----------
@@ -34,10 +51,13 @@ class Guard:
         What is guarded.
     hosts
         Values of the header Host that are known, such as "127.0.0.1:8642".
+    token
+        What requests must show, in the query, in the cookie that follows from it, or as `Authorization: Bearer`.
     """
 
-    def __init__(self, app: ASGIApp, hosts: Collection[str]) -> None:
+    def __init__(self, app: ASGIApp, hosts: Collection[str], token: str | None = None) -> None:
         self._app = app
+        self._token = token
         self._hosts = frozenset(host.lower() for host in hosts)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -51,18 +71,42 @@ class Guard:
                 MutableHeaders(scope=message).update(_HEADERS)
             await send(message)
 
-        problem = self._problem(Headers(scope=scope))
-        refused = JSONResponse({"problems": [problem]}, status_code=403)
-        await (self._app if problem is None else refused)(scope, receive, with_headers)
+        request = Request(scope)
+        answer = self._refusal(request) or self._asked_for_token(request) or self._app
+        await answer(scope, receive, with_headers)
 
-    def _problem(self, headers: Headers) -> str | None:
+    def _refusal(self, request: Request) -> Response | None:
+        problem = self._problem(request)
+        return None if problem is None else JSONResponse({"problems": [problem]}, status_code=403)
+
+    def _asked_for_token(self, request: Request) -> Response | None:
+        """Refuse a request without the token; where the address of the page has it, put it into a cookie."""
+        if self._token is None:
+            return None
+        name = f"stylobate-lab-{(request.scope.get('server') or ('', 0))[1]}"
+        if self._is_token(request.query_params.get("token")):
+            if request.url.path not in _PAGE:
+                return None
+            opened = RedirectResponse(request.url.path, status_code=303)
+            opened.set_cookie(name, self._token, httponly=True, samesite="lax")
+            return opened
+        scheme, _, shown = request.headers.get("authorization", "").partition(" ")
+        if self._is_token(request.cookies.get(name)) or (scheme.lower() == "bearer" and self._is_token(shown)):
+            return None
+        return JSONResponse({"problems": [_UNKNOWN]}, status_code=401)
+
+    def _is_token(self, shown: str | None) -> bool:
+        return self._token is not None and secrets.compare_digest((shown or "").encode(), self._token.encode())
+
+    def _problem(self, request: Request) -> str | None:
+        headers = request.headers
         host = headers.get("host", "").lower()
         if host not in self._hosts:
             return f"Host {host!r} is not known here; open {self._address} or start with --allow-host"
         origin = headers.get("origin")
         if origin is not None and origin.lower() not in {f"http://{known}" for known in self._hosts}:
             return f"Origin {origin!r} may not use this laboratory"
-        if headers.get("sec-fetch-site", "same-origin") not in ("same-origin", "none"):
+        if headers.get("sec-fetch-site", "same-origin") not in ("same-origin", "none") and not _follows_a_link(request):
             return "requests from other sites are not answered"
         return None
 

@@ -7,14 +7,16 @@ import traceback
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
+from itertools import takewhile
 from typing import Any
 
 import anyio
 from anyio.abc import TaskGroup
 
+from stylobate.counted import counted
 from stylobate.lab.crew import Answer, Crew, Told
 from stylobate.lab.limits import Limits
-from stylobate.lab.messages import Broken, Finished, Found, Note, Progress, Refused
+from stylobate.lab.messages import Broken, Finished, Found, Lost, Note, Progress, Refused
 from stylobate.lab.refusals import RefusedError
 
 _log = logging.getLogger("stylobate.lab")
@@ -68,20 +70,23 @@ class Job:
                 self.state, self.result = State.DONE, result
             case Refused(problems):
                 self.state, self.problems = State.FAILED, problems
+            case Lost():
+                self.state, self.problems = State.FAILED, (answer.problem,)
             case Broken(trace):
                 _log.error(trace)
                 self.state, self.problems = State.FAILED, (broken(trace),)
 
-    def told(self, after: int) -> dict[str, Any]:
-        """Return the job as plain values, with the events from the number `after` on."""
+    def report(self, after: int, ahead: int) -> dict[str, Any]:
+        """Describe the job in plain values: events from the number `after` on, `ahead` jobs before it in the queue."""
         self.asked_at = time.monotonic()
+        waits = f"waits for {counted(ahead, 'other job')}" if self.state is State.WAITING and ahead else ""
         return {
             "id": self.identity,
             "kind": self.kind,
             "state": self.state.value,
             "done": self.done,
             "total": self.total,
-            "note": self.note,
+            "note": waits or self.note,
             "events": self.events[after:],
             "next": len(self.events),
             "problems": list(self.problems),
@@ -118,6 +123,12 @@ class Jobs:
         self._known[job.identity] = job
         self.group.start_soon(self._run, job, values)
         return job
+
+    def report(self, identity: str, after: int) -> dict[str, Any]:
+        """Describe how a job stands in plain values, with the events from the number `after` on."""
+        job = self[identity]
+        earlier = takewhile(lambda one: one is not job, self._known.values())
+        return job.report(after, sum(one.state in _OPEN for one in earlier))
 
     def cancel(self, identity: str) -> Job:
         """Return the job, cancelled unless it had ended."""

@@ -13,12 +13,21 @@ class Limits:
         Size of a request [bytes].
     records
         Size of a request with files of records [bytes].
+    unpacked
+        Size of a file of a record when it is unpacked [bytes].
+    receiving
+        How long a request may take to arrive [s].
+    connections
+        Connections at once.
     uploads
         Size of all records kept [bytes]; the oldest go first.
     duration
         Length of a run [s].
     steps
-        Steps of the integration of a run.
+        Steps of the integration of a run, at most.
+    usual_steps
+        Steps of a run that states no `max_steps`: a run that needs more ends as failed, with its motion so far, well
+        before `run_time`.
     points
         Frequencies of a response curve.
     cells
@@ -44,9 +53,13 @@ class Limits:
 
     body: int = 1 << 20
     records: int = 24 << 20
+    unpacked: int = 32 << 20
+    receiving: float = 30.0
+    connections: int = 128
     uploads: int = 256 << 20
     duration: float = 3600.0
     steps: int = 200_000
+    usual_steps: int = 50_000
     points: int = 2000
     cells: int = 40_000
     motions: int = 100

@@ -49,6 +49,22 @@ class Refused:
 
 
 @dataclass(frozen=True, slots=True)
+class Lost:
+    """The process that computed ended before it answered, with this exit code; a signal's number is negative."""
+
+    exit_code: int | None
+
+    @property
+    def problem(self) -> str:
+        """One line that says what happened and what to try."""
+        how = f" by signal {-self.exit_code}" if self.exit_code is not None and self.exit_code < 0 else ""
+        return (
+            f"the worker process was ended{how} from outside before it answered, possibly because memory ran out. "
+            "Make the record, the duration or the grid smaller, or try again."
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class Broken:
     """The task failed by a mistake of the program's own; the traceback is for its developers."""
 

@@ -15,12 +15,14 @@ class Preset:
     about: str
     outcome: str
     description: dict[str, Any]
+    view: dict[str, Any]
+    """How the page shows it: the start that is followed, the tab, what is drawn over time; by default as suits."""
 
 
 def presets() -> tuple[Preset, ...]:
     """Return all presets, the first of them shown at the start."""
     text = (files("stylobate.lab") / "presets.toml").read_text(encoding="utf-8")
     return tuple(
-        Preset(one["id"], one["title"], one["about"], one["outcome"], one["description"])
+        Preset(one["id"], one["title"], one["about"], one["outcome"], one["description"], one.get("view", {}))
         for one in tomllib.loads(text)["preset"]
     )

@@ -28,10 +28,13 @@ class Refining:
         Told the stride, the places of runs in the plane, shape (n, 2), and their outcomes, shape (n,).
     threads
         How many; None for all cores.
+    shape
+        Of the plane, where the runs come in one row, those of its second axis together; None for those of a grid.
     """
 
     show: Callable[[int, Cells, Cells], None]
     threads: int | None = None
+    shape: tuple[int, ...] | None = None
 
     def results(
         self, work: Work, tasks: Iterable[Task], progress: Progress | None = None
@@ -39,6 +42,8 @@ class Refining:
         """Yield each task with its result when all are computed."""
         asked = list(tasks)
         places = np.concatenate([_places(task) for task in asked])
+        if self.shape is not None:
+            places = np.stack(np.unravel_index(places[:, 0], self.shape), axis=-1)
         values = {name: np.concatenate([task.values[name] for task in asked]) for name in asked[0].values}
         found: Arrays = {}
         done = 0

@@ -1,15 +1,28 @@
 """Serving the laboratory on this machine."""
 
+import secrets
+import signal
 import socket
+import threading
 import webbrowser
 from collections.abc import Callable, Collection
+from contextlib import suppress
+from types import FrameType
+from typing import TYPE_CHECKING
 
 from stylobate.errors import FileError, ParameterError
 from stylobate.lab.limits import Limits
 
+if TYPE_CHECKING:
+    import uvicorn
+    from starlette.types import ASGIApp
+
 PORT = 8642
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
+_ALL = ("0.0.0.0", "::", "")  # noqa: S104  addresses that stand for all of this machine's
 _HIGHEST_PORT = 65535
+_ELSEWHERE = ("192.0.2.1", 9)
+"""An address of no machine (RFC 5737): it shows by which address of its own this machine reaches others."""
 
 
 def serve(
@@ -25,7 +38,8 @@ def serve(
     Parameters
     ----------
     host, port
-        Where to listen. Port 0 takes any that is free.
+        Where to listen. Port 0 takes any that is free. At a `host` that other machines can reach, requests need the
+        token in the address.
     allowed_hosts
         Names by which browsers reach it besides `host` and those of this machine's own.
     limits
@@ -45,16 +59,35 @@ def serve(
         raise ParameterError(message)
     with listening(host, port) as place:
         # What is heavy waits until it is known that there is a place to listen.
-        import uvicorn  # noqa: PLC0415
-
         from stylobate.lab.app import create_app  # noqa: PLC0415
 
         found = place.getsockname()[1]
-        hosts = {f"{_bracketed(name)}:{found}" for name in (host, *LOOPBACK, *allowed_hosts)}
+        token = None if host in LOOPBACK else secrets.token_urlsafe(16)
+        own = () if token is None else own_names()
+        hosts = {f"{_bracketed(name)}:{found}" for name in (host, *LOOPBACK, *own, *allowed_hosts)}
+        name = own[0] if own and host in _ALL else host
+        address = f"http://{_bracketed(name)}:{found}/" + ("" if token is None else f"?token={token}")
         # The browser that is opened waits in the queue of the socket until the server takes it.
-        app = create_app(hosts=hosts, limits=limits, ready=lambda: started(f"http://{_bracketed(host)}:{found}/"))
-        settings = uvicorn.Config(app, log_level="warning", timeout_graceful_shutdown=2)
-        uvicorn.Server(settings).run(sockets=[place])
+        app = create_app(hosts=hosts, token=token, limits=limits, ready=lambda: started(address))
+        _end_with_the_terminal()
+        server_of(app, limits).run(sockets=[place])
+
+
+def server_of(app: "ASGIApp", limits: Limits | None = None) -> "uvicorn.Server":
+    """Return a server for the application, with bounds on its connections."""
+    import uvicorn  # noqa: PLC0415
+
+    from stylobate.lab.connections import BACKLOG, bounded  # noqa: PLC0415
+
+    settings = uvicorn.Config(
+        app,
+        http=bounded(limits or Limits()),
+        ws="none",
+        backlog=BACKLOG,
+        log_level="warning",
+        timeout_graceful_shutdown=2,
+    )
+    return uvicorn.Server(settings)
 
 
 def listening(host: str, port: int) -> socket.socket:
@@ -71,6 +104,30 @@ def listening(host: str, port: int) -> socket.socket:
         message = f"cannot listen on {host}:{port}: {error.strerror or error}; give another --port, or 0 for any"
         raise FileError(message) from None
     return place
+
+
+def own_names() -> tuple[str, ...]:
+    """Return the addresses and names by which other machines may reach this one, the usual address first."""
+    name = socket.gethostname()
+    found = [name, f"{name}.local"]
+    with suppress(OSError):  # a name that resolves nowhere
+        found += sorted({str(info[4][0]) for info in socket.getaddrinfo(name, None)})
+    with suppress(OSError), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as outward:  # perhaps without a network
+        outward.connect(_ELSEWHERE)  # of a datagram socket: nothing is sent
+        found.insert(0, outward.getsockname()[0])
+    return tuple(dict.fromkeys(found))
+
+
+def _end_with_the_terminal() -> None:
+    """Take the end of the terminal as Ctrl-C is taken: worker processes and files are cleared away."""
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        del number, frame
+        signal.raise_signal(signal.SIGTERM)
+
+    alone = threading.current_thread() is threading.main_thread()  # signals are set there only
+    if alone and hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_DFL:
+        signal.signal(signal.SIGHUP, interrupt)
 
 
 def _bracketed(host: str) -> str:

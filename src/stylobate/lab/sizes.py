@@ -5,13 +5,13 @@ from collections.abc import Iterator, Mapping
 from itertools import islice
 from typing import Any
 
-from stylobate.errors import ParameterError
+from stylobate.errors import LARGEST, SMALLEST, ParameterError
 from stylobate.lab.limits import Limits
 from stylobate.lab.uploads import Uploads
 from stylobate.motions.records.samples import sample_record
 
-LEAST, MOST = 1e-30, 1e15
-"""Sizes of numbers other than zero: those of columns are far within, and their products within those of a double."""
+LEAST, MOST = SMALLEST, LARGEST
+"""Sizes of numbers other than zero."""
 
 HIGHEST_DEGREE = 20
 """Of filters and baselines; they are badly conditioned long before."""
@@ -38,12 +38,7 @@ def problems_of_size(body: Mapping[str, Any], uploads: Uploads, limits: Limits) 
     RefusedError
         If it names an upload that is not here.
     """
-    beyond = (
-        f"{name} must be zero or between {LEAST:g} and {MOST:g} in size, got {value!r}"
-        for name, value in _numbers(body)
-        if not (value == 0.0 or LEAST <= abs(value) <= MOST or math.isnan(value))  # what is none is told later
-    )
-    problems = list(islice(beyond, _SHOWN))
+    problems = beyond_size(body)
     motions = list(islice(_motions(body), limits.motions + 1))
     if len(motions) > limits.motions:
         return [*problems, f"motion may be made of {limits.motions} motions here, got more; use stylobate in Python"]
@@ -55,6 +50,16 @@ def problems_of_size(body: Mapping[str, Any], uploads: Uploads, limits: Limits) 
         told = f"got {samples:.3g}; shorten tail and padding, or take a larger step"
         problems.append(f"motion: records may have {limits.record_samples} samples in all here, {told}")
     return problems
+
+
+def beyond_size(values: Mapping[str, Any]) -> list[str]:
+    """Return one line for each of the first numbers, at any depth, whose size no column or record has."""
+    beyond = (
+        f"{name} must be zero or between {LEAST:g} and {MOST:g} in size, got {value!r}"
+        for name, value in _numbers(values)
+        if not (value == 0.0 or LEAST <= abs(value) <= MOST or math.isnan(value))  # what is no number is refused later
+    )
+    return list(islice(beyond, _SHOWN))
 
 
 def _numbers(body: Mapping[str, Any]) -> Iterator[tuple[str, float]]:

@@ -1,8 +1,10 @@
 """A process that computes for the laboratory: one task after the other, told to it and answered through a pipe."""
 
 import logging
+import multiprocessing
 import os
 import signal
+import threading
 import traceback
 from collections.abc import Callable
 from multiprocessing.connection import Connection
@@ -15,6 +17,7 @@ def work(connection: Connection) -> None:
     """Do what the other end of `connection` asks for, until it is closed."""
     # Ctrl-C in the terminal is for the server, which then ends its workers.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_the_server, daemon=True).start()
     from stylobate.lab import tasks  # noqa: PLC0415  heavy imports happen in the new process
 
     logging.getLogger("stylobate").addHandler(_Telling(connection))
@@ -25,6 +28,14 @@ def work(connection: Connection) -> None:
             kind, values = connection.recv()
             connection.send(_done(tasks.TASKS[kind], values, connection.send))
     except (EOFError, OSError):  # the server is gone
+        os._exit(0)
+
+
+def _end_with_the_server() -> None:
+    """End this process, whatever it computes, when the server is gone."""
+    server = multiprocessing.parent_process()
+    if server is not None:
+        server.join()
         os._exit(0)
 
 

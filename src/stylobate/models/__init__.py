@@ -1,6 +1,7 @@
 """Equations of motion, one file for each level of the ladder of models."""
 
-from stylobate.models.model import Model, Output, Push
+from stylobate.models.consistency import check
+from stylobate.models.model import Balance, Model, Output, Push
 from stylobate.models.planar_rocking import PlanarRocking
 from stylobate.models.rolling import Rolling
 from stylobate.models.slender import Slender
@@ -9,6 +10,7 @@ from stylobate.models.sliding import Contact, Sliding
 from stylobate.models.wobbling import Wobbling
 
 __all__ = [
+    "Balance",
     "Contact",
     "Model",
     "Output",
@@ -19,4 +21,5 @@ __all__ = [
     "SlenderRolling",
     "Sliding",
     "Wobbling",
+    "check",
 ]

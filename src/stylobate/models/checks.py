@@ -4,6 +4,7 @@ from typing import Any
 
 from stylobate.column import Column
 from stylobate.errors import ParameterError, require_not_negative
+from stylobate.models.bounds import BOUNDS
 
 
 def require_column(value: object) -> None:
@@ -36,6 +37,22 @@ def require_restitution(model: Any) -> None:
     """Make `restitution` of a frozen model a float; raise ParameterError if it lies outside 0 to 1."""
     require_frictions(model, "restitution")
     value = model.restitution
-    if value > 1.0:
+    if not BOUNDS["restitution"].accepts(value):
         message = f"restitution must lie between 0 and 1, 1 for no loss, got {value!r}"
         raise ParameterError(message)
+
+
+def require_coefficient(model: Any, name: str) -> float:
+    """Make a friction coefficient of a frozen model a float, and return it.
+
+    Raises
+    ------
+    ParameterError
+        If it is negative, or so large that the column never slips.
+    """
+    value, most = require_not_negative(name, getattr(model, name)), BOUNDS[name].most
+    if value > most:
+        message = f"{name}: must be at most {most:g} (got {value!r}). Use Rolling for a column that never slips."
+        raise ParameterError(message)
+    object.__setattr__(model, name, value)
+    return value

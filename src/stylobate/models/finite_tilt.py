@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
+from stylobate.models.model import Balance
 
 Floats = npt.NDArray[np.float64]
 
@@ -138,6 +139,12 @@ def energy_at_rest(tilt: float, speed: float, vertical: float, c: float, kappa: 
 def potential(tilt: Floats, c: float) -> Floats:
     """Return the height of the centre of mass above its height at rest, over h: c sin θ − (1 − cos θ)."""
     return c * np.sin(tilt) - 2.0 * np.sin(0.5 * tilt) ** 2
+
+
+def balance(column: Column) -> Balance:
+    """Return the balance on the rim: at the tilt atan c, with the energy m g (R − h)."""
+    height = column.rim_distance - column.mass_height
+    return Balance(tilt=column.tipping_angle, energy=column.mass * column.gravity * height)
 
 
 def loss_tilt(column: Column, restitution: float, passage_tilt: float | None) -> float:

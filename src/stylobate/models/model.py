@@ -41,6 +41,21 @@ class Push(NamedTuple):
     turning_rate: float
 
 
+class Balance(NamedTuple):
+    """Where a column stands on its rim in unstable balance, on a base at rest.
+
+    Parameters
+    ----------
+    tilt
+        [rad].
+    energy
+        Above that of rest [J].
+    """
+
+    tilt: float
+    energy: float
+
+
 @dataclass(frozen=True, slots=True)
 class Output:
     """A quantity along a run: `values` of shape (n,) or (n, 2), its `units` and a `long_name` for axes."""
@@ -213,6 +228,26 @@ class Model(ABC):
     def loss_tilt(self) -> float:
         """Least tilt below which a passage of the upright loses energy, as `struck` tells [rad]; 0 where none does."""
         return 0.0
+
+    @property
+    def balance(self) -> Balance | None:
+        """The unstable balance over which free motion must go to overturn, or None for no such claim.
+
+        With less `energy` than it has there, and a smaller tilt, a column on a base at rest cannot overturn. A subclass
+        that replaces `rates` or `parameters` makes this claim only if it states `balance` again.
+        """
+        return None
+
+    def energy(self, states: Floats) -> Floats | None:
+        """Return the energy above rest [J], shape (n,), which free motion can only lose, or None without a formula.
+
+        Parameters
+        ----------
+        states
+            Shape (number of states, n), perhaps with what is carried along behind them.
+        """
+        del states
+        return None
 
     @property
     def switches(self) -> bool:

@@ -14,7 +14,7 @@ from stylobate.models import finite_tilt, tilt_vector, without_spin
 from stylobate.models.checks import require_column, require_frictions, require_restitution
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.finite_tilt import TINY, planar_acceleration
-from stylobate.models.model import Floats, Model, Output
+from stylobate.models.model import Balance, Floats, Model, Output
 
 
 def rates(
@@ -76,6 +76,22 @@ def planar_rates(
     """Return the right-hand side K θ̈ = (1 + a_z)(sin θ − c cos θ) − a_h (cos θ + c sin θ) − ηθ̇ on one side."""
     acceleration, _, _ = planar_acceleration(tilt, rate, side, horizontal, vertical, c, eta, kappa, resistance)
     return rate, acceleration
+
+
+def struck(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    _c: float,
+    _eta: float,
+    _kappa: float,
+    _resistance: float,
+    restitution: float,
+    *_: float,
+) -> tuple[float, float, float, float]:
+    """Return the state after an impact: the tilt rate times the restitution."""
+    return x, y, restitution * vx, restitution * vy
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +191,7 @@ class PlanarRocking(Model):
     rest_energy = staticmethod(without_spin.rest_energy)
     no_return_tilt = staticmethod(without_spin.no_return_tilt)
     departure = staticmethod(without_spin.departure)
-    struck = staticmethod(without_spin.struck)
+    struck = staticmethod(struck)
 
     @property
     def impact_restitution(self) -> float:
@@ -207,16 +223,23 @@ class PlanarRocking(Model):
         """Positive where impacts cost energy [rad]: every passage in a plane is one."""
         return finite_tilt.loss_tilt(self.column, self.impact_restitution, None)
 
-    def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
-        """Return energy, the contact point, and what the contact bears."""
-        column = self.column
-        x, y, vx, vy = states
+    @property
+    def balance(self) -> Balance:
+        """At the tilt atan c, with the energy m g (R − h)."""
+        return finite_tilt.balance(self.column)
+
+    def energy(self, states: Floats) -> Floats:
+        """Return ½Kθ̇² + c sin θ − (1 − cos θ) in units of m g h [J]."""
+        column, (x, y, vx, vy) = self.column, states[:4]
         c = column.slenderness
         kinetic = 0.5 * (1.0 + column.inertia_ratio * c * c) * (vx**2 + vy**2)
-        energy = kinetic + finite_tilt.potential(np.hypot(x, y), c)
-        unit = column.mass * column.gravity * column.mass_height
+        energy: Floats = kinetic + finite_tilt.potential(np.hypot(x, y), c)
+        return energy * (column.mass * column.gravity * column.mass_height)
+
+    def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
+        """Return energy, the contact point, and what the contact bears."""
         outputs = {
-            "energy": Output(energy * unit, "J", "energy above rest"),
+            "energy": Output(self.energy(states), "J", "energy above rest"),
             **path_outputs(self, states, np.zeros((states.shape[1], 2))),
             **contact_outputs(self, states, accelerations, resting),
         }

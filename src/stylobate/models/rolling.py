@@ -13,7 +13,7 @@ from stylobate.models import finite_tilt, free_twist, tilt_vector
 from stylobate.models.checks import require_column, require_frictions, require_loss
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
-from stylobate.models.model import Floats, Model, Output, Push
+from stylobate.models.model import Balance, Floats, Model, Output, Push
 
 
 def balance(
@@ -185,9 +185,22 @@ def passage(
     return free_twist.passing((x, y, vx, vy), spin, (ax, ay, az), 1.0 + kappa * c * c, c, eta, zeta, kappa, axial)
 
 
-def struck(x: float, y: float, vx: float, vy: float, spin: float, *numbers: float) -> tuple[float, ...]:
+def struck(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    spin: float,
+    _c: float,
+    _eta: float,
+    _zeta: float,
+    _kappa: float,
+    _axial: float,
+    _resistance: float,
+    restitution: float,
+    *_: float,
+) -> tuple[float, float, float, float, float]:
     """Return the state after a passage of the upright with loss: the tilt rate times the restitution."""
-    restitution = numbers[-1]
     return x, y, restitution * vx, restitution * vy, spin
 
 
@@ -294,12 +307,17 @@ class Rolling(Model):
             "spin": Output(spin / scale, "rad s-1", "angular velocity about the axis"),
             "twist": Output(twist, "rad", "angle of turn about the axis"),
             **path_outputs(self, states, column.radius * states[6:8].T),
-            "energy": Output(self._energy(states), "J", "energy above rest"),
+            "energy": Output(self.energy(states), "J", "energy above rest"),
             **contact_outputs(self, states, accelerations, resting),
         }
 
-    def _energy(self, states: Floats) -> Floats:
-        """½Kθ̇² + ½κw² + ½(1 − κ)w1² + ½I_a w3² + c sin θ − (1 − cos θ), in units of m g h."""
+    @property
+    def balance(self) -> Balance:
+        """At the tilt atan c, with the energy m g (R − h)."""
+        return finite_tilt.balance(self.column)
+
+    def energy(self, states: Floats) -> Floats:
+        """Return ½Kθ̇² + ½κw² + ½(1 − κ)w1² + ½I_a w3² + c sin θ − (1 − cos θ) in units of m g h [J]."""
         column = self.column
         c, kappa = column.slenderness, column.inertia_ratio
         x, y, vx, vy, w3 = states[:5]

@@ -13,7 +13,7 @@ from stylobate.models import tilt_vector
 from stylobate.models.checks import require_column, require_frictions
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.departing import departing_lean
-from stylobate.models.model import Floats, Model, Output, Push
+from stylobate.models.model import Balance, Floats, Model, Output, Push
 from stylobate.models.passing import past_the_upright
 
 # Keeps 1/|α| finite at the upright itself, far below any tilt that is resolved.
@@ -125,7 +125,7 @@ class Slender(Model):
         return self.damping * self.column.frequency_scale * self.column.base_inertia
 
     @property
-    def parameters(self) -> tuple[float, float, float]:
+    def parameters(self) -> tuple[float, ...]:
         """c, η and κ."""
         return self.column.slenderness, self.damping, self.column.inertia_ratio
 
@@ -139,6 +139,20 @@ class Slender(Model):
         """Whether there is friction."""
         return self.damping > 0.0
 
+    @property
+    def balance(self) -> Balance:
+        """At the tilt c, with the energy ½c² J0 ω0²."""
+        c, unit = self.column.slenderness, self.column.base_inertia * self.column.frequency_scale**2
+        return Balance(tilt=c, energy=0.5 * c * c * unit)
+
+    def energy(self, states: Floats) -> Floats:
+        """Return ½|α̇|² + cA − ½A² in units of J0 ω0² [J]."""
+        x, y, vx, vy = states[:4]
+        tilt = np.hypot(x, y)
+        unit = self.column.base_inertia * self.column.frequency_scale
+        energy: Floats = 0.5 * (vx**2 + vy**2) + self.column.slenderness * tilt - 0.5 * tilt**2
+        return energy * unit * self.column.frequency_scale
+
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
         """Return energy [J], angular momentum about the vertical [kg m²/s], and what the contact bears.
 
@@ -149,9 +163,8 @@ class Slender(Model):
         """
         x, y, vx, vy = states
         column = self.column
-        c, unit = column.slenderness, column.base_inertia * column.frequency_scale
+        unit = column.base_inertia * column.frequency_scale
         tilt = np.hypot(x, y)
-        energy = 0.5 * (vx**2 + vy**2) + c * tilt - 0.5 * tilt**2
         momentum = x * vy - y * vx
         ax, ay, az = accelerations
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -159,7 +172,7 @@ class Slender(Model):
             leaning = column.radius * np.stack([x, y]) / tilt
         pressure = np.where(resting, standing, leaning)
         return {
-            "energy": Output(energy * unit * column.frequency_scale, "J", "energy above rest"),
+            "energy": Output(self.energy(states), "J", "energy above rest"),
             "angular_momentum": Output(momentum * unit, "kg m2 s-1", "angular momentum about the vertical"),
             "centre_of_pressure": Output(pressure.T, "m", "centre of pressure from the axis"),
             **path_outputs(self, states, np.zeros((states.shape[1], 2))),

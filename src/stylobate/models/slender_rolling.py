@@ -13,7 +13,7 @@ from stylobate.errors import ParameterError
 from stylobate.models import free_twist, slender, tilt_vector
 from stylobate.models.checks import require_column, require_frictions
 from stylobate.models.contact import contact_outputs, path_outputs
-from stylobate.models.model import Floats, Model, Output, Push
+from stylobate.models.model import Balance, Floats, Model, Output, Push
 
 # As in the slender model: keeps 1/|α| finite at the upright itself.
 _TINY = 1e-300
@@ -218,6 +218,23 @@ class SlenderRolling(Model):
         """Whether there is friction."""
         return self.damping > 0.0
 
+    @property
+    def balance(self) -> Balance | None:
+        """That of the slender column; None with isotropic couples, which can feed the energy from the spin."""
+        return slender.Slender(self.column).balance if self.couples == "contact" else None
+
+    def energy(self, states: Floats) -> Floats:
+        """Return ½|α̇|² + cA − ½A² − cκσ Aβ̇ + ½κ(1 + i_a)c²σ² in units of J0 ω0² [J]."""
+        column, (x, y, vx, vy, spin) = self.column, states[:5]
+        c, kappa = column.slenderness, column.inertia_ratio
+        unit = column.base_inertia * column.frequency_scale**2
+        tilt = np.hypot(x, y)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            across = np.where(tilt > 0.0, (x * vy - y * vx) / tilt, 0.0)
+        energy: Floats = 0.5 * (vx**2 + vy**2) + c * tilt - 0.5 * tilt**2
+        energy += kappa * c * spin * (0.5 * (1.0 + column.axial_ratio) * c * spin - across)
+        return energy * unit
+
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
         """Return energy, spin, twist and footprint, the path of the contact point, and what the contact bears.
 
@@ -227,16 +244,8 @@ class SlenderRolling(Model):
         column, scale = self.column, self.time_scale
         spin, twist = states[4:6]
         plain = slender.Slender(column, damping=self.damping).outputs(states[:4], accelerations, resting)
-        c, kappa = column.slenderness, column.inertia_ratio
-        unit = column.base_inertia * column.frequency_scale**2
-        x, y, vx, vy = states[:4]
-        tilt = np.hypot(x, y)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            across = np.where(tilt > 0.0, (x * vy - y * vx) / tilt, 0.0)
-        energy = 0.5 * (vx**2 + vy**2) + c * tilt - 0.5 * tilt**2
-        energy += kappa * c * spin * (0.5 * (1.0 + column.axial_ratio) * c * spin - across)
         return {
-            "energy": Output(energy * unit, "J", "energy above rest"),
+            "energy": Output(self.energy(states), "J", "energy above rest"),
             "spin": Output(spin / scale, "rad s-1", "angular velocity about the axis"),
             "twist": Output(twist, "rad", "angle of turn about the axis"),
             "centre_of_pressure": plain["centre_of_pressure"],

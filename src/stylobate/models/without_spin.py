@@ -1,4 +1,4 @@
-"""What the models at finite tilt share that have no spin: their parameters begin with c, η, κ and end with e."""
+"""What the models at finite tilt share that have no spin: their parameters begin with c, η, κ."""
 
 from stylobate.models import finite_tilt
 from stylobate.models.departing import departing_lean
@@ -20,9 +20,3 @@ def departure(
 ) -> tuple[float, float, float, float]:
     """Return the state a short time after release."""
     return departing_lean(push, elapsed, eta, 1.0 + kappa * c * c, 1.0)[:4]
-
-
-def struck(x: float, y: float, vx: float, vy: float, *numbers: float) -> tuple[float, ...]:
-    """Return the state after a passage of the upright with loss: the tilt rate times the restitution."""
-    restitution = numbers[-1]
-    return x, y, restitution * vx, restitution * vy

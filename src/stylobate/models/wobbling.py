@@ -14,7 +14,7 @@ from stylobate.models import finite_tilt, tilt_vector, without_spin
 from stylobate.models.checks import require_column, require_frictions, require_loss
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
-from stylobate.models.model import Floats, Model, Output
+from stylobate.models.model import Balance, Floats, Model, Output
 from stylobate.models.passing import past_the_upright
 
 Constraint = Literal["pure_tilt", "rubber"]
@@ -180,6 +180,24 @@ def passage(
     return past_the_upright((x, y, vx, vy), push, c * (1.0 + az), 0.0, eta, inertia)
 
 
+def struck(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    _c: float,
+    _eta: float,
+    _kappa: float,
+    _axial: float,
+    _resistance: float,
+    _rubber: float,
+    restitution: float,
+    *_: float,
+) -> tuple[float, float, float, float]:
+    """Return the state after a passage of the upright with loss: the tilt rate times the restitution."""
+    return x, y, restitution * vx, restitution * vy
+
+
 @dataclass(frozen=True, slots=True)
 class Wobbling(Model):
     """The rigid column that rolls on the rim of its base at any tilt below π/2 and cannot turn.
@@ -247,7 +265,7 @@ class Wobbling(Model):
     no_return_tilt = staticmethod(without_spin.no_return_tilt)
     departure = staticmethod(without_spin.departure)
     passage = staticmethod(passage)
-    struck = staticmethod(without_spin.struck)
+    struck = staticmethod(struck)
 
     @property
     def parameters(self) -> tuple[float, ...]:
@@ -272,12 +290,21 @@ class Wobbling(Model):
         """Tilt below which a passage of the upright loses energy [rad]; 0 where none does."""
         return finite_tilt.loss_tilt(self.column, self.restitution, self.passage_tilt)
 
-    def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
-        """Return energy, angular momentum, twist and footprint, the path of the contact, and what the contact bears.
+    @property
+    def balance(self) -> Balance:
+        """At the tilt atan c, with the energy m g (R − h)."""
+        return finite_tilt.balance(self.column)
 
-        Under pure tilt the angular momentum Mβ̇ [kg m²/s] belongs to the azimuth of the lean; without friction a base
-        at rest keeps both it and the energy.
-        """
+    def energy(self, states: Floats) -> Floats:
+        """Return ½Kθ̇² + ½Mβ̇² + c sin θ − (1 − cos θ) in units of m g h [J]."""
+        falling, around, moment = self._motion(states)
+        kappa, c = self.column.inertia_ratio, self.column.slenderness
+        kinetic = (1.0 + kappa * c * c) * falling**2 + moment * around**2
+        energy: Floats = 0.5 * kinetic + finite_tilt.potential(np.hypot(*states[:2]), c)
+        return energy * self.column.base_inertia * self.column.frequency_scale * self.column.frequency_scale
+
+    def _motion(self, states: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return θ̇, β̇ and M."""
         column = self.column
         c, kappa = column.slenderness, column.inertia_ratio
         x, y, vx, vy = states[:4]
@@ -291,11 +318,18 @@ class Wobbling(Model):
         if self.constraint == "rubber":
             sway = sine + c * q_sine
         moment = kappa * sway**2 + (1.0 - kappa) * sine**2 + kappa * column.axial_ratio * c * c * q_sine**2
-        kinetic = (1.0 + kappa * c * c) * falling**2 + moment * around**2
-        energy = 0.5 * kinetic + finite_tilt.potential(tilt, c)
+        return falling, around, moment
+
+    def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
+        """Return energy, angular momentum, twist and footprint, the path of the contact, and what the contact bears.
+
+        Under pure tilt the angular momentum Mβ̇ [kg m²/s] belongs to the azimuth of the lean; without friction a base
+        at rest keeps both it and the energy.
+        """
+        column, (_, around, moment) = self.column, self._motion(states)
         unit = column.base_inertia * column.frequency_scale
         outputs = {
-            "energy": Output(energy * unit * column.frequency_scale, "J", "energy above rest"),
+            "energy": Output(self.energy(states), "J", "energy above rest"),
             "angular_momentum": Output(moment * around * unit, "kg m2 s-1", "angular momentum of the azimuth"),
             "twist": Output(states[4], "rad", "angle of turn about the axis"),
             **path_outputs(self, states, column.radius * states[5:7].T),

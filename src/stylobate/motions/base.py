@@ -74,9 +74,10 @@ class BaseMotion(ABC):
 
     @property
     def highest_frequency(self) -> float:
-        """Highest angular frequency in the acceleration [rad/s]; 0 for a base at rest.
+        """Highest angular frequency in the acceleration [rad/s]; 0 for one that is constant between its breaks.
 
-        Steps and searches are no longer than it allows: a motion of your own that changes must give it.
+        Releases are sought on 64 samples to its period, and no step is longer than half of it. A motion of your own
+        whose acceleration changes must give it: runs refuse one that changes faster.
         """
         return 0.0
 

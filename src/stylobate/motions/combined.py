@@ -256,8 +256,8 @@ class Delayed(Transformed):
 
     @property
     def duration(self) -> float:
-        """The duration of the motion, the delay added [s]."""
-        return max(0.0, self.motion.duration + self.delay)
+        """The duration of the motion, the delay added [s]; 0 for a base that never moves."""
+        return max(0.0, self.motion.duration + self.delay) if self.motion.duration > 0.0 else 0.0
 
     @property
     def breaks(self) -> tuple[float, ...]:

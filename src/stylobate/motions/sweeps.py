@@ -15,6 +15,9 @@ from stylobate.motions.pulses.quadrature import double_integral, integral
 Floats = npt.NDArray[np.float64]
 _Kind = TypeVar("_Kind", bound=StrEnum)
 
+MOST_CYCLES = 1e5
+"""Of a sweep: its integrals are stored cycle by cycle."""
+
 
 class SweepLaw(StrEnum):
     """How the frequency of a sweep goes from its first to its last value."""
@@ -96,6 +99,13 @@ class Sweep(BaseMotion):
         unit = "m/s²" if self.quantity is SweepQuantity.ACCELERATION else "m"
         object.__setattr__(self, "amplitude", require_finite("amplitude", self.amplitude, unit))
         object.__setattr__(self, "length", require_positive("length", self.length, "s"))
+        cycles = max(self.frequencies) * self.length
+        if cycles > MOST_CYCLES:
+            message = (
+                f"length: a sweep has at most {MOST_CYCLES:g} cycles, since all are stored (got {cycles:.4g}). "
+                "Shorten it, or lower its frequencies."
+            )
+            raise ParameterError(message)
         object.__setattr__(self, "direction", require_finite("direction", self.direction, "rad"))
         object.__setattr__(self, "start_phase", require_finite("start_phase", self.start_phase, "rad"))
         object.__setattr__(self, "start", require_not_negative("start", self.start, "s"))

@@ -1,6 +1,7 @@
 """Curves of bifurcations in two parameters."""
 
 import json
+import logging
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,6 +21,8 @@ from stylobate.orbits.normal_forms import PeriodMap, neimark_sacker_coefficient,
 from stylobate.orbits.shooting import Shots, shots
 from stylobate.orbits.tracing import ASTRAY, End, StepControl
 from stylobate.spec import provenance_of_run
+
+_log = logging.getLogger("stylobate")
 
 Floats = npt.NDArray[np.float64]
 
@@ -328,6 +331,7 @@ def _followed(
     points, here, length = [start.point], start, min(control.first, control.largest)
     sense = sign * start.tangent
     while len(points) <= control.most:
+        _log.info("%d points of a curve of bifurcations, at %.4g, %.4g", len(points), *points[-1].values)
         guess = here.u + length * sense
         found = plane.corrected(guess, sense)
         # Farther off lies another curve, on which Newton's method has come by chance.

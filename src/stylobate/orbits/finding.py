@@ -10,7 +10,7 @@ import numpy.typing as npt
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of, require_periodic
 from stylobate.engine.flow.tableau import Status
 from stylobate.engine.forcing import common_line
-from stylobate.errors import NoOrbitError, ParameterError, require_positive, require_whole
+from stylobate.errors import LARGEST_SEED, NoOrbitError, ParameterError, require_positive, require_whole
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 from stylobate.orbits.arguments import require_subject
@@ -167,7 +167,7 @@ def periodic_orbits(
     periods = require_whole("periods", periods, least=1)
     count = require_whole("count", count, least=1)
     rtol = require_positive("rtol", rtol)
-    seed = require_whole("seed", seed, least=0)
+    seed = require_whole("seed", seed, least=0, most=LARGEST_SEED)
     system = PeriodicSystem(model, motion, None, rtol)
     rng = np.random.default_rng(seed)
     low, high = np.transpose(_ranges(system, over))

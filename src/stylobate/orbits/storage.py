@@ -21,13 +21,11 @@ from stylobate.orbits.curves import BifurcationCurve, CurvePoint, Plane
 from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.shooting import shots
 from stylobate.orbits.tracing import End
-from stylobate.results.storage import read_dataset, write_dataset
+from stylobate.results.storage import read_dataset, write_netcdf
 from stylobate.spec import description_of, provenance_of_run
 
 _ORBIT, _BRANCH, _CURVE = "stylobate orbit 1", "stylobate branch 1", "stylobate bifurcation curve 1"
 _SUFFIX = ".nc"
-# So HDF5 calls a file that is none of its own.
-_SIGNATURE = "signature not found"
 _SOFT = {True: 1, False: 0, None: -1}
 
 
@@ -54,7 +52,7 @@ def save(found: PeriodicOrbit | Branch | BifurcationCurve, path: str | Path) -> 
         data = _orbit_data(found)
     else:
         data = _branch_data(found) if isinstance(found, Branch) else _curve_data(found)
-    return write_dataset(data, path)
+    return write_netcdf(data, path)
 
 
 def load(path: str | Path) -> PeriodicOrbit | Branch | BifurcationCurve:
@@ -66,7 +64,7 @@ def load(path: str | Path) -> PeriodicOrbit | Branch | BifurcationCurve:
         If the file cannot be read or holds none of them.
     """
     path = _path(path)
-    data = _stored(path)
+    data = read_dataset(path)
     read = _READERS.get(str(data.attrs.get("format")))
     if read is None:
         message = f"{path} holds no orbit, branch or curve saved by stylobate, but {_content(data)}"
@@ -84,23 +82,6 @@ def _path(path: str | Path) -> Path:
     except TypeError:
         message = f"path must be the name of a file, got {path!r}"
         raise ParameterError(message) from None
-
-
-def _stored(path: Path) -> xr.Dataset:
-    """Return what a file holds; where it cannot be read, say what it is in place of what HDF5 says."""
-    if path.is_dir():
-        message = f"cannot read {path}: it is a folder; give the file that was saved"
-        raise FileError(message)
-    if not path.exists():
-        message = f"cannot read {path}: there is no such file"
-        raise FileError(message)
-    try:
-        return read_dataset(path)
-    except FileError as error:
-        if _SIGNATURE not in str(error):
-            raise
-        message = f"cannot read {path}: it is no netCDF file"
-        raise FileError(message) from error
 
 
 def _content(data: xr.Dataset) -> str:

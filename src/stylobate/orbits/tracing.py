@@ -1,5 +1,6 @@
 """Following a family of periodic orbits by pseudo-arclength."""
 
+import logging
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -9,6 +10,8 @@ import numpy as np
 from stylobate.engine.flow.tableau import Status
 from stylobate.errors import ParameterError, require_positive, require_whole
 from stylobate.orbits.arclength import Family, Floats, Point, corrected
+
+_log = logging.getLogger("stylobate")
 
 _EASY, _HARD = 4, 7
 _LONGER, _SHORTER = 1.5, 0.5
@@ -96,6 +99,7 @@ def trace(
             return Stretch(tuple(points), tuple(directions), End.MERGED)
         points.append(point)
         directions.append(sense)
+        _log.info("%d orbits of a branch, at %s = %.4g", len(points), point.family.name, point.value)
         if seen is not None:
             seen(point)
     return Stretch(tuple(points), tuple(directions), End.STEPS)

@@ -24,6 +24,7 @@ from stylobate.plots.maps import plot_map
 from stylobate.plots.overturning_bands import plot_overturning_bands
 from stylobate.plots.paper_report import paper_report
 from stylobate.plots.planar_bias import plot_directions, plot_planar_bias
+from stylobate.plots.records import plot_records
 from stylobate.plots.response import plot_response
 from stylobate.plots.robustness import plot_robustness
 from stylobate.plots.rocking_spectrum import plot_rocking_spectrum
@@ -64,6 +65,7 @@ __all__ = [
     "plot_overturning_bands",
     "plot_planar_bias",
     "plot_reached_bands",
+    "plot_records",
     "plot_response",
     "plot_robustness",
     "plot_rocking_spectrum",

@@ -1,7 +1,8 @@
-"""Where in a figure a column overturns, is safe again, or nothing is known: boxes over amplitude, and hairlines."""
+"""Where in a figure a column overturns, is safe again, or is undecided: boxes over amplitude, and hairlines."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,8 @@ WEAKEST: dict[str, Any] = {"color": BLUE, "linestyle": "--", "linewidth": 1.2}
 
 _SAFE, _AGAIN, _FALLEN = Look("#ffffff"), Look("#DCEBF5", "////", BLUE), OUTCOME_LOOKS[Outcome.OVERTURNED]
 _EDGE = Look(GREY)
+UNDECIDED = Look("#e6e6e6", "xxx", GREY)
+"""Where runs ended before they showed whether the column overturns."""
 # An edge wider than this part is told in the legend.
 _WIDE_EDGE = 0.01
 # What takes less than this part of the axis would be thinner than a line of this width [points], and is drawn as one.
@@ -61,20 +64,15 @@ class Regions:
         geometric
             Whether the axis of amplitudes is logarithmic.
         """
-        names = ("band_from", "band_to", "safe_below", "safe_above")
-        begin, end, below, above = (factor[:, np.newaxis] * one[name].to_numpy() for name in names)
-        first, last = _known(one, factor)
-        ends = amplitude_ends(one, factor)
-        boxes: dict[Look, Boxes] = {_EDGE: [], _AGAIN: [], _FALLEN: [], UNFINISHED: []}
+        scales, ends = one["scale"].to_numpy(), amplitude_ends(one, factor)
+        boxes: dict[Look, Boxes] = {_EDGE: [], _AGAIN: [], _FALLEN: [], UNDECIDED: [], UNFINISHED: []}
         for place, (left, right) in enumerate(edges.tolist()):
-            count = int(one["bands"][place])
-            boxes[UNFINISHED] += [(left, right, ends[0], first[place]), (left, right, last[place], ends[1])]
-            for band in range(count):
-                boxes[_FALLEN].append((left, right, begin[place, band], end[place, band]))
-                boxes[_EDGE].append((left, right, below[place, band], begin[place, band]))
-                boxes[_EDGE].append((left, right, end[place, band], above[place, band]))
-                top = below[place, band + 1] if band + 1 < count else last[place]
-                boxes[_AGAIN].append((left, right, above[place, band], top))
+            unit = float(factor[place])
+            own = _Intervals.of(one.isel({one["bands"].dims[0]: place}))
+            first, last = unit * float(scales[0]), unit * float(scales[-1])
+            boxes[UNFINISHED] += [(left, right, ends[0], first), (left, right, last, ends[1])]
+            for look, intervals in own.looks(float(scales[-1])).items():
+                boxes[look] += [(left, right, unit * low, unit * high) for low, high in intervals]
         thin = [box for box in boxes[_FALLEN] if _share(box, ends, geometric=geometric) < _HAIRLINE]
         return cls(boxes, thin)
 
@@ -93,6 +91,42 @@ class Regions:
                 axes.axvline(middle, **_THIN)
             else:
                 axes.plot([left, right], [middle, middle], **_THIN)
+
+
+@dataclass(frozen=True, slots=True)
+class _Intervals:
+    """The scales of one case: of bands, between the decided runs beside each, and of what is undecided."""
+
+    bands: list[tuple[float, float]]
+    reach: list[tuple[float, float]]
+    undecided: list[tuple[float, float]]
+
+    @classmethod
+    def of(cls, one: xr.Dataset) -> "_Intervals":
+        """Return the intervals in a table of bands without axes."""
+        begin, end, below, above = (
+            one[name].to_numpy() for name in ("band_from", "band_to", "safe_below", "safe_above")
+        )
+        outside = np.where(np.isnan(below), begin, below), np.where(np.isnan(above), end, above)
+        stretch = one["undecided_from"].to_numpy(), one["undecided_to"].to_numpy()
+        return cls(*(_finite(*pair) for pair in ((begin, end), outside, stretch)))
+
+    def looks(self, last: float) -> dict[Look, list[tuple[float, float]]]:
+        """Return the intervals of each look up to the `last` scale; what is left is safe and was so below."""
+        taken = sorted([*self.reach, *self.undecided])
+        free = [(high, low) for (_, high), (low, _) in pairwise([*taken, (last, last)])]
+        lowest = min((low for low, _ in self.bands), default=np.inf)
+        sides = [
+            side
+            for (low, high), (below, above) in zip(self.bands, self.reach, strict=True)
+            for side in ((below, low), (high, above))
+        ]
+        again = [pair for pair in free if pair[0] > lowest]
+        return {_EDGE: sides, _AGAIN: again, _FALLEN: self.bands, UNDECIDED: self.undecided}
+
+
+def _finite(low: Floats, high: Floats) -> list[tuple[float, float]]:
+    return [pair for pair in zip(low.tolist(), high.tolist(), strict=True) if not np.isnan(pair).any()]
 
 
 _THIN: dict[str, Any] = {"color": VERMILION, "linewidth": _THINNEST, "solid_capstyle": "butt", "zorder": 2.5}
@@ -123,8 +157,10 @@ def band_legend(found: xr.Dataset, *, hairlines: int, wide_edges: bool) -> list[
     if hairlines:
         label = f"overturns, narrower than drawn: {counted(hairlines, 'band')}"
         entries.append(Line2D([], [], **_THIN, label=label))
-    if bool(found["outcome"].isin([NOT_COMPUTED, *NOT_TOLD]).any()):
-        entries.append(Patch(label="not known", **fill_options(UNFINISHED)))
+    if bool(found["undecided_from"].notnull().any()):
+        entries.append(Patch(label=undecided_label(found["outcome"]), **fill_options(UNDECIDED)))
+    if np.unique(found["acceleration_ratio"]).size > 1 and is_normalized(found):
+        entries.append(Patch(label="not computed", **fill_options(UNFINISHED)))
     if wide_edges:
         entries.append(Patch(label="edge, not told", **fill_options(_EDGE)))
     if not is_normalized(found) and bool((found["acceleration_ratio"] > 0.0).all()):
@@ -133,8 +169,8 @@ def band_legend(found: xr.Dataset, *, hairlines: int, wide_edges: bool) -> list[
 
 
 def run_legend(counts: Sequence[int], markersize: float) -> list[Line2D]:
-    """Return the entries for runs that are uncertain, and for those that tell nothing, of which there are so many."""
-    looks = zip(counts, ("uncertain", "tells nothing"), (UNCERTAIN, UNKNOWN), strict=True)
+    """Return the entries for runs that are uncertain, and for those that are undecided, of which there are so many."""
+    looks = zip(counts, ("uncertain", "not decided"), (UNCERTAIN, UNKNOWN), strict=True)
     return [
         Line2D([], [], label=f"{name}: {counted(count, 'run')}", markersize=markersize, **look)
         for count, name, look in looks
@@ -150,13 +186,17 @@ def _share(box: Box, ends: tuple[float, float], *, geometric: bool) -> float:
     return (high - low) / (ends[1] - ends[0])
 
 
-def _known(one: xr.Dataset, factor: Floats) -> tuple[Floats, Floats]:
-    """Return the lowest and highest amplitude of which something is known; both at the bottom where nothing is."""
-    scales = one["scale"].to_numpy()
-    told = ~one["outcome"].isin([NOT_COMPUTED, *NOT_TOLD]).to_numpy()
-    first, last = np.argmax(told, axis=1), scales.size - 1 - np.argmax(told[:, ::-1], axis=1)
-    last = np.where(told.any(axis=1), last, 0)
-    return factor * scales[first], factor * scales[last]
+def undecided_label(outcomes: xr.DataArray) -> str:
+    """Return "not decided", with the reasons that are among these outcomes of runs."""
+    reasons = undecided_reasons(outcomes)
+    return f"not decided: {', '.join(reasons)}" if reasons else "not decided"
+
+
+def undecided_reasons(outcomes: xr.DataArray) -> list[str]:
+    """Return why runs with these outcomes are undecided, in words, each once."""
+    codes = set(np.unique(outcomes.to_numpy()).tolist())
+    reasons = [one.value for one in Outcome if code_of(one) in codes.intersection(NOT_TOLD)]
+    return [*reasons, "not computed"] if NOT_COMPUTED in codes else reasons
 
 
 def _fill(axes: Axes, boxes: Boxes, look: Look, *, along_x: bool) -> None:

@@ -61,7 +61,7 @@ def plot_bands_of_one(found: xr.Dataset) -> Figure:
 
 
 def _draw_runs(axes: Axes, found: xr.Dataset, amplitude: Floats) -> tuple[int, int]:
-    """Draw the peak tilts of runs that stand; mark and count the runs that are uncertain, or tell nothing."""
+    """Draw the peak tilts of runs that stand; mark and count the runs that are uncertain or undecided."""
     codes, tilt = found["outcome"].to_numpy(), found["largest_tilt"].to_numpy() / float(found["tipping_angle"])
     unknown = np.isin(codes, NOT_TOLD)
     uncertain = found["uncertain"].to_numpy() & (codes != NOT_COMPUTED)

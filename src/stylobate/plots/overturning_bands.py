@@ -40,7 +40,7 @@ _MOST_MARKED = 0.2
 
 @dataclass(slots=True)
 class _Marks:
-    """What the panels show, for the legend: runs that are uncertain, those that tell nothing, hairlines."""
+    """What the panels show, for the legend: runs that are uncertain, undecided ones, hairlines."""
 
     panels: int = 1
     counts: list[int] = field(default_factory=lambda: [0, 0])
@@ -52,11 +52,12 @@ class _Marks:
 def plot_overturning_bands(found: xr.Dataset) -> Figure:
     """Return a figure of the bands of amplitude that overturn, a panel for each value of a second parameter.
 
-    White is safe, dark overturns, hatched is safe again above a band that overturns. Dots mark runs of the scan that
-    are uncertain, crosses those that tell nothing. Pulses and harmonic motions are drawn as in the literature: peak
-    base acceleration over g tan α, against ω/p. Others by their scale, over the size 2R if it varies; below the dashed
-    line the peak acceleration is below g tan α. Bands too narrow to be seen are drawn as lines. Of a single
-    column the amplitude runs along the axis, and the peak tilts of the runs that stand are drawn over it.
+    White is safe, dark overturns, hatched is safe again above a band that overturns, grey and cross-hatched is not
+    decided. Dots mark runs of the scan that are uncertain, crosses those that are not decided. Pulses and harmonic
+    motions are drawn as in the literature: peak base acceleration over g tan α, against ω/p. Others by their scale,
+    over the size 2R if it varies; below the dashed line the peak acceleration is below g tan α. Bands too narrow to be
+    seen are drawn as lines. Of a single column the amplitude runs along the axis, and the peak tilts of the runs that
+    stand are drawn over it.
 
     Raises
     ------
@@ -116,7 +117,7 @@ def _draw(axes: Axes, one: xr.Dataset, along: Horizontal, marks: _Marks) -> None
 
 
 def _mark(axes: Axes, one: xr.Dataset, along: Horizontal, factor: Floats, marks: _Marks) -> None:
-    """Mark the runs of the scan that are uncertain or tell nothing, and count them."""
+    """Mark the runs of the scan that are uncertain or undecided, and count them."""
     codes, scales = one["outcome"].to_numpy(), one["scale"].to_numpy()
     size = float(np.clip(_WIDTH / marks.panels / max(codes.shape) / 2.0, *_DOTS))
     uncertain = one["uncertain"].to_numpy() & (codes != NOT_COMPUTED)

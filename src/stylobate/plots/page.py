@@ -11,6 +11,8 @@ from matplotlib.figure import Figure
 
 # Dots per inch of embedded figures; the page scales them to its width.
 _RESOLUTION = 160
+# Tables of so many columns are printed small.
+_MANY_COLUMNS = 9
 
 _STYLE = """
 :root { color-scheme: light; }
@@ -26,7 +28,8 @@ thead th { border-bottom: 2px solid #666; }
 .verdict { font-weight: 600; white-space: nowrap; }
 nav a { margin-right: 1rem; }
 @media print { body { font-size: 10pt; max-width: none; margin: 0; } nav { display: none; }
-  table { font-size: 7.5pt; } .wide { overflow: visible; } thead { display: table-header-group; }
+  table { font-size: 7.5pt; } .many table { font-size: 6.3pt; } .wide { overflow: visible; }
+  thead { display: table-header-group; }
   tr, figure { break-inside: avoid; } h2 { break-after: avoid; } }
 """
 
@@ -59,11 +62,11 @@ class Section:
     content: Sequence[str | Picture | Table]
 
 
-def page(title: str, introduction: Sequence[str], sections: Sequence[Section]) -> str:
+def page(title: str, introduction: Sequence[str | Picture | Table], sections: Sequence[Section]) -> str:
     """Return the HTML of a page; all text is escaped, figures are embedded as PNG."""
     links = "".join(f'<a href="#s{i}">{escape(section.heading)}</a>' for i, section in enumerate(sections))
     body = "".join(_section(i, section) for i, section in enumerate(sections))
-    lead = "".join(f"<p>{escape(text)}</p>" for text in introduction)
+    lead = "".join(map(_part, introduction))
     return (
         '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
@@ -96,10 +99,10 @@ def _part(part: str | Picture | Table) -> str:
             return _table(part)
 
 
-def png_of(figure: Figure) -> bytes:
-    """Return the figure as the PNG that a page embeds."""
+def png_of(figure: Figure, resolution: float = _RESOLUTION) -> bytes:
+    """Return the figure as a PNG of this resolution [dots per inch], by default that of a page."""
     buffer = BytesIO()
-    figure.savefig(buffer, format="png", dpi=_RESOLUTION)
+    figure.savefig(buffer, format="png", dpi=resolution)
     return buffer.getvalue()
 
 
@@ -114,4 +117,5 @@ def _picture(picture: Picture) -> str:
 def _table(table: Table) -> str:
     head = "".join(f"<th>{escape(name)}</th>" for name in table.header)
     rows = "".join("<tr>" + "".join(f"<td>{_text(cell)}</td>" for cell in row) + "</tr>" for row in table.rows)
-    return f'<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'
+    kind = "wide many" if len(table.header) >= _MANY_COLUMNS else "wide"
+    return f'<div class="{kind}"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'

@@ -7,11 +7,12 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from stylobate.errors import FileError
+from stylobate.files import write_whole
 from stylobate.plots import paper, paper_twist
 from stylobate.plots.exact_response import plot_exact_response
-from stylobate.plots.page import Picture, Section, Table, page
+from stylobate.plots.page import Picture, Section, Table, page, png_of
 from stylobate.plots.stability_boundary import plot_stability_boundary
-from stylobate.results import Finding, PaperCheck
+from stylobate.results import Finding, PaperCheck, write_netcdf
 
 _TITLE = "A round column on a vibrating base: the source paper reproduced, checked and corrected"
 
@@ -169,11 +170,11 @@ def paper_report(check: PaperCheck, folder: str | Path) -> Path:
         (target / "data").mkdir(parents=True, exist_ok=True)
         pictures = _draw(check, target)
         for name, data in check.data.items():
-            data.to_netcdf(target / "data" / f"{name}.nc", engine="h5netcdf")
+            write_netcdf(data, target / "data" / f"{name}.nc")
         findings = [_plain(finding) for finding in check.findings]
-        (target / "findings.json").write_text(json.dumps(findings, indent=1, ensure_ascii=False), encoding="utf-8")
+        write_whole(target / "findings.json", json.dumps(findings, indent=1, ensure_ascii=False))
         report = target / "report.html"
-        report.write_text(page(_TITLE, [*_INTRODUCTION, check.summary], _sections(check, pictures)), encoding="utf-8")
+        write_whole(report, page(_TITLE, [*_INTRODUCTION, check.summary], _sections(check, pictures)))
     except OSError as error:
         message = f"cannot write into {target}: {error.strerror or error}"
         raise FileError(message) from error
@@ -190,7 +191,7 @@ def _draw(check: PaperCheck, target: Path) -> dict[str, list[Picture]]:
     drawn: dict[str, list[Picture]] = {}
     for name, heading, draw, caption in _PICTURES:
         figure = draw(check)
-        figure.savefig(target / f"{name}.png", dpi=180)
+        write_whole(target / f"{name}.png", png_of(figure, resolution=180))
         drawn.setdefault(heading, []).append(Picture(figure, caption))
     return drawn
 

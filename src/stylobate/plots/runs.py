@@ -116,7 +116,8 @@ def _signed_tilt(data: xr.Dataset) -> np.ndarray:
 
 def _mark_events(axes: Axes, run: Response) -> None:
     # The first and the last: a run may be released and come to rest in every period.
-    for event in dict.fromkeys((*run.events[:1], *run.events[-1:])):
+    events = [event for event in run.events if not event.repeats]
+    for event in dict.fromkeys((*events[:1], *events[-1:])):
         height = float(np.interp(event.time, run.data["time"], run.data["amplitude"]))
         axes.annotate(
             _EVENT_NAMES.get(event.kind, event.kind),

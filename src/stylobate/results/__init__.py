@@ -10,31 +10,37 @@ if TYPE_CHECKING:
     from stylobate.results.assessment import Assessment
     from stylobate.results.findings import Finding, PaperCheck, Section, Verdict
     from stylobate.results.outcomes import code_of, outcome_of
+    from stylobate.results.report_details import DesignSpectrum, ReportDetails
     from stylobate.results.response import Event, Response
     from stylobate.results.rules import OutcomeRules
-    from stylobate.results.storage import load
+    from stylobate.results.storage import load, read_dataset, write_netcdf
 
 __all__ = [
     "Assessment",
+    "DesignSpectrum",
     "Event",
     "Finding",
     "OutcomeRules",
     "PaperCheck",
+    "ReportDetails",
     "Response",
     "Section",
     "Verdict",
     "code_of",
     "load",
     "outcome_of",
+    "read_dataset",
+    "write_netcdf",
 ]
 
 _HOMES = {
     "Assessment": "assessment",
     **dict.fromkeys(("Finding", "PaperCheck", "Section", "Verdict"), "findings"),
     **dict.fromkeys(("code_of", "outcome_of"), "outcomes"),
+    **dict.fromkeys(("DesignSpectrum", "ReportDetails"), "report_details"),
     **dict.fromkeys(("Event", "Response"), "response"),
     "OutcomeRules": "rules",
-    "load": "storage",
+    **dict.fromkeys(("load", "read_dataset", "write_netcdf"), "storage"),
 }
 
 

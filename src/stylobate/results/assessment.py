@@ -9,6 +9,7 @@ from typing import Any
 import xarray as xr
 
 from stylobate.errors import FileError
+from stylobate.results.storage import read_tree, write_netcdf
 
 _FORMAT = "stylobate assessment 1"
 
@@ -20,11 +21,11 @@ class Assessment:
     Attributes
     ----------
     data
-        Datasets by name: "columns", "records", "verdicts", "margins" and "histories"; "robustness", "planar" and
-        "fragility" where they were asked for.
+        Datasets by name: "columns", "records", "spectra", "ground_motions", "verdicts", "margins", "histories" and
+        "summary"; "robustness", "planar" and "fragility" where they were asked for.
     setting
         What was assessed, as plain values: title, version, models, dissipation, friction, processing of the records,
-        scales, what the scan of margins looked at.
+        scales, what the scan of margins looked at, the `ReportDetails`, the versions of the software.
     """
 
     data: Mapping[str, xr.Dataset]
@@ -40,14 +41,7 @@ class Assessment:
         """
         tree = xr.DataTree.from_dict({f"/{name}": data for name, data in self.data.items()})
         tree.attrs = {"format": _FORMAT, "setting": json.dumps(dict(self.setting), ensure_ascii=False)}
-        beside = Path(path).with_name(f"{Path(path).name}.part")
-        try:
-            tree.to_netcdf(beside, engine="h5netcdf")
-            beside.replace(path)
-        except OSError as error:
-            message = f"cannot write {path}: {error.strerror or error}"
-            raise FileError(message) from None
-        return Path(path)
+        return write_netcdf(tree, path)
 
     @classmethod
     def load(cls, path: str | Path) -> "Assessment":
@@ -58,17 +52,9 @@ class Assessment:
         FileError
             If the file cannot be read or holds no assessment.
         """
-        if not Path(path).is_file():
-            message = f"cannot read {path}: No such file or directory"
-            raise FileError(message)
-        try:
-            with xr.open_datatree(path, engine="h5netcdf", decode_times=False) as stored:
-                attributes = dict(stored.attrs)
-                data = {str(name): child.to_dataset().load() for name, child in stored.children.items()}
-        except (OSError, ValueError) as error:
-            message = f"cannot read {path}: {getattr(error, 'strerror', None) or error}"
-            raise FileError(message) from None
-        if attributes.get("format") != _FORMAT:
+        tree = read_tree(path)
+        if tree.attrs.get("format") != _FORMAT:
             message = f"{path} holds no assessment saved by stylobate"
             raise FileError(message)
-        return cls(data=data, setting=json.loads(attributes["setting"]))
+        data = {str(name): child.to_dataset() for name, child in tree.children.items()}
+        return cls(data=data, setting=json.loads(tree.attrs["setting"]))

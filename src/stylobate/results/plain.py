@@ -1,5 +1,6 @@
-"""Arrays as plain numbers that JSON can hold."""
+"""Arrays and NumPy scalars as plain numbers that JSON can hold."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -28,3 +29,20 @@ def plain_numbers(values: npt.ArrayLike, digits: int) -> list[Any]:
     told = rounded.astype(object)
     told[~finite] = None
     return list(told.tolist())
+
+
+def plain_value(value: Any) -> Any:
+    """Replace NumPy scalars by plain Python numbers, at any depth of mappings, lists and tuples.
+
+    Examples
+    --------
+    >>> plain_value({"uncertain": np.bool_(True), "ends": (np.float64(0.5), 1)})
+    {'uncertain': True, 'ends': (0.5, 1)}
+    """
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, Mapping):
+        return {name: plain_value(one) for name, one in value.items()}
+    if type(value) in (list, tuple):
+        return type(value)(plain_value(one) for one in value)
+    return value

@@ -10,18 +10,31 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.errors import Outcome, UnsupportedError
+from stylobate.results.plain import plain_value
+
+_PLAIN = ("decided_at", "uncertain", "planar", "thresholds", "measures", "provenance", "warnings")
+"""Fields of a response that hold plain Python values, whatever computed them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Event:
     """Something that happened in a run: its `kind` and `time` [s].
 
-    Kinds are "release", "rest", "overturned", "limit", "lifted" and "failed"; of models that can slip and fly also
+    Kinds are "release", "rest", "overturned", "limit", "lifted" and "failed"; "impact", where a passage of the upright
+    costs energy, and "passage" for one in a plane that costs none; of models that can slip and fly also
     "slide" and "stop" of the base, "slip", "reverse" and "stick" of the rim, "lift", "land", "stroke" and "jam".
     """
 
     kind: str
     time: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "time", plain_value(self.time))
+
+    @property
+    def repeats(self) -> bool:
+        """Whether it belongs to every swing, an impact or a passage, and is left out of pictures and summaries."""
+        return self.kind in ("impact", "passage")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,8 +62,8 @@ class Response:
     thresholds
         The numbers that decided, by name.
     measures
-        Summary numbers, by name: largest and least tilt, turns of the contact point, steps, and for periodic base
-        motion the mean rolling rate and the repetition of the last periods; largest demands on the contact.
+        Summary numbers, by name: largest and least tilt, turns of the contact point, steps, impacts, and for periodic
+        base motion the mean rolling rate and the repetition of the last periods; largest demands on the contact.
     provenance
         Everything needed to run it again: version, column, model, motion, start, tolerances.
     warnings
@@ -70,6 +83,10 @@ class Response:
     provenance: Mapping[str, Any]
     warnings: tuple[str, ...] = ()
     sampler: Callable[[npt.ArrayLike], xr.Dataset] | None = field(default=None, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        for name in _PLAIN:
+            object.__setattr__(self, name, plain_value(getattr(self, name)))
 
     def sample(self, time: npt.ArrayLike) -> xr.Dataset:
         """Return the data at other times [s], from the integrator's dense output.

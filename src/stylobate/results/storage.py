@@ -1,16 +1,23 @@
 """Results as netCDF files: the samples as variables, everything else in the attributes."""
 
 import json
+from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
+import h5py
 import numpy as np
 import xarray as xr
 
 from stylobate.errors import FileError, Outcome
+from stylobate.files import read_sealed, sealed, write_whole
 from stylobate.results.response import Event, Response
 
-_FORMAT = "stylobate response 1"
+_Data = TypeVar("_Data", xr.Dataset, xr.DataTree)
+
+_OWN_FORMATS = "stylobate "
+_FORMAT = f"{_OWN_FORMATS}response 1"
 _OF_ORBITS = ("orbit", "branch", "bifurcation")
 _OWN_ATTRIBUTES = (
     "format",
@@ -50,7 +57,7 @@ def save_response(response: Response, path: Path) -> Path:
     }
     data = response.data.assign_attrs(attributes)
     data["resting"] = data["resting"].astype(np.int8)
-    return write_dataset(data, path)
+    return write_netcdf(data, path)
 
 
 def load(path: str | Path) -> Response:
@@ -69,7 +76,7 @@ def load(path: str | Path) -> Response:
             "xarray.open_dataset reads it"
         )
         raise FileError(message)
-    kind = str(attributes.get("format", "")).removeprefix("stylobate ").partition(" ")[0]
+    kind = str(attributes.get("format", "")).removeprefix(_OWN_FORMATS).partition(" ")[0]
     if kind in _OF_ORBITS:
         message = (
             f"{path} holds no run but, of stylobate.orbits, an object of kind {kind!r}; stylobate.orbits.load reads it"
@@ -86,38 +93,68 @@ def load(path: str | Path) -> Response:
 
 
 def read_dataset(path: str | Path) -> xr.Dataset:
-    """Return what the netCDF file `path` holds, read into memory.
+    """Return what the netCDF file `path` holds, read into memory; times stay numbers.
 
     Raises
     ------
     FileError
-        If the file cannot be read.
+        If the file cannot be read, or is not as it was written.
     """
-    if not Path(path).is_file():
-        message = f"cannot read {path}: {'it is a folder' if Path(path).is_dir() else 'there is no such file'}"
+    return _read(xr.open_dataset, path)
+
+
+def read_tree(path: str | Path) -> xr.DataTree:
+    """Return the groups that the netCDF file `path` holds, read into memory; times stay numbers.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read, or is not as it was written.
+    """
+    return _read(xr.open_datatree, path)
+
+
+def write_netcdf(data: xr.Dataset | xr.DataTree, path: str | Path) -> Path:
+    """Write `data` to the netCDF file `path`, with a checksum at its end, and return the path.
+
+    The file is made in memory: a full disk then is an error of this process and not of the HDF5 library, which would
+    end it.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written; an older file stays then.
+    """
+    return write_whole(path, sealed(data.to_netcdf(None, engine="h5netcdf")))
+
+
+def _read(open_file: Callable[..., _Data], path: str | Path) -> _Data:
+    content, is_sealed = read_sealed(path)
+    try:
+        if not is_sealed:
+            _require_readable(content)
+        with open_file(BytesIO(content), engine="h5netcdf", decode_times=False) as stored:
+            data = stored.load()
+    except Exception as error:  # of a damaged file HDF5 and the layers above it raise errors of many classes
+        message = f"cannot read {path}: it is no netCDF file, or damaged ({' '.join(str(error).split())})"
+        raise FileError(message) from error
+    if not is_sealed and str(data.attrs.get("format", "")).startswith(_OWN_FORMATS):
+        message = f"{path} is damaged, or another program changed it: its checksum is missing. Compute it again"
         raise FileError(message)
-    try:
-        with xr.open_dataset(path, engine="h5netcdf") as stored:
-            return stored.load()
-    except (OSError, ValueError) as error:
-        message = f"cannot read {path}: {getattr(error, 'strerror', None) or error}"
-        raise FileError(message) from error
+    return data
 
 
-def write_dataset(data: xr.Dataset, path: Path) -> Path:
-    """Write `data` to the netCDF file `path` and return the path.
+def _require_readable(content: bytes) -> None:
+    """Read all of an HDF5 file that may be damaged: h5py closes it after an error, which h5netcdf does not always."""
 
-    Raises
-    ------
-    FileError
-        If the file cannot be written.
-    """
-    try:
-        data.to_netcdf(path, engine="h5netcdf")
-    except OSError as error:
-        message = f"cannot write {path}: {error.strerror or error}"
-        raise FileError(message) from error
-    return path
+    def read(_: str, item: Any) -> None:
+        dict(item.attrs)
+        if isinstance(item, h5py.Dataset):
+            item[()]
+
+    with h5py.File(BytesIO(content), "r") as file:
+        dict(file.attrs)
+        file.visititems(read)
 
 
 def _response(data: xr.Dataset, attributes: dict[str, Any]) -> Response:

@@ -45,9 +45,10 @@ def _motion_rows(run: "Response") -> Rows:
 
 
 def _events(run: "Response") -> str:
-    told = [f"{event.kind} at {event.time:.4f} s" for event in run.events[:_SHOWN]]
-    if len(run.events) > _SHOWN:
-        told.append(f"and {len(run.events) - _SHOWN} more")
+    events = [event for event in run.events if not event.repeats]
+    told = [f"{event.kind} at {event.time:.4f} s" for event in events[:_SHOWN]]
+    if len(events) > _SHOWN:
+        told.append(f"and {len(events) - _SHOWN} more")
     return ", ".join(told) or "none"
 
 

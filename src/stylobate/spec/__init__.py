@@ -6,8 +6,9 @@ from stylobate.spec.drift import DriftDescription
 from stylobate.spec.fragility import FragilityDescription, FragilitySetup
 from stylobate.spec.ladder import LadderDescription
 from stylobate.spec.map import MapDescription
+from stylobate.spec.record_collection import EventDescription, RecordsDescription
 from stylobate.spec.record_files import relocated
-from stylobate.spec.records import DescribedRecord, RecordMotion, RecordsDescription
+from stylobate.spec.records import DescribedRecord, RecordMotion
 from stylobate.spec.response import ResponseDescription
 from stylobate.spec.simulation import (
     Setup,
@@ -25,6 +26,7 @@ __all__ = [
     "BasinDescription",
     "DescribedRecord",
     "DriftDescription",
+    "EventDescription",
     "FragilityDescription",
     "FragilitySetup",
     "LadderDescription",

@@ -1,5 +1,7 @@
 """The description of an assessment: columns, records, dissipation, friction, and what is asked of them."""
 
+import datetime as dt
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -9,16 +11,27 @@ import numpy as np
 import numpy.typing as npt
 from pydantic import BeforeValidator, Field, TypeAdapter, ValidationInfo, field_validator
 
-from stylobate.errors import DescriptionError, ParameterError, require_not_negative, require_positive, require_whole
+from stylobate.errors import (
+    MOST_STEPS,
+    DescriptionError,
+    FileError,
+    ParameterError,
+    SeldomMeant,
+    require_not_negative,
+    require_positive,
+    require_whole,
+)
 from stylobate.models import Model
 from stylobate.motions import Record
 from stylobate.results.few_records import FEW_RECORDS
+from stylobate.results.report_details import ReportDetails
 from stylobate.spec.axis import Axis
 from stylobate.spec.columns import ColumnDescription
 from stylobate.spec.description import Description, built
+from stylobate.spec.design_spectrum import DesignSpectrumDescription
 from stylobate.spec.levels import LEVELS, problems_of_the_levels
 from stylobate.spec.models import ModelDescription, WobblingModel
-from stylobate.spec.records import RecordsDescription
+from stylobate.spec.record_collection import RecordsDescription
 from stylobate.spec.suggestions import did_you_mean
 
 _MARGIN = {"from": 0.2, "to": 5.0, "number": 60, "spacing": "log"}
@@ -67,13 +80,21 @@ class AssessDescription(Description):
     )
     width: float = 5e-3
     tail: float | None = None
-    robustness: bool = True
+    robustness: bool | tuple[str, ...] = True
+    sliding: bool = False
     planar: bool = True
     contact: bool = True
     least_records: int = FEW_RECORDS
     rtol: float = 1e-8
+    rest_energy: float | None = None
     max_steps: int = 200_000
     notes: tuple[str, ...] = ()
+    author: str = ""
+    project: str = ""
+    date: dt.date | None = None
+    about_records: dict[str, str] = Field(default_factory=dict)
+    design_spectrum: DesignSpectrumDescription | None = None
+    spectral_period: float = 1.0
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
@@ -129,16 +150,52 @@ class AssessDescription(Description):
         problems += problems_of_the_levels(self.dissipation, type(self.model))
         problems += self._problems_of_the_numbers()
         records: dict[str, Record] = {}
-        try:
-            records = self.records.build()
-        except DescriptionError as error:
-            problems += error.problems
+        with warnings.catch_warnings(record=True) as remarks:
+            warnings.simplefilter("always")
+            try:
+                records = self.records.build()
+            except DescriptionError as error:
+                problems += error.problems
+        for remark in remarks:
+            warnings.warn(remark.message, remark.category, stacklevel=2)
+        problems += self._problems_of_the_remarks(records)
+        details = self._details(problems)
         if problems:
             raise DescriptionError(problems)
-        options = {name: getattr(self, name) for name in _PASSED}
-        quiet = {} if self.robustness else {"changes": ()}
+        options = {"details": details} | {name: getattr(self, name) for name in _PASSED}
+        options["notes"] = (*self.notes, *(f"Warning: {one.message}" for one in remarks if one.category is SeldomMeant))
+        repeated = self._repeated()
         built_models = {name: model for name, model in models.items() if model is not None}
-        return AssessmentSetup(built_models, records, {**options, **quiet, "margin_scales": scales})
+        return AssessmentSetup(built_models, records, {**options, **repeated, "margin_scales": scales})
+
+    def _repeated(self) -> dict[str, Any]:
+        """Return which verdicts are repeated under small changes, as arguments of `studies.assess`."""
+        if isinstance(self.robustness, bool):
+            return {} if self.robustness else {"changes": ()}
+        return {"changes_at": self.robustness} if self.robustness else {"changes": ()}
+
+    def _details(self, problems: list[str]) -> ReportDetails | None:
+        """Return what the report shows besides its numbers; None, and a line in `problems`, for what cannot be."""
+        given = self.design_spectrum
+        try:
+            return ReportDetails(
+                author=self.author,
+                project=self.project,
+                date="" if self.date is None else self.date.isoformat(),
+                about_records=self.about_records,
+                design_spectrum=None if given is None else given.build(),
+                spectral_period=self.spectral_period,
+            )
+        except (ParameterError, FileError) as error:
+            problems.append(str(error))
+            return None
+
+    def _problems_of_the_remarks(self, records: Mapping[str, Record]) -> list[str]:
+        return [
+            f"about_records: {name!r} is no record; {did_you_mean(name, records) or 'leave it out'}"
+            for name in self.about_records
+            if records and name not in records
+        ]
 
     def _model(self, name: str, problems: list[str]) -> Model | None:
         column = built(f"columns.{name}", self.columns[name].build, problems)
@@ -159,7 +216,7 @@ class AssessDescription(Description):
         checks: list[Callable[[], object]] = [
             lambda: require_positive("width", self.width),
             lambda: require_positive("rtol", self.rtol),
-            lambda: require_whole("max_steps", self.max_steps, least=1),
+            lambda: require_whole("max_steps", self.max_steps, least=1, most=MOST_STEPS),
             lambda: require_whole("least_records", self.least_records, least=2),
             lambda: require_not_negative("tail", self.tail or 0.0, "s"),
             *(partial(require_positive, "scales", scale) for scale in self.scales),
@@ -167,13 +224,24 @@ class AssessDescription(Description):
         ]
         if not isinstance(friction, dict):
             checks.append(lambda: require_positive("friction_coefficient", friction))
+        if self.rest_energy is not None:
+            checks.append(partial(require_not_negative, "rest_energy", self.rest_energy))
         problems = [] if self.scales else ["scales must hold at least one scale factor, such as [1.0]"]
         for check in checks:
             try:
                 check()
             except ParameterError as error:
                 problems.append(str(error))
-        return [*problems, *self._problems_of_the_frictions(by_column)]
+        return [*problems, *self._problems_of_the_frictions(by_column), *self._problems_of_the_levels_repeated()]
+
+    def _problems_of_the_levels_repeated(self) -> list[str]:
+        named = () if isinstance(self.robustness, bool) else self.robustness
+        return [
+            f"robustness: must name levels of dissipation (got {name!r}). "
+            f"Use true, false, or some of {', '.join(self.dissipation)}."
+            for name in named
+            if name not in self.dissipation
+        ]
 
     def _problems_of_the_frictions(self, by_column: Mapping[str, float]) -> list[str]:
         if not by_column:
@@ -209,5 +277,5 @@ _STANDS_IN: dict[str, Any] = {
 
 _PASSED = (
     *("title", "dissipation", "friction_coefficient", "scales", "width", "tail", "planar", "contact"),
-    *("least_records", "notes", "rtol", "max_steps"),
+    *("sliding", "least_records", "notes", "rtol", "rest_energy", "max_steps"),
 )

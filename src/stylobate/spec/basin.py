@@ -5,7 +5,7 @@ from typing import Any, Self
 
 from pydantic import Field, field_validator
 
-from stylobate.errors import require_whole
+from stylobate.errors import LARGEST_SEED, MOST_RUNS, require_whole
 from stylobate.spec.axis import Axis
 from stylobate.spec.description import Description, built
 from stylobate.spec.many_runs import ManyRuns, common_values, refuse_design
@@ -36,8 +36,8 @@ class Starts(Description):
             problems.append(f"basin.{' and basin.'.join(axes)}: random starts have ranges (over) and no grid")
         if not self.over:
             problems.append("basin.over is missing: the ranges of random starts, by name")
-        built("basin", lambda: require_whole("random", self.random or 0, least=1), problems)
-        built("basin", lambda: require_whole("seed", self.seed, least=0), problems)
+        built("basin", lambda: require_whole("random", self.random or 0, least=1, most=MOST_RUNS), problems)
+        built("basin", lambda: require_whole("seed", self.seed, least=0, most=LARGEST_SEED), problems)
         return {"over": dict(self.over), "count": self.random, "seed": self.seed}
 
 

@@ -1,8 +1,9 @@
 """Descriptions of columns, told apart by their `shape`."""
 
-from typing import Annotated, Literal
+from collections.abc import Iterable, Mapping
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from stylobate.column import STANDARD_GRAVITY, Column
 from stylobate.spec.description import Description
@@ -99,8 +100,24 @@ class GivenColumn(Description):
         return cls(shape="given", **{name: getattr(column, name) for name in cls.model_fields if name != "shape"})
 
 
+_SHAPES = {"slenderness": "dimensionless", "inner_radius": "hollow", "top_radius": "frustum", "mass_height": "given"}
+
+
+def implied_shape(names: Iterable[str]) -> str | None:
+    """Return the only shape that has one of the numbers of these `names`, or None."""
+    return next((shape for name, shape in _SHAPES.items() if name in names), None)
+
+
+def _with_shape(described: Any) -> Any:
+    """Add the shape that the numbers imply to the values of a column without one; solid by default."""
+    return {"shape": implied_shape(described) or "solid", **described} if isinstance(described, Mapping) else described
+
+
 ColumnDescription = Annotated[
-    SolidColumn | HollowColumn | FrustumColumn | DimensionlessColumn | GivenColumn, Field(discriminator="shape")
+    Annotated[
+        SolidColumn | HollowColumn | FrustumColumn | DimensionlessColumn | GivenColumn, Field(discriminator="shape")
+    ],
+    BeforeValidator(_with_shape),
 ]
 
 ANY_COLUMN = Column.dimensionless(0.1)

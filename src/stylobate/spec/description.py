@@ -15,7 +15,10 @@ _UNION_FIELDS = ("column", "model", "motion")
 # Fields that are tables of such, by names of the user's.
 _UNION_TABLES = ("columns",)
 # What is to be said of a part that is missing.
-_WANTED = {"duration": ": how long to follow a run [s], such as 60; only after a record or a pulse it may be left out"}
+_WANTED = {
+    "duration": ": how long to follow a run [s], such as 60; only under a motion that ends may it be left out",
+    "motion.velocity": ": velocity of the pulse [m/s]; on the command line --pulse-velocity",
+}
 
 
 class Description(BaseModel):

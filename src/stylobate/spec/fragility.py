@@ -8,6 +8,7 @@ from pydantic import BeforeValidator, Field
 from pydantic_core import PydanticCustomError
 
 from stylobate.errors import (
+    LARGEST_SEED,
     DescriptionError,
     FileError,
     ParameterError,
@@ -21,7 +22,7 @@ from stylobate.motions import Record
 from stylobate.spec.description import Description, built
 from stylobate.spec.hazard import Hazard, HazardPoints
 from stylobate.spec.many_runs import ManyRuns
-from stylobate.spec.records import RecordsDescription
+from stylobate.spec.record_collection import RecordsDescription
 from stylobate.spec.spectrum import Scales
 
 
@@ -90,6 +91,7 @@ class Fragility(Description):
 
     scales: Scales
     intensity: Annotated[str | Spectral, BeforeValidator(_as_intensity)] = "peak ground acceleration"
+    component: str = "RotD50"
     rotations: tuple[float, ...] = (0.0,)
     vertical: tuple[bool, ...] = (True,)
     tail: float | None = None
@@ -187,7 +189,7 @@ class FragilityDescription(ManyRuns):
             problems.append("fragility.samples and fragility.spreads go together; give both or none of them")
         checks = {
             "samples": lambda: require_whole("samples", table.samples, least=0),
-            "seed": lambda: require_whole("seed", table.seed, least=0),
+            "seed": lambda: require_whole("seed", table.seed, least=0, most=LARGEST_SEED),
             "resamples": lambda: require_whole("resamples", table.resamples, least=0),
             "years": lambda: require_positive("years", table.years, "a"),
             "tail": lambda: require_not_negative("tail", table.tail or 0.0, "s"),

@@ -1,186 +1,189 @@
-"""The description of a hazard curve: intensities with their unit, and how often in a year each is exceeded."""
+"""The description of a hazard curve: how often an intensity is exceeded at a site, in numbers or in a file of them."""
 
-import re
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TypeVar
 
-import numpy as np
-
-from stylobate.errors import FileError, ParameterError
-from stylobate.motions.records.units import in_si, unit_of
+from stylobate.errors import ParameterError, require_positive
+from stylobate.motions.records import HorizontalComponent
 from stylobate.spec.description import Description
+from stylobate.spec.hazard_columns import (
+    ExceedanceColumn,
+    IntensityColumn,
+    canonical_unit,
+    require_measure,
+    si_factor,
+)
+from stylobate.spec.hazard_file import HazardTable, Row, Site, read_hazard
 
-# Of velocities; those of accelerations are as in records.
-_VELOCITIES = {"m/s": 1.0, "ms-1": 1.0, "cm/s": 0.01, "cms-1": 0.01, "mm/s": 0.001, "mms-1": 0.001}
-_PER_YEAR = ("1/a", "a-1", "1/y", "1/yr", "1/year", "y-1", "yr-1")
-
-_MEASURES = ("peak ground acceleration", "peak ground velocity", "PGA/(g tan α)", "p PGV/(g tan α)")
-_SHORT = {"pga": _MEASURES[0], "pgv": _MEASURES[1], **{name.lower(): name for name in _MEASURES}}
-
-# A name of a column and, in brackets at its end, its unit; round ones may belong to the name, as in SA(0.5 s).
-_SQUARE = re.compile(r"\s*(?P<name>.*?)\s*\[(?P<unit>[^\]]*)\]\s*")
-_ROUND = re.compile(r"\s*(?P<name>.*?)\s*\((?P<unit>[^()]*)\)\s*")
-_SPECTRAL = re.compile(r"(?:spectral acceleration|psa|sa)(?: at)?[\s(]*(?P<period>\d*\.?\d+)\s*(?:s|sec)?\b.*")
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HazardPoints:
-    """Points of a hazard curve in SI.
+    """Points of a hazard curve in SI, in increasing order.
 
     Parameters
     ----------
-    intensity, rate
-        Intensities, and the annual rates at which they are exceeded [1/a].
+    intensity
+        Intensities.
+    exceedance
+        Annual rates at which they are exceeded [1/a]; with an `investigation_time`, the probabilities within it.
+    investigation_time
+        Time of the probabilities [a]; None for rates.
     units
-        "m s-2", "m s-1" or "1"; None where it is not told.
+        "m s-2", "m s-1" or "1"; None where it is not stated.
     measure
-        What the intensity is, a spectral acceleration as "spectral acceleration at 0.5 s"; empty where it is not told.
+        What the intensity is, a spectral acceleration as "spectral acceleration at 0.5 s"; empty where not stated.
+    component
+        Definition of its horizontal component; None where it is not stated.
     source
         The file, for messages; empty without.
     """
 
     intensity: tuple[float, ...]
-    rate: tuple[float, ...]
+    exceedance: tuple[float, ...]
+    investigation_time: float | None = None
     units: str | None = None
     measure: str = ""
+    component: str | None = None
     source: str = ""
 
 
 class Hazard(Description):
-    """Annual `rate` at which each `intensity` is exceeded; or a `file` of two columns, these two.
+    """Annual `rate` or `probability` of exceedance of each `intensity`; or a `file`.
 
-    `units` is that of the intensity: "g", "m/s²", "cm/s²", "m/s", "cm/s", or "1"; `measure` what it is: "peak ground
-    acceleration" or PGA, "SA(0.5 s)". A file tells them in its first line: `PGA [g], annual rate [1/a]`.
+    A file has two columns, named in its first line: `PGA RotD50 [g], annual rate [1/a]` or `SA(0.5 s) RotD50 [g],
+    probability in 50 years`; or it is a hazard curve of OpenQuake, of which `site` is the number of a row, from 0, or
+    its longitude and latitude. `investigation_time` is the time of probabilities [years]; `units` that of the
+    intensity: "g", "m/s²", "cm/s²", "m/s", "cm/s", or "1"; `measure` what it is: PGA, PGV, "SA(0.5 s)"; `component`
+    the definition of its horizontal component: "RotD50", "RotD100", "geometric mean", "larger component". They are
+    needed where the file does not state them.
     """
 
     intensity: tuple[float, ...] = ()
     rate: tuple[float, ...] = ()
+    probability: tuple[float, ...] = ()
+    investigation_time: float | None = None
     file: str | None = None
+    site: Site | None = None
     units: str | None = None
     measure: str | None = None
+    component: str | None = None
 
     def points(self) -> HazardPoints:
-        """Return intensities in SI, and rates.
+        """Return intensities in SI, and rates or probabilities.
 
         Raises
         ------
         FileError
-            If the file cannot be read.
+            If the file cannot be read, or does not say what its columns are.
         ParameterError
-            If they are given in two ways or none, or units or measure in two that differ.
+            If they are given in two ways or none, are no curve, or the file and the description contradict each other.
         """
-        if (self.file is None) == (not self.intensity and not self.rate):
-            message = "intensity and rate must be given, or a file of them, one of both"
+        listed = self.intensity or self.rate or self.probability
+        if bool(listed) == (self.file is not None):
+            message = "intensity and rate (or probability) must be given, or a file of them, one of both"
             raise ParameterError(message)
-        x, rate, name, unit = (self.intensity, self.rate, "", None) if self.file is None else _read(self.file)
-        measure = _one_of("measure", _measure(name), _known_measure(self.measure)) or ""
-        units = _one_of("units", None if unit is None else _canonical(unit), _known_unit(self.units))
-        factor, si = (1.0, None) if units is None else _si(units)
-        scaled = tuple(value * factor for value in x)
-        return HazardPoints(intensity=scaled, rate=rate, units=si, measure=measure, source=self.file or "")
+        table = self._listed() if self.file is None else read_hazard(self.file, self.site)
+        column, exceedance = self._intensity_column(table.intensity), self._exceedance_column(table.exceedance)
+        rows = _in_order(table.rows, column.units or "", exceedance)
+        factor, si = (1.0, None) if column.units is None else si_factor(column.units)
+        return HazardPoints(
+            intensity=tuple(row.intensity * factor for row in rows),
+            exceedance=tuple(row.exceedance * exceedance.factor for row in rows),
+            investigation_time=exceedance.investigation_time,
+            units=si,
+            measure=column.measure or "",
+            component=column.component,
+            source=self.file or "",
+        )
+
+    def _listed(self) -> HazardTable:
+        values = self.rate or self.probability
+        if self.rate and self.probability:
+            message = "rate and probability: one of both only. Remove the other."
+            raise ParameterError(message)
+        if self.site is not None:
+            message = f"site: of files only (got {self.site!r}). Remove it."
+            raise ParameterError(message)
+        if len(values) != len(self.intensity):
+            message = f"intensity and its rates must be as many, got {len(self.intensity)} and {len(values)}"
+            raise ParameterError(message)
+        rows = tuple(
+            Row(intensity=x, exceedance=y, where=f"point {place}")
+            for place, (x, y) in enumerate(zip(self.intensity, values, strict=True), start=1)
+        )
+        column = ExceedanceColumn(is_probability=bool(self.probability))
+        return HazardTable(rows=rows, intensity=IntensityColumn(), exceedance=column)
+
+    def _intensity_column(self, column: IntensityColumn) -> IntensityColumn:
+        component = None if self.component is None else HorizontalComponent.named(self.component).value
+        measure = None if self.measure is None else require_measure(self.measure)
+        return IntensityColumn(
+            measure=_one_of("measure", column.measure, measure),
+            units=_one_of("units", column.units, _known_unit(self.units)),
+            component=_one_of("component", column.component, component),
+        )
+
+    def _exceedance_column(self, column: ExceedanceColumn) -> ExceedanceColumn:
+        given = self.investigation_time
+        if given is not None:
+            given = require_positive("investigation_time", given, "a")
+        if not column.is_probability:
+            if given is not None:
+                message = f"investigation_time: of probabilities only, and these are rates (got {given:g}). Remove it."
+                raise ParameterError(message)
+            return column
+        time = _one_of("investigation_time", column.investigation_time, given)
+        if time is None:
+            message = "investigation_time: needed for probabilities of exceedance. State it in years, such as 50."
+            raise ParameterError(message)
+        return replace(column, investigation_time=time)
+
+
+def _in_order(rows: tuple[Row, ...], units: str, column: ExceedanceColumn) -> list[Row]:
+    """Return the points in increasing order, or raise ParameterError for those that are no hazard curve."""
+    kind = "probability" if column.is_probability else "annual rate"
+    most = 1.0 / column.factor
+    unit = f" {units}" if units not in ("", "1") else ""
+    for row in rows:
+        if not 0.0 < row.intensity < float("inf"):
+            message = f"{row.where}: intensity must be positive and finite (got {row.intensity:g}{unit}). Remove it."
+            raise ParameterError(message)
+        if column.is_probability and not 0.0 <= row.exceedance <= most:
+            message = (
+                f"{row.where}: probability must be between 0 and {most:g} (got {row.exceedance:g}). Name the column "
+                "“probability in 50 years [%]” if these are percentages."
+            )
+            raise ParameterError(message)
+        if not column.is_probability and not 0.0 < row.exceedance < float("inf"):
+            message = f"{row.where}: annual rate must be positive and finite (got {row.exceedance:g}). Remove it."
+            raise ParameterError(message)
+    ordered = sorted(rows, key=lambda row: row.intensity)
+    for low, high in pairwise(ordered):
+        if low.intensity == high.intensity:
+            message = f"{high.where}: intensity {high.intensity:g}{unit} is there twice. Keep one of the two points."
+            raise ParameterError(message)
+        if high.exceedance > low.exceedance:
+            message = (
+                f"{high.where}: {kind} must not increase with intensity (got {high.exceedance:g} at "
+                f"{high.intensity:g}{unit} after {low.exceedance:g} at {low.intensity:g}{unit}). Correct the table."
+            )
+            raise ParameterError(message)
+    return ordered
 
 
 def _known_unit(units: str | None) -> str | None:
-    if units is None or (found := _canonical(units)) is not None:
+    if units is None or (found := canonical_unit(units)) is not None:
         return None if units is None else found
     message = f'units must be "g", "m/s²", "cm/s²", "m/s", "cm/s" or "1", got {units!r}'
     raise ParameterError(message)
 
 
-def _known_measure(measure: str | None) -> str | None:
-    if measure is None or (found := _measure(measure)) is not None:
-        return None if measure is None else found
-    message = f'measure must be {", ".join(map(repr, _MEASURES))} or such as "SA(0.5 s)", got {measure!r}'
-    raise ParameterError(message)
-
-
-def _one_of(name: str, in_file: str | None, given: str | None) -> str | None:
-    """Return what the file or the description tells; both may, the same."""
-    if in_file and given and in_file != given:
-        message = f"the file tells {name} {in_file!r}, the description {given!r}; leave one of them out"
+def _one_of(name: str, in_file: _T | None, given: _T | None) -> _T | None:
+    """Return what the file or the description states; both may, the same."""
+    if in_file is not None and given is not None and in_file != given:
+        message = f"{name}: the file states {in_file!r}, the description {given!r}. Remove it from the description."
         raise ParameterError(message)
-    return in_file or given
-
-
-def _canonical(text: str) -> str | None:
-    """Return the unit that `text` spells, or None."""
-    plain = text.strip().lower().replace(" ", "").replace("⁻¹", "-1").replace("**", "").replace("^", "")
-    if plain in ("1", "-", "—", "–"):
-        return "1"
-    return plain if plain in _VELOCITIES else unit_of(text)
-
-
-def _si(units: str) -> tuple[float, str]:
-    """Return by what intensities are multiplied, and the unit in which they are then."""
-    if units == "1":
-        return 1.0, "1"
-    return (_VELOCITIES[units], "m s-1") if units in _VELOCITIES else (in_si(units), "m s-2")
-
-
-def _measure(text: str) -> str | None:
-    """Return the full name of the measure that `text` spells, or None."""
-    lower = " ".join(text.lower().split())
-    if spectral := _SPECTRAL.fullmatch(lower):
-        return f"spectral acceleration at {float(spectral['period']):g} s"
-    return _SHORT.get(lower)
-
-
-def _read(path: str) -> tuple[tuple[float, ...], tuple[float, ...], str, str | None]:
-    """Return intensities and rates of a file, and what its first line says of the intensity: name and unit."""
-    try:
-        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        message = f"cannot read {path}: {getattr(error, 'strerror', None) or error}"
-        raise FileError(message) from None
-    told = [(place, line.strip()) for place, line in enumerate(lines, start=1) if line.strip()]
-    numbers = [_pair(path, place, line) for place, line in told if _begins_with_a_number(line)]
-    if not numbers:
-        message = f"{path} holds no numbers: two columns are needed, intensity and annual rate"
-        raise FileError(message)
-    name, unit = _header(path, [line for _, line in told])
-    x, rate = np.array(numbers).T
-    return tuple(x.tolist()), tuple(rate.tolist()), name, unit
-
-
-def _header(path: str, lines: list[str]) -> tuple[str, str | None]:
-    """Return name and unit of the first column; the first line that names two columns is taken, a remark too."""
-    for line in lines:
-        if _begins_with_a_number(line):
-            break
-        names = re.split(r"[,;\t]", line.lstrip("#% "))
-        if len(names) != 2:  # noqa: PLR2004  two columns
-            continue
-        (name, unit), (_, per) = map(_split, names)
-        if per is not None and per.lower().replace(" ", "").replace("⁻¹", "-1") not in _PER_YEAR:
-            message = f"{path}: the second column must be the annual rate of exceedance [1/a], got [{per}]"
-            raise FileError(message)
-        if unit is not None and _canonical(unit) is None:
-            message = f"{path}: the unit of the intensity must be g, m/s², cm/s², m/s, cm/s or 1, got [{unit}]"
-            raise FileError(message)
-        return name, unit
-    return "", None
-
-
-def _split(column: str) -> tuple[str, str | None]:
-    """Return name and unit of a column."""
-    if found := _SQUARE.fullmatch(column):
-        return found["name"], found["unit"]
-    found = _ROUND.fullmatch(column)
-    if found and (found["unit"] in _PER_YEAR or _canonical(found["unit"]) not in (None, "1")):
-        return found["name"], found["unit"]
-    return column.strip(), None
-
-
-def _begins_with_a_number(line: str) -> bool:
-    """Return whether a line is neither a remark nor a header."""
-    return line[0].isdigit() or line[0] in "+-."
-
-
-def _pair(path: str, place: int, line: str) -> tuple[float, float]:
-    parts = line.replace(",", " ").replace(";", " ").split()
-    try:
-        intensity, rate = (float(part) for part in parts)
-    except ValueError:
-        message = f"{path}, line {place}: two numbers are needed, intensity and annual rate, got {line!r}"
-        raise FileError(message) from None
-    return intensity, rate
+    return given if in_file is None else in_file

@@ -17,7 +17,9 @@ from stylobate.spec.simulation import (
     SimulationDescription,
     built_parts,
     built_rules,
+    duration_with_tail,
     problems_of_the_run,
+    with_default_duration,
 )
 
 
@@ -45,7 +47,7 @@ class LadderDescription(Description):
     tilt: tuple[float, float] = (0.0, 0.0)
     tilt_rate: tuple[float, float] = (0.0, 0.0)
     spin: float = 0.0
-    duration: float
+    duration: float | None
     friction_coefficient: float | None = None
     rtol: float = 1e-8
     atol: float | None = None
@@ -71,7 +73,7 @@ class LadderDescription(Description):
                 raise DescriptionError(
                     [f"model.{name} is no friction of the ladder: {shared}; remove it" for name in strange]
                 )
-        return super().parse(kept)
+        return super().parse(with_default_duration(kept))
 
     def build(self) -> Setup:
         """Return the most general level and the motion; the options are those of `stylobate.studies.ladder`.
@@ -90,5 +92,7 @@ class LadderDescription(Description):
         level = RollingModel(**frictions, restitution=1.0 if restitution is None else restitution)
         model, motion = built_parts(self.column, level, self.motion, problems)
         options = self.model_dump(exclude={"column", "model", "motion", "ladder"})
+        if self.duration is None:
+            options["duration"] = duration_with_tail(model, motion)
         compared = {"slenderness": self.ladder.slenderness or None, "reference": self.ladder.reference}
         return Setup(model, motion, options | compared | frictions | {"restitution": restitution, "rules": rules})

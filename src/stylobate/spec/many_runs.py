@@ -42,6 +42,7 @@ class ManyRuns(Description):
     rest_energy: float | None = None
     max_steps: int = 200_000
     demands: bool = False
+    recheck: bool = False
     rules: dict[str, float] = Field(default_factory=dict)
 
     @classmethod
@@ -73,7 +74,7 @@ class ManyRuns(Description):
     def problems_of_the_length(self, names: tuple[str, ...]) -> list[str]:
         """Return a line unless one of `duration` and `periods` is given, or a duration among the `names` that vary.
 
-        Under a record or a pulse none is needed: see `SimulationDescription`.
+        Under a motion that ends none is needed: see `SimulationDescription`.
         """
         if self._lasts_as_its_motion(names):
             return []
@@ -94,7 +95,7 @@ _OF_A_SINGLE_RUN = ("samples", "twist", "position", "friction_coefficient", "vel
 
 _SHARED = (
     *("tilt", "tilt_rate", "spin", "duration", "periods"),
-    *("method", "rtol", "atol", "tilt_limit", "rest_energy", "max_steps", "demands"),
+    *("method", "rtol", "atol", "tilt_limit", "rest_energy", "max_steps", "demands", "recheck"),
 )
 
 

@@ -118,6 +118,11 @@ def known_values(described: Mapping[str, Any], kind: str) -> dict[str, Any]:
     return {name: value for name, value in described.items() if one is None or name in one.model_fields}
 
 
+def kinds_with(name: str) -> tuple[str, ...]:
+    """Return the kinds of model that have a number of this `name`."""
+    return tuple(kind for kind, one in _BY_KIND.items() if name in one.model_fields)
+
+
 def default_values(kind: str) -> dict[str, Any]:
     """Return what a description of this `kind` has where nothing is given; nothing if there is no such kind."""
     one = _BY_KIND.get(kind)

@@ -1,7 +1,7 @@
 """Descriptions of base motions, told apart by their `kind`."""
 
-from collections.abc import Callable, Mapping
-from typing import Annotated, Any, Literal
+from collections.abc import Callable, Iterable, Mapping
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field
 
@@ -10,12 +10,6 @@ from stylobate.motions import BaseMotion, Delayed, Harmonic, OneOf, Pulse, Recor
 from stylobate.motions.pulses import AntisymmetricRicker, Gabor, MavroeidisPapageorgiou, Ricker, Sinusoid
 from stylobate.spec.description import Description
 from stylobate.spec.records import DescribedRecord, RecordMotion
-
-PULSES = (
-    *("half_sine", "half_cosine", "one_sine", "one_cosine", "sinusoidal", "type_a", "type_b", "type_c"),
-    *("ricker", "antisymmetric_ricker", "gabor", "mavroeidis_papageorgiou"),
-)
-"""Kinds of pulses: motions that end."""
 
 
 class RestMotion(Description):
@@ -126,6 +120,8 @@ class GeneralHarmonicMotion(_HarmonicMotion):
 
 
 class _LineMotion(Description):
+    """A pulse or a sine sweep, which ends."""
+
     direction: float = 0.0
     start: float = 0.0
     vertical: float = 0.0
@@ -286,6 +282,19 @@ MotionDescription = Annotated[
     | DelayedMotion,
     Field(discriminator="kind"),
 ]
+
+_MEMBERS: tuple[type[Description], ...] = get_args(get_args(MotionDescription)[0])
+
+
+def _kinds(members: Iterable[type[Description]]) -> tuple[str, ...]:
+    return tuple(kind for one in members for kind in get_args(one.model_fields["kind"].annotation))
+
+
+ENDING = _kinds(one for one in _MEMBERS if issubclass(one, (_LineMotion, RecordMotion)))
+"""Kinds of motions that end, so that a run needs no duration: pulses, sine sweeps and records."""
+
+PULSES = _kinds(one for one in _MEMBERS if issubclass(one, _LineMotion) and "angular_frequency" in one.model_fields)
+"""Kinds of pulses that have an angular frequency."""
 
 for _composite in (SumMotion, OneOfMotion, ScaledMotion, RotatedMotion, DelayedMotion):
     _composite.model_rebuild()

@@ -1,18 +1,19 @@
 """Descriptions of records: which files, in which unit, and what is done to them."""
 
 import hashlib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import Field
 
-from stylobate.errors import DescriptionError, FileError, ParameterError
+from stylobate.errors import FileError, ParameterError
 from stylobate.motions import Record
-from stylobate.motions.records import Lengths, RecordFormat, Steps, read_record, read_records, sample_record
-from stylobate.motions.records.component import split_name
-from stylobate.motions.records.reading import name_of
+from stylobate.motions.records import Lengths, RecordFormat, Steps, read_record, sample_record
+from stylobate.motions.records.events import Event, find_events
+from stylobate.motions.records.grouping import join_event, reader, remark_on_missing_components
+from stylobate.motions.records.sources import RecordSource
 from stylobate.spec.description import Description
 from stylobate.spec.record_steps import (
     AnyStep,
@@ -33,42 +34,44 @@ from stylobate.spec.record_steps import (
 _LONGEST_EVENT = 3  # two horizontal components and a vertical one
 
 
-class _Reading(Description):
+class Reading(Description):
+    """What `RecordMotion` and `RecordsDescription` share: arguments of `read_records`, and `processing`."""
+
     units: str | None = None
     step: float | None = None
-    directions: dict[str, float | str] = Field(default_factory=dict)
+    columns: dict[str, str] | None = None
     lengths: Literal["trim", "pad"] = "trim"
     steps: Literal["refuse", "resample"] = "refuse"
-    format: Literal["at2", "table", "csv", "waveform"] | None = None
+    format: Literal["at2", "asc", "table", "csv", "waveform"] | None = None
+    single: bool = False
     processing: tuple[RecordStep, ...] = ()
 
-    def _together(self, paths: Sequence[str]) -> tuple[Record, ...]:
-        return read_records(
-            paths,
-            self.units,
-            step=self.step,
-            directions=self.directions or None,
-            lengths=Lengths[self.lengths.upper()],
-            steps=Steps[self.steps.upper()],
-            format=self._format(),
-        )
+    def find(self, source: RecordSource, directions: Mapping[str, float | str]) -> tuple[Event, ...]:
+        """Return the events in these files; see `find_events`."""
+        return find_events(source, reader(self.step, self.columns, self._format()), directions)
+
+    def join(self, event: Event) -> Record:
+        """Return the record of an event; see `join_event`."""
+        return join_event(event, self.units, Lengths[self.lengths.upper()], Steps[self.steps.upper()])
 
     def _format(self) -> RecordFormat | None:
         return None if self.format is None else RecordFormat[self.format.upper()]
 
 
-class RecordMotion(_Reading):
+class RecordMotion(Reading):
     """A record: the file `path`, or a list of those of one event, or the `sample` that comes with the package.
 
-    `units`, `step`, `columns`, `axis`, `directions`, `lengths`, `steps` and `format` are arguments of `read_record` and
-    `read_records`. Then come the steps of `processing`, in their order, each with the name of a method of `Record`; at
+    `units`, `step`, `columns`, `axis`, `lengths`, `steps`, `format` and `single` are arguments of `read_record` and
+    `read_records`; `directions` are by name of a file, or a list in the order of the files; `name` is that of the
+    record. Then come the steps of `processing`, in their order, each with the name of a method of `Record`; at
     last `scale`, `rotation` [rad] and `tail` [s of rest]. A saved result has `file_sha256` of its files, by path.
     """
 
     kind: Literal["record"] = "record"
     path: str | tuple[str, ...] | None = None
     sample: str | None = None
-    columns: dict[str, str] | None = None
+    name: str | None = None
+    directions: dict[str, float | str] | tuple[float | str, ...] = ()
     axis: Literal["x", "y", "z"] | None = None
     scale: float | None = None
     rotation: float | None = None
@@ -93,6 +96,19 @@ class RecordMotion(_Reading):
         FileError
             If a file cannot be read, or does not tell its unit where `units` is not given.
         """
+        self._checked_files()
+        return self.describe(self._read())
+
+    def describe(self, record: Record) -> "DescribedRecord":
+        """Return the `record` that was read from the files, processed as described, with its description.
+
+        Warns
+        -----
+        SeldomMeant
+            If it lacks a component, unless `single`, or the axis or the columns of one file are chosen.
+        """
+        if not (self.single or self.axis or (self.columns and isinstance(self.path, str))):
+            remark_on_missing_components(record)
         digests = self._checked_files()
         steps = (*self.processing, *self._last())
         paths = tuple(str(Path(path).absolute()) for path in self.paths)
@@ -104,7 +120,7 @@ class RecordMotion(_Reading):
                 **dict.fromkeys(("scale", "rotation", "tail")),
             }
         )
-        return DescribedRecord.of(processed(self._read(), steps), kept)
+        return DescribedRecord.of(processed(record, steps), kept)
 
     def _last(self) -> list[AnyStep]:
         """Return scale, rotation and tail as steps."""
@@ -146,18 +162,26 @@ class RecordMotion(_Reading):
 
     def _read(self) -> Record:
         if self.sample is not None:
-            self._refuse(("units", "step", "columns", "axis", "directions", "format"), "a sample")
+            self._refuse(("units", "step", "columns", "axis", "directions", "format", "name"), "a sample")
             return sample_record(self.sample)
-        if isinstance(self.path, str) and not self.directions:
+        if isinstance(self.path, str) and not (self.directions or self.name):
             return read_record(
                 self.path, self.units, step=self.step, columns=self.columns, axis=self.axis, format=self._format()
             )
-        self._refuse(("columns", "axis"), "files that are put together")
-        found = self._together(self.paths)
-        if len(found) > 1:
-            message = f"path must name files of one event, got {', '.join(record.name for record in found)}"
+        self._refuse(("axis",), "files that are put together")
+        (event,) = self.find({self.name: self.paths} if self.name else [self.paths], self._directions())
+        return self.join(event)
+
+    def _directions(self) -> Mapping[str, float | str]:
+        if isinstance(self.directions, dict):
+            return self.directions
+        if self.directions and len(self.directions) != len(self.paths):
+            message = (
+                f"directions: one for each file is needed (got {len(self.directions)} for {len(self.paths)} files). "
+                'List azimuths [degrees] or names such as "up", in the order of the files'
+            )
             raise ParameterError(message)
-        return found[0]
+        return {Path(path).name: way for path, way in zip(self.paths, self.directions, strict=False)}
 
     def _refuse(self, names: Iterable[str], what: str) -> None:
         for name in names:
@@ -240,94 +264,6 @@ class DescribedRecord(Record):
         return self._after(BaselineStep(degree=degree), Record.baseline_corrected(self, degree))
 
 
-class RecordsDescription(_Reading):
-    """Records for a study: those in a folder, of the files that match a pattern, or of some files.
-
-    The components of an event are put together by `read_records`; `units`, `step`, `directions`, `lengths`, `steps`,
-    `format` and `processing` are for all of them. `samples` names records that come with the package. `only` chooses
-    some by name.
-    """
-
-    source: str | tuple[str, ...] = ()
-    samples: tuple[str, ...] = ()
-    only: tuple[str, ...] = ()
-
-    def build(self) -> dict[str, Record]:
-        """Return the records by name, in the order of their names; each can be described.
-
-        Raises
-        ------
-        DescriptionError
-            With one line for each event that cannot be read, and where nothing is found or two have one name.
-        """
-        problems: list[str] = []
-        wanted = self._described(problems)
-        built = [_collected(one.build, problems) for one in wanted]
-        found = sorted((record for record in built if record is not None), key=lambda record: record.name)
-        names = [record.name for record in found]
-        problems += [
-            f"records: two of them are called {name!r}" for name in sorted({n for n in names if names.count(n) > 1})
-        ]
-        problems += [
-            f"records.only: {name!r} is none of the records; they are {', '.join(names)}"
-            for name in self.only
-            if name not in names and not problems
-        ]
-        if not (problems or found):
-            problems.append("records: none were given; source is a folder, a pattern such as quakes/*.AT2, or files")
-        if problems:
-            raise DescriptionError(problems)
-        return {record.name: record for record in found if not self.only or record.name in self.only}
-
-    def _described(self, problems: list[str]) -> list[RecordMotion]:
-        samples = [RecordMotion(sample=name, processing=self.processing) for name in self.samples]
-        events = _collected(lambda: _events(_files(self.source)), problems) or []
-        return [*samples, *(self._event(paths) for paths in events)]
-
-    def _event(self, paths: Sequence[Path]) -> RecordMotion:
-        names = {path.name for path in paths}
-        common = self.model_dump(include=set(_Reading.model_fields), exclude={"directions", "processing"})
-        own = {name: way for name, way in self.directions.items() if name in names}
-        return RecordMotion(
-            path=tuple(str(path) for path in paths), directions=own, processing=self.processing, **common
-        )
-
-
-def _collected(build: Callable[[], Any], problems: list[str]) -> Any:
-    try:
-        return build()
-    except (ParameterError, FileError) as error:
-        problems.append(str(error))
-        return None
-
-
-def _files(source: str | tuple[str, ...]) -> list[Path]:
-    if isinstance(source, tuple):
-        return [Path(path) for path in source]
-    folder = Path(source)
-    if folder.is_dir():
-        files = [path for path in folder.iterdir() if path.is_file() and not path.name.startswith(".")]
-        what = "the folder has no files"
-    elif any(sign in source for sign in "*?["):
-        start = Path(folder.anchor) if folder.is_absolute() else Path()
-        files = list(start.glob(str(folder.relative_to(start))))
-        what = "no file has such a name"
-    else:
-        return [folder]
-    if not files:
-        message = f"{source}: {what}"
-        raise FileError(message)
-    return sorted(files)
-
-
-def _events(paths: Iterable[Path]) -> list[list[Path]]:
-    """Return the files of each event together, by their names; see `read_records`."""
-    events: dict[tuple[Path, str], list[Path]] = {}
-    for path in paths:
-        events.setdefault((path.parent, split_name(name_of(path))[0]), []).append(path)
-    return list(events.values())
-
-
 def anchored(values: Any, folder: Path) -> Any:
     """Return the plain values of a description with the files of its records told from `folder` on.
 
@@ -348,13 +284,28 @@ def anchored(values: Any, folder: Path) -> Any:
     }
     if "records" in values:
         found["records"] = _source_from(values["records"], folder)
+    if isinstance(values.get("design_spectrum"), Mapping):
+        found["design_spectrum"] = _file_from(values["design_spectrum"], "file", folder)
     return found
 
 
 def _source_from(records: Any, folder: Path) -> Any:
-    if isinstance(records, Mapping):
-        return {name: _from(value, folder) if name == "source" else value for name, value in records.items()}
-    return _from(records, folder)
+    if not isinstance(records, Mapping):
+        return _from(records, folder)
+    found = {name: _from(value, folder) if name == "source" else value for name, value in records.items()}
+    if isinstance(events := records.get("event"), list):
+        found["event"] = [_source_of_event(one, folder) for one in events]
+    return found
+
+
+def _source_of_event(event: Any, folder: Path) -> Any:
+    return {**event, "files": _from(event.get("files"), folder)} if isinstance(event, Mapping) else event
+
+
+def _file_from(values: Any, key: str, folder: Path) -> Any:
+    if isinstance(values, Mapping):
+        return {name: _from(value, folder) if name == key else value for name, value in values.items()}
+    return _from(values, folder)
 
 
 def _from(value: Any, folder: Path) -> Any:

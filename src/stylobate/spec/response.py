@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Mapping
+from functools import partial
 from typing import Any, Self
 
-from stylobate.errors import DescriptionError
+from stylobate.errors import DescriptionError, require_positive, require_whole
 from stylobate.spec.columns import ColumnDescription
-from stylobate.spec.description import Description
+from stylobate.spec.description import Description, built
 from stylobate.spec.models import ModelDescription, SlenderModel
 from stylobate.spec.motions import MotionDescription
 from stylobate.spec.simulation import OF_OTHER_COMMANDS, Setup, SimulationDescription, built_parts
@@ -49,8 +50,9 @@ class ResponseDescription(Description):
         low, high = self.angular_frequency_range
         if not 0.0 < low < high:
             problems.append(f"angular_frequency_range must rise from above zero, got {low!r} to {high!r} rad/s")
-        if not self.points > 1:
-            problems.append(f"points must be at least 2, got {self.points!r}")
+        for end in (low, high) if 0.0 < low < high else ():
+            built("angular_frequency_range", partial(require_positive, "an end", end, "rad/s"), problems)
+        built("points", lambda: require_whole("points", self.points, least=2), problems)
         model, motion = built_parts(self.column, self.model, self.motion, problems)
         return Setup(model, motion, {"range": self.angular_frequency_range, "points": self.points})
 

@@ -10,6 +10,7 @@ from typing import Any, Self
 from pydantic import Field
 
 from stylobate.errors import (
+    MOST_STEPS,
     DescriptionError,
     FileError,
     ParameterError,
@@ -25,9 +26,10 @@ from stylobate.motions import BaseMotion, Record
 from stylobate.results import OutcomeRules
 from stylobate.spec.columns import ANY_COLUMN, ColumnDescription, GivenColumn
 from stylobate.spec.description import Description, built
+from stylobate.spec.file_values import DEEPEST, check_file_values
 from stylobate.spec.models import ModelDescription, SlenderModel, describe_model
-from stylobate.spec.motions import PULSES, MotionDescription, RestMotion, describe_motion
-from stylobate.spec.records import anchored
+from stylobate.spec.motions import ENDING, MotionDescription, RestMotion, describe_motion
+from stylobate.spec.records import RecordMotion, anchored
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +44,8 @@ class Setup:
 class SimulationDescription(Description):
     """A run: `column`, `model`, `motion` and the arguments of `simulate`, under the same names.
 
-    A run under a record or a pulse needs no `duration`: it then lasts as long as that and a free tail of 20/p.
+    A run under a record, a pulse or a sine sweep needs no `duration`: it then lasts as long as the motion and a free
+    tail of 20/p.
     """
 
     column: ColumnDescription
@@ -64,15 +67,13 @@ class SimulationDescription(Description):
     max_steps: int = 200_000
     samples: int | None = None
     rules: dict[str, float] = Field(default_factory=dict)
+    recheck: bool = True
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
         """Return the description of these `values`; what they say for other commands is of no concern here."""
         own = {name: value for name, value in values.items() if name not in OF_OTHER_COMMANDS}
-        if own.get("duration") is None:
-            own.pop("duration", None)
-            own |= {"duration": None} if is_to_end(values.get("motion")) else {}
-        return super().parse(own)
+        return super().parse(with_default_duration(own))
 
     def build(self) -> Setup:
         """Return the objects described.
@@ -115,6 +116,8 @@ def built_parts(
         With one line for each part that cannot be, and the `problems` known before.
     """
     found: list[str] = []
+    if isinstance(motion, RecordMotion) and model.kind == "planar_rocking":
+        motion = motion.model_copy(update={"single": True})  # one component is all that a planar column follows
     made = built("column", column.build, found)
     moved = built("motion", motion.build, found)
     modelled = built("model", lambda: model.build(made or ANY_COLUMN), found)
@@ -128,7 +131,7 @@ FREE_TAIL = 20.0
 
 
 def is_to_end(motion: object) -> bool:
-    """Return whether the plain values of a `motion` are of one that ends: a record or a pulse, perhaps scaled or so."""
+    """Return whether the plain values of a `motion` are of one that ends: see `ENDING`; a scaled one too."""
     if not isinstance(motion, Mapping):
         return False
     kind = motion.get("kind")
@@ -136,7 +139,15 @@ def is_to_end(motion: object) -> bool:
         members = motion.get("motions")
         return isinstance(members, Sequence) and bool(members) and all(is_to_end(one) for one in members)
     changed = kind in ("scaled", "rotated", "delayed")
-    return kind in ("record", *PULSES) or (changed and is_to_end(motion.get("motion")))
+    return kind in ENDING or (changed and is_to_end(motion.get("motion")))
+
+
+def with_default_duration(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return `values` without a `duration` that is not given, or with None for it if the motion ends."""
+    if values.get("duration") is not None:
+        return dict(values)
+    others = {name: value for name, value in values.items() if name != "duration"}
+    return others | ({"duration": None} if is_to_end(values.get("motion")) else {})
 
 
 def duration_with_tail(model: Model, motion: BaseMotion) -> float:
@@ -169,7 +180,7 @@ _RUN_CHECKS: Mapping[str, Callable[[str, Any], object]] = {
     "position": lambda name, value: require_vector(name, value, 2, "m"),
     "velocity": lambda name, value: require_vector(name, value, 3, "m/s"),
     "clearance": lambda name, value: require_not_negative(name, value, "m"),
-    "max_steps": lambda name, value: require_whole(name, value, least=1),
+    "max_steps": lambda name, value: require_whole(name, value, least=1, most=MOST_STEPS),
     "samples": lambda name, value: require_whole(name, value, least=2),
     "strobes": lambda name, value: require_whole(name, value, least=2),
     "confidence": _require_share,
@@ -185,16 +196,23 @@ def read_description(path: str | Path) -> dict[str, Any]:
     ------
     FileError
         If it cannot be read or is not TOML.
+    DescriptionError
+        If it is nested too deeply, a kind is no word, or a text holds a NUL character.
     """
     try:
-        values: dict[str, Any] = anchored(tomllib.loads(Path(path).read_text(encoding="utf-8")), Path(path).parent)
+        values = tomllib.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as error:
         message = f"cannot read {path}: {error.strerror or error}"
         raise FileError(message) from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         message = f"{path} is not a TOML file: {error}"
         raise FileError(message) from None
-    return values
+    except RecursionError:
+        message = f"{path}: nested too deeply to be read. Describe it with at most {DEEPEST} levels."
+        raise FileError(message) from None
+    check_file_values(values)
+    found: dict[str, Any] = anchored(values, Path(path).parent)
+    return found
 
 
 def built_rules(rules: Mapping[str, Any]) -> OutcomeRules:

@@ -83,17 +83,19 @@ def _motion(motion: Any) -> str:
 
 
 def _record(motion: Any, numbers: Mapping[str, Any]) -> str:
-    plain = {"sample", "path", "units", "step", "scale", "rotation", "tail", "directions"}
+    plain = {"sample", "path", "units", "step", "scale", "rotation", "tail", "directions", "single"}
     several = not isinstance(numbers.get("path", ""), str)
-    if set(numbers) - plain or ("directions" in numbers and not several):
+    by_name = several and isinstance(numbers.get("directions"), Mapping)
+    if set(numbers) - plain or ("directions" in numbers and not by_name):
         unchanged = {name for name, kind in _LAST.items() if numbers.get(name) == _CHANGES[kind][1]}
         values = {name: value for name, value in motion.values().items() if name not in unchanged}
         return f"sb.spec.RecordMotion.parse({values!r}).build()"
     if "sample" in numbers:
         made = f"sb.sample_record({numbers['sample']!r})"
     else:
-        reading = {name: value for name, value in numbers.items() if name in ("units", "step", "directions")}
-        paths = list(numbers["path"]) if several else numbers["path"]
+        names = ("units", "step", *(("directions", "single") if several else ()))
+        reading = {name: value for name, value in numbers.items() if name in names}
+        paths = [list(numbers["path"])] if several else numbers["path"]
         read = "sb.read_records" if several else "sb.read_record"
         made = f"{read}({_joined([repr(paths), _keywords(reading)])})" + ("[0]" if several else "")
     for name, kind in _LAST.items():

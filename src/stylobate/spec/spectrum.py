@@ -6,6 +6,7 @@ from typing import Any, Literal, Self
 from stylobate.spec.axis import Axis
 from stylobate.spec.description import Description, built
 from stylobate.spec.many_runs import ManyRuns, common_values, name_of, with_numbers_that_vary
+from stylobate.spec.motions import PULSES
 from stylobate.spec.simulation import Setup
 
 
@@ -96,6 +97,11 @@ class SpectrumDescription(ManyRuns):
     def _problems(self) -> list[str]:
         told = self.spectrum
         problems: list[str] = []
+        if told.tail is not None and self.duration is not None:
+            problems.append(
+                f"spectrum.tail: duration says how long to follow a column (got {self.duration!r} s and a tail of "
+                f"{told.tail!r}). Remove one of them."
+            )
         if told.rocking:
             problems += [
                 f"spectrum.{name} is not known of a rocking spectrum: leave it out"
@@ -114,12 +120,6 @@ class SpectrumDescription(ManyRuns):
 def _with_frequency(values: Mapping[str, Any], varied: tuple[str, ...]) -> Mapping[str, Any]:
     """Return `values` with a frequency of the pulse, if it varies and there is none."""
     motion = values.get("motion")
-    if "angular_frequency" not in varied or not isinstance(motion, Mapping) or motion.get("kind") not in _PULSES:
+    if "angular_frequency" not in varied or not isinstance(motion, Mapping) or motion.get("kind") not in PULSES:
         return values
     return {**values, "motion": {"angular_frequency": 1.0, **motion}}
-
-
-_PULSES = (
-    *("half_sine", "half_cosine", "one_sine", "one_cosine", "sinusoidal", "type_a", "type_b", "type_c"),
-    *("ricker", "antisymmetric_ricker"),
-)

@@ -8,7 +8,7 @@ from typing import Any, Unpack
 import numpy as np
 import xarray as xr
 
-from stylobate.errors import require_whole
+from stylobate.errors import MOST_RUNS, require_whole
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 from stylobate.results.outcomes import NOT_COMPUTED
@@ -92,7 +92,7 @@ def attractors(
         model,
         motion,
         over=over,
-        count=require_whole("count", count, least=1),
+        count=require_whole("count", count, least=1, most=MOST_RUNS),
         seed=seed,
         duration=duration,
         periods=periods,

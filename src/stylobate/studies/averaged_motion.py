@@ -5,7 +5,7 @@ import xarray as xr
 from scipy.integrate import solve_ivp
 
 from stylobate import theory
-from stylobate.errors import require_positive, require_vector
+from stylobate.errors import UnsupportedError, require_positive, require_vector
 from stylobate.models import Slender
 from stylobate.motions import Harmonic
 from stylobate.studies.rolling_frame import RollingFrame
@@ -51,6 +51,8 @@ def averaged_motion(
     ------
     ParameterError
         If an argument is out of range.
+    UnsupportedError
+        If the model is another one, or a subclass with equations of its own.
 
     Examples
     --------
@@ -62,6 +64,9 @@ def averaged_motion(
     >>> round(float(slow["amplitude"].max() - slow["amplitude"].min()), 9)
     0.0
     """
+    if type(model) is not Slender:
+        message = f"model: averaged_motion holds for Slender only (got {type(model).__name__}). Pass Slender(column)."
+        raise UnsupportedError(message)
     frame = RollingFrame.of(model, motion, sense)
     x, y = require_vector("tilt", tilt, 2, "rad")
     vx, vy = require_vector("tilt_rate", tilt_rate, 2, "rad/s")

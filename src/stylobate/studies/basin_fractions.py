@@ -10,7 +10,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.engine import with_parameters
-from stylobate.errors import require_whole
+from stylobate.errors import MOST_RUNS, require_whole
 from stylobate.models import Model
 from stylobate.motions import BASE_AT_REST, BaseMotion
 from stylobate.results.outcomes import NOT_COMPUTED
@@ -91,7 +91,7 @@ def basin_fractions(
     """
     require_starts("over", over)
     name, values = one_parameter(model, along, over)
-    starts = Box.of(over, require_whole("count", count, least=1), seed)
+    starts = Box.of(over, require_whole("count", count, least=1, most=MOST_RUNS), seed)
     points = {start: np.tile(drawn, values.size) for start, drawn in starts.values(whole(starts)).items()}
     sweep = Sweep.points(
         model,

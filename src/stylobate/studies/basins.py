@@ -8,7 +8,7 @@ from typing import Unpack
 import numpy.typing as npt
 import xarray as xr
 
-from stylobate.errors import ParameterError, require_whole
+from stylobate.errors import MOST_RUNS, ParameterError, require_whole
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 from stylobate.studies.attractors import label_attractors
@@ -90,7 +90,7 @@ def basins(
             model,
             motion,
             over=ranges,
-            count=require_whole("count", count, least=1),
+            count=require_whole("count", count, least=1, most=MOST_RUNS),
             seed=seed,
             duration=duration,
             periods=periods,

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from stylobate.errors import Outcome, ParameterError, require_whole
+from stylobate.errors import MOST_RUNS, Outcome, ParameterError, require_whole
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
 from stylobate.results.outcomes import NOT_COMPUTED, code_of
@@ -107,7 +107,7 @@ def uncertainty_exponent(
     """
     require_starts("over", over)
     epsilon = _shifts(shifts, over, shifted)
-    base = Box.of(over, epsilon.size * require_whole("count", count, least=1), seed)
+    base = Box.of(over, epsilon.size * require_whole("count", count, least=1, most=MOST_RUNS), seed)
     if overturning_only:
         require_no_tilt_limit(options)
     sweep = Sweep.points(

@@ -1,5 +1,7 @@
 """An orbit to begin with, somewhere in a range of frequencies."""
 
+import logging
+
 import numpy as np
 
 from stylobate.engine import with_parameters
@@ -7,6 +9,8 @@ from stylobate.errors import NoOrbitError, UnsupportedError
 from stylobate.models import Model
 from stylobate.motions import BaseMotion, as_harmonic
 from stylobate.orbits import PeriodicOrbit, periodic_orbit
+
+_log = logging.getLogger("stylobate")
 
 _TRIES = 24
 # What a search from a guess asks for, and a range of frequencies does not.
@@ -28,6 +32,7 @@ def first_orbit(
     low, high = angular_frequency
     reason: Exception | None = None
     for frequency in np.geomspace(high, max(low, 1e-3 * high), _TRIES):
+        _log.info("%.4g rad/s is tried for a first orbit", frequency)
         changed = with_parameters(model, motion, angular_frequency=float(frequency))
         try:
             return periodic_orbit(*changed, sense=sense)

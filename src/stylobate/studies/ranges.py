@@ -6,10 +6,11 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.errors import ParameterError
+from stylobate.errors import ParameterError, require_positive, require_size
+from stylobate.models.bounds import BOUNDS, Bounds
 
-# A parameter that is a size of the motion or of the column, of which none is negative; zero is the end of motion.
-_NOT_NEGATIVE = ("acceleration", "damping", "spin_friction")
+# Of the motion; those of models have their own bounds.
+_OF_MOTIONS = {"acceleration": Bounds()}
 
 
 def require_frequencies(ends: Sequence[float]) -> tuple[float, float]:
@@ -18,6 +19,8 @@ def require_frequencies(ends: Sequence[float]) -> tuple[float, float]:
     if not 0.0 < low < high < math.inf:
         message = f"angular_frequency must rise from above zero, got {low!r} to {high!r} rad/s"
         raise ParameterError(message)
+    require_positive("angular_frequency", low, "rad/s")
+    require_positive("angular_frequency", high, "rad/s")
     return low, high
 
 
@@ -27,9 +30,9 @@ def require_bounds(ends: Sequence[float], parameter: str) -> tuple[float, float]
     if not -math.inf < low < high < math.inf:
         message = f"bounds must rise from one number to another, got {low!r} to {high!r}"
         raise ParameterError(message)
-    if low < 0.0 and parameter in _NOT_NEGATIVE:
-        message = f"bounds must not be negative for {parameter}, got {low!r} to {high!r}; begin at zero or above"
-        raise ParameterError(message)
+    require_size(f"bounds of {parameter}", low)
+    require_size(f"bounds of {parameter}", high)
+    _require_inside("bounds", (low, high), parameter)
     return low, high
 
 
@@ -39,10 +42,18 @@ def require_values(values: Sequence[float], parameter: str) -> npt.NDArray[np.fl
     if found.size == 0:
         message = f"values must hold a value of {parameter} at least, got {values!r}"
         raise ParameterError(message)
-    if parameter in _NOT_NEGATIVE and found.min() < 0.0:
-        message = f"values must not be negative for {parameter}, got {float(found.min())!r}"
-        raise ParameterError(message)
+    _require_inside("values", found, parameter)
     return found
+
+
+def _require_inside(name: str, values: Sequence[float] | npt.NDArray[np.float64], parameter: str) -> None:
+    known = BOUNDS.get(parameter) or _OF_MOTIONS.get(parameter)
+    outside = [float(value) for value in values if known is not None and not known.accepts(value)]
+    if known is not None and outside:
+        message = (
+            f"{name}: values of {parameter} must {known.demand} (got {outside[0]!r}). Leave out what lies outside."
+        )
+        raise ParameterError(message)
 
 
 def require_rising_frequencies(frequencies: Sequence[float]) -> npt.NDArray[np.float64]:

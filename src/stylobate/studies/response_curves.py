@@ -65,6 +65,9 @@ def response_curves(
         for name, branches, size in (("anticlockwise", steady.forward, p), ("clockwise", steady.backward, q))
         if size > _NO_PART * largest
     ]
+    if not senses:
+        message = f"motion: its acceleration is zero beside gravity (got {motion!r}). Make it stronger."
+        raise ParameterError(message)
     dims = ("sense", "branch", "angular_frequency")
     stacked = {
         field: np.stack([[getattr(s.upper, field), getattr(s.lower, field)] for _, s, _ in senses])

@@ -41,7 +41,11 @@ from stylobate.theory.planar_forced import (
     planar_kick_slope,
 )
 from stylobate.theory.planar_free import planar_free_motion, planar_free_period
-from stylobate.theory.pulse_overturning import half_sine_overturning, one_sine_overturning
+from stylobate.theory.pulse_overturning import (
+    half_sine_overturning,
+    one_sine_overturning_after_impact,
+    one_sine_overturning_without_impact,
+)
 from stylobate.theory.rolling import RollingBranch, SteadyRolling, rolling_gap, steady_rolling
 from stylobate.theory.rolling_friction import RollingFriction, rolling_required_friction
 from stylobate.theory.rotating_frame import rotating_frame_jacobian, rotating_frame_rates
@@ -108,7 +112,8 @@ __all__ = [
     "hurwitz_coefficients",
     "mean_block_speed",
     "modulated_rolling",
-    "one_sine_overturning",
+    "one_sine_overturning_after_impact",
+    "one_sine_overturning_without_impact",
     "planar_backbone",
     "planar_forced_response",
     "planar_free_motion",

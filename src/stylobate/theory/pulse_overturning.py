@@ -1,12 +1,19 @@
-"""The slender column or block that stands, and the least pulse of the base that overturns it without an impact."""
+"""The amplitudes of one pulse of the base that overturn a slender column or block at rest."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
-from stylobate.theory.arguments import FloatArray, Real, positive
+from stylobate.errors import ParameterError
+from stylobate.theory.arguments import BoolArray, FloatArray, Real, positive
 
 _HALVINGS = 60
+# A golden section narrows its bracket by 0.618 a step: 75 steps leave 2e-16 of it.
+_GOLDEN, _SECTIONS = 0.5 * (np.sqrt(5.0) - 1.0), 75
+# Below it exp(3π/2θ), by which rounding grows during the pulse, is as large as what the band is computed from.
+_LEAST_FREQUENCY = 0.1
 
 
 def half_sine_overturning(theta: Real, c: Real) -> FloatArray:
@@ -31,7 +38,7 @@ def half_sine_overturning(theta: Real, c: Real) -> FloatArray:
 
     See Also
     --------
-    one_sine_overturning : the same for a whole sine.
+    one_sine_overturning_without_impact : the same for a whole sine.
 
     Notes
     -----
@@ -41,9 +48,10 @@ def half_sine_overturning(theta: Real, c: Real) -> FloatArray:
 
         s + √(1 + s²) exp[−(π/2 + arctan s)/θ] = θ,
 
-    whose left side grows with s. G. W. Housner (Bulletin of the Seismological Society of America 53, 1963) asked for
-    it; J. Zhang and N. Makris, "Rocking response of free-standing blocks under cycloidal pulses", Journal of
-    Engineering Mechanics 127 (2001), answer for a block.
+    whose left side grows with s. G. W. Housner (Bulletin of the Seismological Society of America 53, 1963) gives
+    √(1 + θ²), 5.10 at θ = 5, on the assumption that the column stands at its balance when the pulse ends. A column that
+    leans less than that and still moves outwards overturns too, from 3.289 on: J. Zhang and N. Makris, "Rocking
+    response of free-standing blocks under cycloidal pulses", Journal of Engineering Mechanics 127 (2001).
 
     Examples
     --------
@@ -54,8 +62,11 @@ def half_sine_overturning(theta: Real, c: Real) -> FloatArray:
     return c * _least(theta, lambda s: s + _left(s, 0.5, theta), theta)
 
 
-def one_sine_overturning(theta: Real, c: Real) -> FloatArray:
+def one_sine_overturning_without_impact(theta: Real, c: Real) -> FloatArray:
     """Least whole sine of acceleration that overturns a column at rest without an impact, and without friction.
+
+    This is mode 2 of Zhang and Makris (2001), and often not the least amplitude that overturns: weaker pulses may
+    overturn the column on its other side, after an impact.
 
     Parameters
     ----------
@@ -67,8 +78,7 @@ def one_sine_overturning(theta: Real, c: Real) -> FloatArray:
     Returns
     -------
     numpy.ndarray
-        Least acceleration a0 in g, of the broadcast shape. Weaker pulses may overturn the column on its other side,
-        after an impact; how strong these are depends on the restitution, and a gap may lie between the two.
+        Least acceleration a0 in g, of the broadcast shape.
 
     Raises
     ------
@@ -77,24 +87,156 @@ def one_sine_overturning(theta: Real, c: Real) -> FloatArray:
 
     See Also
     --------
+    one_sine_overturning_after_impact : mode 1, the weaker pulses.
     half_sine_overturning : the first half of the pulse alone.
 
     Notes
     -----
-    As there, now with a whole sine behind which z vanishes:
+    As for half a sine, now with a whole sine at the end of which z vanishes:
 
         s − √(1 + s²) exp[−(3π/2 + arctan s)/θ] = θ.
 
-    The column overturns the way that the first half pushes it (Zhang and Makris 2001, mode 2).
+    The column overturns the way that the first half pushes it.
 
     Examples
     --------
-    >>> print(one_sine_overturning(5.0, c=1.0).round(4))
+    >>> print(one_sine_overturning_without_impact(5.0, c=1.0).round(4))
     7.1681
     """
     theta, c = np.broadcast_arrays(positive("theta", theta), positive("c", c))
+    return c * _without_impact(theta)
+
+
+def one_sine_overturning_after_impact(theta: Real, c: Real, *, restitution: Real) -> tuple[FloatArray, FloatArray]:
+    """Compute the band of whole sines of acceleration that overturn a column at rest after one impact.
+
+    This is mode 1 of Zhang and Makris (2001). Where the band is not empty, its lower end is the least amplitude that
+    overturns. Between its upper end and `one_sine_overturning_without_impact` the column survives.
+
+    Parameters
+    ----------
+    theta
+        Angular frequency ω of the pulse, a0 sin ωt over one period, over ω0; for a block over p = √(mgR/K).
+    c
+        Slenderness; for a block the angle α or its tangent, equal to the order of this theory.
+    restitution
+        Ratio e of the tilt rates after and before the impact, above 0 and at most 1.
+
+    Returns
+    -------
+    lowest, highest : numpy.ndarray
+        Ends of the band of a0 in g, of the broadcast shape; NaN where no pulse overturns after one impact. Below
+        θ = 0.1 they are NaN too: the band is there narrower than 1e-7 of its amplitude, and rounding hides it.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is not positive, or the restitution above 1.
+
+    See Also
+    --------
+    one_sine_overturning_without_impact : mode 2, the stronger pulses.
+
+    Notes
+    -----
+    As for half a sine up to the impact at τ1, where u = 0 and u̇ = −v. After it the column leans to the other side,
+    ü = u + 1 + a sin θτ, and its growing part y = u + 1 + u̇ obeys ẏ = y + a sin θτ from y = 1 − ev. It overturns if
+    y < 0 when the pulse ends, at θτ2 = 2π, which it does if
+
+        ev > 1 + a [sin θτ1 + θ cos θτ1 − θ exp(τ1 − τ2)]/(1 + θ²),
+
+    and, for an impact after the pulse, if ev > 1. The least e that a pulse needs falls and then rises to 1 with the
+    amplitude, so that the pulses that overturn form one band. At its ends the column takes infinite time to reach
+    its balance. See also E. G. Dimitrakopoulos and M. J. DeJong, "Revisiting the rocking block: closed-form solutions
+    and similarity laws", Proceedings of the Royal Society A 468 (2012).
+
+    Examples
+    --------
+    >>> lowest, highest = one_sine_overturning_after_impact(5.0, c=1.0, restitution=0.9)
+    >>> print(lowest.round(4), highest.round(4))
+    3.0186 6.3181
+    """
+    theta, c, e = np.broadcast_arrays(positive("theta", theta), positive("c", c), positive("restitution", restitution))
+    if np.any(e > 1.0):
+        message = f"restitution: at most 1 (got {float(e[e > 1.0].flat[0])!r}). State the ratio of tilt rates."
+        raise ParameterError(message)
+    resolved = np.asarray(np.maximum(theta, _LEAST_FREQUENCY))
+    top, bottom = _without_impact(resolved), np.ones(theta.shape)
+
+    def needed(a: FloatArray) -> FloatArray:
+        return _least_restitution(a, resolved)
+
+    easiest = _least_of(needed, bottom, top)
+    empty = (needed(easiest) >= e) | (theta < _LEAST_FREQUENCY)
+    lowest, highest = (_edge(lambda a: needed(a) < e, end, easiest) for end in (bottom, top))
+    return np.where(empty, np.nan, c * lowest), np.where(empty, np.nan, c * highest)
+
+
+def _least_restitution(a: FloatArray, theta: FloatArray) -> FloatArray:
+    """Return the least e with which a pulse too weak to overturn without an impact overturns after one."""
+    motion = _Arc.of(a, theta)
+    end = 2.0 * np.pi / theta
+    before, after = motion.start, end
+    for _ in range(_HALVINGS):  # once it is back it stays below
+        middle = 0.5 * (before + after)
+        stands = motion.tilt(middle) > 0.0
+        before, after = np.where(stands, middle, before), np.where(stands, after, middle)
+    angle, left = theta * after, theta * np.exp(after - end)
+    needed = 1.0 + a * (np.sin(angle) + theta * np.cos(angle) - left) / (1.0 + theta**2)
+    u, rate = motion.tilt(end), motion.rate(end)
+    with np.errstate(invalid="ignore", divide="ignore"):  # of the case that does not apply
+        return np.asarray(np.where(u > 0.0, 1.0 / np.sqrt(rate**2 + 2.0 * u - u**2), needed / -motion.rate(after)))
+
+
+@dataclass(frozen=True, slots=True)
+class _Arc:
+    """The tilt u over c from the release at `start` on: u = 1 − A cosh s − B sinh s − C sin θτ, s = τ − start."""
+
+    theta: FloatArray
+    start: FloatArray
+    coefficients: tuple[FloatArray, FloatArray, FloatArray]
+
+    @classmethod
+    def of(cls, a: FloatArray, theta: FloatArray) -> Self:
+        """Return the motion under a pulse of amplitude a, over c, from rest where a sin θτ = 1."""
+        angle = np.arcsin(1.0 / a)
+        share = a / (1.0 + theta**2)
+        return cls(theta, angle / theta, (1.0 - share / a, -theta * share * np.cos(angle), share))
+
+    def tilt(self, tau: FloatArray) -> FloatArray:
+        """Return u."""
+        (first, second, share), s = self.coefficients, tau - self.start
+        return np.asarray(1.0 - first * np.cosh(s) - second * np.sinh(s) - share * np.sin(self.theta * tau))
+
+    def rate(self, tau: FloatArray) -> FloatArray:
+        """Return u̇."""
+        (first, second, share), s = self.coefficients, tau - self.start
+        forced = share * self.theta * np.cos(self.theta * tau)
+        return np.asarray(-first * np.sinh(s) - second * np.cosh(s) - forced)
+
+
+def _without_impact(theta: FloatArray) -> FloatArray:
+    """Return the least amplitude over c of a whole sine that overturns without an impact."""
     longest = np.exp(-1.5 * np.pi / theta)  # √(1 + s²) ≤ 1 + s
-    return c * _least(theta, lambda s: s - _left(s, 1.5, theta), (theta + longest) / (1.0 - longest))
+    return _least(theta, lambda s: s - _left(s, 1.5, theta), (theta + longest) / (1.0 - longest))
+
+
+def _least_of(valley: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray) -> FloatArray:
+    """Return where a function that falls and then rises between `low` and `high` is least, by golden sections."""
+    for _ in range(_SECTIONS):
+        left, right = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+        falls = valley(right) < valley(left)
+        low, high = np.where(falls, left, low), np.where(falls, high, right)
+    return np.asarray(0.5 * (low + high))
+
+
+def _edge(inside: Callable[[FloatArray], BoolArray], beyond: FloatArray, within: FloatArray) -> FloatArray:
+    """Return the end of a band between a value `beyond` it and one `within` it, by halving."""
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (beyond + within)
+        hit = inside(middle)
+        beyond, within = np.where(hit, beyond, middle), np.where(hit, middle, within)
+    return np.asarray(within)
 
 
 def _left(s: FloatArray, turns: float, theta: FloatArray) -> FloatArray:

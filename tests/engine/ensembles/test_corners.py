@@ -117,7 +117,7 @@ class Poisoned(sb.Slender):
         broken = math.nan if x * x + y * y > 0.0025 else 0.0
         return vx, vy, x + broken, y + broken
 
-    planar_rates = None
+    planar_rates = no_return_tilt = departure = contact = None
 
 
 @pytest.mark.slow  # a kernel of its own

@@ -170,10 +170,12 @@ def test_demands_are_refused_of_a_model_that_tells_none():
         sb.simulate_ensemble(Silent(COLUMN), CIRCLE, tilt=(0.05, 0.0), duration=1.0, demands=True)
 
 
-def test_a_column_that_never_moves_demands_nothing():
+def test_a_column_that_never_moves_demands_what_it_takes_to_stand():
     weak = sb.Harmonic.circular(acceleration=0.05, angular_frequency=2.0)
     runs = sb.simulate_ensemble(IN_SPACE["rolling"], weak, duration=5.0, demands=True)
-    assert np.isnan([float(runs[name][0]) for name in DEMANDS]).all()
+    assert runs["largest_friction_demand"].item() == pytest.approx(0.05, rel=1e-12)
+    assert runs["largest_pivoting_demand"].item() == 0.0
+    assert runs["least_normal_force"].item() == pytest.approx(1.0, rel=1e-12)
 
 
 def test_least_tilts_of_single_runs_are_those_of_ensembles():

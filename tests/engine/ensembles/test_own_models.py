@@ -59,6 +59,7 @@ SLENDER_DRAGGED = """
 class SlenderDragged(sb.Slender):
     drag: float = 0.0
     name: ClassVar[str] = "slender, dragged"
+    contact: ClassVar = None
 
     @staticmethod
     def rates(x, y, vx, vy, ax, ay, az, c, eta, k):
@@ -125,8 +126,9 @@ def test_a_model_with_the_required_members_only(written):
 
 
 def test_rates_that_are_no_numbers_end_a_run_as_failed_and_leave_others_alone(written):
-    model = written(dragged()).Dragged(COLUMN)
-    runs = sb.simulate_ensemble(model, CIRCLE, **TURNING, parameters={"drag": [0.0, 1e308, 5.0]})
+    overflowing = "k * math.hypot(vx, vy) + (k / 1e14) ** 400.0"  # infinite for 1e15, zero for the others
+    model = written(dragged(overflowing)).Dragged(COLUMN)
+    runs = sb.simulate_ensemble(model, CIRCLE, **TURNING, parameters={"drag": [0.0, 1e15, 5.0]})
     beside = sb.simulate_ensemble(model, CIRCLE, **TURNING, parameters={"drag": [0.0, 5.0]})
     assert [sb.results.outcome_of(int(code)) is sb.Outcome.FAILED for code in runs["outcome"]] == [False, True, False]
     np.testing.assert_array_equal(runs["end_tilt"][[0, 2]], beside["end_tilt"])

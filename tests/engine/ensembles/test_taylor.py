@@ -452,6 +452,7 @@ class Spatial(sb.Slender):
 
 class Comparing(Spatial):
     name = "comparing"
+    contact = None
 
     @staticmethod
     def rates(x, y, vx, vy, ax, ay, az, c, eta, _kappa):
@@ -461,6 +462,7 @@ class Comparing(Spatial):
 
 class Waving(Spatial):
     name = "waving"
+    contact = no_return_tilt = None
 
     @staticmethod
     def rates(x, y, vx, vy, ax, ay, az, c, eta, _kappa):
@@ -486,7 +488,7 @@ class Chained(Spatial):
     """Linear, its states in another order: the rate of the second is the first, of the fourth the third."""
 
     name = "chained"
-    passage = None
+    passage = contact = departure = rest_energy = no_return_tilt = None
 
     @staticmethod
     def rates(vx, x, vy, y, ax, ay, az, c, eta, _kappa):

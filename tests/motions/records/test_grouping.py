@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.errors import FileError, ParameterError
+from stylobate.errors import FileError, ParameterError, SeldomMeant
 from stylobate.motions.records import Lengths, Steps
 
 STEP = 0.01
@@ -44,7 +44,7 @@ def test_peer_names_make_one_event(tmp_path, waves):
 def test_a_component_that_points_down_is_turned(tmp_path, waves):
     table(tmp_path, "a_NS.txt", waves[0])
     table(tmp_path, "a_DWN.txt", waves[2])
-    (record,) = sb.read_records(tmp_path, "m/s2")
+    (record,) = sb.read_records(tmp_path, "m/s2", single=True)
     np.testing.assert_array_equal(record.samples[:, 2], -waves[2])
 
 
@@ -75,14 +75,18 @@ def test_a_folder_of_several_events_gives_them_by_name(tmp_path, waves):
             table(tmp_path, f"{event}_{name}.dat", values)
     table(tmp_path, "alone.dat", waves[2])
     (tmp_path / ".hidden").write_text("no record")
-    records = sb.read_records(tmp_path, "g")
+    with pytest.warns(
+        SeldomMeant, match=r"alone: one horizontal component \(alone\.dat\)\. List the files of the event"
+    ):
+        records = sb.read_records(tmp_path, "g")
     assert [record.name for record in records] == ["a", "alone", "b"]
     assert [record.axes for record in records] == [("x", "y"), ("x",), ("x", "y")]
 
 
 def test_lengths_that_differ_are_trimmed_or_padded_with_a_note(tmp_path, waves):
     paths = [table(tmp_path, "a_NS.txt", waves[0]), table(tmp_path, "a_EW.txt", waves[1][:-5])]
-    (short,) = sb.read_records(paths, "m/s2")
+    with pytest.warns(SeldomMeant, match="a_NS.txt is trimmed"):
+        (short,) = sb.read_records(paths, "m/s2")
     (long,) = sb.read_records(paths, "m/s2", lengths=Lengths.PAD)
     assert (len(short.samples), len(long.samples)) == (COUNT - 5, COUNT)
     assert not long.samples[-5:, 1].any()
@@ -92,7 +96,7 @@ def test_lengths_that_differ_are_trimmed_or_padded_with_a_note(tmp_path, waves):
 
 def test_a_component_that_points_nowhere_is_asked_for_its_direction_in_words(tmp_path, waves):
     paths = [table(tmp_path, "a.txt", waves[0]), table(tmp_path, "a_EW.txt", waves[1])]
-    with pytest.raises(FileError, match=r"a\.txt: which way it points is not told: state directions, its azimuth"):
+    with pytest.raises(FileError, match=r"a\.txt: its direction is unknown\. State directions, its azimuth"):
         sb.read_records(paths, "g")
     (record,) = sb.read_records(paths, "g", directions={"a.txt": 0.0})
     assert record.axes == ("x", "y")
@@ -104,14 +108,17 @@ def test_steps_that_differ_are_refused_or_resampled_to_the_finest(tmp_path, wave
         FileError, match=r"a: time steps differ \(a_NS.txt 0.01 s, a_EW.txt 0.02 s\); state steps to be res"
     ):
         sb.read_records(paths, "g")
-    (record,) = sb.read_records(paths, "g", steps=Steps.RESAMPLE)
+    with pytest.warns(SeldomMeant, match="a_EW.txt is trimmed"):
+        (record,) = sb.read_records(paths, "g", steps=Steps.RESAMPLE)
     assert record.step == 0.01
     assert any("resampled from 0.02 s to 0.01 s" in line for line in record.provenance)
 
 
 def test_what_cannot_be_put_together_is_told(tmp_path, waves):
     pair = [table(tmp_path, "a_NS.txt", waves[0]), table(tmp_path, "a_000.txt", waves[1])]
-    with pytest.raises(FileError, match=r"a: horizontal components must stand across, got a_.*\.txt and a_.*\.txt"):
+    with pytest.raises(
+        FileError, match=r"a: horizontal components must be perpendicular, .* got a_.*\.txt \(.*, a_.*\.txt"
+    ):
         sb.read_records(pair, "g")
     three = [*pair, table(tmp_path, "a_EW.txt", waves[2])]
     with pytest.raises(FileError, match=r"a: two horizontal components and a vertical one at most"):

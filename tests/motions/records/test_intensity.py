@@ -52,7 +52,7 @@ def test_peaks_are_the_largest_values_of_the_interpolation():
         np.testing.assert_allclose(measures[name], values, rtol=1e-12, atol=curvature * 1e-10)
         assert np.all(measures[name] >= values * (1.0 - 1e-14))
     largest = np.hypot(*np.stack(RECORD.derivative(FINE, 2))[:2]).max()
-    assert float(measures.pga_horizontal) == pytest.approx(largest, rel=1e-12)
+    assert float(measures.horizontal_pga.sel(component="RotD100")) == pytest.approx(largest, rel=1e-12)
 
 
 @pytest.mark.parametrize(("begin", "end"), [(0.05, 0.75), (0.05, 0.95), (0.0, 1.0)])

@@ -7,6 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import ParameterError
+from stylobate.motions.records import intensity_measures
 
 STEP = 0.01
 TIME = STEP * np.arange(2001)
@@ -136,3 +137,18 @@ def test_a_high_pass_takes_the_velocity_off_that_remains():
 def test_corners_out_of_range_are_refused(corners, message):
     with pytest.raises(ParameterError, match=message):
         RECORD.filtered(**corners)
+
+
+def test_the_sample_record_drifts_as_its_documentation_says_and_its_corrected_version_does_not():
+    raw, clean = sb.sample_record("el centro 1940"), sb.sample_record("el centro 1940 corrected")
+    before, after = intensity_measures(raw), intensity_measures(clean)
+    assert before.pgd.values == pytest.approx([2.50, 6.35, 1.59], abs=0.005)
+    assert before.residual_velocity.values == pytest.approx([0.041, 0.114, -0.022], abs=0.0005)
+    assert np.all(before.residual_velocity_ratio > 0.1)
+    assert np.all(after.residual_velocity_ratio < 1e-4)
+    # what the ground moved by is no metres, and its strong motion is the same
+    assert np.all(after.pgd < 0.2)
+    assert after.pga.values == pytest.approx(before.pga.values, rel=0.005)
+    assert after.arias.values == pytest.approx(before.arias.values, rel=0.01)
+    again = raw.padded(before=20.0, after=20.0).filtered(highpass=0.1, order=2)
+    assert (clean, clean.provenance) == (again, again.provenance)

@@ -94,10 +94,15 @@ def test_csv_columns_are_found_by_name(tmp_path):
     record = sb.read_record(path, columns=columns)
     np.testing.assert_allclose(record.samples, 0.01 * np.outer(np.arange(5), [1.0, 0.0, 2.0]), rtol=1e-15)
     assert record.step == 0.1
+    # x north, y west: columns that are called by directions need no `columns`
+    np.testing.assert_allclose(
+        sb.read_record(path).samples, 0.01 * np.outer(np.arange(5), [1.0, -1.0, 2.0]), rtol=1e-15
+    )
+    unnamed = written(tmp_path, "b.csv", f"Time (s),One (cm/s2),Two (cm/s2),Three (cm/s2)\n{rows}\n")
     with pytest.raises(
-        FileError, match=r"a\.csv, line 1: which of Time, North, West, Up is the acceleration\? state columns"
+        FileError, match=r"b\.csv, line 1: which of Time, One, Two, Three is the acceleration\? state columns"
     ):
-        sb.read_record(path)
+        sb.read_record(unnamed)
     with pytest.raises(FileError, match=r"line 1: no column 'East' for 'x': the columns are Time, North, West, Up"):
         sb.read_record(path, columns={"x": "East"})
 
@@ -105,6 +110,35 @@ def test_csv_columns_are_found_by_name(tmp_path):
 def test_a_csv_file_with_one_acceleration_needs_no_names(tmp_path):
     path = written(tmp_path, "a.csv", "t;accel\n0.0;1.0\n0.5;2.0\n1.0;3.0\n")
     np.testing.assert_array_equal(sb.read_record(path, "m/s2").samples[:, 0], [1.0, 2.0, 3.0])
+
+
+@pytest.mark.parametrize("names", ["t,a,v,d", "time,acc,L,T", "time,Acceleration,x,V", "t,a,x,y"])
+def test_a_column_that_is_called_acceleration_wins_over_single_letters(tmp_path, names):
+    columns = names.split(",")
+    rows = "\n".join(
+        ",".join(f"{0.01 * at}" if at_column == 0 else f"{at + 10.0 * at_column}" for at_column in range(len(columns)))
+        for at in range(3)
+    )
+    record = sb.read_record(written(tmp_path, "a.csv", f"{names}\n{rows}\n"), "m/s2")
+    np.testing.assert_array_equal(record.samples[:, 0], [10.0, 11.0, 12.0])
+    assert not record.samples[:, 1:].any()
+
+
+@pytest.mark.parametrize(
+    ("names", "filled"),
+    [("t,N,E,Z", (0, 1, 2)), ("t,L,T,V", (0, 1, 2)), ("t,L,T", (0, 1)), ("t,NS,V", (0, 2)), ("t,V", (2,))],
+)
+def test_single_letters_that_fit_together_are_directions(tmp_path, names, filled):
+    rows = "\n".join(",".join(f"{0.01 * at}" for _ in names.split(",")) for at in range(3))
+    record = sb.read_record(written(tmp_path, "a.csv", f"{names}\n{rows}\n"), "m/s2")
+    assert tuple(np.flatnonzero(record.samples.any(axis=0))) == filled
+
+
+@pytest.mark.parametrize("names", ["t,v,d", "t,accel_g,v,d", "t,acc,NS,EW", "t,a,ax,ay", "t,acc,acceleration"])
+def test_columns_that_leave_the_acceleration_open_are_refused(tmp_path, names):
+    rows = "\n".join(",".join(f"{0.01 * at}" for _ in names.split(",")) for at in range(3))
+    with pytest.raises(FileError, match=r"line 1: which of .* is the acceleration\? state columns"):
+        sb.read_record(written(tmp_path, "a.csv", f"{names}\n{rows}\n"), "m/s2")
 
 
 def test_writing_and_reading_csv_restores_every_number(tmp_path):
@@ -149,7 +183,7 @@ BROKEN = {
     "uneven": (
         TABLE.replace("0.0800", "0.0850"),
         "g",
-        r"line 5: unequal time steps: 0.06 s to 0.085 s among steps of 0.02 s",
+        r"line 5: unequal time steps: 0.06 s to 0.085 s is 0.025 s, most are 0.02 s",
     ),
     "backwards": ("0 1\n0 2\n0 3\n", "g", r"line 2: unequal time steps"),
     "ragged": (TABLE + "0.14\n", "g", r"line 8: 1 columns, the lines before have 2"),
@@ -164,6 +198,16 @@ BROKEN = {
     "csv units": ("time,x [g],y [m/s2]\n0,1,1\n1,2,2\n", None, r"line 1: columns of different units"),
     "csv unit": ("time,x [stone]\n0,1\n1,2\n", None, r"line 1: unknown unit among 'stone'"),
     "csv time": ("x [g],y [g]\n0,1\n1,2\n", None, r"line 1: no column of times: state step"),
+    "huge": (
+        TABLE.replace("0.5", "1e300"),
+        "g",
+        r": a peak must be between 0 and 1e\+30, got 1e\+300. Check the numbers",
+    ),
+    "huge step": (
+        NEW.replace(".0050", "1e200"),
+        None,
+        r": a time step \[s\] must be between 1e-09 and 1e\+06, got 1e\+200. Check",
+    ),
     "csv token": ("time,x [g]\n0,1\n1,two\n", None, r"line 3: not a number: 'two'"),
 }
 
@@ -206,7 +250,7 @@ AS_ARGUMENT = re.compile(r"\b(units|step|columns|axis|directions|lengths|steps|f
         ("a.csv", "time,x\n0,1\n1,2\n", "state units"),
         ("a.txt", "1\n2\n3\n", "state step, in s"),
         ("a.csv", "x [g],y [g]\n0,1\n1,2\n", "state step, the time step in s"),
-        ("a.csv", "t,north,east\n0,1,2\n1,2,3\n", "state columns, or name it x or acceleration"),
+        ("a.csv", "t,one,two\n0,1,2\n1,2,3\n", "state columns, or name it x or acceleration"),
     ],
 )
 def test_what_is_not_told_is_asked_for_in_words_that_hold_for_every_reader(tmp_path, name, content, remedy):
@@ -241,7 +285,7 @@ def test_without_obspy_its_formats_name_the_extra(tmp_path, monkeypatch):
     monkeypatch.setattr(builtins, "__import__", missing)
     path = written(tmp_path, "a.mseed", b"000001D \x00\x01\x02")
     with pytest.raises(
-        UnsupportedError, match=r'a\.mseed: no text; .* ObsPy reads it: pip install "stylobate\[records\]"'
+        UnsupportedError, match=r'a\.mseed: no text\. .* install ObsPy: pip install "stylobate\[records\]"'
     ):
         sb.read_record(path, "g")
 
@@ -300,7 +344,9 @@ def test_the_sample_is_the_record_of_its_source():
     peaks = np.abs(record.samples).max(axis=0)
     np.testing.assert_allclose(peaks, np.array([0.34873739, 0.21413699, 0.21005819]) * STANDARD_GRAVITY, rtol=1e-12)
     assert math.isclose(record.times[np.abs(record.samples[:, 0]).argmax()], 2.12)
-    with pytest.raises(ParameterError, match=r"name must be one of 'el centro 1940', got 'kobe'"):
+    with pytest.raises(
+        ParameterError, match=r"name must be one of 'el centro 1940', 'el centro 1940 corrected', got 'kobe'"
+    ):
         sb.sample_record("kobe")
 
 

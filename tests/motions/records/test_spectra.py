@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 import stylobate as sb
 from stylobate.errors import ParameterError
 from stylobate.motions.records import oscillator_response, response_spectra
-from stylobate.motions.records.spectra import over_directions
+from stylobate.motions.records.horizontal_components import over_directions
 
 STEP = 0.02
 SAMPLES = np.random.default_rng(11).normal(size=(101, 2))
@@ -87,8 +87,10 @@ def test_the_hull_tells_the_projections_of_all_points():
     x, y = np.random.default_rng(2).normal(size=(2, 500))
     angles = np.radians(np.arange(180))
     largest = np.abs(np.outer(x, np.cos(angles)) + np.outer(y, np.sin(angles))).max(axis=0)
-    np.testing.assert_allclose(over_directions(x, y), np.percentile(largest, [0, 50, 100]), rtol=1e-14)
-    assert over_directions(x, 2.0 * x)[2] == pytest.approx(math.sqrt(5.0) * np.abs(x).max(), rel=2e-4)
+    np.testing.assert_allclose(
+        over_directions(x, y, (0.0, 50.0, 100.0)), np.percentile(largest, [0, 50, 100]), rtol=1e-14
+    )
+    assert over_directions(x, 2.0 * x, (100.0,))[0] == pytest.approx(math.sqrt(5.0) * np.abs(x).max(), rel=2e-4)
 
 
 def test_a_record_at_rest_and_one_along_a_line_have_spectra():

@@ -145,21 +145,46 @@ def test_an_interrupted_analysis_goes_on_to_the_same_result(tmp_path):
         np.testing.assert_array_equal(resumed[name], whole[name])
 
 
-def test_intensities_are_proportional_and_say_what_they_are():
+def peak_of(component, values):
+    """Return the peak of values along x and y, by rotating them degree by degree where the definition does."""
+    x, y = values[:, 0], values[:, 1]
+    angles = np.radians(np.arange(180))
+    peaks = np.abs(np.outer(x, np.cos(angles)) + np.outer(y, np.sin(angles))).max(axis=0)
+    along = [np.abs(x).max(), np.abs(y).max()]
+    return {
+        "RotD50": np.median(peaks),
+        "RotD100": np.hypot(x, y).max(),
+        "geometric mean": np.sqrt(along[0] * along[1]),
+        "larger component": max(along),
+    }[component]
+
+
+@pytest.mark.parametrize("component", ["RotD50", "RotD100", "geometric mean", "larger component"])
+def test_intensities_are_proportional_and_say_what_they_are(component):
     column, record = MODEL.column, RECORDS[0]
     strength = 9.80665 * 0.2
+    velocity = record.velocity(np.linspace(0.0, record.duration, 20001))
+    pga = peak_of(component, record.samples)
     peaks = {
-        Intensity.PEAK_ACCELERATION: record.largest_horizontal(),
-        Intensity.ACCELERATION_RATIO: record.largest_horizontal() / strength,
-        "peak ground velocity": np.hypot(*record.velocity(np.linspace(0.0, record.duration, 200001)).T[:2]).max(),
+        Intensity.PEAK_ACCELERATION: pga,
+        Intensity.ACCELERATION_RATIO: pga / strength,
+        "peak ground velocity": peak_of(component, velocity),
     }
     peaks[Intensity.VELOCITY_RATIO] = column.frequency_parameter * peaks["peak ground velocity"] / strength
     spectra = sb.records.response_spectra(record, [0.8])
-    peaks[SpectralAcceleration(0.8)] = float(spectra["rotd50"][0])
+    psa = spectra["psa"].sel(axis=["x", "y"])
+    peaks[SpectralAcceleration(0.8)] = {
+        "RotD50": float(spectra["rotd50"][0]),
+        "RotD100": float(spectra["rotd100"][0]),
+        "geometric mean": float(np.sqrt(psa.prod())),
+        "larger component": float(psa.max()),
+    }[component]
     for intensity, expected in peaks.items():
-        runs = incremental_dynamic_analysis(MODEL, RECORDS, scales=[0.1, 0.2], intensity=intensity)
+        runs = incremental_dynamic_analysis(MODEL, RECORDS, scales=[0.1, 0.2], intensity=intensity, component=component)
         np.testing.assert_allclose(runs["intensity"].sel(record="noise 0"), [0.1 * expected, 0.2 * expected], rtol=1e-3)
         assert runs["intensity"].attrs["long_name"] == runs.attrs["intensity"]
+        assert runs.attrs["intensity"].endswith(f", {component}")
+        assert runs["intensity"].attrs["component"] == component
     bigger = incremental_dynamic_analysis(
         MODEL, RECORDS, scales=[0.1], intensity="p PGV/(g tan α)", parameters={"size": [1.0, 4.0]}
     )["intensity"]
@@ -180,6 +205,7 @@ def test_intensities_are_proportional_and_say_what_they_are():
         ({"parameters": {"scale": [1.0]}}, "parameters cannot name scale: it is told by scales"),
         ({"parameters": {"damping": [0.1], "size": [1.0, 2.0]}}, "parameters must have one value for each"),
         ({"intensity": "magnitude"}, "intensity must be 'peak ground acceleration'"),
+        ({"component": "GMRotI50"}, r"component: unknown definition .* \(got 'GMRotI50'\)"),
         ({"tail": -1.0}, "tail must be zero or positive"),
         ({"tilt_limit": 0.1}, "tilt_limit must be left out"),
     ],

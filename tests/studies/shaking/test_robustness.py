@@ -15,6 +15,7 @@ from stylobate.studies import (
     Filtered,
     Polarity,
     Resampled,
+    RestEnergy,
     ScaledRecord,
     Shifted,
     SizeScaled,
@@ -101,6 +102,25 @@ def test_each_change_is_the_run_of_what_it_changes():
         assert float(own["tilt_ratio"]) == pytest.approx(float(alone["tilt_ratio"][0]), rel=1e-5)
     assert np.unique(found["tilt_ratio"].to_numpy().round(4)).size > 8
     assert found["tilt_ratio_low"].item() <= found["tilt_ratio"].min() <= found["tilt_ratio_high"].item()
+
+
+def test_a_lower_rest_threshold_is_the_run_with_that_threshold():
+    # Two bursts: what is left of the first when the second comes is forgotten, or not, by the threshold.
+    time = 0.02 * np.arange(401)
+    burst = np.where(time < 1.0, np.sin(np.pi * time) ** 2 * np.sin(3.0 * np.pi * time), 0.0)
+    push = 2.8 * (burst + 0.8 * np.roll(burst, 150))
+    record = sb.Record(samples=np.stack([push, 0.4 * np.abs(push)], axis=-1), step=0.02, name="twice")
+    model = sb.Slender(MODEL.column, damping=0.6)
+    values = (1e-2, 1e-6)
+    found = robustness(model, {"twice": record}, changes=[RestEnergy(value) for value in values], tail=2.0)
+    for value in values:
+        alone = incremental_dynamic_analysis(model, {"twice": record}, scales=[1.0], tail=2.0, rest_energy=value)
+        own = found.sel(change=f"rest energy {value:g}", record="twice")
+        assert float(own["tilt_ratio"]) == pytest.approx(float(alone["tilt_ratio"].item()), rel=1e-12)
+    assert np.ptp(found["tilt_ratio"].to_numpy()) > 1e-3
+    assert {RestEnergy(1e-6), RestEnergy(1e-7)} <= set(SMALL_CHANGES)
+    with pytest.raises(sb.errors.ParameterError, match="value must be zero or positive"):
+        RestEnergy(-1.0)
 
 
 def test_changes_that_do_not_apply_are_told_and_not_counted():

@@ -51,7 +51,7 @@ def test_it_is_the_fit_to_the_same_runs():
     intensity = np.broadcast_to(runs["intensity"].to_numpy()[:, np.newaxis], shape)
     record = np.broadcast_to(np.arange(5)[:, np.newaxis, np.newaxis], shape)
     turned = np.broadcast_to(np.arange(2)[:, np.newaxis], shape)
-    for state in ("uplift", "tilt 0.5 α", "overturning"):
+    for state in ("tilt 0.001 α", "tilt 0.5 α", "overturning"):
         reached = runs["reached"].sel(limit_state=state).to_numpy()
         same = fit_fragility(intensity, reached, record=record, property_sample=turned)
         for name in ("median", "dispersion", "status", "runs", "non_monotone_records"):

@@ -99,7 +99,7 @@ def test_periods_follow_a_frequency_that_varies():
         ),
         (
             lambda: Sweep.random(MODEL, over={"scale": (-1e308, 1e308)}, count=1, seed=1, duration=1.0),
-            "finite width",
+            "too large to compute with",
         ),
         (lambda: Sweep.random(MODEL, over=BOX, count=-1, seed=1, duration=1.0), "count must be a whole number"),
         (lambda: Sweep.random(MODEL, over=BOX, count=1, seed=None, duration=1.0), "seed must be"),

@@ -7,18 +7,14 @@ its numbers are the same in the first process as in every later one.
 
 import importlib
 import marshal
-import pickle
-import signal
-import subprocess
-import sys
 import types
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-from stylobate.engine.compiling.loading import load
+from stylobate.engine.compiling.loading import MachineCode, load
 from stylobate.engine.compiling.model_code import called_functions, plain_function, with_functions
+from stylobate.processes import Worker
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,23 +70,26 @@ class _Portable:
         return types.FunctionType(code, with_functions(names, called, code), self.name)
 
 
-def compile_apart(path: Path, functions: Mapping[str, Callable[..., Any]]) -> bool:
-    """Compile the kernel in the file `path` with these functions of the model; return whether that went well."""
+def compile_apart(name: str, source: str, functions: Mapping[str, Callable[..., Any]]) -> bytes:
+    """Compile a module with these functions of the model in another process; return its machine code, or nothing.
+
+    Nothing is returned for functions that cannot be sent to another process, and for what cannot be compiled: the
+    error is then the same in this process, where it can be raised.
+    """
     try:
-        request = pickle.dumps((path, {name: _Portable.of(function) for name, function in functions.items()}))
-    except (pickle.PicklingError, TypeError, AttributeError, ValueError, RecursionError):
-        return False
-    command = [sys.executable, "-c", "from stylobate.engine.compiling.apart import serve; serve()"]
+        portables = {function_name: _Portable.of(function) for function_name, function in functions.items()}
+        worker = Worker.started(quiet=True)
+    except (ValueError, RecursionError, OSError):  # code that cannot be taken to pieces, or no process
+        return b""
     try:
-        status = subprocess.run(command, input=request, capture_output=True, check=False).returncode  # noqa: S603
-    except OSError:
-        return False
-    if status == -signal.SIGINT:  # Ctrl-C reaches both
-        raise KeyboardInterrupt
-    return status == 0
+        return worker.call(_compiled, name, source, portables)
+    except Exception:  # noqa: BLE001  as above
+        return b""
+    finally:
+        worker.end()
 
 
-def serve() -> None:
-    """Compile what the parent process asks for."""
-    path, portables = pickle.load(sys.stdin.buffer)  # noqa: S301  from our own parent
-    load(path, {name: portable.function() for name, portable in portables.items()})
+def _compiled(name: str, source: str, portables: Mapping[str, _Portable]) -> bytes:
+    machine_code = MachineCode()
+    load(name, source, {name: portable.function() for name, portable in portables.items()}, machine_code)
+    return machine_code.to_bytes()

@@ -36,15 +36,6 @@ def part(function: _F) -> _F:
     return cast("_F", compiled(function))
 
 
-def kept(signature: str) -> Callable[[_F], _F]:
-    """Compile a function and all that it calls for arguments of this type, at once, and keep the machine code."""
-
-    def compiled(function: _F) -> _F:
-        return cast("_F", njit(signature, cache=True, error_model="numpy", nogil=True)(function))
-
-    return compiled
-
-
 @inlined
 def cos_turns(u: float) -> float:
     """Return cos 2πu, `u` in turns, right to 3e-16: the best odd polynomial of degree 15 for sin 2πs, |s| ≤ ¼."""

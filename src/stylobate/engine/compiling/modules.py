@@ -4,7 +4,6 @@ import hashlib
 import logging
 import os
 import sys
-import tempfile
 import threading
 import types
 from collections.abc import Callable, Iterable, Mapping
@@ -12,19 +11,17 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from filelock import FileLock
-from llvmlite import binding as llvm
 from numba import config
 from numba.core.errors import NumbaError, UnsupportedBytecodeError
+from numba.core.registry import cpu_target
 
 from stylobate.engine.compiling.apart import compile_apart
-from stylobate.engine.compiling.loading import load
+from stylobate.engine.compiling.loading import MachineCode, load
 from stylobate.engine.compiling.model_code import fingerprint
-from stylobate.errors import UnsupportedError
+from stylobate.engine.compiling.trusted_cache import VARIABLE, TrustedCache
+from stylobate.errors import FileError, UnsupportedError
 
 _log = logging.getLogger("stylobate")
-
-_CACHE_VARIABLE = "STYLOBATE_CACHE"
 
 _compiling = threading.RLock()
 
@@ -43,7 +40,7 @@ def compiled_module(
     Parameters
     ----------
     name
-        Beginning of its file's name.
+        Beginning of its name.
     source
         Its text.
     functions
@@ -51,47 +48,32 @@ def compiled_module(
     imported
         Modules from which it takes compiled functions.
     told
-        What is said to be compiled.
+        Description of what is compiled.
     of
         The model, as messages name it.
 
     Raises
     ------
     UnsupportedError
-        If Numba cannot compile the model, or compiled code cannot be kept.
+        If Numba cannot compile the model.
+    FileError
+        If other users can write to the folder of compiled code.
     """
+    name = f"{name}_{_key(source, functions, imported)}"
     with _compiling:
-        path = cache_folder() / f"{name}_{_key(source, functions, imported)}.py"
-        if not path.exists():
-            _write(path, source)
-        mark = path.with_name(f"{path.stem}.{_machine()}.compiled")
-        jit = not config.DISABLE_JIT  # type: ignore[attr-defined]
-        if not jit or mark.exists():
-            return _loaded(path, functions, of)
-        # One process compiles, others that need the same wait for it.
-        with FileLock(path.with_name(f"{mark.name}.lock")):
-            if not mark.exists():
-                # A warning for whoever has set up no logging: seconds pass, once.
-                _log.warning("compiling %s; kept in %s", told, path.parent)
-                compile_apart(path, functions)  # where that fails, it is compiled here, and what is wrong is told
-            module = _loaded(path, functions, of)
-            mark.touch()
-        return module
-
-
-def _loaded(path: Path, functions: Mapping[str, Callable[..., Any]], of: str) -> types.ModuleType:
-    try:
-        return load(path, functions)
-    except (NumbaError, UnsupportedBytecodeError, RecursionError) as error:
-        lines = (line.strip() for line in str(error).splitlines())
-        reason = next((line for line in lines if line and not line.startswith("Failed in")), "no reason")
-        message = f"model {of} cannot be compiled; single runs by simulate need no compiling: {reason}"
-        raise UnsupportedError(message) from error
+        machine_code = MachineCode()
+        if not config.DISABLE_JIT:  # type: ignore[attr-defined]
+            machine_code = _kept_or_compiled(TrustedCache(cache_folder()), name, source, functions, told)
+        try:
+            return load(name, source, functions, machine_code)
+        except (NumbaError, UnsupportedBytecodeError, RecursionError) as error:
+            message = f"model {of} cannot be compiled; single runs by simulate need no compiling: {_reason(error)}"
+            raise UnsupportedError(message) from error
 
 
 def cache_folder() -> Path:
     """Return the folder in which compiled code is kept: $STYLOBATE_CACHE, or `stylobate` in the user's cache folder."""
-    chosen = os.environ.get(_CACHE_VARIABLE)
+    chosen = os.environ.get(VARIABLE)
     if chosen:
         return Path(chosen)
     if sys.platform == "win32":
@@ -103,11 +85,46 @@ def cache_folder() -> Path:
     return base / "stylobate"
 
 
+def _kept_or_compiled(
+    cache: TrustedCache, name: str, source: str, functions: Mapping[str, Callable[..., Any]], told: str
+) -> MachineCode:
+    """Return the machine code of a module: empty if it can be compiled in this process alone, or not at all."""
+    entry = f"{name}.{_machine()}.code"
+    data = cache.read(entry, quiet=True)
+    if data is None:
+        # One process compiles, others that need the same wait for it.
+        with cache.held(entry):
+            data = cache.read(entry)
+            if data is None:
+                # A warning, seen where no logging is set up: seconds pass, once.
+                _log.warning("compiling %s; kept in %s", told, cache.folder)
+                data = compile_apart(name, source, functions)
+                _keep(cache, entry, data)
+    return MachineCode.from_bytes(data) if data else MachineCode()
+
+
+def _keep(cache: TrustedCache, entry: str, data: bytes) -> None:
+    """Write an entry, or warn that each process will compile it."""
+    if not data:
+        return
+    try:
+        cache.write(entry, data)
+    except (OSError, FileError) as error:
+        _log.warning(
+            "compiled code cannot be kept in %s: %s; name another folder in $%s, or every process compiles it",
+            *(cache.folder, getattr(error, "strerror", None) or error, VARIABLE),
+        )
+
+
+def _reason(error: Exception) -> str:
+    lines = (line.strip() for line in str(error).splitlines())
+    return next((line for line in lines if line and not line.startswith("Failed in")), "no reason")
+
+
 def _machine() -> str:
     """Return a digest of what machine code depends on besides its source."""
-    folder = str(config.CACHE_DIR)  # type: ignore[attr-defined]
-    told = [llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten(), folder]
-    return hashlib.sha256("\n".join(told).encode()).hexdigest()[:8]
+    processor = cpu_target.target_context.codegen().magic_tuple()
+    return hashlib.sha256(repr((processor, version("llvmlite"))).encode()).hexdigest()[:8]
 
 
 def _key(source: str, functions: Mapping[str, Callable[..., Any]], imported: Iterable[types.ModuleType]) -> str:
@@ -115,15 +132,3 @@ def _key(source: str, functions: Mapping[str, Callable[..., Any]], imported: Ite
     parts += [Path(module.__file__ or "").read_text(encoding="utf-8") for module in imported]
     parts += [f"{name} {fingerprint(function)}" for name, function in sorted(functions.items())]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
-
-
-def _write(path: Path, source: str) -> None:
-    # Written aside and moved into place, so that another process never reads half of it.
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=path.parent, delete=False) as aside:
-            aside.write(source)
-        Path(aside.name).replace(path)
-    except OSError as error:
-        message = f"cannot keep compiled code in {path.parent}: {error}; name another folder in ${_CACHE_VARIABLE}"
-        raise UnsupportedError(message) from error

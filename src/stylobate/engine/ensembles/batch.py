@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.engine.doubt import FINER_REST, other_tolerance
 from stylobate.engine.ensembles.broadcasting import Runs
 from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.motion_columns import MotionColumns, MotionPlan
@@ -31,11 +32,23 @@ SWITCHING_WIDTH = 8
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What is the same for all runs of an ensemble, decided before the first."""
+    """What is the same for all runs of an ensemble, decided before the first.
+
+    `rest_share` is a factor of the energy below which rest is entered where the base motion can release the column.
+    """
 
     model: Model
     motion: MotionPlan
     options: Options
+    rest_share: float = 1.0
+
+    def repeated(self) -> "Plan":
+        """Return the plan by which runs in doubt are repeated: a finer rest threshold, another tolerance, no notes."""
+        own = self.options
+        rtol = other_tolerance(own.rtol)
+        atol = None if own.atol is None else own.atol * (rtol / own.rtol)
+        options = replace(own, rtol=rtol, atol=atol, samples=0, strobes=0, recheck=False)
+        return replace(self, options=options, rest_share=FINER_REST)
 
     def shape(self, *, planar: bool) -> Shape:
         """Return what sets the kernel of motion in a plane, or in space, apart from others."""
@@ -91,7 +104,7 @@ class Batch:
             runs = replace(runs, tilt=runs.tilt * moving, tilt_rate=runs.tilt_rate * moving)
             models = ModelColumns.of(plan.model, runs.values, runs.tilt, runs.tilt_rate, runs.spin)
         motions = MotionColumns.of(plan.motion, runs.values, models)
-        energy = _rest_energy(plan.options, models, motions)
+        energy = plan.rest_share * _rest_energy(plan.options, models, motions)
         table = _empty_table(plan, len(runs), motions.breaks.shape[1])
         _fill_setup(table, plan.options, runs, models, motions, energy)
         planar = _fill_starts(table, plan.model, runs, models, motions)

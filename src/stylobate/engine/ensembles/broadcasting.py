@@ -9,13 +9,15 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from stylobate.errors import ParameterError
+from stylobate.engine.thresholds import without_dust
+from stylobate.errors import ParameterError, require_size
 
 Floats = npt.NDArray[np.float64]
 ArrayLike = npt.ArrayLike | xr.DataArray
 
 RUN, AXIS = "run", "axis"
 _TILT_LIMIT = math.pi / 2.0
+_OF_MASS = ("mass", "transverse_inertia", "axial_inertia")
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +80,9 @@ def broadcast(
     _check(flat)
     values = {name: flat[name] for name in parameters}
     coordinates = {name: array for name, array in given.items() if array.dims and array.dims != (AXIS,)}
-    return Runs(dims, shape, flat["tilt"], flat["tilt_rate"], flat["spin"], flat["duration"], values, coordinates)
+    return Runs(
+        dims, shape, without_dust(flat["tilt"]), flat["tilt_rate"], flat["spin"], flat["duration"], values, coordinates
+    )
 
 
 def _numbers(name: str, value: ArrayLike) -> xr.DataArray:
@@ -152,6 +156,7 @@ def _check(flat: Mapping[str, Floats]) -> None:
         if broken.any():
             message = f"{name} must be finite, got {float(array[broken][0])!r}"
             raise ParameterError(message)
+        require_size(name, float(np.abs(array).max(initial=0.0)), "kg" if name in _OF_MASS else "")
     tilts = np.hypot(*flat["tilt"].T)
     if tilts.size and tilts.max() >= _TILT_LIMIT:
         message = f"tilt must be below π/2 rad in length (angles are in rad, not degrees), got {float(tilts.max())!r}"

@@ -102,7 +102,7 @@ class _Noted:
         rests = [place for place, (_, before, after) in enumerate(met) if after == Contact.RESTING != before]
         releases = [place for place, (_, before, after) in enumerate(met) if before == Contact.RESTING != after]
         self.change(Change.IMPACTS, sum(before == Contact.FLYING or number == stroke for number, before, _ in met))
-        self.change(Change.SLIPS, sum(_gives_way(before, after) for _, before, after in met))
+        self.change(Change.SLIPS, self.course.slips)
         self.log(Log.RELEASES, len(releases))
         self.log(Log.RESTS, len(rests))
         self.log(Log.RELEASED_FROM_REST, bool(rests and releases and rests[0] < releases[-1]))
@@ -248,10 +248,6 @@ class _Swing:
 
         found = minimize_scalar(height, bounds=(low, high), method="bounded", options={"xatol": 1e-9 * (high - low)})
         return min((sign * float(self.tilt[place]), float(self.tau[place])), (float(found.fun), float(found.x)))
-
-
-def _gives_way(before: int, after: int) -> bool:
-    return before in (Contact.RESTING, Contact.ROLLING) and after in (Contact.SLIDING, Contact.SLIPPING)
 
 
 def _window(looks: Floats, before: Floats, azimuths: Floats, forced: Floats) -> dict[Window, float]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from stylobate.engine.thresholds import Thresholds
 from stylobate.engine.tolerances import RTOL_RANGE
 from stylobate.errors import (
+    MOST_STEPS,
     ParameterError,
     require_not_negative,
     require_positive,
@@ -30,6 +31,7 @@ class Options:
     strobes: int
     rules: OutcomeRules
     demands: bool
+    recheck: bool
 
     @classmethod
     def checked(
@@ -45,6 +47,7 @@ class Options:
         strobes: int,
         rules: OutcomeRules | None,
         demands: bool = False,
+        recheck: bool = False,
     ) -> "Options":
         """Return the options.
 
@@ -70,11 +73,12 @@ class Options:
             atol=None if atol is None else require_positive("atol", atol, "rad"),
             tilt_limit=None if tilt_limit is None else require_positive("tilt_limit", tilt_limit, "rad"),
             rest_energy=None if rest_energy is None else require_not_negative("rest_energy", rest_energy),
-            max_steps=require_whole("max_steps", max_steps, least=1),
+            max_steps=require_whole("max_steps", max_steps, least=1, most=MOST_STEPS),
             samples=0 if samples is None else require_whole("samples", samples, least=2),
             strobes=require_whole("strobes", strobes, least=0),
             rules=rules or OutcomeRules(),
             demands=bool(demands),
+            recheck=bool(recheck),
         )
 
     @property

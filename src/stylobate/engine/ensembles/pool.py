@@ -7,6 +7,8 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.processes import end_all
+
 Halt = npt.NDArray[np.uint8]
 
 # Parts: small enough that all threads end together and progress shows, large enough to fill the lanes.
@@ -57,6 +59,8 @@ def run_parts(
                     done(part)
         except KeyboardInterrupt:
             halt[0] = 1
+            while running and wait(running, timeout=0.1).not_done:
+                end_all()  # a thread may wait for a compiler, and the next one start another
             return False
         except BaseException:
             halt[0] = 1

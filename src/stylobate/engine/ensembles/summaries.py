@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.engine.doubt import FALLEN, in_doubt
 from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.ensembles.contacts import CONTACT_KINDS, contact_arrays, upright_outcomes
 from stylobate.engine.ensembles.options import Options
 from stylobate.engine.lanes.columns import BEFORE, LATE, LOOKS, SLACK, STATE, Log, Setup, Status, Window
+from stylobate.engine.memory import require_memory
 from stylobate.engine.thresholds import coarse
 from stylobate.engine.tolerances import CLOSE_PASSAGE
 from stylobate.engine.verdict import Evidence, Ground, grounds, outcome_on
@@ -60,6 +62,9 @@ QUANTITIES: Mapping[str, Quantity] = {
     "decided_at": _numbers("time at which the outcome was decided", "s"),
     "end_time": _numbers("end of the run", "s"),
     "uncertain": Quantity(np.bool_, (), {"long_name": "a small change could alter the outcome"}),
+    "in_doubt": Quantity(
+        np.bool_, (), {"long_name": "a finer rest threshold or another tolerance could change the outcome"}
+    ),
     "planar": Quantity(np.bool_, (), {"long_name": "moved in one vertical plane"}),
     "end_tilt": _numbers("tilt vector at the end", "rad", "axis"),
     "end_tilt_rate": _numbers("rate of the tilt vector at the end", "rad s-1", "axis"),
@@ -108,7 +113,7 @@ _DEMANDS = ("largest_friction_demand", "largest_pivoting_demand", "least_normal_
 def empty(model: Model, options: Options, count: int) -> Arrays:
     """Return the results of `count` runs of which none has been computed."""
     sizes = {"axis": 2, "strobe": options.strobes, "sample": options.samples}
-    arrays: Arrays = {}
+    arrays, fills = Arrays(), dict[str, float]()
     left_out = {*(() if options.demands else _DEMANDS), *(("end_spin",) if model.spin_state is None else ())}
     left_out |= {*(() if model.switches else _CONTACTS)}
     for name, quantity in QUANTITIES.items():
@@ -117,8 +122,14 @@ def empty(model: Model, options: Options, count: int) -> Arrays:
         shape = tuple(sizes[dim] for dim in quantity.dims)
         if 0 not in shape:
             fill = NOT_COMPUTED if name == "outcome" else np.nan if quantity.dtype is np.float64 else 0
-            arrays[name] = np.full((count, *shape), fill, dtype=quantity.dtype)
-    return arrays
+            arrays[name] = np.full((0, *shape), fill, dtype=quantity.dtype)
+            fills[name] = fill
+    require_memory(sum(map(_bytes_of_a_run, arrays.values())) * count, count, "Take fewer runs, samples or strobes")
+    return {name: np.full((count, *none.shape[1:]), fills[name], none.dtype) for name, none in arrays.items()}
+
+
+def _bytes_of_a_run(none: npt.NDArray[Any]) -> int:
+    return none.itemsize * math.prod(none.shape[1:])
 
 
 def summaries(batch: Batch) -> Arrays:
@@ -155,6 +166,7 @@ def _all(batch: Batch) -> Arrays:
         "decided_at": batch.log(Log.DECIDED) * scale,
         "end_time": batch.log(Log.TIME) * scale,
         "uncertain": uncertain,
+        "in_doubt": _in_doubt(batch, outcome),
         "planar": batch.log(Log.IN_SPACE) == 0.0,
         "end_tilt": tilt,
         "end_tilt_rate": rate / scale[:, np.newaxis],
@@ -191,6 +203,22 @@ def _all(batch: Batch) -> Arrays:
     return arrays
 
 
+def fallen(outcomes: npt.NDArray[np.int8]) -> npt.NDArray[np.bool_]:
+    """Return which codes of outcomes are those of columns that overturned or reached the tilt limit."""
+    return np.asarray(np.isin(outcomes, [code_of(outcome) for outcome in FALLEN]))
+
+
+def _in_doubt(batch: Batch, outcome: npt.NDArray[np.int8]) -> npt.NDArray[np.bool_]:
+    doubtful = in_doubt(
+        overturned=fallen(outcome),
+        decided=batch.log(Log.DECIDED),
+        largest_tilt=batch.log(Log.LARGEST_TILT),
+        released_again=batch.log(Log.RELEASED_FROM_REST) > 0.0,
+        slenderness=batch.models.slenderness,
+    )
+    return np.asarray(doubtful & (outcome != code_of(Outcome.FAILED)))
+
+
 def _leans(batch: Batch) -> tuple[Floats, Floats]:
     """Return tilt vectors [rad] and their rates in the time of the models, shape (n, 2)."""
     states = batch.table[:, STATE : STATE + len(batch.plan.model.state_names)].T
@@ -203,12 +231,12 @@ def _leans(batch: Batch) -> tuple[Floats, Floats]:
 
 
 def _demands(batch: Batch) -> Arrays:
-    """Return the extremes of what the contact had to bear; NaN of runs that never moved."""
+    """Return the extremes of what the contact had to bear, moving or standing; NaN of runs that did neither."""
     normal = batch.log(Log.NORMAL)
-    moved, lifts = np.isfinite(normal), normal <= LEAST_FORCE
+    borne, lifts = np.isfinite(normal), normal <= LEAST_FORCE
     found = [batch.log(column) for column in (Log.FRICTION, Log.PIVOTING)]
-    found = [np.where(moved, np.where(lifts & (load > 0.0), np.inf, load), np.nan) for load in found]
-    return dict(zip(_DEMANDS, (*found, np.where(moved, normal, np.nan)), strict=True))
+    found = [np.where(borne, np.where(lifts & (load > 0.0), np.inf, load), np.nan) for load in found]
+    return dict(zip(_DEMANDS, (*found, np.where(borne, normal, np.nan)), strict=True))
 
 
 def _turns(batch: Batch) -> Floats:

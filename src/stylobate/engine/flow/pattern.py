@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.compiling.arithmetic import kept, part, turning_point, winding
+from stylobate.engine.compiling.arithmetic import part, turning_point, winding
+from stylobate.engine.compiling.loading import kept
 from stylobate.engine.flow.tableau import DOP_A, DOP_C, DOP_E3, DOP_E5, Status
 
 if TYPE_CHECKING:

@@ -104,7 +104,7 @@ class Log(_FromZero):
     """When the base begins to drop away; infinite if never."""
     FRICTION = auto()
     PIVOTING = auto()
-    """Largest demands on the contact while the column moves."""
+    """Largest demands on the contact, while the column moves and while it stands."""
     NORMAL = auto()
     """Least normal force [m g]; followed with the demands where they are asked for."""
     WATCHED = auto()

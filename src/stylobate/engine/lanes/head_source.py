@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from stylobate.engine.lanes.columns import NOTE, SLACK, STATE
 from stylobate.engine.lanes.series_source import polynomial, state_polynomial
 from stylobate.engine.lanes.shape import MARGIN_PLACES, SERIES_ORDER, Shape
-from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET, HOPS_APART, STILL
+from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET, HOPS_APART, SLIP_SHARE, SLIP_SHORTER, SLIP_TURNS, STILL
 from stylobate.models import Model
 
 OPTIONAL = ("rest_energy", "no_return_tilt", "departure", "passage", "at_rest", "struck")
@@ -52,13 +52,18 @@ def constants_source(model: type[Model], shape: Shape, has: Mapping[str, bool], 
     return "".join(f"{name} = {value!r}\n" for name, value in values.items())
 
 
-def _contact_constants(model: type[Model], shape: Shape) -> dict[str, int]:
+def _contact_constants(model: type[Model], shape: Shape) -> dict[str, float]:
     """Return numbers of margins and of kinds of contact, and parts of a step; the limit of the tilt is a margin too."""
     assert model.contact_kinds is not None
     names = model.margin_names
     return {
         "MARGINS": shape.margins,
         "FALLEN": names.index("fallen"),
+        "FRICTION": names.index("friction"),
+        "SLIP_SHARE": SLIP_SHARE,
+        "SLIP_SHORTER": SLIP_SHORTER,
+        "SLIP_TURNS": SLIP_TURNS,
+        **dict(zip(("SLIP_X", "SLIP_Y"), shape.slip, strict=True)),
         "LAST": shape.margins - 1,
         "LIMIT": shape.margins,
         "PARTS": MARGIN_PLACES,

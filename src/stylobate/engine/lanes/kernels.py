@@ -53,7 +53,7 @@ def kernel_of(model: type[Model], shape: Shape) -> Kernel:
         kernel_source(model, shape),
         _functions(model, shape),
         imported=(arithmetic, roots),
-        told=f"{model.name}, {_kind(shape)}",
+        told=_in_words(model, shape),
         of=model.name,
     )
     return Kernel(shape, module)
@@ -87,7 +87,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.compiling.arithmetic import cos_turns, kept, part, turning_point, vectorised, winding
+from stylobate.engine.compiling.arithmetic import cos_turns, part, turning_point, vectorised, winding
+from stylobate.engine.compiling.loading import kept
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.roots import cubic, first_growth_past, first_return, nearest_turn, quintic, turns_of
 from stylobate.models.model import Push
@@ -153,6 +154,12 @@ def _with_numbers(text: str, shape: Shape) -> str:
 
 def _kind(shape: Shape) -> str:
     return f"{'plane' if shape.planar else 'space'} motion, {shape.forcing.tag}, {shape.width} lanes"
+
+
+def _in_words(model: type[Model], shape: Shape) -> str:
+    """Describe a kernel so that its description differs from those of the other kernels of a model."""
+    options = (", by Taylor series" if shape.series else "", ", with contact demands" if shape.demands else "")
+    return f"{model.name}, {_kind(shape)}{''.join(options)}"
 
 
 def _file_name(model: type[Model], shape: Shape) -> str:

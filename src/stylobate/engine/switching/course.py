@@ -12,12 +12,14 @@ from scipy.optimize import brentq
 
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.moving import Method
-from stylobate.engine.resting import departure_lapse, release_time, rest_piece, stays_for_good
+from stylobate.engine.pace import report, step_limit, unseen
+from stylobate.engine.resting import departure_lapse, release_within, rest_piece, stays_for_good
 from stylobate.engine.steps import Steps, just_before
 from stylobate.engine.switching.guard import Guard
 from stylobate.engine.switching.inclined import InclinedForcing
 from stylobate.engine.switching.solvers import Stepper
 from stylobate.engine.thresholds import Thresholds
+from stylobate.engine.tolerances import SLIP_SHORTER
 from stylobate.engine.trajectory import Piece, Trajectory, nearest_turn, unwrapped_azimuths
 from stylobate.engine.watch import Reason
 from stylobate.models import Model
@@ -33,8 +35,10 @@ _ON_BASE = (0, 1)
 # Those in which a contact slips.
 _SLIPS = ("SLIDING", "SLIPPING")
 
+# Events with which a slip begins.
+_BEGIN_TO_SLIP = ("slip", "slide", "reverse")
+
 _JAM = "its contact jams: with friction as large as this no motion of a rigid body follows (Painlevé's paradox)"
-_STEP_LIMIT = "its step limit is reached; raise max_steps, shorten the run or loosen rtol"
 
 # So many changes of contact without a step between them are no motion.
 _MOST_AT_ONCE = 100
@@ -55,6 +59,10 @@ class Switch:
 
 def _never() -> bool:
     return False
+
+
+def _moment(time: float) -> float:
+    return _MOMENT * max(1.0, abs(time))
 
 
 @dataclass(slots=True)
@@ -111,6 +119,11 @@ class SwitchingCourse:
         return "rest" in kinds and "release" in kinds[kinds.index("rest") :]
 
     @property
+    def slips(self) -> int:
+        """How often a contact that held began to slip."""
+        return sum(event.kind in _BEGIN_TO_SLIP for event in self.events)
+
+    @property
     def trajectory(self) -> Trajectory:
         """What has been computed, as one function of time."""
         return Trajectory(self.pieces, len(self.model.state_names))
@@ -138,7 +151,12 @@ class SwitchingCourse:
         """Stand until the base sets the column going; return the state after it, or None."""
         start = self._time
         felt = InclinedForcing.of(self.model, self.forcing.motion)
-        release = release_time(self.model, felt, start, self.stop)
+        most = self.method.max_steps
+        release, known = release_within(self.model, felt, start, self.stop, most)
+        if release is None and not known:
+            self.ended, self.failure = Reason.FAILED, unseen(most)
+            self._rest(held, self.stop)
+            return None
         if release is None:
             if stays_for_good(self.model, felt, start):
                 self.ended = Reason.RESTED
@@ -159,7 +177,11 @@ class SwitchingCourse:
         broken = guard.broken(margins)
         if broken is not None:
             return self._reaction(state, broken)
-        stepper, steps = self._stepper(state, stop), Steps(self._time)
+        stepper, steps, friction = (
+            self._stepper(state, stop),
+            Steps(self._time),
+            self.model.margin_names.index("friction"),
+        )
         while stepper.running:
             if self._given_up(steps, contact):
                 return None
@@ -172,7 +194,12 @@ class SwitchingCourse:
                 return None
             solver = stepper.solver
             dense = steps.add(solver)
-            time, number, margins = guard.first_event(steps.times[-2], solver.t, dense, margins)
+            time, number, found = guard.first_event(steps.times[-2], solver.t, dense, margins)
+            if number == friction and time - steps.times[-2] > _moment(time) and stepper.turned(dense(time)):
+                steps.drop()
+                stepper.again(SLIP_SHORTER * (time - steps.times[-1]))
+                continue
+            margins = found
             limit = self._limit_time(dense, steps.times[-2], time)
             if limit is not None:
                 time, number = limit, _LIMIT
@@ -186,11 +213,13 @@ class SwitchingCourse:
 
     def _given_up(self, steps: Steps, contact: int) -> bool:
         """Return whether no step more is to be made."""
+        left = self.method.max_steps - self._steps - len(steps.dense)
+        report(left, self.method.max_steps, steps.times[-1] * self.model.time_scale, self.stop * self.model.time_scale)
         if self.halted():
             self._take(steps, contact)
             self.ended = Reason.HALTED
-        elif self._steps + len(steps.dense) >= self.method.max_steps:
-            self._fail(steps, contact, _STEP_LIMIT)
+        elif left <= 0:
+            self._fail(steps, contact, step_limit(self.method.max_steps))
         else:
             return False
         return True
@@ -220,8 +249,7 @@ class SwitchingCourse:
             self.ended = Reason.OVERTURNED if name == "fallen" else Reason.LIMIT
             self._note("overturned" if name == "fallen" else "limit", time)
             return None
-        moment = _MOMENT * max(1.0, abs(time))
-        self._at_once = self._at_once + 1 if time - self._last_event <= moment else 0
+        self._at_once = self._at_once + 1 if time - self._last_event <= _moment(time) else 0
         self._last_event = time
         if self._at_once > _MOST_AT_ONCE:
             self.ended, self.failure = Reason.FAILED, f"its contact changes without end ({name})"
@@ -234,7 +262,9 @@ class SwitchingCourse:
         )
         self.switches.append(Switch(time, number, self._contact(state), self._contact(after)))
         kind = model.event_of(name, self._contact(state), self._contact(after))
-        if kind and number >= 0:
+        # Slip that goes on at once along another heading has not ended.
+        goes_on = name == "friction" and elapsed == 0.0 and self._contact(after) == self._contact(state)
+        if kind and number >= 0 and not goes_on:
             self._note(kind, time)
         if self._kind(after).name == "JAMMED":
             self.ended, self.failure = Reason.FAILED, _JAM

@@ -13,7 +13,8 @@ from scipy.integrate import DOP853, Radau
 
 from stylobate.engine.forcing import Floats
 from stylobate.engine.moving import Method
-from stylobate.engine.tolerances import SLIP_SHARE
+from stylobate.engine.steps import attempted, with_finite_step
+from stylobate.engine.tolerances import SLIP_SHARE, SLIP_TURNS
 
 # E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", section IV.2: the boundary of stability of DOP853
 # along the negative axis is at hλ = 6.1; so many steps near it in turn count as stiff.
@@ -69,11 +70,23 @@ class Stepper:
             self.solver = self._implicit(self.solver.t, self.solver.y)
         elif self._near == 0 and isinstance(self.solver, Radau):
             self.solver = self._explicit(self.solver.t, self.solver.y)
-        with np.errstate(over="ignore", invalid="ignore"):  # trial steps across the end of a slip are made again
-            failure = self.solver.step()
+        failure = attempted(self.solver)  # trial steps across the end of a slip may overflow
         if self._slip and failure is None:
             self._look(self.solver)
-        return None if failure is None else str(failure)
+        return failure
+
+    def turned(self, state: Floats) -> bool:
+        """Return whether a slip that ends along its heading in `state`, within the last step, goes on across it."""
+        if not self._slip:
+            return False
+        before, after = (float(np.linalg.norm(y[self._slip])) for y in (self.solver.y_old, state))
+        return after > SLIP_TURNS * (float(self._atol[self._slip[0]]) + self._method.rtol * before)
+
+    def again(self, length: float) -> None:
+        """Go back to where the last step began, and step on from there by this length at most."""
+        solver = self.solver
+        renewed = self._explicit if isinstance(solver, DOP853) else self._implicit
+        self.solver = renewed(solver.t_old, solver.y_old, length)
 
     def _look(self, solver: Any) -> None:
         """Count the steps in turn that were cut by stability; of an implicit method, down those that would not be."""
@@ -83,29 +96,35 @@ class Stepper:
             easy = _largest_rate(solver.J) * solver.step_size < _EASY
             self._near = self._near - 1 if easy else _STIFF_STEPS
 
-    def _explicit(self, time: float, state: Floats) -> DOP853:
+    def _explicit(self, time: float, state: Floats, first_step: float | None = None) -> DOP853:
         method = self._method
-        return DOP853(
-            self._derivative,
-            time,
-            state,
-            self._stop,
-            max_step=method.max_step,
-            rtol=method.rtol,
-            atol=self._atol,
+        return with_finite_step(
+            DOP853(
+                self._derivative,
+                time,
+                state,
+                self._stop,
+                max_step=method.max_step,
+                first_step=first_step,
+                rtol=method.rtol,
+                atol=self._atol,
+            )
         )
 
-    def _implicit(self, time: float, state: Floats) -> Radau:
+    def _implicit(self, time: float, state: Floats, first_step: float | None = None) -> Radau:
         method = self._method
-        return Radau(
-            self._derivative,
-            time,
-            state,
-            self._stop,
-            max_step=method.max_step,
-            rtol=method.rtol,
-            atol=self._atol,
-            jac=self._jacobian,
+        return with_finite_step(
+            Radau(
+                self._derivative,
+                time,
+                state,
+                self._stop,
+                max_step=method.max_step,
+                first_step=first_step,
+                rtol=method.rtol,
+                atol=self._atol,
+                jac=self._jacobian,
+            )
         )
 
     def _jacobian(self, time: float, state: Floats) -> Floats:

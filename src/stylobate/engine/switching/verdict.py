@@ -109,7 +109,7 @@ class Account:
                 "walking_distance": length * walked,
                 "slip_distance": length * slipped,
                 "impacts": float(counts["land"] + counts["stroke"]),
-                "slips": float(counts["slip"] + counts["slide"] + counts["reverse"]),
+                "slips": float(course.slips),
                 "least_painleve_denominator": least,
             }
         )

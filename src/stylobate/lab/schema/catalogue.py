@@ -55,6 +55,7 @@ _ABOUT = table(
                     "title": text(),
                     "about": text(),
                     "description": {"type": "object", "description": "to be sent to /api/simulate"},
+                    "view": {"type": "object", "description": "how the page shows it"},
                 },
             ),
         ),

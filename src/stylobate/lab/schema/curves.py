@@ -1,6 +1,6 @@
 """What is answered of response curves, by theory and of exact orbits."""
 
-from stylobate.lab.schema.notation import Schema, flag, listed, number, or_none, table, text, word
+from stylobate.lab.schema.notation import Schema, flag, listed, number, or_none, row, table, text, word
 
 _SENSE = word("which way it rolls, seen from above", ["anticlockwise", "clockwise"])
 _FREQUENCIES = listed("[rad/s]", {"type": "number"})
@@ -51,6 +51,8 @@ _EXACT = table(
                     "largest_tilt": listed("[rad]", {"type": "number"}),
                     "phase": listed("[rad]", {"type": ["number", "null"]}),
                     "stable": listed("whether it is stable", {"type": "boolean"}),
+                    "tilt": listed("at t = 0, along x and y [rad]", row("", 2)),
+                    "tilt_rate": listed("at t = 0 [rad/s]", row("", 2)),
                 },
             ),
         ),
@@ -69,5 +71,14 @@ _EXACT = table(
     },
 )
 
-CURVES = {"ResponseCurves": _CURVES, "ExactOrbits": _EXACT}
+_START = table(
+    "Where a run begins.",
+    {
+        "tilt": row("along x and y [rad]", 2),
+        "tilt_rate": row("[rad/s]", 2),
+        "spin": number("angular velocity about the axis [rad/s]"),
+    },
+)
+
+CURVES = {"ResponseCurves": _CURVES, "ExactOrbits": _EXACT, "Start": _START}
 """The components."""

@@ -8,18 +8,22 @@ from stylobate.lab.schema.notation import Schema, ref, table
 _REFUSALS = {
     400: "The body is no JSON, or ended early.",
     403: "A foreign Host or Origin.",
+    401: "No token, where other machines can reach the laboratory.",
     404: "There is no such job (any more), or it has no file.",
+    408: "The request did not arrive in time.",
     413: "The body is too large.",
     415: "The body is of another type than application/json.",
     422: "The values cannot be: one line for each mistake.",
     429: "Too many jobs wait.",
-    500: "The process that computed ended of its own, perhaps for want of memory.",
-    503: "Too busy, or the run took too long.",
+    500: "A mistake in the program.",
+    502: "The worker process was ended from outside, possibly because memory ran out.",
+    503: "No worker process became free in time; try again.",
+    504: "The run took longer than runs may take; the same request would take as long again.",
 }
 
-_OF_ALL = (403,)
+_OF_ALL = (401, 403, 408)
 _OF_BODIES = (*_OF_ALL, 400, 413, 415, 422)
-_OF_RUNS = (*_OF_BODIES, 500, 503)
+_OF_RUNS = (*_OF_BODIES, 500, 502, 503, 504)
 
 _JOB = {"name": "identity", "in": "path", "required": True, "schema": {"type": "string"}, "description": "of the job"}
 _AFTER = {
@@ -54,6 +58,15 @@ def paths() -> dict[str, Any]:
                 ref("ResponseCurves"),
                 _OF_BODIES,
                 body=("Response", examples.RESPONSES),
+            )
+        },
+        "/api/start": {
+            "post": _endpoint(
+                "start",
+                "The start on steady rolling, by theory",
+                ref("Start"),
+                _OF_BODIES,
+                body=("SteadyRolling", examples.STARTS),
             )
         },
         "/api/records": {

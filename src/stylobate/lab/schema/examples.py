@@ -22,6 +22,9 @@ RUNS: dict[str, Any] = {name: _PRESETS[name] for name in (presets()[0].identity,
 RESPONSES: dict[str, Any] = {"circle": {**_CIRCLE, "angular_frequency_range": [0.5, 4.0], "points": 100}}
 """Of response curves."""
 
+STARTS: dict[str, Any] = {"circle": {**_CIRCLE, "branch": "upper"}}
+"""Of starts on steady rolling."""
+
 RECORDS: dict[str, Any] = {
     "text": {"files": [{"name": "shock.txt", "content": base64.b64encode(_RECORD).decode()}], "units": "g"}
 }

@@ -1,5 +1,6 @@
 """What can be asked for: the descriptions of the command line, but for files of this machine, within the limits."""
 
+import math
 from collections.abc import Collection, Mapping
 from dataclasses import fields
 from typing import Any
@@ -9,15 +10,18 @@ from stylobate.lab.limits import Limits
 from stylobate.lab.numbers import NUMBERS
 from stylobate.lab.schema.notation import Schema, listed, or_none, ref, table, text
 from stylobate.lab.sizes import HIGHEST_DEGREE, LEAST, MOST
+from stylobate.lab.starts import StartDescription
+from stylobate.models.bounds import BOUNDS, Bounds
 from stylobate.motions.pulses.sinusoid import MOST_CYCLES
 from stylobate.motions.pulses.waveform import MOST_OSCILLATIONS
 from stylobate.results import OutcomeRules
 from stylobate.spec.description import Description
-from stylobate.spec.motions import PULSES
+from stylobate.spec.motions import ENDING
 
 _DESCRIPTIONS: dict[str, type[Description]] = {
     "Simulation": spec.SimulationDescription,
     "Response": spec.ResponseDescription,
+    "SteadyRolling": StartDescription,
     "Map": spec.MapDescription,
     "Basin": spec.BasinDescription,
 }
@@ -32,7 +36,7 @@ _TOLD = {
     "position": "of the contact at the start [m]",
     "velocity": "at the start, of a model that slides [m/s]",
     "clearance": "height above the base at the start, of a model that flies [m]",
-    "duration": "how long [s]; may be left out under a record or a pulse",
+    "duration": "how long [s]; may be left out under a record, a pulse or a sine sweep",
     "periods": "how long, in periods of the base motion, in place of duration",
     "friction_coefficient": "of the contact, for a warning where a run needs more",
     "rtol": "relative tolerance of the integration",
@@ -48,6 +52,7 @@ _TOLD = {
     "confidence": "of the intervals",
     "angular_frequency_range": "from, to [rad/s]",
     "points": "frequencies of the curves",
+    "branch": "of steady rolling: upper, that of the larger tilt, or lower",
 }
 
 
@@ -57,24 +62,25 @@ _TAGS = ("shape", "kind", "method")
 _POSITIVE = (
     *("radius", "height", "density", "inner_radius", "top_radius", "mass", "mass_height", "gravity"),
     *("transverse_inertia", "axial_inertia", "slenderness", "inertia_ratio", "axial_ratio"),
-    *("friction_coefficient", "static_friction_coefficient"),
     *("angular_frequency", "frequency", "rpm", "stroke", "diameter", "length", "cycles", "oscillations"),
     *("duration", "periods", "rtol", "atol", "tilt_limit"),
 )
-_NOT_NEGATIVE = (
-    *("damping", "spin_friction", "rolling_resistance", "restitution", "passage_tilt", "ramp", "start"),
-    *("rest_energy", "clearance", "tail"),
-)
-_ENDING = ("record", *PULSES)
+_NOT_NEGATIVE = ("ramp", "start", "rest_energy", "clearance", "tail")
 _OF_MOTIONS = ("sum", "one_of", "scaled", "rotated", "delayed")
 _HAS_RESPONSE = ("circular", "straight", "elliptic", "displacement_amplitude", "stroke", "orbit", "harmonic")
+
+
+def _schema_of(bounds: Bounds) -> Schema:
+    most = {"maximum": bounds.most} if math.isfinite(bounds.most) else {}
+    return {"minimum": bounds.least, **most}
+
 
 _RULE: Schema = {"type": "number", "minimum": LEAST}
 
 _BOUNDS: dict[str, Schema] = {
     **{name: {"minimum": LEAST} for name in _POSITIVE},
     **{name: {"minimum": 0} for name in _NOT_NEGATIVE},
-    "restitution": {"minimum": 0, "maximum": 1},
+    **{name: _schema_of(bounds) for name, bounds in BOUNDS.items()},
     "cycles": {"minimum": LEAST, "maximum": MOST_CYCLES},
     "oscillations": {"minimum": LEAST, "maximum": MOST_OSCILLATIONS},
     "sense": {"enum": [1, -1]},
@@ -124,7 +130,7 @@ def _within(told: Schema, limits: Limits) -> Schema:
             _of_numbers(schema)["maximum"] = most[name]
     if "rules" in properties:
         properties["rules"] = table(_TOLD["rules"], {}, {field.name: _RULE for field in fields(OutcomeRules)})
-    if "angular_frequency_range" in properties:
+    if "angular_frequency_range" in properties or "branch" in properties:
         properties["motion"] = _only(properties["motion"], _HAS_RESPONSE)
     if "duration" in told["required"]:
         return _until_the_end(told)
@@ -132,8 +138,8 @@ def _within(told: Schema, limits: Limits) -> Schema:
 
 
 def _until_the_end(told: Schema) -> Schema:
-    """Return the schema of a run, which needs a duration unless its motion is a record or a pulse, or of such."""
-    ending = {"type": "object", "properties": {"kind": {"enum": [*_ENDING, *_OF_MOTIONS]}}}
+    """Return the schema of a run, which needs a duration unless its motion is one that ends, or of such."""
+    ending = {"type": "object", "properties": {"kind": {"enum": [*ENDING, *_OF_MOTIONS]}}}
     lasting = [
         {"required": ["duration"], "properties": {"duration": {"type": "number"}}},
         {"required": ["motion"], "properties": {"motion": ending}},

@@ -268,12 +268,16 @@ def margins(
     radius = c if contact == SLIDING else patch * c
     slip = sx * hx + sy * hy + radius * yawing * hz
     slipping = max(slip - STILL, ox * hx + oy * hy + oz * hz)
-    friction = kept if rolls else (static * weight - pushed) if stands else 1.0 if flies else slipping
+    # Slip without friction has no end.
+    free = flies or (static == 0.0 and not (rolls or stands))
+    friction = kept if rolls else (static * weight - pushed) if stands else 1.0 if free else slipping
     # Height of the lowest point of the rim
     sine, cos = sine_over_angle(square) * tilt, cosine(square)
     gap = rise - c * sine + sine * sine / (1.0 + cos)
     opening = climb - (c * cos - sine) * (radial / tilt)
-    support = max(gap, opening) + CLEAR if flies else 1.0 if rim > 0.0 else c * weight - drag
+    # A base that slides trips only where kinetic friction exceeds c.
+    firm = rim > 0.0 or (kinetic <= c and not stands)
+    support = max(gap, opening) + CLEAR if flies else 1.0 if firm else c * weight - drag
     energy = 0.5 * (1.0 + kappa * c * c) * speed * speed + c * weight * tilt - rest * c * c
     # Set down, its base would slide with the kinetic friction, or be taken along; one that would trip has to stop
     trips = kinetic > c

@@ -2,8 +2,8 @@
 
 Slip is a vector of three, (v_x, v_y, ε ω_z): the velocity of the contact, and how fast the rim of a patch of radius ε
 turns. Force and moment fade into each other as a patch slips and turns at once. Of the small contact of a rim, with a
-pressure after Hertz, the integrals over it are approximated after V. F. Zhuravlev with the exponent 3, within 3.5 % in
-force and 11 % in moment:
+pressure after Hertz, the integrals over it are approximated after V. F. Zhuravlev with the exponent 3. The force is
+exact within 3.6 %; the moment is up to 22.5 % too small, at s = 1.57 |v|, which is 16 % of the largest moment:
 
 T = −μN v/(|v|³ + (b s)³)^⅓,   M = −m μNε s_z/(s³ + (a|v|)³)^⅓,   s = |s_z|,  s_z = ε ω_z,
 
@@ -123,11 +123,11 @@ def reserve(force: float, moment: float, normal: float, radius: float, coefficie
     radius, coefficient
         ε, and the static μ.
     """
-    bound = coefficient * max(normal, 1e-300)
+    bound = max(coefficient * normal, 1e-300)
     dragged = force / bound
     # Far outside the set the cubes are of no use, and may overflow.
     drag = min(dragged, 1e3)
-    twist = min(moment / (TWISTING * bound * radius), 1e3) if radius > 0.0 else 0.0
+    twist = min(moment / max(TWISTING * bound * radius, 1e-300), 1e3) if radius > 0.0 else 0.0
     drag, twist = drag * drag * drag, twist * twist * twist
     return 1.0 - dragged if radius == 0.0 else 1.0 - drag - twist * (1.0 + _BULGE * drag)
 
@@ -140,7 +140,7 @@ def sense_of(force: float, moment: float, normal: float, radius: float, coeffici
     if radius == 0.0:
         return 1.0, 0.0
     # What the plane would have to pull at slips rather than turns.
-    drag = min(force / (coefficient * max(normal, 1e-300)), 1.0 - 1e-12) ** 3
+    drag = min(force / max(coefficient * normal, 1e-300), 1.0 - 1e-12) ** 3
     ratio = SLOWED * (drag / (1.0 - drag)) ** (1.0 / 3.0)  # |v|/s, for which T is this part of μN
     length = math.sqrt(1.0 + ratio * ratio)
     return ratio / length, math.copysign(1.0 / length, -moment)

@@ -25,7 +25,7 @@ def land(state: State, now: Triple, later: Triple, ahead: float, rest: float, n:
         tilt = TRIPPED * n.c
         state = placed(state, (tilt * ux, tilt * uy, state.tilt_rate_x, state.tilt_rate_y), state.spin, state.contact)
     if vz >= 0.0:
-        return settle_rim(touching(state, vd, vn, ux, uy), now, later, ahead, n)
+        return 0.0, settle_rim(touching(state, vd, vn, ux, uy), now, n)
     response = responses(sine, cos, n.c, n.kappa, n.axial)
     bounce = rebound(n.restitution, -vz)
     pd, pn, pz = impulse((vd, vn, vz), response, n.kinetic, bounce)
@@ -35,7 +35,7 @@ def land(state: State, now: Triple, later: Triple, ahead: float, rest: float, n:
         return 0.0, lifted_with(struck, -bounce * vz, n)
     if rests(struck, now, rest, n):
         return set_down(struck, now, later, ahead, n)
-    return settle_rim(struck, now, later, ahead, n)
+    return 0.0, settle_rim(struck, now, n)
 
 
 def touching(state: State, vd: float, vn: float, ux: float, uy: float) -> State:

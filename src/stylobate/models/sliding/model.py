@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.errors import ParameterError, require_finite, require_positive
+from stylobate.errors import ParameterError, require_finite
 from stylobate.models import finite_tilt, tilt_vector
-from stylobate.models.checks import require_column, require_frictions, require_loss
+from stylobate.models.checks import require_coefficient, require_column, require_frictions, require_loss
 from stylobate.models.contact import path_outputs, per_normal_force
 from stylobate.models.model import RELEASE_MARGIN, Floats, Model, Output
 from stylobate.models.sliding.equations import MARGINS, contact_loads, margins, rates
@@ -40,7 +40,7 @@ class Sliding(Model):
     column
         The column.
     friction_coefficient
-        Kinetic μ, of contacts that slip and of impacts.
+        Kinetic μ, of contacts that slip and of impacts; 0 is a plane without friction.
     static_friction_coefficient
         Up to which a contact does not slip; by default the kinetic one, and not below it.
     patch
@@ -97,11 +97,9 @@ class Sliding(Model):
         require_column(self.column)
         require_frictions(self, "patch", "damping", "spin_friction", "rolling_resistance")
         require_loss(self)
-        coefficient = require_positive("friction_coefficient", self.friction_coefficient)
-        object.__setattr__(self, "friction_coefficient", coefficient)
+        coefficient = require_coefficient(self, "friction_coefficient")
         if self.static_friction_coefficient is not None:
-            static = require_positive("static_friction_coefficient", self.static_friction_coefficient)
-            object.__setattr__(self, "static_friction_coefficient", static)
+            static = require_coefficient(self, "static_friction_coefficient")
             if static < coefficient:
                 message = f"static_friction_coefficient must not be below the kinetic {coefficient!r}, got {static!r}"
                 raise ParameterError(message)

@@ -38,9 +38,9 @@ def settle_flat(state: State, now: Triple, later: Triple, ahead: float, n: Numbe
     if slips(state.velocity_x, state.velocity_y, n.c * state.spin):
         sliding = headed_along_slip(headed(state, (state.heading_x, state.heading_y, state.heading_z), SLIDING), n)
         found = forces(sliding, now, n)
-        if math.hypot(found[6], found[7]) <= n.c * weight:
+        if n.kinetic <= n.c or math.hypot(found[6], found[7]) <= n.c * weight:
             return 0.0, sliding
-        return tripping(sliding, now, later, ahead, n)
+        return tripping(sliding, now, n)
     standing = moving(placed(state, (0.0, 0.0, 0.0, 0.0), 0.0, RESTING), (0.0, 0.0), 0.0, 0.0, RESTING)
     standing = headed(standing, (0.0, 0.0, 0.0), RESTING)
     px, py = now[0] + n.slope_x, now[1] + n.slope_y
@@ -73,21 +73,27 @@ def set_down(state: State, now: Triple, later: Triple, ahead: float, n: Numbers)
 
 
 def set_sliding(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
-    """Return a column that has stood so far a short time after it began to slide."""
-    first, last = set_off(state, now, n), set_off(state, later, n)
-    begun = advanced(state, rates_of(first, now, n), 0.5 * ahead)
+    """Return a column that has stood so far a short time after it began to slide; without friction, at once."""
+    if n.static == 0.0:
+        return 0.0, headed(state, (0.0, 0.0, 0.0), SLIDING)
+    kick = KICK * STILL
+    first = set_off(state, now[0] + n.slope_x, now[1] + n.slope_y, kick)
+    pull = rates_of(first, now, n)
+    # What has begun to slide has the direction of the sum of its accelerations.
+    px, py = later[0] + n.slope_x - n.kappa * pull[8], later[1] + n.slope_y - n.kappa * pull[9]
+    last = set_off(state, px, py, max(ahead * math.hypot(pull[8], pull[9]), kick))
+    begun = advanced(state, pull, 0.5 * ahead)
     begun = advanced(begun, rates_of(last, later, n), 0.5 * ahead)
     begun = headed(begun, (last.heading_x, last.heading_y, 0.0), SLIDING)
     forward = begun.velocity_x * last.heading_x + begun.velocity_y * last.heading_y
     return ahead, headed_along_slip(begun, n) if forward > 0.0 else state
 
 
-def set_off(state: State, now: Triple, n: Numbers) -> State:
-    """Return a column that stands, sliding against the acceleration of the base too slowly to be seen."""
-    px, py = now[0] + n.slope_x, now[1] + n.slope_y
-    pushed, kick = math.hypot(px, py), KICK * STILL
+def set_off(state: State, px: float, py: float, slip: float) -> State:
+    """Return a column that stands, sliding so fast against an acceleration."""
+    pushed = math.hypot(px, py)
     way = (-px / pushed, -py / pushed)
-    return moving(headed(state, (way[0], way[1], 0.0), SLIDING), (kick * way[0], kick * way[1]), 0.0, 0.0, SLIDING)
+    return moving(headed(state, (way[0], way[1], 0.0), SLIDING), (slip * way[0], slip * way[1]), 0.0, 0.0, SLIDING)
 
 
 def released(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
@@ -106,11 +112,10 @@ def released(state: State, now: Triple, later: Triple, ahead: float, n: Numbers)
     x, y, vx, vy, spin = departing(push, ahead, 1.0 + n.kappa * n.c**2, n.c, n.eta, n.kappa, n.axial)
     if x == 0.0 and y == 0.0:
         return ahead, state
-    further, after = settle_rim(placed(state, (x, y, vx, vy), spin, ROLLING), later, later, ahead, n)
-    return ahead + further, after
+    return ahead, settle_rim(placed(state, (x, y, vx, vy), spin, ROLLING), later, n)
 
 
-def tripping(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
+def tripping(state: State, now: Triple, n: Numbers) -> tuple[float, State]:
     """Return a sliding column that friction has begun to tip, against its direction."""
     sliding = forces(state, now, n)
     drag = math.hypot(sliding[6], sliding[7])
@@ -122,9 +127,8 @@ def tripping(state: State, now: Triple, later: Triple, ahead: float, n: Numbers)
     leaning = headed_along_slip(moving(leaning, (vx, vy), 0.0, 0.0, SLIPPING), n)
     found = forces(leaning, now, n)
     if found[11] < JAM:
-        return settle_rim(jammed(leaning, n), now, later, ahead, n)
+        return 0.0, settle_rim(jammed(leaning, n), now, n)
     pull = max(found[0] * way[0] + found[1] * way[1], 0.0)
     rate = math.sqrt(2.0 * pull * tilt)
     leaning = placed(leaning, (tilt * way[0], tilt * way[1], rate * way[0], rate * way[1]), state.spin, SLIPPING)
-    elapsed, after = settle_rim(leaning, now, later, ahead, n)
-    return elapsed + (2.0 * tilt / rate if rate > 0.0 else 0.0), after
+    return 2.0 * tilt / rate if rate > 0.0 else 0.0, settle_rim(leaning, now, n)

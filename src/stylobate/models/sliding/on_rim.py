@@ -21,19 +21,23 @@ from stylobate.models.sliding.posture import (
 )
 
 
-def settle_rim(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
-    """Return how a column goes on whose rim touches the plane and neither closes in nor opens."""
-    if slips(state.velocity_x, state.velocity_y, n.patch * n.c * yaw(state)):
+def settle_rim(state: State, now: Triple, n: Numbers) -> State:
+    """Return how a column goes on whose rim touches the plane and neither closes in nor opens.
+
+    Where it does not slip it rolls, even if friction is too weak for that: then its slip begins with the next event.
+    Without friction it slips, however slowly.
+    """
+    if n.static == 0.0 or slips(state.velocity_x, state.velocity_y, n.patch * n.c * yaw(state)):
         slipping = headed_along_slip(placed(state, lean_with_rate(state), state.spin, SLIPPING), n)
         found = forces(slipping, now, n)
         if found[11] >= JAM:
-            return 0.0, slipping if found[5] > 0.0 else lifted(slipping, n)
+            return slipping if found[5] > 0.0 else lifted(slipping, n)
         state = jammed(slipping, n)
     still = held(state, n)
     found = forces(still, now, n)
     if found[5] > 0.0 and found[10] > 0.0:
-        return 0.0, still
-    return (0.0, lifted(still, n)) if opens(still, now, n) else giving_way(still, now, later, ahead, n)
+        return still
+    return lifted(still, n) if opens(still, now, n) else still
 
 
 def leaving(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:

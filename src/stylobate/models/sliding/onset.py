@@ -19,10 +19,14 @@ from stylobate.models.sliding.posture import (
     pace,
     placed,
     rates_of,
+    turning,
 )
 
 # The first of a slip takes no longer than the contact point takes for this part of the way round the rim [rad].
 _PART_OF_A_TURN = 0.02
+
+# Nothing has slipped before.
+STARTS = (0.0, 0.0, 0.0)
 
 # The direction in which a contact gives way is found in so many steps at most, by differences over a small turn, until
 # it is the same.
@@ -33,10 +37,13 @@ def giving_way(state: State, now: Triple, later: Triple, ahead: float, n: Number
     """Return a column that has rolled so far a short time after it began to slip.
 
     Friction then acts on with what it has, along a slip that follows the load. By that the motion departs from rolling
-    as the integral of the difference D of their rates, (D(0) + D(δ)) δ/2, with an error of the third power of δ. A slip
-    that began from nothing would take its direction from the load within no time: it has grown when it is integrated.
+    as the integral of the difference D of their rates, (D(0) + D(δ)) δ/2, with an error of the third power of δ; D(δ)
+    is that of a column which departed with D(0). A slip that began from nothing would take its direction from the load
+    within no time: it has grown when it is integrated.
     """
-    if forces(slipping_along(state, load_direction(state, now, n), n), now, n)[11] < JAM:
+    first = slipping_along(state, load_direction(state, now, STARTS, n), KICK * STILL, n)
+    started = forces(first, now, n)
+    if started[11] < JAM:
         return 0.0, (lifted(state, n) if opens(state, now, n) else headed(state, (0.0, 0.0, 0.0), JAMMED))
     # The time in which the contact point goes a small part of the way round the rim
     quick = _PART_OF_A_TURN * math.hypot(state.tilt_x, state.tilt_y) / pace(state)
@@ -48,8 +55,11 @@ def giving_way(state: State, now: Triple, later: Triple, ahead: float, n: Number
         return ahead, rolled
     if opens(rolled, later, n):
         return ahead, lifted(rolled, n)
-    first = slipping_along(state, load_direction(state, now, n), n)
-    last = slipping_along(rolled, load_direction(rolled, later, n), n)
+    departed = advanced(rolled, rates_of(first, now, n), ahead)
+    departed = advanced(departed, rates_of(state, now, n), -ahead)
+    pull = (started[3], started[4], started[9])
+    slip = max(ahead * math.sqrt(pull[0] ** 2 + pull[1] ** 2 + pull[2] ** 2), KICK * STILL)
+    last = slipping_along(departed, load_direction(departed, later, pull, n), slip, n)
     begun = advanced(rolled, rates_of(first, now, n), 0.5 * ahead)
     begun = advanced(begun, rates_of(state, now, n), -0.5 * ahead)
     begun = advanced(begun, rates_of(last, later, n), 0.5 * ahead)
@@ -68,21 +78,21 @@ def sooner(now: Triple, later: Triple, share: float) -> Triple:
     )
 
 
-def slipping_along(state: State, heading: Triple, n: Numbers) -> State:
-    """Return a rolling column with a slip along this heading that is too small to be seen."""
-    kick = KICK * STILL
-    started = moving(headed(state, heading, SLIPPING), (kick * heading[0], kick * heading[1]), 0.0, 0.0, SLIPPING)
+def slipping_along(state: State, heading: Triple, slip: float, n: Numbers) -> State:
+    """Return a column with so much slip along this heading."""
+    started = moving(headed(state, heading, SLIPPING), (slip * heading[0], slip * heading[1]), 0.0, 0.0, SLIPPING)
     if n.patch == 0.0:
         return started
-    _, _, _, cos = lean_of(state)
-    spin = state.spin + kick * heading[2] / (n.patch * n.c * cos)
+    _, _, sine, cos = lean_of(state)
+    spin = (slip * heading[2] / (n.patch * n.c) + turning(state)[0] * sine) / cos
     return placed(started, lean_with_rate(started), spin, SLIPPING)
 
 
-def load_direction(state: State, now: Triple, n: Numbers) -> Triple:
+def load_direction(state: State, now: Triple, pull: Triple, n: Numbers) -> Triple:
     """Return the heading along which a rolling contact gives way: that of the acceleration that its slip would have.
 
-    Found by Newton's rule from the slip whose friction is most like the load; where that has no answer, it is this one.
+    What began to slip before, with the acceleration `pull`, has by now the direction of the sum of the two. Found by
+    Newton's rule from the slip whose friction is most like the load; where that has no answer, it is this one.
     """
     found = forces(state, now, n)
     drag = math.hypot(found[6], found[7])
@@ -93,13 +103,14 @@ def load_direction(state: State, now: Triple, n: Numbers) -> Triple:
     heading = guess
     for _ in range(_MOST_TURNS):
         one, two = across(heading)
-        aside = pulled_aside(state, heading, one, two, now, n)
-        by_one = pulled_aside(state, tilted(heading, one, _SMALL_TURN), one, two, now, n)
-        by_two = pulled_aside(state, tilted(heading, two, _SMALL_TURN), one, two, now, n)
-        a, b = (by_one[0] - aside[0]) / _SMALL_TURN, (by_two[0] - aside[0]) / _SMALL_TURN
-        c, d = (by_one[1] - aside[1]) / _SMALL_TURN, (by_two[1] - aside[1]) / _SMALL_TURN
+        here = slip_rate(state, heading, now, pull, n)
+        by_one = slip_rate(state, tilted(heading, one, _SMALL_TURN), now, pull, n)
+        by_two = slip_rate(state, tilted(heading, two, _SMALL_TURN), now, pull, n)
+        aside = dot(here, one), dot(here, two)
+        a, b = (dot(by_one, one) - aside[0]) / _SMALL_TURN, (dot(by_two, one) - aside[0]) / _SMALL_TURN
+        c, d = (dot(by_one, two) - aside[1]) / _SMALL_TURN, (dot(by_two, two) - aside[1]) / _SMALL_TURN
         # The two directions turn with the heading.
-        gain = along_slip(state, heading, now, n)
+        gain = dot(here, heading)
         a, d = a - gain, d - gain
         if n.patch == 0.0:  # a point turns freely: one direction only
             b, c, d = 0.0, 0.0, 1.0
@@ -132,19 +143,15 @@ def tilted(heading: Triple, way: Triple, angle: float) -> Triple:
     return x / size, y / size, z / size
 
 
-def pulled_aside(
-    state: State, heading: Triple, one: Triple, two: Triple, now: Triple, n: Numbers
-) -> tuple[float, float]:
-    """Return the acceleration of a slip along a heading, across that: its parts along two directions."""
-    found = forces(slipping_along(state, heading, n), now, n)
-    x, y, z = found[3], found[4], found[9]
-    return x * one[0] + y * one[1] + z * one[2], x * two[0] + y * two[1] + z * two[2]
+def slip_rate(state: State, heading: Triple, now: Triple, pull: Triple, n: Numbers) -> Triple:
+    """Return the acceleration of a slip along a heading, and `pull`."""
+    found = forces(slipping_along(state, heading, KICK * STILL, n), now, n)
+    return found[3] + pull[0], found[4] + pull[1], found[9] + pull[2]
 
 
-def along_slip(state: State, heading: Triple, now: Triple, n: Numbers) -> float:
-    """Return the acceleration of a slip along its heading."""
-    found = forces(slipping_along(state, heading, n), now, n)
-    return found[3] * heading[0] + found[4] * heading[1] + found[9] * heading[2]
+def dot(a: Triple, b: Triple) -> float:
+    """Return the scalar product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def rolled_on(state: State, now: Triple, later: Triple, elapsed: float, n: Numbers) -> State:

@@ -95,7 +95,7 @@ def coming_down(
             after = with_no_more(energy, moving(after, (sx, sy), 0.0, 0.0, SLIPPING), n)
             if rests(after, now, rest, n):
                 return set_down(after, now, later, ahead, n)
-            return settle_rim(after, now, later, ahead, n)
+            return 0.0, settle_rim(after, now, n)
         body = struck_at(body, ux, uy, 0.0, n)
     return flattened(state, body, now, later, ahead, n)
 

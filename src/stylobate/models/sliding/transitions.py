@@ -1,12 +1,25 @@
 """What becomes of a column when a kind of contact ends."""
 
+import math
+
+from stylobate.models.sliding.equations import STILL
 from stylobate.models.sliding.landing import land
 from stylobate.models.sliding.lift_off import lifted
 from stylobate.models.sliding.on_base import released, set_down, set_sliding, settle_flat, tripping
 from stylobate.models.sliding.on_rim import held, jammed, leaving, settle_rim
 from stylobate.models.sliding.onset import giving_way
 from stylobate.models.sliding.phases import FLYING, RESTING, ROLLING, SLIDING, SLIPPING, Numbers, State
-from stylobate.models.sliding.posture import Triple, lean_with_rate, moving, placed
+from stylobate.models.sliding.posture import (
+    KICK,
+    Triple,
+    forces,
+    headed_along_slip,
+    lean_with_rate,
+    moving,
+    placed,
+    radius_of,
+    yaw,
+)
 from stylobate.models.sliding.strokes import stroke
 
 _LIFT, _FRICTION, _SUPPORT, _REST, _JAM, _STROKE = 0, 1, 2, 3, 4, 6
@@ -40,7 +53,7 @@ def reaction(
     if rim and event == _REST:
         return set_down(state, now, later, ahead, numbers)
     if rim and event == _JAM:
-        return settle_rim(jammed(state, numbers), now, later, ahead, numbers)
+        return 0.0, settle_rim(jammed(state, numbers), now, numbers)
     if rim and event == _LIFT:
         return leaving(state, now, later, ahead, numbers)
     if rim and event == _FRICTION and state.contact == SLIPPING:
@@ -48,7 +61,7 @@ def reaction(
     if rim and event == _FRICTION:
         return giving_way(state, now, later, ahead, numbers)
     if rim:
-        return settle_rim(state, now, later, ahead, numbers)
+        return 0.0, settle_rim(state, now, numbers)
     if flies:
         return land(state, now, later, ahead, rest, numbers)
     if event == _LIFT:
@@ -57,7 +70,7 @@ def reaction(
         if event == _FRICTION:
             return stopped(state, now, later, ahead, numbers)
         if event == _SUPPORT and 1.0 + now[2] - numbers.relief > _WEIGHTLESS:
-            return tripping(state, now, later, ahead, numbers)
+            return tripping(state, now, numbers)
         if event == _SUPPORT:
             return 0.0, lifted(state, numbers)
         return settle_flat(state, now, later, ahead, numbers)
@@ -69,8 +82,18 @@ def reaction(
 
 
 def stopped(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
-    """Return how a column goes on whose slip has all but ended."""
+    """Return how a column goes on whose slip along its heading has ended.
+
+    A slip that has turned across its heading goes on, along a new one. Only a slip that has all but ended stops.
+    """
+    slip_z = radius_of(state, n) * yaw(state)
+    along = state.velocity_x * state.heading_x + state.velocity_y * state.heading_y + slip_z * state.heading_z
+    if math.sqrt(state.velocity_x**2 + state.velocity_y**2 + slip_z**2) > KICK * max(STILL, along):
+        return 0.0, headed_along_slip(state, n)
     if state.contact == SLIDING:
         still = moving(placed(state, lean_with_rate(state), 0.0, RESTING), (0.0, 0.0), 0.0, 0.0, RESTING)
         return settle_flat(still, now, later, ahead, n)
-    return settle_rim(held(state, n), now, later, ahead, n)
+    still = settle_rim(held(state, n), now, n)
+    if still.contact == ROLLING and forces(still, now, n)[10] <= 0.0:
+        return giving_way(still, now, later, ahead, n)
+    return 0.0, still

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from stylobate.motions.records.component import Direction
     from stylobate.motions.records.evolving_noise import EvolvingNoise
     from stylobate.motions.records.grouping import Lengths, Steps, read_records
+    from stylobate.motions.records.horizontal_components import HorizontalComponent
     from stylobate.motions.records.intensity import (
         arias_intensity,
         cumulative_absolute_velocity,
@@ -30,6 +31,7 @@ __all__ = [
     "CloughPenzien",
     "Direction",
     "EvolvingNoise",
+    "HorizontalComponent",
     "Lengths",
     "Record",
     "RecordFormat",
@@ -53,6 +55,7 @@ _HOMES = {
     "CloughPenzien": "spectral_representation",
     "Direction": "component",
     "EvolvingNoise": "evolving_noise",
+    "HorizontalComponent": "horizontal_components",
     "Lengths": "grouping",
     "RecordFormat": "reading",
     "Steps": "grouping",

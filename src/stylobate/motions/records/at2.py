@@ -6,10 +6,8 @@ newer files and `4000    0.0050    NPTS, DT` in older ones.
 
 import re
 
-import numpy as np
-
 from stylobate.motions.records.component import Component, Direction
-from stylobate.motions.records.lines import Floats, Text
+from stylobate.motions.records.lines import Text, is_number
 from stylobate.motions.records.units import unit_of
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?"
@@ -19,6 +17,7 @@ _UNITS = re.compile(r"UNITS?\s+OF\s+(?P<unit>[^\s,.;]+)", re.IGNORECASE)
 _OTHERS = re.compile(r"^\s*(VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)
 # The line with the count is the fourth; a blank or a remark more is tolerated.
 _HEADER = 8
+_TIME_AND_ACCELERATION = 2
 
 
 def is_at2(text: Text) -> bool:
@@ -26,8 +25,15 @@ def is_at2(text: Text) -> bool:
     return _counting_line(text) is not None
 
 
-def read_at2(text: Text) -> Component:
+def read_at2(text: Text, step: float | None = None) -> Component:
     """Return the component of an AT2 file.
+
+    Parameters
+    ----------
+    text
+        The file.
+    step
+        Time step [s], of a file whose header lacks the line with NPTS and DT.
 
     Raises
     ------
@@ -35,25 +41,49 @@ def read_at2(text: Text) -> Component:
         If the header or a number is wrong, or there are more or fewer numbers than it says.
     """
     at = _counting_line(text)
-    assert at is not None
+    if at is None:
+        return _without_count(text, step)
     found = _NEW.search(text.lines[at]) or _OLD.match(text.lines[at])
     assert found is not None
-    if not found["count"].isdigit():
-        raise text.fault(at, f"NPTS must be a whole number, got {found['count']!r}")
     if found["step"] is None:
         raise text.fault(at, "the time step DT is missing")
-    count, step = int(found["count"]), text.number(at, found["step"].upper().replace("D", "E"))
+    count = text.count(at, "NPTS", found["count"])
+    step = text.number(at, found["step"].upper().replace("D", "E"))
     if step <= 0.0:
         raise text.fault(at, f"the time step DT must be positive, got {step!r}")
-    if count < 2:  # noqa: PLR2004  a step has two ends
-        raise text.fault(at, f"two samples at least are wanted, NPTS says {count}")
+    return _component(text, at, count, step)
+
+
+def is_wrapped(text: Text) -> bool:
+    """Return whether the numbers stand as in the body of an AT2 file: several on a line, fewer on the last."""
+    rows = [row for row in map(str.split, text.lines[_first_row(text) :]) if row]
+    return bool(rows) and _TIME_AND_ACCELERATION < len(rows[0]) >= len(rows[-1])
+
+
+def _without_count(text: Text, step: float | None) -> Component:
+    header = _first_row(text)
+    if step is None or not is_wrapped(text):
+        state = "incomplete header" if header else "no header"
+        remedy = "Restore it, or state step, in s, and units"
+        raise text.fault(0, f"{state} of an AT2 file: the line with NPTS and DT is missing. {remedy}")
+    return _component(text, header - 1, None, step)
+
+
+def _component(text: Text, last: int, count: int | None, step: float) -> Component:
+    """Return the component below the header, which ends with the line at the index `last`."""
     return Component(
-        samples=_samples(text, at, count),
+        samples=text.series(last, count),
         step=step,
-        unit=_unit(text, at),
-        direction=_direction(text.lines[:at]),
-        title=text.lines[1].strip() if at > 1 else "",
+        unit=_unit(text, last + 1),
+        direction=_direction(text.lines[: last + 1]),
+        title=text.lines[1].strip() if last > 0 else "",
     )
+
+
+def _first_row(text: Text) -> int:
+    """Return the index of the first line of numbers alone."""
+    rows = (at for at, line in enumerate(text.lines) if line.strip() and all(map(is_number, line.split())))
+    return next(rows, len(text.lines))
 
 
 def _counting_line(text: Text) -> int | None:
@@ -63,21 +93,11 @@ def _counting_line(text: Text) -> int | None:
     return None
 
 
-def _samples(text: Text, header: int, count: int) -> Floats:
-    tokens = [(at, line.split()) for at, line in enumerate(text.lines[header + 1 :], start=header + 1)]
-    tokens = [(at, row) for at, row in tokens if row]
-    found = sum(len(row) for _, row in tokens)
-    samples = text.rows([(at, [token]) for at, row in tokens for token in row]) if found else np.empty((0, 1))
-    if found != count:
-        last = tokens[-1][0] if tokens else header
-        raise text.fault(last, f"the header says {count} samples, the file has {found}")
-    return samples[:, 0]
-
-
 def _unit(text: Text, header: int) -> str | None:
     for index, line in enumerate(text.lines[:header]):
         if _OTHERS.match(line):
-            raise text.fault(index, f"accelerations are wanted, this is {line.split()[0].lower()}")
+            what = line.split()[0].lower()
+            raise text.fault(index, f"accelerations are wanted, this is {what}. Read the .AT2 file of this component")
         if found := _UNITS.search(line):
             unit = unit_of(found["unit"])
             if unit is None:

@@ -1,21 +1,23 @@
 """Files of one event put together: two horizontal components and a vertical one."""
 
-import math
-import os
-from collections.abc import Iterable, Mapping
+import re
+import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 
 import numpy as np
 
-from stylobate.errors import FileError, ParameterError, require_positive
-from stylobate.motions.records.component import Direction, split_name
-from stylobate.motions.records.reading import RecordFormat, as_record, name_of, read_component
-from stylobate.motions.records.record import Floats, Record
+from stylobate.errors import FileError, SeldomMeant, StylobateError, require_positive
+from stylobate.motions.records.axes import Directed, along_axes
+from stylobate.motions.records.component import Component, Direction
+from stylobate.motions.records.events import Event, EventFile, Read, find_events
+from stylobate.motions.records.reading import RecordFormat, as_record, read_component
+from stylobate.motions.records.record import Record
+from stylobate.motions.records.sources import RecordSource
+from stylobate.motions.records.trimming import warn_of_lost_shaking
 
-# Horizontal components nearer to one line than this cannot be told apart.
-_LEAST_SINE = 0.5
 _SAME_STEP = 1e-9
 
 
@@ -36,40 +38,50 @@ class Steps(Enum):
 @dataclass(frozen=True, slots=True)
 class _Part:
     path: Path
-    event: str
     direction: Direction | None
-    record: Record  # along x, in the sense of its direction
+    record: Record  # along x, in the sense of its direction; or of all axes, if its file has several
 
 
 def read_records(
-    source: str | os.PathLike[str] | Iterable[str | os.PathLike[str]],
+    source: RecordSource,
     units: str | None = None,
     *,
     step: float | None = None,
+    columns: Mapping[str, str] | None = None,
     directions: Mapping[str, float | str] | None = None,
     lengths: Lengths = Lengths.TRIM,
     steps: Steps = Steps.REFUSE,
     format: RecordFormat | None = None,  # noqa: A002  the word of the field
+    single: bool = False,
 ) -> tuple[Record, ...]:
-    """Return the records in a folder or in some files, the components of each event put together.
+    """Read records and join the components of each event.
 
-    Files belong together if their names differ in the component only: `RSN753_LOMAP_CLS000.AT2`,
-    `RSN753_LOMAP_CLS090.AT2`, `RSN753_LOMAP_CLS-UP.AT2`; `site_NS.dat`, `site_EW.dat`, `site_UP.dat`. Which way a
-    component points is told by `directions`, else by the file, else by its name.
+    Files belong together, in this order: if the user lists them as one event; if they have one PEER record number
+    (`RSN143_…`) and are in one folder or have headers of one title; if their headers name one event, date and station
+    and their names differ by the direction only; if they are in one folder and their names differ by the direction
+    only: `CLS000`, `CLS090`, `CLS-UP`; `site_NS`, `site_EW`; `TAB-L1`, `TAB-T1`; `q_HNE`, `q_HNN`.
+    The direction of a component is the one in `directions`, else in the header, else in the name. Files with a remark
+    such as `_scaled` are not joined with files without it.
 
     Parameters
     ----------
     source
-        A folder, of which all files are read that are not hidden, or paths, such as `folder.glob("*.AT2")` of a folder
-        that holds velocities and displacements too.
-    units, step, format
+        A folder, a pattern such as `quakes/*.AT2`, or a file; or a list of these. A list in this list, or each value
+        of a mapping from names, holds the files of one event. Of a folder all files are read, except
+        hidden ones and those that by their names hold velocities, displacements or the search results of a PEER
+        download.
+    units, step, columns, format
         As in `read_record`, of all files.
     directions
-        By name of a file, with its ending: the azimuth, clockwise from north [degrees], or "up" or "down".
+        By name of a file, with its ending: the azimuth, clockwise from north [degrees], "up", "down", or another name
+        of a direction, such as "N10E" or "L". Two or three listed files, all of whose directions are given and fit
+        together, are one event.
     lengths
-        What becomes of components of different lengths.
+        How components of different lengths are made alike.
     steps
-        What becomes of components of different steps.
+        Whether components of different steps are resampled.
+    single
+        Whether a component alone is meant; else it is remarked on.
 
     Returns
     -------
@@ -79,9 +91,17 @@ def read_records(
     Raises
     ------
     FileError
-        If a file is wrong, or the components of an event cannot be put together.
+        If a file is wrong, or the components of an event cannot be joined.
     ParameterError
         If `directions` names no file that is read.
+
+    Warns
+    -----
+    SeldomMeant
+        Of a record with one horizontal component, with a vertical one alone, or without acceleration, unless `single`;
+        of files listed as one event whose headers name several; of two files that are joined only because the numbers
+        at the end of their names look like perpendicular azimuths;
+        of a component that is trimmed to the length of the shortest and loses more than 1 % of its Arias intensity.
 
     Notes
     -----
@@ -90,103 +110,108 @@ def read_records(
 
         x = a1,    y = (a1 cos Δ − a2)/sin Δ
 
-    so that azimuths 0° and 90° make x point north and y west; 90° and 360° make x point east and y north. A single
+    so that azimuths 0° and 90° make x point north and y west; 90° and 360° make x point east and y north. Components
+    that are only known to be perpendicular (L and T, H1 and H2, X and Y) are x and y, in this order. A single
     horizontal component acts along x.
     """
-    paths = _paths(source)
-    given = {name: Direction.of(direction) for name, direction in (directions or {}).items()}
-    if unknown := given.keys() - {path.name for path in paths}:
-        message = f"directions must name files that are read, got {', '.join(sorted(unknown))}"
-        raise ParameterError(message)
+    found = find_events(source, reader(step, columns, format), directions)
+    records = tuple(join_event(event, units, lengths, steps) for event in found)
+    for record in () if single else records:
+        remark_on_missing_components(record)
+    return records
+
+
+def reader(
+    step: float | None = None,
+    columns: Mapping[str, str] | None = None,
+    format: RecordFormat | None = None,  # noqa: A002
+) -> Read:
+    """Return what reads the component in a file, with these arguments of `read_record`."""
     step = None if step is None else require_positive("step", step, "s")
-    events: dict[str, list[_Part]] = {}
-    for path in paths:
-        part = _part(path, units, step, given.get(path.name), format)
-        events.setdefault(part.event, []).append(part)
-    return tuple(_together(event, parts, lengths, steps) for event, parts in sorted(events.items()))
+    return lambda path: read_component(path, step, columns, format)
 
 
-def _paths(source: str | os.PathLike[str] | Iterable[str | os.PathLike[str]]) -> list[Path]:
-    if not isinstance(source, (str, os.PathLike)):
-        paths = [Path(path) for path in source]
-        if not paths:
-            message = "no files were given"
-            raise FileError(message)
-        return paths
-    folder = Path(source)
-    if not folder.is_dir():
-        return [folder]
-    paths = sorted(path for path in folder.iterdir() if path.is_file() and not path.name.startswith("."))
-    if not paths:
-        message = f"{folder}: the folder has no files"
-        raise FileError(message)
-    return paths
+def join_event(
+    event: Event, units: str | None = None, lengths: Lengths = Lengths.TRIM, steps: Steps = Steps.REFUSE
+) -> Record:
+    """Join the components of an event into one record.
 
-
-def _part(
-    path: Path,
-    units: str | None,
-    step: float | None,
-    given: Direction | None,
-    format: RecordFormat | None,  # noqa: A002
-) -> _Part:
-    component = read_component(path, step, None, format)
-    event, named = split_name(name_of(path))
-    direction = given or component.direction or named
-    if component.samples.ndim > 1:  # x, y and z in one file
-        return _Part(path, name_of(path), None, as_record(component, path, units, None))
-    return _Part(path, event, direction, as_record(replace(component, direction=None), path, units, "x"))
-
-
-def _together(event: str, parts: list[_Part], lengths: Lengths, steps: Steps) -> Record:
+    Raises
+    ------
+    FileError
+        If a file is wrong, or its direction is unknown, or the components do not fit together.
+    """
+    _require_one_title(event)
+    files = sorted(event.files, key=_order)
+    parts = [_part(file, units) for file in files]
     if len(parts) == 1 and parts[0].direction is None:
-        return replace(parts[0].record, name=event)
-    for part in parts:
+        return replace(parts[0].record, name=event.name)
+    for file, part in zip(files, parts, strict=True):
         if part.direction is None:
-            message = (
-                f"{part.path}: which way it points is not told: state directions, its azimuth in degrees or up, or end "
-                "its name with that, such as _NS, _090 or _UP"
+            whole = isinstance(file.content, Component) and file.content.samples.ndim > 1
+            message = f"{part.path}: " + (
+                "it has the components of an event already. List it alone"
+                if whole
+                else "its direction is unknown. State directions, its azimuth in degrees or up, or end its name with "
+                "it, such as _NS, _090 or _UP"
             )
             raise FileError(message)
-    up = [part for part in parts if part.direction is not None and part.direction.vertical]
-    flat = sorted((part for part in parts if part not in up), key=_azimuth)
-    if len(up) > 1 or len(flat) > 2:  # noqa: PLR2004
-        all_of_it = ", ".join(f"{part.path.name} ({part.direction})" for part in parts)
-        message = f"{event}: two horizontal components and a vertical one at most, got {all_of_it}"
-        raise FileError(message)
-    records, notes = _alike(event, [*flat, *up], lengths, steps)
-    axes, told = _axes(event, flat, records[: len(flat)])
-    if up:
-        assert up[0].direction is not None
-        axes["z"] = up[0].direction.vertical * records[-1].samples[:, 0]
-        told.append(f"z up, from {up[0].path.name} ({up[0].direction})")
-    provenance = (*(line for record in records for line in record.provenance), *notes, "; ".join(told))
+    records, notes = _alike(event.name, parts, lengths, steps)
+    directed = [
+        Directed(part.path.name, part.direction, record.samples[:, 0])
+        for part, record in zip(parts, records, strict=True)
+        if part.direction is not None
+    ]
+    axes, origin = along_axes(event.name, directed)
+    provenance = (*(line for record in records for line in record.provenance), *notes, origin)
     first = records[0]
-    return Record.from_components(**axes, step=first.step, start=first.start, name=event, provenance=provenance)
+    return Record.from_components(**axes, step=first.step, start=first.start, name=event.name, provenance=provenance)
 
 
-def _azimuth(part: _Part) -> float:
-    assert part.direction is not None
-    assert part.direction.azimuth is not None
-    return part.direction.azimuth
+def remark_on_missing_components(record: Record) -> None:
+    """Warn with SeldomMeant of a record without acceleration, or without two horizontal components."""
+    flat = [axis for axis in record.axes if axis != "z"]
+    if len(flat) > 1:
+        return
+    files = ", ".join(re.findall(r"read from (.*?), in ", "\n".join(record.provenance))) or "no file"
+    if not record.axes:
+        message = f"{record.name}: all accelerations are zero ({files}). Check the files"
+    else:
+        what = "one horizontal component" if flat else "a vertical component and no horizontal one"
+        message = (
+            f"{record.name}: {what} ({files}). List the files of the event together, or set single if one component is "
+            "meant"
+        )
+    warnings.warn(message, SeldomMeant, stacklevel=3)
 
 
-def _axes(event: str, flat: list[_Part], records: list[Record]) -> tuple[dict[str, Floats], list[str]]:
-    if not flat:
-        return {}, []
-    first = records[0].samples[:, 0]
-    told = [f"x at azimuth {_azimuth(flat[0]):g}°, from {flat[0].path.name}"]
-    if len(flat) == 1:
-        return {"x": first}, told
-    turn = math.radians(_azimuth(flat[1]) - _azimuth(flat[0]))
-    if abs(math.sin(turn)) < _LEAST_SINE:
-        message = f"{event}: horizontal components must stand across, got {' and '.join(p.path.name for p in flat)}"
+def _order(file: EventFile) -> tuple[bool, float, str]:
+    """Return what sorts the files of an event: azimuths, x before y, the vertical last."""
+    way = file.direction or Direction()
+    return way.vertical != 0, way.azimuth or 0.0, way.axis or ""
+
+
+def _part(file: EventFile, units: str | None) -> _Part:
+    if isinstance(file.content, StylobateError):
+        raise file.content
+    if file.content.samples.ndim > 1:
+        return _Part(file.path, None, as_record(file.content, file.path, units, None))
+    record = as_record(replace(file.content, direction=None), file.path, units, "x")
+    return _Part(file.path, file.direction, record)
+
+
+def _require_one_title(event: Event) -> None:
+    """Raise FileError if headers name several events; warn if the user lists such files as one."""
+    titles = {file.title: file.path.name for file in event.files if file.title}
+    if len(titles) < 2:  # noqa: PLR2004
+        return
+    headers = ", ".join(f"{name} ({title})" for title, name in titles.items())
+    message = (
+        f"{event.name}: the headers name different events or stations: {headers}. List the files of each event together"
+    )
+    if not event.stated:
         raise FileError(message)
-    # right angles exactly: cos 90° is not to mix 1e-17 of one component into the other
-    across = abs(math.cos(turn)) < 1e-12  # noqa: PLR2004
-    cos, sin = (0.0, math.copysign(1.0, math.sin(turn))) if across else (math.cos(turn), math.sin(turn))
-    told.append(f"y at azimuth {(_azimuth(flat[0]) - 90.0) % 360.0:g}°, from {flat[1].path.name} ({flat[1].direction})")
-    return {"x": first, "y": (first * cos - records[1].samples[:, 0]) / sin}, told
+    warnings.warn(message, SeldomMeant, stacklevel=3)
 
 
 def _alike(event: str, parts: list[_Part], lengths: Lengths, steps: Steps) -> tuple[list[Record], list[str]]:
@@ -209,6 +234,8 @@ def _alike(event: str, parts: list[_Part], lengths: Lengths, steps: Steps) -> tu
     target = min(counts) if lengths is Lengths.TRIM else max(counts)
     told = ", ".join(f"{part.path.name} {count}" for part, count in zip(parts, counts, strict=True))
     notes = [f"{'trimmed' if lengths is Lengths.TRIM else 'padded with zeros'} to {target} samples: {told}"]
+    if lengths is Lengths.TRIM:
+        warn_of_lost_shaking(event, [part.path.name for part in parts], records, target)
     fitted = [
         np.pad(record.samples[:target], ((0, max(0, target - len(record.samples))), (0, 0))) for record in records
     ]

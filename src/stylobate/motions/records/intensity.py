@@ -6,7 +6,10 @@ import numpy as np
 import xarray as xr
 
 from stylobate.column import STANDARD_GRAVITY, Column
-from stylobate.motions.records.peaks import peak_acceleration, peak_displacement, peak_velocity
+from stylobate.motions.base import ACCELERATION, VELOCITY
+from stylobate.motions.records.horizontal_components import HorizontalComponent
+from stylobate.motions.records.knots import energy
+from stylobate.motions.records.peaks import horizontal_peak, peak_acceleration, peak_displacement, peak_velocity
 from stylobate.motions.records.record import AXES, Floats, Record
 
 _ONSET, _MIDDLE_END, _END = 0.05, 0.75, 0.95
@@ -19,14 +22,17 @@ def intensity_measures(record: Record) -> xr.Dataset:
     -------
     xarray.Dataset
         Along `axis`, those of x, y and z along which the record accelerates: `pga` [m/s²], `pgv` [m/s], `pgd` [m], the
-        largest absolute values; `pgv_over_pga` [s]; `arias` [m/s]; `cav` [m/s]; `duration_5_75`, `duration_5_95` [s].
-        Without dimension: `pga_horizontal` = sup |a_h| [m/s²].
+        largest absolute values; `pgv_over_pga` [s]; `residual_velocity` [m/s], at the last sample, and
+        `residual_velocity_ratio`, its absolute value over `pgv`; `arias` [m/s]; `cav` [m/s]; `duration_5_75`,
+        `duration_5_95` [s]. Along `component`, the definitions of `HorizontalComponent`: `horizontal_pga` [m/s²],
+        `horizontal_pgv` [m/s].
 
     Notes
     -----
     Exact for accelerations linear between samples, from the first sample to the last. Arias intensity is
     I = π/(2g) ∫ a² dt (Arias 1970), g standard gravity; cumulative absolute velocity ∫ |a| dt (EPRI 1988, without
-    threshold); significant duration runs from 5 % of I to 75 % or 95 % of it (Trifunac and Brady 1975).
+    threshold); significant duration runs from 5 % of I to 75 % or 95 % of it (Trifunac and Brady 1975). A
+    `residual_velocity_ratio` above about 0.05 is drift of the record: filter it before its PGV or PGD are used.
 
     Examples
     --------
@@ -34,38 +40,50 @@ def intensity_measures(record: Record) -> xr.Dataset:
     >>> measures = intensity_measures(sample_record())
     >>> measures.pga.round(3).values, measures.pgv.round(3).values
     (array([3.42, 2.1 , 2.06]), array([0.385, 0.488, 0.138]))
+    >>> measures.horizontal_pga.sel(component="RotD50").round(2).item()
+    2.51
     """
     chosen = [AXES.index(axis) for axis in record.axes]
     pga, pgv = peak_acceleration(record), peak_velocity(record)
+    left = record.residual_velocity
     with np.errstate(invalid="ignore"):
-        ratio = pgv / pga
+        ratio, left_over = pgv / pga, np.abs(left) / pgv
     measures = {
         "pga": (pga, "m s-2", "peak ground acceleration"),
         "pgv": (pgv, "m s-1", "peak ground velocity"),
         "pgd": (peak_displacement(record), "m", "peak ground displacement"),
         "pgv_over_pga": (ratio, "s", "peak velocity over peak acceleration"),
+        "residual_velocity": (left, "m s-1", "velocity at the last sample"),
+        "residual_velocity_ratio": (left_over, "1", "velocity at the last sample over peak ground velocity"),
         "arias": (arias_intensity(record), "m s-1", "Arias intensity"),
         "cav": (cumulative_absolute_velocity(record), "m s-1", "cumulative absolute velocity"),
         "duration_5_75": (significant_duration(record, _ONSET, _MIDDLE_END), "s", "significant duration 5-75 %"),
         "duration_5_95": (significant_duration(record, _ONSET, _END), "s", "significant duration 5-95 %"),
     }
-    horizontal = {"units": "m s-2", "long_name": "largest horizontal acceleration"}
+    horizontal = {"pga": ACCELERATION, "pgv": VELOCITY}
     return xr.Dataset(
         {
             **{
                 name: ("axis", values[chosen], {"units": units, "long_name": long_name})
                 for name, (values, units, long_name) in measures.items()
             },
-            "pga_horizontal": ((), record.largest_horizontal(record.start), horizontal),
+            **{
+                f"horizontal_{name}": (
+                    "component",
+                    [horizontal_peak(record, order, one) for one in HorizontalComponent],
+                    {"units": measures[name][1], "long_name": f"horizontal {measures[name][2]}"},
+                )
+                for name, order in horizontal.items()
+            },
         },
-        coords={"axis": list(record.axes)},
+        coords={"axis": list(record.axes), "component": [one.value for one in HorizontalComponent]},
         attrs={"record": record.name, "digest": record.digest},
     )
 
 
 def arias_intensity(record: Record) -> Floats:
     """Return I = π/(2g) ∫ a² dt along x, y and z, shape (3,) [m/s]."""
-    return np.asarray(math.pi / (2.0 * STANDARD_GRAVITY) * _energy(record)[-1])
+    return np.asarray(math.pi / (2.0 * STANDARD_GRAVITY) * energy(record.samples, record.step)[-1])
 
 
 def cumulative_absolute_velocity(record: Record) -> Floats:
@@ -83,31 +101,23 @@ def significant_duration(record: Record, begin: float = _ONSET, end: float = _EN
 
     Zero where there is no acceleration.
     """
-    energy = _energy(record)
+    grown = energy(record.samples, record.step)
     return np.array(
         [
-            _reached(record, energy[:, axis], axis, end) - _reached(record, energy[:, axis], axis, begin)
-            if energy[-1, axis] > 0.0
+            _reached(record, grown[:, axis], axis, end) - _reached(record, grown[:, axis], axis, begin)
+            if grown[-1, axis] > 0.0
             else 0.0
             for axis in range(3)
         ]
     )
 
 
-def _energy(record: Record) -> Floats:
-    """Return ∫ a² dt up to each sample, shape (n, 3) [m²/s³]."""
-    left, right = record.samples[:-1], record.samples[1:]
-    energy = np.zeros_like(record.samples)
-    np.cumsum(record.step / 3.0 * (left**2 + left * right + right**2), axis=0, out=energy[1:])
-    return energy
-
-
-def _reached(record: Record, energy: Floats, axis: int, part: float) -> float:
+def _reached(record: Record, grown: Floats, axis: int, part: float) -> float:
     """Return when ∫ a² dt along an axis reaches a part of its total: the root of a cubic within a step [s]."""
-    target = part * energy[-1]
-    knot = min(max(int(np.searchsorted(energy, target)) - 1, 0), len(energy) - 2)
+    target = part * grown[-1]
+    knot = min(max(int(np.searchsorted(grown, target)) - 1, 0), len(grown) - 2)
     a, b = (float(record.samples[at, axis]) for at in (knot, knot + 1))
-    wanted = (target - energy[knot]) / record.step
+    wanted = (target - grown[knot]) / record.step
     # ∫ (a + (b − a) s)² ds = a² s + a (b − a) s² + (b − a)² s³/3
     roots = np.polynomial.Polynomial([-wanted, a * a, a * (b - a), (b - a) ** 2 / 3.0]).roots()
     real = roots[np.abs(roots.imag) <= np.abs(roots.imag).min()].real

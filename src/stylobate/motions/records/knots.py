@@ -25,6 +25,14 @@ def integrals(samples: Floats, step: float) -> tuple[Floats, Floats]:
     return velocity, displacement
 
 
+def energy(samples: Floats, step: float) -> Floats:
+    """Return ∫ a² dt of each component up to each knot, shape (n, axes) [m²/s³]."""
+    left, right = samples[:-1], samples[1:]
+    grown = np.zeros_like(samples)
+    np.cumsum(step / 3.0 * (left**2 + left * right + right**2), axis=0, out=grown[1:])
+    return grown
+
+
 def largest_from_each(values: Floats) -> Floats:
     """Return the largest of each value and all that follow it."""
     return np.asarray(np.maximum.accumulate(values[::-1])[::-1])

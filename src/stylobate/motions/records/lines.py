@@ -2,6 +2,7 @@
 
 import gzip
 import math
+import re
 import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,7 +15,23 @@ from stylobate.errors import FileError
 
 Floats = npt.NDArray[np.float64]
 
+REMARKS = ("#", "%", "!", "//")
+"""What a line of remarks begins with."""
+
 _GZIP = b"\x1f\x8b"
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+_EXCEL = b"\xd0\xcf\x11\xe0"
+# What files begin with that hold records, but not as text.
+_PACKED = {
+    b"PK\x03\x04": "a zip archive. Unpack it and read the files in it",
+    b"Rar!": "a rar archive. Unpack it and read the files in it",
+    b"7z\xbc\xaf": "a 7z archive. Unpack it and read the files in it",
+    _EXCEL: "an Excel workbook. Save its sheet as CSV and read that",
+    b"%PDF": "a PDF document. Save its numbers as text and read that",
+}
+_WORKBOOK = b"xl/workbook"
+_WHOLE = re.compile(r"[0-9]{1,12}")
+_DECIMAL_COMMA = re.compile(r"[-+]?\d*[.,]?\d*,\d+([EeDd][-+]?\d+)?")
 
 
 def read_bytes(path: Path) -> bytes:
@@ -23,7 +40,7 @@ def read_bytes(path: Path) -> bytes:
     Raises
     ------
     FileError
-        If it cannot be read or is empty.
+        If it cannot be read, is empty, or is an archive or a workbook.
     """
     try:
         content = path.read_bytes()
@@ -35,12 +52,30 @@ def read_bytes(path: Path) -> bytes:
     if not content.strip():
         message = f"{path}: the file is empty"
         raise FileError(message)
-    return content
+    for begin, what in _PACKED.items():
+        if content.startswith(begin):
+            message = f"{path}: {_PACKED[_EXCEL] if _WORKBOOK in content else what}"
+            raise FileError(message)
+    return content.decode("utf-16", errors="replace").encode() if content.startswith(_UTF_16) else content
 
 
 def is_binary(content: bytes) -> bool:
     """Return whether this is no text: bytes that no text file holds."""
     return any(byte < 0x20 and byte not in b"\t\n\r\f\x1a" for byte in content[:4096])  # noqa: PLR2004  a space
+
+
+def is_number(token: str) -> bool:
+    """Return whether a token spells a number; a number need not be finite."""
+    try:
+        float(token)
+    except ValueError:
+        return False
+    return True
+
+
+def begins_with_a_number(line: str) -> bool:
+    """Return whether a line, without blanks before it, is neither a remark nor names of columns."""
+    return line[:1].isdigit() or line.startswith(("+", "-", "."))
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,10 +103,19 @@ class Text:
         try:
             value = float(token)
         except ValueError:
-            raise self.fault(index, f"not a number: {token!r}") from None
+            remedy = ". Write decimal points" if _DECIMAL_COMMA.fullmatch(token) else ""
+            raise self.fault(index, f"not a number: {token!r}{remedy}") from None
         if not math.isfinite(value):
             raise self.fault(index, f"not a finite number: {token!r}")
         return value
+
+    def count(self, index: int, name: str, token: str) -> int:
+        """Return the number of samples, two at least, that a token of the line at `index` spells."""
+        if not _WHOLE.fullmatch(token):
+            raise self.fault(index, f"{name} must be a whole number, got {token!r}")
+        if int(token) < 2:  # noqa: PLR2004  a step has two ends
+            raise self.fault(index, f"two samples at least are wanted, {name} says {token}")
+        return int(token)
 
     def rows(self, tokens: Sequence[tuple[int, list[str]]]) -> Floats:
         """Return rows of equally many tokens, each with the index of its line, as numbers of shape (rows, columns)."""
@@ -84,3 +128,20 @@ class Text:
                 for token in row:
                     self.number(index, token)
         return values
+
+    def series(self, after: int, count: int | None) -> Floats:
+        """Return all numbers below the line at index `after`, `count` of them, or as many as there are.
+
+        Raises
+        ------
+        FileError
+            If a token is no finite number, or there are more or fewer.
+        """
+        tokens = [(at, line.split()) for at, line in enumerate(self.lines[after + 1 :], start=after + 1)]
+        tokens = [(at, row) for at, row in tokens if row]
+        found = sum(len(row) for _, row in tokens)
+        values = self.rows([(at, [token]) for at, row in tokens for token in row]) if found else np.empty((0, 1))
+        if count is not None and found != count:
+            last = tokens[-1][0] if tokens else after
+            raise self.fault(last, f"the header says {count} samples, the file has {found}")
+        return values[:, 0]

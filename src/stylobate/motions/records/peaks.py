@@ -1,8 +1,11 @@
 """Largest acceleration, velocity and displacement of a record, exact for its linear interpolation."""
 
+import math
+
 import numpy as np
 
-from stylobate.motions.base import DISPLACEMENT, VELOCITY
+from stylobate.motions.base import ACCELERATION, DISPLACEMENT, VELOCITY
+from stylobate.motions.records.horizontal_components import HorizontalComponent
 from stylobate.motions.records.record import Floats, Record
 
 
@@ -19,6 +22,28 @@ def peak_velocity(record: Record) -> Floats:
 def peak_displacement(record: Record) -> Floats:
     """Return sup |d| along x, y and z up to the last sample, shape (3,) [m]: at its ends or where v = 0."""
     return np.array([_largest(record, axis, DISPLACEMENT, _turns(record, axis)) for axis in range(3)])
+
+
+def horizontal_peak(record: Record, order: int, component: HorizontalComponent, *, since: float = -math.inf) -> float:
+    """Compute the peak horizontal acceleration [m/s²] or velocity [m/s] of a record up to its last sample.
+
+    Parameters
+    ----------
+    record
+        The record. One along a straight line has one horizontal component, whose peak counts in every definition.
+    order
+        ACCELERATION, exact; or VELOCITY, from eight values a step, between which it rises by step·sup |a|/256 at most.
+    component
+        How one number is made of two components.
+    since
+        Time from which on it counts [s].
+    """
+    if len(record.directions()) < 2:  # noqa: PLR2004  along one line
+        component = HorizontalComponent.ROTD100
+    count = len(record.samples) - 1
+    times = record.times if order == ACCELERATION else record.start + record.step * np.arange(8 * count + 1) / 8
+    x, y, _ = record.derivative(np.maximum(times, since), order)
+    return component.peak(x, y)
 
 
 def _largest(record: Record, axis: int, order: int, inside: Floats) -> float:

@@ -10,23 +10,30 @@ import numpy as np
 
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.errors import FileError, ParameterError, SeldomMeant, require_positive
-from stylobate.motions.records.at2 import is_at2, read_at2
+from stylobate.motions.records.asc import is_asc, read_asc
+from stylobate.motions.records.at2 import is_at2, is_wrapped, read_at2
 from stylobate.motions.records.component import Component
-from stylobate.motions.records.lines import Text, is_binary, read_bytes
+from stylobate.motions.records.layout import plain_table
+from stylobate.motions.records.lines import REMARKS, Text, is_binary, read_bytes
 from stylobate.motions.records.named_columns import is_csv, read_csv
 from stylobate.motions.records.record import AXES, Floats, Record
+from stylobate.motions.records.sources import require_path
 from stylobate.motions.records.tables import read_table
 from stylobate.motions.records.units import KNOWN, in_si, require_unit
 from stylobate.motions.records.waveforms import read_waveform
 
 # Horizontal and vertical peaks of strong earthquakes are below, but for a few close to the fault [g].
 _LARGEST_PEAK = 3.0
+# Steps of records that can be read [s], and what no acceleration reaches in any unit.
+_STEPS = (1e-9, 1e6)
+_BEYOND_ALL = 1e30
 
 
 class RecordFormat(Enum):
     """How a file is written."""
 
     AT2 = "PEER AT2"
+    ASC = "ESM and ITACA ASC, with the header of DYNA 1.x"
     TABLE = "one column of accelerations, or time and acceleration"
     CSV = "named columns"
     WAVEFORM = "whatever ObsPy reads"
@@ -51,7 +58,7 @@ def read_record(
         Unit of the accelerations: "g", "m/s²" (m/s2), "cm/s²" (cm/s2, gal) or "mm/s²". Only to be left out where the
         file tells: it is never guessed.
     step
-        Time step [s], of a file that tells none: a single column.
+        Time step [s], of a file that has none: a single column, or an AT2 file without the line of NPTS and DT.
     columns
         Which column of a CSV file is "time", "x", "y" and "z", by name.
     axis
@@ -75,7 +82,7 @@ def read_record(
     SeldomMeant
         If the peak is beyond 3 g, as that of a file in cm/s² that is read in g.
     """
-    path = Path(path)
+    path = require_path("path", path)
     step = None if step is None else require_positive("step", step, "s")
     return as_record(read_component(path, step, columns, format), path, units, axis)
 
@@ -98,14 +105,27 @@ def read_component(
     if is_binary(content):
         message = f"{path}: a binary file, not {format.value if format else 'text'}"
         raise FileError(message)
-    text = Text.of(path, content)
-    if format is RecordFormat.AT2 and not is_at2(text):
-        raise text.fault(0, "no header of an AT2 file: NPTS and DT are missing")
-    if format is RecordFormat.AT2 or (format is None and is_at2(text)):
-        return read_at2(text)
-    if format is RecordFormat.CSV or (format is None and (columns is not None or is_csv(text))):
-        return read_csv(text, columns, step)
-    return read_table(text, step)
+    return _read_text(Text.of(path, content), step, columns, format)
+
+
+def _read_text(
+    text: Text,
+    step: float | None,
+    columns: Mapping[str, str] | None,
+    format: RecordFormat | None,  # noqa: A002
+) -> Component:
+    if all(not line.strip() or line.lstrip().startswith(REMARKS[0]) for line in text.lines):
+        raise text.fault(len(text.lines) - 1, "the file has no numbers")
+    without_header = _is_called_at2(text.path) and is_wrapped(text)
+    if format is RecordFormat.AT2 or (format is None and (is_at2(text) or without_header)):
+        return read_at2(text, step)
+    if format is RecordFormat.ASC or (format is None and is_asc(text)):
+        return read_asc(text)
+    table = plain_table(text, named=columns is not None)
+    named = table.named or columns is not None or is_csv(table.text)
+    if format is RecordFormat.CSV or (format is None and named):
+        return read_csv(table.text, columns, step)
+    return read_table(table.text, step)
 
 
 def _is_called_at2(path: Path) -> bool:
@@ -115,6 +135,7 @@ def _is_called_at2(path: Path) -> bool:
 def as_record(component: Component, path: Path, units: str | None, axis: str | None) -> Record:
     """Return the record of one file's content, in SI units."""
     factor, told = _scale(component, path, units)
+    _require_possible(component, path)
     provenance: tuple[str, ...] = (
         f"read from {path.name}, {told}" + (f": {component.title}" if component.title else ""),
     )
@@ -137,6 +158,17 @@ def as_record(component: Component, path: Path, units: str | None, axis: str | N
     return Record.from_components(
         **along, step=component.step, start=component.start, name=name_of(path), provenance=provenance
     )
+
+
+def _require_possible(component: Component, path: Path) -> None:
+    """Refuse numbers with which floating-point arithmetic overflows; no record has them."""
+    for what, value, least, most in (
+        ("a time step [s]", component.step, *_STEPS),
+        ("a peak", float(np.abs(component.samples).max()), 0.0, _BEYOND_ALL),
+    ):
+        if not least <= value <= most:
+            message = f"{path}: {what} must be between {least:g} and {most:g}, got {value:g}. Check the numbers"
+            raise FileError(message)
 
 
 def _remark_on_the_peak(samples: Floats, path: Path, told: str) -> None:

@@ -6,15 +6,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
-from scipy.spatial import ConvexHull, QhullError
 
 from stylobate.errors import ParameterError, require_not_negative, require_positive
+from stylobate.motions.records.horizontal_components import over_directions
 from stylobate.motions.records.oscillator import free_vibration, oscillator_response
 from stylobate.motions.records.record import AXES, Floats, Record
 
 # Responses are computed so many times a period at least, and so densely by cubics through values and slopes.
 _PER_PERIOD, _DENSELY = 20, 200
-_DEGREES = np.arange(180)
 _PERCENTILES = {"rotd00": 0.0, "rotd50": 50.0, "rotd100": 100.0}
 
 
@@ -70,7 +69,7 @@ def response_spectra(record: Record, periods: npt.ArrayLike, *, damping: float =
     for i, period in enumerate(natural.tolist() if shown else []):
         sd[i], sv[i], dense = _peaks(moving, record.step, period, damping)
         if turns:
-            turned[i] = over_directions(dense[:, 0], dense[:, 1])
+            turned[i] = over_directions(dense[:, 0], dense[:, 1], tuple(_PERCENTILES.values()))
     squares = (2.0 * math.pi / natural) ** 2
     both, one = ("period", "axis"), "period"
     data: dict[str, Any] = {
@@ -132,15 +131,3 @@ def _denser(values: Floats, slopes: Floats, step: float, times: int) -> Floats:
     bent = left * (1.0 + 2.0 * s) * (1.0 - s) ** 2 + right * s**2 * (3.0 - 2.0 * s)
     bent += rising * s * (1.0 - s) ** 2 - leaving * s**2 * (1.0 - s)
     return np.concatenate([bent.reshape(-1, values.shape[1]), values[-1:]])
-
-
-def over_directions(x: Floats, y: Floats) -> Floats:
-    """Return percentiles 0, 50 and 100 over the directions, 1° apart, of the largest projection of (x, y)."""
-    points = np.stack([x, y], axis=-1)
-    try:  # only corners of the hull are ever farthest
-        corners = points[ConvexHull(points).vertices]
-    except QhullError:  # all on one line: its ends
-        corners = points[[x.argmin(), x.argmax(), y.argmin(), y.argmax()]]
-    angles = np.radians(_DEGREES)
-    largest = np.abs(corners @ np.stack([np.cos(angles), np.sin(angles)])).max(axis=0)
-    return np.asarray(np.percentile(largest, list(_PERCENTILES.values())))

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from stylobate.errors import FileError, UnsupportedError
+from stylobate.motions.records.asc import direction_of_channel
 from stylobate.motions.records.component import Component, Direction
 
 # ObsPy's calibration of these formats is in m/s².
@@ -31,7 +32,9 @@ def read_waveform(path: Path, content: bytes) -> Component:
     try:
         import obspy  # noqa: PLC0415  an extra, slow to import
     except ImportError:
-        message = f'{path}: no text; if it is a record, ObsPy reads it: pip install "stylobate[records]"'
+        message = (
+            f'{path}: no text. To read a waveform such as miniSEED, install ObsPy: pip install "stylobate[records]"'
+        )
         raise UnsupportedError(message) from None
     try:
         stream = obspy.read(io.BytesIO(content))
@@ -63,4 +66,4 @@ def _direction(stats: Any) -> Direction | None:
             return Direction(vertical=1)
         return Direction.of(float(sac["cmpaz"]))
     channel = str(stats.channel)
-    return Direction.parse(channel) or Direction.parse(channel[-1:])
+    return direction_of_channel(channel)

@@ -4,7 +4,8 @@ import os
 from pathlib import Path
 
 from stylobate.column import STANDARD_GRAVITY
-from stylobate.errors import FileError, ParameterError
+from stylobate.errors import ParameterError
+from stylobate.files import write_whole
 from stylobate.motions.records.record import AXES, Record
 
 _ON_A_LINE = 5
@@ -20,7 +21,7 @@ def write_csv(record: Record, path: str | os.PathLike[str]) -> Path:
     """
     rows = zip(record.times.tolist(), *record.samples.T.tolist(), strict=True)
     header = ",".join(["time [s]", *(f"{axis} [m/s²]" for axis in AXES)])
-    return _written(Path(path), [header, *(",".join(map(repr, row)) for row in rows)])
+    return _write_lines(path, [header, *(",".join(map(repr, row)) for row in rows)])
 
 
 def write_at2(record: Record, path: str | os.PathLike[str], *, axis: str) -> Path:
@@ -44,13 +45,8 @@ def write_at2(record: Record, path: str | os.PathLike[str], *, axis: str) -> Pat
         f"NPTS= {len(values):6d}, DT= {record.step!r} SEC",
     ]
     lines = ["".join(values[at : at + _ON_A_LINE]) for at in range(0, len(values), _ON_A_LINE)]
-    return _written(Path(path), [*header, *lines])
+    return _write_lines(path, [*header, *lines])
 
 
-def _written(path: Path, lines: list[str]) -> Path:
-    try:
-        path.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
-    except OSError as error:
-        message = f"{path}: cannot be written: {error.strerror}"
-        raise FileError(message) from error
-    return path
+def _write_lines(path: str | os.PathLike[str], lines: list[str]) -> Path:
+    return write_whole(Path(path), "\n".join(lines) + "\n")

@@ -11,7 +11,6 @@ from pathlib import Path
 from PIL import Image
 
 from stylobate.errors import (
-    FileError,
     ParameterError,
     SeldomMeant,
     require_finite,
@@ -19,6 +18,7 @@ from stylobate.errors import (
     require_vector,
     require_whole,
 )
+from stylobate.files import written_aside
 from stylobate.plots.animation.gif import Progress, gif_of
 from stylobate.plots.animation.motion import DrawnMotion
 from stylobate.plots.animation.page import page_of
@@ -99,10 +99,8 @@ class Animation:
             If the file cannot be written.
         """
         path = checked_path(path)
-        beside = path.with_name(f".{path.stem}.part{path.suffix}")
-        try:
-            # Told before a picture is drawn, if nothing can be written there.
-            beside.touch()
+        with written_aside(path) as beside:
+            beside.touch()  # an error before the first picture is drawn if nothing can be written there
             match path.suffix.lower():
                 case ".gif":
                     beside.write_bytes(self.gif(progress))
@@ -110,12 +108,6 @@ class Animation:
                     write_mp4(beside, self.pictures(progress), self.look.size, self.frames_per_second)
                 case _:
                     beside.write_text(self.html(), encoding="utf-8", newline="\n")
-            beside.replace(path)
-        except OSError as error:
-            message = f"cannot write {path}: {error.strerror or error}"
-            raise FileError(message) from None
-        finally:
-            beside.unlink(missing_ok=True)
         return path
 
     def _repr_html_(self) -> str:

@@ -1,40 +1,33 @@
 """The report of an assessment: one page with all tables and figures, and each of them as a file."""
 
-import csv
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from matplotlib.figure import Figure
-
 from stylobate.errors import FileError
-from stylobate.plots.assessment.figures import (
-    contact_figure,
-    history_figure,
-    margins_figure,
-    robustness_figure,
-    tilts_figure,
-)
-from stylobate.plots.assessment.summary import summary_paragraphs
+from stylobate.files import csv_text, write_whole
+from stylobate.plots.assessment.pictures import Pictures, report_pictures
+from stylobate.plots.assessment.sections import document_table, report_sections
+from stylobate.plots.assessment.summary import summary_text, verdict_table
 from stylobate.plots.assessment.tables import assessment_tables
-from stylobate.plots.assessment.texts import ASSUMPTIONS, NOT_COVERED
-from stylobate.plots.assessment.wording import number, scales
-from stylobate.plots.fragility import plot_fragility
-from stylobate.plots.page import Picture, Section, Table, page, png_of
+from stylobate.plots.page import page, png_of
 from stylobate.results.assessment import Assessment
-from stylobate.results.few_records import few_records
 
-# Tables of a dozen columns, wanted whole on a screen and legible on a narrow one, where figures are scrolled too.
+# Tables of a dozen columns, wanted whole on a screen and legible on a narrow one, where figures are scrolled too. In
+# print figures are as wide as they need to be legible, so that a page holds two or three and few pages stay half empty.
 _STYLE = """
-.wide + .wide { margin-top: 1.8rem; } nav a { display: inline-block; }
+.wide + .wide { margin-top: 1.8rem; }
+body > .wide:nth-of-type(2) td:nth-child(2) { font-weight: 600; } nav a { display: inline-block; }
+@page { size: A4; margin: 16mm 15mm 18mm; }
 @media screen { body { max-width: 68rem; } .wide table { font-size: .84rem; line-height: 1.4; }
   th, td { padding: .35rem .45rem; min-width: 2.6rem; } }
 @media screen and (max-width: 48rem) { .wide table { width: max-content; } .wide td { max-width: 15rem; }
   .wide th { max-width: 7rem; } figure { overflow-x: auto; } figure img { max-width: none; width: 44rem; } }
+@media print { h2 { margin-top: 1.4rem; font-size: 13pt; } p { orphans: 3; widows: 3; }
+  figure { margin: .6rem 0; text-align: center; } figcaption { font-size: 8pt; text-align: left; }
+  figure img { max-width: 82%; max-height: 11.4cm; } th, td { padding: .12rem .3rem; overflow-wrap: break-word; }
+  .wide + .wide { margin-top: .8rem; } .wide + figure { margin-top: 1rem; } }
 """
-
-Pictures = dict[str, Picture]
-Part = str | Picture | Table
 
 
 def assessment_report(
@@ -50,7 +43,7 @@ def assessment_report(
         Gets `report.html`, which needs no other file and no network; `summary.txt`; `tables/*.csv`;
         `figures/*.png`; and `assessment.nc`.
     progress
-        Told the figures drawn and the figures in all.
+        Called with the figures drawn and the figures in all.
 
     Raises
     ------
@@ -59,23 +52,23 @@ def assessment_report(
     """
     target = Path(folder)
     tables = assessment_tables(assessment)
-    pictures = _drawn(_pictures(assessment), progress or _silence)
-    lead = summary_paragraphs(assessment)
-    title = str(assessment.setting["title"])
+    pictures = _drawn(report_pictures(assessment), progress or _silence)
+    title, document = str(assessment.setting["title"]), document_table(assessment)
+    verdicts = verdict_table(assessment)
     try:
         for part in ("tables", "figures"):
             (target / part).mkdir(parents=True, exist_ok=True)
         for name, table in tables.items():
-            _write_csv(table, target / "tables" / f"{name}.csv")
-        for stale in (target / "figures").glob("*.png"):
-            if stale.stem not in pictures:
+            write_whole(target / "tables" / f"{name}.csv", csv_text(table.header, table.rows))
+        for stale in (*(target / "figures").glob("*.png"), *(target / "tables").glob("*.csv")):
+            if stale.stem not in {*pictures, *tables}:
                 stale.unlink()
         for name, picture in pictures.items():
-            (target / "figures" / f"{name}.png").write_bytes(picture.drawn)
-        (target / "summary.txt").write_text("\n\n".join([title, *lead]) + "\n", encoding="utf-8")
+            write_whole(target / "figures" / f"{name}.png", picture.drawn)
+        write_whole(target / "summary.txt", summary_text(assessment, [document, verdicts]))
         report = target / "report.html"
-        text = page(title, lead, _sections(assessment, tables, pictures))
-        report.write_text(text.replace("</style>", f"{_STYLE}</style>", 1), encoding="utf-8")
+        text = page(title, [document, verdicts], report_sections(assessment, tables, pictures))
+        write_whole(report, text.replace("</style>", f"{_STYLE}</style>", 1))
     except OSError as error:
         message = f"cannot write into {target}: {error.strerror or error}"
         raise FileError(message) from error
@@ -94,187 +87,3 @@ def _drawn(pictures: Pictures, progress: Callable[[int, int], None]) -> Pictures
 
 def _silence(done: int, total: int) -> None:
     del done, total
-
-
-def _write_csv(table: Table, path: Path) -> None:
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(table.header)
-        writer.writerows(table.rows)
-
-
-def _pictures(assessment: Assessment) -> Pictures:
-    """Return the pictures by the name of their file, which begins with that of their section."""
-    found: Pictures = {}
-    for place, name in enumerate(assessment.data["columns"]["column"].to_numpy()):
-        column, number_of = str(name), place + 1
-        found[f"margins-{number_of}"] = Picture(
-            margins_figure(assessment, column),
-            f"{column}: scale factors of each record that overturned it (hatched) and did not, at each dissipation. A "
-            "band, or a gap, narrower than the step of the scan may have been missed; the table counts runs that do "
-            "not tell.",
-        )
-        found[f"history-{number_of}"] = Picture(
-            history_figure(assessment, column),
-            f"{column} under the record that governs it: tilt and base acceleration against time; right, where it "
-            "leans. Dashed: α, at which the mass centre stands above the rim.",
-        )
-        if not assessment.data["verdicts"]["friction_demand"].isnull().all():
-            found[f"contact-{number_of}"] = Picture(
-                contact_figure(assessment, column), f"{column}: friction needed in each run; dashed, what is stated."
-            )
-        for scale in assessment.setting["scales"]:
-            found[f"tilts-{number_of}-scale-{scale:g}"] = Picture(
-                tilts_figure(assessment, column, scale),
-                f"{column}, records times {scale:g}: largest tilts at each dissipation, vertical component included, "
-                "and of the planar column where it was asked.",
-            )
-            if "robustness" in assessment.data:
-                found[f"robustness-{number_of}-scale-{scale:g}"] = Picture(
-                    robustness_figure(assessment, column, scale),
-                    f"{column}, records times {scale:g}: the verdict under each small change, at the central "
-                    "dissipation.",
-                )
-        if "fragility" in assessment.data:
-            found[f"fragility-{number_of}"] = Picture(_fragility(assessment, column), f"{column}: fragility.")
-    return found
-
-
-def _fragility(assessment: Assessment, column: str) -> Figure:
-    return plot_fragility(assessment.data["fragility"].sel(column=column))
-
-
-def _sections(assessment: Assessment, tables: dict[str, Table], pictures: Pictures) -> list[Section]:
-    def drawn(name: str) -> list[Part]:
-        return [picture for file, picture in pictures.items() if file.startswith(f"{name}-")]
-
-    def listed(*names: str) -> list[Part]:
-        return [tables[name] for name in names if name in tables]
-
-    return [
-        Section("Verdicts in short", listed("summary")),
-        Section(
-            "Margin and governing record",
-            [_margin_text(assessment), *listed("governing"), *drawn("margins"), *listed("margins")],
-        ),
-        Section("The governing run", drawn("history")),
-        Section(
-            "Verdicts, dissipation and vertical component",
-            [_verdict_text(assessment), *drawn("tilts"), *listed("verdicts-by-record")],
-        ),
-        Section(
-            "What the contact must bear",
-            [_contact_text(assessment), *drawn("contact"), *listed("contact-by-record", "contact-to-margin")],
-        ),
-        Section(
-            "Does the verdict stand under small changes",
-            [_robust_text(assessment), *drawn("robustness"), *listed("robustness")],
-        ),
-        Section("Against the planar calculation", [_planar_text(assessment), *listed("planar", "planar-bias")]),
-        Section("Fragility", [_fragility_text(assessment), *drawn("fragility"), *listed("fragility")]),
-        Section("Columns and dissipation", [_model_text(assessment), *listed("columns", "dissipation")]),
-        Section("Records and scale factors", [_record_text(assessment), *listed("records", "record-provenance")]),
-        Section("Assumptions", _assumptions(assessment)),
-        Section("What is not covered", [Table(("subject", "why it matters"), NOT_COVERED)]),
-        Section("Software", [_software(assessment)]),
-        Section("Appendix: every run", listed("verdicts", "contact")),
-    ]
-
-
-def _margin_text(assessment: Assessment) -> str:
-    low, high, count = assessment.setting["margin_scales"]
-    return (
-        f"Every record was run at {count} scale factors from {number(low)} to {number(high)}, and every change of the "
-        f"answer was halved to {100.0 * assessment.setting['width']:g} %. Overturning is not monotonic: above a factor "
-        "that overturns, a column may stand again, so all bands found are told, and the margin is the least factor. "
-        "Near the limit the answer is erratic: a scan at other factors finds other narrow bands. "
-        f"{assessment.setting['resolution'][0].upper()}{assessment.setting['resolution'][1:]}. The governing record is "
-        "the one with the least factor; where none overturned, the one of the largest tilt."
-    )
-
-
-def _verdict_text(assessment: Assessment) -> str:
-    tail = assessment.setting["tail"]
-    followed = f"{tail} of free motion" if isinstance(tail, str) else f"{number(tail)} s of free motion"
-    return (
-        f"Records at the scale factors {scales(assessment.setting['scales'])}, at every stated dissipation, with the "
-        f"vertical component and without where a record has one. Each run went on for {followed} after its record; "
-        "what had not overturned by then counts as not overturned. A run that could not be followed to its end, for "
-        "instance because it would have taken too many steps, is not decided."
-    )
-
-
-def _contact_text(assessment: Assessment) -> str:
-    if not assessment.setting["contact"]:
-        return "What the contact must bear was not asked for (contact = false): it is not known whether it would slip."
-    return (
-        "The friction needed is the largest ratio of horizontal to normal force while the column moved, up to its "
-        "overturning if it did. Where it exceeds the stated coefficient the base would slip, and the run is no longer "
-        "what would happen. A normal force of zero would be lift-off. The last table tells it of the scale factors "
-        "that were run for the margin: what those below the least that overturned needed, and which is the least that "
-        "needs more than is stated."
-    )
-
-
-def _robust_text(assessment: Assessment) -> str:
-    changes = assessment.setting["changes"]
-    if not changes:
-        return "Not asked for: no verdict was repeated under small changes, so none of them is known to be repeatable."
-    return (
-        "Each verdict at the central dissipation again under small changes of record, dissipation, size and "
-        f"integration, one at a time: {', '.join(changes)}. Dashes: the change does not apply to the record."
-    )
-
-
-def _planar_text(assessment: Assessment) -> str:
-    if "planar" not in assessment.data:
-        return "Not asked for."
-    return (
-        "The usual calculation takes each horizontal component alone, in its plane, with the loss of energy at impacts "
-        "after Housner. It is shown for comparison and decides nothing here: a round column hardly rocks in a plane. A "
-        "positive mean logarithm says that it tilts more in space. The mean is over records under which the column "
-        "rocks by more than 0.001 α in both and overturns in neither; what the others do is told, and in no mean."
-    )
-
-
-def _fragility_text(assessment: Assessment) -> str:
-    count, least = assessment.data["records"].sizes["record"], assessment.setting["least_records"]
-    few = few_records(count)
-    if "fragility" not in assessment.data:
-        why = few or "few records cannot tell a probability"
-        return f"Not fitted: at least {least} records are asked for (least_records). {why[0].upper()}{why[1:]}."
-    return (f"{few}. " if few else "") + (
-        f"Lognormal curves by maximum likelihood over the peak ground acceleration of {count} scaled records, at the "
-        "central dissipation; intervals by drawing records anew. Records that are safe again at a higher scale are "
-        "counted run by run. The curves speak of these records, not of a site."
-    )
-
-
-def _model_text(assessment: Assessment) -> str:
-    kinds = sorted({str(one["model"].get("kind", "own")) for one in assessment.setting["columns"].values()})
-    return (
-        f"Equations of motion: {', '.join(kinds)}. The dissipation of a column that rocks in space is not a material "
-        "constant and is seldom measured; so three levels were stated and each verdict is given at all of them."
-    )
-
-
-def _record_text(assessment: Assessment) -> str:
-    return (
-        f"Verdicts are given at the scale factors {scales(assessment.setting['scales'])}; 1 is the record as described "
-        "below. PGA and PGV are of the horizontal vector. The list tells each record's files and what was done, in "
-        "order."
-    )
-
-
-def _assumptions(assessment: Assessment) -> list[Part]:
-    notes = [("stated by the author", str(note)) for note in assessment.setting["notes"]]
-    return [Table(("subject", "what is assumed"), [*ASSUMPTIONS, *notes])]
-
-
-def _software(assessment: Assessment) -> str:
-    options = ", ".join(f"{name} = {value}" for name, value in assessment.setting["options"].items())
-    return (
-        f"Computed with stylobate {assessment.setting['version']}. "
-        + (f"Options of the runs: {options}. " if options else "")
-        + "All numbers are in assessment.nc beside this page, from which the page can be made again."
-    )

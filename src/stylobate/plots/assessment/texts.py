@@ -1,4 +1,4 @@
-"""What an assessment assumes, and what it does not cover."""
+"""Fixed texts of the report: assumptions, what it does not cover, classes of verdicts, the planar column, sources."""
 
 ASSUMPTIONS: tuple[tuple[str, str], ...] = (
     ("body", "a rigid body of revolution in one piece, symmetric about its axis, on a flat circular base"),
@@ -6,10 +6,10 @@ ASSUMPTIONS: tuple[tuple[str, str], ...] = (
     ("start", "upright and at rest, nothing leaning, no crack or wear of the rim"),
     (
         "contact",
-        "the base does not slip, pivot freely or lift off; what it would have to bear for that is told above and is to "
-        "be compared with what the joint can bear",
+        "the base does not slip, pivot freely or lift off; the friction needed for that is listed above: compare it "
+        "with what the joint can bear",
     ),
-    ("dissipation", "the stated one: three levels, none of them measured by this program"),
+    ("dissipation", "the stated one: low, central and high levels, none of them measured by this program"),
     ("after the record", "the base stands still and the column is followed on for the stated time"),
     ("scaled records", "all components times one factor, the time axis unchanged"),
     ("direction", "a round column on level ground has no weak direction: a turned record turns the motion and no more"),
@@ -23,7 +23,84 @@ NOT_COVERED: tuple[tuple[str, str], ...] = (
     ("anchors, dowels, clamps", "and what happens when they break"),
     ("bases that are not circular", "square plinths, broken rims, feet"),
     ("contact that gives way", "crushing of the edge, wear, mortar and lead beds"),
-    ("slip and flight", "a model that slides exists (kind sliding) and is not part of this assessment"),
     ("neighbours", "impact against walls, other columns, an architrave on top"),
     ("other ground motions", "only the records listed were run; whether they represent the site is not judged here"),
+)
+
+SLIP_AND_FLIGHT: dict[bool, tuple[str, str]] = {
+    False: ("slip and flight", "the model that slides (kind sliding) was not run: sliding = false"),
+    True: (
+        "slip and flight",
+        "the model that slides (kind sliding) was run only for columns that slide before they rock, at the central "
+        "dissipation; all other runs assume that the base neither slips nor lifts off",
+    ),
+}
+"""What is not covered, by whether `sliding` was asked for."""
+
+VERDICT_CLASSES: tuple[tuple[str, str], ...] = (
+    ("NOT shown safe", "some record overturned the column at some stated dissipation"),
+    (
+        "Survival NOT robust",
+        "no record overturned it at any stated dissipation, but the vertical component, a smaller scale, a small "
+        "change, an undecided run or too little friction leaves the verdict open",
+    ),
+    (
+        "Survived every run",
+        "no record overturned it at any stated dissipation, every small change that was tried was decided "
+        "and flipped no verdict, and the stated friction suffices",
+    ),
+    (
+        "Not described by these runs",
+        "the column slides before it rocks, because the stated friction is less than r/h, or no run was decided",
+    ),
+)
+
+PLANAR = (
+    "The usual calculation takes each horizontal component alone, in its plane, with the loss of energy at impacts "
+    "after Housner (1963). It is shown for comparison and decides nothing here.",
+    "Why the two differ: a planar block hits the ground with its whole base in every half cycle, and each impact takes "
+    "a fixed fraction of its energy. A round column under two components rolls on its rim and seldom passes through "
+    "the vertical, so it has hardly any impacts; its energy goes only into the stated damping, which is another "
+    "mechanism than restitution. It can therefore reach several times the tilt of the planar block under the same "
+    "record; on cylinders in three dimensions see Vassiliou et al. (2017). The comparison depends on the stated "
+    "damping.",
+    "A positive mean logarithm says that the column tilts more in three dimensions. The mean is over records under "
+    "which both rock by more than 0.001 α and neither overturns; the others are counted and enter no mean.",
+)
+
+REFERENCES: tuple[tuple[str, str], ...] = (
+    (
+        "rocking, planar block",
+        "G. W. Housner, The behavior of inverted pendulum structures during earthquakes, Bull. Seismol. Soc. Am. 53, "
+        "403–417, 1963",
+    ),
+    (
+        "cylinders in three dimensions",
+        "M. F. Vassiliou, S. Burger, M. Egger, J. A. Bachmann, M. Broccardo, B. Stojadinović, The three-dimensional "
+        "behavior of inverted pendulum cylindrical structures during earthquakes, Earthquake Engng Struct. Dyn. 46, "
+        "2261–2280, 2017",
+    ),
+    (
+        "displacements of rocking bodies",
+        "N. Reggiani Manzo, M. F. Vassiliou, Displacement-based analysis and design of rocking structures, Earthquake "
+        "Engng Struct. Dyn. 48, 2019, doi 10.1002/eqe.3217",
+    ),
+    (
+        "RotD50",
+        "D. M. Boore, Orientation-independent, nongeometric-mean measures of seismic intensity from two horizontal "
+        "components of motion, Bull. Seismol. Soc. Am. 100, 1830–1835, 2010",
+    ),
+    (
+        "scaled records",
+        "D. Vamvatsikos, C. A. Cornell, Incremental dynamic analysis, Earthquake Engng Struct. Dyn. 31, 491–514, 2002",
+    ),
+    (
+        "equations of motion",
+        "stylobate, documentation, pages Models, Theory and Method: a rigid body whose rim rolls without slip, viscous "
+        "damping of its tilting",
+    ),
+    (
+        "damping",
+        "no published value is relied on: the three levels are those stated by the author of the study",
+    ),
 )

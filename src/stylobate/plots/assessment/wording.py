@@ -1,12 +1,17 @@
 """How an assessment says things: verdicts without promises, numbers with three digits."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
 
+from stylobate.column import STANDARD_GRAVITY
+from stylobate.plots.band_regions import undecided_reasons
+
 CENTRAL = "central"
 OVERTURNED, STOOD, UNDECIDED = "overturned", "did not overturn", "not decided"
+_MOST_NAMES = 8
 _OF_STATE = {1: OVERTURNED, 0: STOOD, -1: UNDECIDED}
 
 
@@ -30,25 +35,58 @@ def tilt(value: float) -> str:
 def least_scale(margins: xr.Dataset) -> str:
     """Return the least scale that overturned, of one column, case and record, with the next below that did not."""
     if int(margins["bands"]) == 0:
+        if undecided := undecided_scales(margins):
+            return f"none found; {undecided}"
         return f"none up to {number(float(margins['margin_scale'][-1]))}"
     found, below = float(margins["least_overturning"]), float(margins["largest_below"])
-    if math.isnan(below):
-        return f"{number(found)} or below"
-    return f"{number(found, 4)} (not at {number(below, 4)})"
+    if not math.isnan(below):
+        return f"{number(found, 4)} (not at {number(below, 4)})"
+    if bool(margins["undecided_below"][0]):
+        return f"{number(found, 4)} (not decided just below)"
+    return f"{number(found)} or below"
 
 
 def bands(margins: xr.Dataset) -> str:
-    """Return all bands of scales that overturned, of one column, case and record."""
-    told = []
-    for low, high, below, above in zip(
-        *(margins[name].to_numpy() for name in ("band_from", "band_to", "open_below", "open_above")), strict=True
+    """Return all bands of scales that overturned, of one column, case and record, and those that are not decided."""
+    names = ("band_from", "band_to", "open_below", "open_above", "undecided_below", "undecided_above")
+    found = []
+    for low, high, below, above, unknown_below, unknown_above in zip(
+        *(margins[name].to_numpy() for name in names), strict=True
     ):
         if math.isnan(low):
             continue
-        first = f"{number(low, 4)} or below" if below else number(low, 4)
-        last = f"{number(high, 4)} and beyond" if above else number(high, 4)
-        told.append(f"{first} to {last}" if first != last else first)
-    return "; ".join(told) or "none"
+        ends = [number(low, 4), number(high, 4)]
+        words = ends[0] if ends[0] == ends[1] else " to ".join(ends)
+        words += " and below" * bool(below and not unknown_below) + " and beyond" * bool(above and not unknown_above)
+        found.append(words)
+    undecided = undecided_scales(margins)
+    return "; ".join([*(found or ["none found" if undecided else "none"]), *([undecided] if undecided else [])])
+
+
+def undecided_scales(margins: xr.Dataset) -> str:
+    """Return the scales at which one column, case and record is not decided, with the reasons; nothing if none."""
+    pairs = zip(margins["undecided_from"].to_numpy(), margins["undecided_to"].to_numpy(), strict=True)
+    stretches = [f"{number(low, 4)} to {number(high, 4)}" for low, high in pairs if not math.isnan(low)]
+    if not stretches:
+        return ""
+    return f"not decided from {' and from '.join(stretches)} ({', '.join(undecided_reasons(margins['outcome']))})"
+
+
+def listed(names: Sequence[str], last: str = "") -> str:
+    """Return names with commas between, at most eight; the word `last` goes before the last of them.
+
+    >>> listed(("low", "high"), "and")
+    'low and high'
+    """
+    shown = [*names[:_MOST_NAMES], *([f"{len(names) - _MOST_NAMES} more"] if len(names) > _MOST_NAMES else [])]
+    if last and len(shown) > 1:
+        return f"{', '.join(shown[:-1])} {last} {shown[-1]}"
+    return ", ".join(shown)
+
+
+def in_g(acceleration: float) -> str:
+    """Return an acceleration [m/s²] in g."""
+    return number(acceleration / STANDARD_GRAVITY)
 
 
 def scales(values: np.ndarray) -> str:
@@ -65,4 +103,6 @@ def records(count: int, total: int) -> str:
     """Return how many of the records, in words."""
     if total == 1:
         return "the one record" if count == 1 else "not the one record"
+    if count == total:
+        return f"all {total} records"
     return f"{count} of {total} records"

@@ -1,5 +1,7 @@
 """`assess`: whether each column survives each record, how close it was, and how sure that is."""
 
+import datetime as dt
+import platform
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
@@ -14,15 +16,18 @@ from stylobate.models import Model
 from stylobate.motions import Record
 from stylobate.results.assessment import Assessment
 from stylobate.results.few_records import FEW_RECORDS
+from stylobate.results.report_details import ReportDetails
 from stylobate.spec import provenance_of_run
 from stylobate.spec.simulation import FREE_TAIL
 from stylobate.studies.assessment.fragilities import fragility_of
-from stylobate.studies.assessment.governing import governing_record, history_of
+from stylobate.studies.assessment.governing import governing_record, histories_of
+from stylobate.studies.assessment.ground_motions import ground_motions, spectra_of
 from stylobate.studies.assessment.inputs import CENTRAL, Inputs
-from stylobate.studies.assessment.margins import margin_runs, margins_of
+from stylobate.studies.assessment.margins import margin_runs, margins_of, of_one_width
 from stylobate.studies.assessment.parts import Announce, Parts
 from stylobate.studies.assessment.properties import column_properties, record_properties
 from stylobate.studies.assessment.robust import planar_of, planar_runs, robustness_of, robustness_runs
+from stylobate.studies.assessment.sliding import sliding_of, sliding_runs
 from stylobate.studies.assessment.summary import summary_of
 from stylobate.studies.assessment.verdicts import verdict_runs, verdicts_on
 from stylobate.studies.shaking import Change
@@ -31,6 +36,9 @@ from stylobate.studies.shaking.remarks import remark_on
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.recipe import RunOptions
 from stylobate.studies.varied import require_no_tilt_limit
+
+# Packages on whose versions the digits depend.
+_PACKAGES = ("stylobate", "numpy", "scipy", "numba", "llvmlite", "xarray")
 
 
 def assess(
@@ -44,11 +52,14 @@ def assess(
     width: float = 5e-3,
     tail: float | None = None,
     changes: Sequence[Change] | None = None,
+    changes_at: Sequence[str] | None = None,
+    sliding: bool = False,
     planar: bool = True,
     contact: bool = True,
     least_records: int = FEW_RECORDS,
     title: str = "Columns under records",
     notes: Sequence[str] = (),
+    details: ReportDetails | None = None,
     store: str | Path | None = None,
     executor: Executor | None = None,
     progress: Announce | None = None,
@@ -80,6 +91,11 @@ def assess(
         How long columns are followed after a record [s]; by default 20/p.
     changes
         Small changes under which each verdict is repeated; by default `SMALL_CHANGES`; none for an empty sequence.
+    changes_at
+        Levels of dissipation at which they are, such as ["central"]; by default every one that is stated.
+    sliding
+        Whether columns that slide before they rock, their friction being below r/h, are followed by the model `Sliding`
+        too, under each record at each of the `scales`: some seconds a run.
     planar
         Whether Housner's planar column answers too.
     contact
@@ -88,6 +104,8 @@ def assess(
         Fewer records give no fragility: by default what its intervals need to be as wide as they claim.
     title, notes
         What the assessment is called; assumptions of its author, for the report.
+    details
+        Author, project, date, design spectrum and the period of Sa, for the report.
     store
         A folder that keeps each part that is computed: with it an interrupted assessment goes on where it was, and
         logs how much of it was known.
@@ -96,15 +114,17 @@ def assess(
     progress
         Told what is computed, the runs done and the runs in all, about.
     **options
-        Of all runs, as in `simulate_ensemble`.
+        Of all runs, as in `simulate_ensemble`, such as `rest_energy`, the energy below which a column comes to rest.
 
     Returns
     -------
     Assessment
         Its data: "columns" and "records", their numbers; "verdicts" over column, record, dissipation, vertical and
-        scale: `overturned` (1, 0, −1 not told), `tilt_ratio`, what the contact must bear; "margins" over column,
-        case, record and band; "robustness" over column, scale, record and change; "planar"; "fragility" over column
-        where there are records enough; "histories" over column, of the record that governs each; "summary", counts.
+        scale: `overturned` (1, 0, −1 not decided), `outcome`, `tilt_ratio`, what the contact must bear; "margins" over
+        column, case, record and band; "robustness" over column, dissipation, scale, record and change; "sliding" over
+        column, record and scale; "planar"; "fragility" over column where there are records enough; "histories" over
+        column and run, of the record that governs each; "summary", counts;
+        "spectra" over record and period, "ground_motions" over record and instant, as the report draws them.
 
     Raises
     ------
@@ -142,6 +162,7 @@ def assess(
     array([[[1, 1, 1]]], dtype=int8)
     """
     require_no_tilt_limit(options)
+    details = details or ReportDetails()
     inputs = Inputs.of(
         columns,
         records,
@@ -150,53 +171,71 @@ def assess(
         scales,
         np.geomspace(0.2, 5.0, 60) if margin_scales is None else margin_scales,
         changes,
+        changes_at,
         width=require_positive("width", width),
         tail=tail,
         least_records=require_whole("least_records", least_records, least=2),
         options=options,
     )
     remark_on({name: levels[CENTRAL].column for name, levels in inputs.columns.items()}, inputs.records)
-    parts = Parts(None if store is None else Path(store), _runs(inputs, planar=planar), progress or _silence)
+    parts = Parts(
+        None if store is None else Path(store), _runs(inputs, planar=planar, sliding=sliding), progress or _silence
+    )
     names = list(inputs.columns)
     verdicts = [verdicts_on(inputs, name, parts, contact=contact, executor=executor) for name in names]
     margins = [margins_of(inputs, name, parts, contact=contact, executor=executor) for name in names]
     data = {
         "columns": column_properties(inputs),
         "records": record_properties(inputs),
+        "spectra": spectra_of(inputs, parts, details.spectral_period),
+        "ground_motions": ground_motions(inputs),
         "verdicts": _over_columns(verdicts, names),
-        "margins": _over_columns(_of_one_width(margins), names),
+        "margins": _over_columns(of_one_width(margins), names),
     }
     if inputs.changes:
         data["robustness"] = _over_columns(
             [robustness_of(inputs, name, parts, executor=executor) for name in names], names
         )
+    if sliding and inputs.sliding_first:
+        data["sliding"] = _over_columns([sliding_of(inputs, name, parts) for name in names], names)
     if planar:
         data["planar"] = _over_columns([planar_of(inputs, name, parts, executor=executor) for name in names], names)
     if len(inputs.records) >= inputs.least_records:
-        peaks = data["records"]["peak_acceleration"].to_numpy()
+        peaks = data["records"]["median_peak_acceleration"]
         data["fragility"] = _over_columns([fragility_of(one["reached"], peaks) for one in margins], names)
     governing = [governing_record(one, other, inputs.as_recorded) for one, other in zip(verdicts, margins, strict=True)]
     runs = [
-        history_of(inputs, name, record, parts, contact=contact) for name, record in zip(names, governing, strict=True)
+        histories_of(inputs, name, record, own, parts, contact=contact)
+        for name, record, own in zip(names, governing, margins, strict=True)
     ]
     data["histories"] = _over_columns(runs, names)
     data["summary"] = summary_of(data, governing)
     parts.tell()
-    more = {"title": title, "notes": list(notes), "contact": contact, "resolution": margins[0].attrs["resolution"]}
-    return Assessment(data=data, setting={**_setting(inputs), **more})
+    more = {
+        "title": title,
+        "notes": list(notes),
+        "contact": contact,
+        "sliding": sliding,
+        "resolution": margins[0].attrs["resolution"],
+    }
+    return Assessment(data=data, setting={**_setting(inputs), **more, "details": _dated(details)})
 
 
-def _runs(inputs: Inputs, *, planar: bool) -> int:
-    each = verdict_runs(inputs) + margin_runs(inputs) + 1
+def _dated(details: ReportDetails) -> dict[str, Any]:
+    return {**details.values(), "date": details.date or dt.datetime.now().astimezone().date().isoformat()}
+
+
+def _software() -> dict[str, str]:
+    """Return the versions of the program, of what it computes with, and the machine."""
+    packages = {name: version(name) for name in _PACKAGES}
+    return {**packages, "Python": platform.python_version(), "machine": f"{platform.system()} {platform.machine()}"}
+
+
+def _runs(inputs: Inputs, *, planar: bool, sliding: bool) -> int:
+    each = verdict_runs(inputs) + margin_runs(inputs) + 3
     each += robustness_runs(inputs) if inputs.changes else 0
     each += planar_runs(inputs) if planar else 0
-    return each * len(inputs.columns)
-
-
-def _of_one_width(margins: list[xr.Dataset]) -> list[xr.Dataset]:
-    """Return the margins with as many bands each, NaN beyond the last."""
-    widest = max(one.sizes["band"] for one in margins)
-    return [one.pad(band=(0, widest - one.sizes["band"])) if one.sizes["band"] < widest else one for one in margins]
+    return each * len(inputs.columns) + (sliding_runs(inputs) if sliding else 0)
 
 
 def _over_columns(found: Sequence[xr.Dataset], names: Sequence[str]) -> xr.Dataset:
@@ -214,6 +253,7 @@ def _setting(inputs: Inputs) -> dict[str, Any]:
     """Return what was assessed, as plain values."""
     return {
         "version": version("stylobate"),
+        "software": _software(),
         "columns": {
             name: {
                 part: provenance_of_run(levels[CENTRAL], motion)[part]
@@ -238,8 +278,9 @@ def _setting(inputs: Inputs) -> dict[str, Any]:
         "tail": "20/p" if inputs.tail is None else inputs.tail,
         "tail_over_p": FREE_TAIL,
         "changes": [change.name for change in inputs.changes],
+        "changes_at": list(inputs.changes_at) if inputs.changes else [],
         "least_records": inputs.least_records,
-        "options": {name: repr(value) for name, value in inputs.options.items()},
+        "options": {name: repr(value) for name, value in inputs.options.items() if value is not None},
     }
 
 

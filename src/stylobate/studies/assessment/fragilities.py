@@ -1,30 +1,31 @@
-"""How often a column reaches a limit state over the strength of the records, where there are records enough."""
+"""Fragility of a column over the peak ground acceleration of the records, where there are records enough."""
 
 import numpy as np
 import xarray as xr
 
 from stylobate.studies.fragility import fit_fragility
 from stylobate.studies.fragility.observations import LIMIT_STATE
-from stylobate.studies.sweeps.quantities import Floats
+from stylobate.studies.shaking.intensities import Intensity, IntensityMeasure
 
 _RESAMPLES = 200
 _SEED = 0
 
 
-def fragility_of(reached: xr.DataArray, peak_acceleration: Floats) -> xr.Dataset:
-    """Return the fragility of one column over the peak ground acceleration.
+def fragility_of(reached: xr.DataArray, peak_acceleration: xr.DataArray) -> xr.Dataset:
+    """Fit the fragility of one column over the peak ground acceleration.
 
     Parameters
     ----------
     reached
         Over `record`, `limit_state` and `margin_scale`: 1, 0, −1.
     peak_acceleration
-        Of each record [m/s²].
+        Of each record, over `record` [m/s²]: RotD50, or that of the one component.
     """
+    about = IntensityMeasure(Intensity.PEAK_ACCELERATION).attributes
     names = reached["record"].to_numpy()
     scales = reached["margin_scale"].to_numpy()
-    about = {"units": "m s-2", "long_name": "peak ground acceleration"}
-    intensity = xr.DataArray(peak_acceleration[:, np.newaxis] * scales, dims=("record", "scale"), attrs=about)
+    values = np.multiply.outer(peak_acceleration.sel(record=names).to_numpy(), scales)
+    intensity = xr.DataArray(values, dims=("record", "scale"), attrs=about)
     states = xr.DataArray(
         reached.transpose(LIMIT_STATE, "record", "margin_scale").to_numpy(),
         dims=(LIMIT_STATE, "record", "scale"),

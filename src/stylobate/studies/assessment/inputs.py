@@ -25,6 +25,8 @@ CENTRAL = "central"
 NO_VERTICAL = "central, no vertical"
 """The case of margins in which the vertical component does not act."""
 
+# What the parts of an assessment hold: a store of another layout is not read.
+_LAYOUT = 3
 # Scales nearer than this part of themselves are one.
 _SAME_SCALE = 1e-9
 
@@ -53,6 +55,8 @@ class Inputs:
         How long columns are followed after a record [s], by default 20/p.
     changes
         Small changes under which verdicts are repeated.
+    changes_at
+        Levels of dissipation at which they are.
     least_records
         Fewer records give no fragility.
     options
@@ -68,6 +72,7 @@ class Inputs:
     width: float
     tail: float | None
     changes: tuple[Change, ...]
+    changes_at: tuple[str, ...]
     least_records: int
     options: RunOptions
 
@@ -81,6 +86,7 @@ class Inputs:
         scales: npt.ArrayLike,
         margin_scales: npt.ArrayLike,
         changes: Sequence[Change] | None,
+        changes_at: Sequence[str] | None,
         **more: Any,
     ) -> Self:
         """Return the inputs, or raise ParameterError for one that cannot be."""
@@ -97,6 +103,7 @@ class Inputs:
             scales=stated,
             margin_scales=_joined(_rising("margin_scales", margin_scales, least=2), stated, tried),
             changes=tried,
+            changes_at=_levels_named(changes_at, levels),
             **more,
         )
 
@@ -104,6 +111,13 @@ class Inputs:
     def as_recorded(self) -> int:
         """The place of scale 1 among the scales; where it is not among them, of the nearest."""
         return int(np.argmin(np.abs(np.log(self.scales))))
+
+    @property
+    def sliding_first(self) -> tuple[str, ...]:
+        """The columns that slide before they rock: their friction is below c = r/h."""
+        return tuple(
+            name for name, levels in self.columns.items() if self.friction[name] < levels[CENTRAL].column.slenderness
+        )
 
     @property
     def has_vertical(self) -> bool:
@@ -120,6 +134,7 @@ class Inputs:
         chosen = models if level is None else {level: models[level]}
         return {
             "version": version("stylobate"),
+            "layout": _LAYOUT,
             "models": {name: _told(model) for name, model in chosen.items()},
             "records": identities(self.records),
             "tail": self.tail,
@@ -158,6 +173,21 @@ def checked_dissipation(dissipation: Mapping[str, Mapping[str, float]] | None) -
         level: {name: require_not_negative(f"dissipation.{level}.{name}", value) for name, value in numbers.items()}
         for level, numbers in dissipation.items()
     }
+
+
+def _levels_named(given: Sequence[str] | None, levels: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the names of levels that are given, in the order of the levels; all of them for None."""
+    if given is None:
+        return tuple(levels)
+    chosen = (given,) if isinstance(given, str) else tuple(given)
+    unknown = [name for name in chosen if name not in levels]
+    if unknown or not chosen:
+        message = (
+            f"changes_at: must name levels of dissipation (got {unknown[0] if unknown else given!r}). Use some of "
+            f"{', '.join(levels)}."
+        )
+        raise ParameterError(message)
+    return tuple(level for level in levels if level in chosen)
 
 
 def _at_levels(name: str, model: Model, levels: Mapping[str, Mapping[str, float]]) -> dict[str, Model]:

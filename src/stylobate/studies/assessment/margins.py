@@ -8,13 +8,19 @@ from stylobate.motions import BaseMotion, OneOf
 from stylobate.spec.simulation import FREE_TAIL
 from stylobate.studies.assessment.inputs import CENTRAL, NO_VERTICAL, Inputs
 from stylobate.studies.assessment.parts import Parts
+from stylobate.studies.assessment.slip import standing_slip
+from stylobate.studies.boundary import overturned_or_not
 from stylobate.studies.fragility import limit_states
-from stylobate.studies.shaking.incremental import without_vertical
+from stylobate.studies.shaking.incremental import tilt_ratios, without_vertical
 from stylobate.studies.spectra import overturning_bands
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.computing import Progress
 
-_BAND = ("band_from", "band_to", "safe_below", "safe_above", "open_below", "open_above")
+_BAND = ("band_from", "band_to", "safe_below", "safe_above")
+_FLAGS = ("open_below", "open_above", "undecided_below", "undecided_above")
+_STRETCH = ("undecided_from", "undecided_to")
+_COUNTS = ("bands", "unknown", "decided_to")
+_RUNS = ("outcome", "largest_tilt", "friction_demand")
 
 
 def margins_of(inputs: Inputs, column: str, parts: Parts, *, contact: bool, executor: Executor | None) -> xr.Dataset:
@@ -26,24 +32,35 @@ def margins_of(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exec
         Over `case` (the levels of dissipation; and the central one without the vertical component) and `record`:
         `least_overturning`, the least scale that overturned, NaN where none did; `largest_below`, the largest scale
         below it that did not, NaN where none; `least_lasting`, the least scale at which a band begins that is wider
-        than its edges are told; `bands`; `unknown`, runs that tell nothing; `stands_again`, whether it
-        did not overturn at a scale above one that overturned it. Over `band` too all of `overturning_bands`. Of the
-        central case over `limit_state` and `margin_scale`: `reached`. What the contact must bear, NaN without
-        `contact`: over `margin_scale` too `friction_demand`; `friction_to_margin`, the largest of the scales run below
-        the least that overturned, of all where none did; `least_slipping`, the least scale run that needed more than
-        the stated friction, NaN where none did.
+        than its edges are known; `bands`; `unknown`, undecided runs of the scan; `decided_to`, the largest scale up to
+        which every run was decided; `stands_again`, whether it did not overturn at a scale above one that overturned
+        it; `standing_slip`, the least scale at which it slides before it rocks, NaN where it rocks first. Over `band`
+        and `stretch` too all of `overturning_bands`. Over `margin_scale` too: `outcome`, `tilt_ratio`; of the central
+        case over `limit_state`: `reached`. What the contact must bear, NaN without `contact`: over `margin_scale` too
+        `friction_demand`, while it stands and while it moves; `friction_to_margin`, the largest of the scales run below
+        the least that overturned, of all where none did. `least_slipping`, the least scale that needs more than the
+        stated friction, NaN where none does.
     """
-    found = [_bands(inputs, column, case, parts, contact, executor) for case in cases_of(inputs)]
-    widest = max(one.sizes["band"] for one in found)
-    padded = [one.pad(band=(0, widest - one.sizes["band"])) if one.sizes["band"] < widest else one for one in found]
-    joined: xr.Dataset = xr.concat(padded, dim=xr.Variable("case", cases_of(inputs)), data_vars="all", join="override")
-    central = inputs.columns[column][CENTRAL]
-    scanned = joined.sel(case=CENTRAL)
-    reached = limit_states(scanned[["outcome", "largest_tilt"]], slenderness=central.column.slenderness).transpose(
-        "record", "limit_state", "margin_scale"
+    cases = cases_of(inputs)
+    found = of_one_width([_bands(inputs, column, case, parts, contact, executor) for case in cases])
+    joined: xr.Dataset = xr.concat(found, dim=xr.Variable("case", cases), data_vars="all", join="override")
+    body = inputs.columns[column][CENTRAL].column
+    scanned = joined[["outcome", "largest_tilt"]].sel(case=CENTRAL)
+    reached = limit_states(scanned, slenderness=body.slenderness).transpose("record", "limit_state", "margin_scale")
+    labelled = joined.drop_vars("largest_tilt").assign(
+        tilt_ratio=tilt_ratios(joined, body.slenderness),
+        reached=reached.drop_vars("case"),
+        standing_slip=standing_slip(inputs, column, cases),
     )
-    told = joined.drop_vars(["outcome", "largest_tilt"]).assign(reached=reached.drop_vars("case"))
-    return told.assign(demands_to_margin(told, inputs.friction[column]))
+    return labelled.assign(demands_to_margin(labelled, inputs.friction[column]))
+
+
+def of_one_width(margins: list[xr.Dataset]) -> list[xr.Dataset]:
+    """Return the margins with as many bands and undecided stretches each, NaN beyond the last."""
+    for dim in ("band", "stretch"):
+        widest = max(one.sizes[dim] for one in margins)
+        margins = [one.pad({dim: (0, widest - one.sizes[dim])}) if one.sizes[dim] < widest else one for one in margins]
+    return margins
 
 
 def demands_to_margin(margins: xr.Dataset, stated: float) -> dict[str, xr.DataArray]:
@@ -51,13 +68,14 @@ def demands_to_margin(margins: xr.Dataset, stated: float) -> dict[str, xr.DataAr
     need, scale = margins["friction_demand"], margins["margin_scale"]
     least = margins["least_overturning"]
     one = {"units": "1"}
+    first = scale.where(need > stated).min("margin_scale")
+    root = margins["standing_slip"].where(margins["standing_slip"] <= scale[-1])
+    first = first.where(~(root < first.fillna(np.inf)), root)
     return {
         "friction_to_margin": need.where(~(scale >= least))
         .max("margin_scale")
         .assign_attrs(**one, long_name="largest friction needed below the least scale that overturned"),
-        "least_slipping": scale.where(need > stated)
-        .min("margin_scale")
-        .assign_attrs(**one, long_name="least scale that needs more than the stated friction"),
+        "least_slipping": first.assign_attrs(**one, long_name="least scale that needs more than the stated friction"),
     }
 
 
@@ -126,12 +144,13 @@ def _told(found: xr.Dataset, names: list[str], width: float) -> xr.Dataset:
     demand = plain.get("largest_friction_demand", xr.full_like(plain["largest_tilt"], np.nan))
     about = {"units": "1", "long_name": "largest friction force over normal force"}
     plain = plain.assign(friction_demand=demand.assign_attrs(about))
-    kept = plain[[*_BAND, "bands", "unknown", "outcome", "largest_tilt", "friction_demand"]].transpose("record", ...)
-    flags = {name: kept[name].astype(float) for name in ("open_below", "open_above", "bands", "unknown")}
+    kept = plain[[*_BAND, *_FLAGS, *_STRETCH, *_COUNTS, *_RUNS]].transpose("record", ...)
+    flags = {name: kept[name].astype(float) for name in (*_FLAGS, "bands", "unknown")}
     first = kept.isel(band=0)
     lasting = kept["band_to"] > kept["band_from"] * (1.0 + width)
-    last = kept["band_to"].max("band")
-    again = (kept["bands"] > 1) | (last < float(plain["margin_scale"][-1]))
+    stood = kept["outcome"].copy(data=overturned_or_not(kept) == 0)
+    higher = (stood & (kept["margin_scale"] > first["band_from"])).any("margin_scale")
+    again = kept["safe_above"].notnull().any("band") | higher
     return (
         kept.assign(flags)
         .assign(

@@ -12,6 +12,7 @@ import xarray as xr
 
 from stylobate.errors import FileError
 from stylobate.motions import BaseMotion, Record
+from stylobate.results.storage import read_dataset, write_netcdf
 from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.fingerprint import identity_of
 
@@ -32,7 +33,7 @@ class Parts:
     total
         Runs of all parts, about.
     announce
-        Told of progress.
+        Gets the progress while a part is computed; it begins at the runs of the parts that are known.
     """
 
     store: Path | None
@@ -52,19 +53,20 @@ class Parts:
             If the store cannot be written.
         """
         before = sum(self._done)
-        self.announce(name, before, self.total)
         path = None if self.store is None else self.store / f"{_digest({'part': name, **identity})}.nc"
         found = None if path is None else _kept(path)
         if found is not None:
             self._known.append(name)
         else:
+            self._tell_where_it_goes_on()
+            self.announce(name, before, self.total)
             found = compute(
                 lambda done, total: self.announce(name, before + round(runs * done / max(total, 1)), self.total)
             )
             if path is not None:
                 _keep(found, path)
+            self.announce(name, before + runs, self.total)
         self._done.append(runs)
-        self.announce(name, before + runs, self.total)
         return found
 
     def tell(self) -> None:
@@ -73,6 +75,11 @@ class Parts:
             _log.info(
                 "%d of %d parts were kept in %s and not computed again", len(self._known), len(self._done), self.store
             )
+
+    def _tell_where_it_goes_on(self) -> None:
+        """Log, before the first part that is computed, how many parts are known."""
+        if self._known and len(self._known) == len(self._done):
+            _log.info("%d parts are kept in %s; the work goes on from there", len(self._known), self.store)
 
 
 def identities(motions: Mapping[str, BaseMotion]) -> dict[str, Any]:
@@ -90,18 +97,16 @@ def _kept(path: Path) -> xr.Dataset | None:
     if not path.exists():
         return None
     try:
-        with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as stored:
-            return stored.load()
-    except (OSError, ValueError):  # cut short by a crash: computed again
+        return read_dataset(path)
+    except FileError as error:
+        _log.warning("%s; it is computed again", error)
         return None
 
 
 def _keep(data: xr.Dataset, path: Path) -> None:
-    beside = path.with_suffix(".part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        data.to_netcdf(beside, engine="h5netcdf")
-        beside.replace(path)
     except OSError as error:
         message = f"cannot write {path}: {error.strerror or error}"
         raise FileError(message) from None
+    write_netcdf(data, path)

@@ -5,6 +5,8 @@ import xarray as xr
 
 from stylobate.motions import BaseMotion, Record
 from stylobate.motions.base import ACCELERATION
+from stylobate.motions.records.listing import drifts
+from stylobate.studies.assessment.ground_motions import as_record, horizontal_peaks
 from stylobate.studies.assessment.inputs import CENTRAL, Inputs
 from stylobate.studies.shaking.intensities import peak_horizontal_velocity
 
@@ -41,8 +43,12 @@ def column_properties(inputs: Inputs) -> xr.Dataset:
 
 
 def record_properties(inputs: Inputs) -> xr.Dataset:
-    """Return the numbers of each record, over `record`."""
+    """Return the numbers of each record, over `record`; `definition` names that of the horizontal intensities.
+
+    `drifts` is 1 where the velocity at the end is more than 5 % of the PGV along some axis.
+    """
     motions = list(inputs.records.values())
+    definitions, accelerations, velocities = zip(*map(horizontal_peaks, motions), strict=True)
     axes = np.array([_peaks(motion) for motion in motions])
     numbers = {
         "peak_acceleration": (
@@ -55,6 +61,8 @@ def record_properties(inputs: Inputs) -> xr.Dataset:
             for place, axis in enumerate("xyz")
         },
         "peak_velocity": ([peak_horizontal_velocity(motion) for motion in motions], "m s-1", "PGV, horizontal vector"),
+        "median_peak_acceleration": (accelerations, "m s-2", "PGA, RotD50 or of the one component"),
+        "median_peak_velocity": (velocities, "m s-1", "PGV, RotD50 or of the one component"),
         "length": ([motion.duration for motion in motions], "s", "length"),
         "step": ([motion.step if isinstance(motion, Record) else np.nan for motion in motions], "s", "time step"),
         "residual_velocity": (
@@ -67,6 +75,10 @@ def record_properties(inputs: Inputs) -> xr.Dataset:
         {
             name: ("record", np.array(values, dtype=float), {"units": units, "long_name": long_name})
             for name, (values, units, long_name) in numbers.items()
+        }
+        | {
+            "definition": ("record", np.array(definitions)),
+            "drifts": ("record", np.array([bool(drifts(as_record(motion))) for motion in motions], np.int8)),
         },
         coords={"record": list(inputs.records)},
     )

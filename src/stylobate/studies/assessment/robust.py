@@ -1,4 +1,4 @@
-"""Every verdict on one column again under small changes; and by Housner's planar column."""
+"""Every verdict on one column again under small changes, at each dissipation; and by Housner's planar column."""
 
 import numpy as np
 import xarray as xr
@@ -19,22 +19,34 @@ _TOGETHER = 4
 
 
 def robustness_of(inputs: Inputs, column: str, parts: Parts, *, executor: Executor | None) -> xr.Dataset:
-    """Return which verdicts on a column flip, at the central dissipation.
+    """Return which verdicts on a column flip.
 
     Returns
     -------
     xarray.Dataset
-        Over `scale`, `record` and `change`: `flips`, 1 where the change makes it overturn or not, 0 where it does
-        not, −1 where the change does not apply or a run does not tell; `changed_tilt_ratio`. Without `change`:
-        `flipped` and `compared`, numbers of changes; `tilt_ratio_low`, `tilt_ratio_high`. Along `change`
-        `change_of`.
+        Over `dissipation`, `scale`, `record` and `change`: `applies`, 1 where the change applies to the record;
+        `flips`, 1 where the change makes it overturn or not, 0 where it does not, −1 where the change does not apply or
+        a run is undecided; `changed_tilt_ratio`. Without `change`: `flipped`, `compared` and `undecided`, numbers of
+        changes that flip the verdict, that apply and are decided, that apply and are not; `tilt_ratio_low`,
+        `tilt_ratio_high`. Along `change` `change_of`.
     """
-    by_scale = []
-    for scale in inputs.scales.tolist():
-        few = [_robustness_at(some, column, scale, parts, executor) for some in _some_at_a_time(inputs)]
-        by_scale.append(xr.concat(few, dim="record", data_vars="minimal", join="override"))
-    joined: xr.Dataset = xr.concat(by_scale, dim=xr.Variable("scale", inputs.scales), data_vars="all", join="override")
-    return joined
+
+    def at(level: str, scale: float) -> xr.Dataset:
+        few = [_robustness_at(some, column, level, scale, parts, executor) for some in _some_at_a_time(inputs)]
+        return xr.concat(few, dim="record", data_vars="minimal", join="override")
+
+    by_level = [
+        xr.concat(
+            [at(level, scale) for scale in inputs.scales.tolist()],
+            dim=xr.Variable("scale", inputs.scales),
+            data_vars="all",
+            join="override",
+        )
+        for level in inputs.changes_at
+    ]
+    levels = xr.Variable("dissipation", list(inputs.changes_at))
+    joined: xr.Dataset = xr.concat(by_level, dim=levels, data_vars="all", join="override")
+    return joined.assign(change_of=by_level[0]["change_of"].isel(scale=0, drop=True))
 
 
 def _some_at_a_time(inputs: Inputs) -> list[Inputs]:
@@ -47,11 +59,13 @@ def _part_name(column: str, what: str, inputs: Inputs) -> str:
     return f"{column}: {what}, {first}" + (f" to {last}" if last != first else "")
 
 
-def _robustness_at(inputs: Inputs, column: str, scale: float, parts: Parts, executor: Executor | None) -> xr.Dataset:
+def _robustness_at(
+    inputs: Inputs, column: str, level: str, scale: float, parts: Parts, executor: Executor | None
+) -> xr.Dataset:
     def compute(progress: Progress) -> xr.Dataset:
         return _told(
             robustness(
-                inputs.columns[column][CENTRAL],
+                inputs.columns[column][level],
                 dict(inputs.records),
                 scale=scale,
                 changes=inputs.changes,
@@ -63,17 +77,18 @@ def _robustness_at(inputs: Inputs, column: str, scale: float, parts: Parts, exec
         )
 
     identity = {
-        **inputs.identity(column, CENTRAL),
+        **inputs.identity(column, level),
         "scale": scale,
         "changes": [repr(change) for change in inputs.changes],
     }
     runs = len(inputs.records) * (1 + len(inputs.changes))
-    return parts.get(_part_name(column, f"small changes, scale {scale:g}", inputs), runs, identity, compute)
+    what = f"small changes, {level} dissipation, scale {scale:g}, {runs} runs"
+    return parts.get(_part_name(column, what, inputs), runs, identity, compute)
 
 
 def robustness_runs(inputs: Inputs) -> int:
     """Return how many runs the robustness of one column takes."""
-    return len(inputs.records) * (1 + len(inputs.changes)) * inputs.scales.size
+    return len(inputs.records) * (1 + len(inputs.changes)) * inputs.scales.size * len(inputs.changes_at)
 
 
 def _told(found: xr.Dataset) -> xr.Dataset:
@@ -81,12 +96,15 @@ def _told(found: xr.Dataset) -> xr.Dataset:
     given = found["reached_as_given"].sel({LIMIT_STATE: "overturning"}, drop=True)
     told = (overturning >= 0) & (given >= 0)
     flips = (overturning != given).astype(np.int8).where(told, np.int8(-1)).astype(np.int8)
+    undecided = (found["applies"] & ~told).sum("change")
     plain = xr.Dataset(
         {
+            "applies": found["applies"].astype(np.int8).assign_attrs(long_name="the change applies"),
             "flips": flips.assign_attrs(long_name="another verdict than as given"),
             "changed_tilt_ratio": found["tilt_ratio"],
             "flipped": (flips == 1).sum("change").assign_attrs(units="1", long_name="changes that flip the verdict"),
-            "compared": told.sum("change").assign_attrs(units="1", long_name="changes that apply and tell"),
+            "compared": told.sum("change").assign_attrs(units="1", long_name="changes that apply and are decided"),
+            "undecided": undecided.assign_attrs(units="1", long_name="changes that apply and are not decided"),
             "tilt_ratio_low": found["tilt_ratio_low"],
             "tilt_ratio_high": found["tilt_ratio_high"],
             "change_of": ("change", found["change_of"].to_numpy().astype(str)),

@@ -26,7 +26,8 @@ def verdicts_on(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exe
     -------
     xarray.Dataset
         Over `record`, `dissipation`, `vertical` and `scale`: `overturned` (1, 0, −1 where the run does not tell),
-        `tilt_ratio`, `uncertain`, `friction_demand`, `pivoting_demand`, `least_normal_force`.
+        its `outcome`, `tilt_ratio`, `uncertain`, `friction_demand` while it stands and while it moves,
+        `pivoting_demand`, `least_normal_force`.
     """
     vertical = (True, False) if inputs.has_vertical else (True,)
     levels = inputs.dissipation
@@ -35,6 +36,7 @@ def verdicts_on(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exe
 
     options = inputs.options.copy()
     options["demands"] = contact
+    options.setdefault("recheck", True)
 
     def compute(progress: Progress) -> xr.Dataset:
         runs = incremental_dynamic_analysis(
@@ -66,6 +68,7 @@ def _told(runs: xr.Dataset) -> xr.Dataset:
     plain = plain.drop_vars([name for name in plain.coords if name not in ("record", "scale", LIMIT_STATE)])
     found = {
         "overturned": plain["reached"].sel({LIMIT_STATE: "overturning"}, drop=True).astype(np.int8),
+        "outcome": plain["outcome"],
         "tilt_ratio": plain["tilt_ratio"],
         "uncertain": plain["uncertain"].astype(np.int8),
     }

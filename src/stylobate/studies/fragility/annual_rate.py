@@ -17,6 +17,7 @@ import xarray as xr
 from scipy.special import log_ndtr, ndtr
 
 from stylobate.errors import ParameterError, require_positive, require_whole
+from stylobate.motions.records import HorizontalComponent
 from stylobate.studies.fragility.hazard import HazardCurve
 from stylobate.studies.fragility.observations import LIMIT_STATE, Floats
 
@@ -38,7 +39,7 @@ def annual_rate(fragility: xr.Dataset, hazard: HazardCurve, *, years: float = 50
     fragility
         From `fit_fragility` or `lognormal_fragility`, in the intensity of the hazard.
     hazard
-        Annual rates of exceedance.
+        Annual rates of exceedance, for the same definition of the horizontal component.
     years
         Time for which the probability of one or more is told, of a Poisson process.
     bins
@@ -57,7 +58,8 @@ def annual_rate(fragility: xr.Dataset, hazard: HazardCurve, *, years: float = 50
     Raises
     ------
     ParameterError
-        If `fragility` is none, its unit is not that of the hazard, or a number is out of range.
+        If `fragility` is no fragility, its unit or horizontal component is not that of the hazard, or a number is out
+        of range.
 
     Notes
     -----
@@ -91,7 +93,8 @@ def annual_rate(fragility: xr.Dataset, hazard: HazardCurve, *, years: float = 50
             _log.warning("%.0f %% of the annual rate of %r lies beyond the hazard curve; extend it", 100.0 * one, name)
     not_told = [_why_not_told(*one, hazard) for one in zip(share, below, above, strict=True)]
     edges = _edges(hazard, count)
-    about = {"units": hazard.units, "long_name": hazard.quantity}
+    component = {} if hazard.component is None else {"component": str(hazard.component)}
+    about = {"units": hazard.units, "long_name": ", ".join([hazard.quantity, *component.values()]), **component}
     per_year = {"units": "a-1"}
     return xr.Dataset(
         {
@@ -124,7 +127,7 @@ def annual_rate(fragility: xr.Dataset, hazard: HazardCurve, *, years: float = 50
             "bin_intensity": ("bin", np.sqrt(edges[:-1] * edges[1:]), about),
             "hazard_intensity": ("point", np.exp(hazard.log_intensity), about),
         },
-        attrs={"kind": "annual rate", "years": time},
+        attrs={"kind": "annual rate", "years": time, "hazard_origin": hazard.origin},
     )
 
 
@@ -206,3 +209,27 @@ def _require_fragility(fragility: xr.Dataset, hazard: HazardCurve) -> None:
     if unit != hazard.units:
         message = f"hazard must have the unit of the fragility, {unit!r}, got {hazard.units!r}; convert one of them"
         raise ParameterError(message)
+    require_same_component(fragility["median"].attrs.get("component"), hazard.component)
+
+
+def require_same_component(fragility: str | None, hazard: str | HorizontalComponent | None) -> None:
+    """Raise ParameterError unless fragility and hazard state one definition of the horizontal component, or neither."""
+    own, other = (None if one is None else HorizontalComponent.named(one).value for one in (fragility, hazard))
+    if own == other:
+        return
+    if other is None:
+        message = (
+            f"hazard: horizontal component not stated, but the fragility uses {own!r}. State the one of the hazard's "
+            "ground-motion models, such as component = 'RotD50' (--hazard-component RotD50)."
+        )
+    elif own is None:
+        message = (
+            f"fragility: horizontal component not stated, but the hazard uses {other!r}. State it with component, or "
+            "as the attribute of that name of the intensities."
+        )
+    else:
+        message = (
+            f"hazard: horizontal component {other!r}, but the fragility uses {own!r}. Fit the fragility with component "
+            f"= {other!r}, or use a hazard curve of {own!r}."
+        )
+    raise ParameterError(message)

@@ -7,6 +7,7 @@ import xarray as xr
 from scipy.special import ndtr
 
 from stylobate.errors import require_positive
+from stylobate.motions.records import HorizontalComponent
 from stylobate.studies.fragility.observations import LIMIT_STATE, Floats, Observations
 from stylobate.studies.fragility.probit import FitStatus
 
@@ -34,8 +35,15 @@ class Curve:
     shares: dict[str, Floats]
 
 
-def lognormal_fragility(median: float, dispersion: float, *, name: str = "given", units: str = "1") -> xr.Dataset:
-    """Return a fragility that is known from elsewhere, without data or intervals.
+def lognormal_fragility(
+    median: float,
+    dispersion: float,
+    *,
+    name: str = "given",
+    units: str = "1",
+    component: str | HorizontalComponent | None = None,
+) -> xr.Dataset:
+    """Build a fragility that is known from elsewhere, without data or intervals.
 
     Parameters
     ----------
@@ -45,6 +53,8 @@ def lognormal_fragility(median: float, dispersion: float, *, name: str = "given"
         Standard deviation β of the logarithm of the capacity.
     name, units
         Of the limit state and of the intensity.
+    component
+        Definition of the horizontal component of the intensity, such as "RotD50"; None where it has none.
 
     Returns
     -------
@@ -54,7 +64,7 @@ def lognormal_fragility(median: float, dispersion: float, *, name: str = "given"
     Raises
     ------
     ParameterError
-        If a number is not positive.
+        If a number is not positive, or the component not known.
 
     Examples
     --------
@@ -63,14 +73,16 @@ def lognormal_fragility(median: float, dispersion: float, *, name: str = "given"
     """
     m, beta = require_positive("median", median), require_positive("dispersion", dispersion)
     x = m * np.exp(np.linspace(-_REACH * beta, _REACH * beta, CURVE_POINTS))
+    definition = {} if component is None else {"component": HorizontalComponent.named(component).value}
+    about = {"units": units, "long_name": ", ".join(["intensity", *definition.values()]), **definition}
     return xr.Dataset(
         {
-            "median": (LIMIT_STATE, [m], {"units": units, "long_name": "median intensity"}),
+            "median": (LIMIT_STATE, [m], {**about, "long_name": f"median {about['long_name']}"}),
             "dispersion": (LIMIT_STATE, [beta], {"units": "1", "long_name": "dispersion"}),
             "status": (LIMIT_STATE, [int(FitStatus.FITTED)], _status_attributes()),
             "probability": ((LIMIT_STATE, "curve"), ndtr(np.log(x / m) / beta)[np.newaxis], _PROBABILITY),
         },
-        coords={LIMIT_STATE: [name], "curve_intensity": ("curve", x, {"units": units, "long_name": "intensity"})},
+        coords={LIMIT_STATE: [name], "curve_intensity": ("curve", x, about)},
         attrs={"kind": "fragility", "intervals": "none"},
     )
 
@@ -88,9 +100,11 @@ def _status_attributes() -> dict[str, object]:
 
 def curves_table(seen: Observations, x: Floats, curves: list[Curve]) -> xr.Dataset:
     """Return what is told of each limit state, and its curve at intensities `x`."""
-    about = {"units": seen.attributes["units"]}
+    about: dict[str, object] = {
+        name: seen.attributes[name] for name in ("units", "component") if name in seen.attributes
+    }
     names = {
-        "median": {**about, "long_name": "median intensity"},
+        "median": {**about, "long_name": f"median {seen.attributes['long_name']}"},
         "median_low": {**about, "long_name": "lower end of the interval of the median"},
         "median_high": {**about, "long_name": "upper end of the interval of the median"},
         "dispersion": {"units": "1", "long_name": "dispersion"},

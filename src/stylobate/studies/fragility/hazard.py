@@ -1,11 +1,13 @@
 """Hazard: how often in a year an intensity is exceeded at a site."""
 
 from dataclasses import dataclass
+from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.errors import ParameterError
+from stylobate.errors import ParameterError, require_positive
+from stylobate.motions.records import HorizontalComponent
 from stylobate.studies.fragility.observations import Floats
 
 _LEAST = 2
@@ -18,11 +20,15 @@ class HazardCurve:
     Parameters
     ----------
     intensity
-        Two or more, positive, increasing.
+        Two or more, positive and different; they are kept in increasing order.
     rate
-        Mean annual rate λ [1/a] at which each is exceeded, positive, nowhere increasing.
+        Mean annual rate λ [1/a] at which each is exceeded, positive, nowhere increasing with intensity.
     units, quantity
         Of the intensity, as on axes: "m s-2", "peak ground acceleration".
+    component
+        Definition of the horizontal component of the intensity, such as "RotD50"; None where it has none.
+    origin
+        Where the rates come from, in words.
 
     Raises
     ------
@@ -39,20 +45,71 @@ class HazardCurve:
     rate: npt.ArrayLike
     units: str = "1"
     quantity: str = "intensity"
+    component: str | HorizontalComponent | None = None
+    origin: str = ""
+
+    @classmethod
+    def of_probabilities(
+        cls, intensity: npt.ArrayLike, probability: npt.ArrayLike, *, investigation_time: float, **more: Any
+    ) -> Self:
+        """Convert probabilities of exceedance within an investigation time [a] to a curve of annual rates.
+
+        Occurrences are taken as a Poisson process: rate = −ln(1 − probability)/investigation time.
+
+        Parameters
+        ----------
+        intensity, probability
+            Intensities, and the probabilities that each is exceeded, between 0 and 1. A probability of exactly 0 or 1
+            determines no rate: such points are left out.
+        investigation_time
+            The time of the probabilities [a], often 50.
+        **more
+            As of the curve: units, quantity, component, origin.
+
+        Raises
+        ------
+        ParameterError
+            If a probability or the time is out of range, or the points are no curve.
+
+        Examples
+        --------
+        >>> curve = HazardCurve.of_probabilities([0.1, 0.4], [0.5, 0.1], investigation_time=50.0)
+        >>> print(np.round(curve.rate, 5))
+        [0.01386 0.00211]
+        """
+        x, p = _numbers("intensity", intensity), _numbers("probability", probability)
+        time = require_positive("investigation_time", investigation_time, "a")
+        if x.shape != p.shape:
+            message = f"probability must have one number for each intensity, got {p.size} for {x.size}"
+            raise ParameterError(message)
+        bad = p[~((p >= 0.0) & (p <= 1.0))]
+        if bad.size:
+            message = f"probability must be between 0 and 1, got {bad[0]!s}; divide percentages by 100"
+            raise ParameterError(message)
+        inside = (p > 0.0) & (p < 1.0)
+        rate = -np.log1p(-p[inside]) / time
+        origin = f"probabilities of exceedance in {time:g} years, taken as those of a Poisson process"
+        return cls(intensity=x[inside], rate=rate, **{"origin": origin, **more})
 
     def __post_init__(self) -> None:
         x, rate = (_points(name, value) for name, value in (("intensity", self.intensity), ("rate", self.rate)))
         if x.shape != rate.shape:
             message = f"rate must have one number for each intensity, got {rate.size} for {x.size}"
             raise ParameterError(message)
-        if np.any(np.diff(x) <= 0.0):
-            message = f"intensity must increase, got {x[1:][np.diff(x) <= 0.0][0]!s} after a value no less"
+        order = np.argsort(x)
+        x, rate = x[order], rate[order]
+        if np.any(twice := np.diff(x) == 0.0):
+            message = f"intensity must hold different values, got {x[1:][twice][0]!s} twice"
             raise ParameterError(message)
-        if np.any(np.diff(rate) > 0.0):
+        if np.any(rises := np.diff(rate) > 0.0):
+            at = int(np.argmax(rises))
             message = (
-                f"rate must not increase with intensity, got {rate[1:][np.diff(rate) > 0.0][0]!s} after a lesser one"
+                f"rate must not increase with intensity, got {rate[at + 1]!s} at {x[at + 1]!s} after {rate[at]!s} at "
+                f"{x[at]!s}"
             )
             raise ParameterError(message)
+        if self.component is not None:
+            object.__setattr__(self, "component", HorizontalComponent.named(self.component).value)
         # A value of its own, whatever becomes of the arrays that it was made from.
         object.__setattr__(self, "intensity", tuple(x.tolist()))
         object.__setattr__(self, "rate", tuple(rate.tolist()))
@@ -80,13 +137,17 @@ class HazardCurve:
 
 
 def _points(name: str, value: npt.ArrayLike) -> Floats:
-    given = np.asarray(value)
-    if given.dtype.kind not in "iuf" or given.ndim != 1 or given.size < _LEAST:
-        message = f"{name} must be a list of two or more numbers, got {value!r}"
-        raise ParameterError(message)
-    array = given.astype(np.float64)
+    array = _numbers(name, value)
     bad = array[~(np.isfinite(array) & (array > 0.0))]
     if bad.size:
         message = f"{name} must be positive and finite, got {bad[0]!s}; leave such points out"
         raise ParameterError(message)
     return array
+
+
+def _numbers(name: str, value: npt.ArrayLike) -> Floats:
+    given = np.asarray(value)
+    if given.dtype.kind not in "iuf" or given.ndim != 1 or given.size < _LEAST:
+        message = f"{name} must be a list of two or more numbers, got {value!r}"
+        raise ParameterError(message)
+    return given.astype(np.float64)

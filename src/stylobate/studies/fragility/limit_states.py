@@ -1,4 +1,4 @@
-"""Limit states of columns: uplift, peak tilts, overturning, told from the results of ensembles."""
+"""Limit states of columns: peak tilts and overturning, from the results of ensembles."""
 
 from collections.abc import Sequence
 
@@ -16,12 +16,13 @@ def limit_states(
     runs: xr.Dataset,
     *,
     slenderness: npt.ArrayLike | xr.DataArray | None = None,
-    tilt_ratios: Sequence[float] = (0.1, 0.5, 1.0),
-    uplift_ratio: float = 1e-3,
+    tilt_ratios: Sequence[float] = (1e-3, 0.1, 0.5, 1.0),
 ) -> xr.DataArray:
-    """Return which limit states each run reached: uplift, largest tilts in parts of α = atan(c), overturning.
+    """Find which limit states each run reached: peak tilts in fractions of α = atan(c), and overturning.
 
-    α is the tilt at which the mass centre of a column that tilts over its rim stands above the point of contact.
+    α is the tilt at which the mass centre of a column that tilts over its rim stands above the point of contact. The
+    smallest tilt by default, 0.001 α, separates columns that rock from those that stand. It is not uplift: an upright
+    column lifts as soon as |a_h| > c (g + a_z), and may then tilt less.
 
     Parameters
     ----------
@@ -30,10 +31,7 @@ def limit_states(
     slenderness
         c of each run; by default the coordinate `slenderness` of `runs`.
     tilt_ratios
-        Peak tilts over α, positive.
-    uplift_ratio
-        Part of α above which a tilt is uplift and not an imperfection of the start. A run that starts at a larger tilt
-        has it from the start.
+        Peak tilts over α, positive. A run that starts at a larger tilt has reached it from the start.
 
     Returns
     -------
@@ -66,9 +64,9 @@ def limit_states(
     codes, tilt = runs["outcome"], runs["largest_tilt"]
     fallen = codes == code_of(Outcome.OVERTURNED)
     told = ~codes.isin([NOT_COMPUTED, *(code_of(one) for one in NOT_TOLD)])
-    limits = {"uplift": require_positive("uplift_ratio", uplift_ratio)}
-    for place, ratio in enumerate(tilt_ratios):
-        limits[f"tilt {require_positive(f'tilt_ratios[{place}]', ratio):g} α"] = ratio
+    limits = {
+        f"tilt {require_positive(f'tilt_ratios[{place}]', ratio):g} α": ratio for place, ratio in enumerate(tilt_ratios)
+    }
     exceeded = [fallen | (tilt > ratio * critical) for ratio in limits.values()]
     computed = codes != NOT_COMPUTED
     unreached = xr.zeros_like(codes, dtype=np.int8).where(told, np.int8(NOT_KNOWN))

@@ -10,10 +10,11 @@ import xarray as xr
 
 from stylobate.models import Model
 from stylobate.motions import BaseMotion
+from stylobate.motions.records import HorizontalComponent
 from stylobate.spec.fragility import AnySpread, FragilitySetup, Lognormal, Normal
 from stylobate.studies.fragility import Counting, HazardCurve, annual_rate, dispersion_parts
 from stylobate.studies.shaking.incremental import incremental_dynamic_analysis
-from stylobate.studies.shaking.intensities import Intensity, SpectralAcceleration, as_intensity
+from stylobate.studies.shaking.intensities import Intensity, IntensityMeasure, SpectralAcceleration
 from stylobate.studies.shaking.property_spreads import (
     LognormalSpread,
     NormalSpread,
@@ -42,7 +43,7 @@ class FragilityStudy:
     ----------
     model, records
         The column, and base motions by name.
-    scales, rotations, vertical, tail, intensity
+    scales, rotations, vertical, tail, intensity, component
         As for `incremental_dynamic_analysis`.
     spreads, samples
         How properties spread, and how many samples of them are drawn; none without spreads.
@@ -51,7 +52,7 @@ class FragilityStudy:
     counting, confidence, resamples
         As for `fit_fragility`.
     hazard
-        The hazard curve, in `intensity`.
+        The hazard curve, in `intensity` and `component`.
     years
         For which probabilities are told.
     options
@@ -65,6 +66,7 @@ class FragilityStudy:
     vertical: tuple[bool, ...] = (True,)
     tail: float | None = None
     intensity: Intensity | SpectralAcceleration = Intensity.PEAK_ACCELERATION
+    component: HorizontalComponent = HorizontalComponent.ROTD50
     spreads: Mapping[str, Spread]
     samples: int = 0
     seed: int = 0
@@ -87,7 +89,7 @@ class FragilityStudy:
         table = setup.table
         spectral = None if isinstance(table.intensity, str) else table.intensity
         measure = table.intensity if spectral is None else SpectralAcceleration(spectral.period, spectral.damping)
-        intensity = as_intensity(measure)  # type: ignore[arg-type]
+        intensity = IntensityMeasure.named(measure, table.component)  # type: ignore[arg-type]
         return cls(
             model=setup.model,
             records=setup.records,
@@ -95,7 +97,8 @@ class FragilityStudy:
             rotations=table.rotations,
             vertical=table.vertical,
             tail=table.tail,
-            intensity=intensity,
+            intensity=intensity.quantity,
+            component=intensity.component,
             spreads={name: _spread(spread) for name, spread in table.spreads.items()},
             samples=table.samples,
             seed=table.seed,
@@ -130,6 +133,7 @@ class FragilityStudy:
             parameters=samples,
             tail=self.tail,
             intensity=self.intensity,
+            component=self.component,
             store=store,
             executor=executor,
             resume=resume,

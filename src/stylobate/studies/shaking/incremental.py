@@ -13,13 +13,14 @@ from stylobate.engine.parameters import changed_model
 from stylobate.errors import Outcome, ParameterError, require_finite
 from stylobate.models import Model
 from stylobate.motions import BaseMotion, OneOf
+from stylobate.motions.records import HorizontalComponent
 from stylobate.results.outcomes import NOT_COMPUTED, code_of
 from stylobate.studies.fragility import limit_states
 from stylobate.studies.labelled_sweeps import labelled_sweep
 from stylobate.studies.safe_distance import NOT_TOLD
 from stylobate.studies.shaking.crossing import crossed, unfolded
 from stylobate.studies.shaking.following import tail_of
-from stylobate.studies.shaking.intensities import Intensity, SpectralAcceleration, as_intensity
+from stylobate.studies.shaking.intensities import Intensity, IntensityMeasure, SpectralAcceleration
 from stylobate.studies.shaking.named_records import Records, named_records
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
@@ -46,6 +47,7 @@ def incremental_dynamic_analysis(
     parameters: Mapping[str, npt.ArrayLike] | None = None,
     tail: float | None = None,
     intensity: str | Intensity | SpectralAcceleration = Intensity.PEAK_ACCELERATION,
+    component: str | HorizontalComponent = HorizontalComponent.ROTD50,
     store: str | Path | None = None,
     executor: Executor | None = None,
     resume: bool = False,
@@ -75,8 +77,9 @@ def incremental_dynamic_analysis(
         […]}, arrays of one length as from `property_samples`; or numbers that all runs have.
     tail
         How long columns are followed after the end of the record [s]; by default 20/p, of each column its own p.
-    intensity
-        The measure of the horizontal components that is told of each run.
+    intensity, component
+        The intensity measure of each run, and the definition of its horizontal component: "RotD50", "RotD100",
+        "geometric mean" or "larger component". A motion along one line has one component, the same in all of them.
     store, executor, resume, progress
         As in `run_sweep`.
     **options
@@ -116,7 +119,9 @@ def incremental_dynamic_analysis(
            [0, 0, 1]], dtype=int8)
     """
     require_no_tilt_limit(options)
-    plan = Plan.of(model, records, scales, rotations, vertical, parameters, tail, as_intensity(intensity))
+    plan = Plan.of(
+        model, records, scales, rotations, vertical, parameters, tail, IntensityMeasure.named(intensity, component)
+    )
 
     def label(runs: xr.Dataset) -> xr.Dataset:
         return plan.labelled(unfolded(runs, plan.lengths))
@@ -142,7 +147,7 @@ class Plan:
     tail
         Free vibration after the record [s], by default 20/p.
     intensity
-        The measure.
+        The measure, with its horizontal component.
     left_out
         Dimensions of one value that the result has as coordinates only.
     """
@@ -154,7 +159,7 @@ class Plan:
     vertical: tuple[bool, ...]
     parameters: Mapping[str, Floats]
     tail: float | None
-    intensity: Intensity | SpectralAcceleration
+    intensity: IntensityMeasure
     left_out: tuple[str, ...]
 
     @classmethod
@@ -167,7 +172,7 @@ class Plan:
         vertical: bool | Sequence[bool],
         parameters: Mapping[str, npt.ArrayLike] | None,
         tail: float | None,
-        intensity: Intensity | SpectralAcceleration,
+        intensity: IntensityMeasure,
     ) -> Self:
         """Return the plan of these arguments, or raise ParameterError for one that cannot be."""
         named = named_records(records)
@@ -252,13 +257,12 @@ class Plan:
     @property
     def levels(self) -> xr.DataArray:
         """The intensity of the runs, over record, property sample where it depends on it, and scale."""
-        of_column = self.intensity in (Intensity.ACCELERATION_RATIO, Intensity.VELOCITY_RATIO)
+        of_column = self.intensity.quantity in (Intensity.ACCELERATION_RATIO, Intensity.VELOCITY_RATIO)
         columns = [model.column for model in (self.sampled if of_column else self.sampled[:1])]
         values = np.array([[self.intensity.of(motion, one) for one in columns] for motion in self.records.values()])
-        attributes = {"units": self.intensity.units, "long_name": self.intensity.value}
         dims = ("record", "property_sample", "scale") if of_column else ("record", "scale")
         scaled = values[:, :, np.newaxis] * self.scales
-        return xr.DataArray(scaled if of_column else scaled[:, 0], dims=dims, attrs=attributes)
+        return xr.DataArray(scaled if of_column else scaled[:, 0], dims=dims, attrs=self.intensity.attributes)
 
     def labelled(self, runs: xr.Dataset) -> xr.Dataset:
         """Return `runs`, over all dimensions, as an incremental dynamic analysis."""
@@ -272,7 +276,7 @@ class Plan:
         ).assign_coords(self._coordinates())
         lone = dict.fromkeys(self.left_out, 0)
         found = told.isel(lone).drop_vars("property_sample" if "property_sample" in self.left_out else [])
-        return found.assign_attrs(kind="incremental dynamic analysis", intensity=self.intensity.value)
+        return found.assign_attrs(kind="incremental dynamic analysis", intensity=self.intensity.name)
 
     def _coordinates(self) -> dict[str, Any]:
         samples = {name: ("property_sample", values, attributes_of(name)) for name, values in self.parameters.items()}

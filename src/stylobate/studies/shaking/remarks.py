@@ -41,5 +41,5 @@ def _of_names(records: Iterable[str]) -> Iterator[str]:
             told = " and ".join(map(repr, names))
             yield (
                 f"records: {told} differ by case only and are taken as different ones; if they are components of one "
-                "event, rename their files"
+                "event, list their files as one event"
             )

@@ -130,6 +130,7 @@ class _Case:
     delay: float
     values: Mapping[str, float]
     tolerance: float
+    rest_energy: float | None
     followed: float
     slenderness: float
 
@@ -192,6 +193,7 @@ def _cases(model: Model, named: Mapping[str, BaseMotion], changes: Sequence[Chan
                     delay=later,
                     values=values,
                     tolerance=1.0 if change is None else change.tolerance_factor,
+                    rest_energy=None if change is None else change.rest_threshold,
                     followed=moved.duration + later + tail_of(column, tail),
                     slenderness=column.slenderness,
                 )
@@ -200,10 +202,11 @@ def _cases(model: Model, named: Mapping[str, BaseMotion], changes: Sequence[Chan
 
 
 def _grouped(cases: Sequence[_Case]) -> list[list[_Case]]:
-    """Return the cases that one sweep can run: the same numbers differ, under one tolerance."""
-    groups: dict[tuple[tuple[str, ...], float, bool], list[_Case]] = {}
+    """Return the cases that one sweep can run: the same numbers differ, under one tolerance and rest energy."""
+    groups: dict[tuple[tuple[str, ...], float, float | None, bool], list[_Case]] = {}
     for case in cases:
-        groups.setdefault((tuple(case.values), case.tolerance, case.delay > 0.0), []).append(case)
+        kind = (tuple(case.values), case.tolerance, case.rest_energy, case.delay > 0.0)
+        groups.setdefault(kind, []).append(case)
     return list(groups.values())
 
 
@@ -222,6 +225,8 @@ def _run(
     chosen = {**options, "rtol": tolerance * options.get("rtol", DEFAULTS["rtol"])}
     if options.get("atol") is not None:
         chosen["atol"] = tolerance * options["atol"]
+    if group[0].rest_energy is not None:
+        chosen["rest_energy"] = group[0].rest_energy
     at: dict[str, npt.ArrayLike] = {
         "motion": np.array([number[id(case.motion)] for case in group])[each],
         "scale": scale * np.array([case.scale for case in group])[each],

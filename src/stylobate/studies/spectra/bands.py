@@ -45,9 +45,9 @@ def overturning_bands(
     """Return all bands of amplitude in which a base motion overturns a column, over any parameters.
 
     Overturning is not monotone: above a scale that overturns the column may be safe again. So each case is run at all
-    `scales`, and every change of outcome between neighbours is halved until its ends are as near as `width`. So is
-    every pair that overturns in opposite directions: between them may be a gap in which it does not. Over the size, or
-    the frequency of a pulse, this is the overturning spectrum of the motion.
+    `scales`, and every change between neighbours, from overturned to not, or from decided to undecided, is halved until
+    its ends are as near as `width`. So is every pair that overturns in opposite directions: between them may be a gap
+    in which it does not. Over the size, or the frequency of a pulse, this is the overturning spectrum of the motion.
 
     Parameters
     ----------
@@ -79,11 +79,15 @@ def overturning_bands(
 
         * `band_from`, `band_to`: the least and the largest scale that was seen to overturn;
         * `safe_below`, `safe_above`: the nearest scales outside that were seen not to; NaN where the band is
-          `open_below` or `open_above`, reaching the first or last scale;
+          `open_below` or `open_above`, reaching the first or last scale, or a run that is not decided, for which
+          `undecided_below` or `undecided_above` is True;
         * `uncertain_below`, `uncertain_above`: a small change may move that edge.
 
-        `bands` counts them; `reversals` the changes of direction in them between which no safe scale was found;
-        `unknown` the runs that tell nothing: failed, lifted off. Coordinates normalize: `frequency_parameter` p,
+        A run that failed or lifted off is not decided: it ended before it showed whether the column overturns. No band
+        and no safe interval reaches across. Over the names and `stretch`: `undecided_from` and `undecided_to`, the
+        nearest decided scales on both sides, or the ends of the scan. `bands` counts bands; `reversals` the changes of
+        direction in them between which no safe scale was found; `unknown` the undecided runs of the scan; `decided_to`
+        is the largest scale up to which every run was decided. Coordinates normalize: `frequency_parameter` p,
         `tipping_angle` α, `rim_distance` R, `acceleration_ratio` (peak horizontal base acceleration over g tan α, at
         scale 1) and, of pulses and harmonic motions, `frequency_ratio` ω/p.
 

@@ -36,10 +36,16 @@ class Ends:
     def __getitem__(self, chosen: Any) -> "Ends":
         return Ends(*(array[chosen] for array in (self.scale, self.state, self.direction, self.uncertain)))
 
+    @property
+    def decided(self) -> Flags:
+        """Whether it is known if the column overturned."""
+        return self.state >= 0
+
     def differ(self, other: "Ends") -> Flags:
-        """Return where one overturns and the other does not, or both do in directions more than a right angle apart."""
+        """Return where the states differ, undecided being one state, or both overturn more than a right angle apart."""
         apart = np.cos(self.direction - other.direction) < 0.0
-        return np.asarray((self.state != other.state) | ((self.state == 1) & apart))
+        unlike = np.maximum(self.state, -1) != np.maximum(other.state, -1)
+        return np.asarray(unlike | ((self.state == 1) & apart))
 
 
 def joined(*parts: Ends) -> Ends:
@@ -52,23 +58,19 @@ def joined(*parts: Ends) -> Ends:
 class Edges:
     """Changes along the scale, in order of case and scale: between the runs `low` and `high` something changes.
 
-    Either overturning begins or ends there, or its direction turns round, and there may be a safe gap between. An edge
-    is `stuck` where the run in its middle told nothing.
+    Overturning begins or ends there; or decided runs end or begin; or the direction of overturning turns round, and
+    there may be a safe gap between.
     """
 
     case: Integers
     low: Ends
     high: Ends
-    stuck: Flags
 
     @classmethod
     def between(cls, scan: Ends) -> Self:
         """Return the edges of a scan, whose arrays have the shape (cases, scales), scales increasing."""
-        case, place = np.nonzero(scan.state >= 0)
-        known = scan[case, place]
-        neighbours = np.flatnonzero((np.diff(case) == 0) & known[:-1].differ(known[1:]))
-        low, high = known[neighbours], known[neighbours + 1]
-        return cls(case[neighbours], low, high, np.zeros(neighbours.size, dtype=bool))
+        case, place = np.nonzero(scan[:, :-1].differ(scan[:, 1:]))
+        return cls(case, scan[case, place], scan[case, place + 1])
 
     @property
     def middle(self) -> Floats:
@@ -81,8 +83,8 @@ class Edges:
         return np.asarray((self.low.state == 1) & (self.high.state == 1))
 
     def wide(self, width: float) -> Flags:
-        """Return which edges are wider than this part of themselves, and can be halved."""
-        return np.asarray((self.high.scale > self.low.scale * (1.0 + width)) & ~self.stuck)
+        """Return which edges are wider than this fraction of their scale."""
+        return np.asarray(self.high.scale > self.low.scale * (1.0 + width))
 
     def halvings(self, width: float) -> int:
         """Return how many runs it takes to halve all of them until none is wide, if no more are found."""
@@ -93,13 +95,9 @@ class Edges:
     def halved(self, chosen: Flags, middle: Ends) -> "Edges":
         """Return the edges with those `chosen` cut where the runs `middle` were made: of each the parts that differ."""
         case, low, high = self.case[chosen], self.low[chosen], self.high[chosen]
-        known = middle.state >= 0
-        below, above = known & low.differ(middle), known & middle.differ(high)
-        cases = np.concatenate([self.case[~chosen], case[~known], case[below], case[above]])
-        lower = joined(self.low[~chosen], low[~known], low[below], middle[above])
-        upper = joined(self.high[~chosen], high[~known], middle[below], high[above])
-        stuck = np.concatenate(
-            [self.stuck[~chosen], np.ones(int((~known).sum()), bool), np.zeros(int(below.sum() + above.sum()), bool)]
-        )
+        below, above = low.differ(middle), middle.differ(high)
+        cases = np.concatenate([self.case[~chosen], case[below], case[above]])
+        lower = joined(self.low[~chosen], low[below], middle[above])
+        upper = joined(self.high[~chosen], middle[below], high[above])
         order = np.lexsort((lower.scale, cases))
-        return Edges(cases[order], lower[order], upper[order], stuck[order])
+        return Edges(cases[order], lower[order], upper[order])

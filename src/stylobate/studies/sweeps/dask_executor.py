@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from stylobate.errors import ParameterError, StylobateError, UnsupportedError, require_whole
+from stylobate.errors import MOST_THREADS, ParameterError, StylobateError, UnsupportedError, require_whole
 from stylobate.studies.sweeps.computing import Computed, Progress, Task
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class Dask:
 
     def __post_init__(self) -> None:
         if self.workers is not None:
-            object.__setattr__(self, "workers", require_whole("workers", self.workers, least=1))
+            object.__setattr__(self, "workers", require_whole("workers", self.workers, least=1, most=MOST_THREADS))
         given = [name for name in ("address", "workers", "client") if getattr(self, name) is not None]
         if len(given) > 1:
             message = f"Dask takes one of address, workers and client, got {' and '.join(given)}"

@@ -1,7 +1,6 @@
 """Designs: which values the runs of a sweep have. A grid, random points in a box, or points that are given."""
 
 import hashlib
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
@@ -9,12 +8,14 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.errors import ParameterError, require_whole
+from stylobate.engine.memory import require_memory
+from stylobate.errors import LARGEST_SEED, MOST_RUNS, ParameterError, require_whole
 from stylobate.studies.sweeps.quantities import Floats, checked_values
 
 # Random points are drawn in groups of this many, each from a stream of its own: they do not depend on the blocks.
 _GROUP = 4096
-_LARGEST_SEED = 2**63
+# What drawing a random run and keeping its result takes at least.
+_BYTES_OF_A_START = 64
 
 
 class Design(Protocol):
@@ -112,8 +113,10 @@ class Box:
         _require_names("over", over)
         bounds = {name: _bounds(name, pair) for name, pair in over.items()}
         if isinstance(seed, np.random.Generator):
-            seed = int(seed.integers(_LARGEST_SEED))
-        return cls(bounds, require_whole("count", count, least=0), require_whole("seed", seed, least=0))
+            seed = int(seed.integers(LARGEST_SEED.number))
+        number = require_whole("count", count, least=0, most=MOST_RUNS)
+        require_memory(_BYTES_OF_A_START * number, number, "Draw fewer")
+        return cls(bounds, number, require_whole("seed", seed, least=0, most=LARGEST_SEED))
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -244,7 +247,4 @@ def _bounds(name: str, pair: Sequence[float]) -> tuple[float, float]:
         message = f"over[{name!r}] must be a lower and an upper bound, got {pair!r}"
         raise ParameterError(message)
     low, high = (float(value) for value in values)
-    if not math.isfinite(high - low):
-        message = f"over[{name!r}] must be a range of finite width, got {pair!r}"
-        raise ParameterError(message)
     return low, high

@@ -4,7 +4,7 @@ from collections.abc import Generator, Iterable
 from dataclasses import dataclass
 from typing import Protocol
 
-from stylobate.errors import ParameterError, require_whole
+from stylobate.errors import MOST_THREADS, ParameterError, require_whole
 from stylobate.studies.sweeps.computing import Computed, Progress, Task
 from stylobate.studies.sweeps.dask_executor import Dask
 
@@ -45,7 +45,7 @@ class Threads:
 
     def __post_init__(self) -> None:
         if self.threads is not None:
-            object.__setattr__(self, "threads", require_whole("threads", self.threads, least=1))
+            object.__setattr__(self, "threads", require_whole("threads", self.threads, least=1, most=MOST_THREADS))
 
     def results(
         self, work: Work, tasks: Iterable[Task], progress: Progress | None = None

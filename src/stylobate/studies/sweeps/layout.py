@@ -1,5 +1,6 @@
 """The layout of a sweep's results: which variables, of which type and size, and what stands where nothing is known."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -38,6 +39,11 @@ class Variable:
         if self.name == "outcome":
             return NOT_COMPUTED
         return self.dtype.type(np.nan if self.dtype.kind == "f" else 0)
+
+    @property
+    def bytes_of_a_run(self) -> int:
+        """What the result of one run takes in memory [bytes]."""
+        return self.dtype.itemsize * math.prod(self.shape)
 
     def empty(self, runs: tuple[int, ...]) -> npt.NDArray[Any]:
         """Return an array for so many runs, nothing computed."""
@@ -89,15 +95,17 @@ def bytes_on_disk(layout: Layout, design: Design, blocks: Blocks) -> int:
     """Return what the results and coordinates take on disk at most [bytes]: no compression, whole disk blocks."""
     if not len(blocks):
         return DISK_BLOCK
-    lengths = (design.shape[design.dims.index(dim)] for dim in design.coordinate_dims.values())
-    return len(blocks) * bytes_of_block(layout, blocks[0]) + sum(_on_disk(_FLOAT * length) for length in lengths)
+    places = [design.dims.index(dim) for dim in design.coordinate_dims.values()]
+    coordinates = sum(blocks.counts[place] * _on_disk(_FLOAT * blocks.edges[place]) for place in places)
+    return len(blocks) * bytes_of_block(layout, blocks[0]) + coordinates
 
 
 def bytes_of_block(layout: Layout, block: Block) -> int:
     """Return what one `block` takes on disk at most, its mark included [bytes]."""
-    sizes = (variable.dtype.itemsize * int(np.prod(variable.shape)) * block.size for variable in layout.variables)
+    sizes = (variable.bytes_of_a_run * block.size for variable in layout.variables)
     return DISK_BLOCK + sum(_on_disk(size) for size in sizes)
 
 
 def _on_disk(size: int) -> int:
-    return -(-size // DISK_BLOCK) * DISK_BLOCK
+    """Return what a chunk of so many bytes takes at most; its compressed form can be larger by 1/256 and 72 bytes."""
+    return -(-(size + size // 256 + 72) // DISK_BLOCK) * DISK_BLOCK

@@ -7,8 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.engine.parameters import check_names
-from stylobate.errors import ParameterError
+from stylobate.errors import ParameterError, require_size
 from stylobate.models import Model
+from stylobate.models.bounds import BOUNDS
 
 Floats = npt.NDArray[np.float64]
 
@@ -35,6 +36,10 @@ def _not_negative(long_name: str, units: str) -> _Quantity:
     return _Quantity(long_name, units, lambda values: np.isfinite(values) & (values >= 0.0), "be zero or positive")
 
 
+def _of_models(name: str, long_name: str, units: str) -> _Quantity:
+    return _Quantity(long_name, units, BOUNDS[name].accepts, BOUNDS[name].demand)
+
+
 _QUANTITIES = {
     "tilt_x": _Quantity("initial tilt along x", "rad"),
     "tilt_y": _Quantity("initial tilt along y", "rad"),
@@ -50,14 +55,14 @@ _QUANTITIES = {
     "gravity": _positive("acceleration of gravity", "m s-2"),
     "slenderness": _positive("slenderness", "1"),
     "size": _positive("size, in that of the column given", "1"),
-    "damping": _not_negative("friction", "1"),
-    "spin_friction": _not_negative("spin friction", "1"),
-    "rolling_resistance": _not_negative("rolling resistance", "1"),
-    "restitution": _not_negative("restitution", "1"),
-    "friction_coefficient": _positive("kinetic friction coefficient", "1"),
-    "static_friction_coefficient": _positive("static friction coefficient", "1"),
-    "patch": _not_negative("radius of the contact, in base radii", "1"),
-    "incline": _not_negative("angle of the plane to the horizontal", "rad"),
+    "damping": _of_models("damping", "friction", "1"),
+    "spin_friction": _of_models("spin_friction", "spin friction", "1"),
+    "rolling_resistance": _of_models("rolling_resistance", "rolling resistance", "1"),
+    "restitution": _of_models("restitution", "restitution", "1"),
+    "friction_coefficient": _of_models("friction_coefficient", "kinetic friction coefficient", "1"),
+    "static_friction_coefficient": _of_models("static_friction_coefficient", "static friction coefficient", "1"),
+    "patch": _of_models("patch", "radius of the contact, in base radii", "1"),
+    "incline": _of_models("incline", "angle of the plane to the horizontal", "rad"),
     "incline_direction": _Quantity("azimuth of the way down", "rad"),
     "motion": _Quantity(
         "number of the base motion", "1", lambda values: (values >= 0.0) & (values % 1.0 == 0.0), "be whole, from 0 on"
@@ -117,5 +122,8 @@ def checked_values(where: str, name: str, values: npt.ArrayLike) -> Floats:
         unit = f" {quantity.units}" if quantity.units not in ("", "1") else ""
         message = f"{told} must {quantity.demand}, got {float(array[refused][0])!r}{unit}"
         raise ParameterError(message)
+    unit = "" if quantity.units == "1" else quantity.units
+    for value in (array.min(initial=1.0), array.max(initial=1.0)):
+        require_size(told, float(value), unit, zero=quantity.demand != "be positive")
     array.setflags(write=False)
     return array

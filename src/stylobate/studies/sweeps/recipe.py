@@ -30,6 +30,7 @@ class RunOptions(TypedDict, total=False):
     strobes: int
     rules: OutcomeRules | None
     demands: bool
+    recheck: bool
 
 
 DEFAULTS = RunOptions(
@@ -46,6 +47,7 @@ DEFAULTS = RunOptions(
     strobes=0,
     rules=None,
     demands=False,
+    recheck=False,
 )
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from stylobate.errors import Interrupted, ParameterError, require_whole
+from stylobate.errors import MOST_RUNS, FileError, Interrupted, ParameterError, require_whole
 from stylobate.studies.sweeps.blocks import Blocks
 from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.executors import Executor, Threads
@@ -77,7 +77,7 @@ def run_sweep(
         )
         raise ParameterError(message)
     if chunk_size is not None:
-        chunk_size = require_whole("chunk_size", chunk_size, least=1)
+        chunk_size = require_whole("chunk_size", chunk_size, least=1, most=MOST_RUNS)
     sink = _sink(sweep, _folder(store), chunk_size, resume=resume)
     try:
         _fill(sink, sweep, executor or Threads(), progress or _silence)
@@ -105,10 +105,14 @@ def _sink(sweep: Sweep, path: Path | None, chunk_size: int | None, *, resume: bo
             message = "resume needs the store to continue, got store=None"
             raise ParameterError(message)
         return InMemory(sweep, layout, blocks)
-    if resume and path.exists():
-        found, blocks = continue_store(path, sweep, layout, chunk_size)
-        return OnDisk(sweep, layout, blocks, found, frozenset(found.done()))
-    return OnDisk(sweep, layout, blocks, create_store(path, sweep, layout, blocks), frozenset())
+    if not (resume and path.exists()):
+        try:
+            return OnDisk(sweep, layout, blocks, create_store(path, sweep, layout, blocks), frozenset())
+        except FileError:
+            if not (resume and path.exists()):  # otherwise another process made it meanwhile: go on with that
+                raise
+    found, blocks, done = continue_store(path, sweep, layout, chunk_size)
+    return OnDisk(sweep, layout, blocks, found, done)
 
 
 def _fill(sink: Sink, sweep: Sweep, executor: Executor, progress: Progress) -> None:

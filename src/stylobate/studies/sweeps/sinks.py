@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 import xarray as xr
 
+from stylobate.engine.memory import require_memory
 from stylobate.errors import FileError
 from stylobate.studies.sweeps.blocks import Block, Blocks
 from stylobate.studies.sweeps.computing import Arrays, Computed, Progress, Task, compute
@@ -50,6 +51,8 @@ class InMemory:
     arrays: Arrays = field(init=False)
 
     def __post_init__(self) -> None:
+        size = sum(variable.bytes_of_a_run for variable in self.layout.variables) * self.sweep.runs
+        require_memory(size, self.sweep.runs, "Take fewer values, or keep the results in a store (NAME.zarr)")
         empty = {variable.name: variable.empty(self.sweep.shape) for variable in self.layout.variables}
         object.__setattr__(self, "arrays", empty)
 

@@ -5,9 +5,12 @@ is there is there as a whole, whatever happened in between. No two tasks share a
 again writes the same.
 """
 
+import hashlib
 import json
+import logging
 import shutil
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.metadata import version
 from importlib.util import find_spec
@@ -18,8 +21,11 @@ import numpy as np
 import xarray as xr
 import zarr
 
+from stylobate.counted import counted
 from stylobate.errors import FileError
+from stylobate.files import written_aside
 from stylobate.studies.sweeps.blocks import Block, Blocks
+from stylobate.studies.sweeps.chunks import MARK, METADATA, OUTCOME, Chunks, State, chunk_counts, files_along, is_whole
 from stylobate.studies.sweeps.computing import Arrays
 from stylobate.studies.sweeps.designs import whole
 from stylobate.studies.sweeps.layout import Layout, bytes_of_block, bytes_on_disk
@@ -27,10 +33,15 @@ from stylobate.studies.sweeps.quantities import attributes_of
 from stylobate.studies.sweeps.resuming import differences
 from stylobate.studies.sweeps.sweep import Sweep
 
-_FORMAT = "stylobate sweep 1"
-_MARK = "done"
-_OUTCOME = "outcome"
+_log = logging.getLogger("stylobate")
+
+_FORMAT = "stylobate sweep 2"
 _SOFTWARE = ("numpy", "scipy", "numba", "zarr")
+_SEAL = "metadata_sha256"
+_CODECS: tuple[dict[str, Any], ...] = (
+    {"name": "zstd", "configuration": {"level": 0, "checksum": False}},
+    {"name": "crc32c"},  # compared by Zarr when a chunk is read, and by `chunks` when a store is opened
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,12 +52,13 @@ class Store:
 
     def write(self, block: Block, arrays: Mapping[str, Any], *, done: bool) -> None:
         """Write the results of a `block`, flat over its runs: data, then outcomes, then the mark if it is `done`."""
-        group = zarr.open_group(self.path, mode="r+")
-        for name in sorted(arrays, key=lambda name: name == _OUTCOME):
-            values = np.asarray(arrays[name])
-            _array(group, name)[block.slices] = values.reshape(*block.shape, *values.shape[1:])
-        if done:
-            _array(group, _MARK)[block.index] = True
+        with _every_chunk_written():
+            group = zarr.open_group(self.path, mode="r+")
+            for name in sorted(arrays, key=lambda name: name == OUTCOME):
+                values = np.asarray(arrays[name])
+                _array(group, name)[block.slices] = values.reshape(*block.shape, *values.shape[1:])
+            if done:
+                _array(group, MARK)[block.index] = True
 
     def read(self, block: Block, names: tuple[str, ...]) -> Arrays:
         """Return the results of a `block`, flat over its runs."""
@@ -55,9 +67,21 @@ class Store:
         return {name: values.reshape(block.size, *values.shape[len(block.shape) :]) for name, values in found.items()}
 
     def done(self) -> set[int]:
-        """Return the indices of the blocks that are done."""
-        marks = np.asarray(_array(zarr.open_group(self.path, mode="r"), _MARK)[:])
-        return {int(index) for index in np.flatnonzero(marks)}
+        """Return the indices of the blocks that are done.
+
+        Raises
+        ------
+        FileError
+            If the store cannot be read or is damaged.
+        """
+        return {index for index, state in self.chunks().states().items() if state is State.DONE}
+
+    def chunks(self, attributes: Mapping[str, Any] | None = None) -> Chunks:
+        """Return its chunk files; `attributes` are those of the store if they have been read."""
+        attributes = attributes or _read_attributes(self.path)
+        blocks = Blocks(tuple(attributes["shape"]), tuple(attributes["chunks"]))
+        beyond = {name: len(chunk_counts(self.path / name)) - len(blocks.shape) for name in attributes["variables"]}
+        return Chunks(self.path, blocks, beyond)
 
 
 def create_store(path: Path, sweep: Sweep, layout: Layout, blocks: Blocks) -> Store:
@@ -70,24 +94,37 @@ def create_store(path: Path, sweep: Sweep, layout: Layout, blocks: Blocks) -> St
     FileError
         If there is something at `path`, if the disk has no room for the whole sweep, or if it cannot be written.
     """
-    if path.exists():
-        message = f"{path} exists; continue it with resume=True, or give another store"
-        raise FileError(message)
-    beside = path.with_name(f".{path.name}.new")
+    _require_new(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        _require_room(path, bytes_on_disk(layout, sweep.design, blocks))
-        shutil.rmtree(beside, ignore_errors=True)
-        _fill_new(zarr.create_group(beside, attributes=_attributes(sweep, layout, blocks)), sweep, layout, blocks)
-        beside.rename(path)
     except OSError as error:
         message = f"cannot write {path}: {error.strerror or error}"
         raise FileError(message) from error
+    _require_room(path, bytes_on_disk(layout, sweep.design, blocks))
+    try:
+        with written_aside(path) as beside, _every_chunk_written():
+            attributes = _attributes(sweep, layout, blocks)
+            group = zarr.create_group(beside, attributes=attributes)
+            _fill_new(group, sweep, layout, blocks)
+            group.attrs[_SEAL] = _metadata_digest(beside, attributes)
+    except FileError:
+        _require_new(path)  # another process may have made it meanwhile
+        raise
     return Store(path)
 
 
-def continue_store(path: Path, sweep: Sweep, layout: Layout, chunk_size: int | None) -> tuple[Store, Blocks]:
-    """Return the store at `path` and the blocks into which it is cut, to compute what is missing in it.
+def _require_new(path: Path) -> None:
+    if path.exists():
+        message = f"{path} exists; continue it with resume=True, or give another store"
+        raise FileError(message)
+
+
+def continue_store(
+    path: Path, sweep: Sweep, layout: Layout, chunk_size: int | None
+) -> tuple[Store, Blocks, frozenset[int]]:
+    """Return the store at `path`, the blocks into which it is cut, and the indices of those that are done.
+
+    Blocks that are damaged are emptied, with a warning in the log.
 
     Raises
     ------
@@ -105,10 +142,22 @@ def continue_store(path: Path, sweep: Sweep, layout: Layout, chunk_size: int | N
     if chunk_size is not None and Blocks.of(sweep.shape, chunk_size) != blocks:
         message = f"{path} is cut into chunks of {list(blocks.edges)} runs, not of {chunk_size}; leave chunk_size out"
         raise FileError(message)
-    store = Store(path)
-    if len(blocks):
-        _require_room(path, (len(blocks) - len(store.done())) * bytes_of_block(layout, blocks[0]))
-    return store, blocks
+    chunks = Store(path).chunks(attributes)
+    states = chunks.states()
+    _compute_again(chunks, [index for index, state in states.items() if state is State.DAMAGED])
+    if missing := [index for index, state in states.items() if state is not State.DONE]:
+        _require_room(path, len(missing) * bytes_of_block(layout, blocks[0]))
+    return Store(path), blocks, frozenset(index for index, state in states.items() if state is State.DONE)
+
+
+def _compute_again(chunks: Chunks, damaged: list[int]) -> None:
+    if not damaged:
+        return
+    runs = sum(chunks.blocks[index].size for index in damaged)
+    _log.warning("%s is damaged: %s are computed again", chunks.path, counted(runs, "run"))
+    for index in damaged:
+        if chunks.state(index) is State.DAMAGED:  # another process may have computed it meanwhile
+            chunks.forget(index)
 
 
 def open_sweep(path: str | Path, *, load: bool = False) -> xr.Dataset:
@@ -130,13 +179,17 @@ def open_sweep(path: str | Path, *, load: bool = False) -> xr.Dataset:
     Raises
     ------
     FileError
-        If there is no store of a sweep at `path`.
+        If there is no store of a sweep at `path`, or if it is damaged: every chunk is compared with its checksum.
     """
     path = Path(path)
     attributes = _read_attributes(path)
-    blocks = Blocks(tuple(attributes["shape"]), tuple(attributes["chunks"]))
-    runs_done = sum(blocks[index].size for index in Store(path).done())
-    data: xr.Dataset = xr.open_zarr(path, chunks=None, consolidated=False, decode_cf=False, drop_variables=_MARK)
+    chunks = Store(path).chunks(attributes)
+    states = chunks.states()
+    if damaged := sum(chunks.blocks[index].size for index, state in states.items() if state is State.DAMAGED):
+        message = f"{path} is damaged: {counted(damaged, 'run')} cannot be read. Continue it with resume=True"
+        raise FileError(message)
+    runs_done = sum(chunks.blocks[index].size for index, state in states.items() if state is State.DONE)
+    data: xr.Dataset = xr.open_zarr(path, chunks=None, consolidated=False, decode_cf=False, drop_variables=MARK)
     for variable in data.variables.values():
         variable.attrs.pop("_FillValue", None)
         if "flag_values" in variable.attrs:
@@ -157,10 +210,17 @@ def _fill_new(group: zarr.Group, sweep: Sweep, layout: Layout, blocks: Blocks) -
             dtype=variable.dtype,
             fill_value=variable.fill,
             dimension_names=(*sweep.dims, *variable.dims),
+            compressors=_CODECS,
             attributes=_plain(variable.attributes),
         )
     group.create_array(
-        _MARK, shape=(len(blocks),), chunks=(1,), dtype=bool, fill_value=False, dimension_names=("chunk",)
+        MARK,
+        shape=(len(blocks),),
+        chunks=(1,),
+        dtype=bool,
+        fill_value=False,
+        dimension_names=("chunk",),
+        compressors=_CODECS,
     )
     design = sweep.design
     for name, dim in design.coordinate_dims.items():
@@ -172,6 +232,7 @@ def _fill_new(group: zarr.Group, sweep: Sweep, layout: Layout, blocks: Blocks) -
             dtype=float,
             fill_value=np.nan,
             dimension_names=(dim,),
+            compressors=_CODECS,
             attributes=dict(attributes_of(name)),
         )
     # Random and given points may be many: they are written piece by piece.
@@ -199,15 +260,43 @@ def attributes_of_result(sweep: Sweep) -> dict[str, Any]:
 
 
 def _read_attributes(path: Path) -> dict[str, Any]:
+    """Return the attributes of the store at `path`, whose metadata and axes are found to be as they were written."""
     try:
-        attributes = dict(zarr.open_group(path, mode="r").attrs)
-    except (OSError, ValueError) as error:  # zarr's own exceptions are ValueErrors
-        message = f"cannot read {path}: {getattr(error, 'strerror', None) or 'it is no store of a sweep'}"
+        attributes: dict[str, Any] = dict(json.loads((path / METADATA).read_bytes())["attributes"])
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        reason = "it is no store of a sweep" if path.is_dir() else getattr(error, "strerror", None) or error
+        message = f"cannot read {path}: {reason}"
         raise FileError(message) from error
     if attributes.get("format") != _FORMAT:
         message = f"{path} is no store of a sweep: its format is {attributes.get('format')!r}, not {_FORMAT!r}"
         raise FileError(message)
+    seal = attributes.pop(_SEAL, None)
+    if seal is None or seal != _metadata_digest(path, attributes):
+        message = f"{path} is damaged: its metadata are not as they were written. Begin another store"
+        raise FileError(message)
+    for name in attributes["coordinates"].split():
+        if not all(map(is_whole, files_along(path / name))):
+            message = f"{path} is damaged: the values of {name!r} are not as they were written. Begin another store"
+            raise FileError(message)
     return attributes
+
+
+def _metadata_digest(path: Path, attributes: Mapping[str, Any]) -> str | None:
+    """Return a digest of these attributes and of the metadata of the arrays at `path`; None if something is lost."""
+    digest = hashlib.sha256(json.dumps(attributes, sort_keys=True).encode())
+    try:
+        for name in (MARK, *attributes["variables"], *attributes["coordinates"].split()):
+            digest.update((path / name / METADATA).read_bytes())
+    except (OSError, KeyError, TypeError, AttributeError):
+        return None
+    return digest.hexdigest()
+
+
+@contextmanager
+def _every_chunk_written() -> Iterator[None]:
+    """Let Zarr write chunks that hold nothing but the value of missing ones: a chunk that is not there is lost."""
+    with zarr.config.set({"array.write_empty_chunks": True}):
+        yield
 
 
 def _require_room(path: Path, needed: int) -> None:

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.compiling.arithmetic import kept, part
+from stylobate.engine.compiling.arithmetic import part
+from stylobate.engine.compiling.loading import kept
 from stylobate.engine.lanes.columns import STATE, Status
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import set_leg, set_no_return

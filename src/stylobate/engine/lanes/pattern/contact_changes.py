@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from stylobate.engine.lanes.pattern.head import (
         FALLEN,
         FLYING,
+        FRICTION,
         JAMMED,
         LAST,
         LIMIT,
@@ -94,7 +95,7 @@ def change(buf: Table, i: int, number: int) -> None:
     buf[R.TIME_RESTING + before, i] += t - buf[R.SINCE, i]
     buf[R.SINCE, i] = t
     if number >= 0:
-        count(buf, i, number, before, int(buf[R.CONTACT, i]))
+        count(buf, i, number, before, int(buf[R.CONTACT, i]), elapsed)
     buf[R.STANDS, i] = 0.0
     if elapsed > 0.0 and t + elapsed < buf[R.END, i]:
         pass_lapse(buf, i, elapsed)
@@ -112,11 +113,13 @@ def pass_lapse(buf: Table, i: int, elapsed: float) -> None:
 
 
 @part
-def count(buf: Table, i: int, number: int, before: int, after: int) -> None:
+def count(buf: Table, i: int, number: int, before: int, after: int, elapsed: float) -> None:
     """Count impacts, slips that begin, rests and releases."""
+    # Slip that goes on at once along another heading has not ended.
+    reverses = number == FRICTION and before == after and elapsed > 0.0
     if before == FLYING or number == LAST:
         buf[R.IMPACTS, i] += 1.0
-    if before in (RESTING, ROLLING) and after in (SLIDING, SLIPPING):
+    if after in (SLIDING, SLIPPING) and (before in (RESTING, ROLLING) or reverses):
         buf[R.SLIPS, i] += 1.0
     if after == RESTING and before != RESTING:
         buf[R.RESTS, i] += 1.0

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from stylobate.engine.compiling.arithmetic import part, turning_point, winding
 from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
-from stylobate.engine.lanes.pattern.contact_changes import BEGINS, go_through
+from stylobate.engine.lanes.pattern.contact_changes import BEGINS, ONE_MOMENT, go_through
 from stylobate.engine.lanes.pattern.contact_ends import broken_now, first_end, nearly_broken
 from stylobate.engine.lanes.pattern.contact_stiffness import (
     LOOK_EVERY,
@@ -22,8 +22,16 @@ from stylobate.engine.lanes.pattern.within import set_within
 if TYPE_CHECKING:
     from stylobate.engine.lanes.pattern.head import (
         FLYING,
+        FRICTION,
         LAST,
         ORDER,
+        SLIDING,
+        SLIP_SHARE,
+        SLIP_SHORTER,
+        SLIP_TURNS,
+        SLIP_X,
+        SLIP_Y,
+        SLIPPING,
         R,
         dense_state,
         observe,
@@ -95,6 +103,10 @@ def held_back(buf: Table, i: int, table: Table, pieces: Table) -> int:
         buf[R.H, i] = buf[R.TRIED, i]
         buf[R.AIMED, i] = 1.0
         return Status.WAITING
+    if number == FRICTION and turns(buf, i, elapsed):
+        buf[R.H, i] = SLIP_SHORTER * elapsed
+        buf[R.REJECTED, i] = 1.0
+        return Status.WAITING
     if elapsed > 0.0:
         come_to(buf, i, elapsed)
     if number == LAST:
@@ -104,6 +116,17 @@ def held_back(buf: Table, i: int, table: Table, pieces: Table) -> int:
     if buf[R.STEPS, i] >= buf[R.MOST_STEPS, i]:
         return out_of_steps(buf, i)
     return go_through(buf, i, table, pieces, number)
+
+
+@part
+def turns(buf: Table, i: int, elapsed: float) -> bool:
+    """Return whether a slip that has ended along its heading, so long into the step held back, goes on across it."""
+    if buf[R.CONTACT, i] not in (SLIDING, SLIPPING) or elapsed <= ONE_MOMENT * max(1.0, buf[R.TIME, i]):
+        return False
+    state = dense_state(buf, i, elapsed / buf[R.TRIED, i])
+    before = math.hypot(buf[R.STATE + SLIP_X, i], buf[R.STATE + SLIP_Y, i])
+    tolerance = SLIP_SHARE * buf[R.ATOL_NOW, i] + buf[R.RTOL, i] * before
+    return math.hypot(state[SLIP_X], state[SLIP_Y]) > SLIP_TURNS * tolerance
 
 
 @part

@@ -42,6 +42,15 @@ LIMIT: int
 """Numbers of the last margin, and of that of the tilt limit behind it."""
 FALLEN: int
 """Number of the margin of a column that has overturned."""
+FRICTION: int
+"""Number of the margin of friction."""
+SLIP_X: int
+SLIP_Y: int
+"""Places of the velocity of slip in the state."""
+SLIP_SHARE: float
+SLIP_SHORTER: float
+SLIP_TURNS: float
+"""See `engine.tolerances`."""
 PARTS: int
 """Parts of a step at the ends of which margins are looked at."""
 RESTING: int

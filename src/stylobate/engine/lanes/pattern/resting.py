@@ -9,6 +9,7 @@ from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import forcing_rate, held_for_good, least_force
 from stylobate.engine.lanes.pattern.moving import at_upright, azimuth_now, set_off, set_state
 from stylobate.engine.lanes.pattern.release import RELEASE_MARGIN, release_time
+from stylobate.engine.lanes.pattern.standing import bear_standing
 from stylobate.engine.lanes.pattern.stops import go_on, leg_end, meet_stop, next_stop, stand_to_the_end
 from stylobate.engine.lanes.pattern.within import set_within
 from stylobate.models.model import Push
@@ -103,7 +104,7 @@ def settle(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
 @part
 def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
     """Stand from `t` until released; return WAITING when moving again, else the status with which the run ends."""
-    release = release_time(buf, i, t, leg_end(buf, i))
+    release = release_within_leg(buf, i, t)
     while True:
         if held_for_good(buf, i):
             buf[R.DECIDED, i] = t
@@ -127,7 +128,19 @@ def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
             if status != Status.WAITING:
                 return status
         if again:
-            release = release_time(buf, i, t, leg_end(buf, i))
+            release = release_within_leg(buf, i, t)
+
+
+@part
+def release_within_leg(buf: Table, i: int, t: float) -> float:
+    """Return when the base motion releases the column before the leg ends, or infinity; note what it bears till then.
+
+    Loads are followed by legs, not by stops: what is looked at changes none of them.
+    """
+    end = leg_end(buf, i)
+    release = release_time(buf, i, t, end)
+    bear_standing(buf, i, t, min(release, end))
+    return release
 
 
 @part

@@ -8,6 +8,7 @@ from stylobate.engine.lanes.columns import LOOKS, NOTE, SLACK, Status, Window
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import goes_on_in_next_piece, set_leg
 from stylobate.engine.lanes.pattern.moving import azimuth_now, set_rates
+from stylobate.engine.lanes.pattern.standing import bear_standing
 
 if TYPE_CHECKING:
     from stylobate.engine.lanes.pattern.head import BREAKS_AT, DEGREE, PLANAR, R, note_window
@@ -144,10 +145,13 @@ def resume(buf: Table, i: int, table: Table, pieces: Table) -> int:
 
 @part
 def stand_to_the_end(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
-    """Note the rest of a run that stands for good."""
+    """Note the rest of a run that stands for good, and what it bears in the legs to come."""
     while t < buf[R.END, i]:
+        leg_ends = leg_end(buf, i)
         t = next_stop(buf, i)
         meet_stop(buf, i, table, pieces, t)
+        if t >= leg_ends:
+            bear_standing(buf, i, t, leg_end(buf, i))
     buf[R.TIME, i] = t
     return Status.RESTED
 

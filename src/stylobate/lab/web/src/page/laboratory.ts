@@ -4,7 +4,7 @@ import type { Clock, Stage, Theme } from "../viewer/index";
 import type { About } from "./case/about";
 import { Address } from "./view/address";
 import type { Answer, Described } from "./server/answers";
-import { describe, Refused, simulate, Unreachable } from "./server/api";
+import { describe, Refused, Unreachable } from "./server/api";
 import type { ResponsePanel } from "./charts/response-panel";
 import type { Connection } from "./server/connection";
 import { Controls } from "./controls/controls";
@@ -15,21 +15,27 @@ import { ExportMenu } from "./frame/exports";
 import { angularFrequency } from "./case/frequency";
 import { Job, problemsIn } from "./server/job";
 import { clockTime } from "./frame/format";
+import { Help } from "./frame/help";
 import { listenToKeys } from "./frame/keys";
 import { Latest } from "./server/latest";
-import { toldOf } from "./view/link";
+import { linkOf, toldOf } from "./view/link";
 import { MotionView } from "./motion/motion-view";
 import { paceOf } from "./motion/pace";
 import type { PlanePanel } from "./plane/plane-panel";
 import { PlanesAsking } from "./plane/planes-asking";
-import { namesIn, Problems } from "./frame/problems";
+import { Problems, wrongIn } from "./frame/problems";
 import type { ColumnScales } from "./case/quantities";
 import { sent } from "./server/requests";
 import { type JobStart, ResponseAsking } from "./charts/response-asking";
 import type { PlaneKind, Tab, View } from "./view/state";
-import { isPlaneKind, Store } from "./view/state";
+import { isPlaneKind, Store, TABS } from "./view/state";
 import { Tabs } from "./frame/tabs";
 import type { ThemeSwitch } from "./frame/theme";
+import type { Branch } from "./case/starting";
+import { startAlike, startOf } from "./case/starting";
+import type { Run, WantedRun } from "./server/run";
+import { run } from "./server/run";
+import { joined, setUnitsOf } from "./frame/units";
 import { verdictOf } from "./motion/verdict";
 import { firstView, viewOfLink, viewOfPreset } from "./view/views";
 
@@ -48,16 +54,22 @@ export class Laboratory {
   readonly #planes: PlanesAsking;
   readonly #tabs: Tabs<Tab>;
   readonly #planesHost = element("div", { class: "planes" });
-  readonly #runs: Latest<Description, Answer>;
+  readonly #runs: Latest<WantedRun, Run>;
   #scales = ANY_COLUMN;
   #answer: Answer | null = null;
   /** Of which case the answer is, and which was asked for last. */
   #shown = "";
   #asked = "";
+  /** The last case whose start is that on a branch. */
+  #started: WantedRun | null = null;
   /** What was wrong with the link that was followed, until the reader goes on from there. */
   #linkProblem: readonly string[] = [];
   /** Whether the view comes from the address: then the map that it had is computed again. */
   #linked = true;
+  /** Whether the view comes from a preset or a link, with the start that belongs to it. */
+  #given = true;
+  /** Whether the case has been changed by hand since it was gone to. */
+  #edited = false;
   /** Whether the motion that is due is another case, to be seen from its beginning. */
   #fresh = true;
 
@@ -71,27 +83,34 @@ export class Laboratory {
     const start: JobStart = (kind, body, report, ended) => this.#job(kind, body, report, ended);
     this.#controls = new Controls(about, view.description, this.#problems.root, {
       edited: (description) => edited({ description }),
-      jumped: (description) => jumped({ description, filled: false }),
-      preset: (preset) => jumped(viewOfPreset(preset)),
+      started: (description, start) => edited({ description, start }),
+      jumped: (description) => jumped({ description, filled: false, start: null }),
+      preset: (preset) => {
+        this.#given = true;
+        const tab = TABS.find((one) => one === preset.view?.["tab"]) ?? this.view.tab;
+        jumped({ ...viewOfPreset(preset), tab });
+      },
     });
     this.#motion = new MotionView(theme.theme, {
       speed: (speed) => edited({ speed }),
       histories: (histories) => edited({ histories }),
+      cancelled: () => this.#cancelRun(),
+      lasting: (duration) => edited({ description: { ...this.view.description, duration } }),
     });
     this.#response = new ResponseAsking(view, this.#scales, { edited, start, lost: () => this.#lose() });
     this.#planes = new PlanesAsking(about, view, this.#scales, { edited, jumped, start });
     this.#tabs = this.#newTabs();
-    this.#runs = new Latest((description, signal) => simulate(sent(description), signal), {
-      answered: (answer, description) => this.#take(answer, written(description)),
+    this.#runs = new Latest((wanted, signal) => run(wanted, signal), {
+      answered: (found, { start }) => this.#take(found, start),
       failed: (error) => this.#fail(error),
       busy: (busy) => this.#motion.setBusy(busy),
     });
-    header.append(this.#newMenu().root, theme.root);
+    header.append(this.#newMenu().root, new Help().root, theme.root);
     this.#planesHost.append(this.#response.panel.root, this.#tabs.root);
     host.replaceChildren(this.#motion.root, this.#controls.root, this.#motion.histories, this.#planesHost);
     this.#store.onChange((now) => this.#show(now));
     window.addEventListener("popstate", () => this.#goTo(location.hash));
-    listenToKeys(this.clock);
+    listenToKeys(this.clock, () => this.#motion.toNextEvent());
     this.#show(view);
     this.#tellLink(problem);
   }
@@ -137,16 +156,19 @@ export class Laboratory {
   /** Changes the view by hand, a little at a time. */
   #edit(changes: Partial<View>): void {
     this.#linkProblem = [];
-    this.#store.change(changes);
-    this.#address.replace(this.view);
+    this.#store.change({ time: null, ...changes });
+    if (this.#edited || changes.description === undefined) return this.#address.replace(this.view);
+    this.#edited = true;
+    this.#address.push(this.view); // the way back leads to the case as it was before it was changed
   }
 
   /** Goes to another case; the way back leads here. */
   #jump(changes: Partial<View>): void {
     this.#fresh = true;
+    this.#edited = false;
     this.#tellLink(null);
     this.#address.flush();
-    this.#store.change(changes);
+    this.#store.change({ time: null, ...changes });
     this.#address.push(this.view);
   }
 
@@ -154,13 +176,16 @@ export class Laboratory {
   #goTo(link: string): void {
     const [view, problem] = viewOfLink(link, this.#about);
     this.#fresh = true;
+    this.#edited = false;
+    this.#given = true;
     this.#linked = true;
     this.#store.change(view);
     this.#tellLink(problem);
   }
 
   #show(view: View): void {
-    this.#controls.show(view.description, this.#scales);
+    setUnitsOf(view.description.column["shape"]);
+    this.#controls.show(view.description, this.#scales, view.start);
     this.#tabs.show(view.tab);
     this.#planesHost.classList.toggle("mapped", isPlaneKind(view.tab));
     this.#motion.setHistories(view.histories);
@@ -174,11 +199,22 @@ export class Laboratory {
   }
 
   #ask(view: View): void {
-    const wanted = written(view.description);
+    const { description } = view;
+    // A preset or a link has the start of its branch; it is asked for once something else has changed.
+    if (this.#given && description["tilt"] !== undefined) this.#started = { description, start: view.start };
+    this.#given = false;
+    const start = this.#startsOn(view) ? null : view.start;
+    const wanted = written([description, start]);
     if (wanted === this.#asked) return;
     this.#asked = wanted;
     if (this.#fresh && this.#answer !== null) this.#motion.setStale(true);
-    this.#runs.want(view.description, { jump: this.#fresh });
+    this.#runs.want({ description, start }, { jump: this.#fresh });
+  }
+
+  /** Whether the start that is set is the one on the branch that the view follows. */
+  #startsOn({ description, start }: View): boolean {
+    const started = this.#started;
+    return started !== null && started.start === start && startAlike(started.description, description);
   }
 
   #showSpeed(view: View): void {
@@ -186,17 +222,28 @@ export class Laboratory {
     this.#motion.setSpeed(view.speed ?? usual);
   }
 
-  #take(answer: Answer, shown: string): void {
+  #take({ answer, description }: Run, start: Branch | null): void {
     this.#answer = answer;
-    this.#shown = shown;
+    this.#shown = written(description);
     this.#problems.show(this.#linkProblem);
-    this.#controls.setWrong(new Set());
+    this.#controls.setWrong(new Map());
     this.#rescale(answer.column);
     this.#motion.setStale(false);
     this.#motion.show(answer, angularFrequency(this.view.description.motion));
     this.#showSpeed(this.view);
     if (this.#fresh) this.#motion.begin();
+    if (start !== null) this.#takeStart(description, start);
     this.#settle();
+  }
+
+  /** A start on a branch that was asked for, unless the case has changed since. */
+  #takeStart(description: Description, start: Branch): void {
+    const { view } = this;
+    if (view.start !== start || !startAlike(view.description, description)) return;
+    this.#started = { description, start };
+    this.#asked = written([description, null]);
+    this.#store.change({ description: { ...view.description, ...startOf(description) } });
+    this.#address.replace(this.view);
   }
 
   /** What depends on the column's own tilt and frequency, once they are known. */
@@ -204,7 +251,7 @@ export class Laboratory {
     const before = this.#scales;
     this.#scales = found;
     if (found.slenderness === before.slenderness && found.frequency_scale === before.frequency_scale) return;
-    this.#controls.show(this.view.description, found);
+    this.#controls.show(this.view.description, found, this.view.start);
     this.#response.show(this.view, found, this.#fresh);
     this.#planes.show(this.view, found);
   }
@@ -214,6 +261,7 @@ export class Laboratory {
     this.#fresh = false;
     if (!this.#linked) return;
     this.#linked = false;
+    if (this.view.time !== null) this.#motion.stopAt(this.view.time);
     this.#planes.refill();
   }
 
@@ -228,8 +276,13 @@ export class Laboratory {
   #tellProblems(lines: readonly string[]): void {
     this.#motion.setStale(false);
     this.#problems.show(lines);
-    this.#controls.setWrong(namesIn(lines));
-    this.#motion.setOld(this.#answer !== null);
+    this.#controls.setWrong(wrongIn(lines));
+    this.#motion.setOld(this.#answer === null ? null : lines);
+  }
+
+  #cancelRun(): void {
+    this.#runs.cancel();
+    this.#tellProblems(["The run was cancelled. Change the case, or reload the page to compute it."]);
   }
 
   #tellLink(problem: string | null): void {
@@ -240,8 +293,9 @@ export class Laboratory {
   /** A link whose case cannot be run leaves nothing to look at: the first preset is shown, and what was wrong. */
   #replaceLink(lines: readonly string[]): void {
     this.#fresh = true;
+    this.#given = true;
     this.#store.change(firstView(this.#about));
-    this.#tellLink(toldOf(lines.join(" ")));
+    this.#tellLink(toldOf(lines.join("; ")));
   }
 
   /** The server forgets records when it ends; what was uploaded here is sent once more. */
@@ -280,12 +334,14 @@ export class Laboratory {
       caption: () => this.#caption(),
       description: () => sent(this.view.description),
       described: () => this.#described(),
+      link: () => `${location.origin}${location.pathname}#${linkOf({ ...this.view, time: this.#motion.stoppedAt })}`,
     });
   }
 
   #caption(): readonly string[] {
     const { time, to } = this.clock;
-    const at = `At ${clockTime(time, to)}\u00a0s of ${clockTime(to, to)}\u00a0s.`;
+    const fall = this.#motion.falling ? " The fall is drawn on and was not computed." : "";
+    const at = `At ${joined(clockTime(time, to), "s")} of ${joined(clockTime(to, to), "s")}.${fall}`;
     return this.#answer === null ? [] : [`${verdictOf(this.#answer)} ${at}`, toldOfCase(this.view.description)];
   }
 
@@ -294,12 +350,15 @@ export class Laboratory {
     return new Tabs<Tab>(
       "Planes",
       [
-        { name: "orbit", title: "Orbit of the tilt", panel: this.#motion.orbit.root },
+        { name: "orbit", title: "Tilt orbit", panel: this.#motion.orbit.root },
         { name: "map", title: "Overturning map", panel: map.root },
         { name: "basin", title: "Basin", panel: basin.root },
         { name: "numbers", title: "Numbers", panel: this.#motion.numbers.root },
       ],
-      (tab) => this.#edit({ tab, filled: isPlaneKind(tab) && this.plane(tab).current }),
+      (tab) => {
+        this.#edit({ tab, filled: isPlaneKind(tab) && this.plane(tab).current });
+        if (isPlaneKind(tab)) this.#planes.open(tab);
+      },
     );
   }
 }

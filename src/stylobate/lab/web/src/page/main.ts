@@ -6,7 +6,7 @@ import type { Stage } from "../viewer/index";
 import type { About } from "./case/about";
 import { about } from "./server/api";
 import { Connection } from "./server/connection";
-import { byId } from "./frame/dom";
+import { button, byId } from "./frame/dom";
 import { Laboratory } from "./laboratory";
 import { offered } from "./case/offered";
 import type { View } from "./view/state";
@@ -34,6 +34,8 @@ async function begin(): Promise<void> {
   byId("version", HTMLElement).textContent = found.version;
   laboratory = new Laboratory(found, byId("laboratory", HTMLElement), byId("tools", HTMLElement), theme, connection);
   const shown = laboratory;
+  const skip = button("Skip to the motion", { class: "skip" }, () => shown.stage?.canvas.focus());
+  document.body.prepend(skip);
   window.stylobate = { stage: shown.stage, laboratory: shown, state: () => shown.view };
 }
 

@@ -2,6 +2,7 @@
 
 import { axisOf } from "./attitude";
 import type { DrawnMotion, Triple } from "./drawn-motion";
+import { isFalling } from "./fall";
 import { roundLength } from "./lengths";
 
 export interface Box {
@@ -33,7 +34,9 @@ export function extentOf(motion: DrawnMotion): Extent {
   const { radius, top_radius, height } = motion.column;
   const widest = Math.max(radius, top_radius);
   const size = Math.max(2 * widest, 0.6 * height);
-  const path = spread([...motion.footprint, ...motion.contact_point].map(([x, y]) => [x, y, 0] as const));
+  const path = spread(
+    [...motion.footprint, ...motion.contact_point, ...fallenTop(motion)].map(([x, y]) => [x, y, 0] as const),
+  );
   const shake = spread(motion.base);
   const followsColumn = Math.max(...span(path)) > FAR * size;
   const followsBase = Math.max(...span(shake)) > FAR * size;
@@ -60,6 +63,13 @@ export function extentOf(motion: DrawnMotion): Extent {
     followsColumn,
     followsBase,
   };
+}
+
+/** Return where the top of a column that falls comes to lie on the base. */
+function fallenTop(motion: DrawnMotion): readonly Triple[] {
+  if (!isFalling(motion)) return [];
+  const axis = axisOf(motion.rotation.at(-1)!);
+  return [motion.centre.at(-1)!.map((value, k) => value + motion.column.height * axis[k]!) as unknown as Triple];
 }
 
 /** Return the box round the column at all its instants. */

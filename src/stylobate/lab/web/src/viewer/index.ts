@@ -4,3 +4,4 @@ export { Clock } from "./clock";
 export type { DrawnColumn, DrawnMotion, DrawnPlane, Pair, Rotation, Triple } from "./drawn-motion";
 export type { Theme } from "./palette";
 export { type Pose, Stage, type StageOptions } from "./stage";
+export { isFalling, withFall } from "./fall";

@@ -21,9 +21,11 @@ const VERTEX = /* glsl */ `
   }
 `;
 const FRAGMENT = /* glsl */ `
+  uniform vec3 ground;
+  uniform float faded;
   varying vec3 shade;
   void main() {
-    gl_FragColor = vec4(shade, 1.0);
+    gl_FragColor = vec4(mix(shade, ground, faded), 1.0);
     #include <colorspace_fragment>
   }
 `;
@@ -33,7 +35,11 @@ export function litMaterial(palette: Palette, more: ShaderMaterialParameters = {
   return new ShaderMaterial({
     vertexShader: VERTEX,
     fragmentShader: FRAGMENT,
-    uniforms: { toLight: { value: TO_LIGHT }, sun: { value: sun }, sky: { value: sky }, earth: { value: earth } },
+    uniforms: {
+      ...{ toLight: { value: TO_LIGHT }, sun: { value: sun }, sky: { value: sky }, earth: { value: earth } },
+      // How much of the background shows through, 0 to 1.
+      ...{ ground: { value: new Color(palette.background) }, faded: { value: 0 } },
+    },
     ...more,
   });
 }

@@ -39,7 +39,7 @@ export class Look {
   show(points: readonly Vector3[], direction: Vector3): void {
     this.#points = points;
     this.#direction = direction;
-    this.reset();
+    if (!this.#moved) this.#frame(direction);
   }
 
   reset(): void {

@@ -3,8 +3,9 @@
 import type { DrawnMotion } from "./drawn-motion";
 import { lengthInWords } from "./lengths";
 
-export function noteOn({ plane }: DrawnMotion, spacing: number): string {
-  const grid = `grid ${lengthInWords(spacing)}`;
+/** Return what is written over the picture; lengths in metres, or in the unit of a column without scale. */
+export function noteOn({ plane }: DrawnMotion, spacing: number, unit = "m"): string {
+  const grid = `to scale, grid ${unit === "m" ? lengthInWords(spacing) : `${Number(spacing.toPrecision(3))} ${unit}`}`;
   return plane.incline > 0 ? `${grid}, inclined ${Number(((plane.incline * 180) / Math.PI).toPrecision(3))}°` : grid;
 }
 

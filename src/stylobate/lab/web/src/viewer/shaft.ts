@@ -1,6 +1,6 @@
 /** The fluted column: drum, shaft, top; one flute and a radius of the top are marked, so that turning is seen. */
 
-import { Color, Mesh } from "three";
+import { type BufferGeometry, Color, Mesh, type ShaderMaterial } from "three";
 import type { DrawnColumn, Triple } from "./drawn-motion";
 import { litMaterial } from "./lit-material";
 import type { Palette } from "./palette";
@@ -60,7 +60,7 @@ export function flutedOutline(): OutlinePoint[][] {
   return strips;
 }
 
-export function shaftMesh(column: DrawnColumn, palette: Palette): Mesh {
+export function shaftMesh(column: DrawnColumn, palette: Palette): Mesh<BufferGeometry, ShaderMaterial> {
   const surface = new Surface();
   const ends = endHeight(column);
   const radiusAt = (z: number): number => column.radius + ((column.top_radius - column.radius) * z) / column.height;

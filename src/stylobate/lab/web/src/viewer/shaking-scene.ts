@@ -9,6 +9,7 @@ import { axisOf } from "./attitude";
 import { ContactMark } from "./contact-mark";
 import type { DrawnMotion, Triple } from "./drawn-motion";
 import { type Extent, extentOf } from "./extent";
+import { isFalling } from "./fall";
 import { fadingGrid, gridOn } from "./grid";
 import { TO_LIGHT } from "./lit-material";
 import { momentAt, type Moment } from "./moment";
@@ -24,6 +25,7 @@ import { floorPath, spacePath } from "./trail";
 const SECTORS = 144; // of the rim
 const CAST = 48; // points of a circle that cast a shadow
 const JUMP = 0.8; // radii that the contact point goes at most between samples where it rolls
+const FADED = 0.55; // of a column in a fall that was not computed
 const MEMORY = 0.08; // of the duration, in which a path pales
 
 type Path = ReturnType<typeof floorPath> | ReturnType<typeof spacePath>;
@@ -41,6 +43,7 @@ export class ShakingScene {
   readonly #plane = new Group();
   readonly #base = new Group();
   readonly #ground = new Group();
+  readonly #shaft: ReturnType<typeof shaftMesh>;
   readonly #rim: Rim;
   readonly #paths: readonly Path[];
   readonly #shadows: { readonly slab: Shadow; readonly ground: Shadow; readonly slabOnGround: Shadow };
@@ -70,7 +73,8 @@ export class ShakingScene {
 
     const memory = Math.max(MEMORY * (motion.time.at(-1)! - motion.time[0]!), 1e-9);
     this.#rim = new Rim(motion.column, palette, new RimVisits(motion, SECTORS), memory);
-    this.column.add(shaftMesh(motion.column, palette), this.#rim.mesh);
+    this.#shaft = shaftMesh(motion.column, palette);
+    this.column.add(this.#shaft, this.#rim.mesh);
     this.contact = new ContactMark(motion.column, this.extent, palette);
     const paths = pathsOf(motion, size, memory, palette);
     this.#paths = paths;
@@ -112,6 +116,8 @@ export class ShakingScene {
     this.#base.position.set(...moment.base);
     this.contact.show(moment);
     this.#rim.setTime(time);
+    this.#shaft.material.uniforms.faded!.value =
+      isFalling(this.motion) && time > this.motion.computed_until ? FADED : 0;
     for (const path of this.#paths) path.material.uniforms.now!.value = time;
     this.#follow(moment);
     this.scene.updateMatrixWorld();

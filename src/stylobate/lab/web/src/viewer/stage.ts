@@ -3,6 +3,7 @@
 import { type Quaternion, Vector3 } from "three";
 import { spinBetween, tiltOf, twistOf } from "./attitude";
 import { drawable, type DrawnMotion, type Pair, type Rotation, type Triple } from "./drawn-motion";
+import { azimuthAtEnd, isFalling } from "./fall";
 import { FrameTimes } from "./frame-times";
 import { Look } from "./look";
 import { momentAt, placeOf } from "./moment";
@@ -39,6 +40,7 @@ export class Stage {
   #drawn: ShakingScene | null = null;
   readonly #past: ShakingScene[] = [];
   #time = 0;
+  #unit = "m";
   #waiting: number | null = null;
   #settling: number | null = null;
 
@@ -74,11 +76,13 @@ export class Stage {
     return this.#time;
   }
 
-  /** Draw another motion; the view stays if the column does. */
-  show(motion: DrawnMotion): void {
+  /** Draw another motion, its lengths in this unit; the view stays if the column does. */
+  show(motion: DrawnMotion, unit = "m"): void {
+    this.#unit = unit;
     const before = this.#drawn?.motion;
     this.#build(drawable(motion));
     if (before === undefined || !sameBody(before, motion)) this.resetCamera();
+    else if (viewOn(before) !== viewOn(motion)) this.#lookAt(this.#drawn!);
     this.#name(
       `${motion.title.replace(/([^.!?])$/, "$1.")} Arrow keys turn the view, plus and minus go nearer and back, Home resets it.`,
     );
@@ -114,13 +118,16 @@ export class Stage {
 
   /** Look again from the front, at all of it. */
   resetCamera(): void {
-    if (this.#drawn === null) return;
-    const {
-      motion: { column },
-      room,
-    } = this.#drawn;
+    if (this.#drawn !== null) this.#lookAt(this.#drawn);
+    this.#look.reset();
+  }
+
+  /** Show all of a scene from the side that suits it, unless the reader looks from another. */
+  #lookAt({ motion, room }: ShakingScene): void {
+    const { column } = motion;
     const slim = column.height > SLIM * 2 * Math.max(column.radius, column.top_radius);
-    this.#look.show(room, new Vector3(0.28, -1, slim ? 0.36 : 0.52));
+    const [x, y] = directionOf(viewOn(motion));
+    this.#look.show(room, new Vector3(x, y, slim ? 0.36 : 0.52));
     this.#request();
   }
 
@@ -143,7 +150,12 @@ export class Stage {
     const context = copy.getContext("2d");
     if (context === null) throw new Error("This browser makes no pictures from a canvas: take a screenshot instead");
     context.drawImage(this.canvas, 0, 0);
-    paintNote(context, noteOn(drawn.motion, drawn.extent.spacing), paletteOf(this.#theme).ink, this.#drawing.still);
+    paintNote(
+      context,
+      noteOn(drawn.motion, drawn.extent.spacing, this.#unit),
+      paletteOf(this.#theme).ink,
+      this.#drawing.still,
+    );
     return new Promise((done, failed) => {
       copy.toBlob(
         (blob) => (blob === null ? failed(new Error("The browser could not write the picture as PNG")) : done(blob)),
@@ -174,7 +186,7 @@ export class Stage {
     if (this.#drawn !== null) this.#past.push(this.#drawn);
     const palette = paletteOf(this.#theme);
     this.#drawn = new ShakingScene(motion, palette);
-    this.#note.textContent = noteOn(motion, this.#drawn.extent.spacing);
+    this.#note.textContent = noteOn(motion, this.#drawn.extent.spacing, this.#unit);
     this.#note.style.color = palette.ink;
     this.#time = Math.min(motion.time.at(-1)!, Math.max(motion.time[0]!, this.#time));
     this.setTime(this.#time);
@@ -218,6 +230,23 @@ export class Stage {
       renderer.clear();
     }
   }
+}
+
+const FRONT = -1; // the view from the front
+const VIEWS = 8; // round the column, from which a fall is seen
+
+/** Return the view that a motion is seen from: across its fall, on the viewer's side, or from the front. */
+function viewOn(motion: DrawnMotion): number {
+  if (!isFalling(motion)) return FRONT;
+  const across = azimuthAtEnd(motion) + Math.PI / 2;
+  const view = Math.round((across * VIEWS) / (2 * Math.PI));
+  const behind = Math.sin((2 * Math.PI * view) / VIEWS) > 1e-9;
+  return (((view + (behind ? VIEWS / 2 : 0)) % VIEWS) + VIEWS) % VIEWS;
+}
+
+function directionOf(view: number): readonly [number, number] {
+  const angle = (2 * Math.PI * view) / VIEWS;
+  return view === FRONT ? [0.28, -1] : [Math.cos(angle), Math.sin(angle)];
 }
 
 function rotationOf({ w, x, y, z }: Quaternion): Rotation {

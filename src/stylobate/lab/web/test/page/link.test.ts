@@ -29,6 +29,8 @@ test("a link brings back the view it was made of", () => {
     tab: "map",
     filled: true,
     speed: 0.25,
+    start: "lower",
+    time: 12.5,
     histories: ["base_x", "tilt"],
   };
   assert.deepEqual(again(view), view);
@@ -73,6 +75,7 @@ const BROKEN: readonly (readonly [link: string, told: RegExp])[] = [
   ["#column=solid&map=tilt_x:0:1:8", /map must be two axes/],
   ["#column=solid&map=tilt_x:0:1:8,tilt_x:0:1:8", /map must be two axes/],
   ["#column=solid&speed=fast", /speed must be positive/],
+  ["#column=solid&start=soon", /start must be one of upper, lower/],
   ["#column=solid&motion=record,sample:%E0%A4%A", /not well formed/],
   ["#column=solid&motion=sum,motions:~%5B", /not well formed/],
 ];

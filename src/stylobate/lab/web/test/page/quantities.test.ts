@@ -3,7 +3,11 @@ import { test } from "node:test";
 import { angularFrequency, isHorizontalHarmonic, withAngularFrequency } from "../../src/page/case/frequency";
 import { belongs, defaultPlane, keyOf, quantitiesOf } from "../../src/page/plane/planes";
 import { valueOf, withValue } from "../../src/page/case/quantities";
+import { lengthOf } from "../../src/page/case/run-length";
 import { exactRequest, planeRequest, responseRequest, usualRange } from "../../src/page/server/requests";
+import type { Description } from "../../src/page/case/description";
+import type { Plane, PlaneKind } from "../../src/page/view/state";
+import { offered } from "../../src/page/case/offered";
 import { ABOUT, VIEW } from "./case";
 
 const CASE = VIEW.description;
@@ -28,6 +32,8 @@ test("each number of a case is offered for maps once", () => {
   assert.deepEqual(names.slice(0, 2), ["acceleration", "angular_frequency"]);
 });
 
+const keyIn = (kind: PlaneKind, of: Description, plane: Plane) => keyOf(of, plane, lengthOf(kind, of, plane, SCALES));
+
 test("a map is over frequency and strength where nothing is said, and holds the motion that is shown", () => {
   const quantities = quantitiesOf("map", CASE, ABOUT, SCALES);
   const plane = defaultPlane("map", CASE, quantities)!;
@@ -43,17 +49,17 @@ test("a map is over frequency and strength where nothing is said, and holds the 
 test("a picture stays that of its case when a motion in it is chosen, and not when another number moves", () => {
   const plane = defaultPlane("map", CASE, quantitiesOf("map", CASE, ABOUT, SCALES))!;
   const chosen = withValue(withValue(CASE, "angular_frequency", 3), "acceleration", 0.2);
-  assert.equal(keyOf("map", chosen, plane), keyOf("map", CASE, plane));
+  assert.equal(keyIn("map", chosen, plane), keyIn("map", CASE, plane));
   for (const name of ["damping", "slenderness", "tilt_x"]) {
-    assert.notEqual(keyOf("map", withValue(CASE, name, 0.0321), plane), keyOf("map", CASE, plane), name);
+    assert.notEqual(keyIn("map", withValue(CASE, name, 0.0321), plane), keyIn("map", CASE, plane), name);
   }
-  assert.notEqual(keyOf("map", withValue(CASE, "duration", 900), plane), keyOf("map", CASE, plane), "duration");
+  assert.notEqual(keyIn("map", withValue(CASE, "duration", 9000), plane), keyIn("map", CASE, plane), "duration");
 });
 
 test("a basin's picture does not depend on the start that is shown in it", () => {
   const plane = defaultPlane("basin", CASE, quantitiesOf("basin", CASE, ABOUT, SCALES))!;
   const other = withValue(withValue(CASE, "tilt_x", 0.01), "tilt_y", 0.02);
-  assert.equal(keyOf("basin", other, plane), keyOf("basin", CASE, plane));
+  assert.equal(keyIn("basin", other, plane), keyIn("basin", CASE, plane));
 });
 
 for (const motion of [
@@ -95,7 +101,23 @@ test("the usual range holds the frequency that is shown", () => {
 
 test("what need not be given is not sent", () => {
   const plane = defaultPlane("basin", CASE, quantitiesOf("basin", CASE, ABOUT, SCALES))!;
-  const body = planeRequest("basin", { ...CASE, atol: null, model: { kind: "slender", passage_tilt: null } }, plane);
+  const described = { ...CASE, atol: null, model: { kind: "slender", passage_tilt: null } };
+  const body = planeRequest("basin", described, plane, lengthOf("basin", described, plane, SCALES));
   assert.deepEqual(body["model"], { kind: "slender" });
   assert.ok(!("atol" in body) && !("duration" in body) && "periods" in body);
+});
+
+test("a map can vary the numbers in which a case is described, and begins with how the base moves", () => {
+  const shaker = { ...CASE, column: { shape: "solid", radius: 0.03, height: 0.2, density: 1000 } };
+  const about = offered(ABOUT);
+  const moved = { ...shaker, motion: { kind: "orbit", diameter: 0.012, rpm: 200 } };
+  const quantities = quantitiesOf("map", moved, about, SCALES);
+  for (const name of ["rpm", "diameter", "radius", "height"])
+    assert.ok(
+      quantities.some((one) => one.name === name),
+      name,
+    );
+  const plane = defaultPlane("map", moved, quantities)!;
+  assert.deepEqual([plane.x.name, plane.y.name], ["rpm", "diameter"]);
+  assert.ok(plane.x.from > 0 && plane.x.from < 200 && plane.x.to > 200);
 });

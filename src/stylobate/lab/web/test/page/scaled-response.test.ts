@@ -13,7 +13,11 @@ function server() {
   const describe = (description: Part): Promise<Described> => {
     asked.push(description);
     const { slenderness } = description["column"] as { slenderness: number };
-    return Promise.resolve({ toml: "", python: "", column: { slenderness, frequency_scale: 1 } });
+    return Promise.resolve({
+      toml: "",
+      python: "",
+      column: { slenderness, frequency_scale: 1, frequency_parameter: 1 },
+    });
   };
   return { asked, scaled: new ScaledResponse(() => Promise.resolve(CURVES), describe) };
 }

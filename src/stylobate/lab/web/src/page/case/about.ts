@@ -19,6 +19,8 @@ export interface Kind {
   readonly name: string;
   readonly about?: string | null;
   readonly parameters: readonly Parameter[];
+  /** Under which heading it is listed. */
+  readonly group?: string;
   /** Of motions: whether it comes to an end, so that a run needs no duration. */
   readonly ends?: boolean;
 }

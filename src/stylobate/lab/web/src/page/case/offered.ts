@@ -37,6 +37,47 @@ const UNITS: Readonly<Record<string, Readonly<Record<string, string>>>> = {
   displacement_amplitude: { amplitude: "m" },
 };
 
+/** What is said of a kind in other words than the server's. */
+const ABOUT: Readonly<Record<string, string>> = {
+  record: "A recorded earthquake.",
+  dimensionless: "No scale of its own: m = g = ω₀ = 1. Accelerations are in g, frequencies in ω₀ = √(m g h/J₀).",
+};
+
+const [SHAKING, SHAKERS, PULSES, NEAR_FAULT, SWEEPS, EARTHQUAKES] = [
+  ...["Steady shaking, by acceleration", "Shakers and machines", "Pulses, by acceleration"],
+  ...["Near-fault pulses, by velocity", "Sine sweeps", "Earthquakes"],
+] as const;
+
+/** Names as the literature has them, and the heading under which a kind is listed. */
+const NAMES: Readonly<Record<string, readonly [name: string, group?: string]>> = {
+  rest: ["at rest"],
+  circular: ["circular", SHAKING],
+  straight: ["straight", SHAKING],
+  elliptic: ["elliptic", SHAKING],
+  harmonic: ["three components", SHAKING],
+  vertical: ["vertical", SHAKING],
+  oblique: ["oblique, as of a conveyor", SHAKERS],
+  orbit: ["orbital shaker", SHAKERS],
+  stroke: ["shaker along a line, by its stroke", SHAKERS],
+  displacement_amplitude: ["by displacement amplitudes", SHAKERS],
+  half_sine: ["half sine", PULSES],
+  half_cosine: ["half cosine", PULSES],
+  one_sine: ["one sine", PULSES],
+  one_cosine: ["one cosine", PULSES],
+  ricker: ["Ricker", PULSES],
+  antisymmetric_ricker: ["antisymmetric Ricker", PULSES],
+  sinusoidal: ["part of a sinusoid", PULSES],
+  type_a: ["type A (forward)", NEAR_FAULT],
+  type_b: ["type B (forward and back)", NEAR_FAULT],
+  type_c: ["type Cₙ (several cycles)", NEAR_FAULT],
+  gabor: ["Gabor", NEAR_FAULT],
+  mavroeidis_papageorgiou: ["Mavroeidis and Papageorgiou", NEAR_FAULT],
+  linear_sweep: ["linear sweep", SWEEPS],
+  logarithmic_sweep: ["logarithmic sweep", SWEEPS],
+  record: ["record", EARTHQUAKES],
+  given: ["given by mass and inertia"],
+};
+
 /** What of a record is set by numbers; which record it is has controls of its own. */
 const OF_RECORDS = ["scale", "rotation", "tail"];
 
@@ -51,8 +92,9 @@ function offeredKind(kind: Kind): Kind {
   const parameters = kind.parameters
     .filter((one) => (kind.kind === "record" ? OF_RECORDS.includes(one.name) : !isPart(one.default)))
     .map((one) => withFirst(one, first, UNITS[kind.kind]?.[one.name]));
-  const about = kind.kind === "record" ? "A recorded earthquake." : inOneSentence(kind.about ?? "");
-  return { ...kind, about, parameters };
+  const about = ABOUT[kind.kind] ?? inOneSentence(kind.about ?? "");
+  const [name, group] = NAMES[kind.kind] ?? [kind.name];
+  return { ...kind, name, about, parameters, ...(group === undefined ? {} : { group }) };
 }
 
 /** Returns what a kind is; units and names that follow stand beside the numbers. */

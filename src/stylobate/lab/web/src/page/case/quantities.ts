@@ -15,12 +15,14 @@ const STARTS: Readonly<Record<string, readonly [string, 0 | 1]>> = {
 
 const OF_A_RUN: readonly string[] = ["spin", "duration"];
 
-/** What a part's number must be called for a sweep to vary it: other numbers stand for several at once. */
+/** What a part's number must be called for a map to vary it. */
 const VARIABLE: readonly string[] = [
   ...["slenderness", "gravity", "mass_height", "mass", "transverse_inertia", "axial_inertia"],
   ...["damping", "spin_friction", "rolling_resistance", "restitution"],
   ...["friction_coefficient", "static_friction_coefficient", "patch", "incline", "incline_direction"],
   ...["acceleration", "angular_frequency", "start_phase", "scale", "rotation", "delay"],
+  ...["rpm", "diameter", "frequency", "stroke", "velocity"],
+  ...["radius", "height", "inner_radius", "top_radius", "density", "inertia_ratio", "axial_ratio"],
 ];
 
 export interface Quantity {
@@ -90,7 +92,11 @@ export function startQuantities(scales: ColumnScales): readonly Quantity[] {
 export function mapQuantities(description: Description, about: About, scales: ColumnScales): readonly Quantity[] {
   const found = [...PARTS].reverse().flatMap((part) => {
     const parameters = kindNamed(about, part, kindOf(description, part))?.parameters ?? [];
-    return parameters.filter((one) => VARIABLE.includes(one.name) && typeof one.default === "number").map(quantityOf);
+    const given = kindOf(description, part) === "given"; // its radius alone would be that of another body
+    return parameters
+      .filter(({ name, default: usual }) => VARIABLE.includes(name) && typeof usual === "number")
+      .filter(({ name }) => !(given && name === "radius"))
+      .map(quantityOf);
   });
   const names = new Set<string>();
   const once = found.filter(({ name }) => !names.has(name) && names.add(name));

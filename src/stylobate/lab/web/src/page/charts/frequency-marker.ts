@@ -4,7 +4,7 @@ import { element } from "../frame/dom";
 import { withUnit } from "../frame/format";
 import { rounded } from "../case/ranges";
 
-/** The part of the range that an arrow key moves the marker by, and a page key. */
+/** The part of the range that an arrow key moves the marker by, and a page key or an arrow with shift. */
 const [STEP, PAGE] = [1 / 200, 1 / 20];
 
 /** Where the range of frequencies lies in the host [px]. */
@@ -72,11 +72,12 @@ export class FrequencyMarker {
   #key(event: KeyboardEvent): void {
     const { range } = this.#extent();
     const span = range[1] - range[0];
+    const step = (event.shiftKey ? PAGE : STEP) * span;
     const steps: Readonly<Record<string, number>> = {
-      ArrowRight: this.#value + STEP * span,
-      ArrowUp: this.#value + STEP * span,
-      ArrowLeft: this.#value - STEP * span,
-      ArrowDown: this.#value - STEP * span,
+      ArrowRight: this.#value + step,
+      ArrowUp: this.#value + step,
+      ArrowLeft: this.#value - step,
+      ArrowDown: this.#value - step,
       PageUp: this.#value + PAGE * span,
       PageDown: this.#value - PAGE * span,
       Home: range[0],

@@ -2,6 +2,7 @@
 
 import type { Answer } from "../server/answers";
 import { element } from "../frame/dom";
+import { axisLabel } from "../frame/format";
 import type { HistoryName, HistoryPair, Told } from "./history-kinds";
 import { chosenHistories, historyOf, offeredHistories } from "./history-kinds";
 import { TimeChart } from "./time-chart";
@@ -20,7 +21,10 @@ export class Histories {
 
   constructor({ seek, chosen }: HistoriesHearing) {
     this.#above = new TimeChart("Upper history", "", { seek, chosen: (name) => chosen(this.#with(name, 0)) });
-    this.#below = new TimeChart("Lower history", "time [s]", { seek, chosen: (name) => chosen(this.#with(name, 1)) });
+    this.#below = new TimeChart("Lower history", () => axisLabel("time", "s"), {
+      seek,
+      chosen: (name) => chosen(this.#with(name, 1)),
+    });
     this.root = element("div", { class: "times" }, this.#above.root, this.#below.root);
   }
 

@@ -1,7 +1,8 @@
 /** What can be drawn over the time of a run: its quantities, as far as its model tells them. */
 
 import type { Answer, Numbers, Series } from "../server/answers";
-import { told } from "../frame/format";
+import { told, unitWritten, withUnit } from "../frame/format";
+import { isDimensionless } from "../frame/units";
 
 /** A level that a quantity is held against. */
 export interface Level {
@@ -113,7 +114,7 @@ export function historyOf(name: HistoryName, { answer, frequency }: Told): Histo
     case "displacement_y":
       return length(name, "y", values);
     case "clearance":
-      return length(name, "clearance", values);
+      return length(name, "gap", values);
     case "slip_speed":
       return signed(name, "vermilion", "|v|", "m/s", values);
     case "spin":
@@ -167,13 +168,14 @@ function demand(
 ): History {
   const largest = largestOf(values);
   // What is measured of a run is found between its samples too, where the contact bears most for a moment.
-  const most = measured === null ? "without bound" : told(Math.max(measured ?? 0, largest));
+  const peak = measured === null ? Infinity : Math.max(measured ?? 0, largest);
   const usual = Math.max(quantile(values, 0.99) * 1.2, (coefficient ?? 0) * 1.25);
-  const off = largest > usual && largest > 0 ? OFF : "";
+  const top = Math.min(peak, usual) || (coefficient ?? 1);
+  const most = Number.isFinite(peak) ? told(peak) : "without bound";
   return {
-    ...{ name, label, colour: "green", values, note: `largest ${most}${off}` },
+    ...{ name, label, colour: "green", values, note: `largest ${most}${peak > top ? OFF : ""}` },
     level: coefficient === null ? null : { value: coefficient, told: `friction coefficient ${told(coefficient)}` },
-    limits: [0, Math.min(largest, usual) || (coefficient ?? 1)],
+    limits: [0, top],
   };
 }
 
@@ -181,16 +183,16 @@ function demand(
 function signed(name: HistoryName, colour: string, label: string, unit: string, values: Numbers): History {
   const [least, largest] = [-largestOf(scaled(values, -1)), largestOf(values)];
   const usual = 1.5 * quantile(values.map(magnitude), 0.99);
-  const note = least < 0 ? `${told(least)} to ${told(largest)} ${unit}` : `largest ${told(largest)} ${unit}`;
+  const note = least < 0 ? `${told(least)} to ${withUnit(largest, unit)}` : `largest ${withUnit(largest, unit)}`;
   return {
-    ...{ name, label: unit ? `${label} [${unit}]` : label, colour, values, level: null, note: note.trim() },
+    ...{ name, label: unit ? `${label} [${unitWritten(unit)}]` : label, colour, values, level: null, note },
     limits: [Math.max(least, -usual), Math.min(largest, usual)],
   };
 }
 
 /** A length, in the unit in which its numbers are short. */
 function length(name: HistoryName, label: string, values: Numbers): History {
-  const fine = largestOf(values.map(magnitude)) < 0.1;
+  const fine = !isDimensionless() && largestOf(values.map(magnitude)) < 0.1;
   const made = signed(name, "blue", label, fine ? "mm" : "m", fine ? scaled(values, 1000) : values);
   return { ...made, note: `${made.note}, at the end ${told(made.values.at(-1))}` };
 }

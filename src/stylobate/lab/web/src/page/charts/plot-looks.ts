@@ -9,7 +9,10 @@ export const LETTERING = '11px system-ui, -apple-system, "Segoe UI", Roboto, san
 /** Room for the numbers and the name of a vertical axis [px]: the same everywhere, so that plots stand in line. */
 export const AXIS_WIDTH = 58;
 
-export function axis(label: string, looks: uPlot.Axis = {}): uPlot.Axis {
+/** The name of an axis; one that changes is asked for whenever the axis is drawn. */
+export type Label = string | (() => string);
+
+export function axis(label: Label, looks: uPlot.Axis = {}): uPlot.Axis {
   return {
     ...(label === "" ? {} : { label, labelSize: 16, labelFont: LETTERING, labelGap: 0 }),
     font: LETTERING,
@@ -22,11 +25,11 @@ export function axis(label: string, looks: uPlot.Axis = {}): uPlot.Axis {
   };
 }
 
-export function across(label: string): uPlot.Axis {
+export function across(label: Label): uPlot.Axis {
   return axis(label, { size: label === "" ? 20 : 22, space: 50 });
 }
 
-export function upright(label: string): uPlot.Axis {
+export function upright(label: Label): uPlot.Axis {
   return axis(label, { size: AXIS_WIDTH - 16, space: 17 });
 }
 

@@ -2,9 +2,11 @@
 
 import type { JobReport } from "../server/answers";
 import { describe, response, Unreachable } from "../server/api";
+import { mayTurn } from "../case/starting";
+import type { ExactOrbit } from "./response-plot";
 import { ResponsePanel } from "./response-panel";
 import type { Part } from "../case/description";
-import { written } from "../case/description";
+import { without, written } from "../case/description";
 import { angularFrequency, withAngularFrequency } from "../case/frequency";
 import type { Job } from "../server/job";
 import { Latest } from "../server/latest";
@@ -13,6 +15,9 @@ import { exactRequest, isSlender, responseRequest, usualRange } from "../server/
 import type { ScaledCurves } from "../server/scaled-response";
 import { ScaledResponse } from "../server/scaled-response";
 import type { View } from "../view/state";
+
+/** Why a run is not started on an orbit of a column that may turn. */
+const SPINS = "These orbits spin about the axis, at a rate that is not known here. Start on the upper branch instead.";
 
 export type JobStart = (
   kind: string,
@@ -41,6 +46,10 @@ export class ResponseAsking {
     this.#lost = lost;
     this.panel = new ResponsePanel({
       frequency: (value) => edited({ description: this.#at(value) }),
+      orbit: (orbit) => {
+        if (mayTurn(this.#view.description)) this.panel.tell(SPINS);
+        else edited({ description: this.#on(orbit), start: null });
+      },
       range: (range) => edited({ range }),
       exact: (report, ended) => start("exact", exactRequest(this.#view.description, this.#range) ?? {}, report, ended),
     });
@@ -57,6 +66,7 @@ export class ResponseAsking {
     this.#scales = scales;
     this.panel.showFrequency(angularFrequency(view.description.motion));
     this.panel.showRange(this.#range);
+    this.panel.setOwn(isSlender(view.description));
     this.#checkExact();
     this.#ask(jump);
   }
@@ -76,10 +86,20 @@ export class ResponseAsking {
     return { ...description, motion: withAngularFrequency(description.motion, frequency) };
   }
 
+  /** Returns the case on an exact orbit, whose base motion begins at phase zero. */
+  #on({ frequency, tilt, tilt_rate }: ExactOrbit): View["description"] {
+    const description = this.#at(frequency);
+    const motion = without(description.motion, "start_phase", "ramp");
+    // Rounding the frequency to what a field shows would leave the orbit; few motions hold it in other units.
+    const exactly = "angular_frequency" in motion ? { ...motion, angular_frequency: frequency } : motion;
+    return { ...description, motion: exactly, tilt, tilt_rate };
+  }
+
   /** Exact orbits of another case are taken away. */
   #checkExact(): void {
     const request = exactRequest(this.#view.description, this.#range);
-    const wanted = request === null ? "none" : written(request);
+    // Orbits that were found stay while the range is changed: they are those of the case all the same.
+    const wanted = request === null ? "none" : written(without(request, "angular_frequency_range"));
     if (wanted !== this.#asked.exact) this.panel.forgetExact();
     this.#asked.exact = wanted;
     this.panel.allowExact(request !== null);
@@ -96,7 +116,7 @@ export class ResponseAsking {
   }
 
   #take({ curves, slenderness }: ScaledCurves): void {
-    this.panel.show(curves, slenderness, this.#range, isSlender(this.#view.description));
+    this.panel.show(curves, slenderness, this.#range);
   }
 
   #fail(error: unknown): void {

@@ -2,18 +2,23 @@
 
 import type { ExactResponse, JobReport, ResponseCurves } from "../server/answers";
 import { button, element, newId, onResize } from "../frame/dom";
+import { enlarging } from "../frame/enlarging";
 import { Elapsed } from "../frame/elapsed";
-import { capital, counted, plain, told, words } from "../frame/format";
+import { axisLabel, capital, counted, plain, readNumber, told, unitWritten, words } from "../frame/format";
+import { joined } from "../frame/units";
 import type { Job } from "../server/job";
 import type { Extent } from "./frequency-marker";
 import { FrequencyMarker } from "./frequency-marker";
 import { AXIS_WIDTH } from "./plot-looks";
 import { heightOf, linesOf } from "./response-lines";
+import type { ExactOrbit } from "./response-plot";
 import { ResponsePlot } from "./response-plot";
 
 export interface ResponseHearing {
   readonly frequency: (value: number) => void;
   readonly range: (range: readonly [number, number] | null) => void;
+  /** Starts a run on an exact orbit. */
+  readonly orbit: (orbit: ExactOrbit) => void;
   /** Starts the search for exact orbits. */
   readonly exact: (
     report: (report: JobReport) => void,
@@ -28,6 +33,7 @@ export class ResponsePanel {
   readonly #amplitudeHost = element("div", { class: "plot amplitude", role: "img" });
   readonly #phaseHost = element("div", { class: "plot phase", role: "img" });
   readonly #note = element("p", { class: "note", "aria-live": "polite" });
+  readonly #unit = element("span", { class: "unit" });
   readonly #legend = element("ul", { class: "legend" });
   readonly #ask: HTMLButtonElement;
   readonly #from: HTMLInputElement;
@@ -42,36 +48,38 @@ export class ResponsePanel {
   #range: readonly [number, number] = [0.2, 4];
   #slenderness = 0.1;
   #frequency: number | null = null;
-  /** What is to be known of the curves. */
-  #about = "";
+  /** Whether the curves are those of the model that is chosen. */
+  #own = true;
 
   constructor(hearing: ResponseHearing) {
     this.#hearing = hearing;
     this.#ask = button("Exact orbits", { class: "small" }, () => this.#askExact());
     this.#ask.title = "Follow the periodic orbits of the model itself over the range";
     [this.#from, this.#to] = [this.#rangeField("from"), this.#rangeField("to")];
-    const range = element(
-      "span",
-      { class: "range-fields" },
-      "Ω",
-      this.#from,
-      "–",
-      this.#to,
-      element("span", { class: "unit" }, "rad/s"),
+    const range = element("span", { class: "range-fields" }, "Ω", this.#from, "–", this.#to, this.#unit);
+    const heading = element(
+      "header",
+      {},
+      element("h2", {}, "Frequency response"),
+      this.#ask,
+      enlarging(() => this.root, "the response"),
     );
-    const heading = element("header", {}, element("h2", {}, "Frequency response"), this.#ask);
-    const footer = element("footer", {}, this.#note, range);
+    const footer = element("footer", {}, this.#legend, range);
     this.#plots.append(this.#amplitudeHost, this.#phaseHost);
     this.root = element(
       "section",
       { class: "panel chart response", "aria-label": "Frequency response" },
       heading,
       this.#plots,
-      this.#legend,
       footer,
+      this.#note,
     );
     this.#amplitude = new ResponsePlot("amplitude", this.#amplitudeHost, ["", "|θ|/c"]);
-    this.#phase = new ResponsePlot("phase", this.#phaseHost, ["angular frequency [rad/s]", "phase [rad]"]);
+    this.#phase = new ResponsePlot("phase", this.#phaseHost, [
+      () => axisLabel("angular frequency", "rad/s"),
+      "φ [rad]",
+    ]);
+    this.#plots.addEventListener("pointerdown", (event) => this.#chooseOrbit(event), { capture: true });
     this.#marker = new FrequencyMarker(this.#plots, () => this.#extent(), hearing.frequency);
     for (const [host, { plot }] of [
       [this.#amplitudeHost, this.#amplitude],
@@ -84,15 +92,21 @@ export class ResponsePanel {
     }
   }
 
-  /** Shows curves over their range; `own` tells whether they are those of the model that is chosen. */
-  show(curves: ResponseCurves, slenderness: number, range: readonly [number, number], own: boolean): void {
+  /** Shows curves over their range. */
+  show(curves: ResponseCurves, slenderness: number, range: readonly [number, number]): void {
     this.#curves = curves;
     this.root.classList.remove("none");
     this.#slenderness = slenderness;
     this.showRange(range);
-    this.#about = toldOfCurves(curves, own);
     this.tell(this.#about);
     this.#draw();
+  }
+
+  /** Says whether the curves are those of the model that is chosen: curves stay when only the model changes. */
+  setOwn(own: boolean): void {
+    if (own === this.#own) return;
+    this.#own = own;
+    if (this.#curves !== null) this.tell(this.#about);
   }
 
   /** Takes the curves away and says why there are none. */
@@ -104,6 +118,7 @@ export class ResponsePanel {
   }
 
   showRange(range: readonly [number, number]): void {
+    this.#unit.textContent = unitWritten("rad/s");
     this.#range = range;
     if (document.activeElement !== this.#from) this.#from.value = plain(range[0]);
     if (document.activeElement !== this.#to) this.#to.value = plain(range[1]);
@@ -142,6 +157,22 @@ export class ResponsePanel {
 
   get exact(): ExactResponse | null {
     return this.#exact;
+  }
+
+  /** Returns what is to be known of the curves. */
+  get #about(): string {
+    return this.#curves === null ? "" : aboutCurves(this.#curves, this.#own);
+  }
+
+  /** A press on the dot of an orbit is not one on the marker. */
+  #chooseOrbit(event: PointerEvent): void {
+    if (this.#exact === null || event.button !== 0) return;
+    const plot = [this.#amplitude, this.#phase].find((one) => one.plot.root.contains(event.target as Node));
+    const orbit = plot?.orbitAt(event.clientX, event.clientY) ?? null;
+    if (orbit === null) return;
+    event.stopImmediatePropagation();
+    event.preventDefault();
+    this.#hearing.orbit(orbit);
   }
 
   #askExact(): void {
@@ -200,7 +231,7 @@ export class ResponsePanel {
     const summary =
       lines.length === 0
         ? "no curves"
-        : `${[...new Set(lines.map((one) => one.sense))].join(" and ")}; stable from ${critical || "no frequency"} rad/s on`;
+        : `${[...new Set(lines.map((one) => one.sense))].join(" and ")}; stable from ${joined(critical || "no frequency", "rad/s")} on`;
     this.#amplitudeHost.setAttribute("aria-label", `Amplitude of steady rolling over angular frequency: ${summary}`);
     this.#phaseHost.setAttribute("aria-label", "Phase of steady rolling over angular frequency");
   }
@@ -232,14 +263,14 @@ export class ResponsePanel {
   #rangeField(which: "from" | "to"): HTMLInputElement {
     const field = element("input", {
       ...{ id: newId(which), class: "number tiny", type: "text", inputmode: "decimal", autocomplete: "off" },
-      "aria-label": `Response ${which} angular frequency, rad/s`,
+      "aria-label": `Response ${which} angular frequency`,
     });
     field.addEventListener("change", () => this.#readRange());
     return field;
   }
 
   #readRange(): void {
-    const [from, to] = [Number(this.#from.value), Number(this.#to.value)];
+    const [from, to] = [readNumber(this.#from.value), readNumber(this.#to.value)];
     const empty = this.#from.value.trim() === "" && this.#to.value.trim() === "";
     const right = 0 < from && from < to && Number.isFinite(to);
     for (const field of [this.#from, this.#to]) field.setAttribute("aria-invalid", String(!right && !empty));
@@ -248,7 +279,7 @@ export class ResponsePanel {
   }
 }
 
-function toldOfCurves(curves: ResponseCurves, own: boolean): string {
+function aboutCurves(curves: ResponseCurves, own: boolean): string {
   const how = curves.averaged ? "by averaging" : "in closed form";
   return own
     ? `Steady rolling, ${how}.`
@@ -265,5 +296,5 @@ function toldOfExact(exact: ExactResponse): string {
       .map((one) => told(one, 4))
       .join(", ")}`;
   });
-  return `${families} of exact orbits; ${found.length > 0 ? `${found.join("; ")} rad/s` : "no bifurcation in the range"}.`;
+  return `${families} of exact orbits; ${found.length > 0 ? joined(found.join("; "), "rad/s") : "no bifurcation in the range"}. Click a dot to start on that orbit.`;
 }

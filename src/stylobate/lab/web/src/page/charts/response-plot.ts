@@ -1,8 +1,10 @@
 /** One of the two plots of the frequency response: amplitude or phase over angular frequency. */
 
 import uPlot from "uplot";
-import type { ExactResponse, Numbers } from "../server/answers";
+import type { Pair } from "../../viewer/index";
+import type { ExactFamily, ExactResponse, Numbers } from "../server/answers";
 import { themeColour } from "../frame/dom";
+import type { Label } from "./plot-looks";
 import { across, PLAIN, upright } from "./plot-looks";
 import type { ResponseLine } from "./response-lines";
 import { continuous } from "./response-lines";
@@ -20,6 +22,13 @@ export interface ResponsePicture {
   readonly height: number;
 }
 
+/** An orbit that a run can start on: its frequency and its state at t = 0. */
+export interface ExactOrbit {
+  readonly frequency: number;
+  readonly tilt: Pair;
+  readonly tilt_rate: Pair;
+}
+
 /** Curves, of every case: two senses, two branches, stable or not; then the backbone. */
 const MOST_LINES = 8;
 
@@ -28,7 +37,7 @@ export class ResponsePlot {
   readonly #quantity: Quantity;
   #picture: ResponsePicture | null = null;
 
-  constructor(quantity: Quantity, host: HTMLElement, labels: readonly [across: string, upright: string]) {
+  constructor(quantity: Quantity, host: HTMLElement, labels: readonly [across: Label, upright: Label]) {
     this.#quantity = quantity;
     const lines = Array.from({ length: MOST_LINES }, (_, i): uPlot.Series => this.#lineLooks(i));
     this.plot = new uPlot(
@@ -97,6 +106,30 @@ export class ResponsePlot {
     ctx.restore();
   }
 
+  /** Returns the exact orbit whose dot lies nearest to a place in the window, if one is within reach. */
+  orbitAt(clientX: number, clientY: number): ExactOrbit | null {
+    const { left, top } = this.plot.over.getBoundingClientRect();
+    const { exact, slenderness } = this.#picture ?? { exact: null, slenderness: 1 };
+    let [nearest, least]: [ExactOrbit | null, number] = [null, REACH];
+    for (const family of exact?.families ?? []) {
+      const values = this.#valuesOf(family, slenderness);
+      family.angular_frequency.forEach((frequency, i) => {
+        const [value, tilt, tilt_rate] = [values[i], family.tilt[i], family.tilt_rate[i]];
+        if (frequency === null || typeof value !== "number" || !tilt || !tilt_rate) return;
+        const [x, y] = [this.plot.valToPos(frequency, "x"), this.plot.valToPos(value, "y")];
+        const distance = Math.hypot(clientX - left - x, clientY - top - y);
+        if (distance < least) [nearest, least] = [{ frequency, tilt, tilt_rate }, distance];
+      });
+    }
+    return nearest;
+  }
+
+  /** Returns what of a family this plot draws: its phase, or its mean tilt in units of c. */
+  #valuesOf(family: ExactFamily, slenderness: number): Numbers {
+    if (this.#quantity === "phase") return continuous(family.phase);
+    return family.mean_tilt.map((value) => (value === null ? null : value / slenderness));
+  }
+
   #drawExact(plot: uPlot): void {
     const { exact, slenderness } = this.#picture ?? { exact: null, slenderness: 1 };
     if (exact === null) return;
@@ -106,13 +139,12 @@ export class ResponsePlot {
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
     for (const family of exact.families) {
-      const values = this.#quantity === "phase" ? continuous(family.phase) : family.mean_tilt;
-      const unit = this.#quantity === "phase" ? 1 : slenderness;
+      const values = this.#valuesOf(family, slenderness);
       let last: readonly [number, number, boolean] | null = null;
       family.angular_frequency.forEach((frequency, i) => {
         const value = values[i];
         if (frequency === null || value === null || value === undefined) return;
-        const [x, y] = [plot.valToPos(frequency, "x", true), plot.valToPos(value / unit, "y", true)];
+        const [x, y] = [plot.valToPos(frequency, "x", true), plot.valToPos(value, "y", true)];
         const stable = family.stable[i] === true;
         // Orbits are found close together where the branch bends; dots that touch would hide the curves.
         if (last !== null && last[2] === stable && Math.hypot(x - last[0], y - last[1]) < APART * uPlot.pxRatio) return;
@@ -126,6 +158,9 @@ export class ResponsePlot {
     ctx.restore();
   }
 }
+
+/** How far from a dot a click may be [px]. */
+const REACH = 7;
 
 /** The least distance of two dots [px]. */
 const APART = 9;

@@ -2,9 +2,10 @@
 
 import uPlot from "uplot";
 import { choice, element, onResize, themeColour } from "../frame/dom";
-import { told } from "../frame/format";
+import { told, withUnit } from "../frame/format";
 import type { History, HistoryName } from "./history-kinds";
 import { HISTORIES, isHistoryName } from "./history-kinds";
+import type { Label } from "./plot-looks";
 import { across, PLAIN, upright } from "./plot-looks";
 
 export interface TimeChartHearing {
@@ -28,7 +29,7 @@ export class TimeChart {
   #time = 0;
 
   /** `timeLabel` is empty where that of the plot below stands for both. */
-  constructor(name: string, timeLabel: string, hearing: TimeChartHearing) {
+  constructor(name: string, timeLabel: Label, hearing: TimeChartHearing) {
     this.#hearing = hearing;
     this.#kind = choice([], { class: "title", "aria-label": name }, (value) => {
       if (isHistoryName(value)) hearing.chosen(value);
@@ -75,7 +76,7 @@ export class TimeChart {
     this.#kind.replaceChildren(...offered.map((name) => element("option", { value: name }, HISTORIES[name])));
   }
 
-  #made(timeLabel: string): uPlot {
+  #made(timeLabel: Label): uPlot {
     return new uPlot(
       {
         ...PLAIN,
@@ -108,7 +109,7 @@ export class TimeChart {
     const value = idx === null || idx === undefined ? undefined : plot.data[1]?.[idx];
     const time = idx === null || idx === undefined ? undefined : plot.data[0]?.[idx];
     const found = value !== undefined && time !== undefined;
-    this.#note.textContent = found ? `${told(value)} at ${told(time, 4)} s` : (this.#history?.note ?? "");
+    this.#note.textContent = found ? `${told(value)} at ${withUnit(time, "s", 4)}` : (this.#history?.note ?? "");
   }
 
   #nameLevel(plot: uPlot): void {

@@ -4,9 +4,13 @@ import type { About, Kind, Preset } from "../case/about";
 import { kindNamed, kindsOf } from "../case/about";
 import type { Description, Part, PartName, Value } from "../case/description";
 import { kindOf, tagOf, withPartValue, written } from "../case/description";
-import { choice, element, newId } from "../frame/dom";
+import { button, choice, element, newId } from "../frame/dom";
 import { angularFrequency, withAngularFrequency } from "../case/frequency";
+import { inOnePlane } from "../case/in-one-plane";
+import { atScaleOf } from "../case/scaling";
 import type { ColumnScales } from "../case/quantities";
+import type { Wrong } from "../frame/problems";
+import type { Branch } from "../case/starting";
 import { KeptNumbers } from "./kept-numbers";
 import { NumberField } from "./number-field";
 import { PartForm, partOfKind } from "./part-form";
@@ -16,6 +20,8 @@ import { StartForm } from "./start-form";
 export interface ControlsHearing {
   /** A number has been moved. */
   readonly edited: (description: Description) => void;
+  /** Another start has been set, or a branch of steady rolling to start on. */
+  readonly started: (description: Description, start: Branch | null) => void;
   /** Another case has been chosen. */
   readonly jumped: (description: Description) => void;
   readonly preset: (preset: Preset) => void;
@@ -27,6 +33,9 @@ export class Controls {
   readonly #hearing: ControlsHearing;
   readonly #presets: HTMLSelectElement;
   readonly #presetTold = element("p", { class: "hint" });
+  readonly #changed = element("span", { class: "changed unseen" });
+  /** The preset that the case was, or is still. */
+  #from: Preset | null = null;
   readonly #forms: Readonly<Record<PartName, PartForm>>;
   readonly #record: RecordForm;
   readonly #start: StartForm;
@@ -47,10 +56,12 @@ export class Controls {
     const options = about.presets.map((preset) => [preset.id, preset.title] as const);
     this.#presets = choice([["", "A case of one's own"], ...options], { id }, (value) => this.#choosePreset(value));
     this.#forms = { column: this.#form("column"), model: this.#form("model"), motion: this.#form("motion") };
+    const reset = button("Reset", { class: "small" }, () => this.#choosePreset(this.#from?.id ?? ""));
+    this.#changed.append("changed ", reset);
     this.#record = new RecordForm(about, (motion) => hearing.jumped({ ...this.#description, motion }));
     this.#forms.motion.root.insertBefore(this.#record.root, this.#forms.motion.root.lastElementChild);
     this.#forms.motion.root.append(this.#toy);
-    this.#start = new StartForm((description) => hearing.edited(description));
+    this.#start = new StartForm((description, start) => hearing.started(description, start));
     this.#duration = new NumberField(
       { name: "duration", label: "Duration", symbol: "t", unit: "s", range: null, top: 60, empty: "by motion" },
       (value) => hearing.edited({ ...this.#description, duration: value }),
@@ -62,7 +73,7 @@ export class Controls {
       element(
         "div",
         { class: "panel preset" },
-        element("label", { for: id }, "Preset"),
+        element("div", { class: "preset-head" }, element("label", { for: id }, "Preset"), this.#changed),
         this.#presets,
         this.#presetTold,
       ),
@@ -78,35 +89,42 @@ export class Controls {
     return this.#record;
   }
 
-  show(description: Description, scales: ColumnScales): void {
+  show(description: Description, scales: ColumnScales, start: Branch | null): void {
     this.#description = description;
-    const preset = this.#about.presets.find((one) => written(one.description) === written(description));
-    this.#presets.value = preset?.id ?? "";
-    this.#presetTold.textContent = preset?.about ?? "";
-    this.#presetTold.hidden = !preset?.about;
+    this.#showPreset(description);
     for (const part of ["column", "model", "motion"] as const)
       this.#forms[part].show(description[part], kindOf(description, part));
     this.#record.show(description.motion);
     this.#toy.hidden = !isToy(description);
-    this.#start.show(description, scales);
+    this.#start.show(description, scales, start);
     const duration = description["duration"];
     this.#duration.show(typeof duration === "number" ? duration : null);
   }
 
-  /** Marks the fields whose names the problems tell. */
-  setWrong(names: ReadonlySet<string>): void {
-    for (const form of Object.values(this.#forms)) form.setWrong(names);
-    this.#start.setWrong(names);
-    this.#duration.setWrong(names.has("duration"));
+  /** Shows which preset the case is, or which one it was changed from: its text stays while its numbers move. */
+  #showPreset(description: Description): void {
+    const same = this.#about.presets.find((one) => written(one.description) === written(description));
+    this.#from = same ?? this.#from;
+    this.#presets.value = this.#from?.id ?? "";
+    this.#presetTold.textContent = this.#from?.about ?? "";
+    this.#presetTold.hidden = !this.#from?.about;
+    this.#changed.classList.toggle("unseen", same !== undefined || this.#from === null);
+  }
+
+  /** Shows each problem beside the fields that it names. */
+  setWrong(wrong: Wrong): void {
+    for (const form of Object.values(this.#forms)) form.setWrong(wrong);
+    this.#start.setWrong(wrong);
+    this.#duration.setWrong(wrong.get("duration"));
   }
 
   #form(part: PartName): PartForm {
     return new PartForm(LABELS[part], kindsOf(this.#about, part), {
       chosen: (kind) => {
         const chosen = this.#ofKind(part, kind);
-        this.#hearing.jumped(
-          this.#fitted({ ...this.#description, [part]: part === "motion" ? this.#withSample(chosen) : chosen }),
-        );
+        const found = { ...this.#description, [part]: part === "motion" ? this.#withSample(chosen) : chosen };
+        const scaled = part === "column" ? atScaleOf(found, this.#description) : found;
+        this.#hearing.jumped(this.#fitted(kind.kind === "planar_rocking" ? inOnePlane(scaled) : scaled));
       },
       changed: (name: string, value: Value) =>
         this.#hearing.edited(withPartValue(this.#description, part, name, value)),
@@ -156,7 +174,7 @@ function isToy({ column, motion }: Description): boolean {
   return column["shape"] === "dimensionless" && motion["kind"] === "record";
 }
 
-const TOY = "This column has g = 1 m/s², and the record is in m/s²: choose a shape with lengths, such as solid.";
+const TOY = "The record is in m/s², and the g of this column is 1 m/s²: choose a shape with lengths, such as solid.";
 
 const USUAL_DURATION = 60; // s
 

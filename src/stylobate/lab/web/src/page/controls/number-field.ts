@@ -1,7 +1,7 @@
 /** A number: its name, a slider for the hand and a field for the exact value. */
 
 import { element, newId } from "../frame/dom";
-import { plain, withUnit } from "../frame/format";
+import { plain, readNumber, unitWritten, withUnit } from "../frame/format";
 import type { Scale } from "../case/ranges";
 import { POSITIONS, positionOf, scaleAbout, scaleBetween, valueAt } from "../case/ranges";
 
@@ -25,6 +25,8 @@ export class NumberField {
   readonly name: string;
   readonly #field: HTMLInputElement;
   readonly #slider: HTMLInputElement;
+  readonly #problem = element("p", { id: newId("problem"), class: "field-problem", hidden: true });
+  readonly #unit = element("span", { class: "unit" });
   readonly #changed: (value: number | null) => void;
   readonly #looks: NumberLooks;
   #scale: Scale;
@@ -46,6 +48,7 @@ export class NumberField {
     this.#slider = element("input", {
       ...{ type: "range", min: 0, max: POSITIONS, step: 1, class: "slider" },
       "aria-label": `${looks.label}, slider`,
+      tabindex: -1, // the arrows do the same in the field beside it
     });
     this.root = this.#laidOut(id);
     this.#listen();
@@ -54,6 +57,7 @@ export class NumberField {
   /** Shows a value, unless it is being written. */
   show(value: number | null): void {
     this.#value = value;
+    this.#unit.textContent = unitWritten(this.#looks.unit);
     if (document.activeElement !== this.#field) this.#write();
     if (!this.#slider.matches(":active")) {
       this.#reachFor(value);
@@ -70,11 +74,14 @@ export class NumberField {
     if (from !== this.#scale.from || to !== this.#scale.to) this.#scale = scaleBetween(from, to);
   }
 
-  /** Marks the field as the one that a problem is about, or clears the mark. */
-  setWrong(wrong: boolean): void {
-    const marked = wrong || this.#unread; // an answer to the number before says nothing of what is being written
-    if (marked) this.#field.setAttribute("aria-invalid", "true");
-    else this.#field.removeAttribute("aria-invalid");
+  /** Marks the field as the one that a problem is about and shows the problem's line, or clears both. */
+  setWrong(problem: string | undefined): void {
+    // An answer to the number before says nothing of what is being written.
+    const line = this.#unread ? NOT_READ : (problem ?? "");
+    this.#problem.textContent = line;
+    this.#problem.hidden = line === "";
+    if (line === "") this.#field.removeAttribute("aria-invalid");
+    else this.#field.setAttribute("aria-invalid", "true");
   }
 
   /** Moves the ends of a slider that has none of its own, once its value is near or beyond one. */
@@ -86,11 +93,12 @@ export class NumberField {
   }
 
   #laidOut(id: string): HTMLElement {
-    const { label, symbol, unit, hint } = this.#looks;
+    const { label, symbol, hint } = this.#looks;
     const name = element("label", { for: id, title: hint }, label);
     if (symbol !== "") name.append(" ", symbolOf(symbol));
-    const value = element("span", { class: "value" }, this.#field, element("span", { class: "unit" }, unit));
-    return element("div", { class: "field" }, name, value, this.#slider);
+    const value = element("span", { class: "value" }, this.#field, this.#unit);
+    this.#field.setAttribute("aria-describedby", this.#problem.id);
+    return element("div", { class: "field" }, name, value, this.#problem, this.#slider);
   }
 
   #listen(): void {
@@ -113,12 +121,11 @@ export class NumberField {
   }
 
   #read(): void {
-    const text = this.#field.value.trim().replace(",", ".").replace("\u2212", "-");
-    const value = Number(text);
-    const empty = text === "";
+    const value = readNumber(this.#field.value);
+    const empty = this.#field.value.trim() === "";
     const wrong = empty ? this.#looks.empty === undefined : !Number.isFinite(value);
     this.#unread = wrong;
-    this.setWrong(wrong);
+    this.setWrong(undefined);
     if (wrong) return;
     this.#slider.value = String(empty ? 0 : positionOf(value, this.#scale));
     this.#changed(empty ? null : value);
@@ -128,7 +135,7 @@ export class NumberField {
   #restore(): void {
     if (!this.#unread) return;
     this.#unread = false;
-    this.setWrong(false);
+    this.setWrong(undefined);
     this.#write();
   }
 
@@ -150,6 +157,8 @@ export class NumberField {
     return this.#looks.whole === true ? Math.round(value) : value;
   }
 }
+
+const NOT_READ = "Write a number, such as 0.05.";
 
 /** Significant digits in the field; the value itself has all that it was given. */
 const SHOWN = 6;

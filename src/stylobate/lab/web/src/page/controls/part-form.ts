@@ -7,13 +7,14 @@ import { choice, element, newId } from "../frame/dom";
 import { capital, words } from "../frame/format";
 import { firstTop } from "../case/quantities";
 import { niceAbove } from "../case/ranges";
+import type { Wrong } from "../frame/problems";
 import { NumberField } from "./number-field";
 
 interface Control {
   readonly name: string;
   readonly root: HTMLElement;
   readonly show: (part: Part) => void;
-  readonly setWrong: (wrong: boolean) => void;
+  readonly setWrong: (problem: string | undefined) => void;
 }
 
 export interface PartHearing {
@@ -36,7 +37,7 @@ export class PartForm {
     this.#kinds = kinds;
     this.#hearing = hearing;
     const id = newId("kind");
-    const options = kinds.map((kind) => [kind.kind, capital(kind.name)] as const);
+    const options = kinds.map(({ kind, name, group }) => [kind, capital(name), group] as const);
     this.#select = choice(options, { id }, (value) => {
       const kind = kinds.find((one) => one.kind === value);
       if (kind) hearing.chosen(kind);
@@ -52,8 +53,8 @@ export class PartForm {
   }
 
   /** Marks the fields that a problem names. */
-  setWrong(names: ReadonlySet<string>): void {
-    for (const control of this.#controls) control.setWrong(names.has(control.name));
+  setWrong(wrong: Wrong): void {
+    for (const control of this.#controls) control.setWrong(wrong.get(control.name));
   }
 
   #rebuild(kind: string): void {
@@ -88,7 +89,7 @@ export class PartForm {
         top: firstTop(parameter),
         whole: name === "cycles" && Number.isInteger(parameter.default),
         ...(about ? { hint: about } : {}),
-        ...(optional ? { empty: "usual" } : {}),
+        ...(optional ? { empty: EMPTY[name] ?? "automatic" } : {}),
       },
       (value) => this.#hearing.changed(name, index === null ? value : this.#withComponent(parameter, index, value)),
     );
@@ -96,7 +97,7 @@ export class PartForm {
       name,
       root: field.root,
       show: (part) => field.show(componentOf(part[name] ?? parameter.default, index)),
-      setWrong: (wrong) => field.setWrong(wrong),
+      setWrong: (problem) => field.setWrong(problem),
     };
   }
 
@@ -120,10 +121,15 @@ export class PartForm {
       name,
       root: element("div", { class: "field choice" }, label, select),
       show: (part) => (select.value = String(part[name] ?? parameter.default)),
-      setWrong: (wrong) => select.toggleAttribute("aria-invalid", wrong),
+      setWrong: (problem) => select.setAttribute("aria-invalid", String(problem !== undefined)),
     };
   }
 }
+
+/** What it means to leave a number out. */
+const EMPTY: Readonly<Record<string, string>> = {
+  ...{ rotation: "none", scale: "1", tail: "20/p", restitution: "Housner’s", static_friction_coefficient: "as μ" },
+};
 
 function rangeOf({ from, to, default: usual }: Parameter): readonly [number, number] | null {
   const vector = isVector(usual); // components may be negative

@@ -5,17 +5,30 @@ import type { Received } from "../server/answers";
 import { Refused, sendRecord, Unreachable } from "../server/api";
 import type { Part, Value } from "../case/description";
 import { button, choice, element, newId } from "../frame/dom";
-import { capital, told, withUnit } from "../frame/format";
+import { capital, told } from "../frame/format";
 
 const UNITS = [
   ["", "unit: from the file"],
   ["g", "unit: g"],
   ["cm/s2", "unit: cm/s²"],
   ["m/s2", "unit: m/s²"],
+  ["mm/s2", "unit: mm/s²"],
 ] as const;
 
 const MOST_FILES = 3;
 const OWN = "\u0000own"; // no sample has this name
+
+/** What the server asks for in its own words, and in those of this form. */
+const ASKED: readonly (readonly [RegExp, string])[] = [
+  [/state units, .*$/, "choose its unit above."],
+  [/units must be left out or '(.*?)', which.*$/, "the file says that its unit is $1; choose “unit: from the file”."],
+  [/state step\b.*$/, "enter the time step above."],
+];
+
+/** Returns a line of the server with the names of the controls of this form. */
+export function inWordsOfForm(line: string): string {
+  return ASKED.reduce((text, [asked, here]) => text.replace(asked, here), line);
+}
 
 /** A record that was uploaded: what the server said of it, and what was sent. */
 interface Kept {
@@ -30,6 +43,11 @@ export class RecordForm {
   readonly #own: HTMLElement;
   readonly #files = element("input", { type: "file", multiple: true });
   readonly #units = choice(UNITS, { "aria-label": "Unit of the record" }, () => this.#send());
+  readonly #step = element("input", {
+    inputmode: "decimal",
+    "aria-label": "Time step of the record [s], where the file states none",
+    placeholder: "time step [s]: from the file",
+  });
   readonly #told = element("p", { class: "hint", "aria-live": "polite" });
   readonly #problem = element("p", { class: "problem", role: "alert", hidden: true });
   readonly #known = new Map<string, Kept>();
@@ -46,9 +64,10 @@ export class RecordForm {
     this.#files.addEventListener("change", () => this.#send());
     const label = element("label", { for: fileId, class: "visually-hidden" }, "Files of the record, one to three");
     const again = button("Choose files…", { class: "wide" }, () => this.#files.click());
+    this.#step.addEventListener("change", () => this.#send());
     this.#files.classList.add("visually-hidden");
     this.#files.tabIndex = -1; // the button beside it is the one to reach
-    this.#own = element("div", { class: "own-record" }, label, this.#files, again, this.#units);
+    this.#own = element("div", { class: "own-record" }, label, this.#files, again, this.#units, this.#step);
     const source = element("div", { class: "field choice" }, element("label", { for: id }, "Record"), this.#source);
     this.root = element("div", { class: "record" }, source, this.#own, this.#told, this.#problem);
   }
@@ -109,21 +128,27 @@ export class RecordForm {
     }
     try {
       const contents = await Promise.all(files.map(async (file) => ({ name: file.name, content: await base64(file) })));
-      const body: Part = { files: contents, units: this.#units.value || null };
+      const body: Part = { files: contents, units: this.#units.value || null, step: stepIn(this.#step.value) };
       const received = await sendRecord(body);
       this.#known.set(received.upload, { told: received, body });
       this.#tell(null);
       this.#changed({ kind: "record", upload: received.upload, scale: this.#motion["scale"] ?? 1 });
     } catch (error) {
       if (error instanceof Unreachable) this.#tell("The server does not answer; choose the files again when it does.");
-      else this.#tell(error instanceof Refused ? error.problems.join(" ") : String(error));
+      else this.#tell(error instanceof Refused ? error.problems.map(inWordsOfForm).join(" ") : String(error));
     }
   }
 }
 
+/** Returns a time step as it is sent: what is no number is refused there. */
+function stepIn(text: string): number | string | null {
+  const written = text.trim().replace(",", ".");
+  return written === "" ? null : Number.isFinite(Number(written)) ? Number(written) : text;
+}
+
 function toldOfRecord(record: Received): string {
-  const peaks = Object.entries(record.peaks).map(([axis, peak]) => `${axis} ${withUnit(peak, "m/s²")}`);
-  const length = `${record.samples} samples, ${withUnit(record.duration, "s")} in steps of ${told(record.step)} s`;
+  const peaks = Object.entries(record.peaks).map(([axis, peak]) => `${axis} ${told(peak)} m/s²`);
+  const length = `${record.samples} samples, ${told(record.duration)} s in steps of ${told(record.step)} s`;
   return `${record.name}: ${length}; peaks ${peaks.join(", ")}.`;
 }
 

@@ -1,26 +1,35 @@
 /** The start of the motion and its length. */
 
 import type { Description } from "../case/description";
-import { kindOf } from "../case/description";
-import { element } from "../frame/dom";
+import { choice, element, newId } from "../frame/dom";
 import { capital, words } from "../frame/format";
 import type { ColumnScales } from "../case/quantities";
 import { startQuantities, valueOf, withValue } from "../case/quantities";
+import type { Branch, StartKind } from "../case/starting";
+import { BRANCHES, hasBranch, mayTurn, standing, startKind } from "../case/starting";
 import { niceAbove } from "../case/ranges";
+import type { Wrong } from "../frame/problems";
 import { NumberField } from "./number-field";
 
-/** Models of columns that may turn about their axis. */
-const TURNING: readonly string[] = ["slender_rolling", "rolling", "sliding"];
+const KINDS: readonly (readonly [StartKind, string])[] = [
+  ["upper", "on the upper branch"],
+  ["lower", "on the lower branch"],
+  ["standing", "standing"],
+  ["set", "as set"],
+];
 
 export class StartForm {
   readonly root = element("div", { class: "fields" });
-  readonly #changed: (description: Description) => void;
+  readonly #changed: (description: Description, branch: Branch | null) => void;
+  readonly #kind: HTMLSelectElement;
   readonly #fields: readonly NumberField[];
   readonly #spin: NumberField;
   #description: Description | null = null;
 
-  constructor(changed: (description: Description) => void) {
+  constructor(changed: (description: Description, branch: Branch | null) => void) {
     this.#changed = changed;
+    const id = newId("start");
+    this.#kind = choice(KINDS, { id }, (value) => this.#choose(value as StartKind));
     const any: ColumnScales = { slenderness: 0.1, frequency_scale: 1 };
     this.#fields = startQuantities(any).map(
       (one) =>
@@ -39,11 +48,15 @@ export class StartForm {
       },
       (value) => this.#set("spin", value ?? 0),
     );
-    this.root.append(...this.#fields.map((one) => one.root), this.#spin.root);
+    const kind = element("div", { class: "field choice" }, element("label", { for: id }, "Start"), this.#kind);
+    this.root.append(kind, ...this.#fields.map((one) => one.root), this.#spin.root);
   }
 
-  show(description: Description, scales: ColumnScales): void {
+  show(description: Description, scales: ColumnScales, branch: Branch | null): void {
     this.#description = description;
+    for (const one of this.#kind.options)
+      one.disabled = (BRANCHES as readonly string[]).includes(one.value) && !hasBranch(description);
+    this.#kind.value = startKind(description, branch);
     startQuantities(scales).forEach(({ name, from, to }, i) => {
       this.#fields[i]?.setRange(from, to);
       this.#fields[i]?.show(valueOf(description, name) ?? 0);
@@ -51,16 +64,22 @@ export class StartForm {
     const fastest = niceAbove(5 * scales.frequency_scale);
     this.#spin.setRange(-fastest, fastest);
     this.#spin.show(valueOf(description, "spin") ?? 0);
-    this.#spin.root.hidden = !TURNING.includes(kindOf(description, "model"));
+    this.#spin.root.hidden = !mayTurn(description);
   }
 
-  setWrong(names: ReadonlySet<string>): void {
+  setWrong(wrong: Wrong): void {
     for (const field of this.#fields)
-      field.setWrong(names.has(field.name) || names.has(field.name.replace(/_[xy]$/, "")));
-    this.#spin.setWrong(names.has("spin"));
+      field.setWrong(wrong.get(field.name) ?? wrong.get(field.name.replace(/_[xy]$/, "")));
+    this.#spin.setWrong(wrong.get("spin"));
   }
 
   #set(name: string, value: number): void {
-    if (this.#description !== null) this.#changed(withValue(this.#description, name, value));
+    if (this.#description !== null) this.#changed(withValue(this.#description, name, value), null);
+  }
+
+  #choose(kind: StartKind): void {
+    if (this.#description === null) return;
+    const [branch] = BRANCHES.filter((one) => one === kind);
+    this.#changed(kind === "standing" ? standing(this.#description) : this.#description, branch ?? null);
   }
 }

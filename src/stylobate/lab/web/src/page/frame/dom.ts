@@ -30,13 +30,19 @@ export function button(text: string, attributes: Attributes, pressed: () => void
   return made;
 }
 
-/** Returns a choice among named values, of which `chosen` hears. */
+/** Returns a choice among named values, of which `chosen` hears; values of one group stand under its heading. */
 export function choice(
-  options: readonly (readonly [value: string, text: string])[],
+  options: readonly (readonly [value: string, text: string, group?: string | undefined])[],
   attributes: Attributes,
   chosen: (value: string) => void,
 ): HTMLSelectElement {
-  const made = element("select", attributes, ...options.map(([value, text]) => element("option", { value }, text)));
+  const groups = new Map<string | undefined, HTMLOptionElement[]>();
+  for (const [value, text, group] of options)
+    groups.set(group, [...(groups.get(group) ?? []), element("option", { value }, text)]);
+  const listed = [...groups].flatMap(([label, members]) =>
+    label === undefined ? members : [element("optgroup", { label }, ...members)],
+  );
+  const made = element("select", attributes, ...listed);
   made.addEventListener("change", () => chosen(made.value));
   return made;
 }

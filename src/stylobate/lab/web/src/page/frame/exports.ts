@@ -16,6 +16,8 @@ export interface Exported {
   readonly caption: () => readonly string[];
   /** The description as it is sent. */
   readonly description: () => Part;
+  /** A link to the view, with the time at which a clock that is stopped stands. */
+  readonly link: () => string;
   /** The description in the languages of the package. */
   readonly described: () => Promise<Described>;
 }
@@ -127,6 +129,6 @@ export class ExportMenu {
   }
 
   #link(): void {
-    this.#dialog.show("A link to this view, while the laboratory runs here", location.href, null);
+    this.#dialog.show("A link to this view, while the laboratory runs here", this.#exported.link(), null);
   }
 }

@@ -1,5 +1,7 @@
 /** Numbers and units as they are read. */
 
+import { joined, shownUnit } from "./units";
+
 const MINUS = "\u2212";
 const RAISED: Readonly<Record<string, string>> = { "2": "²", "3": "³", "4": "⁴" };
 
@@ -7,6 +9,12 @@ const RAISED: Readonly<Record<string, string>> = { "2": "²", "3": "³", "4": "�
 export function plain(value: number, digits = 4): string {
   if (!Number.isFinite(value)) return "";
   return String(Number(value.toPrecision(digits)));
+}
+
+/** Returns the number that is written in a field, with a comma or a true minus sign too; NaN where it is none. */
+export function readNumber(text: string): number {
+  const written = text.trim().replace(",", ".").replace(MINUS, "-");
+  return written === "" ? NaN : Number(written);
 }
 
 /** Returns the same for reading: a true minus sign, powers of ten written out. */
@@ -18,11 +26,16 @@ export function told(value: number | null | undefined, digits = 3): string {
 }
 
 export function withUnit(value: number | null | undefined, unit: string, digits = 3): string {
-  return unit === "" || unit === "1" ? told(value, digits) : `${told(value, digits)} ${unitWritten(unit)}`;
+  return unit === "" || unit === "1" ? told(value, digits) : joined(told(value, digits), siWritten(unit));
+}
+
+/** Returns a unit as it is shown: "m s-2" as m/s², or g for a dimensionless column. */
+export function unitWritten(unit: string): string {
+  return shownUnit(siWritten(unit));
 }
 
 /** Returns "m s-2" as m/s²; what is written with a stroke already stays as it is. */
-export function unitWritten(unit: string): string {
+function siWritten(unit: string): string {
   if (unit === "1") return "";
   if (!/[a-z]-?\d|\s/i.test(unit)) return unit;
   const above: string[] = [];

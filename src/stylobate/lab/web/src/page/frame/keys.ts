@@ -1,15 +1,16 @@
-/** Keys of the whole page: space plays and pauses, arrows go through the time; what has the focus comes first. */
+/** Keys of the whole page: space plays, arrows and N go through the time; what has the focus comes first. */
 
 import type { Clock } from "../../viewer/index";
 
 /** What takes the space bar for itself, and what the arrows. */
 const PRESSED = "input:not([type=range]), select, textarea, button, summary, a";
+const WRITTEN = "input:not([type=range]), select, textarea";
 const MOVED = "input, select, textarea, canvas, pre, [role=tab], [role=slider]";
 
 /** The parts of a run that an arrow goes, and with shift. */
 const [STEP, STRIDE] = [1 / 200, 1 / 20];
 
-export function listenToKeys(clock: Clock): void {
+export function listenToKeys(clock: Clock, nextEvent: () => void): void {
   document.addEventListener("keydown", (event) => {
     const { target } = event;
     const taken = event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey;
@@ -18,6 +19,7 @@ export function listenToKeys(clock: Clock): void {
       event.preventDefault();
       clock.toggle();
     }
+    if (event.key === "n" && target.closest(WRITTEN) === null) nextEvent();
     const direction = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
     if (direction === 0 || target.closest(MOVED) !== null) return;
     event.preventDefault();

@@ -1,4 +1,4 @@
-/** What the server refused, beside the controls, and which fields it is about. */
+/** What the server refused: above the controls, and beside the fields it is about. */
 
 import { element } from "./dom";
 
@@ -15,7 +15,11 @@ export class Problems {
   }
 }
 
-/** Returns the names of quantities in these lines: the words that are written as in a description. */
-export function namesIn(lines: readonly string[]): ReadonlySet<string> {
-  return new Set(lines.flatMap((line) => line.match(/[a-z]+(?:_[a-z]+)*/g) ?? []));
+/** The first line about each quantity, by the quantity's name in a description. */
+export type Wrong = ReadonlyMap<string, string>;
+
+/** Returns the lines by the names of quantities in them: the words that are written as in a description. */
+export function wrongIn(lines: readonly string[]): Wrong {
+  const found = lines.flatMap((line) => (line.match(/[a-z]+(?:_[a-z]+)*/g) ?? []).map((name) => [name, line] as const));
+  return new Map(found.reverse());
 }

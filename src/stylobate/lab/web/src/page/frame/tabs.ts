@@ -1,6 +1,7 @@
 /** Panels of which one is seen, chosen by tabs. */
 
 import { element, newId } from "./dom";
+import { enlarging } from "./enlarging";
 
 export interface TabLooks<Name extends string> {
   readonly name: Name;
@@ -29,7 +30,12 @@ export class Tabs<Name extends string> {
     this.root = element(
       "section",
       { class: "panel chart tabbed", "aria-label": label },
-      list,
+      element(
+        "div",
+        { class: "tab-bar" },
+        list,
+        enlarging(() => this.root, "this panel"),
+      ),
       ...this.#tabs.map((one) => one.panel),
     );
   }

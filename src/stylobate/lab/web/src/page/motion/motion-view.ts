@@ -1,26 +1,32 @@
 /** The motion in all its pictures, led by one clock: stage, histories, orbit, verdict. */
 
-import { Clock, Stage, type Theme } from "../../viewer/index";
+import { Clock, Stage, type Theme, withFall } from "../../viewer/index";
 import type { Answer } from "../server/answers";
 import type { HistoryPair } from "../charts/history-kinds";
 import { Histories } from "../charts/histories";
 import { OrbitChart } from "../charts/orbit";
-import { element } from "../frame/dom";
+import { button, element } from "../frame/dom";
 import { Elapsed } from "../frame/elapsed";
+import { shownUnit } from "../frame/units";
 import { NumbersTable } from "./numbers-table";
 import { Transport } from "./transport";
 import { Verdict } from "./verdict";
 
 /** What is told of a run that takes long. */
-const FIRST = "computing… a model's first run on a machine takes long;";
+const FIRST = "computing… the first run of a model and long runs take time;";
 
 export interface MotionHearing {
+  /** The run is to be followed for so long [s]. */
+  readonly lasting: (duration: number) => void;
   readonly speed: (speed: number) => void;
   readonly histories: (pair: HistoryPair) => void;
+  /** The reader no longer wants the run that is computed. */
+  readonly cancelled: () => void;
 }
 
 export class MotionView {
   readonly clock = new Clock();
+  readonly #cancel: HTMLButtonElement;
   /** Null where the browser draws no 3D; the curves tell the motion all the same. */
   readonly stage: Stage | null;
   readonly orbit = new OrbitChart();
@@ -29,36 +35,66 @@ export class MotionView {
   readonly numbers = new NumbersTable();
   readonly #host = element("div", { class: "stage empty" });
   readonly #transport: Transport;
-  readonly #verdict = new Verdict();
+  readonly #verdict: Verdict;
   readonly #curves: Histories;
+  /** Hidden from readers of the screen, who hear the same lines from the controls. */
+  readonly #old = element("div", { class: "old-note", "aria-hidden": "true", hidden: true });
   readonly #waiting = element("p", { class: "waiting-note", hidden: true });
   readonly #elapsed = new Elapsed((told) => (this.#waiting.textContent = told));
+  readonly #fall = element("p", { class: "fall-note", hidden: true }, "from here on: not computed");
+  /** Where the run ended; what is drawn later is its fall [s]. */
+  #computed = 0;
   /** Whether the clock ran at its last tick: at the end of a run it stops by itself. */
   #played = false;
 
-  constructor(theme: Theme, { speed, histories }: MotionHearing) {
+  constructor(theme: Theme, { speed, histories, cancelled, lasting }: MotionHearing) {
+    this.#cancel = button("Cancel", { class: "cancel-run small", hidden: true }, cancelled);
+    this.#host.append(this.#cancel);
+    this.#verdict = new Verdict(lasting);
     this.#transport = new Transport(this.clock, speed);
     this.#curves = new Histories({ seek: (time) => this.clock.seek(time), chosen: histories });
     this.histories = this.#curves.root;
     this.root = element("section", { class: "show panel", "aria-label": "Motion" });
     this.root.append(this.#host, this.#transport.root, this.#verdict.root);
     this.stage = this.#newStage(theme);
-    this.#host.append(this.#waiting);
+    this.#host.append(this.#waiting, this.#old, this.#fall);
     this.clock.onTick(() => this.#tick());
     setInterval(() => this.#transport.describe(), 1000);
   }
 
   /** Shows a run; `frequency` is that of its base motion [rad/s], where it has one. */
   show(answer: Answer, frequency: number | null): void {
-    this.#host.classList.remove("old", "empty");
-    this.clock.setRange(0, answer.drawn.time.at(-1) ?? 0);
-    this.stage?.show(answer.drawn);
+    this.#host.classList.remove("empty");
+    this.setOld(null);
+    const drawn = withFall(answer.drawn, answer.column.frequency_parameter);
+    this.#computed = answer.drawn.time.at(-1) ?? 0;
+    this.clock.setRange(0, drawn.time.at(-1) ?? 0);
+    this.stage?.show(drawn, shownUnit("m"));
     this.#curves.show(answer, frequency);
     this.orbit.show(answer.drawn);
     this.#verdict.show(answer);
     this.numbers.show(answer);
     this.#transport.showEvents(answer.events);
     this.#follow();
+  }
+
+  /** Whether the clock stands in a fall that was not computed. */
+  get falling(): boolean {
+    return this.clock.time > this.#computed;
+  }
+
+  /** The time at which the clock is stopped [s]; null while it runs. */
+  get stoppedAt(): number | null {
+    return this.clock.playing ? null : Number(this.clock.time.toPrecision(5));
+  }
+
+  stopAt(time: number): void {
+    this.clock.pause();
+    this.clock.seek(time);
+  }
+
+  toNextEvent(): void {
+    this.#transport.toNextEvent();
   }
 
   /** Plays from the beginning, unless the reader asked for less motion. */
@@ -80,13 +116,18 @@ export class MotionView {
   setBusy(busy: boolean): void {
     this.#host.classList.toggle("busy", busy);
     this.#waiting.hidden = !busy;
+    this.#cancel.hidden = !busy;
     if (busy) this.#elapsed.begin("computing…", FIRST);
     else this.#elapsed.end();
   }
 
-  /** Tells that what is shown is not the case that was asked for. */
-  setOld(old: boolean): void {
-    this.#host.classList.toggle("old", old);
+  /** Says over the stage why the case that was asked for is not shown; null: it is. */
+  setOld(problems: readonly string[] | null): void {
+    this.#old.hidden = problems === null;
+    this.#old.replaceChildren(
+      ...(problems ?? []).map((line) => element("p", {}, line)),
+      element("p", {}, "Shown: the last case that could be computed."),
+    );
   }
 
   /** Tells that what is shown is the case before, while another one is on its way. */
@@ -125,9 +166,12 @@ export class MotionView {
 
   #follow(): void {
     const { time } = this.clock;
+    const computed = Math.min(time, this.#computed);
     this.stage?.setTime(time);
-    this.#curves.setTime(time);
-    this.orbit.setTime(time);
+    this.#fall.hidden = !this.falling;
+    this.#curves.setTime(computed);
+    this.orbit.setTime(computed);
+    this.#verdict.setTime(time);
     this.#transport.show();
   }
 }

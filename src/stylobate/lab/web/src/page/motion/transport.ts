@@ -4,6 +4,7 @@ import type { Clock } from "../../viewer/index";
 import type { Answer } from "../server/answers";
 import { button, choice, element, newId, onResize, themeColour } from "../frame/dom";
 import { clockTime, told, words } from "../frame/format";
+import { joined } from "../frame/units";
 import { SPEEDS } from "../view/state";
 
 /** Steps of the line of time: finer than its pixels. */
@@ -14,6 +15,7 @@ export class Transport {
   readonly #clock: Clock;
   readonly #play: HTMLButtonElement;
   readonly #repeat: HTMLButtonElement;
+  readonly #next: HTMLButtonElement;
   readonly #speed: HTMLSelectElement;
   readonly #line = element("input", {
     type: "range",
@@ -38,6 +40,9 @@ export class Transport {
       { class: "icon", "aria-label": "Repeat", "aria-pressed": "true", title: "Begin again at the end" },
       () => this.#toggleRepeat(),
     );
+    this.#next = button("⇥", { class: "icon", "aria-label": "Next event", title: "Go to the next event (N)" }, () =>
+      this.toNextEvent(),
+    );
     const id = newId("speed");
     this.#speed = choice(
       SPEEDS.map((speed) => [String(speed), `${speed}×`]),
@@ -46,7 +51,11 @@ export class Transport {
     );
     const line = element("div", { class: "timeline" }, this.#line, this.#ticks);
     const label = element("label", { for: id, class: "visually-hidden" }, "Speed");
-    this.root = element("div", { class: "transport" }, this.#play, this.#repeat, label, this.#speed, line, this.#time);
+    this.root = element(
+      "div",
+      { class: "transport" },
+      ...[this.#play, this.#repeat, this.#next, label, this.#speed, line, this.#time],
+    );
     this.#line.addEventListener("input", () => clock.seek((Number(this.#line.value) / STEPS) * clock.to));
     onResize(line, (width) => {
       this.#width = width;
@@ -60,7 +69,16 @@ export class Transport {
 
   showEvents(events: Answer["events"]): void {
     this.#events = events;
+    this.#next.disabled = events.length === 0;
     this.#drawTicks();
+  }
+
+  /** Stops at the next event. */
+  toNextEvent(): void {
+    const time = nextEvent(this.#events, this.#clock.time, this.#clock.to);
+    if (time === null) return;
+    this.#clock.pause();
+    this.#clock.seek(time);
   }
 
   showSpeed(speed: number): void {
@@ -75,7 +93,7 @@ export class Transport {
   show(): void {
     const { time, to, playing } = this.#clock;
     this.#line.value = String(to > 0 ? Math.round((time / to) * STEPS) : 0);
-    this.#time.textContent = `${clockTime(time, to)} s`;
+    this.#time.textContent = joined(clockTime(time, to), "s");
     const state = playing ? "Pause" : "Play";
     if (state === this.#shown) return;
     this.#shown = state;
@@ -88,7 +106,7 @@ export class Transport {
   describe(): void {
     this.#line.setAttribute(
       "aria-valuetext",
-      `${clockTime(this.#clock.time, this.#clock.to)} of ${clockTime(this.#clock.to, this.#clock.to)} s`,
+      `${clockTime(this.#clock.time, this.#clock.to)} of ${joined(clockTime(this.#clock.to, this.#clock.to), "s")}`,
     );
   }
 
@@ -118,6 +136,15 @@ export class Transport {
   }
 }
 
+/** How near an event counts as reached, in parts of the run. */
+const REACHED = 1e-4;
+
+/** Returns the time of the first event after a time, after the last one again that of the first. */
+export function nextEvent(events: Answer["events"], time: number, end: number): number | null {
+  const times = events.map((event) => event.time).sort((a, b) => a - b);
+  return times.find((one) => one > time + REACHED * end) ?? times[0] ?? null;
+}
+
 const [TICK, THUMB] = [8, 16]; // px
 
 const COLOURS: Readonly<Record<string, string>> = {
@@ -133,5 +160,6 @@ const COLOURS: Readonly<Record<string, string>> = {
 
 function timesOf(events: Answer["events"], kind: string): string {
   const times = events.filter((event) => event.kind === kind).map((event) => told(event.time, 3));
-  return times.length > 6 ? `${times.slice(0, 5).join(", ")} s and ${times.length - 5} more` : `${times.join(", ")} s`;
+  const [listed, more] = times.length > 6 ? [times.slice(0, 5), ` and ${times.length - 5} more`] : [times, ""];
+  return `${joined(listed.join(", "), "s")}${more}`;
 }

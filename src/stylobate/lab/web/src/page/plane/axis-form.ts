@@ -1,7 +1,7 @@
 /** One axis of a map: which quantity, from where to where. */
 
 import { element, newId } from "../frame/dom";
-import { plain, unitWritten, words } from "../frame/format";
+import { plain, readNumber, unitWritten, words } from "../frame/format";
 import type { Quantity } from "../case/quantities";
 import type { Axis } from "../view/state";
 
@@ -40,7 +40,7 @@ export class AxisForm {
 
   #change(): void {
     if (this.#axis === null) return;
-    const [from, to] = [Number(this.#from.value), Number(this.#to.value)];
+    const [from, to] = [readNumber(this.#from.value), readNumber(this.#to.value)];
     const right = Number.isFinite(from) && Number.isFinite(to) && from < to;
     for (const field of [this.#from, this.#to]) field.setAttribute("aria-invalid", String(!right));
     if (right) this.#changed({ ...this.#axis, name: this.#select.value, from, to });

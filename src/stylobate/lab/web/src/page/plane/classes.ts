@@ -2,7 +2,7 @@
 
 import type { Attractor } from "../server/answers";
 import { element } from "../frame/dom";
-import { plain, told } from "../frame/format";
+import { told } from "../frame/format";
 import type { Cells } from "./cells";
 import { UNKNOWN } from "./cells";
 import type { Look } from "./looks";
@@ -51,17 +51,29 @@ export class Classes {
       if (count === 0 || look === undefined) return [];
       return [element("li", {}, swatch(look), `${name} ${shareOf(this.#attractors[i]) ?? percent(count / known)}`)];
     });
-    this.legend.replaceChildren(...items);
+    this.legend.replaceChildren(...items, ...this.#remark());
+  }
+
+  /** Explains the intervals of a basin, and its starts that have not settled. */
+  #remark(): readonly HTMLElement[] {
+    if (!this.#attractors.some((one) => shareOf(one) !== null)) return [];
+    const open = this.#attractors.some((one) => one.kind === UNSETTLED)
+      ? " A start that has not settled may lead to any of them: the upper end of each interval counts it there."
+      : "";
+    return [element("li", { class: "hint" }, `In brackets: 95 % intervals, in per cent.${open}`)];
   }
 }
+
+/** The kind of the starts that lead to no known attractor by the end of their runs. */
+const UNSETTLED = "not settled";
 
 function percent(share: number): string {
   return `${told(100 * share, share < 0.01 ? 1 : 2)} %`;
 }
 
-/** Returns the share of starts that lead to an attractor, with its interval. */
-function shareOf(attractor: Attractor | undefined): string | null {
+/** Returns the share of starts that lead to an attractor, with its interval rounded outward. */
+export function shareOf(attractor: Attractor | undefined): string | null {
   const { fraction, fraction_low: low, fraction_high: high } = attractor ?? { fraction: null };
   if (fraction === null || typeof low !== "number" || typeof high !== "number") return null;
-  return `${percent(fraction)} (${plain(100 * low, 2)} to ${plain(100 * high, 2)})`;
+  return `${percent(fraction)} (${Math.floor(1000 * low) / 10} to ${Math.ceil(1000 * high) / 10})`;
 }

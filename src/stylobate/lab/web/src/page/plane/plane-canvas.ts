@@ -73,7 +73,8 @@ export class PlaneCanvas {
 
   #room(): { width: number; height: number } {
     const { left, right, top, bottom } = MARGIN;
-    return { width: Math.max(this.#width - left - right, 1), height: Math.max(this.#height - top - bottom, 1) };
+    const room = { width: Math.max(this.#width - left - right, 1), height: Math.max(this.#height - top - bottom, 1) };
+    return this.#picture === null ? room : roomFor(this.#picture.axes, room);
   }
 
   #size(): Place {
@@ -244,6 +245,24 @@ interface Paint {
 
 function clamp(index: number, length: number): number {
   return Math.min(Math.max(index, 0), length - 1);
+}
+
+interface Room {
+  readonly width: number;
+  readonly height: number;
+}
+
+/** Returns the part of a room in which axes of one kind are drawn to one scale; other axes take all of it. */
+export function roomFor({ x, y }: AxesEvent["axes"], { width, height }: Room): Room {
+  if (x.units !== y.units || x.name.replace(/_x$/, "") !== y.name.replace(/_y$/, "")) return { width, height };
+  const scale = Math.min(width / span(x), height / span(y));
+  return { width: scale * span(x), height: scale * span(y) };
+}
+
+/** Returns the length of an axis, to the edges of its cells. */
+function span({ values }: ToldAxis): number {
+  const [first, last] = [values[0] ?? 0, values.at(-1) ?? 1];
+  return ((last - first) * values.length) / Math.max(values.length - 1, 1) || 1;
 }
 
 /** Returns where a value stands along an axis, 0 to 1; cells reach half a step beyond their values. */

@@ -9,7 +9,6 @@ import { defaultAxis } from "./planes";
 import type { Quantity } from "../case/quantities";
 import type { Axis, Plane, PlaneKind } from "../view/state";
 import type { Description, Part } from "../case/description";
-import { lengthOf } from "../case/run-length";
 import { AxisForm } from "./axis-form";
 import { Cells } from "./cells";
 import { Classes } from "./classes";
@@ -49,7 +48,8 @@ export class PlanePanel {
   #shownKey = "";
   #axes: AxesEvent["axes"] | null = null;
   #filled: Cells | null = null;
-  /** How long the runs of the picture last. */
+  /** How long runs of the case last, and those of the picture do. */
+  #runs = "";
   #length = "";
 
   constructor(kind: PlaneKind, hearing: PlaneHearing) {
@@ -88,24 +88,26 @@ export class PlanePanel {
     quantities: readonly Quantity[],
     description: Description,
     values: Place | null,
+    length: Part,
     key: string,
   ): void {
     this.#plane = plane;
     this.#description = description;
     this.#quantities = quantities;
     this.#values = values;
+    this.#runs = toldOfLength(length);
     this.#key = key;
     this.#forms.x.show(plane.x, quantities);
     this.#forms.y.show(plane.y, quantities);
-    this.#cells.value = String(plane.x.number);
+    this.#offerSize(plane.x.number);
     const axis = ({ name, from, to }: Axis): string => `${words(name)} ${told(from)}…${told(to)}`;
     this.#summary.textContent = `${axis(plane.x)} × ${axis(plane.y)}`;
+    if (this.#shownKey !== key) this.#stop(); // nobody sees the rest of an earlier case
     const stale = this.#axes !== null && this.#shownKey !== key;
-    this.root.classList.toggle("stale", stale && this.#job === null);
+    this.root.classList.toggle("stale", stale);
     if (this.#axes === null) this.#rest(plane, quantities);
     else this.#redraw();
-    if (stale && this.#job === null)
-      this.#readout.textContent = "This picture is of an earlier case: compute it again.";
+    if (stale) this.#readout.textContent = "This picture is of an earlier case: compute it again.";
   }
 
   /** The job that fills the picture from now on. */
@@ -118,7 +120,7 @@ export class PlanePanel {
     this.#job?.cancel();
     this.#complete = false;
     this.#shownKey = this.#key;
-    this.#length = this.#description === null ? "" : toldOfLength(lengthOf(this.#kind, this.#description));
+    this.#length = this.#runs;
     this.#tellProblem([]);
     this.#filled = null;
     this.#go.textContent = "Cancel";
@@ -164,10 +166,15 @@ export class PlanePanel {
       this.#hearing.asked();
       return;
     }
-    this.#job.cancel();
-    this.#end(null, []);
+    this.#stop();
     this.#readout.textContent = "Cancelled; what had been computed stays.";
     this.#hearing.cancelled();
+  }
+
+  #stop(): void {
+    if (this.#job === null) return;
+    this.#job.cancel();
+    this.#end(null, []);
   }
 
   #take(report: JobReport): void {
@@ -175,12 +182,12 @@ export class PlanePanel {
       if ("axes" in event) this.#begin(event);
       else this.#filled?.take(event);
     }
-    if (report.total > 0) {
+    if (report.done > 0) {
       this.#progress.max = report.total;
       this.#progress.value = report.done;
       this.#elapsed.end();
       this.#readout.textContent = `${report.done} of ${counted(report.total, "run")}`;
-    } else if (report.note) this.#elapsed.begin(`${capital(report.note)}…`);
+    } else this.#elapsed.begin(`${report.note ? capital(report.note) : "Starting"}…`);
     if (report.events.length > 0) {
       this.#classes.tell(this.#filled);
       this.#redraw();
@@ -258,7 +265,7 @@ export class PlanePanel {
   }
 
   #choose([ix, iy]: Place): void {
-    if (this.#axes === null || (this.#job === null && this.#shownKey !== this.#key)) return;
+    if (this.#axes === null || this.#filled === null || this.#shownKey !== this.#key) return;
     const { x, y } = this.#axes;
     const [valueX, valueY] = [x.values[ix], y.values[iy]];
     if (valueX !== undefined && valueY !== undefined) this.#hearing.chosen([x.name, valueX], [y.name, valueY]);
@@ -275,6 +282,14 @@ export class PlanePanel {
     this.#hearing.axes(place === "x" ? { x: found, y: swapped } : { x: swapped, y: found });
   }
 
+  /** Shows how many cells there are; a link may ask for another number than those that are offered. */
+  #offerSize(number: number): void {
+    const text = String(number);
+    if (![...this.#cells.options].some((one) => one.value === text))
+      this.#cells.append(element("option", { value: text }, `${text} × ${text}`));
+    this.#cells.value = text;
+  }
+
   #changeSize(number: number): void {
     if (this.#plane === null) return;
     const { x, y } = this.#plane;
@@ -287,7 +302,8 @@ export class PlanePanel {
   }
 }
 
-const SIZES = [24, 32, 48, 64, 96, 128, 192] as const;
+/** Odd: a cell lies in the middle of an axis, at the start of a column that stands. */
+const SIZES = [25, 33, 49, 65, 97, 129, 193] as const;
 
 const HINTS: Readonly<Record<PlaneKind, string>> = {
   map: "What becomes of the column over two quantities. Compute it, then click a cell to see its motion.",

@@ -5,14 +5,17 @@ import type { Description } from "../case/description";
 import { belongs, defaultPlane, keyOf, quantitiesOf } from "./planes";
 import type { ColumnScales } from "../case/quantities";
 import { valueOf, withValue } from "../case/quantities";
-import { planeRequest } from "../server/requests";
+import { isSlender, planeRequest } from "../server/requests";
 import type { JobStart } from "../charts/response-asking";
-import { withLength } from "../case/run-length";
+import { lengthOf, withLength } from "../case/run-length";
 import type { Plane, PlaneKind, View } from "../view/state";
 import { isPlaneKind } from "../view/state";
 import { PlanePanel } from "./plane-panel";
 
 const KINDS = ["map", "basin"] as const;
+
+/** Cells along an axis of a plane that is filled unasked. */
+const FEW = 25;
 
 export interface PlanesHearing {
   readonly edited: (changes: Partial<View>) => void;
@@ -45,7 +48,8 @@ export class PlanesAsking {
       const quantities = quantitiesOf(kind, description, this.#about, scales);
       const [x, y] = [valueOf(description, plane.x.name), valueOf(description, plane.y.name)];
       const values = x === undefined || y === undefined ? null : ([x, y] as const);
-      this.panels[kind].show(plane, quantities, description, values, keyOf(kind, description, plane));
+      const length = lengthOf(kind, description, plane, scales);
+      this.panels[kind].show(plane, quantities, description, values, length, keyOf(description, plane, length));
     }
   }
 
@@ -53,6 +57,15 @@ export class PlanesAsking {
   refill(): void {
     const { tab, filled } = this.#view;
     if (filled && isPlaneKind(tab) && !this.panels[tab].current) this.#fill(tab);
+  }
+
+  /** Fills a plane that is seen for the first time with few cells, where they take about a second. */
+  open(kind: PlaneKind): void {
+    const plane = this.#plane(kind);
+    if (plane === null || this.#view[kind] !== null || !isSlender(this.#view.description)) return;
+    const few = { x: { ...plane.x, number: FEW }, y: { ...plane.y, number: FEW } };
+    this.#hearing.edited({ [kind]: few, filled: true, tab: kind });
+    this.#fill(kind);
   }
 
   redraw(): void {
@@ -68,16 +81,19 @@ export class PlanesAsking {
         this.#fill(kind);
       },
       cancelled: () => edited({ filled: false }),
-      chosen: (x, y) => jumped({ description: this.#at(kind, x, y), [kind]: this.#plane(kind) }),
+      chosen: (x, y) => jumped({ description: this.#at(kind, x, y), [kind]: this.#plane(kind), start: null }),
     });
   }
 
   /** Returns the case of a cell, followed as long as the cell's own run was: what is seen is what the cell tells. */
   #at(kind: PlaneKind, [nameX, x]: readonly [string, number], [nameY, y]: readonly [string, number]): Description {
     const { description } = this.#view;
+    const plane = this.#plane(kind);
+    if (plane === null) return description;
+    const length = lengthOf(kind, description, plane, this.#scales);
     const longest = this.#about.limits["duration"];
     const chosen = withValue(withValue(description, nameX, x), nameY, y);
-    return withLength(kind, description, chosen, typeof longest === "number" ? longest : Infinity);
+    return withLength(length, chosen, typeof longest === "number" ? longest : Infinity);
   }
 
   #plane(kind: PlaneKind): Plane | null {
@@ -91,7 +107,8 @@ export class PlanesAsking {
     if (plane === null) return;
     // The axes are kept from now on: those that suit the case would move with the motion that is chosen in them.
     if (this.#view[kind] === null) this.#hearing.edited({ [kind]: plane });
-    const body = planeRequest(kind, this.#view.description, plane);
+    const { description } = this.#view;
+    const body = planeRequest(kind, description, plane, lengthOf(kind, description, plane, this.#scales));
     this.panels[kind].follow((report, ended) => this.#hearing.start(kind, body, report, ended));
   }
 }

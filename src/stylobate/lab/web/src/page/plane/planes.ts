@@ -1,11 +1,10 @@
 /** Axes of maps and basins that suit a case where none are told. */
 
 import type { About } from "../case/about";
-import type { Description } from "../case/description";
+import type { Description, Part } from "../case/description";
 import { without, written } from "../case/description";
 import type { ColumnScales, Quantity } from "../case/quantities";
 import { basinQuantities, mapQuantities, rangeAbout, valueOf } from "../case/quantities";
-import { lengthOf } from "../case/run-length";
 import type { Axis, Plane, PlaneKind } from "../view/state";
 import { DEFAULT_CELLS } from "../view/state";
 
@@ -22,7 +21,10 @@ export function quantitiesOf(
 export function defaultPlane(kind: PlaneKind, description: Description, quantities: readonly Quantity[]): Plane | null {
   const order =
     kind === "map"
-      ? ["angular_frequency", "acceleration", "scale", "friction_coefficient", "damping"]
+      ? [
+          ...["angular_frequency", "rpm", "frequency", "acceleration", "diameter", "stroke", "velocity"],
+          ...["scale", "friction_coefficient", "damping"],
+        ]
       : ["tilt_x", "tilt_y"];
   const wanted = order.flatMap((name) => quantities.filter((one) => one.name === name));
   const [x, y] = [...wanted, ...quantities.filter((one) => !wanted.includes(one))];
@@ -38,8 +40,8 @@ export function belongs(plane: Plane, quantities: readonly Quantity[]): boolean 
   return [plane.x, plane.y].every((axis) => quantities.some((one) => one.name === axis.name));
 }
 
-/** Returns what a plane's picture depends on: the case but for the two numbers that vary, and the axes. */
-export function keyOf(kind: PlaneKind, description: Description, plane: Plane): string {
+/** Returns what a plane's picture depends on: the case but for the two numbers that vary, the axes, the length of runs. */
+export function keyOf(description: Description, plane: Plane, length: Part): string {
   const varied = [plane.x.name, plane.y.name];
   const starts = varied.some((name) => name.startsWith("tilt_"));
   const rest = {
@@ -50,7 +52,7 @@ export function keyOf(kind: PlaneKind, description: Description, plane: Plane): 
     tilt_rate:
       varied.includes("tilt_rate_x") && varied.includes("tilt_rate_y") ? null : (description["tilt_rate"] ?? null),
     spin: varied.includes("spin") ? null : (description["spin"] ?? null),
-    length: varied.includes("duration") ? null : lengthOf(kind, description),
+    length: varied.includes("duration") ? null : length,
     starts,
     x: { ...plane.x },
     y: { ...plane.y },

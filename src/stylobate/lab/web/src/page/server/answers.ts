@@ -25,6 +25,8 @@ export interface Series {
 export interface ColumnTold {
   readonly slenderness: number;
   readonly frequency_scale: number;
+  /** p of a rigid body about a point of its rim [rad/s]. */
+  readonly frequency_parameter: number;
   readonly [name: string]: Value;
 }
 
@@ -77,6 +79,9 @@ export interface ExactFamily {
   readonly largest_tilt: Numbers;
   readonly phase: Numbers;
   readonly stable: readonly (boolean | null)[];
+  /** At t = 0: where a run on the orbit starts. */
+  readonly tilt: readonly Pair[];
+  readonly tilt_rate: readonly Pair[];
 }
 
 export interface ExactResponse {

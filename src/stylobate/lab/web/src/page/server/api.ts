@@ -30,6 +30,10 @@ export const response = (description: Part, signal: AbortSignal): Promise<Respon
 export const describe = (description: Part): Promise<Described> =>
   call<Described>("POST", "/api/describe", description);
 
+/** Returns the start on a branch of steady rolling: tilt, tilt rate and spin. */
+export const steadyStart = (body: Part, signal: AbortSignal): Promise<Part> =>
+  call<Part>("POST", "/api/start", body, signal);
+
 export const sendRecord = (upload: Part): Promise<Received> => call<Received>("POST", "/api/records", upload);
 
 export const startJob = (kind: string, description: Part): Promise<{ readonly id: string }> =>
@@ -67,7 +71,7 @@ async function asked(method: string, path: string, body?: Value, signal?: AbortS
 }
 
 async function sent(method: string, path: string, body?: Value, signal?: AbortSignal): Promise<Response> {
-  const options: RequestInit = { method, cache: "no-store", credentials: "omit" };
+  const options: RequestInit = { method, cache: "no-store", credentials: "same-origin" };
   if (signal) options.signal = signal;
   if (body !== undefined) {
     options.body = JSON.stringify(body);

@@ -4,7 +4,6 @@ import type { Description, Part, Value } from "../case/description";
 import { isPart } from "../case/description";
 import { isHorizontalHarmonic, withoutFrequency } from "../case/frequency";
 import { niceAbove, niceBelow } from "../case/ranges";
-import { lengthOf } from "../case/run-length";
 import type { Plane, PlaneKind } from "../view/state";
 
 /** Points of a response curve: about one to a pixel. */
@@ -42,8 +41,8 @@ export function isSlender(description: Description): boolean {
   return (description.model["kind"] ?? "slender") === "slender";
 }
 
-/** Returns the request for a map or a basin. */
-export function planeRequest(kind: PlaneKind, description: Description, plane: Plane): Part {
+/** Returns the request for a map or a basin with runs of this length. */
+export function planeRequest(kind: PlaneKind, description: Description, plane: Plane, length: Part): Part {
   const axes = { x: { ...plane.x }, y: { ...plane.y } };
-  return sent({ ...description, ...lengthOf(kind, description), [kind]: axes });
+  return sent({ ...description, ...length, [kind]: axes });
 }

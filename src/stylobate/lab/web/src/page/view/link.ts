@@ -10,6 +10,7 @@ import type { About } from "../case/about";
 import { kindNamed } from "../case/about";
 import type { Description, Part, PartName, Value } from "../case/description";
 import { isPart, isVector, PARTS, tagOf } from "../case/description";
+import { BRANCHES } from "../case/starting";
 import type { Axis, Plane, View } from "./state";
 import { historiesFrom, isRange, TABS, viewOf } from "./state";
 
@@ -29,6 +30,8 @@ export function linkOf(view: View): string {
   if (view.histories !== null) items.push(`histories=${view.histories.join()}`);
   if (view.tab !== "orbit") items.push(`tab=${view.tab}`);
   if (view.filled) items.push("filled=true");
+  if (view.start !== null) items.push(`start=${view.start}`);
+  if (view.time !== null) items.push(`time=${view.time}`);
   if (view.speed !== null) items.push(`speed=${view.speed}`);
   return items.join("&");
 }
@@ -79,6 +82,15 @@ const LOOKS: Readonly<Record<string, (text: string) => Value>> = {
     return text;
   },
   filled: (text) => text === "true",
+  start: (text) => {
+    if (!(BRANCHES as readonly string[]).includes(text))
+      throw new BrokenLink(`start must be one of ${BRANCHES.join(", ")}, got ${text}`);
+    return text;
+  },
+  time: (text) => {
+    if (!(text !== "" && Number(text) >= 0)) throw new BrokenLink(`time must be zero or positive, got ${text}`);
+    return Number(text);
+  },
   speed: (text) => {
     if (!(Number(text) > 0)) throw new BrokenLink(`speed must be positive, got ${text}`);
     return Number(text);

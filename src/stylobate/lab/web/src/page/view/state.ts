@@ -4,6 +4,8 @@ import type { Description, Value } from "../case/description";
 import type { HistoryPair } from "../charts/history-kinds";
 import { isHistoryName } from "../charts/history-kinds";
 import { isPart, isVector } from "../case/description";
+import type { Branch } from "../case/starting";
+import { BRANCHES } from "../case/starting";
 
 /** Values of one quantity, evenly spaced. */
 export interface Axis {
@@ -40,9 +42,16 @@ export interface View {
   readonly tab: Tab;
   /** Whether the map or basin of the tab has been asked for: a link to it computes it again. */
   readonly filled: boolean;
+  /** The branch of steady rolling on which the run starts, whatever changes; null: the start is as it is set. */
+  readonly start: Branch | null;
+  /** Where the clock is stopped at first [s]; null: it runs. */
+  readonly time: number | null;
   /** Speed of the clock, seconds of the motion in a second; null: chosen to suit the motion. */
   readonly speed: number | null;
 }
+
+/** Where a link stops the clock: nowhere, unless it says so. */
+const timeIn = (value: Value | undefined): number | null => (typeof value === "number" && value >= 0 ? value : null);
 
 export const SPEEDS = [0.02, 0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10, 20] as const;
 
@@ -59,6 +68,8 @@ export function viewOf(description: Description, looks: Readonly<Record<string, 
     histories: historiesFrom(looks["histories"]),
     tab,
     filled: looks["filled"] === true,
+    start: BRANCHES.find((one) => one === looks["start"]) ?? null,
+    time: timeIn(looks["time"]),
     speed: typeof speed === "number" && speed > 0 ? speed : null,
   };
 }
@@ -91,7 +102,7 @@ function axisFrom(value: Value | undefined): Axis | null {
   return { name, from, to, number: cells };
 }
 
-export const DEFAULT_CELLS = 64;
+export const DEFAULT_CELLS = 65;
 
 type Listener = (view: View, before: View) => void;
 

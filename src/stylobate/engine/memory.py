@@ -1,0 +1,46 @@
+"""How much memory results may take: a request that cannot fit is refused before anything is computed."""
+
+import math
+import os
+
+from stylobate.errors import ParameterError
+
+
+def memory_of_the_machine() -> float:
+    """Return the physical memory of this machine [bytes]; infinite where the system does not report it.
+
+    The limit of a container may be lower still.
+    """
+    try:
+        return float(os.sysconf("SC_PAGE_SIZE")) * float(os.sysconf("SC_PHYS_PAGES"))
+    except (AttributeError, OSError, ValueError):
+        return math.inf
+
+
+def require_memory(size: float, runs: int, remedy: str) -> None:
+    """Refuse results that memory cannot hold.
+
+    Parameters
+    ----------
+    size
+        What the results take [bytes].
+    runs
+        How many runs they are of.
+    remedy
+        What to do instead, as an imperative.
+
+    Raises
+    ------
+    ParameterError
+        If the machine has less memory than `size`.
+    """
+    there = memory_of_the_machine()
+    if size > there:
+        message = (
+            f"the results of {runs:.6g} runs take {size / _GIB:.3g} GiB of memory, of which this machine has "
+            f"{there / _GIB:.3g} GiB. {remedy}."
+        )
+        raise ParameterError(message)
+
+
+_GIB = 2.0**30

@@ -1,0 +1,162 @@
+"""Files that are written whole or not at all, and that show by a checksum whether they are still as written."""
+
+import csv
+import hashlib
+import os
+import platform
+import re
+import secrets
+import shutil
+import stat
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+from stylobate.errors import FileError
+
+# Parts are named after the beginning of the file's name, the machine, the process, and a number drawn at random.
+_STEM = 40
+_MACHINE = hashlib.sha256(platform.node().encode()).hexdigest()[:6]
+
+_LABEL = b"\n#stylobate sha256 "
+_SEAL_LENGTH = len(_LABEL) + hashlib.sha256().digest_size * 2 + 1
+# A seal with so many damaged bytes in its label is still seen to be one.
+_LABEL_BYTES_SEEN = len(_LABEL) // 2
+
+
+def write_whole(path: str | Path, content: bytes | str) -> Path:
+    """Write `content` to the file `path`, text in UTF-8; an older file stays until the new one is complete.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written; nothing is left of it then.
+    """
+    # Names of files that are no UTF-8 are written as they are.
+    data = content.encode("utf-8", "surrogateescape") if isinstance(content, str) else content
+    with written_aside(path) as beside, beside.open("wb") as file:
+        file.write(data)
+        file.flush()
+        if beside.is_file():
+            os.fsync(file.fileno())
+    return Path(path)
+
+
+@contextmanager
+def written_aside(path: str | Path) -> Iterator[Path]:
+    """Yield a path beside `path` for a new file or folder; it moves to `path` at the end, or is removed after an error.
+
+    A file replaces an older one, of which it takes the permissions; a folder does not. A link stays, and the file that
+    it names is replaced. A device or pipe is written directly. What a killed process left of the same file is removed.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written.
+    """
+    target = _target(path)
+    if target.exists() and not (target.is_file() or target.is_dir()):
+        beside = target
+    else:
+        token = f"{_MACHINE}-{os.getpid()}-{secrets.token_hex(3)}"
+        beside = target.with_name(f".{target.stem[:_STEM]}.{token}.part{target.suffix}")
+        _remove_left_behind(target)
+    try:
+        try:
+            yield beside
+            if beside != target:
+                if target.is_file():
+                    beside.chmod(stat.S_IMODE(target.stat().st_mode))
+                beside.replace(target)
+        finally:
+            if beside != target:
+                _remove(beside)
+    except OSError as error:
+        message = f"cannot write {path}: {error.strerror or error}"
+        raise FileError(message) from None
+
+
+def _target(path: str | Path) -> Path:
+    try:
+        target = Path(os.path.realpath(path))
+    except (OSError, ValueError) as error:  # a ValueError: a name with a null character
+        message = f"cannot write {path}: {getattr(error, 'strerror', None) or error}"
+        raise FileError(message) from None
+    if not target.name:
+        message = f"cannot write {path}: it is a folder"
+        raise FileError(message)
+    return target
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir():
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)
+
+
+def _remove_left_behind(target: Path) -> None:
+    """Remove the parts of the file `target` whose writers, on this machine, are no longer alive."""
+    stem, suffix = re.escape(target.stem[:_STEM]), re.escape(target.suffix)
+    name = re.compile(rf"\.{stem}\.{_MACHINE}-(\d+)-[0-9a-f]+\.part{suffix}")
+    with suppress(OSError):  # of a folder that cannot be listed, or a part of another user
+        for other in target.parent.iterdir():
+            if (match := name.fullmatch(other.name)) and not _is_alive(int(match[1])):
+                _remove(other)
+
+
+def _is_alive(process: int) -> bool:
+    if process == os.getpid() or os.name == "nt":  # there os.kill would end it
+        return True
+    with suppress(ProcessLookupError, OverflowError):
+        with suppress(PermissionError):
+            os.kill(process, 0)
+        return True
+    return False
+
+
+def csv_text(header: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
+    """Return a table as the text of a CSV file."""
+    text = StringIO(newline="")
+    writer = csv.writer(text)
+    writer.writerow(header)
+    writer.writerows(rows)
+    return text.getvalue()
+
+
+def sealed(content: bytes | memoryview) -> bytes:
+    """Return `content` followed by a line with its SHA-256."""
+    return b"".join((content, _LABEL, hashlib.sha256(content).hexdigest().encode(), b"\n"))
+
+
+def read_sealed(path: str | Path) -> tuple[bytes, bool]:
+    """Return the content of the file `path` and whether it ends with a seal, which is checked and left out.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read, or is not as it was written.
+    """
+    path = Path(path)
+    try:
+        if not path.is_file():
+            message = f"cannot read {path}: {'it is a folder' if path.is_dir() else 'there is no such file'}"
+            raise FileError(message)
+        whole = path.read_bytes()
+    except (OSError, ValueError) as error:  # a ValueError: a name with a null character
+        message = f"cannot read {path}: {getattr(error, 'strerror', None) or error}"
+        raise FileError(message) from error
+    content, seal = whole[:-_SEAL_LENGTH], whole[-_SEAL_LENGTH:]
+    if not _looks_like_a_seal(seal):
+        return whole, False
+    if sealed(content)[-_SEAL_LENGTH:] != seal:
+        message = f"{path} is damaged: its checksum differs. Restore it from a copy, or compute it again"
+        raise FileError(message)
+    return content, True
+
+
+def _looks_like_a_seal(end: bytes) -> bool:
+    same = sum(one == other for one, other in zip(end, _LABEL, strict=False))
+    return same >= _LABEL_BYTES_SEEN

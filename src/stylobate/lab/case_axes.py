@@ -1,0 +1,130 @@
+"""Maps over the numbers that describe a case, such as turns a minute or a height, which sweeps do not know by name."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate import spec
+from stylobate.engine.parameters import COLUMN_NAMES, present_value
+from stylobate.errors import UnsupportedError
+from stylobate.models import Model
+from stylobate.studies.contact_map import class_shares
+from stylobate.studies.labelled_sweeps import labelled_sweep
+from stylobate.studies.overturning import outcome_shares
+from stylobate.studies.sweeps import Executor, Sweep
+from stylobate.studies.sweeps.computing import Progress
+
+Floats = npt.NDArray[np.float64]
+
+_NUMBERS = {
+    "column": ("radius", "height", "inner_radius", "top_radius", "density", "inertia_ratio", "axial_ratio"),
+    "motion": ("diameter", "rpm", "stroke", "frequency", "velocity"),
+}
+"""What an axis can be besides the quantities of sweeps, by the part that it describes."""
+
+_UNITS = {
+    **dict.fromkeys(("radius", "height", "inner_radius", "top_radius", "diameter", "stroke"), "m"),
+    **dict.fromkeys(("inertia_ratio", "axial_ratio"), "1"),
+    "density": "kg m-3",
+    "rpm": "min-1",
+    "frequency": "Hz",
+    "velocity": "m s-1",
+}
+
+_BODY = tuple(name for name in COLUMN_NAMES if name not in ("slenderness", "size"))
+_MOVED = ("angular_frequency", "acceleration")
+
+
+def units_of(name: str) -> str:
+    """Return the unit of a number that describes a case."""
+    return _UNITS[name]
+
+
+def case_numbers(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[str, tuple[str, ...]]:
+    """Return the axes that are numbers of the described column or motion, by part; nothing where sweeps know them all.
+
+    A body that is given by its mass and inertia is known to sweeps by its radius; any other has others then.
+    """
+    given = values["column"].get("shape") == "given"
+    found = {
+        part: tuple(name for name in over if name in values.get(part, {}))
+        for part, names in _NUMBERS.items()
+        if any(name in values.get(part, {}) for name in over if name in names)
+    }
+    return {part: names for part, names in found.items() if not (part == "column" and given)}
+
+
+def case_map(
+    setup: spec.Setup, values: Mapping[str, Any], *, executor: Executor, progress: Progress | None = None
+) -> xr.Dataset:
+    """Compute a map whose axes are numbers of the described case.
+
+    Each run is of the column and motion that the case describes with the numbers of its cell.
+
+    Parameters
+    ----------
+    setup, values
+        Model, motion and options of the map, and the plain values that describe it.
+    executor, progress
+        As in `run_sweep`. The runs come in one row, those of the second axis together.
+
+    Returns
+    -------
+    xarray.Dataset
+        An overturning map, or a contact map of a model that slides, over `run`.
+
+    Raises
+    ------
+    DescriptionError, ParameterError
+        If an axis has a value that cannot be.
+    """
+    options = {name: value for name, value in setup.options.items() if name != "over"}
+    sweep = Sweep.points(_without_height(setup.model), setup.motion, at=_at(values, setup.options["over"]), **options)
+    label = class_shares if setup.model.switches else outcome_shares
+    return labelled_sweep(sweep, label, executor=executor, progress=progress)
+
+
+def _without_height(model: Model) -> Model:
+    """Return `model` with a body of no particular height: each run brings its own."""
+    bare: Model = replace(model, column=replace(model.column, height=None))  # type: ignore[type-var]  # a dataclass
+    return bare
+
+
+def _at(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[str, Floats]:
+    """Return the quantities of sweeps for each cell, in rows of the second axis."""
+    cells = dict(zip(over, (grid.ravel() for grid in np.meshgrid(*over.values(), indexing="ij")), strict=True))
+    found: dict[str, Floats] = {}
+    for part, names in case_numbers(values, over).items():
+        own = np.stack([cells.pop(name) for name in names], axis=1)
+        different, which = np.unique(own, axis=0, return_inverse=True)
+        read = [_READ[part](_with(values, part, dict(zip(names, row, strict=True)))) for row in different.tolist()]
+        found |= {name: np.array([one[name] for one in read])[which.ravel()] for name in read[0]}
+    return found | cells
+
+
+def _with(values: Mapping[str, Any], part: str, numbers: Mapping[str, float]) -> spec.Setup:
+    """Return the setup of the case with other numbers of one part."""
+    case = {name: values[name] for name in ("column", "model", "motion") if name in values}
+    changed = {**case, part: {**case[part], **numbers}, "duration": 1.0}
+    return spec.SimulationDescription.parse(changed).build()
+
+
+def _body(setup: spec.Setup) -> dict[str, float]:
+    return {name: float(getattr(setup.model.column, name)) for name in _BODY}
+
+
+def _moved(setup: spec.Setup) -> dict[str, float]:
+    found: dict[str, float] = {}
+    for name in _MOVED:
+        try:
+            found[name] = present_value(setup.model, setup.motion, name)
+        except UnsupportedError:
+            continue  # a motion without a frequency of its own
+    return found
+
+
+_READ: Mapping[str, Callable[[spec.Setup], dict[str, float]]] = {"column": _body, "motion": _moved}

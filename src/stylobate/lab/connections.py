@@ -1,0 +1,104 @@
+"""Connections of the server: so many at once, and requests that arrive in time."""
+
+import asyncio
+import json
+import sys
+
+import h11
+from uvicorn.protocols.http.h11_impl import H11Protocol
+
+from stylobate.lab.limits import Limits
+
+BACKLOG = 32
+"""Connections that are accepted in one turn of the loop, before the limit can act on them."""
+
+_RESERVED = 96
+"""Descriptors for everything but connections: files, the pipes to worker processes, what one turn accepts."""
+
+_FEWEST = 8
+
+
+class BoundedConnection(H11Protocol):
+    """A connection that must send its request in time, and gives way to others when there are too many.
+
+    Attributes
+    ----------
+    receiving
+        How long a request may take to arrive, head and body [s].
+    most
+        Connections at once. Beyond it the one that has owed a request for longest is closed, else the new one.
+    """
+
+    receiving: float
+    most: int
+    begun = 0.0
+    _late: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        """Take the connection, or close one."""
+        super().connection_made(transport)
+        self._expect()
+        ours = [one for one in self.connections if isinstance(one, BoundedConnection)]
+        held = [one for one in ours if not one.transport.is_closing()]
+        if len(held) > self.most:
+            min((one for one in held if one.owes), key=lambda one: one.begun).transport.abort()
+
+    def data_received(self, data: bytes) -> None:
+        """Take a part of a request."""
+        super().data_received(data)
+        if not self.owes:
+            self._expect_no_more()
+        elif self._late is None:
+            self._expect()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Forget the connection."""
+        self._expect_no_more()
+        super().connection_lost(exc)
+
+    @property
+    def owes(self) -> bool:
+        """Whether the client has not sent all of its next request."""
+        return self.conn.their_state in (h11.IDLE, h11.SEND_BODY)
+
+    def _expect(self) -> None:
+        self.begun = self.loop.time()
+        self._late = self.loop.call_later(self.receiving, self._give_up)
+
+    def _expect_no_more(self) -> None:
+        if self._late is not None:
+            self._late.cancel()
+            self._late = None
+
+    def _give_up(self) -> None:
+        answering = self.cycle is not None and self.conn.their_state is h11.SEND_BODY and self.cycle.response_started
+        if not answering:
+            self.transport.write(_too_late(self.receiving))
+        self.transport.close()
+
+
+def bounded(limits: Limits) -> type[BoundedConnection]:
+    """Return the class of connections within `limits`, and within the file descriptors of this process."""
+
+    class Bounded(BoundedConnection):
+        receiving = limits.receiving
+        most = min(limits.connections, max(_descriptors() - _RESERVED, _FEWEST))
+
+    return Bounded
+
+
+def _descriptors() -> int:
+    """Return how many file descriptors this process may have."""
+    if sys.platform == "win32":
+        return sys.maxsize
+    import resource  # noqa: PLC0415  not on Windows
+
+    soft, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
+    return sys.maxsize if soft == resource.RLIM_INFINITY else soft
+
+
+def _too_late(seconds: float) -> bytes:
+    problem = f"the request did not arrive within {seconds:g} s. Send it again."
+    body = json.dumps({"problems": [problem]}).encode()
+    head = f"HTTP/1.1 408 Request Timeout\r\nContent-Type: application/json\r\nContent-Length: {len(body)}\r\n"
+    return f"{head}Connection: close\r\n\r\n".encode() + body

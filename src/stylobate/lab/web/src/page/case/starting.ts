@@ -1,0 +1,59 @@
+/** Where a run begins: as set, standing, or on a branch of steady rolling that is followed when the case changes. */
+
+import type { Description, Part, Value } from "./description";
+import { isVector, kindOf, written } from "./description";
+import { isHorizontalHarmonic } from "./frequency";
+
+export const BRANCHES = ["upper", "lower"] as const;
+export type Branch = (typeof BRANCHES)[number];
+
+/** The kinds of start that a reader chooses from. */
+export type StartKind = Branch | "standing" | "set";
+
+const STARTS = ["tilt", "tilt_rate", "spin"] as const;
+
+/** Returns what the start on a branch depends on. */
+export function startedFrom({ column, model, motion }: Description): Part {
+  return { column, model, motion };
+}
+
+/** Tells whether two cases have the same start on a branch. */
+export function startAlike(one: Description, other: Description): boolean {
+  return written(startedFrom(one)) === written(startedFrom(other));
+}
+
+/** Returns what of a case its start is. */
+export function startOf(description: Description): Part {
+  return Object.fromEntries(STARTS.map((name) => [name, description[name] ?? null]));
+}
+
+/** Returns the case with a column that stands at first. */
+export function standing(description: Description): Description {
+  return Object.fromEntries(
+    Object.entries(description).filter(([name]) => !(STARTS as readonly string[]).includes(name)),
+  ) as Description;
+}
+
+export function isStanding(description: Description): boolean {
+  return STARTS.every((name) => isZero(description[name]));
+}
+
+function isZero(value: Value | undefined): boolean {
+  return isVector(value) ? value.every((one) => one === 0) : value === undefined || value === null || value === 0;
+}
+
+export function startKind(description: Description, branch: Branch | null): StartKind {
+  return branch ?? (isStanding(description) ? "standing" : "set");
+}
+
+/** Models of columns that may turn about their axis. */
+const TURNING: readonly string[] = ["slender_rolling", "rolling", "sliding"];
+
+export function mayTurn(description: Description): boolean {
+  return TURNING.includes(kindOf(description, "model"));
+}
+
+/** Tells whether the base moves so that there may be steady rolling to start on. */
+export function hasBranch({ motion }: Description): boolean {
+  return isHorizontalHarmonic(motion);
+}

@@ -1,0 +1,62 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { readNumber } from "../../src/page/frame/format";
+import { wrongIn } from "../../src/page/frame/problems";
+import { badgeAt, durationWanted } from "../../src/page/motion/verdict";
+import { nextEvent } from "../../src/page/motion/transport";
+import { shareOf } from "../../src/page/plane/classes";
+import { roomFor } from "../../src/page/plane/plane-canvas";
+import type { Answer, Attractor, ToldAxis } from "../../src/page/server/answers";
+
+test("numbers are read as they are written in most countries", () => {
+  for (const text of ["0.02", "0,02", " 2e-2 "]) assert.equal(readNumber(text), 0.02, text);
+  assert.equal(readNumber("\u22120.05"), -0.05);
+  for (const text of ["", "abc", "0.02 g"]) assert.ok(Number.isNaN(readNumber(text)), text);
+});
+
+test("each quantity that a refusal names has the first line about it", () => {
+  const wrong = wrongIn(["model: damping must be zero or positive, got -1.0", "tilt_rate: damping is too small"]);
+  assert.equal(wrong.get("damping"), "model: damping must be zero or positive, got -1.0");
+  assert.equal(wrong.get("tilt_rate"), "tilt_rate: damping is too small");
+  assert.equal(wrong.get("radius"), undefined);
+});
+
+test("a column is said to be overturned from the instant on at which that is decided", () => {
+  const answer = { outcome: "OVERTURNED", told: "overturned", decided_at: 11.37 } as Answer;
+  assert.equal(badgeAt(answer, 0.6), "Will overturn at 11.4 s");
+  assert.equal(badgeAt(answer, 11.37), "Overturned");
+  assert.equal(badgeAt({ ...answer, outcome: "ROLLING", told: "rolling" }, 0), "Rolling");
+});
+
+test("an interval is rounded outward: nothing that is open is shown as certain", () => {
+  const share = (fraction: number, fraction_low: number, fraction_high: number): string | null =>
+    shareOf({ name: "", kind: "", fraction, fraction_low, fraction_high } as Attractor);
+  assert.equal(share(1, 0.99627, 1), "100 % (99.6 to 100)");
+  assert.equal(share(0, 0, 0.00037), "0 % (0 to 0.1)");
+});
+
+test("starts along x and y are drawn to one scale, and other axes fill their room", () => {
+  const axis = (name: string, units: string, reach: number): ToldAxis => ({
+    ...{ name, units },
+    values: Array.from({ length: 5 }, (_, i) => reach * (i / 2 - 1)),
+  });
+  const room = { width: 300, height: 500 };
+  const equal = roomFor({ x: axis("tilt_x", "rad", 0.1), y: axis("tilt_y", "rad", 0.1) }, room);
+  assert.deepEqual(equal, { width: 300, height: 300 });
+  const wide = roomFor({ x: axis("tilt_x", "rad", 0.2), y: axis("tilt_y", "rad", 0.1) }, room);
+  assert.ok(Math.abs(wide.width / wide.height - 2) < 1e-12);
+  assert.deepEqual(roomFor({ x: axis("tilt_x", "rad", 0.1), y: axis("tilt_rate_x", "rad s-1", 0.1) }, room), room);
+});
+
+test("the duration that a reason asks for is enough", () => {
+  const wanted = durationWanted("the run is shorter than the 21 periods; set duration to at least 73.31 s")!;
+  assert.ok(wanted >= 73.31 && wanted < 74);
+  assert.equal(durationWanted("it rolled once round"), null);
+});
+
+test("from event to event one comes through all of them, and from the last to the first", () => {
+  const events = [3, 1, 2].map((time) => ({ kind: "impact", time }));
+  const seen = [0, 1, 2, 3].map((time) => nextEvent(events, time, 10));
+  assert.deepEqual(seen, [1, 2, 3, 1]);
+  assert.equal(nextEvent([], 0, 10), null);
+});

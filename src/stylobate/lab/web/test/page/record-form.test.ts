@@ -1,0 +1,16 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { inWordsOfForm } from "../../src/page/controls/record-form";
+
+test("what the server asks for is named as the form names it", () => {
+  const said = {
+    'a.txt: the file does not tell its unit: state units, "g", "m/s²" or "cm/s²"':
+      "a.txt: the file does not tell its unit: choose its unit above.",
+    "a.AT2: units must be left out or 'g', which the file says, got 'm/s2'":
+      "a.AT2: the file says that its unit is g; choose “unit: from the file”.",
+    "a.txt, line 2: a single column tells no time step: state step, in s":
+      "a.txt, line 2: a single column tells no time step: enter the time step above.",
+    "a.txt, line 3: not a number: 'x'": "a.txt, line 3: not a number: 'x'",
+  };
+  for (const [line, here] of Object.entries(said)) assert.equal(inWordsOfForm(line), here);
+});

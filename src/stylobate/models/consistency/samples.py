@@ -1,0 +1,84 @@
+"""Random states of a model, and what its equations make of them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stylobate.models.inheritance import owner_of
+from stylobate.models.model import Model
+
+# Half the step of central differences, in the time of the model: their error is of its square.
+_STEP = 1e-4
+
+# Largest tilt of a random state [rad], and largest tilt and rate in units of c.
+_TOP, _TIMES_C = 1.2, 3.0
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """A model under examination, its numbers read once.
+
+    Parameters
+    ----------
+    model
+        The model.
+    thorough
+        Whether to take many samples, and to report functions that raise.
+    """
+
+    model: Model
+    numbers: tuple[float, ...]
+    thorough: bool
+
+    @property
+    def slenderness(self) -> float:
+        """c = r/h of the column, the scale of tilts."""
+        return self.model.column.slenderness
+
+    def generator(self) -> np.random.Generator:
+        """Return the same random numbers every time."""
+        return np.random.default_rng(20)
+
+    def state(self, tilt: tuple[float, float], rate: tuple[float, float], spin: float = 0.0) -> tuple[float, ...]:
+        """Return the state with a tilt vector [rad], its rate and a spin in the time of the model."""
+        scale, index = self.model.time_scale, self.model.spin_state
+        begun = self.model.start(tilt, (rate[0] / scale, rate[1] / scale))
+        return tuple(float(spin if i == index and spin else value) for i, value in enumerate(begun))
+
+    def random_states(self, count: int) -> list[tuple[float, ...]]:
+        """Return states of random tilts and rates about c, with spin where the model knows it."""
+        random, c = self.generator(), self.slenderness
+        found = []
+        for _ in range(count):
+            size = min(_TOP, c * random.uniform(0.05, _TIMES_C))
+            lean, heading, speed = *random.uniform(0.0, 2.0 * np.pi, 2), c * random.uniform(0.0, _TIMES_C)
+            if self.model.planar_only:
+                heading = lean
+            tilt = (size * np.cos(lean), size * np.sin(lean))
+            found.append(
+                self.state(tilt, (speed * np.cos(heading), speed * np.sin(heading)), random.uniform(-1.0, 1.0))
+            )
+        return found
+
+    def rates(self, state: tuple[float, ...], push: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> np.ndarray:
+        """Return the rates of a state under an acceleration of the base [g]."""
+        return np.array(self.model.rates(*state, *push, *self.numbers), dtype=float)
+
+    def beside(self, state: tuple[float, ...], rates: np.ndarray) -> tuple[tuple[float, ...], tuple[float, ...], float]:
+        """Return the states a short time before and after `state`, and the time between them."""
+        here = np.array(state)
+        return tuple((here - _STEP * rates).tolist()), tuple((here + _STEP * rates).tolist()), 2.0 * _STEP
+
+    def tilt_acceleration(self, state: tuple[float, ...], push: tuple[float, float, float]) -> np.ndarray:
+        """Return the second derivative of the tilt vector."""
+        before, after, lapse = self.beside(state, self.rates(state, push))
+        found: np.ndarray = (self._lean(after)[2:] - self._lean(before)[2:]) / lapse
+        return found
+
+    def _lean(self, state: tuple[float, ...]) -> np.ndarray:
+        return np.array(self.model.lean(*state, *self.numbers), dtype=float)
+
+    def origin(self, name: str) -> str:
+        """Return ", inherited from Slender," of a member that the class of the model does not state itself."""
+        owner = owner_of(type(self.model), name)
+        return "" if owner is type(self.model) else f", inherited from {owner.__name__},"

@@ -1,0 +1,29 @@
+"""Which class of a model states a member, and whether that statement belongs to the equations of the model."""
+
+from stylobate.models.model import Model
+
+_EQUATIONS = ("rates", "parameters")
+
+
+def owner_of(kind: type[Model], name: str) -> type:
+    """Return the class from which `kind` has its member `name`."""
+    return next(cls for cls in kind.__mro__ if name in vars(cls))
+
+
+def belongs_to_equations(kind: type[Model], name: str, *also: str) -> bool:
+    """Return whether `name` is stated by the class that states `rates` and `parameters`, or by a subclass of it.
+
+    A subclass that replaces them replaces the equations. A claim about the equations, such as the energy of the
+    balance, is then a claim about other equations, unless the subclass states it again.
+
+    Parameters
+    ----------
+    kind
+        The class of a model.
+    name
+        The member that makes the claim.
+    *also
+        Further members on which the claim depends, such as `energy`.
+    """
+    place = kind.__mro__.index(owner_of(kind, name))
+    return all(place <= kind.__mro__.index(owner_of(kind, other)) for other in (*_EQUATIONS, *also))

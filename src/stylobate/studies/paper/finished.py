@@ -1,0 +1,81 @@
+"""Finished sections of the paper's check on disk, for a later check that computes the same."""
+
+import hashlib
+import json
+import re
+import sys
+from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+import xarray as xr
+
+from stylobate.errors import FileError
+from stylobate.results import Finding, Section, Verdict, write_netcdf
+from stylobate.results.storage import read_tree
+
+_FINDINGS = "findings"
+
+
+@dataclass(frozen=True, slots=True)
+class FinishedAnalyses:
+    """Sections by heading in a folder, one netCDF file each, named with the fingerprint of what computed it."""
+
+    folder: Path
+
+    def read(self, heading: str) -> Section | None:
+        """Return the section with this heading, or None if it is missing, damaged or of other code."""
+        try:
+            tree = read_tree(self._file(heading))
+        except FileError:
+            return None
+        if _FINDINGS not in tree.attrs:
+            return None
+        findings = json.loads(tree.attrs[_FINDINGS])
+        found = tuple(Finding(where, what, measured, Verdict[verdict]) for where, what, measured, verdict in findings)
+        return Section(found, {str(name): child.to_dataset() for name, child in tree.children.items()})
+
+    def write(self, heading: str, section: Section) -> Section:
+        """Keep a section in place of earlier ones; return it as it is read.
+
+        Raises
+        ------
+        FileError
+            If the folder cannot be written.
+        """
+        tree = xr.DataTree.from_dict({f"/{name}": data for name, data in section.data.items()})
+        findings = [(f.source, f.statement, f.measured, f.verdict.name) for f in section.findings]
+        tree.attrs = {_FINDINGS: json.dumps(findings, ensure_ascii=False)}
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            for earlier in self.folder.glob(f"{_slug(heading)}-*.nc"):
+                earlier.unlink()
+        except OSError as error:
+            message = f"cannot write into {self.folder}: {error.strerror or error}"
+            raise FileError(message) from None
+        write_netcdf(tree, self._file(heading))
+        kept = self.read(heading)
+        if kept is None:
+            message = f"cannot read {self._file(heading)}, which has just been written. Check the disk"
+            raise FileError(message)
+        return kept
+
+    def _file(self, heading: str) -> Path:
+        return self.folder / f"{_slug(heading)}-{fingerprint()}.nc"
+
+
+@cache
+def fingerprint() -> str:
+    """Return a digest of what the paper's check depends on: the text of stylobate, and the libraries that compute."""
+    digest = hashlib.sha256(sys.version.encode())
+    for library in ("numpy", "scipy", "numba", "xarray"):
+        digest.update(f"{library} {version(library)}\n".encode())
+    package = Path(__file__).parents[2]
+    for path in sorted(package.rglob("*.py")):
+        digest.update(str(path.relative_to(package)).encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _slug(heading: str) -> str:
+    return re.sub(r"\W+", "-", heading.lower())

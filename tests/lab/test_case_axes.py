@@ -1,0 +1,71 @@
+"""Maps over the numbers that describe a case: each cell is a run of the case with its numbers."""
+
+import math
+
+import numpy as np
+import pytest
+
+import stylobate as sb
+from stylobate.errors import Outcome
+from stylobate.lab.grids import overturning_plane
+from stylobate.lab.messages import Found
+from stylobate.results.outcomes import code_of
+from stylobate.spec import SimulationDescription
+
+BOTTLE = {
+    "column": {"shape": "solid", "radius": 0.03, "height": 0.2, "density": 1000.0},
+    "model": {"kind": "slender", "damping": 0.1},
+}
+ORBIT = {"kind": "orbit", "diameter": 0.012, "rpm": 200.0}
+PULSE = {"kind": "type_a", "velocity": 0.2, "angular_frequency": 12.0}
+
+
+def axis(name, low, high, number):
+    return {"name": name, "from": low, "to": high, "number": number}
+
+
+def cells_of(values):
+    """Return the axes and the outcome of each cell, as they are sent while the map fills in."""
+    found = []
+    overturning_plane(values, found.append)
+    sent = [one.value for one in found if isinstance(one, Found)]
+    cells = {(x, y): code for one in sent if "cells" in one for x, y, code in one["cells"]}
+    return sent[0]["axes"], cells
+
+
+@pytest.mark.parametrize(
+    ("motion", "part", "x", "y"),
+    [
+        (ORBIT, "motion", axis("rpm", 100.0, 400.0, 4), axis("diameter", 0.005, 0.03, 3)),
+        (PULSE, "motion", axis("velocity", 0.05, 0.4, 4), axis("angular_frequency", 5.0, 20.0, 3)),
+        ({**ORBIT, "diameter": 0.04}, "column", axis("radius", 0.01, 0.06, 4), axis("height", 0.1, 0.4, 3)),
+    ],
+)
+def test_a_cell_is_the_run_of_the_case_with_its_numbers(motion, part, x, y):
+    case = {**BOTTLE, "motion": motion, "duration": 1.5}
+    axes, cells = cells_of({**case, "map": {"x": x, "y": y}})
+    assert len(cells) == x["number"] * y["number"]
+    outcomes = set()
+    for (ix, iy), code in cells.items():
+        numbers = {x["name"]: axes["x"]["values"][ix], y["name"]: axes["y"]["values"][iy]}
+        setup = SimulationDescription.parse({**case, part: {**case[part], **numbers}}).build()
+        run = sb.simulate(setup.model, setup.motion, **setup.options)
+        assert code == code_of(run.outcome), numbers
+        outcomes.add(run.outcome)
+    assert Outcome.OVERTURNED in outcomes
+    assert len(outcomes) > 1
+
+
+def test_axes_tell_their_units_and_another_axis_may_be_one_of_a_sweep():
+    x, y = axis("rpm", 100.0, 400.0, 3), axis("damping", 0.05, 0.2, 2)
+    axes, cells = cells_of({**BOTTLE, "motion": ORBIT, "periods": 3.0, "map": {"x": x, "y": y}})
+    assert (axes["x"]["units"], axes["y"]["units"]) == ("min-1", "1")
+    assert len(cells) == 6
+    assert np.allclose(axes["x"]["values"], [100.0, 250.0, 400.0])
+
+
+def test_a_number_that_cannot_be_is_refused_by_name():
+    x, y = axis("radius", -0.01, 0.02, 3), axis("acceleration", 0.1, 1.0, 2)
+    motion = {"kind": "circular", "acceleration": 1.0, "angular_frequency": 2.0 * math.pi}
+    with pytest.raises((sb.errors.ParameterError, sb.errors.DescriptionError), match="radius must be positive"):
+        cells_of({**BOTTLE, "motion": motion, "duration": 1.0, "map": {"x": x, "y": y}})

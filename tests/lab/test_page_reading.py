@@ -1,0 +1,92 @@
+"""What the page says of a motion, and how a reader changes the case, in a real browser."""
+
+import re
+
+import pytest
+from tests.lab.browser import Watched, new_page, open_browser, shown
+
+from stylobate.lab.presets import presets
+
+PRESETS = {preset.identity: preset for preset in presets()}
+STATE = "window.stylobate.state()"
+ANSWER = "window.stylobate.laboratory.answer"
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with open_browser() as found:
+        yield found
+
+
+@pytest.fixture
+def page(browser, address):
+    context = browser.new_context(viewport={"width": 1280, "height": 860})
+    watched = Watched(new_page(context), address)
+    watched.page.goto(f"{address}/")
+    shown(watched.page)
+    yield watched.page
+    context.close()
+    assert watched.foreign == []
+
+
+def test_the_note_under_the_curves_names_the_model_that_they_are_of(page):
+    note = page.locator(".response > .note")
+    own, others = re.compile("^Steady rolling, in closed form"), re.compile("^Steady rolling of the slender column")
+    model = page.get_by_label("Model", exact=True)
+    for kind, told in (("wobbling", others), ("slender", own)):
+        model.select_option(kind)
+        note.filter(has_text=told).wait_for()
+
+
+def test_a_refusal_stands_beside_its_field_and_over_the_stage(page):
+    field = page.locator("input.number[id^='damping']").first
+    field.fill("-1")
+    line = "damping must be zero or positive"
+    page.locator(".old-note").get_by_text(line).wait_for()
+    described = page.locator(f"#{field.get_attribute('aria-describedby')}")
+    assert line in described.inner_text()
+    field.fill("0.1")
+    page.locator(".old-note").wait_for(state="hidden")
+    described.wait_for(state="hidden")
+
+
+def test_a_column_that_will_overturn_is_not_called_overturned_before_and_its_fall_is_marked(page):
+    page.get_by_label("Preset").select_option(PRESETS["averaging-fails"].title)
+    page.wait_for_function(f"() => {ANSWER}.outcome === 'OVERTURNED'")
+    shown(page)
+    badge, fall = page.locator(".badge.overturned"), page.get_by_text("from here on: not computed")
+    page.evaluate("() => { const { clock } = window.stylobate.laboratory; clock.pause(); clock.seek(0.5); }")
+    assert badge.inner_text().startswith("Will overturn at ")
+    assert not fall.is_visible()
+    page.evaluate("() => { const { clock } = window.stylobate.laboratory; clock.seek(clock.to); }")
+    assert badge.inner_text() == "Overturned"
+    assert fall.is_visible()
+    tilt = page.evaluate("() => Math.hypot(...window.stylobate.stage.pose().tilt)")
+    assert tilt == pytest.approx(3.14159265 / 2, abs=1e-6)  # its side lies on the base
+
+
+def test_the_frequency_is_dragged_along_the_branch_and_the_way_back_leads_to_where_it_was(page):
+    marker = page.get_by_role("slider", name="Angular frequency of the base motion")
+    start = page.evaluate(f"() => {STATE}.description.tilt")
+    marker.press("Shift+ArrowLeft")
+    page.wait_for_function(f"() => {STATE}.description.tilt[0] !== {start[0]}")
+    shown(page)
+    lower = page.evaluate(f"() => {STATE}.description.motion.angular_frequency")
+    assert lower < 1.6
+    assert page.evaluate(f"() => {ANSWER}.outcome") == "ROLLING"
+    assert page.get_by_text("changed").is_visible()
+    page.go_back()
+    page.wait_for_function(f"() => {STATE}.description.motion.angular_frequency === 1.8")
+    page.get_by_label("Start", exact=True).select_option("standing")
+    page.wait_for_function(f"() => {ANSWER}.outcome === 'AT_REST'")
+
+
+def test_a_basin_fills_in_unasked_and_holds_the_standing_column(page):
+    page.get_by_role("tab", name="Basin").click()
+    plane = "window.stylobate.laboratory.plane('basin')"
+    page.wait_for_function(f"() => {plane}.axes && !{plane}.running", timeout=180_000)
+    for place in "xy":
+        values = page.evaluate(f"() => {plane}.axes.{place}.values")
+        assert min(values, key=abs) == pytest.approx(0.0, abs=1e-12)
+    (left, low), (right, high) = (page.evaluate(f"() => {plane}.clientPlace({cell})") for cell in ([0, 0], [9, 9]))
+    assert right - left == pytest.approx(low - high, rel=1e-6)

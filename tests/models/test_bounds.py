@@ -1,0 +1,80 @@
+"""One list of bounds: models, studies, sweeps and the schema of the laboratory accept the same numbers."""
+
+import math
+from dataclasses import fields
+
+import pytest
+
+import stylobate as sb
+from stylobate.errors import ParameterError, UnsupportedError
+from stylobate.lab.schema.requests import _BOUNDS as SCHEMA
+from stylobate.models.bounds import BOUNDS
+from stylobate.studies.ranges import require_bounds, require_values
+from stylobate.studies.sweeps.quantities import checked_values
+
+COLUMN = sb.Column.dimensionless(0.1)
+MODELS = [sb.Slender, sb.SlenderRolling, sb.Wobbling, sb.Rolling, sb.PlanarRocking, sb.Sliding]
+CASES = [(model, field.name) for model in MODELS for field in fields(model) if field.name in BOUNDS]
+
+
+def outside(name):
+    bounds = BOUNDS[name]
+    return [
+        math.nextafter(bounds.least, -math.inf),
+        *([math.nextafter(bounds.most, math.inf)] if math.isfinite(bounds.most) else []),
+        math.nan,
+    ]
+
+
+def inside(name):
+    return [BOUNDS[name].least, min(BOUNDS[name].most, 10.0)]
+
+
+def built(model, name, value):
+    more = {"friction_coefficient": min(value, 0.1)} if name == "static_friction_coefficient" and value >= 0.0 else {}
+    return model(COLUMN, **{name: value}, **more)
+
+
+@pytest.mark.parametrize(("model", "name"), CASES, ids=lambda case: getattr(case, "__name__", case))
+def test_a_model_accepts_what_its_bounds_say_and_nothing_outside(model, name):
+    for value in inside(name):
+        assert getattr(built(model, name, value), name) == value
+    for value in outside(name):
+        with pytest.raises(ParameterError, match=rf"^{name}\b"):
+            built(model, name, value)
+
+
+@pytest.mark.parametrize("name", [name for name in BOUNDS if name != "passage_tilt"])
+def test_studies_sweeps_and_the_schema_have_the_bounds_of_the_models(name):
+    low, high = inside(name)
+    checked_values("over", name, [low, high])
+    require_values([low, high], name)
+    require_bounds((low, high), name)
+    for value in outside(name):
+        with pytest.raises(ParameterError, match=name):
+            checked_values("over", name, [value])
+        if math.isfinite(value):
+            with pytest.raises(ParameterError, match=name):
+                require_values([value], name)
+            with pytest.raises(ParameterError, match=name):
+                require_bounds(sorted((value, 0.5 * (low + high))), name)
+    bounds, told = BOUNDS[name], SCHEMA[name]
+    assert told["minimum"] == bounds.least
+    assert told.get("maximum", math.inf) == bounds.most
+
+
+@pytest.mark.parametrize("name", ["friction_coefficient", "static_friction_coefficient"])
+def test_friction_beyond_what_is_resolved_is_refused_with_the_model_that_never_slips(name):
+    with pytest.raises(ParameterError, match=rf"^{name}: must be at most 1e\+08 \(got 1000000000\.0\)\. Use Rolling"):
+        sb.Sliding(COLUMN, **{name: 1e9})
+    run = sb.simulate(sb.Sliding(COLUMN, friction_coefficient=1e8), tilt=(0.03, 0.0), duration=1.0)
+    assert run.outcome is sb.Outcome.STILL_MOVING
+
+
+def test_averaged_equations_are_refused_for_a_subclass_with_equations_of_its_own():
+    class Other(sb.Slender):
+        pass
+
+    motion = sb.Harmonic.straight(acceleration=0.04, angular_frequency=3.0)
+    with pytest.raises(UnsupportedError, match=r"^model: averaged_motion holds for Slender only \(got Other\)\."):
+        sb.studies.averaged_motion(Other(COLUMN, damping=0.1), motion, tilt=(0.05, 0.0), duration=1.0)
