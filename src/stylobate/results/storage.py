@@ -1,7 +1,9 @@
 """Results as netCDF files: the samples as variables, everything else in the attributes."""
 
 import json
+import sys
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeVar
@@ -125,7 +127,15 @@ def write_netcdf(data: xr.Dataset | xr.DataTree, path: str | Path) -> Path:
     FileError
         If the file cannot be written; an older file stays then.
     """
-    return write_whole(path, sealed(data.to_netcdf(None, engine="h5netcdf")))
+    with _without_a_cluster():
+        content = data.to_netcdf(None, engine="h5netcdf")
+    return write_whole(path, sealed(content))
+
+
+def _without_a_cluster() -> AbstractContextManager[Any]:
+    """Return a context in which an active Dask client is not used: xarray would have it lock the file in memory."""
+    dask = sys.modules.get("dask")
+    return nullcontext() if dask is None else dask.config.set(scheduler="synchronous")
 
 
 def _read(open_file: Callable[..., _Data], path: str | Path) -> _Data:

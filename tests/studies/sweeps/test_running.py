@@ -2,6 +2,7 @@
 
 import json
 
+import dask
 import numpy as np
 import pytest
 import xarray as xr
@@ -62,6 +63,14 @@ def test_workers_compute_what_threads_do(sweep, client, tmp_path, assert_same_ar
 def test_a_scheduler_is_reached_by_its_address(points, client, assert_same_arrays, undisturbed):
     executor = executor_from(client.scheduler.address.replace("tcp://", "dask://"))
     assert_same_arrays(run_sweep(points, executor=executor, chunk_size=1), undisturbed(points))
+
+
+def test_a_result_is_saved_while_a_dask_client_is_active(client, tmp_path):
+    run = sb.simulate(MODEL, MOTION, tilt=(0.01, 0.0), duration=1.0)
+    with client.as_current():
+        assert dask.base.get_scheduler().__self__ is client
+        loaded = sb.load(run.save(tmp_path / "run.nc"))
+    xr.testing.assert_identical(loaded.data, run.data)
 
 
 @pytest.mark.parametrize("stored", [True, False])

@@ -133,7 +133,7 @@ def _flow(
         threads = int(sum(client.nthreads().values()))
         return _AHEAD * max(1, threads) - len(waiting)
 
-    completed = distributed.as_completed(submitted(room()), raise_errors=False)
+    completed = distributed.as_completed(submitted(room()), loop=client.loop, raise_errors=False)
     try:
         for future in completed:
             task = waiting.pop(future)

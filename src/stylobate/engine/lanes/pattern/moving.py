@@ -140,4 +140,6 @@ def first_step(buf: Table, i: int, t: float) -> float:
     d2 = math.sqrt(d2) / h if h > 0.0 else 0.0
     still = d1 <= 1e-15 and d2 <= 1e-15  # noqa: PLR2004
     other = max(1e-6, h * 1e-3) if still else (0.01 / max(d1, d2)) ** 0.125
-    return min(100.0 * h, other, longest)
+    found = min(100.0 * h, other, longest)
+    # Where the rates overflow it is nought or NaN: the whole way then, which is shortened until the run has failed.
+    return found if found > 0.0 else longest
