@@ -164,6 +164,7 @@ class Crew:
 
     async def _ready(self) -> Worker:
         """Return an idle process; one more is started where that is allowed."""
+        self._failed = None  # a process that failed to start before, when nobody waited, says nothing of the next
         while True:
             while self._idle:
                 worker = self._idle.pop()

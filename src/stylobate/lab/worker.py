@@ -4,20 +4,22 @@ import logging
 import multiprocessing
 import os
 import signal
-import threading
 import traceback
 from collections.abc import Callable
 from multiprocessing.connection import Connection
 from typing import Any
 
 from stylobate.lab.messages import Broken, Emit, Finished, Note, Ready, Refused
+from stylobate.processes import end_when_closed
 
 
 def work(connection: Connection) -> None:
     """Do what the other end of `connection` asks for, until it is closed."""
     # Ctrl-C in the terminal is for the server, which then ends its workers.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with_the_server, daemon=True).start()
+    server = multiprocessing.parent_process()
+    if server is not None:
+        end_when_closed(server.sentinel)
     from stylobate.lab import tasks  # noqa: PLC0415  heavy imports happen in the new process
 
     logging.getLogger("stylobate").addHandler(_Telling(connection))
@@ -28,14 +30,6 @@ def work(connection: Connection) -> None:
             kind, values = connection.recv()
             connection.send(_done(tasks.TASKS[kind], values, connection.send))
     except (EOFError, OSError):  # the server is gone
-        os._exit(0)
-
-
-def _end_with_the_server() -> None:
-    """End this process, whatever it computes, when the server is gone."""
-    server = multiprocessing.parent_process()
-    if server is not None:
-        server.join()
         os._exit(0)
 
 

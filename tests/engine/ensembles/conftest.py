@@ -63,7 +63,7 @@ class Runs:
         values = {name: float(value[index]) for name, value in self.parameters.items()}
         model, motion = sb.with_parameters(self.model, self.motion or sb.motions.BASE_AT_REST, **values)
         start = {"tilt": tuple(self.tilt[index] * (1.0 + off)), "tilt_rate": tuple(self.tilt_rate[index])}
-        options = {"samples": 2, **self.options, **options}
+        options = {"samples": 2, "recheck": False, **self.options, **options}
         return sb.simulate(model, motion, **start, duration=float(self.duration[index]), **options)
 
 

@@ -101,7 +101,7 @@ def dragged(resistance="k * math.hypot(vx, vy)", before=""):
 
 def expect_as_alone(model, motion, **arguments):
     data = sb.simulate_ensemble(model, motion, **arguments).isel(run=0)
-    single = sb.simulate(model, motion, **arguments, samples=2)
+    single = sb.simulate(model, motion, **arguments, samples=2, recheck=False)
     assert int(data["outcome"]) == list(sb.Outcome).index(single.outcome)
     assert bool(data["planar"]) is single.planar
     assert float(data["decided_at"]) == pytest.approx(single.decided_at, abs=1e-7)

@@ -173,7 +173,7 @@ class Swell(BaseMotion):
 
 def expect_as_alone(model, motion, outcome_in, end_of, ends_of, **arguments):
     data = sb.simulate_ensemble(model, motion, **arguments, method="taylor")
-    single = sb.simulate(model, motion, **arguments, samples=2)
+    single = sb.simulate(model, motion, **arguments, samples=2, recheck=False)
     assert outcome_in(data) is single.outcome
     assert bool(data["planar"][0]) is single.planar
     # A step by series has no cubics to be told by: what is told are the tolerances of two methods, and their growth.
@@ -245,7 +245,7 @@ def told(request):
     rules = sb.OutcomeRules(periods=4)
     options = {"tilt": tilt, "tilt_rate": rate, "duration": 20 * motion.period, "rules": rules, "rtol": 1e-11}
     data = sb.simulate_ensemble(MODEL, motion, **options, samples=9, strobes=3, method="taylor").isel(run=0)
-    return motion, data, sb.simulate(MODEL, motion, **options, samples=100_001)
+    return motion, data, sb.simulate(MODEL, motion, **options, samples=100_001, recheck=False)
 
 
 def test_largest_and_least_tilt_are_those_of_a_dense_single_run(told):
