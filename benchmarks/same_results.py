@@ -91,13 +91,17 @@ def studies() -> Iterator[tuple[str, Callable[[], xr.Dataset]]]:
     yield "attractors", partial(sb.studies.attractors, SLENDER, CIRCLE, over=BOX, count=64, periods=60)
     yield "response", partial(sb.studies.response_curves, SLENDER, CIRCLE, angular_frequency=(2.0, 12.0))
     yield "exact response", partial(sb.studies.exact_response, SLENDER, CIRCLE, angular_frequency=(4.0, 9.0))
-    yield "slow sweep", partial(
-        sb.studies.slow_sweep, SLENDER, CIRCLE, values=np.linspace(4.0, 7.0, 7), periods_each=20, **steady
+    yield (
+        "slow sweep",
+        partial(sb.studies.slow_sweep, SLENDER, CIRCLE, values=np.linspace(4.0, 7.0, 7), periods_each=20, **steady),
     )
     yield "section", partial(sb.studies.poincare_section, SLENDER, CIRCLE, periods=60, skip=20, **steady)
     yield "bands", partial(sb.studies.overturning_bands, WOBBLING, record, scales=scales, tail=5.0)
-    yield "incremental analysis", partial(
-        sb.studies.incremental_dynamic_analysis, WOBBLING, record, scales=scales, rotations=(0.0, 0.5), tail=5.0
+    yield (
+        "incremental analysis",
+        partial(
+            sb.studies.incremental_dynamic_analysis, WOBBLING, record, scales=scales, rotations=(0.0, 0.5), tail=5.0
+        ),
     )
     yield "models side by side", partial(sb.studies.ladder, COLUMN, CIRCLE, tilt=(0.02, 0.01), duration=5.0)
 
