@@ -44,12 +44,16 @@ export class FrequencyMarker {
     if (frequency === null) return;
     this.#value = frequency;
     const { left, width, range } = this.#extent();
-    const share = Math.min(Math.max((frequency - range[0]) / (range[1] - range[0]), 0), 1);
+    const { share, side } = placeOf(frequency, range);
+    const value = withUnit(frequency, "rad/s", 4);
+    const text = side === "inside" ? value : `${value}, ${side} the range that is shown`;
     this.root.style.transform = `translateX(${(left + share * width).toFixed(1)}px)`;
-    this.root.setAttribute("aria-valuemin", String(range[0]));
-    this.root.setAttribute("aria-valuemax", String(range[1]));
+    this.root.dataset["side"] = side;
+    this.root.title = side === "inside" ? "" : `Ω = ${text}`;
+    this.root.setAttribute("aria-valuemin", String(Math.min(range[0], frequency)));
+    this.root.setAttribute("aria-valuemax", String(Math.max(range[1], frequency)));
     this.root.setAttribute("aria-valuenow", String(frequency));
-    this.root.setAttribute("aria-valuetext", withUnit(frequency, "rad/s", 4));
+    this.root.setAttribute("aria-valuetext", text);
   }
 
   #grasp(event: PointerEvent): void {
@@ -95,6 +99,16 @@ export class FrequencyMarker {
     const value = rounded(frequency, (range[1] - range[0]) / Math.max(width, 100));
     this.#moved(Math.max(value, range[0]));
   }
+}
+
+/** Returns where in a range a frequency is drawn: the end that is nearer stands for one beyond it, as an arrow. */
+export function placeOf(
+  frequency: number,
+  [low, high]: readonly [number, number],
+): { readonly share: number; readonly side: "below" | "inside" | "above" } {
+  if (frequency < low) return { share: 0, side: "below" };
+  if (frequency > high) return { share: 1, side: "above" };
+  return { share: (frequency - low) / (high - low), side: "inside" };
 }
 
 /** How far beside the range a hand may still grasp [px]. */

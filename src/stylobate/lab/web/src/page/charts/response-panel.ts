@@ -4,7 +4,7 @@ import type { ExactResponse, JobReport, ResponseCurves } from "../server/answers
 import { button, element, newId, onResize } from "../frame/dom";
 import { enlarging } from "../frame/enlarging";
 import { Elapsed } from "../frame/elapsed";
-import { axisLabel, capital, counted, plain, readNumber, told, unitWritten, words } from "../frame/format";
+import { axisLabel, capital, plain, readNumber, told, unitWritten } from "../frame/format";
 import { joined } from "../frame/units";
 import type { Job } from "../server/job";
 import type { Extent } from "./frequency-marker";
@@ -13,6 +13,7 @@ import { AXIS_WIDTH } from "./plot-looks";
 import { heightOf, linesOf } from "./response-lines";
 import type { ExactOrbit } from "./response-plot";
 import { ResponsePlot } from "./response-plot";
+import { aboutCurves, aboutExact } from "./response-texts";
 
 export interface ResponseHearing {
   readonly frequency: (value: number) => void;
@@ -74,7 +75,9 @@ export class ResponsePanel {
       footer,
       this.#note,
     );
-    this.#amplitude = new ResponsePlot("amplitude", this.#amplitudeHost, ["", "|θ|/c"]);
+    this.#amplitude = new ResponsePlot("amplitude", this.#amplitudeHost, ["", "|θ|/c"], () =>
+      this.#marker.show(this.#frequency),
+    );
     this.#phase = new ResponsePlot("phase", this.#phaseHost, [
       () => axisLabel("angular frequency", "rad/s"),
       "φ [rad]",
@@ -159,8 +162,9 @@ export class ResponsePanel {
     return this.#exact;
   }
 
-  /** Returns what is to be known of the curves. */
+  /** Returns what is to be known of the orbits while they are shown, else of the curves. */
   get #about(): string {
+    if (this.#exact !== null) return aboutExact(this.#exact);
     return this.#curves === null ? "" : aboutCurves(this.#curves, this.#own);
   }
 
@@ -200,7 +204,7 @@ export class ResponsePanel {
       return;
     }
     this.#exact = last.result as ExactResponse;
-    this.tell(toldOfExact(this.#exact));
+    this.tell(this.#about);
     this.#draw();
   }
 
@@ -274,27 +278,9 @@ export class ResponsePanel {
     const empty = this.#from.value.trim() === "" && this.#to.value.trim() === "";
     const right = 0 < from && from < to && Number.isFinite(to);
     for (const field of [this.#from, this.#to]) field.setAttribute("aria-invalid", String(!right && !empty));
-    if (right || empty) this.#hearing.range(right ? [from, to] : null);
-    else this.tell("The range must rise from above zero; leave both fields empty for the usual one.");
+    if (right || empty) {
+      this.tell(this.#about);
+      this.#hearing.range(right ? [from, to] : null);
+    } else this.tell("The range must rise from above zero; leave both fields empty for the usual one.");
   }
-}
-
-function aboutCurves(curves: ResponseCurves, own: boolean): string {
-  const how = curves.averaged ? "by averaging" : "in closed form";
-  return own
-    ? `Steady rolling, ${how}.`
-    : `Steady rolling of the slender column that cannot turn, ${how}; exact orbits are of this model.`;
-}
-
-function toldOfExact(exact: ExactResponse): string {
-  const families = counted(exact.families.length, "family", "families");
-  const kinds = [...new Set(exact.bifurcations.map((one) => one.kind))];
-  const found = kinds.map((kind) => {
-    const places = exact.bifurcations.filter((one) => one.kind === kind).map((one) => one.angular_frequency);
-    return `${words(kind)} at ${places
-      .sort((a, b) => a - b)
-      .map((one) => told(one, 4))
-      .join(", ")}`;
-  });
-  return `${families} of exact orbits; ${found.length > 0 ? joined(found.join("; "), "rad/s") : "no bifurcation in the range"}. Click a dot to start on that orbit.`;
 }

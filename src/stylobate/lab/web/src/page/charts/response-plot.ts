@@ -4,6 +4,7 @@ import uPlot from "uplot";
 import type { Pair } from "../../viewer/index";
 import type { ExactFamily, ExactResponse, Numbers } from "../server/answers";
 import { themeColour } from "../frame/dom";
+import { told } from "../frame/format";
 import type { Label } from "./plot-looks";
 import { across, PLAIN, upright } from "./plot-looks";
 import type { ResponseLine } from "./response-lines";
@@ -37,12 +38,19 @@ export class ResponsePlot {
   readonly #quantity: Quantity;
   #picture: ResponsePicture | null = null;
 
-  constructor(quantity: Quantity, host: HTMLElement, labels: readonly [across: Label, upright: Label]) {
+  /** `drawn` hears of each new drawing: the room that is left for the curves depends on the lettering of the axes. */
+  constructor(
+    quantity: Quantity,
+    host: HTMLElement,
+    labels: readonly [across: Label, upright: Label],
+    drawn: () => void = () => undefined,
+  ) {
     this.#quantity = quantity;
     const lines = Array.from({ length: MOST_LINES }, (_, i): uPlot.Series => this.#lineLooks(i));
     this.plot = new uPlot(
       {
         ...PLAIN,
+        padding: [8, () => this.#roomAtEnd(), 0, 0],
         width: 400,
         height: 200,
         scales: {
@@ -51,7 +59,7 @@ export class ResponsePlot {
         },
         axes: [across(labels[0]), upright(labels[1])],
         series: [{}, ...lines, this.#backboneLooks()],
-        hooks: { drawAxes: [(plot) => this.#drawCritical(plot)], draw: [(plot) => this.#drawExact(plot)] },
+        hooks: { drawAxes: [(plot) => this.#drawCritical(plot)], draw: [(plot) => this.#drawExact(plot), drawn] },
         cursor: { show: false },
       },
       [[], ...Array.from({ length: MOST_LINES + 1 }, () => [])],
@@ -77,6 +85,12 @@ export class ResponsePlot {
       points: { show: false },
       spanGaps: false,
     };
+  }
+
+  /** Returns the room to the right [px]: half of the last number of the axis reaches beyond the plot. */
+  #roomAtEnd(): number {
+    const last = told(this.#picture?.range[1] ?? 1, 6);
+    return Math.max(10, Math.ceil((last.length * DIGIT) / 2));
   }
 
   #backboneLooks(): uPlot.Series {
@@ -138,6 +152,7 @@ export class ResponsePlot {
     ctx.beginPath();
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
+    ctx.setLineDash([]); // the curves before have left their dashes
     for (const family of exact.families) {
       const values = this.#valuesOf(family, slenderness);
       let last: readonly [number, number, boolean] | null = null;
@@ -158,6 +173,9 @@ export class ResponsePlot {
     ctx.restore();
   }
 }
+
+/** The width of a digit on an axis [px], rounded up for broad letters. */
+const DIGIT = 8;
 
 /** How far from a dot a click may be [px]. */
 const REACH = 7;
