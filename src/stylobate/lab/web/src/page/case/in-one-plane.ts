@@ -1,7 +1,7 @@
 /** A case turned into one vertical plane, for a model that rocks in one. */
 
-import type { Description, Part } from "./description";
-import { isVector } from "./description";
+import type { Description, Part, Value } from "./description";
+import { isVector, written } from "./description";
 import { angularFrequency } from "./frequency";
 
 /** Returns the case with its start along x and, where the base goes round, a base that goes to and fro along x. */
@@ -15,6 +15,54 @@ export function inOnePlane(description: Description): Description {
   );
   const rest = Object.fromEntries(Object.entries(description).filter(([name]) => name !== "spin"));
   return { ...rest, ...start, motion: alongX(motion) } as Description;
+}
+
+/** What a turn into one plane may change of a case. */
+const TURNED = ["motion", "tilt", "tilt_rate", "spin"] as const;
+type Turned = (typeof TURNED)[number];
+
+/** What was changed of a case when it was turned into one plane, so that it can be changed back. */
+export class PlaneTurn {
+  readonly #before: Description;
+  readonly #after: Description;
+  readonly #changed: readonly Turned[];
+
+  constructor(before: Description, after: Description) {
+    this.#before = before;
+    this.#after = after;
+    this.#changed = TURNED.filter((name) => !alike(before[name], after[name]));
+  }
+
+  /** Returns the case with all that was changed as it was before, but for what the reader has changed since. */
+  undone(description: Description): Description {
+    const back = this.#kept(description).map((name): [string, Value] => [name, this.#before[name] ?? null]);
+    return { ...description, ...Object.fromEntries(back) };
+  }
+
+  /** Returns in one line what was changed of the case that is shown; "" if nothing of it is left. */
+  lineFor(description: Description): string {
+    const kept = this.#kept(description);
+    const starts = kept.some((name) => name !== "motion");
+    const parts = [
+      ...(kept.includes("motion") ? [`the motion is now ${this.#motionNow()}`] : []),
+      ...(starts ? ["the start lies in its plane"] : []),
+    ];
+    return parts.length === 0 ? "" : `Planar rocking: ${parts.join(" and ")}. Another model brings back what was set.`;
+  }
+
+  #kept(description: Description): readonly Turned[] {
+    return this.#changed.filter((name) => alike(description[name], this.#after[name]));
+  }
+
+  #motionNow(): string {
+    const [before, after] = [this.#before.motion["kind"], this.#after.motion["kind"]];
+    return before === after ? "along x" : "straight";
+  }
+}
+
+/** What is left out is as nothing. */
+function alike(one: Value | undefined, other: Value | undefined): boolean {
+  return written(one ?? null) === written(other ?? null);
 }
 
 function alongX(motion: Part): Part {

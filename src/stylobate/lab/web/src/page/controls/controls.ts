@@ -6,7 +6,7 @@ import type { Description, Part, PartName, Value } from "../case/description";
 import { kindOf, tagOf, withPartValue, written } from "../case/description";
 import { button, choice, element, newId } from "../frame/dom";
 import { angularFrequency, withAngularFrequency } from "../case/frequency";
-import { inOnePlane } from "../case/in-one-plane";
+import { inOnePlane, PlaneTurn } from "../case/in-one-plane";
 import { atScaleOf } from "../case/scaling";
 import type { ColumnScales } from "../case/quantities";
 import type { Wrong } from "../frame/problems";
@@ -46,6 +46,9 @@ export class Controls {
     motion: new KeptNumbers(),
   };
   #description: Description;
+  /** What the model that rocks in one plane has changed of the case; null: nothing that could be changed back. */
+  #turn: PlaneTurn | null = null;
+  readonly #turned = element("p", { class: "hint", role: "status", hidden: true });
   readonly #toy = element("p", { class: "hint warning", hidden: true }, TOY);
 
   constructor(about: About, first: Description, problems: HTMLElement, hearing: ControlsHearing) {
@@ -61,6 +64,7 @@ export class Controls {
     this.#record = new RecordForm(about, (motion) => hearing.jumped({ ...this.#description, motion }));
     this.#forms.motion.root.insertBefore(this.#record.root, this.#forms.motion.root.lastElementChild);
     this.#forms.motion.root.append(this.#toy);
+    this.#forms.model.root.append(this.#turned);
     this.#start = new StartForm((description, start) => hearing.started(description, start));
     this.#duration = new NumberField(
       { name: "duration", label: "Duration", symbol: "t", unit: "s", range: null, top: 60, empty: "by motion" },
@@ -96,6 +100,7 @@ export class Controls {
       this.#forms[part].show(description[part], kindOf(description, part));
     this.#record.show(description.motion);
     this.#toy.hidden = !isToy(description);
+    this.#showTurn(description);
     this.#start.show(description, scales, start);
     const duration = description["duration"];
     this.#duration.show(typeof duration === "number" ? duration : null);
@@ -124,11 +129,27 @@ export class Controls {
         const chosen = this.#ofKind(part, kind);
         const found = { ...this.#description, [part]: part === "motion" ? this.#withSample(chosen) : chosen };
         const scaled = part === "column" ? atScaleOf(found, this.#description) : found;
-        this.#hearing.jumped(this.#fitted(kind.kind === "planar_rocking" ? inOnePlane(scaled) : scaled));
+        this.#hearing.jumped(this.#fitted(part === "model" ? this.#turnedFor(kind.kind, scaled) : scaled));
       },
       changed: (name: string, value: Value) =>
         this.#hearing.edited(withPartValue(this.#description, part, name, value)),
     });
+  }
+
+  /** Returns the case in one plane for the model that rocks in one; any other model brings back what that changed. */
+  #turnedFor(model: string, description: Description): Description {
+    const rocks = isPlanar(this.#description);
+    if (model !== PLANAR) return rocks ? (this.#turn?.undone(description) ?? description) : description;
+    const found = inOnePlane(description);
+    if (!rocks) this.#turn = new PlaneTurn(description, found);
+    return found;
+  }
+
+  #showTurn(description: Description): void {
+    const line = isPlanar(description) ? (this.#turn?.lineFor(description) ?? "") : "";
+    if (line === this.#turned.textContent) return;
+    this.#turned.textContent = line;
+    this.#turned.hidden = line === "";
   }
 
   /** Returns the part as one of another kind, with what it has in common with those before; a motion goes as fast. */
@@ -159,6 +180,7 @@ export class Controls {
     const preset = this.#about.presets.find((one) => one.id === id);
     if (preset === undefined) return;
     for (const kept of Object.values(this.#kept)) kept.forget();
+    this.#turn = null;
     this.#hearing.preset(preset);
   }
 }
@@ -168,6 +190,13 @@ const LABELS: Readonly<Record<PartName, string>> = {
   model: "Model",
   motion: "Base motion",
 };
+
+/** The model that rocks in one plane. */
+const PLANAR = "planar_rocking";
+
+function isPlanar(description: Description): boolean {
+  return kindOf(description, "model") === PLANAR;
+}
 
 /** The column of the equations has its own unit of acceleration, and records have m/s². */
 function isToy({ column, motion }: Description): boolean {
