@@ -3,29 +3,28 @@
 import type { Clock, Stage, Theme } from "../viewer/index";
 import type { About } from "./case/about";
 import { Address } from "./view/address";
-import type { Answer, Described } from "./server/answers";
-import { describe, Refused, Unreachable } from "./server/api";
+import type { Answer } from "./server/answers";
+import { Refused, Unreachable } from "./server/api";
 import type { ResponsePanel } from "./charts/response-panel";
 import type { Connection } from "./server/connection";
+import { CaseProblems } from "./controls/case-problems";
 import { Controls } from "./controls/controls";
-import type { Description } from "./case/description";
-import { toldOfCase, written } from "./case/description";
+import type { Description, Part } from "./case/description";
+import { written } from "./case/description";
 import { element } from "./frame/dom";
-import { ExportMenu } from "./frame/exports";
 import { angularFrequency } from "./case/frequency";
 import { Job, problemsIn } from "./server/job";
-import { clockTime } from "./frame/format";
 import { Help } from "./frame/help";
 import { listenToKeys } from "./frame/keys";
 import { Latest } from "./server/latest";
-import { linkOf, toldOf } from "./view/link";
+import { toldOf } from "./view/link";
+import { menuOf } from "./view/menu";
 import { MotionView } from "./motion/motion-view";
 import { paceOf } from "./motion/pace";
 import type { PlanePanel } from "./plane/plane-panel";
 import { PlanesAsking } from "./plane/planes-asking";
-import { Problems, wrongIn } from "./frame/problems";
+import { Problems } from "./frame/problems";
 import type { ColumnScales } from "./case/quantities";
-import { sent } from "./server/requests";
 import { type JobStart, ResponseAsking } from "./charts/response-asking";
 import type { PlaneKind, Tab, View } from "./view/state";
 import { isPlaneKind, Store, TABS } from "./view/state";
@@ -35,8 +34,7 @@ import type { Branch } from "./case/starting";
 import { startAlike, startOf } from "./case/starting";
 import type { Run, WantedRun } from "./server/run";
 import { run } from "./server/run";
-import { joined, setUnitsOf } from "./frame/units";
-import { verdictOf } from "./motion/verdict";
+import { setUnitsOf } from "./frame/units";
 import { firstView, viewOfLink, viewOfPreset } from "./view/views";
 
 /** Before the first answer: the column of the equations. */
@@ -47,7 +45,7 @@ export class Laboratory {
   readonly #store: Store;
   readonly #address = new Address();
   readonly #connection: Connection;
-  readonly #problems = new Problems();
+  readonly #problems: CaseProblems;
   readonly #controls: Controls;
   readonly #motion: MotionView;
   readonly #response: ResponseAsking;
@@ -59,11 +57,10 @@ export class Laboratory {
   #answer: Answer | null = null;
   /** Of which case the answer is, and which was asked for last. */
   #shown = "";
+  #moved: Part = {};
   #asked = "";
   /** The last case whose start is that on a branch. */
   #started: WantedRun | null = null;
-  /** What was wrong with the link that was followed, until the reader goes on from there. */
-  #linkProblem: readonly string[] = [];
   /** Whether the view comes from the address: then the map that it had is computed again. */
   #linked = true;
   /** Whether the view comes from a preset or a link, with the start that belongs to it. */
@@ -81,7 +78,8 @@ export class Laboratory {
     const edited = (changes: Partial<View>): void => this.#edit(changes);
     const jumped = (changes: Partial<View>): void => this.#jump(changes);
     const start: JobStart = (kind, body, report, ended) => this.#job(kind, body, report, ended);
-    this.#controls = new Controls(about, view.description, this.#problems.root, {
+    const box = new Problems();
+    this.#controls = new Controls(about, view.description, box.root, {
       edited: (description) => edited({ description }),
       started: (description, start) => edited({ description, start }),
       jumped: (description) => jumped({ description, filled: false, start: null }),
@@ -95,8 +93,10 @@ export class Laboratory {
       speed: (speed) => edited({ speed }),
       histories: (histories) => edited({ histories }),
       cancelled: () => this.#cancelRun(),
+      again: () => this.#askAgain(),
       lasting: (duration) => edited({ description: { ...this.view.description, duration } }),
     });
+    this.#problems = new CaseProblems(box, this.#controls, this.#motion);
     this.#response = new ResponseAsking(view, this.#scales, { edited, start, lost: () => this.#lose() });
     this.#planes = new PlanesAsking(about, view, this.#scales, { edited, jumped, start });
     this.#tabs = this.#newTabs();
@@ -105,14 +105,15 @@ export class Laboratory {
       failed: (error) => this.#fail(error),
       busy: (busy) => this.#motion.setBusy(busy),
     });
-    header.append(this.#newMenu().root, new Help().root, theme.root);
+    const menu = menuOf(this.#motion, () => ({ view: this.view, answer: this.#answer, shown: this.#shown }));
+    header.append(menu.root, new Help().root, theme.root);
     this.#planesHost.append(this.#response.panel.root, this.#tabs.root);
     host.replaceChildren(this.#motion.root, this.#controls.root, this.#motion.histories, this.#planesHost);
     this.#store.onChange((now) => this.#show(now));
     window.addEventListener("popstate", () => this.#goTo(location.hash));
     listenToKeys(this.clock, () => this.#motion.toNextEvent());
     this.#show(view);
-    this.#tellLink(problem);
+    this.#problems.showLink(problem);
   }
 
   get clock(): Clock {
@@ -155,7 +156,7 @@ export class Laboratory {
 
   /** Changes the view by hand, a little at a time. */
   #edit(changes: Partial<View>): void {
-    this.#linkProblem = [];
+    this.#problems.forgetLink();
     this.#store.change({ time: null, ...changes });
     if (this.#edited || changes.description === undefined) return this.#address.replace(this.view);
     this.#edited = true;
@@ -166,7 +167,7 @@ export class Laboratory {
   #jump(changes: Partial<View>): void {
     this.#fresh = true;
     this.#edited = false;
-    this.#tellLink(null);
+    this.#problems.showLink(null);
     this.#address.flush();
     this.#store.change({ time: null, ...changes });
     this.#address.push(this.view);
@@ -180,7 +181,7 @@ export class Laboratory {
     this.#given = true;
     this.#linked = true;
     this.#store.change(view);
-    this.#tellLink(problem);
+    this.#problems.showLink(problem);
   }
 
   #show(view: View): void {
@@ -218,15 +219,16 @@ export class Laboratory {
   }
 
   #showSpeed(view: View): void {
-    const usual = this.#answer === null ? 1 : paceOf(view.description.motion, this.#answer);
+    // The picture keeps the speed of its own case until another one is shown.
+    const usual = this.#answer === null ? 1 : paceOf(this.#moved, this.#answer);
     this.#motion.setSpeed(view.speed ?? usual);
   }
 
   #take({ answer, description }: Run, start: Branch | null): void {
     this.#answer = answer;
     this.#shown = written(description);
-    this.#problems.show(this.#linkProblem);
-    this.#controls.setWrong(new Map());
+    this.#moved = description.motion;
+    this.#problems.clear();
     this.#rescale(answer.column);
     this.#motion.setStale(false);
     this.#motion.show(answer, angularFrequency(this.view.description.motion));
@@ -269,25 +271,21 @@ export class Laboratory {
     if (error instanceof Unreachable) return this.#lose();
     const lines = error instanceof Refused ? error.problems : [String(error)];
     if (lines.some((line) => line.startsWith("motion.upload"))) void this.#restoreRecord();
-    else if (this.#answer === null && this.#linkProblem.length === 0) this.#replaceLink(lines);
-    else this.#tellProblems(lines);
-  }
-
-  #tellProblems(lines: readonly string[]): void {
-    this.#motion.setStale(false);
-    this.#problems.show(lines);
-    this.#controls.setWrong(wrongIn(lines));
-    this.#motion.setOld(this.#answer === null ? null : lines);
+    else if (this.#answer === null && !this.#problems.ofLink) this.#replaceLink(lines);
+    else this.#problems.show(lines, { earlier: this.#answer !== null });
   }
 
   #cancelRun(): void {
     this.#runs.cancel();
-    this.#tellProblems(["The run was cancelled. Change the case, or reload the page to compute it."]);
+    const line = "The run was cancelled. Change the case or compute it again.";
+    this.#problems.show([line], { earlier: this.#answer !== null, again: true });
   }
 
-  #tellLink(problem: string | null): void {
-    this.#linkProblem = problem === null ? [] : [problem];
-    this.#problems.show(this.#linkProblem);
+  /** Asks once more for a case whose run was cancelled. */
+  #askAgain(): void {
+    this.#asked = "";
+    this.#problems.clear();
+    this.#ask(this.view);
   }
 
   /** A link whose case cannot be run leaves nothing to look at: the first preset is shown, and what was wrong. */
@@ -295,7 +293,7 @@ export class Laboratory {
     this.#fresh = true;
     this.#given = true;
     this.#store.change(firstView(this.#about));
-    this.#tellLink(toldOf(lines.join("; ")));
+    this.#problems.showLink(toldOf(lines.join("; ")));
   }
 
   /** The server forgets records when it ends; what was uploaded here is sent once more. */
@@ -303,7 +301,8 @@ export class Laboratory {
     const restored = await this.#controls.record.restore(this.view.description.motion["upload"]).catch(() => false);
     if (restored) return this.refresh();
     this.#controls.record.askAgain();
-    this.#tellProblems(["This case needs a record that the server does not hold. Choose its files again."]);
+    const line = "This case needs a record that the server does not hold. Choose its files again.";
+    this.#problems.show([line], { earlier: this.#answer !== null });
   }
 
   #lose(): void {
@@ -319,30 +318,6 @@ export class Laboratory {
         ended(last, problemsIn(last, error));
       },
     });
-  }
-
-  /** Returns the case in the languages of the package, whether its run has been answered or not. */
-  async #described(): Promise<Described> {
-    const { description } = this.view;
-    if (this.#answer !== null && this.#shown === written(description)) return this.#answer;
-    return describe(sent(description));
-  }
-
-  #newMenu(): ExportMenu {
-    return new ExportMenu({
-      stage: this.stage,
-      caption: () => this.#caption(),
-      description: () => sent(this.view.description),
-      described: () => this.#described(),
-      link: () => `${location.origin}${location.pathname}#${linkOf({ ...this.view, time: this.#motion.stoppedAt })}`,
-    });
-  }
-
-  #caption(): readonly string[] {
-    const { time, to } = this.clock;
-    const fall = this.#motion.falling ? " The fall is drawn on and was not computed." : "";
-    const at = `At ${joined(clockTime(time, to), "s")} of ${joined(clockTime(to, to), "s")}.${fall}`;
-    return this.#answer === null ? [] : [`${verdictOf(this.#answer)} ${at}`, toldOfCase(this.view.description)];
   }
 
   #newTabs(): Tabs<Tab> {

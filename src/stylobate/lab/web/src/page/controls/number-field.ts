@@ -2,6 +2,8 @@
 
 import { element, newId } from "../frame/dom";
 import { plain, readNumber, unitWritten, withUnit } from "../frame/format";
+import { lineStart, numberProblem } from "../frame/number-text";
+import { unreadEvent } from "../frame/problems";
 import type { Scale } from "../case/ranges";
 import { POSITIONS, positionOf, scaleAbout, scaleBetween, valueAt } from "../case/ranges";
 
@@ -32,8 +34,12 @@ export class NumberField {
   #scale: Scale;
   /** What the number is, whatever is being written. */
   #value: number | null = null;
-  /** Whether what is being written is no number. */
-  #unread = false;
+  /** The last value that the server did not refuse: an example of what can be written. */
+  #right: number | null = null;
+  /** Why what is being written is no number; "" if it is one. */
+  #unread = "";
+  /** What the server refused of the number. */
+  #refused = "";
 
   constructor(looks: NumberLooks, changed: (value: number | null) => void) {
     this.name = looks.name;
@@ -76,8 +82,14 @@ export class NumberField {
 
   /** Marks the field as the one that a problem is about and shows the problem's line, or clears both. */
   setWrong(problem: string | undefined): void {
+    this.#refused = problem ?? "";
+    if (problem === undefined) this.#right = this.#value;
+    this.#mark();
+  }
+
+  #mark(): void {
     // An answer to the number before says nothing of what is being written.
-    const line = this.#unread ? NOT_READ : (problem ?? "");
+    const line = this.#unread || this.#refused;
     this.#problem.textContent = line;
     this.#problem.hidden = line === "";
     if (line === "") this.#field.removeAttribute("aria-invalid");
@@ -123,20 +135,28 @@ export class NumberField {
   #read(): void {
     const value = readNumber(this.#field.value);
     const empty = this.#field.value.trim() === "";
-    const wrong = empty ? this.#looks.empty === undefined : !Number.isFinite(value);
-    this.#unread = wrong;
-    this.setWrong(undefined);
-    if (wrong) return;
+    const missing = empty && this.#looks.empty !== undefined;
+    this.#setUnread(missing ? "" : numberProblem(lineStart(this.#looks.label), this.#field.value, this.#right));
+    if (this.#unread !== "") return;
+    this.#refused = "";
+    this.#mark();
     this.#slider.value = String(empty ? 0 : positionOf(value, this.#scale));
     this.#changed(empty ? null : value);
   }
 
   /** What is no number is not kept: the field tells what is shown. */
   #restore(): void {
-    if (!this.#unread) return;
-    this.#unread = false;
-    this.setWrong(undefined);
+    if (this.#unread === "") return;
+    this.#setUnread("");
     this.#write();
+  }
+
+  /** Marks the field, and has the line read out where the problems of the case stand. */
+  #setUnread(line: string): void {
+    if (line === this.#unread) return;
+    this.#unread = line;
+    this.#mark();
+    this.root.dispatchEvent(unreadEvent(line));
   }
 
   #write(): void {
@@ -157,8 +177,6 @@ export class NumberField {
     return this.#looks.whole === true ? Math.round(value) : value;
   }
 }
-
-const NOT_READ = "Write a number, such as 0.05.";
 
 /** Significant digits in the field; the value itself has all that it was given. */
 const SHOWN = 6;

@@ -8,6 +8,7 @@ import { OrbitChart } from "../charts/orbit";
 import { button, element } from "../frame/dom";
 import { Elapsed } from "../frame/elapsed";
 import { shownUnit } from "../frame/units";
+import { OldNote } from "./old-note";
 import { NumbersTable } from "./numbers-table";
 import { Transport } from "./transport";
 import { Verdict } from "./verdict";
@@ -22,6 +23,8 @@ export interface MotionHearing {
   readonly histories: (pair: HistoryPair) => void;
   /** The reader no longer wants the run that is computed. */
   readonly cancelled: () => void;
+  /** The run that was cancelled is wanted after all. */
+  readonly again: () => void;
 }
 
 export class MotionView {
@@ -37,8 +40,7 @@ export class MotionView {
   readonly #transport: Transport;
   readonly #verdict: Verdict;
   readonly #curves: Histories;
-  /** Hidden from readers of the screen, who hear the same lines from the controls. */
-  readonly #old = element("div", { class: "old-note", "aria-hidden": "true", hidden: true });
+  readonly #old: OldNote;
   readonly #waiting = element("p", { class: "waiting-note", hidden: true });
   readonly #elapsed = new Elapsed((told) => (this.#waiting.textContent = told));
   readonly #fall = element("p", { class: "fall-note", hidden: true }, "from here on: not computed");
@@ -47,17 +49,18 @@ export class MotionView {
   /** Whether the clock ran at its last tick: at the end of a run it stops by itself. */
   #played = false;
 
-  constructor(theme: Theme, { speed, histories, cancelled, lasting }: MotionHearing) {
+  constructor(theme: Theme, { speed, histories, cancelled, again, lasting }: MotionHearing) {
     this.#cancel = button("Cancel", { class: "cancel-run small", hidden: true }, cancelled);
     this.#host.append(this.#cancel);
+    this.#old = new OldNote(again);
     this.#verdict = new Verdict(lasting);
     this.#transport = new Transport(this.clock, speed);
     this.#curves = new Histories({ seek: (time) => this.clock.seek(time), chosen: histories });
     this.histories = this.#curves.root;
     this.root = element("section", { class: "show panel", "aria-label": "Motion" });
-    this.root.append(this.#host, this.#transport.root, this.#verdict.root);
+    this.root.append(this.#host, this.#old.root, this.#transport.root, this.#verdict.root);
     this.stage = this.#newStage(theme);
-    this.#host.append(this.#waiting, this.#old, this.#fall);
+    this.#host.append(this.#waiting, this.#fall);
     this.clock.onTick(() => this.#tick());
     setInterval(() => this.#transport.describe(), 1000);
   }
@@ -65,7 +68,7 @@ export class MotionView {
   /** Shows a run; `frequency` is that of its base motion [rad/s], where it has one. */
   show(answer: Answer, frequency: number | null): void {
     this.#host.classList.remove("empty");
-    this.setOld(null);
+    this.#old.hide();
     const drawn = withFall(answer.drawn, answer.column.frequency_parameter);
     this.#computed = answer.drawn.time.at(-1) ?? 0;
     this.clock.setRange(0, drawn.time.at(-1) ?? 0);
@@ -121,13 +124,9 @@ export class MotionView {
     else this.#elapsed.end();
   }
 
-  /** Says over the stage why the case that was asked for is not shown; null: it is. */
-  setOld(problems: readonly string[] | null): void {
-    this.#old.hidden = problems === null;
-    this.#old.replaceChildren(
-      ...(problems ?? []).map((line) => element("p", {}, line)),
-      element("p", {}, "Shown: the last case that could be computed."),
-    );
+  /** The line under the stage about a case that is not shown. */
+  get old(): OldNote {
+    return this.#old;
   }
 
   /** Tells that what is shown is the case before, while another one is on its way. */

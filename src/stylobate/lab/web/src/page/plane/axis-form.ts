@@ -2,8 +2,16 @@
 
 import { element, newId } from "../frame/dom";
 import { plain, readNumber, unitWritten, words } from "../frame/format";
+import { rangeProblem } from "../frame/number-text";
 import type { Quantity } from "../case/quantities";
+import { written } from "../case/description";
 import type { Axis } from "../view/state";
+
+export interface AxisHearing {
+  readonly changed: (axis: Axis) => void;
+  /** The ends that are written have become a range, or are one no longer. */
+  readonly judged: () => void;
+}
 
 export class AxisForm {
   readonly root: HTMLElement;
@@ -11,21 +19,29 @@ export class AxisForm {
   readonly #from: HTMLInputElement;
   readonly #to: HTMLInputElement;
   readonly #unit = element("span", { class: "unit" });
-  readonly #changed: (axis: Axis) => void;
+  readonly #hearing: AxisHearing;
   #axis: Axis | null = null;
   #names = "";
+  #problem = "";
 
-  constructor(place: "x" | "y", changed: (axis: Axis) => void) {
-    this.#changed = changed;
+  constructor(place: "x" | "y", hearing: AxisHearing) {
+    this.#hearing = hearing;
     const id = newId(`axis-${place}`);
     this.#select = element("select", { id });
-    this.#select.addEventListener("change", () => this.#change());
+    this.#select.addEventListener("change", () => this.#choose());
     [this.#from, this.#to] = [this.#end(`${place} from`), this.#end(`${place} to`)];
     const label = element("label", { for: id }, place === "x" ? "across" : "up");
     this.root = element("div", { class: "axis-form" }, label, this.#select, this.#from, "–", this.#to, this.#unit);
   }
 
+  /** Why the ends that are written are no range; "" if they are one. */
+  get problem(): string {
+    return this.#problem;
+  }
+
+  /** Shows an axis; ends that were refused stay until the axis becomes another one. */
   show(axis: Axis, quantities: readonly Quantity[]): void {
+    const same = this.#axis !== null && written({ ...this.#axis }) === written({ ...axis });
     this.#axis = axis;
     const names = quantities.map((one) => one.name).join();
     if (names !== this.#names) {
@@ -33,17 +49,30 @@ export class AxisForm {
       this.#select.replaceChildren(...quantities.map((one) => element("option", { value: one.name }, words(one.name))));
     }
     this.#select.value = axis.name;
-    if (document.activeElement !== this.#from) this.#from.value = plain(axis.from);
-    if (document.activeElement !== this.#to) this.#to.value = plain(axis.to);
     this.#unit.textContent = unitWritten(quantities.find((one) => one.name === axis.name)?.unit ?? "");
+    if (same && this.#problem !== "") return;
+    if (!same || document.activeElement !== this.#from) this.#from.value = plain(axis.from);
+    if (!same || document.activeElement !== this.#to) this.#to.value = plain(axis.to);
+    this.#judge("");
+  }
+
+  #choose(): void {
+    if (this.#axis !== null) this.#hearing.changed({ ...this.#axis, name: this.#select.value });
   }
 
   #change(): void {
     if (this.#axis === null) return;
+    this.#judge(rangeProblem(words(this.#axis.name), this.#from.value, this.#to.value, this.#axis));
+    if (this.#problem !== "") return;
     const [from, to] = [readNumber(this.#from.value), readNumber(this.#to.value)];
-    const right = Number.isFinite(from) && Number.isFinite(to) && from < to;
-    for (const field of [this.#from, this.#to]) field.setAttribute("aria-invalid", String(!right));
-    if (right) this.#changed({ ...this.#axis, name: this.#select.value, from, to });
+    this.#hearing.changed({ ...this.#axis, from, to });
+  }
+
+  #judge(problem: string): void {
+    for (const field of [this.#from, this.#to]) field.setAttribute("aria-invalid", String(problem !== ""));
+    if (problem === this.#problem) return;
+    this.#problem = problem;
+    this.#hearing.judged();
   }
 
   #end(label: string): HTMLInputElement {

@@ -1,15 +1,14 @@
 /** An overturning map or a basin: its axes, its picture while it fills in, what its colours mean. */
 
 import type { AxesEvent, CellsEvent, JobReport, PlaneResult, ToldAxis } from "../server/answers";
-import { button, choice, element, newId } from "../frame/dom";
+import { button, element } from "../frame/dom";
 import { capital, counted, told, withUnit, words } from "../frame/format";
 import { Elapsed } from "../frame/elapsed";
 import type { Job } from "../server/job";
-import { defaultAxis } from "./planes";
 import type { Quantity } from "../case/quantities";
 import type { Axis, Plane, PlaneKind } from "../view/state";
 import type { Description, Part } from "../case/description";
-import { AxisForm } from "./axis-form";
+import { AxesForm } from "./axes-form";
 import { Cells } from "./cells";
 import { Classes } from "./classes";
 import type { Place } from "./plane-canvas";
@@ -28,20 +27,17 @@ export class PlanePanel {
   readonly #kind: PlaneKind;
   readonly #hearing: PlaneHearing;
   readonly #canvas: PlaneCanvas;
-  readonly #forms: { readonly x: AxisForm; readonly y: AxisForm };
-  readonly #cells: HTMLSelectElement;
-  readonly #summary = element("summary", {});
-  readonly #axesForm = element("details", { class: "axes" });
+  readonly #axesForm: AxesForm;
   readonly #go: HTMLButtonElement;
   readonly #progress = element("progress", { max: 1, hidden: true, "aria-label": "Progress" });
   readonly #readout = element("p", { class: "note readout", "aria-live": "polite" });
   readonly #problem = element("p", { class: "problem", role: "alert", hidden: true });
   readonly #classes = new Classes();
   #plane: Plane | null = null;
-  #description: Description | null = null;
-  #quantities: readonly Quantity[] = [];
   #values: Place | null = null;
   #job: Job | null = null;
+  /** What the server refused of the last job. */
+  #refused: readonly string[] = [];
   readonly #elapsed = new Elapsed((told) => (this.#readout.textContent = told));
   #complete = false;
   #key = "";
@@ -59,18 +55,9 @@ export class PlanePanel {
       (cell) => this.#point(cell),
       (cell) => this.#choose(cell),
     );
-    const change = (place: "x" | "y") => (axis: Axis) => this.#changeAxis(place, axis);
-    this.#forms = { x: new AxisForm("x", change("x")), y: new AxisForm("y", change("y")) };
-    const id = newId("cells");
-    this.#cells = choice(
-      SIZES.map((size) => [String(size), `${size} × ${size}`]),
-      { id },
-      (value) => this.#changeSize(Number(value)),
-    );
+    this.#axesForm = new AxesForm({ axes: hearing.axes, judged: () => this.#showProblems() });
     this.#go = button("Compute", { class: "primary small" }, () => this.#pressed());
-    const size = element("div", { class: "axis-form" }, element("label", { for: id }, "cells"), this.#cells);
-    this.#axesForm.append(this.#summary, this.#forms.x.root, this.#forms.y.root, size);
-    const bar = element("div", { class: "plane-bar" }, this.#axesForm, this.#progress, this.#go);
+    const bar = element("div", { class: "plane-bar" }, this.#axesForm.root, this.#progress, this.#go);
     this.root = element(
       "div",
       { class: `plane-panel ${kind}` },
@@ -92,16 +79,10 @@ export class PlanePanel {
     key: string,
   ): void {
     this.#plane = plane;
-    this.#description = description;
-    this.#quantities = quantities;
     this.#values = values;
     this.#runs = toldOfLength(length);
     this.#key = key;
-    this.#forms.x.show(plane.x, quantities);
-    this.#forms.y.show(plane.y, quantities);
-    this.#offerSize(plane.x.number);
-    const axis = ({ name, from, to }: Axis): string => `${words(name)} ${told(from)}…${told(to)}`;
-    this.#summary.textContent = `${axis(plane.x)} × ${axis(plane.y)}`;
+    this.#axesForm.show(plane, quantities, description);
     if (this.#shownKey !== key) this.#stop(); // nobody sees the rest of an earlier case
     const stale = this.#axes !== null && this.#shownKey !== key;
     this.root.classList.toggle("stale", stale);
@@ -121,10 +102,9 @@ export class PlanePanel {
     this.#complete = false;
     this.#shownKey = this.#key;
     this.#length = this.#runs;
-    this.#tellProblem([]);
     this.#filled = null;
     this.#go.textContent = "Cancel";
-    this.#axesForm.open = false; // the picture needs the room
+    this.#axesForm.fold(); // the picture needs the room
     this.#progress.hidden = false;
     this.#progress.removeAttribute("value");
     this.root.classList.remove("stale");
@@ -133,6 +113,7 @@ export class PlanePanel {
       (report) => this.#take(report),
       (last, problems) => this.#end(last, problems),
     );
+    this.#refuse([]);
   }
 
   /** Returns the place of a cell in the window [px], and its size: for those who test the page. */
@@ -205,7 +186,7 @@ export class PlanePanel {
     this.#elapsed.end();
     this.#go.textContent = "Compute";
     this.#progress.hidden = true;
-    this.#tellProblem(problems);
+    this.#refuse(problems);
     this.#complete = last?.state === "done";
     if (this.#complete) this.#finish((last?.result ?? null) as PlaneResult | null);
     else this.#readout.textContent = ""; // a job that has ended does nothing any more
@@ -271,39 +252,20 @@ export class PlanePanel {
     if (valueX !== undefined && valueY !== undefined) this.#hearing.chosen([x.name, valueX], [y.name, valueY]);
   }
 
-  #changeAxis(place: "x" | "y", axis: Axis): void {
-    if (this.#plane === null || this.#description === null) return;
-    const before = this.#plane[place];
-    const quantity = this.#quantities.find((one) => one.name === axis.name);
-    const renamed = axis.name !== before.name && quantity !== undefined;
-    const found = renamed ? defaultAxis(quantity, this.#description, axis.number) : axis;
-    const other = place === "x" ? this.#plane.y : this.#plane.x;
-    const swapped = other.name === found.name ? before : other; // both axes must differ
-    this.#hearing.axes(place === "x" ? { x: found, y: swapped } : { x: swapped, y: found });
+  #refuse(problems: readonly string[]): void {
+    this.#refused = problems;
+    this.#showProblems();
   }
 
-  /** Shows how many cells there are; a link may ask for another number than those that are offered. */
-  #offerSize(number: number): void {
-    const text = String(number);
-    if (![...this.#cells.options].some((one) => one.value === text))
-      this.#cells.append(element("option", { value: text }, `${text} × ${text}`));
-    this.#cells.value = text;
-  }
-
-  #changeSize(number: number): void {
-    if (this.#plane === null) return;
-    const { x, y } = this.#plane;
-    this.#hearing.axes({ x: { ...x, number }, y: { ...y, number } });
-  }
-
-  #tellProblem(problems: readonly string[]): void {
-    this.#problem.textContent = problems.join(" ");
-    this.#problem.hidden = problems.length === 0;
+  /** Shows what the server refused and why an axis is none; nothing is computed over an axis that is not shown. */
+  #showProblems(): void {
+    const wrong = this.#axesForm.problems;
+    this.#go.disabled = wrong.length > 0 && this.#job === null; // a job can still be cancelled
+    const lines = [...wrong, ...this.#refused];
+    this.#problem.textContent = lines.join(" ");
+    this.#problem.hidden = lines.length === 0;
   }
 }
-
-/** Odd: a cell lies in the middle of an axis, at the start of a column that stands. */
-const SIZES = [25, 33, 49, 65, 97, 129, 193] as const;
 
 const HINTS: Readonly<Record<PlaneKind, string>> = {
   map: "What becomes of the column over two quantities. Compute it, then click a cell to see its motion.",

@@ -1,0 +1,43 @@
+/** What the export menu takes along of the view that is shown. */
+
+import { toldOfCase, written } from "../case/description";
+import { ExportMenu } from "../frame/exports";
+import { clockTime } from "../frame/format";
+import { joined } from "../frame/units";
+import type { MotionView } from "../motion/motion-view";
+import { verdictOf } from "../motion/verdict";
+import type { Answer, Described } from "../server/answers";
+import { describe } from "../server/api";
+import { sent } from "../server/requests";
+import { linkOf } from "./link";
+import type { View } from "./state";
+
+export interface Shown {
+  readonly view: View;
+  readonly answer: Answer | null;
+  /** Of which case the answer is, as it is written. */
+  readonly shown: string;
+}
+
+/** Returns the menu of a motion; `now` gives what is shown when something is taken. */
+export function menuOf(motion: MotionView, now: () => Shown): ExportMenu {
+  return new ExportMenu({
+    stage: motion.stage,
+    caption: () => captionOf(motion, now()),
+    description: () => sent(now().view.description),
+    described: () => describedIn(now()),
+    link: () => `${location.origin}${location.pathname}#${linkOf({ ...now().view, time: motion.stoppedAt })}`,
+  });
+}
+
+function captionOf(motion: MotionView, { view, answer }: Shown): readonly string[] {
+  const { time, to } = motion.clock;
+  const fall = motion.falling ? " The fall is drawn on and was not computed." : "";
+  const at = `At ${joined(clockTime(time, to), "s")} of ${joined(clockTime(to, to), "s")}.${fall}`;
+  return answer === null ? [] : [`${verdictOf(answer)} ${at}`, toldOfCase(view.description)];
+}
+
+/** Returns the case in the languages of the package, whether its run has been answered or not. */
+async function describedIn({ view: { description }, answer, shown }: Shown): Promise<Described> {
+  return answer !== null && shown === written(description) ? answer : describe(sent(description));
+}
