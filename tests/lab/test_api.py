@@ -111,6 +111,50 @@ def test_a_start_on_a_branch_that_is_not_there_is_refused_in_one_line(client):
         assert len(answer.json()["problems"]) == 1
 
 
+def test_a_record_of_one_component_says_so_once(client):
+    told = client.post("/api/records", json={"files": [at2("a_000.AT2", "Quake, 1/2/1990, Here, 0")]}).json()
+    assert told["warnings"] == [
+        "a_000: one horizontal component (a_000.AT2). List the files of the event together, or set single if one "
+        "component is meant"
+    ]
+    assert shaken(client, told)["warnings"] == []
+
+
+def test_components_of_two_stations_are_joined_with_a_warning(client):
+    files = [at2("a_000.AT2", "Quake, 1/2/1990, Here, 0"), at2("b_090.AT2", "Quake, 1/2/1990, There, 90")]
+    told = client.post("/api/records", json={"files": files}).json()
+    (warning,) = told["warnings"]
+    assert "the headers name different events or stations: a_000.AT2 (quake, 1/2/1990, here)" in warning
+    assert shaken(client, told)["warnings"][0] == warning
+
+
+def test_a_record_that_is_trimmed_or_strong_is_remarked_on_without_folders(client):
+    files = [
+        at2("a_000.AT2", "Quake, 1/2/1990, Here, 0", samples=60),
+        at2("a_090.AT2", "Quake, 1/2/1990, Here, 90", scale=9.0),
+    ]
+    trimmed, strong = sorted(client.post("/api/records", json={"files": files}).json()["warnings"])
+    assert "a_090.AT2 is trimmed" in trimmed
+    assert strong.startswith("a_090.AT2: its peak is")
+
+
+def at2(name, title, samples=100, scale=1.0):
+    """Return a file with one component, as it is uploaded."""
+    values = scale * np.sin(0.3 * np.arange(samples))
+    header = (
+        f"PEER NGA STRONG MOTION DATABASE RECORD\n{title}\nACCELERATION IN UNITS OF G\nNPTS= {samples}, DT= .02 SEC"
+    )
+    content = "\n".join([header, *(f"{value:.6e}" for value in values)]).encode()
+    return {"name": name, "content": base64.b64encode(content).decode()}
+
+
+def shaken(client, told):
+    """Return a run under an uploaded record."""
+    column = {"shape": "solid", "radius": 0.3, "height": 3.0, "density": 2700.0}
+    motion = {"kind": "record", "upload": told["upload"], "scale": 0.01}
+    return client.post("/api/simulate", json={"column": column, "motion": motion}).json()
+
+
 def test_an_uploaded_record_moves_the_base(client):
     time = np.arange(0.0, 3.0, 0.01)
     acceleration = 0.3 * np.sin(8.0 * time)

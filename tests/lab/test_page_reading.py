@@ -1,5 +1,6 @@
 """What the page says of a motion, and how a reader changes the case, in a real browser."""
 
+import math
 import re
 
 import pytest
@@ -79,6 +80,25 @@ def test_the_frequency_is_dragged_along_the_branch_and_the_way_back_leads_to_whe
     page.wait_for_function(f"() => {STATE}.description.motion.angular_frequency === 1.8")
     page.get_by_label("Start", exact=True).select_option("standing")
     page.wait_for_function(f"() => {ANSWER}.outcome === 'AT_REST'")
+
+
+def component(name, title):
+    """Return a file with one component of a record, as a reader chooses it."""
+    header = f"PEER NGA STRONG MOTION DATABASE RECORD\n{title}\nACCELERATION IN UNITS OF G\nNPTS= 100, DT= .02 SEC\n"
+    values = "\n".join(f"{0.1 * math.sin(0.3 * place):.6e}" for place in range(100))
+    return {"name": name, "mimeType": "text/plain", "buffer": (header + values).encode()}
+
+
+def test_a_record_of_two_stations_or_of_one_component_is_remarked_on(page):
+    page.get_by_label("Base motion", exact=True).select_option("record")
+    chosen, beside = page.locator("input[type=file]"), page.locator(".record .warning")
+    files = [component("a_000.AT2", "Quake, 1/2/1990, Here, 0"), component("b_090.AT2", "Quake, 1/2/1990, There, 90")]
+    chosen.set_input_files(files=files)
+    beside.filter(has_text="different events or stations").wait_for()
+    page.locator(".verdict .warning").filter(has_text="different events or stations").wait_for()
+    chosen.set_input_files(files=files[:1])
+    beside.filter(has_text="one horizontal component (a_000.AT2)").wait_for()
+    page.wait_for_function(f"() => {ANSWER}.warnings.every((line) => !line.includes('stations'))")
 
 
 def test_a_basin_fills_in_unasked_and_holds_the_standing_column(page):

@@ -106,7 +106,7 @@ class Api:
             raise RefusedError(422, problems)
         upload = await to_thread.run_sync(self.uploads.add, body)
         try:
-            answer = await self._run("record", upload.motion(), request)
+            answer = await self._run("record", upload.as_read(), request)
         except RefusedError as error:
             self.uploads.drop(upload)
             folder = f"{upload.paths[0].parent}/"

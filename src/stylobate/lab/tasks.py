@@ -9,6 +9,7 @@ from stylobate import engine, spec
 from stylobate.lab.answers import plain_record, plain_run, snippets
 from stylobate.lab.described import Described
 from stylobate.lab.messages import Emit, Progress
+from stylobate.lab.remarks import remarks
 
 _USUAL_LENGTH = 12.0
 """How long a moving picture lasts [s], unless its base swings so fast that it must be slower."""
@@ -22,10 +23,13 @@ _SAMPLES_PER_PERIOD, _FEWEST_SAMPLES, _MOST_SAMPLES = 48, 601, 2000
 def run(given: Described, emit: Emit) -> bytes:
     """Return one run with all that is drawn of it, as JSON: so much is written where nobody else waits for it."""
     del emit
-    setup = spec.SimulationDescription.parse(given.values).build()
+    with remarks(given.values) as remarked:
+        setup = spec.SimulationDescription.parse(given.values).build()
     samples = setup.options["samples"] or _enough(setup)
     found = engine.simulate(setup.model, setup.motion, **{**setup.options, "samples": samples})
-    return json.dumps({**plain_run(found, setup.model), **snippets(given)}, separators=(",", ":")).encode()
+    answer = {**plain_run(found, setup.model), **snippets(given)}
+    answer["warnings"] = [*remarked, *answer["warnings"]]
+    return json.dumps(answer, separators=(",", ":")).encode()
 
 
 def _enough(setup: spec.Setup) -> int:
@@ -36,9 +40,11 @@ def _enough(setup: spec.Setup) -> int:
 
 
 def record(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
-    """Return what a record holds."""
+    """Return what a record holds, and the warnings that were issued while its files were read."""
     del emit
-    return plain_record(spec.RecordMotion.parse(values).build())
+    with remarks(values) as remarked:
+        found = plain_record(spec.RecordMotion.parse(values).build())
+    return {**found, "warnings": remarked}
 
 
 def exact(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:

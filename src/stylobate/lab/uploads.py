@@ -44,15 +44,18 @@ class Upload:
 
     def motion(self) -> dict[str, Any]:
         """Return the plain values of the record, files by their path here."""
+        return {**self.as_read(), "single": True}  # one component is remarked on when the files are read
+
+    def as_read(self) -> dict[str, Any]:
+        """Return the plain values with which the files are read for the first time, with all remarks."""
         return self._motion([str(path) for path in self.paths])
 
     def told(self) -> dict[str, Any]:
         """Return the plain values of the record, files by their name."""
-        return self._motion(list(self.names))
+        return {**self._motion(list(self.names)), "single": True}
 
     def _motion(self, paths: list[str]) -> dict[str, Any]:
-        # the page shows along which axes the record moves
-        return {"kind": "record", "path": paths[0] if len(paths) == 1 else paths, "single": True, **self.reading}
+        return {"kind": "record", "path": paths[0] if len(paths) == 1 else paths, **self.reading}
 
 
 @dataclass(slots=True)

@@ -83,6 +83,7 @@ _UPLOADED = table(
         "duration": number("[s]"),
         "peaks": table("Largest accelerations [m/s²].", {}, {axis: number(f"along {axis} [m/s²]") for axis in "xyz"}),
         "provenance": listed("where it comes from, one line each", {"type": "string"}),
+        "warnings": listed("what may be wrong with its files, one line each", {"type": "string"}),
     },
 )
 

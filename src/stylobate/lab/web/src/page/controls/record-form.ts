@@ -5,7 +5,7 @@ import type { Received } from "../server/answers";
 import { Refused, sendRecord, Unreachable } from "../server/api";
 import type { Part, Value } from "../case/description";
 import { button, choice, element, newId } from "../frame/dom";
-import { capital, told } from "../frame/format";
+import { capital, sentence, told } from "../frame/format";
 
 const UNITS = [
   ["", "unit: from the file"],
@@ -23,6 +23,10 @@ const ASKED: readonly (readonly [RegExp, string])[] = [
   [/state units, .*$/, "choose its unit above."],
   [/units must be left out or '(.*?)', which.*$/, "the file says that its unit is $1; choose “unit: from the file”."],
   [/state step\b.*$/, "enter the time step above."],
+  [/name that \(units\)/, "choose that above"],
+  [/List the files of the event together, or set single.*$/, "Choose all files of the event together, if it has more"],
+  [/List the files of each event together$/, "Choose the files of one event only"],
+  [/Set lengths to pad, or check/, "Check"],
 ];
 
 /** Returns a line of the server with the names of the controls of this form. */
@@ -49,6 +53,7 @@ export class RecordForm {
     placeholder: "time step [s]: from the file",
   });
   readonly #told = element("p", { class: "hint", "aria-live": "polite" });
+  readonly #warnings = element("div", { class: "warnings", "aria-live": "polite" });
   readonly #problem = element("p", { class: "problem", role: "alert", hidden: true });
   readonly #known = new Map<string, Kept>();
   #motion: Part = {};
@@ -69,7 +74,7 @@ export class RecordForm {
     this.#files.tabIndex = -1; // the button beside it is the one to reach
     this.#own = element("div", { class: "own-record" }, label, this.#files, again, this.#units, this.#step);
     const source = element("div", { class: "field choice" }, element("label", { for: id }, "Record"), this.#source);
-    this.root = element("div", { class: "record" }, source, this.#own, this.#told, this.#problem);
+    this.root = element("div", { class: "record" }, source, this.#own, this.#told, this.#warnings, this.#problem);
   }
 
   show(motion: Part): void {
@@ -85,6 +90,8 @@ export class RecordForm {
     const known = typeof upload === "string" ? this.#known.get(upload) : undefined;
     this.#told.textContent = known ? toldOfRecord(known.told) : "";
     this.#told.hidden = !known;
+    const lines = (known?.told.warnings ?? []).map(inWordsOfForm);
+    this.#warnings.replaceChildren(...lines.map((line) => element("p", { class: "warning" }, sentence(line))));
     if (!own) this.#tell(null);
   }
 

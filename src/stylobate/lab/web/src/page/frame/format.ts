@@ -72,3 +72,9 @@ export function clockTime(time: number, length: number): string {
 export function counted(number: number, one: string, many = `${one}s`): string {
   return `${number} ${number === 1 ? one : many}`;
 }
+
+/** Returns a line of the server as a sentence: with a capital and a full stop. */
+export function sentence(line: string): string {
+  const text = capital(line.trim());
+  return text === "" || /[.!?]$/.test(text) ? text : `${text}.`;
+}

@@ -2,7 +2,7 @@
 
 import type { Answer } from "../server/answers";
 import { button, element } from "../frame/dom";
-import { capital, withUnit } from "../frame/format";
+import { capital, sentence, withUnit } from "../frame/format";
 
 /** Outcomes that tell how far a run was followed, not what became of the column. */
 const UNDECIDED: readonly string[] = ["STILL_MOVING", "LIMIT_REACHED", "FAILED"];
@@ -77,9 +77,4 @@ export function verdictOf(answer: Answer): string {
 function decisionOf({ outcome, decided_at: at }: Answer): string {
   const reached = UNDECIDED.includes(outcome) ? "Followed to" : "Decided at";
   return at === null ? "" : ` ${reached} ${withUnit(at, "s")}.`;
-}
-
-function sentence(line: string): string {
-  const text = capital(line.trim());
-  return text === "" || /[.!?]$/.test(text) ? text : `${text}.`;
 }

@@ -150,4 +150,6 @@ export interface Received {
   readonly duration: number;
   readonly peaks: Readonly<Record<string, number>>;
   readonly provenance: readonly string[];
+  /** What may be wrong with its files. */
+  readonly warnings: readonly string[];
 }
