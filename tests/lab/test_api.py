@@ -96,7 +96,12 @@ def test_a_start_on_a_branch_is_that_of_theory(client, branch):
     told = client.post("/api/start", json={**CIRCLE, "branch": branch}).json()
     setup = SimulationDescription.parse({**CIRCLE, "duration": 1.0}).build()
     start = sb.studies.steady_start(setup.model, setup.motion, branch=branch)
-    assert told == {"tilt": pytest.approx(start["tilt"]), "tilt_rate": pytest.approx(start["tilt_rate"]), "spin": 0.0}
+    assert told == {
+        "tilt": pytest.approx(start["tilt"]),
+        "tilt_rate": pytest.approx(start["tilt_rate"]),
+        "spin": 0.0,
+        "warnings": [],
+    }
 
 
 def test_a_start_on_a_branch_that_is_not_there_is_refused_in_one_line(client):

@@ -82,6 +82,36 @@ def test_the_frequency_is_dragged_along_the_branch_and_the_way_back_leads_to_whe
     page.wait_for_function(f"() => {ANSWER}.outcome === 'AT_REST'")
 
 
+def test_straight_shaking_is_followed_along_the_upper_branch_and_back(page):
+    page.get_by_label("Preset", exact=True).select_option("line-strong")
+    page.wait_for_function(f"() => {STATE}.description.motion.kind === 'straight'")
+    shown(page)
+    begun, turns = (
+        page.evaluate(f"() => {what}") for what in (f"{STATE}.description.tilt", f"{ANSWER}.measures.turns")
+    )
+    for frequency in (2.5, 2.0, 1.9, 3.0):
+        before = page.evaluate(f"() => {STATE}.description.tilt[0]")
+        page.locator("input.number[id^='angular_frequency']").first.fill(str(frequency))
+        page.wait_for_function(f"() => {STATE}.description.tilt[0] !== {before}")
+        shown(page)
+        assert page.evaluate(f"() => [{ANSWER}.outcome, {ANSWER}.warnings]") == ["ROLLING", []]
+    assert page.evaluate(f"() => {STATE}.description.tilt") == pytest.approx(begun, rel=2e-8)
+    assert page.evaluate(f"() => {ANSWER}.measures.turns") == pytest.approx(turns, rel=1e-6)
+
+
+def test_a_start_on_an_unstable_orbit_is_named_so_and_still_is_when_the_length_changes(page):
+    page.get_by_label("Preset", exact=True).select_option("line-strong")
+    page.wait_for_function(f"() => {STATE}.description.motion.kind === 'straight'")
+    shown(page)
+    remark = page.locator(".verdict .warning").filter(has_text="Start: the exact orbit is unstable")
+    page.locator("input.number[id^='angular_frequency']").first.fill("1.4")
+    remark.wait_for()
+    page.locator("input.number[id^='duration']").first.fill("30")
+    page.wait_for_function(f"() => {STATE}.description.duration === 30 && {ANSWER}.thresholds")
+    page.wait_for_function(f"() => {ANSWER}.toml.includes('duration = 30')")
+    assert remark.is_visible()
+
+
 def component(name, title):
     """Return a file with one component of a record, as a reader chooses it."""
     header = f"PEER NGA STRONG MOTION DATABASE RECORD\n{title}\nACCELERATION IN UNITS OF G\nNPTS= 100, DT= .02 SEC\n"

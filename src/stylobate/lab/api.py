@@ -24,7 +24,6 @@ from stylobate.lab.messages import Broken, Finished, Lost, Refused
 from stylobate.lab.refusals import RefusedError
 from stylobate.lab.schema import schema
 from stylobate.lab.sizes import beyond_size
-from stylobate.lab.starts import start
 from stylobate.lab.uploads import Uploads
 
 _log = logging.getLogger("stylobate.lab")
@@ -94,9 +93,9 @@ class Api:
         return JSONResponse(await to_thread.run_sync(lambda: response(given.values)))
 
     async def start(self, request: Request) -> Response:
-        """The start on steady rolling, by theory."""
+        """The start on steady rolling: by theory, or on the exact orbit where theory is approximate."""
         given = await self._described(request)
-        return JSONResponse(await to_thread.run_sync(lambda: start(given.values)))
+        return JSONResponse(await self._run("start", given.values, request))
 
     async def upload(self, request: Request) -> Response:
         """Keep the files of a record and tell what they hold."""

@@ -3,15 +3,27 @@
 from collections.abc import Mapping
 from typing import Any, Literal
 
-from stylobate import studies
-from stylobate.errors import ParameterError
+from stylobate import orbits, studies, theory
+from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError
 from stylobate.lab.plain import numbers
+from stylobate.models import Model
 from stylobate.motions import Harmonic
 from stylobate.spec.columns import ColumnDescription
 from stylobate.spec.description import Description
 from stylobate.spec.models import ModelDescription, SlenderModel
 from stylobate.spec.motions import MotionDescription
 from stylobate.spec.simulation import built_parts
+
+_NO_CIRCLE = 1e-12
+"""A base moves in a circle if the circle against it is smaller than this fraction of it."""
+
+_NEAR = 0.5
+"""The mean tilt of an exact orbit on the branch differs from the averaged tilt by less than this fraction of it."""
+
+_ONLY_UPPER = "start: averaged branch, approximate; exact orbits are computed for the upper branch only"
+_NONE_FOUND = "start: averaged branch, approximate; no exact orbit was found from it"
+_UNSTABLE = "start: the exact orbit is unstable, and the motion leaves it"
+_ASYMMETRIC = "start: the exact orbit has bifurcated from the branch and lacks its symmetry"
 
 
 class StartDescription(Description):
@@ -24,12 +36,16 @@ class StartDescription(Description):
 
 
 def start(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Compute the start on steady rolling that `values` describe, by theory.
+    """Compute the start on steady rolling that `values` describe.
+
+    Under a circular motion the closed form is exact. Under an elliptic or straight motion it is averaged, and too far
+    from the motion to start on it: the upper branch then starts on the exact periodic orbit, if one is found.
 
     Returns
     -------
     dict
-        "tilt" [rad], "tilt_rate" and "spin" [rad/s]; the spin is 0 for a model that cannot turn about its axis.
+        "tilt" [rad], "tilt_rate" and "spin" [rad/s], the spin 0 for a model that cannot turn about its axis;
+        "warnings", one line if the start is approximate, or its orbit unstable or bifurcated from the branch.
 
     Raises
     ------
@@ -41,5 +57,54 @@ def start(values: Mapping[str, Any]) -> dict[str, Any]:
     if not isinstance(motion, Harmonic):
         message = f"motion.kind must be a horizontal harmonic motion for a start on a branch, got {given.motion.kind!r}"
         raise ParameterError(message)
-    found: Mapping[str, Any] = studies.steady_start(model, motion, branch=given.branch)
-    return {**{name: numbers(found[name]) for name in ("tilt", "tilt_rate")}, "spin": float(found.get("spin", 0.0))}
+    known: Mapping[str, Any] = studies.steady_start(model, motion, branch=given.branch)
+    if _is_circular(motion):
+        return _plain(known)
+    if given.branch != "upper":
+        return _plain(known, _ONLY_UPPER)
+    orbit = _orbit_near(model, motion, known)
+    if orbit is None:
+        return _plain(known, _NONE_FOUND)
+    return _plain(_start_on(orbit), *_remark(orbit))
+
+
+def _is_circular(motion: Harmonic) -> bool:
+    (first, second, _), phase = motion.amplitude, motion.phase
+    sizes = [abs(complex(circle)) for circle in theory.circular_components(first, second, phase[1] - phase[0])]
+    return min(sizes) <= _NO_CIRCLE * max(sizes)
+
+
+def _orbit_near(model: Model, motion: Harmonic, known: Mapping[str, Any]) -> orbits.PeriodicOrbit | None:
+    """Compute the exact orbit that belongs to an averaged start, or None.
+
+    Newton's method from the averaged start itself leads to other orbits; followed from the circular motion, it keeps
+    to the branch.
+    """
+    try:
+        orbit = orbits.periodic_orbit(model, motion)
+    except (NoOrbitError, UnsupportedError):
+        return None
+    averaged = _size(known["tilt"])
+    near = abs(orbit.mean_tilt - averaged) <= _NEAR * averaged
+    return orbit if near and abs(orbit.turns) == 1.0 else None
+
+
+def _size(tilt: tuple[float, float]) -> float:
+    return float((tilt[0] ** 2 + tilt[1] ** 2) ** 0.5)
+
+
+def _remark(orbit: orbits.PeriodicOrbit) -> tuple[str, ...]:
+    if not orbit.stable:
+        return (_UNSTABLE,)
+    return () if orbit.inversion else (_ASYMMETRIC,)
+
+
+def _start_on(orbit: orbits.PeriodicOrbit) -> dict[str, Any]:
+    place = orbit.model.spin_state
+    spin = 0.0 if place is None else float(orbit.state[place]) / orbit.model.time_scale
+    return {"tilt": orbit.tilt, "tilt_rate": orbit.tilt_rate, "spin": spin}
+
+
+def _plain(found: Mapping[str, Any], *warnings: str) -> dict[str, Any]:
+    named = {name: numbers(found[name]) for name in ("tilt", "tilt_rate")}
+    return {**named, "spin": float(found.get("spin", 0.0)), "warnings": list(warnings)}

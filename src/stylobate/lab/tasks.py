@@ -47,6 +47,14 @@ def record(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     return {**found, "warnings": remarked}
 
 
+def start(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
+    """Compute the start on a branch of steady rolling."""
+    from stylobate.lab.starts import start as start_on_branch  # noqa: PLC0415
+
+    del emit
+    return start_on_branch(values)
+
+
 def exact(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     """Return exact periodic orbits over a range of frequencies, with their bifurcations."""
     from stylobate.lab.curves import exact_curves  # noqa: PLC0415
@@ -96,6 +104,7 @@ def warm_up() -> None:
 TASKS: Mapping[str, Callable[[Any, Emit], Any]] = {
     "run": run,
     "record": record,
+    "start": start,
     "exact": exact,
     "map": overturning,
     "basin": basin,

@@ -77,6 +77,7 @@ _START = table(
         "tilt": row("along x and y [rad]", 2),
         "tilt_rate": row("[rad/s]", 2),
         "spin": number("angular velocity about the axis [rad/s]"),
+        "warnings": listed("whether the start is approximate or its orbit unstable, one line each", {"type": "string"}),
     },
 )
 

@@ -63,9 +63,9 @@ def paths() -> dict[str, Any]:
         "/api/start": {
             "post": _endpoint(
                 "start",
-                "The start on steady rolling, by theory",
+                "The start on steady rolling, by theory or on the exact orbit",
                 ref("Start"),
-                _OF_BODIES,
+                _OF_RUNS,
                 body=("SteadyRolling", examples.STARTS),
             )
         },

@@ -10,7 +10,7 @@ import type { Connection } from "./server/connection";
 import { CaseProblems } from "./controls/case-problems";
 import { Controls } from "./controls/controls";
 import type { Description, Part } from "./case/description";
-import { written } from "./case/description";
+import { toldOfCase, written } from "./case/description";
 import { element } from "./frame/dom";
 import { angularFrequency } from "./case/frequency";
 import { Job, problemsIn } from "./server/job";
@@ -202,14 +202,17 @@ export class Laboratory {
   #ask(view: View): void {
     const { description } = view;
     // A preset or a link has the start of its branch; it is asked for once something else has changed.
-    if (this.#given && description["tilt"] !== undefined) this.#started = { description, start: view.start };
+    if (this.#given && description["tilt"] !== undefined)
+      this.#started = { description, start: view.start, remarks: [] };
     this.#given = false;
-    const start = this.#startsOn(view) ? null : view.start;
+    const kept = this.#startsOn(view);
+    const start = kept ? null : view.start;
     const wanted = written([description, start]);
     if (wanted === this.#asked) return;
     this.#asked = wanted;
     if (this.#fresh && this.#answer !== null) this.#motion.setStale(true);
-    this.#runs.want({ description, start }, { jump: this.#fresh });
+    const remarks = kept ? (this.#started?.remarks ?? []) : [];
+    this.#runs.want({ description, start, remarks }, { jump: this.#fresh });
   }
 
   /** Whether the start that is set is the one on the branch that the view follows. */
@@ -224,7 +227,8 @@ export class Laboratory {
     this.#motion.setSpeed(view.speed ?? usual);
   }
 
-  #take({ answer, description }: Run, start: Branch | null): void {
+  #take(found: Run, start: Branch | null): void {
+    const { answer, description } = found;
     this.#answer = answer;
     this.#shown = written(description);
     this.#moved = description.motion;
@@ -234,15 +238,15 @@ export class Laboratory {
     this.#motion.show(answer, angularFrequency(this.view.description.motion));
     this.#showSpeed(this.view);
     if (this.#fresh) this.#motion.begin();
-    if (start !== null) this.#takeStart(description, start);
+    if (start !== null) this.#takeStart(found, start);
     this.#settle();
   }
 
   /** A start on a branch that was asked for, unless the case has changed since. */
-  #takeStart(description: Description, start: Branch): void {
+  #takeStart({ description, remarks }: Run, start: Branch): void {
     const { view } = this;
     if (view.start !== start || !startAlike(view.description, description)) return;
-    this.#started = { description, start };
+    this.#started = { description, start, remarks };
     this.#asked = written([description, null]);
     this.#store.change({ description: { ...view.description, ...startOf(description) } });
     this.#address.replace(this.view);

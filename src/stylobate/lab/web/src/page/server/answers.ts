@@ -153,3 +153,12 @@ export interface Received {
   /** What may be wrong with its files. */
   readonly warnings: readonly string[];
 }
+
+/** The start on a branch of steady rolling. */
+export interface BranchStart {
+  readonly tilt: Pair;
+  readonly tilt_rate: Pair;
+  readonly spin: number;
+  /** Whether it is approximate, or its orbit unstable. */
+  readonly warnings: readonly string[];
+}

@@ -2,7 +2,7 @@
 
 import type { About } from "../case/about";
 import type { Part, Value } from "../case/description";
-import type { Answer, Described, JobReport, Received, ResponseCurves } from "./answers";
+import type { Answer, BranchStart, Described, JobReport, Received, ResponseCurves } from "./answers";
 
 /** The server refused: a line for each thing that was wrong. */
 export class Refused extends Error {
@@ -30,9 +30,8 @@ export const response = (description: Part, signal: AbortSignal): Promise<Respon
 export const describe = (description: Part): Promise<Described> =>
   call<Described>("POST", "/api/describe", description);
 
-/** Returns the start on a branch of steady rolling: tilt, tilt rate and spin. */
-export const steadyStart = (body: Part, signal: AbortSignal): Promise<Part> =>
-  call<Part>("POST", "/api/start", body, signal);
+export const steadyStart = (body: Part, signal: AbortSignal): Promise<BranchStart> =>
+  call<BranchStart>("POST", "/api/start", body, signal);
 
 export const sendRecord = (upload: Part): Promise<Received> => call<Received>("POST", "/api/records", upload);
 

@@ -11,16 +11,30 @@ export interface WantedRun {
   readonly description: Description;
   /** The branch on which it starts; null: as the description sets it. */
   readonly start: Branch | null;
+  /** Remarks of the server on a start that was computed before and is kept. */
+  readonly remarks: readonly string[];
 }
 
-/** A run with the case that it is of. */
+/** A run with the case that it is of, and the remarks on its start. */
 export interface Run {
   readonly answer: Answer;
   readonly description: Description;
+  readonly remarks: readonly string[];
 }
 
-export async function run({ description, start }: WantedRun, signal: AbortSignal): Promise<Run> {
-  const from = start === null ? {} : await steadyStart({ ...sent(startedFrom(description)), branch: start }, signal);
-  const found = { ...description, ...from };
-  return { answer: await simulate(sent(found), signal), description: found };
+export async function run(wanted: WantedRun, signal: AbortSignal): Promise<Run> {
+  const { description, remarks } = await started(wanted, signal);
+  const answer = await simulate(sent(description), signal);
+  return { answer: remarkedOn(answer, remarks), description, remarks };
+}
+
+async function started({ description, start, remarks }: WantedRun, signal: AbortSignal): Promise<Omit<Run, "answer">> {
+  if (start === null) return { description, remarks };
+  const { warnings, ...from } = await steadyStart({ ...sent(startedFrom(description)), branch: start }, signal);
+  return { description: { ...description, ...from }, remarks: warnings };
+}
+
+/** Returns the answer with remarks on its start before its own warnings. */
+function remarkedOn(answer: Answer, remarks: readonly string[]): Answer {
+  return { ...answer, warnings: [...remarks, ...answer.warnings] };
 }
