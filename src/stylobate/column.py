@@ -2,15 +2,23 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import Annotated, Self
 
 from stylobate.errors import ParameterError, require_positive
+from stylobate.quantities import Quantity, check_declared
 
 STANDARD_GRAVITY = 9.80665
 """Standard gravity [m/s²]."""
 
 # Relative slack for bounds that an exact body meets with equality (a hoop, a rod) and rounding may miss.
 _ROUNDING = 1e-12
+
+Radius = Annotated[float, Quantity(symbol="r", unit="m", text="radius of the base", gt=0.0)]
+Height = Annotated[float, Quantity(symbol="H", unit="m", text="height of the body", gt=0.0)]
+Density = Annotated[float, Quantity(symbol="ρ", unit="kg/m³", text="density", gt=0.0)]
+Gravity = Annotated[
+    float, Quantity(symbol="g", unit="m/s²", text="acceleration of gravity", gt=0.0, slider=(0.5, 15.0))
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,25 +55,32 @@ class Column:
     (0.1, 0.7486, 1.2117)
     """
 
-    radius: float
-    mass_height: float
-    mass: float
-    transverse_inertia: float
-    axial_inertia: float
-    height: float | None = None
-    gravity: float = STANDARD_GRAVITY
+    radius: Radius
+    mass_height: Annotated[float, Quantity(symbol="h", unit="m", text="height of the centre of mass", gt=0.0)]
+    mass: Annotated[float, Quantity(symbol="m", unit="kg", text="mass", gt=0.0)]
+    transverse_inertia: Annotated[
+        float,
+        Quantity(
+            symbol="I_t",
+            unit="kg m²",
+            text="moment of inertia about a horizontal axis through the centre of mass",
+            gt=0.0,
+        ),
+    ]
+    axial_inertia: Annotated[
+        float, Quantity(symbol="I_a", unit="kg m²", text="moment of inertia about the axis", gt=0.0)
+    ]
+    height: Height | None = None
+    gravity: Gravity = STANDARD_GRAVITY
 
     def __post_init__(self) -> None:
-        for name, unit in _UNITS.items():
-            value = getattr(self, name)
-            if name != "height" or value is not None:
-                object.__setattr__(self, name, require_positive(name, value, unit))
+        check_declared(self)
         self._check_inertias()
         if self.height is not None:
             self._check_height(self.height)
 
     @classmethod
-    def solid(cls, *, radius: float, height: float, density: float, gravity: float = STANDARD_GRAVITY) -> Self:
+    def solid(cls, *, radius: Radius, height: Height, density: Density, gravity: Gravity = STANDARD_GRAVITY) -> Self:
         """Return a solid cylinder of `radius` [m], `height` [m] and `density` [kg/m³]."""
         return cls.frustum(radius=radius, top_radius=radius, height=height, density=density, gravity=gravity)
 
@@ -73,11 +88,11 @@ class Column:
     def hollow(
         cls,
         *,
-        radius: float,
-        inner_radius: float,
-        height: float,
-        density: float,
-        gravity: float = STANDARD_GRAVITY,
+        radius: Radius,
+        inner_radius: Annotated[float, Quantity(symbol="r_i", unit="m", text="inner radius", gt=0.0)],
+        height: Height,
+        density: Density,
+        gravity: Gravity = STANDARD_GRAVITY,
     ) -> Self:
         """Return a tube of outer `radius` and `inner_radius` [m], `height` [m] and wall `density` [kg/m³].
 
@@ -104,7 +119,13 @@ class Column:
 
     @classmethod
     def frustum(
-        cls, *, radius: float, top_radius: float, height: float, density: float, gravity: float = STANDARD_GRAVITY
+        cls,
+        *,
+        radius: Radius,
+        top_radius: Annotated[float, Quantity(symbol="r_t", unit="m", text="radius of the top", gt=0.0)],
+        height: Height,
+        density: Density,
+        gravity: Gravity = STANDARD_GRAVITY,
     ) -> Self:
         """Return a solid frustum of a cone: `radius` at the base, `top_radius`, `height` [m], `density` [kg/m³]."""
         a = require_positive("radius", radius, "m")
@@ -132,7 +153,12 @@ class Column:
         )
 
     @classmethod
-    def dimensionless(cls, slenderness: float, inertia_ratio: float = 0.75, axial_ratio: float = 0.5) -> Self:
+    def dimensionless(
+        cls,
+        slenderness: Annotated[float, Quantity(symbol="c", text="slenderness r/h", gt=0.0, slider=(0.02, 0.5))],
+        inertia_ratio: Annotated[float, Quantity(symbol="κ", text="m h²/J0", gt=0.0, slider=(0.3, 0.95))] = 0.75,
+        axial_ratio: Annotated[float, Quantity(symbol="i_a", text="I_a/(m r²)", gt=0.0, slider=(0.1, 1.0))] = 0.5,
+    ) -> Self:
         """Return a column with m = g = ω0 = 1, for which SI numbers are the numbers of the dimensionless equations.
 
         Parameters
@@ -265,14 +291,3 @@ class Column:
                 f"height {height!r} m, got {self.transverse_inertia!r} kg m²"
             )
             raise ParameterError(message)
-
-
-_UNITS = {
-    "radius": "m",
-    "mass_height": "m",
-    "mass": "kg",
-    "transverse_inertia": "kg m²",
-    "axial_inertia": "kg m²",
-    "height": "m",
-    "gravity": "m/s²",
-}

@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from stylobate.models.declared import column_quantities, model_quantities
+
 
 @dataclass(frozen=True, slots=True)
 class Number:
@@ -18,30 +20,17 @@ class Number:
 
 _TURN = 6.283
 
+
+def _declared() -> Mapping[str, Number]:
+    """Return the numbers of columns and models, as they are declared there."""
+    return {
+        name: Number(one.symbol, one.unit, one.text, *(one.slider or ()))
+        for name, one in {**column_quantities(), **model_quantities()}.items()
+    }
+
+
 NUMBERS: Mapping[str, Number] = {
-    "radius": Number("r", "m", "radius of the base"),
-    "height": Number("H", "m", "height of the body"),
-    "density": Number("ρ", "kg/m³", "density"),
-    "inner_radius": Number("r_i", "m", "inner radius"),
-    "top_radius": Number("r_t", "m", "radius of the top"),
-    "mass": Number("m", "kg", "mass"),
-    "mass_height": Number("h", "m", "height of the centre of mass"),
-    "transverse_inertia": Number("I_t", "kg m²", "about a horizontal axis through the centre of mass"),
-    "axial_inertia": Number("I_a", "kg m²", "about the axis"),
-    "gravity": Number("g", "m/s²", "gravity", 0.5, 15.0),
-    "slenderness": Number("c", "", "slenderness r/h", 0.02, 0.5),
-    "inertia_ratio": Number("κ", "", "m h²/J0", 0.3, 0.95),
-    "axial_ratio": Number("i_a", "", "I_a/(m r²)", 0.1, 1.0),
-    "damping": Number("η", "", "friction of tilting", 0.0, 0.5),
-    "spin_friction": Number("ζ", "", "friction of turning", 0.0, 2.0),
-    "rolling_resistance": Number("μ_r", "", "rolling resistance", 0.0, 0.05),
-    "restitution": Number("e", "", "speed kept when the base strikes", 0.0, 1.0),
-    "passage_tilt": Number("", "rad", "tilt below which the upright is passed"),
-    "friction_coefficient": Number("μ", "", "friction of the contact", 0.02, 1.2),
-    "static_friction_coefficient": Number("μ_s", "", "friction of the contact at rest", 0.02, 1.5),
-    "patch": Number("", "", "radius of the contact patch over that of the base", 0.0, 0.2),
-    "incline": Number("", "rad", "slope of the base", 0.0, 0.4),
-    "incline_direction": Number("", "rad", "direction of the slope", -3.142, 3.142),
+    **_declared(),
     "acceleration": Number("a", "m/s²", "amplitude of the acceleration"),
     "amplitude": Number("", "", "amplitudes along the axes"),
     "angular_frequency": Number("Ω", "rad/s", "angular frequency"),

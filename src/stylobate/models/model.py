@@ -11,6 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
+from stylobate.errors import ParameterError
+from stylobate.quantities import check_declared
 
 Floats = npt.NDArray[np.float64]
 
@@ -192,6 +194,15 @@ class Model(ABC):
     at_rest: ClassVar[Callable[..., tuple[float, ...]] | None] = None
     """(state…, parameters…) → the state in which a column that comes to rest stands; None for all zeros."""
 
+    def __post_init__(self) -> None:
+        """Check the numbers by their declarations, then all of them together by `validate`."""
+        require_column(self.column)
+        check_declared(self)
+        self.validate()
+
+    def validate(self) -> None:  # noqa: B027  a hook that most models leave empty
+        """Raise ParameterError for numbers that do not go together; each of them has been checked by itself."""
+
     @property
     @abstractmethod
     def parameters(self) -> tuple[float, ...]:
@@ -309,3 +320,10 @@ class Model(ABC):
         """
         del states, accelerations, resting
         return {}
+
+
+def require_column(value: object) -> None:
+    """Raise ParameterError if `value` is no Column."""
+    if not isinstance(value, Column):
+        message = f"column must be a Column, such as Column.solid(...), got {value!r}"
+        raise ParameterError(message)

@@ -11,10 +11,10 @@ import numpy.typing as npt
 from stylobate.column import STANDARD_GRAVITY, Column
 from stylobate.errors import require_positive
 from stylobate.models import finite_tilt, tilt_vector, without_spin
-from stylobate.models.checks import require_column, require_frictions, require_restitution
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.finite_tilt import TINY, planar_acceleration
 from stylobate.models.model import Balance, Floats, Model, Output
+from stylobate.models.numbers import Damping, Restitution, RollingResistance
 
 
 def rates(
@@ -125,19 +125,13 @@ class PlanarRocking(Model):
     """
 
     column: Column
-    damping: float = 0.0
-    rolling_resistance: float = 0.0
-    restitution: float | None = None
+    damping: Damping = 0.0
+    rolling_resistance: RollingResistance = 0.0
+    restitution: Restitution | None = None
 
     name: ClassVar[str] = "planar rocking"
     state_names: ClassVar[tuple[str, ...]] = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
     planar_only: ClassVar[bool] = True
-
-    def __post_init__(self) -> None:
-        require_column(self.column)
-        require_frictions(self, "damping", "rolling_resistance")
-        if self.restitution is not None:
-            require_restitution(self)
 
     @classmethod
     def block(

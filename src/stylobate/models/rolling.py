@@ -10,10 +10,10 @@ import numpy.typing as npt
 
 from stylobate.column import Column
 from stylobate.models import finite_tilt, free_twist, tilt_vector
-from stylobate.models.checks import require_column, require_frictions, require_loss
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
 from stylobate.models.model import Balance, Floats, Model, Output, Push
+from stylobate.models.numbers import Damping, PassageTilt, Restitution, RollingResistance, SpinFriction
 
 
 def balance(
@@ -247,21 +247,16 @@ class Rolling(Model):
     """
 
     column: Column
-    damping: float = 0.0
-    spin_friction: float = 0.0
-    rolling_resistance: float = 0.0
-    restitution: float = 1.0
-    passage_tilt: float | None = None
+    damping: Damping = 0.0
+    spin_friction: SpinFriction = 0.0
+    rolling_resistance: RollingResistance = 0.0
+    restitution: Restitution = 1.0
+    passage_tilt: PassageTilt | None = None
 
     name: ClassVar[str] = "rolling"
     state_names: ClassVar[tuple[str, ...]] = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y", "spin")
     spin_state: ClassVar[int | None] = 4
     carried_names: ClassVar[tuple[str, ...]] = ("twist", "footprint_x", "footprint_y")
-
-    def __post_init__(self) -> None:
-        require_column(self.column)
-        require_frictions(self, "damping", "spin_friction", "rolling_resistance")
-        require_loss(self)
 
     rates = staticmethod(rates)
     lean = staticmethod(tilt_vector.lean)

@@ -10,10 +10,10 @@ import numpy.typing as npt
 
 from stylobate.column import Column
 from stylobate.models import tilt_vector
-from stylobate.models.checks import require_column, require_frictions
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.departing import departing_lean
 from stylobate.models.model import Balance, Floats, Model, Output, Push
+from stylobate.models.numbers import Damping
 from stylobate.models.passing import past_the_upright
 
 # Keeps 1/|α| finite at the upright itself, far below any tilt that is resolved.
@@ -100,14 +100,10 @@ class Slender(Model):
     """
 
     column: Column
-    damping: float = 0.0
+    damping: Damping = 0.0
 
     name: ClassVar[str] = "slender"
     state_names: ClassVar[tuple[str, ...]] = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
-
-    def __post_init__(self) -> None:
-        require_column(self.column)
-        require_frictions(self, "damping")
 
     rates = staticmethod(rates)
     lean = staticmethod(tilt_vector.lean)

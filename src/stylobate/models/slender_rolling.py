@@ -3,22 +3,24 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar, Literal, get_args
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.errors import ParameterError
 from stylobate.models import free_twist, slender, tilt_vector
-from stylobate.models.checks import require_column, require_frictions
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.model import Balance, Floats, Model, Output, Push
+from stylobate.models.numbers import Damping, SpinFriction
+from stylobate.quantities import Quantity
 
 # As in the slender model: keeps 1/|α| finite at the upright itself.
 _TINY = 1e-300
 
-Couples = Literal["contact", "isotropic"]
+Couples = Annotated[
+    Literal["contact", "isotropic"], Quantity(text="whether the damping couples act on the contact force too")
+]
 
 
 def rates(
@@ -173,21 +175,14 @@ class SlenderRolling(Model):
     """
 
     column: Column
-    damping: float = 0.0
-    spin_friction: float = 0.0
+    damping: Damping = 0.0
+    spin_friction: SpinFriction = 0.0
     couples: Couples = "contact"
 
     name: ClassVar[str] = "slender rolling"
     state_names: ClassVar[tuple[str, ...]] = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y", "spin")
     spin_state: ClassVar[int | None] = 4
     carried_names: ClassVar[tuple[str, ...]] = ("twist", "footprint_x", "footprint_y")
-
-    def __post_init__(self) -> None:
-        require_column(self.column)
-        require_frictions(self, "damping", "spin_friction")
-        if self.couples not in get_args(Couples):
-            message = f"couples must be 'contact' or 'isotropic', got {self.couples!r}"
-            raise ParameterError(message)
 
     rates = staticmethod(rates)
     lean = staticmethod(tilt_vector.lean)

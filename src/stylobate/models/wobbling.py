@@ -3,21 +3,21 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar, Literal, get_args
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.errors import ParameterError
 from stylobate.models import finite_tilt, tilt_vector, without_spin
-from stylobate.models.checks import require_column, require_frictions, require_loss
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
 from stylobate.models.model import Balance, Floats, Model, Output
+from stylobate.models.numbers import Damping, PassageTilt, Restitution, RollingResistance
 from stylobate.models.passing import past_the_upright
+from stylobate.quantities import Quantity
 
-Constraint = Literal["pure_tilt", "rubber"]
+Constraint = Annotated[Literal["pure_tilt", "rubber"], Quantity(text="what keeps the column from turning")]
 
 # Keeps tan θ and its powers finite where the axis lies level.
 _LEVEL = 1e-100
@@ -237,23 +237,15 @@ class Wobbling(Model):
     """
 
     column: Column
-    damping: float = 0.0
-    rolling_resistance: float = 0.0
-    restitution: float = 1.0
-    passage_tilt: float | None = None
+    damping: Damping = 0.0
+    rolling_resistance: RollingResistance = 0.0
+    restitution: Restitution = 1.0
+    passage_tilt: PassageTilt | None = None
     constraint: Constraint = "pure_tilt"
 
     name: ClassVar[str] = "wobbling"
     state_names: ClassVar[tuple[str, ...]] = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
     carried_names: ClassVar[tuple[str, ...]] = ("twist", "footprint_x", "footprint_y")
-
-    def __post_init__(self) -> None:
-        require_column(self.column)
-        require_frictions(self, "damping", "rolling_resistance")
-        require_loss(self)
-        if self.constraint not in get_args(Constraint):
-            message = f"constraint must be 'pure_tilt' or 'rubber', got {self.constraint!r}"
-            raise ParameterError(message)
 
     rates = staticmethod(rates)
     lean = staticmethod(tilt_vector.lean)

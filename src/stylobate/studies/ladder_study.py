@@ -12,7 +12,7 @@ import xarray as xr
 from stylobate.column import Column
 from stylobate.errors import ParameterError, require_finite, require_positive, require_vector, require_whole
 from stylobate.models import Rolling
-from stylobate.models.checks import require_column
+from stylobate.models.model import require_column
 from stylobate.motions import BASE_AT_REST, BaseMotion
 from stylobate.results import Response
 from stylobate.results.outcomes import code_of, outcome_attributes

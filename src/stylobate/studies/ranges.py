@@ -7,10 +7,11 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.errors import ParameterError, require_positive, require_size
-from stylobate.models.bounds import BOUNDS, Bounds
+from stylobate.models.declared import model_quantities
+from stylobate.quantities import Quantity
 
 # Of the motion; those of models have their own bounds.
-_OF_MOTIONS = {"acceleration": Bounds()}
+_OF_MOTIONS = {"acceleration": Quantity(ge=0.0)}
 
 
 def require_frequencies(ends: Sequence[float]) -> tuple[float, float]:
@@ -47,7 +48,7 @@ def require_values(values: Sequence[float], parameter: str) -> npt.NDArray[np.fl
 
 
 def _require_inside(name: str, values: Sequence[float] | npt.NDArray[np.float64], parameter: str) -> None:
-    known = BOUNDS.get(parameter) or _OF_MOTIONS.get(parameter)
+    known = model_quantities().get(parameter) or _OF_MOTIONS.get(parameter)
     outside = [float(value) for value in values if known is not None and not known.accepts(value)]
     if known is not None and outside:
         message = (

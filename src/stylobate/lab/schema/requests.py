@@ -1,19 +1,20 @@
 """What can be asked for: the descriptions of the command line, but for files of this machine, within the limits."""
 
-import math
 from collections.abc import Collection, Mapping
 from dataclasses import fields
 from typing import Any
 
 from stylobate import spec
+from stylobate.errors import LARGEST
 from stylobate.lab.limits import Limits
 from stylobate.lab.numbers import NUMBERS
 from stylobate.lab.schema.notation import Schema, listed, or_none, ref, table, text
 from stylobate.lab.sizes import HIGHEST_DEGREE, LEAST, MOST
 from stylobate.lab.starts import StartDescription
-from stylobate.models.bounds import BOUNDS, Bounds
+from stylobate.models.declared import column_quantities, model_quantities
 from stylobate.motions.pulses.sinusoid import MOST_CYCLES
 from stylobate.motions.pulses.waveform import MOST_OSCILLATIONS
+from stylobate.quantities import Quantity
 from stylobate.results import OutcomeRules
 from stylobate.spec.description import Description
 from stylobate.spec.motions import ENDING
@@ -60,8 +61,7 @@ _TAGS = ("shape", "kind", "method")
 """By these columns, models and motions, and steps of processing are told apart."""
 
 _POSITIVE = (
-    *("radius", "height", "density", "inner_radius", "top_radius", "mass", "mass_height", "gravity"),
-    *("transverse_inertia", "axial_inertia", "slenderness", "inertia_ratio", "axial_ratio"),
+    *column_quantities(),
     *("angular_frequency", "frequency", "rpm", "stroke", "diameter", "length", "cycles", "oscillations"),
     *("duration", "periods", "rtol", "atol", "tilt_limit"),
 )
@@ -70,9 +70,9 @@ _OF_MOTIONS = ("sum", "one_of", "scaled", "rotated", "delayed")
 _HAS_RESPONSE = ("circular", "straight", "elliptic", "displacement_amplitude", "stroke", "orbit", "harmonic")
 
 
-def _schema_of(bounds: Bounds) -> Schema:
-    most = {"maximum": bounds.most} if math.isfinite(bounds.most) else {}
-    return {"minimum": bounds.least, **most}
+def _schema_of(quantity: Quantity) -> Schema:
+    least = {} if quantity.ge is None else {"minimum": quantity.ge}
+    return {**least, "maximum": LARGEST if quantity.le is None else quantity.le}
 
 
 _RULE: Schema = {"type": "number", "minimum": LEAST}
@@ -80,7 +80,7 @@ _RULE: Schema = {"type": "number", "minimum": LEAST}
 _BOUNDS: dict[str, Schema] = {
     **{name: {"minimum": LEAST} for name in _POSITIVE},
     **{name: {"minimum": 0} for name in _NOT_NEGATIVE},
-    **{name: _schema_of(bounds) for name, bounds in BOUNDS.items()},
+    **{name: _schema_of(quantity) for name, quantity in model_quantities().items()},
     "cycles": {"minimum": LEAST, "maximum": MOST_CYCLES},
     "oscillations": {"minimum": LEAST, "maximum": MOST_OSCILLATIONS},
     "sense": {"enum": [1, -1]},

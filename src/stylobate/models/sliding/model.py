@@ -4,22 +4,31 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.errors import ParameterError, require_finite
+from stylobate.errors import ParameterError
 from stylobate.models import finite_tilt, tilt_vector
-from stylobate.models.checks import require_coefficient, require_column, require_frictions, require_loss
 from stylobate.models.contact import path_outputs, per_normal_force
 from stylobate.models.model import RELEASE_MARGIN, Floats, Model, Output
+from stylobate.models.numbers import (
+    Damping,
+    FrictionCoefficient,
+    PassageTilt,
+    Restitution,
+    RollingResistance,
+    SpinFriction,
+    StaticFrictionCoefficient,
+)
 from stylobate.models.sliding.equations import MARGINS, contact_loads, margins, rates
 from stylobate.models.sliding.lift_off import lifted
 from stylobate.models.sliding.phases import Contact, Numbers, State
 from stylobate.models.sliding.posture import forces
 from stylobate.models.sliding.reactions import react, refreshed
+from stylobate.quantities import Quantity
 
 # A least tilt counts as a stroke of the base below this, where the user tells no other [c].
 _PASSAGE = 0.01
@@ -75,16 +84,28 @@ class Sliding(Model):
     """
 
     column: Column
-    friction_coefficient: float = 0.5
-    static_friction_coefficient: float | None = None
-    patch: float = 0.0
-    restitution: float = 0.0
-    damping: float = 0.0
-    spin_friction: float = 0.0
-    rolling_resistance: float = 0.0
-    passage_tilt: float | None = None
-    incline: float = 0.0
-    incline_direction: float = 0.0
+    friction_coefficient: FrictionCoefficient = 0.5
+    static_friction_coefficient: StaticFrictionCoefficient | None = None
+    patch: Annotated[float, Quantity(text="radius of the contact, in base radii", ge=0.0, slider=(0.0, 0.2))] = 0.0
+    restitution: Restitution = 0.0
+    damping: Damping = 0.0
+    spin_friction: SpinFriction = 0.0
+    rolling_resistance: RollingResistance = 0.0
+    passage_tilt: PassageTilt | None = None
+    incline: Annotated[
+        float,
+        Quantity(
+            unit="rad",
+            text="slope of the base",
+            ge=0.0,
+            le=math.nextafter(0.5 * math.pi, 0.0),
+            note="with incline_direction for the way down",
+            slider=(0.0, 0.4),
+        ),
+    ] = 0.0
+    incline_direction: Annotated[
+        float, Quantity(unit="rad", text="direction in which the base slopes down", slider=(-3.142, 3.142))
+    ] = 0.0
 
     name: ClassVar[str] = "sliding"
     state_names: ClassVar[tuple[str, ...]] = State._fields
@@ -93,22 +114,11 @@ class Sliding(Model):
     margin_names: ClassVar[tuple[str, ...]] = MARGINS
     contact_kinds: ClassVar[type[IntEnum] | None] = Contact
 
-    def __post_init__(self) -> None:
-        require_column(self.column)
-        require_frictions(self, "patch", "damping", "spin_friction", "rolling_resistance")
-        require_loss(self)
-        coefficient = require_coefficient(self, "friction_coefficient")
-        if self.static_friction_coefficient is not None:
-            static = require_coefficient(self, "static_friction_coefficient")
-            if static < coefficient:
-                message = f"static_friction_coefficient must not be below the kinetic {coefficient!r}, got {static!r}"
-                raise ParameterError(message)
-        for name in ("incline", "incline_direction"):
-            object.__setattr__(self, name, require_finite(name, getattr(self, name), "rad"))
-        if not 0.0 <= self.incline < 0.5 * math.pi:
-            message = (
-                f"incline must lie between 0 and π/2 rad, the way down told by its direction, got {self.incline!r}"
-            )
+    def validate(self) -> None:
+        """Raise ParameterError if the contact holds less at rest than while it slides."""
+        static, kinetic = self.static_friction_coefficient, self.friction_coefficient
+        if static is not None and static < kinetic:
+            message = f"static_friction_coefficient must not be below the kinetic {kinetic!r}, got {static!r}"
             raise ParameterError(message)
 
     rates = staticmethod(rates)

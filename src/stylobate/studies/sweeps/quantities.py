@@ -6,10 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.column import Column
 from stylobate.engine.parameters import check_names
 from stylobate.errors import ParameterError, require_size
 from stylobate.models import Model
-from stylobate.models.bounds import BOUNDS
+from stylobate.models.declared import model_quantities
+from stylobate.quantities import Quantity, parameters_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -36,8 +38,8 @@ def _not_negative(long_name: str, units: str) -> _Quantity:
     return _Quantity(long_name, units, lambda values: np.isfinite(values) & (values >= 0.0), "be zero or positive")
 
 
-def _of_models(name: str, long_name: str, units: str) -> _Quantity:
-    return _Quantity(long_name, units, BOUNDS[name].accepts, BOUNDS[name].demand)
+def _declared(quantity: Quantity) -> _Quantity:
+    return _Quantity(quantity.text, quantity.cf_units, quantity.accepts, quantity.demand)
 
 
 _QUANTITIES = {
@@ -47,23 +49,10 @@ _QUANTITIES = {
     "tilt_rate_y": _Quantity("initial rate of tilt along y", "rad s-1"),
     "spin": _Quantity("initial angular velocity about the axis", "rad s-1"),
     "duration": _positive("duration", "s"),
-    "radius": _positive("base radius", "m"),
-    "mass_height": _positive("height of the centre of mass", "m"),
-    "mass": _positive("mass", "kg"),
-    "transverse_inertia": _positive("transverse moment of inertia", "kg m2"),
-    "axial_inertia": _positive("axial moment of inertia", "kg m2"),
-    "gravity": _positive("acceleration of gravity", "m s-2"),
+    **{name: _declared(parameter.quantity) for name, parameter in parameters_of(Column).items()},
     "slenderness": _positive("slenderness", "1"),
     "size": _positive("size, in that of the column given", "1"),
-    "damping": _of_models("damping", "friction", "1"),
-    "spin_friction": _of_models("spin_friction", "spin friction", "1"),
-    "rolling_resistance": _of_models("rolling_resistance", "rolling resistance", "1"),
-    "restitution": _of_models("restitution", "restitution", "1"),
-    "friction_coefficient": _of_models("friction_coefficient", "kinetic friction coefficient", "1"),
-    "static_friction_coefficient": _of_models("static_friction_coefficient", "static friction coefficient", "1"),
-    "patch": _of_models("patch", "radius of the contact, in base radii", "1"),
-    "incline": _of_models("incline", "angle of the plane to the horizontal", "rad"),
-    "incline_direction": _Quantity("azimuth of the way down", "rad"),
+    **{name: _declared(quantity) for name, quantity in model_quantities().items()},
     "motion": _Quantity(
         "number of the base motion", "1", lambda values: (values >= 0.0) & (values % 1.0 == 0.0), "be whole, from 0 on"
     ),

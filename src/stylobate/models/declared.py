@@ -1,0 +1,45 @@
+"""The declared numbers of all models by name: for studies that vary them, and for controls that set them."""
+
+from collections.abc import Mapping
+from functools import cache
+
+from stylobate.column import Column
+from stylobate.models.model import Model
+from stylobate.models.planar_rocking import PlanarRocking
+from stylobate.models.rolling import Rolling
+from stylobate.models.slender import Slender
+from stylobate.models.slender_rolling import SlenderRolling
+from stylobate.models.sliding import Sliding
+from stylobate.models.wobbling import Wobbling
+from stylobate.quantities import Quantity, parameters_of
+
+MODELS: Mapping[str, type[Model]] = {
+    "slender": Slender,
+    "slender_rolling": SlenderRolling,
+    "wobbling": Wobbling,
+    "rolling": Rolling,
+    "sliding": Sliding,
+    "planar_rocking": PlanarRocking,
+}
+"""The models of the package, by their kind in files and on the command line."""
+
+
+COLUMNS = (Column, Column.solid, Column.hollow, Column.frustum, Column.dimensionless)
+"""The ways to describe a column."""
+
+
+@cache
+def column_quantities() -> Mapping[str, Quantity]:
+    """Return the quantity of each number by which a column can be described."""
+    return {name: one.quantity for make in COLUMNS for name, one in parameters_of(make).items()}
+
+
+@cache
+def model_quantities() -> Mapping[str, Quantity]:
+    """Return the quantity of each number that a model of the package has; choices between words are left out."""
+    return {
+        name: parameter.quantity
+        for model in MODELS.values()
+        for name, parameter in parameters_of(model).items()
+        if not parameter.choices
+    }

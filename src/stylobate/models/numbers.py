@@ -1,0 +1,46 @@
+"""The numbers that several models have. A number of one model is declared in its class."""
+
+from typing import Annotated
+
+from stylobate.quantities import Quantity
+
+# Beyond this Coulomb friction is not resolved; a column that never slips is another model.
+_MOST_FRICTION = 1e8
+
+Damping = Annotated[float, Quantity(symbol="η", text="damping of tilting", ge=0.0, slider=(0.0, 0.5))]
+SpinFriction = Annotated[float, Quantity(symbol="ζ", text="damping of spin", ge=0.0, slider=(0.0, 2.0))]
+RollingResistance = Annotated[float, Quantity(symbol="μ_r", text="rolling resistance", ge=0.0, slider=(0.0, 0.05))]
+Restitution = Annotated[
+    float,
+    Quantity(
+        symbol="e",
+        text="fraction of speed left after an impact of the base",
+        ge=0.0,
+        le=1.0,
+        note="1 for no loss",
+        slider=(0.0, 1.0),
+    ),
+]
+PassageTilt = Annotated[float, Quantity(unit="rad", text="tilt below which the vertical is passed", ge=0.0)]
+FrictionCoefficient = Annotated[
+    float,
+    Quantity(
+        symbol="μ",
+        text="friction coefficient of the sliding contact",
+        ge=0.0,
+        le=_MOST_FRICTION,
+        note="Rolling is the model that never slips",
+        slider=(0.02, 1.2),
+    ),
+]
+StaticFrictionCoefficient = Annotated[
+    float,
+    Quantity(
+        symbol="μ_s",
+        text="friction coefficient of the contact at rest",
+        ge=0.0,
+        le=_MOST_FRICTION,
+        note="Rolling is the model that never slips",
+        slider=(0.02, 1.5),
+    ),
+]

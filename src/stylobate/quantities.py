@@ -1,0 +1,198 @@
+"""What a number is, declared once, where it is a field or an argument: `Annotated[float, Quantity("η", …)]`.
+
+Checks, bounds in studies, units and names in Datasets, and the controls of the laboratory follow from the declaration:
+`parameters_of` reads it from a frozen dataclass or from a named constructor.
+"""
+
+import inspect
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from types import NoneType
+from typing import Annotated, Any, Literal, get_args, get_origin
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.errors import LARGEST, ParameterError, require_size
+
+_CF_POWERS = str.maketrans({"²": "2", "³": "3"})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Quantity:
+    """What a number is and which values it can have.
+
+    Parameters
+    ----------
+    symbol
+        As in equations, such as "η"; empty where it has none.
+    unit
+        As in text, such as "m/s²"; empty for a number without dimension.
+    text
+        What it is, in a few words, as on an axis.
+    ge, gt, le
+        Bounds: at least, above, at most.
+    note
+        A remedy, behind the bounds in a message.
+    slider
+        The range of a control; None where the range depends on the case.
+    """
+
+    symbol: str = ""
+    unit: str = ""
+    text: str = ""
+    ge: float | None = None
+    gt: float | None = None
+    le: float | None = None
+    note: str = ""
+    slider: tuple[float, float] | None = None
+
+    def __repr__(self) -> str:
+        """Return it as signatures show it: symbol, unit and bounds."""
+        unit = f"in {self.unit}" if self.unit else ""
+        return " ".join(
+            part for part in (self.symbol, unit, self.demand.removeprefix("be ").removeprefix("lie ")) if part
+        )
+
+    @property
+    def demand(self) -> str:
+        """The range in words, behind "must"."""
+        if self.le is not None:
+            return f"lie between {self.ge or 0.0:g} and {self.le:.6g}"
+        if self.gt is not None:
+            return "be positive" if self.gt == 0.0 else f"be above {self.gt:g}"
+        if self.ge is not None:
+            return "be zero or positive" if self.ge == 0.0 else f"be {self.ge:g} or more"
+        return "be finite"
+
+    @property
+    def cf_units(self) -> str:
+        """The unit as netCDF files have it: "m s-2" for "m/s²", "1" for none."""
+        above, _, below = self.unit.translate(_CF_POWERS).partition("/")
+        inverse = (f"{part}-1" if part.isalpha() else f"{part[:-1]}-{part[-1]}" for part in below.split())
+        return " ".join((*above.split(), *inverse)) or "1"
+
+    def accepts(self, values: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+        """Return which values are inside the bounds; NaN and infinities are not."""
+        array = np.asarray(values, dtype=float)
+        inside: npt.NDArray[np.bool_] = np.isfinite(array)
+        if self.ge is not None:
+            inside &= array >= self.ge
+        if self.gt is not None:
+            inside &= array > self.gt
+        return inside & (array <= (LARGEST if self.le is None else self.le))
+
+    def checked(self, name: str, value: Any) -> float:
+        """Return `value` as a float.
+
+        Raises
+        ------
+        ParameterError
+            If it is no real number, is outside the bounds, or is too large to compute with.
+        """
+        number = _as_float(name, value)
+        above = (self.ge is None or number >= self.ge) and (self.gt is None or number > self.gt)
+        if not (above and (self.le is None or number <= self.le) and math.isfinite(number)):
+            demand = f"{self.demand}, {self.note}" if self.note else self.demand
+            message = f"{name} must {demand}, got {number!r} {self.unit}".rstrip()
+            raise ParameterError(message)
+        require_size(name, number, self.unit, zero=self.gt is None)
+        return number
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A number or a choice that something is made with."""
+
+    name: str
+    quantity: Quantity
+    annotation: Any
+    default: Any = inspect.Parameter.empty
+
+    @property
+    def required(self) -> bool:
+        """Whether it must be given."""
+        return self.default is inspect.Parameter.empty
+
+    @property
+    def choices(self) -> tuple[Any, ...]:
+        """The words it can be; empty for a number."""
+        return get_args(self.annotation) if get_origin(self.annotation) is Literal else ()
+
+    @property
+    def optional(self) -> bool:
+        """Whether it can be None."""
+        return NoneType in get_args(self.annotation)
+
+    def checked(self, value: Any) -> Any:
+        """Return `value` as a float, or the choice that it is.
+
+        Raises
+        ------
+        ParameterError
+            If it cannot have this value.
+        """
+        if value is None and self.optional:
+            return None
+        if not self.choices:
+            return self.quantity.checked(self.name, value)
+        if value in self.choices:
+            return value
+        message = f"{self.name} must be {' or '.join(map(repr, self.choices))}, got {value!r}"
+        raise ParameterError(message)
+
+
+@cache
+def parameters_of(make: Callable[..., Any]) -> Mapping[str, Parameter]:
+    """Return the declared arguments of a dataclass or of a named constructor, by name.
+
+    Arguments without a `Quantity`, such as a model's column, are left out.
+    """
+    try:
+        signature = inspect.signature(make, eval_str=True)
+    except NameError:  # a name that only the type checker knows
+        signature = inspect.signature(make)
+    found = {}
+    for name, argument in signature.parameters.items():
+        quantity = _declared(argument.annotation)
+        if quantity is not None:
+            found[name] = Parameter(name, quantity, _without_declaration(argument.annotation), argument.default)
+    return found
+
+
+def check_declared(made: Any) -> None:
+    """Make the declared numbers of a frozen dataclass floats.
+
+    Raises
+    ------
+    ParameterError
+        If one of them is not what its declaration says.
+    """
+    for name, parameter in parameters_of(made.__class__).items():
+        object.__setattr__(made, name, parameter.checked(getattr(made, name)))
+
+
+def _as_float(name: str, value: Any) -> float:
+    try:
+        return float(value + 0.0)  # a string that spells a number is a mistake
+    except (TypeError, ValueError, OverflowError):
+        message = f"{name} must be a real number, got {value!r}"
+        raise ParameterError(message) from None
+
+
+def _declared(annotation: Any) -> Quantity | None:
+    """Return the quantity of an annotation, or of a part of it as in `Damping | None`."""
+    of_all = [one for one in getattr(annotation, "__metadata__", ()) if isinstance(one, Quantity)]
+    parts = (_declared(part) for part in get_args(annotation))
+    return next((one for one in (*of_all, *parts) if one is not None), None)
+
+
+def _without_declaration(annotation: Any) -> Any:
+    """Return the type alone."""
+    if get_origin(annotation) is Annotated:
+        return get_args(annotation)[0]
+    if NoneType in get_args(annotation):
+        return float | None
+    return annotation
