@@ -63,6 +63,10 @@ def _aliases() -> dict[str, str]:
     return {stringify_annotation(alias, "smart"): name for name, alias in named.items()}
 
 
+# A declared number is its type and what it is; the docstring beside it says the latter.
+_DECLARED = re.compile(r"~?(?:typing\.)?Annotated\[((?:~?typing\.)?Literal\[[^\]]*\]|[^,\[\]]+), [^\]]*\]")
+
+
 def setup(app: Any) -> None:
     """Connect what docstrings and signatures need."""
     aliases = _aliases()
@@ -72,7 +76,7 @@ def setup(app: Any) -> None:
         for alias, name in aliases.items():
             signature = signature and signature.replace(alias, name)
             returned = returned and returned.replace(alias, name)
-        return signature, returned
+        return signature and _DECLARED.sub(r"\1", signature), returned
 
     app.connect("autodoc-process-docstring", _escape_bars)
     app.connect("autodoc-process-signature", name_aliases)

@@ -165,7 +165,7 @@ def test_fractions_along_a_parameter_fill_the_height():
     bands = [one.get_paths()[0].vertices for one in figure.axes[0].collections if one.get_paths()]
     assert max(band[:, 1].max() for band in bands) == pytest.approx(1.0)
     assert legend_of(figure)[1:] == ["overturned", "at rest"]
-    assert figure.axes[0].get_xlabel() == "friction"
+    assert figure.axes[0].get_xlabel() == "damping of tilting"
 
 
 def a_share(along):
