@@ -10,7 +10,7 @@ from stylobate.models import Model
 from stylobate.motions import Harmonic
 from stylobate.spec.columns import ColumnDescription
 from stylobate.spec.description import Description
-from stylobate.spec.models import ModelDescription, SlenderModel
+from stylobate.spec.models import ModelDescription, described_model
 from stylobate.spec.motions import MotionDescription
 from stylobate.spec.simulation import built_parts
 
@@ -30,7 +30,7 @@ class StartDescription(Description):
     """The case whose steady rolling is wanted: `column`, `model`, a horizontal harmonic `motion`, and which branch."""
 
     column: ColumnDescription
-    model: ModelDescription = SlenderModel()
+    model: ModelDescription = described_model("slender")
     motion: MotionDescription
     branch: Literal["upper", "lower"] = "upper"
 

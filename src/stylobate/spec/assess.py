@@ -30,7 +30,7 @@ from stylobate.spec.columns import ColumnDescription
 from stylobate.spec.description import Description, built
 from stylobate.spec.design_spectrum import DesignSpectrumDescription
 from stylobate.spec.levels import LEVELS, problems_of_the_levels
-from stylobate.spec.models import ModelDescription, WobblingModel
+from stylobate.spec.models import ModelDescription, described_model
 from stylobate.spec.record_collection import RecordsDescription
 from stylobate.spec.suggestions import did_you_mean
 
@@ -70,7 +70,7 @@ class AssessDescription(Description):
 
     title: str = "Columns under records"
     columns: dict[str, ColumnDescription]
-    model: ModelDescription = WobblingModel()
+    model: ModelDescription = described_model("wobbling")
     dissipation: dict[str, dict[str, float]]
     friction_coefficient: Annotated[float | dict[str, float], BeforeValidator(_as_friction)]
     records: Annotated[RecordsDescription, BeforeValidator(_as_source)]

@@ -9,7 +9,7 @@ from pydantic import Field
 from stylobate.errors import DescriptionError, require_positive
 from stylobate.spec.columns import ColumnDescription
 from stylobate.spec.description import Description, built
-from stylobate.spec.models import RollingModel, default_values
+from stylobate.spec.models import default_values, described_model
 from stylobate.spec.motions import MotionDescription, RestMotion
 from stylobate.spec.simulation import (
     OF_OTHER_COMMANDS,
@@ -89,7 +89,7 @@ class LadderDescription(Description):
         rules = built("rules", lambda: built_rules(self.rules), problems)
         frictions = self.model.model_dump()
         restitution = frictions.pop("restitution")
-        level = RollingModel(**frictions, restitution=1.0 if restitution is None else restitution)
+        level = described_model("rolling", **frictions, restitution=1.0 if restitution is None else restitution)
         model, motion = built_parts(self.column, level, self.motion, problems)
         options = self.model_dump(exclude={"column", "model", "motion", "ladder"})
         if self.duration is None:

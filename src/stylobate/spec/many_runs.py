@@ -11,7 +11,7 @@ from stylobate.motions import BaseMotion
 from stylobate.results import OutcomeRules
 from stylobate.spec.columns import ColumnDescription
 from stylobate.spec.description import Description, built
-from stylobate.spec.models import ModelDescription, SlenderModel
+from stylobate.spec.models import ModelDescription, described_model
 from stylobate.spec.motions import MotionDescription, RestMotion
 from stylobate.spec.simulation import (
     OF_OTHER_COMMANDS,
@@ -28,7 +28,7 @@ class ManyRuns(Description):
     """What all runs have in common, under the names of `simulate_ensemble`; `periods` may stand for `duration`."""
 
     column: ColumnDescription
-    model: ModelDescription = SlenderModel()
+    model: ModelDescription = described_model("slender")
     motion: MotionDescription = RestMotion(kind="rest")
     tilt: tuple[float, float] = (0.0, 0.0)
     tilt_rate: tuple[float, float] = (0.0, 0.0)

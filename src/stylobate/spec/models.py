@@ -1,101 +1,47 @@
-"""Descriptions of models, told apart by their `kind`."""
+"""Descriptions of models, made from the declarations of their numbers and told apart by their `kind`."""
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, create_model
 
 from stylobate.column import Column
 from stylobate.errors import UnsupportedError
-from stylobate.models import Model, PlanarRocking, Rolling, Slender, SlenderRolling, Sliding, Wobbling
+from stylobate.models import Model
+from stylobate.models.declared import MODELS
+from stylobate.quantities import parameters_of
 from stylobate.spec.description import Description
 
 
-class SlenderModel(Description):
-    """The slender column that cannot turn; `damping` is the dimensionless η."""
+class DescribedModel(Description):
+    """A model without its column."""
 
-    kind: Literal["slender"] = "slender"
-    damping: float = 0.0
-
-    def build(self, column: Column) -> Model:
-        """Return the model of `column`."""
-        return Slender(column, damping=self.damping)
-
-
-class SlenderRollingModel(Description):
-    """The slender column that rolls and may turn; `spin_friction` is the dimensionless ζ."""
-
-    kind: Literal["slender_rolling"] = "slender_rolling"
-    damping: float = 0.0
-    spin_friction: float = 0.0
-    couples: Literal["contact", "isotropic"] = "contact"
+    kind: str
 
     def build(self, column: Column) -> Model:
         """Return the model of `column`."""
-        return SlenderRolling(column, damping=self.damping, spin_friction=self.spin_friction, couples=self.couples)
+        return MODELS[self.kind](column=column, **self.model_dump(exclude={"kind"}))
 
 
-class WobblingModel(Description):
-    """The column at finite tilt that cannot turn."""
-
-    kind: Literal["wobbling"] = "wobbling"
-    damping: float = 0.0
-    rolling_resistance: float = 0.0
-    restitution: float = 1.0
-    passage_tilt: float | None = None
-    constraint: Literal["pure_tilt", "rubber"] = "pure_tilt"
-
-    def build(self, column: Column) -> Model:
-        """Return the model of `column`."""
-        return Wobbling(column, **self.model_dump(exclude={"kind"}))
-
-
-class RollingModel(Description):
-    """The column at finite tilt that rolls and may turn."""
-
-    kind: Literal["rolling"] = "rolling"
-    damping: float = 0.0
-    spin_friction: float = 0.0
-    rolling_resistance: float = 0.0
-    restitution: float = 1.0
-    passage_tilt: float | None = None
-
-    def build(self, column: Column) -> Model:
-        """Return the model of `column`."""
-        return Rolling(column, **self.model_dump(exclude={"kind"}))
+def _description_of(kind: str, model: type[Model]) -> type[DescribedModel]:
+    """Return the description of models of one class; values outside the bounds are refused when a model is built."""
+    fields: dict[str, Any] = {
+        name: (one.annotation, ... if one.required else one.default) for name, one in parameters_of(model).items()
+    }
+    first_sentence = (model.__doc__ or "").partition("\n")[0]
+    return create_model(
+        f"{model.__name__}Model",
+        __base__=DescribedModel,
+        __doc__=first_sentence,
+        kind=(Literal[kind], kind),
+        **fields,
+    )
 
 
-class SlidingModel(Description):
-    """The column that can slip, pivot, lift off and land."""
+_BY_KIND: Mapping[str, type[DescribedModel]] = {kind: _description_of(kind, model) for kind, model in MODELS.items()}
 
-    kind: Literal["sliding"] = "sliding"
-    friction_coefficient: float = 0.5
-    static_friction_coefficient: float | None = None
-    patch: float = 0.0
-    restitution: float = 0.0
-    damping: float = 0.0
-    spin_friction: float = 0.0
-    rolling_resistance: float = 0.0
-    passage_tilt: float | None = None
-    incline: float = 0.0
-    incline_direction: float = 0.0
-
-    def build(self, column: Column) -> Model:
-        """Return the model of `column`."""
-        return Sliding(column, **self.model_dump(exclude={"kind"}))
-
-
-class PlanarRockingModel(Description):
-    """The column that rocks in a vertical plane; `restitution` is Housner's where it is not given."""
-
-    kind: Literal["planar_rocking"] = "planar_rocking"
-    damping: float = 0.0
-    rolling_resistance: float = 0.0
-    restitution: float | None = None
-
-    def build(self, column: Column) -> Model:
-        """Return the model of `column`."""
-        return PlanarRocking(column, **self.model_dump(exclude={"kind"}))
+DESCRIBED_MODELS: tuple[type[Description], ...] = tuple(_BY_KIND.values())
+"""The descriptions of all models."""
 
 
 def _with_kind(described: Any) -> Any:
@@ -103,13 +49,18 @@ def _with_kind(described: Any) -> Any:
     return {"kind": "slender", **described} if isinstance(described, dict) else described
 
 
-ModelDescription = Annotated[
-    Annotated[
-        SlenderModel | SlenderRollingModel | WobblingModel | RollingModel | SlidingModel | PlanarRockingModel,
-        Field(discriminator="kind"),
-    ],
-    BeforeValidator(_with_kind),
-]
+if TYPE_CHECKING:
+    ModelDescription = DescribedModel
+else:
+    ModelDescription = Annotated[
+        Annotated[Union[DESCRIBED_MODELS], Field(discriminator="kind")],  # noqa: UP007  a union of a tuple
+        BeforeValidator(_with_kind),
+    ]
+
+
+def described_model(kind: str, **values: Any) -> DescribedModel:
+    """Return the description of a model of this `kind`, with defaults for what is not given."""
+    return _BY_KIND[kind](kind=kind, **values)
 
 
 def known_values(described: Mapping[str, Any], kind: str) -> dict[str, Any]:
@@ -137,23 +88,11 @@ def describe_model(model: Model) -> Description:
     UnsupportedError
         If the model is of a class that descriptions do not know.
     """
-    described = _DESCRIPTIONS.get(type(model))  # a subclass is another model
-    if described is not None:
-        return described(**{name: getattr(model, name) for name in described.model_fields if name != "kind"})
+    kind = _KINDS.get(type(model))  # a subclass is another model
+    if kind is not None:
+        return described_model(kind, **{name: getattr(model, name) for name in parameters_of(type(model))})
     message = f"a model of class {type(model).__name__} has no description; results keep its repr only"
     raise UnsupportedError(message)
 
 
-_DESCRIPTIONS: Mapping[type[Model], type[Description]] = {
-    Slender: SlenderModel,
-    SlenderRolling: SlenderRollingModel,
-    Wobbling: WobblingModel,
-    Rolling: RollingModel,
-    Sliding: SlidingModel,
-    PlanarRocking: PlanarRockingModel,
-}
-
-DESCRIBED_MODELS: tuple[type[Description], ...] = tuple(_DESCRIPTIONS.values())
-"""The descriptions of all models."""
-
-_BY_KIND: Mapping[str, type[Description]] = {one.model_fields["kind"].default: one for one in DESCRIBED_MODELS}
+_KINDS: Mapping[type[Model], str] = {model: kind for kind, model in MODELS.items()}

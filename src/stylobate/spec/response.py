@@ -8,7 +8,7 @@ from typing import Any, Self
 from stylobate.errors import DescriptionError, require_positive, require_whole
 from stylobate.spec.columns import ColumnDescription
 from stylobate.spec.description import Description, built
-from stylobate.spec.models import ModelDescription, SlenderModel
+from stylobate.spec.models import ModelDescription, described_model
 from stylobate.spec.motions import MotionDescription
 from stylobate.spec.simulation import OF_OTHER_COMMANDS, Setup, SimulationDescription, built_parts
 
@@ -17,7 +17,7 @@ class ResponseDescription(Description):
     """Response curves: `column`, `model`, `motion` (its own frequency may be left out), range and number of points."""
 
     column: ColumnDescription
-    model: ModelDescription = SlenderModel()
+    model: ModelDescription = described_model("slender")
     motion: MotionDescription
     angular_frequency_range: tuple[float, float]
     points: int = 400

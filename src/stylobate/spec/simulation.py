@@ -27,7 +27,7 @@ from stylobate.results import OutcomeRules
 from stylobate.spec.columns import ANY_COLUMN, ColumnDescription, GivenColumn
 from stylobate.spec.description import Description, built
 from stylobate.spec.file_values import DEEPEST, check_file_values
-from stylobate.spec.models import ModelDescription, SlenderModel, describe_model
+from stylobate.spec.models import ModelDescription, describe_model, described_model
 from stylobate.spec.motions import ENDING, MotionDescription, RestMotion, describe_motion
 from stylobate.spec.records import RecordMotion, anchored
 
@@ -49,7 +49,7 @@ class SimulationDescription(Description):
     """
 
     column: ColumnDescription
-    model: ModelDescription = SlenderModel()
+    model: ModelDescription = described_model("slender")
     motion: MotionDescription = RestMotion(kind="rest")
     tilt: tuple[float, float] = (0.0, 0.0)
     tilt_rate: tuple[float, float] = (0.0, 0.0)
