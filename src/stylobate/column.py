@@ -1,6 +1,7 @@
 """The column: a rigid body of revolution that stands free on its flat circular base."""
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, Self
 
@@ -291,3 +292,13 @@ class Column:
                 f"height {height!r} m, got {self.transverse_inertia!r} kg m²"
             )
             raise ParameterError(message)
+
+
+SHAPES: Mapping[str, Callable[..., Column]] = {
+    "solid": Column.solid,
+    "hollow": Column.hollow,
+    "frustum": Column.frustum,
+    "dimensionless": Column.dimensionless,
+    "given": Column,
+}
+"""The ways to describe a column, by their name in files and on the command line."""

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from functools import cache
 
-from stylobate.column import Column
+from stylobate.column import SHAPES
 from stylobate.models.model import Model
 from stylobate.models.planar_rocking import PlanarRocking
 from stylobate.models.rolling import Rolling
@@ -24,14 +24,10 @@ MODELS: Mapping[str, type[Model]] = {
 """The models of the package, by their kind in files and on the command line."""
 
 
-COLUMNS = (Column, Column.solid, Column.hollow, Column.frustum, Column.dimensionless)
-"""The ways to describe a column."""
-
-
 @cache
 def column_quantities() -> Mapping[str, Quantity]:
     """Return the quantity of each number by which a column can be described."""
-    return {name: one.quantity for make in COLUMNS for name, one in parameters_of(make).items()}
+    return {name: one.quantity for make in SHAPES.values() for name, one in parameters_of(make).items()}
 
 
 @cache

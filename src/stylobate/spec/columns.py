@@ -1,111 +1,40 @@
-"""Descriptions of columns, told apart by their `shape`."""
+"""Descriptions of columns, made from the declarations of their numbers and told apart by their `shape`."""
 
 from collections.abc import Iterable, Mapping
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Any
 
-from pydantic import BeforeValidator, Field
-
-from stylobate.column import STANDARD_GRAVITY, Column
+from stylobate.column import SHAPES, Column
+from stylobate.quantities import parameters_of
+from stylobate.spec.declared import descriptions_of, one_of
 from stylobate.spec.description import Description
 
 
-class SolidColumn(Description):
-    """A solid cylinder; lengths in m, density in kg/m³."""
+class DescribedColumn(Description):
+    """A column by the numbers of its shape."""
 
-    shape: Literal["solid"] = "solid"
-    radius: float
-    height: float
-    density: float
-    gravity: float = STANDARD_GRAVITY
+    shape: str
 
     def build(self) -> Column:
         """Return the column."""
-        return Column.solid(radius=self.radius, height=self.height, density=self.density, gravity=self.gravity)
+        return SHAPES[self.shape](**self.model_dump(exclude={"shape"}))
 
 
-class HollowColumn(Description):
-    """A tube; lengths in m, density in kg/m³."""
-
-    shape: Literal["hollow"]
-    radius: float
-    inner_radius: float
-    height: float
-    density: float
-    gravity: float = STANDARD_GRAVITY
-
-    def build(self) -> Column:
-        """Return the column."""
-        return Column.hollow(
-            radius=self.radius,
-            inner_radius=self.inner_radius,
-            height=self.height,
-            density=self.density,
-            gravity=self.gravity,
-        )
+_BY_SHAPE = descriptions_of(DescribedColumn, "shape", SHAPES)
 
 
-class FrustumColumn(Description):
-    """A frustum of a cone; lengths in m, density in kg/m³."""
-
-    shape: Literal["frustum"]
-    radius: float
-    top_radius: float
-    height: float
-    density: float
-    gravity: float = STANDARD_GRAVITY
-
-    def build(self) -> Column:
-        """Return the column."""
-        return Column.frustum(
-            radius=self.radius,
-            top_radius=self.top_radius,
-            height=self.height,
-            density=self.density,
-            gravity=self.gravity,
-        )
-
-
-class DimensionlessColumn(Description):
-    """A column with m = g = ω0 = 1."""
-
-    shape: Literal["dimensionless"]
-    slenderness: float
-    inertia_ratio: float = 0.75
-    axial_ratio: float = 0.5
-
-    def build(self) -> Column:
-        """Return the column."""
-        return Column.dimensionless(self.slenderness, self.inertia_ratio, self.axial_ratio)
-
-
-class GivenColumn(Description):
-    """Any body of revolution by its numbers, in SI units."""
-
-    shape: Literal["given"]
-    radius: float
-    mass_height: float
-    mass: float
-    transverse_inertia: float
-    axial_inertia: float
-    height: float | None = None
-    gravity: float = STANDARD_GRAVITY
-
-    def build(self) -> Column:
-        """Return the column."""
-        return Column(**self.model_dump(exclude={"shape"}))
-
-    @classmethod
-    def of(cls, column: Column) -> "GivenColumn":
-        """Return the description of `column`."""
-        return cls(shape="given", **{name: getattr(column, name) for name in cls.model_fields if name != "shape"})
-
-
-_SHAPES = {"slenderness": "dimensionless", "inner_radius": "hollow", "top_radius": "frustum", "mass_height": "given"}
+def describe_column(column: Column) -> DescribedColumn:
+    """Return the description of `column` by its mass and inertia."""
+    return _BY_SHAPE["given"](shape="given", **{name: getattr(column, name) for name in parameters_of(Column)})
 
 
 def implied_shape(names: Iterable[str]) -> str | None:
     """Return the only shape that has one of the numbers of these `names`, or None."""
-    return next((shape for name, shape in _SHAPES.items() if name in names), None)
+    given = set(names)
+    for shape, make in SHAPES.items():
+        others = {name for other in SHAPES.values() if other is not make for name in parameters_of(other)}
+        if given & (parameters_of(make).keys() - others):
+            return shape
+    return None
 
 
 def _with_shape(described: Any) -> Any:
@@ -113,12 +42,10 @@ def _with_shape(described: Any) -> Any:
     return {"shape": implied_shape(described) or "solid", **described} if isinstance(described, Mapping) else described
 
 
-ColumnDescription = Annotated[
-    Annotated[
-        SolidColumn | HollowColumn | FrustumColumn | DimensionlessColumn | GivenColumn, Field(discriminator="shape")
-    ],
-    BeforeValidator(_with_shape),
-]
+if TYPE_CHECKING:
+    ColumnDescription = DescribedColumn
+else:
+    ColumnDescription = one_of(_BY_SHAPE, "shape", _with_shape)
 
 ANY_COLUMN = Column.dimensionless(0.1)
 """Stands in for a column that cannot be built, so that mistakes in the model are told with it."""

@@ -1,15 +1,14 @@
 """Descriptions of models, made from the declarations of their numbers and told apart by their `kind`."""
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
-
-from pydantic import BeforeValidator, Field, create_model
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
 
 from stylobate.column import Column
 from stylobate.errors import UnsupportedError
 from stylobate.models import Model
 from stylobate.models.declared import MODELS
 from stylobate.quantities import parameters_of
+from stylobate.spec.declared import descriptions_of, one_of
 from stylobate.spec.description import Description
 
 
@@ -20,25 +19,11 @@ class DescribedModel(Description):
 
     def build(self, column: Column) -> Model:
         """Return the model of `column`."""
-        return MODELS[self.kind](column=column, **self.model_dump(exclude={"kind"}))
+        model: Callable[..., Model] = MODELS[self.kind]
+        return model(column, **self.model_dump(exclude={"kind"}))
 
 
-def _description_of(kind: str, model: type[Model]) -> type[DescribedModel]:
-    """Return the description of models of one class; values outside the bounds are refused when a model is built."""
-    fields: dict[str, Any] = {
-        name: (one.annotation, ... if one.required else one.default) for name, one in parameters_of(model).items()
-    }
-    first_sentence = (model.__doc__ or "").partition("\n")[0]
-    return create_model(
-        f"{model.__name__}Model",
-        __base__=DescribedModel,
-        __doc__=first_sentence,
-        kind=(Literal[kind], kind),
-        **fields,
-    )
-
-
-_BY_KIND: Mapping[str, type[DescribedModel]] = {kind: _description_of(kind, model) for kind, model in MODELS.items()}
+_BY_KIND = descriptions_of(DescribedModel, "kind", MODELS)
 
 DESCRIBED_MODELS: tuple[type[Description], ...] = tuple(_BY_KIND.values())
 """The descriptions of all models."""
@@ -52,15 +37,12 @@ def _with_kind(described: Any) -> Any:
 if TYPE_CHECKING:
     ModelDescription = DescribedModel
 else:
-    ModelDescription = Annotated[
-        Annotated[Union[DESCRIBED_MODELS], Field(discriminator="kind")],  # noqa: UP007  a union of a tuple
-        BeforeValidator(_with_kind),
-    ]
+    ModelDescription = one_of(_BY_KIND, "kind", _with_kind)
 
 
 def described_model(kind: str, **values: Any) -> DescribedModel:
     """Return the description of a model of this `kind`, with defaults for what is not given."""
-    return _BY_KIND[kind](kind=kind, **values)
+    return _BY_KIND[kind](**{"kind": kind, **values})
 
 
 def known_values(described: Mapping[str, Any], kind: str) -> dict[str, Any]:
@@ -76,8 +58,7 @@ def kinds_with(name: str) -> tuple[str, ...]:
 
 def default_values(kind: str) -> dict[str, Any]:
     """Return what a description of this `kind` has where nothing is given; nothing if there is no such kind."""
-    one = _BY_KIND.get(kind)
-    return {} if one is None else one().model_dump()
+    return described_model(kind).model_dump() if kind in MODELS else {}
 
 
 def describe_model(model: Model) -> Description:

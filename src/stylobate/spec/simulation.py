@@ -24,7 +24,7 @@ from stylobate.errors import (
 from stylobate.models import Model
 from stylobate.motions import BaseMotion, Record
 from stylobate.results import OutcomeRules
-from stylobate.spec.columns import ANY_COLUMN, ColumnDescription, GivenColumn
+from stylobate.spec.columns import ANY_COLUMN, ColumnDescription, describe_column
 from stylobate.spec.description import Description, built
 from stylobate.spec.file_values import DEEPEST, check_file_values
 from stylobate.spec.models import ModelDescription, describe_model, described_model
@@ -229,7 +229,7 @@ def provenance_of_run(model: Model, motion: BaseMotion, **options: Any) -> dict[
     """Return what is needed to repeat a run, as plain values: `SimulationDescription` but for the version."""
     return {
         "version": version("stylobate"),
-        "column": GivenColumn.of(model.column).values(),
+        "column": describe_column(model.column).values(),
         "model": _described(lambda: describe_model(model), model),
         "motion": _described(lambda: describe_motion(motion), motion),
         **{name: list(value) if isinstance(value, tuple) else value for name, value in options.items()},

@@ -1,0 +1,43 @@
+"""Descriptions made from declared numbers: of each kind its name, what makes it, and the numbers that it takes."""
+
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any, Literal, TypeVar, Union
+
+from pydantic import BeforeValidator, Field, create_model
+
+from stylobate.quantities import parameters_of
+from stylobate.spec.description import Description
+
+_D = TypeVar("_D", bound=Description)
+
+
+def descriptions_of(base: type[_D], tag: str, kinds: Mapping[str, Callable[..., Any]]) -> Mapping[str, type[_D]]:
+    """Return a description for each of the `kinds`, told apart by the value of the key `tag`.
+
+    Parameters
+    ----------
+    base
+        What descriptions of all kinds share, with a `build` that makes the thing.
+    tag
+        The key that holds the kind.
+    kinds
+        By name, the class or named constructor whose declared numbers are described. Their bounds are checked when
+        the thing is built.
+    """
+    return {kind: _description_of(base, tag, kind, make) for kind, make in kinds.items()}
+
+
+def one_of(descriptions: Mapping[str, type[Description]], tag: str, with_kind: Callable[[Any], Any]) -> Any:
+    """Return the annotation of a field that holds one of the `descriptions`; `with_kind` adds a kind left out."""
+    union: Any = Union[tuple(descriptions.values())]  # noqa: UP007  the members are not known before
+    return Annotated[Annotated[union, Field(discriminator=tag)], BeforeValidator(with_kind)]
+
+
+def _description_of(base: type[_D], tag: str, kind: str, make: Callable[..., Any]) -> type[_D]:
+    numbers = {
+        name: (one.annotation, ... if one.required else one.default) for name, one in parameters_of(make).items()
+    }
+    fields: dict[str, Any] = {tag: (Literal[kind], kind), **numbers}
+    name = f"{kind.title().replace('_', '')}{base.__name__.removeprefix('Described')}"
+    first_sentence = (make.__doc__ or "").partition("\n")[0]
+    return create_model(name, __base__=base, __doc__=first_sentence, **fields)
