@@ -38,6 +38,8 @@ class Quantity:
         A remedy, behind the bounds in a message.
     slider
         The range of a control; None where the range depends on the case.
+    components
+        How many numbers it consists of.
     """
 
     symbol: str = ""
@@ -48,6 +50,7 @@ class Quantity:
     le: float | None = None
     note: str = ""
     slider: tuple[float, float] | None = None
+    components: int = 1
 
     def __repr__(self) -> str:
         """Return it as signatures show it: symbol, unit and bounds."""

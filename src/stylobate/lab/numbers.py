@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from stylobate.models.declared import column_quantities, model_quantities
+from stylobate.motions.declared import motion_quantities
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,37 +19,17 @@ class Number:
     choices: tuple[int, ...] = ()
 
 
-_TURN = 6.283
-
-
 def _declared() -> Mapping[str, Number]:
-    """Return the numbers of columns and models, as they are declared there."""
+    """Return the numbers of columns, models and base motions, as they are declared there."""
     return {
         name: Number(one.symbol, one.unit, one.text, *(one.slider or ()))
-        for name, one in {**column_quantities(), **model_quantities()}.items()
+        for name, one in {**column_quantities(), **model_quantities(), **motion_quantities()}.items()
     }
 
 
 NUMBERS: Mapping[str, Number] = {
     **_declared(),
-    "acceleration": Number("a", "m/s²", "amplitude of the acceleration"),
-    "amplitude": Number("", "", "amplitudes along the axes"),
-    "angular_frequency": Number("Ω", "rad/s", "angular frequency"),
-    "frequency": Number("f", "Hz", "frequency"),
-    "direction": Number("", "rad", "direction in the plane, from x towards y", -3.142, 3.142),
-    "angle": Number("", "rad", "rise above the horizontal", -1.5, 1.5),
-    "phase": Number("", "rad", "phase", -3.142, 3.142),
-    "start_phase": Number("", "rad", "phase at the start", 0.0, _TURN),
-    "ramp": Number("", "s", "time in which it grows to its amplitude"),
     "sense": Number("", "", "+1 anticlockwise, −1 clockwise", choices=(1, -1)),
-    "stroke": Number("", "m", "stroke from peak to peak"),
-    "diameter": Number("", "m", "diameter of the circle"),
-    "rpm": Number("", "1/min", "turns a minute"),
-    "velocity": Number("v", "m/s", "amplitude of the velocity"),
-    "oscillations": Number("", "", "oscillations under the bell", 1.0, 6.0),
-    "cycles": Number("", "", "cycles", 1.0, 6.0),
-    "start": Number("", "s", "when it begins"),
-    "vertical": Number("", "", "vertical part over the horizontal", -1.0, 1.0),
     "displacement": Number("", "m", "amplitude of the displacement"),
     "frequencies": Number("f", "Hz", "first and last frequency"),
     "length": Number("", "s", "length"),

@@ -4,13 +4,26 @@ import cmath
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Self
+from typing import Annotated, Self
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.errors import ParameterError, require_finite, require_not_negative, require_positive, require_vector
 from stylobate.motions.base import ACCELERATION, VELOCITY, BaseMotion, Components
+from stylobate.motions.numbers import (
+    Acceleration,
+    Amplitudes,
+    AngularFrequency,
+    Direction,
+    Frequency,
+    Phase,
+    Phases,
+    Ramp,
+    Sense,
+    StartPhase,
+)
+from stylobate.quantities import Quantity
 
 # Below this |z| the series of the integrals of exp is more accurate than their closed form.
 _SERIES_RADIUS = 0.5
@@ -55,11 +68,13 @@ class Harmonic(BaseMotion):
     9.869604401089358
     """
 
-    amplitude: tuple[float, float, float]
-    phase: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    angular_frequency: float
-    start_phase: float = 0.0
-    ramp: float = 0.0
+    amplitude: Annotated[tuple[float, float, float], Quantity(text="amplitudes along the axes", components=3)]
+    phase: Annotated[
+        tuple[float, float, float], Quantity(unit="rad", text="phases of the components", components=3)
+    ] = (0.0, 0.0, 0.0)
+    angular_frequency: AngularFrequency
+    start_phase: StartPhase = 0.0
+    ramp: Ramp = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "amplitude", require_vector("amplitude", self.amplitude, 3, "m/s²"))
@@ -73,11 +88,11 @@ class Harmonic(BaseMotion):
     def elliptic(
         cls,
         *,
-        amplitude: Sequence[float],
-        phase: float,
-        angular_frequency: float,
-        start_phase: float = 0.0,
-        ramp: float = 0.0,
+        amplitude: Annotated[Sequence[float], Quantity(text="amplitudes along the axes", components=2)],
+        phase: Phase,
+        angular_frequency: AngularFrequency,
+        start_phase: StartPhase = 0.0,
+        ramp: Ramp = 0.0,
     ) -> Self:
         """Return a motion on an ellipse: amplitudes (a1, a2) [m/s²], `phase` φ0 of the second axis to the first."""
         a1, a2 = require_vector("amplitude", amplitude, 2, "m/s²")
@@ -93,11 +108,11 @@ class Harmonic(BaseMotion):
     def circular(
         cls,
         *,
-        acceleration: float,
-        angular_frequency: float,
-        sense: int = 1,
-        start_phase: float = 0.0,
-        ramp: float = 0.0,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        sense: Sense = 1,
+        start_phase: StartPhase = 0.0,
+        ramp: Ramp = 0.0,
     ) -> Self:
         """Return a motion on a circle with constant `acceleration` [m/s²]; `sense` +1 anticlockwise, −1 clockwise."""
         acceleration = require_finite("acceleration", acceleration, "m/s²")
@@ -113,11 +128,11 @@ class Harmonic(BaseMotion):
     def straight(
         cls,
         *,
-        acceleration: float,
-        angular_frequency: float,
-        direction: float = 0.0,
-        start_phase: float = 0.0,
-        ramp: float = 0.0,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        direction: Direction = 0.0,
+        start_phase: StartPhase = 0.0,
+        ramp: Ramp = 0.0,
     ) -> Self:
         """Return a motion along a horizontal line at `direction` [rad] from x, amplitude `acceleration` [m/s²]."""
         acceleration = require_finite("acceleration", acceleration, "m/s²")
@@ -132,7 +147,12 @@ class Harmonic(BaseMotion):
 
     @classmethod
     def vertical(
-        cls, *, acceleration: float, angular_frequency: float, start_phase: float = 0.0, ramp: float = 0.0
+        cls,
+        *,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        start_phase: StartPhase = 0.0,
+        ramp: Ramp = 0.0,
     ) -> Self:
         """Return a vertical motion of amplitude `acceleration` [m/s²]; add it to a horizontal one with `+`."""
         acceleration = require_finite("acceleration", acceleration, "m/s²")
@@ -147,12 +167,12 @@ class Harmonic(BaseMotion):
     def oblique(
         cls,
         *,
-        acceleration: float,
-        angular_frequency: float,
-        angle: float,
-        direction: float = 0.0,
-        start_phase: float = 0.0,
-        ramp: float = 0.0,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        angle: Annotated[float, Quantity(unit="rad", text="rise above the horizontal", slider=(-1.5, 1.5))],
+        direction: Direction = 0.0,
+        start_phase: StartPhase = 0.0,
+        ramp: Ramp = 0.0,
     ) -> Self:
         """Return a motion along a line that rises at `angle` [rad] towards `direction` [rad], as of a conveyor.
 
@@ -178,11 +198,11 @@ class Harmonic(BaseMotion):
     def displacement_amplitude(
         cls,
         *,
-        amplitude: Sequence[float],
-        phase: Sequence[float] = (0.0, 0.0, 0.0),
-        angular_frequency: float,
-        start_phase: float = 0.0,
-        ramp: float = 0.0,
+        amplitude: Amplitudes,
+        phase: Phases = (0.0, 0.0, 0.0),
+        angular_frequency: AngularFrequency,
+        start_phase: StartPhase = 0.0,
+        ramp: Ramp = 0.0,
     ) -> Self:
         """Return the motion whose displacement is d_i cos(Ωt + start_phase + φ_i), d = `amplitude` (x, y, z) [m]."""
         amplitude = require_vector("amplitude", amplitude, 3, "m")
@@ -199,7 +219,13 @@ class Harmonic(BaseMotion):
 
     @classmethod
     def stroke(
-        cls, *, stroke: float, frequency: float, direction: float = 0.0, start_phase: float = 0.0, ramp: float = 0.0
+        cls,
+        *,
+        stroke: Annotated[float, Quantity(unit="m", text="stroke from peak to peak", gt=0.0)],
+        frequency: Frequency,
+        direction: Direction = 0.0,
+        start_phase: StartPhase = 0.0,
+        ramp: Ramp = 0.0,
     ) -> Self:
         """Return a straight motion by its `stroke` from peak to peak [m], `frequency` [Hz] and `direction` [rad]."""
         half = require_positive("stroke", stroke, "m") / 2.0
@@ -212,7 +238,15 @@ class Harmonic(BaseMotion):
         )
 
     @classmethod
-    def orbit(cls, *, diameter: float, rpm: float, sense: int = 1, start_phase: float = 0.0, ramp: float = 0.0) -> Self:
+    def orbit(
+        cls,
+        *,
+        diameter: Annotated[float, Quantity(unit="m", text="diameter of the circle", gt=0.0)],
+        rpm: Annotated[float, Quantity(unit="1/min", text="turns a minute", gt=0.0)],
+        sense: Sense = 1,
+        start_phase: StartPhase = 0.0,
+        ramp: Ramp = 0.0,
+    ) -> Self:
         """Return a circular motion by the `diameter` of its path [m] and its turns a minute (an orbital shaker)."""
         radius = require_positive("diameter", diameter, "m") / 2.0
         return cls.displacement_amplitude(

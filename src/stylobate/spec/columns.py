@@ -1,7 +1,9 @@
 """Descriptions of columns, made from the declarations of their numbers and told apart by their `shape`."""
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import BeforeValidator
 
 from stylobate.column import SHAPES, Column
 from stylobate.quantities import parameters_of
@@ -45,7 +47,7 @@ def _with_shape(described: Any) -> Any:
 if TYPE_CHECKING:
     ColumnDescription = DescribedColumn
 else:
-    ColumnDescription = one_of(_BY_SHAPE, "shape", _with_shape)
+    ColumnDescription = Annotated[one_of(_BY_SHAPE.values(), "shape"), BeforeValidator(_with_shape)]
 
 ANY_COLUMN = Column.dimensionless(0.1)
 """Stands in for a column that cannot be built, so that mistakes in the model are told with it."""

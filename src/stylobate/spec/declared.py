@@ -1,11 +1,11 @@
 """Descriptions made from declared numbers: of each kind its name, what makes it, and the numbers that it takes."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Annotated, Any, Literal, TypeVar, Union
 
-from pydantic import BeforeValidator, Field, create_model
+from pydantic import Field, create_model
 
-from stylobate.quantities import parameters_of
+from stylobate.quantities import Parameter, parameters_of
 from stylobate.spec.description import Description
 
 _D = TypeVar("_D", bound=Description)
@@ -27,17 +27,20 @@ def descriptions_of(base: type[_D], tag: str, kinds: Mapping[str, Callable[..., 
     return {kind: _description_of(base, tag, kind, make) for kind, make in kinds.items()}
 
 
-def one_of(descriptions: Mapping[str, type[Description]], tag: str, with_kind: Callable[[Any], Any]) -> Any:
-    """Return the annotation of a field that holds one of the `descriptions`; `with_kind` adds a kind left out."""
-    union: Any = Union[tuple(descriptions.values())]  # noqa: UP007  the members are not known before
-    return Annotated[Annotated[union, Field(discriminator=tag)], BeforeValidator(with_kind)]
+def one_of(descriptions: Iterable[type[Description]], tag: str) -> Any:
+    """Return the annotation of a field that holds one of the `descriptions`, told apart by the key `tag`."""
+    union: Any = Union[tuple(descriptions)]  # noqa: UP007  the members are not known before
+    return Annotated[union, Field(discriminator=tag)]
 
 
 def _description_of(base: type[_D], tag: str, kind: str, make: Callable[..., Any]) -> type[_D]:
-    numbers = {
-        name: (one.annotation, ... if one.required else one.default) for name, one in parameters_of(make).items()
-    }
+    numbers = {name: (_type_of(one), ... if one.required else one.default) for name, one in parameters_of(make).items()}
     fields: dict[str, Any] = {tag: (Literal[kind], kind), **numbers}
     name = f"{kind.title().replace('_', '')}{base.__name__.removeprefix('Described')}"
     first_sentence = (make.__doc__ or "").partition("\n")[0]
     return create_model(name, __base__=base, __doc__=first_sentence, **fields)
+
+
+def _type_of(parameter: Parameter) -> Any:
+    count = parameter.quantity.components
+    return parameter.annotation if count == 1 else tuple[(float,) * count]  # type: ignore[misc]

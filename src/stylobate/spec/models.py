@@ -1,7 +1,9 @@
 """Descriptions of models, made from the declarations of their numbers and told apart by their `kind`."""
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import BeforeValidator
 
 from stylobate.column import Column
 from stylobate.errors import UnsupportedError
@@ -37,7 +39,7 @@ def _with_kind(described: Any) -> Any:
 if TYPE_CHECKING:
     ModelDescription = DescribedModel
 else:
-    ModelDescription = one_of(_BY_KIND, "kind", _with_kind)
+    ModelDescription = Annotated[one_of(DESCRIBED_MODELS, "kind"), BeforeValidator(_with_kind)]
 
 
 def described_model(kind: str, **values: Any) -> DescribedModel:

@@ -1,18 +1,30 @@
 """Descriptions of base motions, told apart by their `kind`."""
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import Annotated, Any, Literal, get_args
-
-from pydantic import Field
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from stylobate.errors import UnsupportedError
 from stylobate.motions import BaseMotion, Delayed, Harmonic, OneOf, Pulse, Record, Rotated, Scaled, Sum, Sweep
+from stylobate.motions.declared import HARMONIC_KINDS, PULSE_KINDS
 from stylobate.motions.pulses import AntisymmetricRicker, Gabor, MavroeidisPapageorgiou, Ricker, Sinusoid
+from stylobate.quantities import parameters_of
+from stylobate.spec.declared import descriptions_of, one_of
 from stylobate.spec.description import Description
 from stylobate.spec.records import DescribedRecord, RecordMotion
 
 
-class RestMotion(Description):
+class DescribedMotion(Description):
+    """A base motion by the numbers of its kind."""
+
+    kind: str
+
+    def build(self) -> BaseMotion:
+        """Return the motion."""
+        make: Callable[..., BaseMotion] = {**HARMONIC_KINDS, **PULSE_KINDS}[self.kind]
+        return make(**self.model_dump(exclude={"kind"}))
+
+
+class RestMotion(DescribedMotion):
     """A base at rest."""
 
     kind: Literal["rest"]
@@ -22,166 +34,15 @@ class RestMotion(Description):
         return Sum()
 
 
-class _HarmonicMotion(Description):
-    start_phase: float = 0.0
-    ramp: float = 0.0
-
-    def build(self) -> BaseMotion:
-        """Return the motion, by the constructor of Harmonic that has the name of the kind."""
-        values = self.model_dump()
-        motion = getattr(Harmonic, values.pop("kind"))(**values)
-        assert isinstance(motion, BaseMotion)
-        return motion
+class PulseMotion(DescribedMotion):
+    """A pulse by the numbers of its kind."""
 
 
-class CircularMotion(_HarmonicMotion):
-    """On a circle; acceleration in m/s², angular_frequency in rad/s."""
-
-    kind: Literal["circular"]
-    acceleration: float
-    angular_frequency: float
-    sense: int = 1
+HARMONICS = descriptions_of(DescribedMotion, "kind", HARMONIC_KINDS)
+_PULSES = descriptions_of(PulseMotion, "kind", PULSE_KINDS)
 
 
-class StraightMotion(_HarmonicMotion):
-    """Along a horizontal line at `direction` [rad]; acceleration in m/s², angular_frequency in rad/s."""
-
-    kind: Literal["straight"]
-    acceleration: float
-    angular_frequency: float
-    direction: float = 0.0
-
-
-class EllipticMotion(_HarmonicMotion):
-    """On an ellipse; amplitudes in m/s², phase of the second axis in rad."""
-
-    kind: Literal["elliptic"]
-    amplitude: tuple[float, float]
-    phase: float
-    angular_frequency: float
-
-
-class VerticalMotion(_HarmonicMotion):
-    """Up and down; acceleration in m/s², angular_frequency in rad/s."""
-
-    kind: Literal["vertical"]
-    acceleration: float
-    angular_frequency: float
-
-
-class ObliqueMotion(_HarmonicMotion):
-    """Along a line that rises at `angle` towards `direction` [rad]; horizontal acceleration in m/s²."""
-
-    kind: Literal["oblique"]
-    acceleration: float
-    angular_frequency: float
-    angle: float
-    direction: float = 0.0
-
-
-class DisplacementMotion(_HarmonicMotion):
-    """By the displacement amplitudes along x, y and z [m]."""
-
-    kind: Literal["displacement_amplitude"]
-    amplitude: tuple[float, float, float]
-    phase: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    angular_frequency: float
-
-
-class StrokeMotion(_HarmonicMotion):
-    """Along a line, by the stroke from peak to peak [m] and the frequency [Hz]."""
-
-    kind: Literal["stroke"]
-    stroke: float
-    frequency: float
-    direction: float = 0.0
-
-
-class OrbitMotion(_HarmonicMotion):
-    """On a circle, by its diameter [m] and turns a minute."""
-
-    kind: Literal["orbit"]
-    diameter: float
-    rpm: float
-    sense: int = 1
-
-
-class GeneralHarmonicMotion(_HarmonicMotion):
-    """Three components of one frequency, by acceleration [m/s²] and phase [rad]."""
-
-    kind: Literal["harmonic"]
-    amplitude: tuple[float, float, float]
-    phase: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    angular_frequency: float
-
-    def build(self) -> BaseMotion:
-        """Return the motion."""
-        return Harmonic(**self.model_dump(exclude={"kind"}))
-
-
-class _LineMotion(Description):
-    """A pulse or a sine sweep, which ends."""
-
-    direction: float = 0.0
-    start: float = 0.0
-    vertical: float = 0.0
-
-
-class _PulseMotion(_LineMotion):
-    def build(self) -> BaseMotion:
-        """Return the motion, by the constructor of Pulse that has the name of the kind."""
-        values = self.model_dump()
-        motion = getattr(Pulse, values.pop("kind"))(**values)
-        assert isinstance(motion, BaseMotion)
-        return motion
-
-
-class AccelerationPulseMotion(_PulseMotion):
-    """A pulse by its largest acceleration [m/s²] and angular_frequency [rad/s]."""
-
-    kind: Literal["half_sine", "half_cosine", "one_sine", "one_cosine", "ricker", "antisymmetric_ricker"]
-    acceleration: float
-    angular_frequency: float
-
-
-class SinusoidalPulseMotion(_PulseMotion):
-    """A part of a sinusoid of acceleration [m/s²], its phase in rad, its length in cycles."""
-
-    kind: Literal["sinusoidal"]
-    acceleration: float
-    angular_frequency: float
-    phase: float = 0.0
-    cycles: float = 1.0
-
-
-class VelocityPulseMotion(_PulseMotion):
-    """A forward, or forward-and-back, pulse by its velocity [m/s] and angular_frequency [rad/s]."""
-
-    kind: Literal["type_a", "type_b"]
-    velocity: float
-    angular_frequency: float
-
-
-class CyclicPulseMotion(_PulseMotion):
-    """A pulse of several cycles that ends where it began, by its velocity [m/s]."""
-
-    kind: Literal["type_c"]
-    velocity: float
-    angular_frequency: float
-    cycles: int = 1
-
-
-class VelocityWaveletMotion(_PulseMotion):
-    """A harmonic velocity [m/s] under a bell; frequency in Hz, phase in rad."""
-
-    kind: Literal["gabor", "mavroeidis_papageorgiou"]
-    velocity: float
-    frequency: float
-    phase: float = 0.0
-    oscillations: float
-
-
-class SweepMotion(_LineMotion):
+class SweepMotion(Description):
     """A sine sweep of constant acceleration [m/s²] or displacement [m] between two frequencies [Hz] in `length` [s]."""
 
     kind: Literal["linear_sweep", "logarithmic_sweep"]
@@ -190,6 +51,9 @@ class SweepMotion(_LineMotion):
     frequencies: tuple[float, float]
     length: float
     start_phase: float = 0.0
+    direction: float = 0.0
+    start: float = 0.0
+    vertical: float = 0.0
 
     def build(self) -> BaseMotion:
         """Return the motion."""
@@ -257,31 +121,24 @@ class DelayedMotion(Description):
         return self.motion.build().delayed(self.delay)
 
 
-MotionDescription = Annotated[
-    RestMotion
-    | CircularMotion
-    | StraightMotion
-    | EllipticMotion
-    | VerticalMotion
-    | ObliqueMotion
-    | DisplacementMotion
-    | StrokeMotion
-    | OrbitMotion
-    | GeneralHarmonicMotion
-    | AccelerationPulseMotion
-    | SinusoidalPulseMotion
-    | VelocityPulseMotion
-    | CyclicPulseMotion
-    | VelocityWaveletMotion
-    | SweepMotion
-    | RecordMotion
-    | OneOfMotion
-    | SumMotion
-    | ScaledMotion
-    | RotatedMotion
-    | DelayedMotion,
-    Field(discriminator="kind"),
-]
+if TYPE_CHECKING:
+    MotionDescription = DescribedMotion
+else:
+    MotionDescription = one_of(
+        (
+            RestMotion,
+            *HARMONICS.values(),
+            *_PULSES.values(),
+            SweepMotion,
+            RecordMotion,
+            OneOfMotion,
+            SumMotion,
+            ScaledMotion,
+            RotatedMotion,
+            DelayedMotion,
+        ),
+        "kind",
+    )
 
 _MEMBERS: tuple[type[Description], ...] = get_args(get_args(MotionDescription)[0])
 
@@ -290,10 +147,10 @@ def _kinds(members: Iterable[type[Description]]) -> tuple[str, ...]:
     return tuple(kind for one in members for kind in get_args(one.model_fields["kind"].annotation))
 
 
-ENDING = _kinds(one for one in _MEMBERS if issubclass(one, (_LineMotion, RecordMotion)))
+ENDING = _kinds(one for one in _MEMBERS if issubclass(one, (PulseMotion, SweepMotion, RecordMotion)))
 """Kinds of motions that end, so that a run needs no duration: pulses, sine sweeps and records."""
 
-PULSES = _kinds(one for one in _MEMBERS if issubclass(one, _LineMotion) and "angular_frequency" in one.model_fields)
+PULSES = _kinds(one for one in _MEMBERS if issubclass(one, PulseMotion) and "angular_frequency" in one.model_fields)
 """Kinds of pulses that have an angular frequency."""
 
 for _composite in (SumMotion, OneOfMotion, ScaledMotion, RotatedMotion, DelayedMotion):
@@ -319,14 +176,8 @@ def describe_motion(motion: BaseMotion) -> Description:
 
 
 def _described_harmonic(motion: Harmonic) -> Description:
-    return GeneralHarmonicMotion(
-        kind="harmonic",
-        amplitude=motion.amplitude,
-        phase=motion.phase,
-        angular_frequency=motion.angular_frequency,
-        start_phase=motion.start_phase,
-        ramp=motion.ramp,
-    )
+    numbers = {name: getattr(motion, name) for name in parameters_of(Harmonic)}
+    return HARMONICS["harmonic"](**{"kind": "harmonic", **numbers})
 
 
 def _described_record(motion: DescribedRecord) -> Description:
@@ -359,12 +210,12 @@ def _described_copy(motion: Scaled | Rotated | Delayed) -> Description:
             return DelayedMotion.parse({"kind": "delayed", "delay": motion.delay, **copied})
 
 
-_WAVEFORMS: dict[type, tuple[str, type[_PulseMotion]]] = {
-    Sinusoid: ("sinusoidal", SinusoidalPulseMotion),
-    Ricker: ("ricker", AccelerationPulseMotion),
-    AntisymmetricRicker: ("antisymmetric_ricker", AccelerationPulseMotion),
-    Gabor: ("gabor", VelocityWaveletMotion),
-    MavroeidisPapageorgiou: ("mavroeidis_papageorgiou", VelocityWaveletMotion),
+_WAVEFORMS: Mapping[type, str] = {
+    Sinusoid: "sinusoidal",
+    Ricker: "ricker",
+    AntisymmetricRicker: "antisymmetric_ricker",
+    Gabor: "gabor",
+    MavroeidisPapageorgiou: "mavroeidis_papageorgiou",
 }
 
 
@@ -373,10 +224,10 @@ def _described_pulse(pulse: Pulse) -> Description:
     if type(waveform) not in _WAVEFORMS:
         message = f"a waveform of class {type(waveform).__name__} has no description; results keep its repr only"
         raise UnsupportedError(message)
-    kind, description = _WAVEFORMS[type(waveform)]
-    own = [name for name in description.model_fields if name not in {"kind", *_LineMotion.model_fields}]
-    numbers = {name: getattr(waveform, name) for name in own}
-    return description.parse({"kind": kind, **numbers, **_line(pulse)})
+    kind = _WAVEFORMS[type(waveform)]
+    line = _line(pulse)
+    numbers = {name: getattr(waveform, name) for name in parameters_of(PULSE_KINDS[kind]) if name not in line}
+    return _PULSES[kind].parse({"kind": kind, **numbers, **line})
 
 
 def _described_sweep(sweep: Sweep) -> Description:

@@ -12,6 +12,7 @@ from stylobate.lab.schema.notation import Schema, listed, or_none, ref, table, t
 from stylobate.lab.sizes import HIGHEST_DEGREE, LEAST, MOST
 from stylobate.lab.starts import StartDescription
 from stylobate.models.declared import column_quantities, model_quantities
+from stylobate.motions.declared import motion_quantities
 from stylobate.motions.pulses.sinusoid import MOST_CYCLES
 from stylobate.motions.pulses.waveform import MOST_OSCILLATIONS
 from stylobate.quantities import Quantity
@@ -62,10 +63,13 @@ _TAGS = ("shape", "kind", "method")
 
 _POSITIVE = (
     *column_quantities(),
-    *("angular_frequency", "frequency", "rpm", "stroke", "diameter", "length", "cycles", "oscillations"),
-    *("duration", "periods", "rtol", "atol", "tilt_limit"),
+    *(name for name, quantity in motion_quantities().items() if quantity.gt == 0.0),
+    *("length", "duration", "periods", "rtol", "atol", "tilt_limit"),
 )
-_NOT_NEGATIVE = ("ramp", "start", "rest_energy", "clearance", "tail")
+_NOT_NEGATIVE = (
+    *(name for name, quantity in motion_quantities().items() if quantity.ge == 0.0),
+    *("rest_energy", "clearance", "tail"),
+)
 _OF_MOTIONS = ("sum", "one_of", "scaled", "rotated", "delayed")
 _HAS_RESPONSE = ("circular", "straight", "elliptic", "displacement_amplitude", "stroke", "orbit", "harmonic")
 

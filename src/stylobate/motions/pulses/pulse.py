@@ -5,6 +5,19 @@ from dataclasses import dataclass
 from typing import Self
 
 from stylobate.errors import require_finite, require_positive, require_whole
+from stylobate.motions.numbers import (
+    Acceleration,
+    AngularFrequency,
+    Cycles,
+    Direction,
+    Frequency,
+    Oscillations,
+    Phase,
+    Start,
+    Velocity,
+    VerticalRatio,
+    WholeCycles,
+)
 from stylobate.motions.pulses.along_line import AlongLine
 from stylobate.motions.pulses.closing_phase import closing_phase
 from stylobate.motions.pulses.gabor import Gabor
@@ -57,13 +70,13 @@ class Pulse(AlongLine):
     def sinusoidal(
         cls,
         *,
-        acceleration: float,
-        angular_frequency: float,
-        phase: float = 0.0,
-        cycles: float = 1.0,
-        direction: float = 0.0,
-        start: float = 0.0,
-        vertical: float = 0.0,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        phase: Phase = 0.0,
+        cycles: Cycles = 1.0,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
     ) -> Self:
         """Return the acceleration A sin(ωt + φ) over so many `cycles`; A [m/s²], ω [rad/s], φ = `phase` [rad]."""
         waveform = Sinusoid(acceleration=acceleration, angular_frequency=angular_frequency, phase=phase, cycles=cycles)
@@ -73,11 +86,11 @@ class Pulse(AlongLine):
     def half_sine(
         cls,
         *,
-        acceleration: float,
-        angular_frequency: float,
-        direction: float = 0.0,
-        start: float = 0.0,
-        vertical: float = 0.0,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
     ) -> Self:
         """Return half a sine of acceleration, A sin ωt over π/ω (Housner 1963); it leaves the velocity 2A/ω."""
         return cls.sinusoidal(
@@ -93,11 +106,11 @@ class Pulse(AlongLine):
     def half_cosine(
         cls,
         *,
-        acceleration: float,
-        angular_frequency: float,
-        direction: float = 0.0,
-        start: float = 0.0,
-        vertical: float = 0.0,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
     ) -> Self:
         """Return half a cosine of acceleration, A cos ωt over π/ω: half a sine of velocity; the base goes on 2A/ω²."""
         return cls.sinusoidal(
@@ -114,11 +127,11 @@ class Pulse(AlongLine):
     def one_sine(
         cls,
         *,
-        acceleration: float,
-        angular_frequency: float,
-        direction: float = 0.0,
-        start: float = 0.0,
-        vertical: float = 0.0,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
     ) -> Self:
         """Return one sine of acceleration, A sin ωt over 2π/ω (Zhang and Makris 2001); the base goes on 2πA/ω²."""
         return cls.sinusoidal(
@@ -133,11 +146,11 @@ class Pulse(AlongLine):
     def one_cosine(
         cls,
         *,
-        acceleration: float,
-        angular_frequency: float,
-        direction: float = 0.0,
-        start: float = 0.0,
-        vertical: float = 0.0,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
     ) -> Self:
         """Return one cosine of acceleration, A cos ωt over 2π/ω (Zhang and Makris 2001): forward and back."""
         return cls.sinusoidal(
@@ -153,11 +166,11 @@ class Pulse(AlongLine):
     def type_a(
         cls,
         *,
-        velocity: float,
-        angular_frequency: float,
-        direction: float = 0.0,
-        start: float = 0.0,
-        vertical: float = 0.0,
+        velocity: Velocity,
+        angular_frequency: AngularFrequency,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
     ) -> Self:
         """Return the forward pulse of velocity ½V(1 − cos ωt), one sine of acceleration ½ωV (Makris 1997)."""
         frequency = require_positive("angular_frequency", angular_frequency, "rad/s")
@@ -173,11 +186,11 @@ class Pulse(AlongLine):
     def type_b(
         cls,
         *,
-        velocity: float,
-        angular_frequency: float,
-        direction: float = 0.0,
-        start: float = 0.0,
-        vertical: float = 0.0,
+        velocity: Velocity,
+        angular_frequency: AngularFrequency,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
     ) -> Self:
         """Return the forward-and-back pulse of velocity V sin ωt, one cosine of acceleration ωV (Makris 1997)."""
         frequency = require_positive("angular_frequency", angular_frequency, "rad/s")
@@ -193,12 +206,12 @@ class Pulse(AlongLine):
     def type_c(
         cls,
         *,
-        velocity: float,
-        angular_frequency: float,
-        cycles: int = 1,
-        direction: float = 0.0,
-        start: float = 0.0,
-        vertical: float = 0.0,
+        velocity: Velocity,
+        angular_frequency: AngularFrequency,
+        cycles: WholeCycles = 1,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
     ) -> Self:
         """Return the pulse Cₙ of velocity V[sin(ωt + φ) − sin φ], n = `cycles` ≥ 1, over (n + ½ − φ/π) periods.
 
@@ -222,11 +235,11 @@ class Pulse(AlongLine):
     def ricker(
         cls,
         *,
-        acceleration: float,
-        angular_frequency: float,
-        direction: float = 0.0,
-        start: float = 0.0,
-        vertical: float = 0.0,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
     ) -> Self:
         """Return a symmetric Ricker wavelet of this peak [m/s²], see `stylobate.motions.pulses.Ricker`."""
         waveform = Ricker(acceleration=acceleration, angular_frequency=angular_frequency)
@@ -236,11 +249,11 @@ class Pulse(AlongLine):
     def antisymmetric_ricker(
         cls,
         *,
-        acceleration: float,
-        angular_frequency: float,
-        direction: float = 0.0,
-        start: float = 0.0,
-        vertical: float = 0.0,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
     ) -> Self:
         """Return an antisymmetric one, see `stylobate.motions.pulses.AntisymmetricRicker`."""
         waveform = AntisymmetricRicker(acceleration=acceleration, angular_frequency=angular_frequency)
@@ -250,13 +263,13 @@ class Pulse(AlongLine):
     def gabor(
         cls,
         *,
-        velocity: float,
-        frequency: float,
-        phase: float = 0.0,
-        oscillations: float,
-        direction: float = 0.0,
-        start: float = 0.0,
-        vertical: float = 0.0,
+        velocity: Velocity,
+        frequency: Frequency,
+        phase: Phase = 0.0,
+        oscillations: Oscillations,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
     ) -> Self:
         """Return a Gabor wavelet of `velocity` [m/s] and `frequency` [Hz], see `stylobate.motions.pulses.Gabor`."""
         waveform = Gabor(velocity=velocity, frequency=frequency, phase=phase, oscillations=oscillations)
@@ -266,13 +279,13 @@ class Pulse(AlongLine):
     def mavroeidis_papageorgiou(
         cls,
         *,
-        velocity: float,
-        frequency: float,
-        phase: float = 0.0,
-        oscillations: float,
-        direction: float = 0.0,
-        start: float = 0.0,
-        vertical: float = 0.0,
+        velocity: Velocity,
+        frequency: Frequency,
+        phase: Phase = 0.0,
+        oscillations: Oscillations,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
     ) -> Self:
         """Return a near-fault pulse by its `velocity` A [m/s], `frequency` f [Hz], `phase` ν and `oscillations` γ > 1.
 

@@ -1,0 +1,25 @@
+"""The numbers by which base motions are described."""
+
+from collections.abc import Sequence
+from typing import Annotated
+
+from stylobate.quantities import Quantity
+
+Acceleration = Annotated[float, Quantity(symbol="a", unit="m/s²", text="amplitude of the acceleration")]
+AngularFrequency = Annotated[float, Quantity(symbol="Ω", unit="rad/s", text="angular frequency", gt=0.0)]
+Frequency = Annotated[float, Quantity(symbol="f", unit="Hz", text="frequency", gt=0.0)]
+Velocity = Annotated[float, Quantity(symbol="v", unit="m/s", text="amplitude of the velocity")]
+Phase = Annotated[float, Quantity(unit="rad", text="phase", slider=(-3.142, 3.142))]
+StartPhase = Annotated[float, Quantity(unit="rad", text="phase at the start", slider=(0.0, 6.283))]
+Ramp = Annotated[float, Quantity(unit="s", text="time in which it grows to its amplitude", ge=0.0)]
+Direction = Annotated[
+    float, Quantity(unit="rad", text="direction in the plane, from x towards y", slider=(-3.142, 3.142))
+]
+Sense = Annotated[int, Quantity(text="+1 anticlockwise, −1 clockwise")]
+Start = Annotated[float, Quantity(unit="s", text="when it begins", ge=0.0)]
+VerticalRatio = Annotated[float, Quantity(text="vertical acceleration over the horizontal one", slider=(-1.0, 1.0))]
+Cycles = Annotated[float, Quantity(text="cycles", gt=0.0, slider=(1.0, 6.0))]
+WholeCycles = Annotated[int, Quantity(text="cycles", ge=1.0, slider=(1.0, 6.0))]
+Oscillations = Annotated[float, Quantity(text="oscillations under the bell", gt=0.0, slider=(1.0, 6.0))]
+Amplitudes = Annotated[Sequence[float], Quantity(text="amplitudes along the axes", components=3)]
+Phases = Annotated[Sequence[float], Quantity(unit="rad", text="phases of the components", components=3)]
