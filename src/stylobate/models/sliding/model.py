@@ -98,7 +98,7 @@ class Sliding(Model):
             unit="rad",
             text="slope of the base",
             ge=0.0,
-            le=math.nextafter(0.5 * math.pi, 0.0),
+            le=1.57,
             note="with incline_direction for the way down",
             slider=(0.0, 0.4),
         ),
