@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from stylobate.motions import BaseMotion, Harmonic, OneOf, Pulse, Record, Sweep, records
     from stylobate.motions.records import read_record, read_records, sample_record
     from stylobate.plots import animate, plot
+    from stylobate.quantities import Quantity
     from stylobate.results import Event, OutcomeRules, Response, load
 
 __all__ = [
@@ -38,6 +39,7 @@ __all__ = [
     "OutcomeRules",
     "PlanarRocking",
     "Pulse",
+    "Quantity",
     "Record",
     "Response",
     "Rolling",
@@ -80,6 +82,7 @@ _HOMES = {
     "PlanarRocking": "models",
     "OneOf": "motions",
     "Pulse": "motions",
+    "Quantity": "quantities",
     "Record": "motions",
     "Response": "results",
     "Rolling": "models",
