@@ -64,7 +64,9 @@ def _aliases() -> dict[str, str]:
 
 
 # A declared number is its type and what it is; the docstring beside it says the latter.
-_DECLARED = re.compile(r"~?(?:typing\.)?Annotated\[((?:~?typing\.)?Literal\[[^\]]*\]|[^,\[\]]+), [^\]]*\]")
+_DECLARED = re.compile(
+    r"~?(?:\w+\.)*Annotated\[([^\[\]]*?(?:\[[^\[\]]*\])?), ~?stylobate\.quantities\.Quantity\((?:[^()]|\([^()]*\))*\)\]"
+)
 
 
 def setup(app: Any) -> None:

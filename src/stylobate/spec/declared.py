@@ -38,7 +38,7 @@ def _description_of(base: type[_D], tag: str, kind: str, make: Callable[..., Any
     fields: dict[str, Any] = {tag: (Literal[kind], kind), **numbers}
     name = f"{kind.title().replace('_', '')}{base.__name__.removeprefix('Described')}"
     first_sentence = (make.__doc__ or "").partition("\n")[0]
-    return create_model(name, __base__=base, __doc__=first_sentence, **fields)
+    return create_model(name, __base__=base, __doc__=first_sentence, __module__=base.__module__, **fields)
 
 
 def _type_of(parameter: Parameter) -> Any:
