@@ -93,7 +93,7 @@ def studies() -> Iterator[tuple[str, Callable[[], xr.Dataset]]]:
     yield "exact response", partial(sb.studies.exact_response, SLENDER, CIRCLE, angular_frequency=(4.0, 9.0))
     yield (
         "slow sweep",
-        partial(sb.studies.slow_sweep, SLENDER, CIRCLE, values=np.linspace(4.0, 7.0, 7), periods_each=20, **steady),
+        partial(sb.studies.slow_sweep, SLENDER, CIRCLE, values=np.linspace(4.0, 7.0, 7), periods_each=60, **steady),
     )
     yield "section", partial(sb.studies.poincare_section, SLENDER, CIRCLE, periods=60, skip=20, **steady)
     yield "bands", partial(sb.studies.overturning_bands, WOBBLING, record, scales=scales, tail=5.0)
