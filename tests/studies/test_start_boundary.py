@@ -113,7 +113,7 @@ def test_its_figure_draws_bold_what_happens_first():
         ({"model": sb.Rolling(COLUMN)}, UnsupportedError, "model rolling does not slide"),
         ({"slenderness": []}, ParameterError, "slenderness must have at least one value"),
         ({"slenderness": -0.1}, ParameterError, "slenderness"),
-        ({"incline": 2.0}, ParameterError, "incline must be zero or positive, at most"),
+        ({"incline": 2.0}, ParameterError, "incline must lie between 0 and 1.57"),
         ({"vertical_phase": math.nan}, ParameterError, "vertical_phase"),
     ],
 )
