@@ -12,7 +12,8 @@ def test_a_request_to_end_interrupts_the_command(monkeypatch):
     before = signal.getsignal(signal.SIGTERM)
     monkeypatch.setattr(cli, "run", lambda _: signal.raise_signal(signal.SIGTERM))
     try:
-        with pytest.raises(KeyboardInterrupt):
+        with pytest.raises(SystemExit) as ended:
             cli.main()
+        assert ended.value.code == cli.INTERRUPTED
     finally:
         signal.signal(signal.SIGTERM, before)
