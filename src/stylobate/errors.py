@@ -51,7 +51,15 @@ class ParameterError(StylobateError, ValueError):
     """An argument no column, motion or run can have; the message names it, its value and the remedy."""
 
 
-class DescriptionError(ParameterError):
+class _WithProblems(ParameterError):
+    """Several mistakes at once."""
+
+    def __init__(self, problems: Sequence[str]) -> None:
+        self.problems = tuple(problems)
+        super().__init__("\n".join(self.problems))
+
+
+class DescriptionError(_WithProblems):
     """A TOML or JSON description with mistakes.
 
     Attributes
@@ -60,12 +68,8 @@ class DescriptionError(ParameterError):
         One line for each mistake.
     """
 
-    def __init__(self, problems: Sequence[str]) -> None:
-        self.problems = tuple(problems)
-        super().__init__("\n".join(self.problems))
 
-
-class ModelError(ParameterError):
+class ModelError(_WithProblems):
     """A model of a user's own whose members contradict each other or its equations.
 
     Attributes
@@ -73,10 +77,6 @@ class ModelError(ParameterError):
     problems
         One line for each mistake.
     """
-
-    def __init__(self, problems: Sequence[str]) -> None:
-        self.problems = tuple(problems)
-        super().__init__("\n".join(self.problems))
 
 
 class UnsupportedError(StylobateError):
@@ -140,7 +140,7 @@ class Outcome(Enum):
 
 def require_finite(name: str, value: float, unit: str = "") -> float:
     """Return `value` as a float, or raise ParameterError unless it is a finite real number."""
-    number = _as_float(name, value)
+    number = as_float(name, value)
     if not math.isfinite(number):
         message = f"{name} must be finite, got {_quantity(value, unit)}"
         raise ParameterError(message)
@@ -150,7 +150,7 @@ def require_finite(name: str, value: float, unit: str = "") -> float:
 
 def require_positive(name: str, value: float, unit: str = "") -> float:
     """Return `value` as a float, or raise ParameterError unless it is finite and above zero."""
-    number = _as_float(name, value)
+    number = as_float(name, value)
     if not (math.isfinite(number) and number > 0.0):
         message = f"{name} must be positive, got {_quantity(value, unit)}"
         raise ParameterError(message)
@@ -160,7 +160,7 @@ def require_positive(name: str, value: float, unit: str = "") -> float:
 
 def require_not_negative(name: str, value: float, unit: str = "") -> float:
     """Return `value` as a float, or raise ParameterError unless it is finite and zero or above."""
-    number = _as_float(name, value)
+    number = as_float(name, value)
     if not (math.isfinite(number) and number >= 0.0):
         message = f"{name} must be zero or positive, got {_quantity(value, unit)}"
         raise ParameterError(message)
@@ -182,7 +182,7 @@ def require_vector(name: str, value: Sequence[float], length: int, unit: str = "
 
 def require_whole(name: str, value: int, *, least: int, most: Most = MOST_NUMBERS) -> int:
     """Return `value` as an int, or raise ParameterError unless it is a whole number from `least` to `most`."""
-    number = _as_float(name, value)
+    number = as_float(name, value)
     if not (number >= least and number.is_integer()):
         message = f"{name} must be a whole number of at least {least}, got {value!r}"
         raise ParameterError(message)
@@ -203,7 +203,8 @@ def require_size(name: str, number: float, unit: str = "", *, zero: bool = True)
     raise ParameterError(message)
 
 
-def _as_float(name: str, value: float) -> float:
+def as_float(name: str, value: Any) -> float:
+    """Return `value` as a float, or raise ParameterError unless it is a real number; NaN and infinities are."""
     try:
         # A string that spells a number is a mistake all the same.
         return float(value + 0.0)

@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal, get_args, get_origin
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.errors import LARGEST, ParameterError, require_size
+from stylobate.errors import LARGEST, ParameterError, as_float, require_size
 
 _CF_POWERS = str.maketrans({"²": "2", "³": "3"})
 
@@ -95,7 +95,7 @@ class Quantity:
         ParameterError
             If it is no real number, is outside the bounds, or is too large to compute with.
         """
-        number = _as_float(name, value)
+        number = as_float(name, value)
         above = (self.ge is None or number >= self.ge) and (self.gt is None or number > self.gt)
         if not (above and (self.le is None or number <= self.le) and math.isfinite(number)):
             demand = f"{self.demand}, {self.note}" if self.note else self.demand
@@ -175,14 +175,6 @@ def check_declared(made: Any) -> None:
     """
     for name, parameter in parameters_of(made.__class__).items():
         object.__setattr__(made, name, parameter.checked(getattr(made, name)))
-
-
-def _as_float(name: str, value: Any) -> float:
-    try:
-        return float(value + 0.0)  # a string that spells a number is a mistake
-    except (TypeError, ValueError, OverflowError):
-        message = f"{name} must be a real number, got {value!r}"
-        raise ParameterError(message) from None
 
 
 def _declared(annotation: Any) -> Quantity | None:

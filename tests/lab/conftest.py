@@ -7,6 +7,7 @@ from contextlib import contextmanager
 
 import httpx
 import pytest
+from tests.lab.browser import Watched, new_page, open_browser, shown
 from tests.lab.conformity import conforms
 
 from stylobate.lab import Limits, create_app
@@ -45,3 +46,25 @@ def address() -> Iterator[str]:
 def client(address) -> Iterator[httpx.Client]:
     with client_of(address) as found:
         yield found
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with open_browser() as found:
+        yield found
+
+
+@pytest.fixture
+def watched(browser, address):
+    context = browser.new_context(viewport={"width": 1280, "height": 860})
+    found = Watched(new_page(context), address)
+    found.page.goto(f"{address}/")
+    shown(found.page)
+    yield found
+    context.close()
+    assert found.foreign == []
+
+
+@pytest.fixture
+def page(watched):
+    return watched.page

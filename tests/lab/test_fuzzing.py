@@ -52,6 +52,8 @@ def operations(least, most):
     return {found.ok().label: found.ok() for found in schemathesis.openapi.from_dict(document).get_all_operations()}
 
 
+# What computes: a run, or the orbit on which a start lies.
+COMPUTING = ("POST /api/simulate", "POST /api/start")
 OF_ANY_SIZE, OF_RUNS = operations(LEAST, MOST), operations(LEAST_OF_A_RUN, MOST_OF_A_RUN)
 
 
@@ -86,25 +88,27 @@ def fuzz(client, operation, examples):
     sent()
 
 
-@pytest.mark.parametrize("label", [label for label in OF_ANY_SIZE if label != "POST /api/simulate"])
+@pytest.mark.parametrize("label", [label for label in OF_ANY_SIZE if label not in COMPUTING])
 def test_what_the_schema_allows_is_answered_as_it_says(client, label):
     fuzz(client, OF_ANY_SIZE[label], 100)
 
 
-def test_runs_that_the_schema_allows_are_answered_as_it_says(client):
-    fuzz(client, OF_RUNS["POST /api/simulate"], 40)
+@pytest.mark.parametrize("label", COMPUTING)
+def test_runs_that_the_schema_allows_are_answered_as_it_says(client, label):
+    fuzz(client, OF_RUNS[label], 40)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("label", [label for label in OF_ANY_SIZE if label != "POST /api/simulate"])
+@pytest.mark.parametrize("label", [label for label in OF_ANY_SIZE if label not in COMPUTING])
 def test_much_that_the_schema_allows_is_answered_as_it_says(client, label):
     fuzz(client, OF_ANY_SIZE[label], 1000)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("label", ["any size", "of runs"])
-def test_many_runs_that_the_schema_allows_are_answered_as_it_says(client, label):
-    fuzz(client, {"any size": OF_ANY_SIZE, "of runs": OF_RUNS}[label]["POST /api/simulate"], 300)
+@pytest.mark.parametrize("label", COMPUTING)
+@pytest.mark.parametrize("operations", [OF_ANY_SIZE, OF_RUNS], ids=["any size", "of runs"])
+def test_many_runs_that_the_schema_allows_are_answered_as_it_says(client, operations, label):
+    fuzz(client, operations[label], 300)
 
 
 # Near misses: what can be sent, with one value in it another.

@@ -9,7 +9,7 @@ import sys
 
 import numpy as np
 import pytest
-from tests.lab.browser import Watched, new_page, open_browser, shown
+from tests.lab.browser import new_page, shown
 
 import stylobate as sb
 from stylobate.lab.presets import presets
@@ -20,23 +20,6 @@ from stylobate.spec import SimulationDescription
 PRESETS = {preset.identity: preset for preset in presets()}
 # What the page reads back from the drawn column: doubles, interpolated on samples of seven digits.
 DRAWN = 2e-6
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with open_browser() as found:
-        yield found
-
-
-@pytest.fixture
-def watched(browser, address):
-    context = browser.new_context(viewport={"width": 1280, "height": 860})
-    found = Watched(new_page(context), address)
-    found.page.goto(f"{address}/")
-    shown(found.page)
-    yield found
-    context.close()
-    assert found.foreign == []
 
 
 def moved(page, name, value):

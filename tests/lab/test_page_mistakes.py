@@ -3,27 +3,10 @@
 import re
 
 import pytest
-from tests.lab.browser import Watched, new_page, open_browser, shown
+from tests.lab.browser import shown
 
 STATE = "window.stylobate.state()"
 MAP = "window.stylobate.laboratory.plane('map')"
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with open_browser() as found:
-        yield found
-
-
-@pytest.fixture
-def page(browser, address):
-    context = browser.new_context(viewport={"width": 1280, "height": 860})
-    watched = Watched(new_page(context), address)
-    watched.page.goto(f"{address}/")
-    shown(watched.page)
-    yield watched.page
-    context.close()
-    assert watched.foreign == []
 
 
 def field_of(page, name):

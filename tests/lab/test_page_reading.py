@@ -4,30 +4,13 @@ import math
 import re
 
 import pytest
-from tests.lab.browser import Watched, new_page, open_browser, shown
+from tests.lab.browser import shown
 
 from stylobate.lab.presets import presets
 
 PRESETS = {preset.identity: preset for preset in presets()}
 STATE = "window.stylobate.state()"
 ANSWER = "window.stylobate.laboratory.answer"
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with open_browser() as found:
-        yield found
-
-
-@pytest.fixture
-def page(browser, address):
-    context = browser.new_context(viewport={"width": 1280, "height": 860})
-    watched = Watched(new_page(context), address)
-    watched.page.goto(f"{address}/")
-    shown(watched.page)
-    yield watched.page
-    context.close()
-    assert watched.foreign == []
 
 
 def test_the_note_under_the_curves_names_the_model_that_they_are_of(page):
