@@ -43,8 +43,8 @@ def models(rng: np.random.Generator) -> Iterator[tuple[str, sb.Model]]:
         damping, loss = rng.uniform(0.0, 0.3), rng.uniform(0.7, 1.0)
         column = sb.Column.solid(radius=rng.uniform(0.05, 0.3), height=rng.uniform(0.8, 2.5), density=1000.0)
         yield "slender", sb.Slender(column, damping=damping)
-        yield "slender rolling", sb.SlenderRolling(column, damping=damping, spin_friction=damping)
-        yield "rolling", sb.Rolling(column, damping=damping, spin_friction=damping, restitution=loss)
+        yield "slender rolling", sb.SlenderRolling(column, damping=damping, spin_damping=damping)
+        yield "rolling", sb.Rolling(column, damping=damping, spin_damping=damping, restitution=loss)
         yield "wobbling", sb.Wobbling(column, rolling_resistance=0.02 * damping, restitution=loss)
         yield "planar", sb.PlanarRocking(column, restitution=loss)
         yield "sliding", sb.Sliding(column, friction_coefficient=rng.uniform(0.2, 0.9), damping=damping)
@@ -57,7 +57,7 @@ def motions(rng: np.random.Generator) -> Iterator[sb.BaseMotion]:
         acceleration, frequency = rng.uniform(0.5, 5.0), rng.uniform(2.0, 15.0)
         yield sb.Harmonic.straight(acceleration=acceleration, angular_frequency=frequency)
         yield sb.Pulse.one_sine(acceleration=2.0 * acceleration, angular_frequency=0.5 * frequency)
-        yield sb.Sweep(amplitude=acceleration, frequencies=(2.0, 12.0), length=6.0)
+        yield sb.SineSweep(amplitude=acceleration, frequencies=(2.0, 12.0), length=6.0)
         yield record.scaled(rng.uniform(0.5, 2.5))
         yield sb.Harmonic.circular(acceleration=acceleration, angular_frequency=frequency)
 
@@ -85,7 +85,7 @@ def studies() -> Iterator[tuple[str, Callable[[], xr.Dataset]]]:
     steady = {"tilt": (0.04, 0.0), "tilt_rate": (0.0, 0.2)}
     scales = np.linspace(0.4, 2.0, 9)
     yield "map", partial(sb.studies.overturning_map, SLENDER, CIRCLE, over=AXES, periods=30)
-    yield "map with contact", partial(sb.studies.contact_map, SLIDING, CIRCLE, over=AXES, periods=6)
+    yield "map with contact", partial(sb.conveying.contact_map, SLIDING, CIRCLE, over=AXES, periods=6)
     yield "basins", partial(sb.studies.basins, SLENDER, CIRCLE, over=STARTS, periods=60)
     yield "integrity", partial(sb.studies.integrity, SLENDER, CIRCLE, over=STARTS, periods=30)
     yield "attractors", partial(sb.studies.attractors, SLENDER, CIRCLE, over=BOX, count=64, periods=60)
@@ -96,14 +96,14 @@ def studies() -> Iterator[tuple[str, Callable[[], xr.Dataset]]]:
         partial(sb.studies.slow_sweep, SLENDER, CIRCLE, values=np.linspace(4.0, 7.0, 7), periods_each=60, **steady),
     )
     yield "section", partial(sb.studies.poincare_section, SLENDER, CIRCLE, periods=60, skip=20, **steady)
-    yield "bands", partial(sb.studies.overturning_bands, WOBBLING, record, scales=scales, tail=5.0)
+    yield "bands", partial(sb.earthquakes.overturning_bands, WOBBLING, record, scales=scales, tail=5.0)
     yield (
         "incremental analysis",
         partial(
-            sb.studies.incremental_dynamic_analysis, WOBBLING, record, scales=scales, rotations=(0.0, 0.5), tail=5.0
+            sb.earthquakes.incremental_dynamic_analysis, WOBBLING, record, scales=scales, rotations=(0.0, 0.5), tail=5.0
         ),
     )
-    yield "models side by side", partial(sb.studies.ladder, COLUMN, CIRCLE, tilt=(0.02, 0.01), duration=5.0)
+    yield "models side by side", partial(sb.studies.model_hierarchy, COLUMN, CIRCLE, tilt=(0.02, 0.01), duration=5.0)
 
 
 def digests() -> dict[str, str]:

@@ -8,7 +8,7 @@ import pytest
 from stylobate import errors
 from stylobate.errors import (
     LARGEST_SEED,
-    DescriptionError,
+    ConfigError,
     FileError,
     Outcome,
     ParameterError,
@@ -25,14 +25,14 @@ from stylobate.errors import (
 def test_every_exception_is_a_stylobate_error_and_bad_input_a_value_error():
     assert issubclass(ParameterError, StylobateError)
     assert issubclass(ParameterError, ValueError)
-    assert issubclass(DescriptionError, ParameterError)
+    assert issubclass(ConfigError, ParameterError)
     assert issubclass(UnsupportedError, StylobateError)
     assert issubclass(FileError, StylobateError)
     assert not issubclass(FileError, ValueError)
 
 
 def test_a_description_error_has_one_line_for_each_problem():
-    error = DescriptionError(["column.radius is missing", "duration is missing"])
+    error = ConfigError(["column.radius is missing", "duration is missing"])
     assert error.problems == ("column.radius is missing", "duration is missing")
     assert str(error).splitlines() == list(error.problems)
 

@@ -20,7 +20,7 @@ from .one_core import use_one_core
 _FOLDER = Path(__file__).parents[2] / "docs" / "_static" / "benchmarks"
 _PERIODS, _SINGLE = 20.0, 24
 _COLUMN = sb.Column.dimensionless(slenderness=0.1)
-_FRICTION = {"damping": 0.1, "spin_friction": 0.1}
+_FRICTION = {"damping": 0.1, "spin_damping": 0.1}
 
 
 @dataclass(frozen=True, slots=True)

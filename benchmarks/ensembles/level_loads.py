@@ -43,13 +43,13 @@ def all_levels() -> dict[str, Level]:
         "slender": Level("`Slender`", slender, {"rolling": rolling, "mix": mix}),
         "slender rolling": Level(
             "`SlenderRolling`",
-            sb.SlenderRolling(COLUMN, damping=ETA, spin_friction=ZETA),
+            sb.SlenderRolling(COLUMN, damping=ETA, spin_damping=ZETA),
             {"rolling": _slender_rolling, "mix": _mix_with_spin},
         ),
         "wobbling": Level("`Wobbling`", sb.Wobbling(COLUMN, damping=ETA), {"rolling": _wobbling, "mix": mix}),
         "rolling": Level(
             "`Rolling`",
-            sb.Rolling(COLUMN, damping=ETA, spin_friction=ZETA),
+            sb.Rolling(COLUMN, damping=ETA, spin_damping=ZETA),
             {"rolling": _rolling, "mix": _mix_with_spin},
         ),
         line: Level("`Slender`, on a line", slender, {"rolling": rocking, "mix": mix_on_a_line}, line),

@@ -26,7 +26,7 @@ def rolling() -> sb.plots.Animation:
     """A slim column on a base that moves in a circle rolls round its rim, and turns the other way about its axis."""
     column = sb.Column.solid(radius=0.1, height=1.6, density=2700.0)
     circle = sb.Harmonic.circular(acceleration=0.9, angular_frequency=5.5)
-    model = sb.Rolling(column, damping=0.1, spin_friction=0.1)
+    model = sb.Rolling(column, damping=0.1, spin_damping=0.1)
     run = sb.simulate(model, circle, tilt=(0.05, 0.0), tilt_rate=(0.0, 0.25), duration=8.0)
     return sb.animate(run, **SHOWN)
 

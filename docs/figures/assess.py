@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 import stylobate as sb
-from stylobate.plots.assessment.figures import margins_figure, robustness_figure
-from stylobate.plots.assessment.record_figures import spectra_figure
-from stylobate.plots.assessment.summary import summary_text, verdict_table
+from stylobate.earthquakes.figures.assessment.figures import margins_figure, robustness_figure
+from stylobate.earthquakes.figures.assessment.record_figures import spectra_figure
+from stylobate.earthquakes.figures.assessment.summary import summary_text, verdict_table
 from stylobate.results import Assessment
 
 ROOT = Path(__file__).parents[2]
@@ -26,8 +26,8 @@ _LINE = 108
 
 def assessed(store: Path) -> Assessment:
     """Return the assessment of the example."""
-    setup = sb.spec.AssessDescription.parse(sb.spec.read_description(STUDY)).build()
-    return sb.studies.assess(setup.columns, setup.records, **setup.options, store=store)
+    setup = sb.earthquakes.config.AssessConfig.parse(sb.config.read_config(STUDY)).build()
+    return sb.earthquakes.assess(setup.columns, setup.records, **setup.options, store=store)
 
 
 def head(found: Assessment, spectra: Figure) -> Figure:

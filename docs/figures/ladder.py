@@ -28,11 +28,11 @@ def circle(c: float, theta: float) -> sb.Harmonic:
 def levels() -> Figure:
     """Histories of one case by all levels, and how they come together as c falls."""
     column = sb.Column.dimensionless(0.2)
-    found = sb.studies.ladder(
+    found = sb.studies.model_hierarchy(
         column,
         circle(0.2, 1.8),
         damping=ETA,
-        spin_friction=ZETA,
+        spin_damping=ZETA,
         tilt=(0.08, 0.0),
         tilt_rate=(0.0, 0.14),
         duration=40.0,
@@ -50,7 +50,7 @@ def twist() -> Figure:
     column = sb.Column.dimensionless(0.1)
     found = sb.studies.outcome_differences(
         sb.Wobbling(column, damping=ETA),
-        sb.Rolling(column, damping=ETA, spin_friction=ZETA),
+        sb.Rolling(column, damping=ETA, spin_damping=ZETA),
         circle(0.1, 1.0),
         over={"angular_frequency": np.linspace(0.5, 6.0, 150), "acceleration": np.linspace(0.05, 0.6, 120)},
         periods=60.0,
@@ -67,7 +67,7 @@ def path() -> Figure:
     """A column that the base spins up."""
     column = sb.Column.solid(radius=0.5, height=5.0, density=2700.0)
     motion = sb.Harmonic.circular(acceleration=1.27, angular_frequency=3.0)
-    model = sb.Rolling(column, damping=ETA, spin_friction=0.5 * ZETA)
+    model = sb.Rolling(column, damping=ETA, spin_damping=0.5 * ZETA)
     run = sb.simulate(model, motion, tilt=(0.08, 0.0), tilt_rate=(0.0, 0.25), duration=6.0)
     print(run, run.data["spin"][-1].item())
     return sb.plots.plot_column_path(run)
@@ -127,7 +127,7 @@ def draw_run(axes: Axes, level: str, theta: float, c: float) -> None:
     if level == "wobbling":
         model, found = sb.Wobbling(column, damping=ETA), sb.theory.wobbling_rolling(theta, 0.65 * c, c=c, eta=ETA)
     else:
-        model = sb.Rolling(column, damping=ETA, spin_friction=ZETA)
+        model = sb.Rolling(column, damping=ETA, spin_damping=ZETA)
         found = sb.theory.full_rolling(theta, 0.65 * c, c=c, eta=ETA, zeta=ZETA)
     branch = int(np.nanargmax(found.stable))
     if not found.stable[branch]:
@@ -158,7 +158,7 @@ def dissipation() -> Figure:
     print(f"e {e:.6f}, equivalent friction {eta:.5f}")
     models = {
         "Housner's loss at the upright": (sb.Rolling(column, restitution=e), SKY, 2.6),
-        "viscous equivalent": (sb.Rolling(column, damping=eta, spin_friction=eta), BLUE, 1.1),
+        "viscous equivalent": (sb.Rolling(column, damping=eta, spin_damping=eta), BLUE, 1.1),
         "rolling resistance 0.02 r": (sb.Rolling(column, rolling_resistance=0.02), VERMILION, 1.1),
     }
     panels = figure.subplots(1, 2, sharey=True)

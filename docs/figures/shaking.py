@@ -29,17 +29,17 @@ def quakes(count: int) -> dict[str, sb.Record]:
 
 def analysis() -> Figure:
     """Twelve records at twenty scales."""
-    found = sb.studies.incremental_dynamic_analysis(
+    found = sb.earthquakes.incremental_dynamic_analysis(
         MODEL, quakes(12), scales=np.linspace(1.6, 5.4, 20), component="RotD100"
     )
-    bands = sb.studies.reached_bands(found["intensity"], found["reached"].sel(limit_state="overturning"))
+    bands = sb.earthquakes.reached_bands(found["intensity"], found["reached"].sel(limit_state="overturning"))
     print(bands["monotone"].to_numpy(), np.unique(found["outcome"], return_counts=True))
     return sb.plot(found)
 
 
 def robust() -> Figure:
     """The same records near the median of their capacities, with small changes."""
-    found = sb.studies.robustness(MODEL, quakes(12), scale=3.8)
+    found = sb.earthquakes.robustness(MODEL, quakes(12), scale=3.8)
     print(found["share_flipped"].sel(limit_state="overturning").to_numpy())
     return sb.plot(found)
 
@@ -48,14 +48,14 @@ def directions() -> Figure:
     """Three of them, the planar column in every direction."""
     angles = np.radians(np.arange(0.0, 180.0, 10.0))
     scales = np.geomspace(1.6, 12.0, 30)
-    found = sb.studies.planar_bias(MODEL, dict(list(quakes(12).items())[:3]), scales=scales, directions=angles)
+    found = sb.earthquakes.planar_bias(MODEL, dict(list(quakes(12).items())[:3]), scales=scales, directions=angles)
     print(found[["least_overturning", "worst_least_planar_overturning", "capacity_bias"]])
-    return sb.plots.plot_directions(found)
+    return sb.earthquakes.plot_directions(found)
 
 
 def bias() -> Figure:
     """All of them, the planar column along both components."""
-    found = sb.studies.planar_bias(MODEL, quakes(12), scales=np.linspace(1.6, 5.4, 20))
+    found = sb.earthquakes.planar_bias(MODEL, quakes(12), scales=np.linspace(1.6, 5.4, 20))
     names = ("overall_bias", "overall_scatter", "overall_standard_error", "overall_compared")
     print({name: float(found[name]) for name in (*names, *(name.replace("overall", "capacity") for name in names[:3]))})
     return sb.plot(found)
@@ -63,10 +63,10 @@ def bias() -> Figure:
 
 def fragility() -> Figure:
     """Forty records and the fragility of their runs."""
-    found = sb.studies.incremental_dynamic_analysis(
+    found = sb.earthquakes.incremental_dynamic_analysis(
         MODEL, quakes(40), scales=np.geomspace(1.6, 10.0, 14), component="RotD100"
     )
-    fits = sb.studies.fragility_of_runs(found, resamples=500, rng=np.random.default_rng(0))
+    fits = sb.earthquakes.fragility_of_runs(found, resamples=500, rng=np.random.default_rng(0))
     print(fits[["median", "dispersion", "non_monotone_records"]])
     return sb.plot(fits.isel(limit_state=[1, 2, 4]))
 

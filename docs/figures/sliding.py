@@ -28,7 +28,7 @@ def run() -> Figure:
 
 def gentle() -> Figure:
     """The paper's steady rolling, whose twist is held, on a base that shakes gently."""
-    found = sb.studies.slipping_boundary(
+    found = sb.conveying.slipping_boundary(
         sb.Wobbling(COLUMN, damping=ETA, constraint="rubber"),
         sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.0),
         friction_coefficient=np.linspace(0.005, 0.13, 126),
@@ -36,13 +36,13 @@ def gentle() -> Figure:
     )
     shown = found.sel(friction_coefficient=[0.03, 0.04, 0.05, 0.06], method="nearest")
     print(shown["rolling_from"].to_numpy(), shown["rolling_to"].to_numpy())
-    return sb.plots.plot_slipping_boundary(found, friction_coefficient=[0.03, 0.04, 0.05])
+    return sb.conveying.plot_slipping_boundary(found, friction_coefficient=[0.03, 0.04, 0.05])
 
 
 def hard() -> Figure:
     """The same column, which may turn, on a base that shakes hard."""
-    found = sb.studies.slipping_boundary(
-        sb.Sliding(COLUMN, damping=ETA, spin_friction=1.0),
+    found = sb.conveying.slipping_boundary(
+        sb.Sliding(COLUMN, damping=ETA, spin_damping=1.0),
         sb.Harmonic.circular(acceleration=0.5, angular_frequency=1.0),
         friction_coefficient=np.linspace(0.005, 0.12, 116),
         angular_frequency=np.linspace(0.8, 8.0, 361),
@@ -50,12 +50,12 @@ def hard() -> Figure:
     shown = found.sel(friction_coefficient=[0.03, 0.05, 0.07, 0.1], method="nearest")
     for name in ("rolling_from", "rolling_to", "slipping_from", "slipping_to"):
         print(name, shown[name].to_numpy())
-    return sb.plots.plot_slipping_boundary(found, friction_coefficient=[0.03, 0.05, 0.07])
+    return sb.conveying.plot_slipping_boundary(found, friction_coefficient=[0.03, 0.05, 0.07])
 
 
 def start() -> Figure:
     """What begins to move first, over slenderness."""
-    found = sb.studies.start_boundary(
+    found = sb.conveying.start_boundary(
         sb.Sliding(sb.Column.solid(radius=0.5, height=10.0, density=2700.0)),
         slenderness=np.linspace(0.02, 0.8, 313),
         friction_coefficient=[0.1, 0.3, 0.6],
@@ -67,7 +67,7 @@ def start() -> Figure:
 def drift() -> Figure:
     """A part on an oblique conveyor, over friction and acceleration."""
     part = sb.Column.solid(radius=0.02, height=0.03, density=7800.0)
-    found = sb.studies.drift(
+    found = sb.conveying.drift(
         sb.Sliding(part),
         sb.Harmonic.oblique(acceleration=1.0, angular_frequency=60.0, angle=0.52),
         over={"acceleration": np.linspace(1.0, 30.0, 59), "friction_coefficient": np.linspace(0.02, 0.6, 30)},

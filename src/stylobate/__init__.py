@@ -8,115 +8,19 @@
 >>> bool(steady.stable)
 True
 
-Public names are imported when they are first used.
+The public names, imported when they are first used, are those of `__init__.pyi`.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from stylobate import errors, motions, orbits, plots, results, spec, studies, theory
-    from stylobate.column import Column
-    from stylobate.engine import simulate, simulate_ensemble, with_parameters
-    from stylobate.errors import Interrupted, Outcome
-    from stylobate.models import Contact, Model, PlanarRocking, Rolling, Slender, SlenderRolling, Sliding, Wobbling
-    from stylobate.motions import BaseMotion, Harmonic, OneOf, Pulse, Record, Sweep, records
-    from stylobate.motions.records import read_record, read_records, sample_record
-    from stylobate.plots import animate, plot
-    from stylobate.quantities import Quantity
-    from stylobate.results import Event, OutcomeRules, Response, load
+import lazy_loader
 
-__all__ = [
-    "BaseMotion",
-    "Column",
-    "Contact",
-    "Event",
-    "Harmonic",
-    "Interrupted",
-    "Model",
-    "OneOf",
-    "Outcome",
-    "OutcomeRules",
-    "PlanarRocking",
-    "Pulse",
-    "Quantity",
-    "Record",
-    "Response",
-    "Rolling",
-    "Slender",
-    "SlenderRolling",
-    "Sliding",
-    "Sweep",
-    "Wobbling",
-    "__version__",
-    "animate",
-    "errors",
-    "load",
-    "motions",
-    "orbits",
-    "plot",
-    "plots",
-    "read_record",
-    "read_records",
-    "records",
-    "results",
-    "sample_record",
-    "simulate",
-    "simulate_ensemble",
-    "spec",
-    "studies",
-    "theory",
-    "with_parameters",
-]
-
-_HOMES = {
-    "BaseMotion": "motions",
-    "Column": "column",
-    "Contact": "models",
-    "Event": "results",
-    "Harmonic": "motions",
-    "Interrupted": "errors",
-    "Model": "models",
-    "Outcome": "errors",
-    "OutcomeRules": "results",
-    "PlanarRocking": "models",
-    "OneOf": "motions",
-    "Pulse": "motions",
-    "Quantity": "quantities",
-    "Record": "motions",
-    "Response": "results",
-    "Rolling": "models",
-    "Slender": "models",
-    "SlenderRolling": "models",
-    "Sliding": "models",
-    "Sweep": "motions",
-    "Wobbling": "models",
-    "animate": "plots",
-    "load": "results",
-    "plot": "plots",
-    "read_record": "motions.records",
-    "read_records": "motions.records",
-    "records": "motions",
-    "sample_record": "motions.records",
-    "simulate": "engine",
-    "simulate_ensemble": "engine",
-    "with_parameters": "engine",
-}
-_MODULES = ("errors", "motions", "orbits", "plots", "results", "spec", "studies", "theory")
+_import_name, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 
 def __getattr__(name: str) -> Any:
-    if name in _HOMES:
-        return getattr(import_module(f"stylobate.{_HOMES[name]}"), name)
-    if name in _MODULES:
-        return import_module(f"stylobate.{name}")
     if name == "__version__":
         from importlib.metadata import version  # noqa: PLC0415
 
         return version("stylobate")
-    message = f"module 'stylobate' has no attribute {name!r}"
-    raise AttributeError(message)
-
-
-def __dir__() -> list[str]:
-    return sorted(__all__)
+    return _import_name(name)

@@ -4,7 +4,7 @@
 
     StylobateError
     ├── ParameterError (ValueError)    a number or an option that no column, motion or run can have
-    │   ├── DescriptionError           the same in a TOML or JSON description: one line for each mistake
+    │   ├── ConfigError           the same in a TOML or JSON description: one line for each mistake
     │   └── ModelError                 a model whose members contradict each other: one line for each mistake
     ├── UnsupportedError               a study asks for what a model lacks
     ├── NoOrbitError                   no periodic orbit was reached from a guess
@@ -12,7 +12,7 @@
     └── WorkerLostError                a worker process that ended before its result
 
     Interrupted (KeyboardInterrupt)    Ctrl-C in the middle of many runs; carries what had been computed
-    SeldomMeant (UserWarning)          input that can be, but is more likely a slip
+    UnlikelyInputWarning (UserWarning)          input that can be, but is more likely a slip
 
 Misuse is an exception. What the physics does, numerical failure included, is an `Outcome`.
 """
@@ -51,7 +51,7 @@ class ParameterError(StylobateError, ValueError):
     """An argument no column, motion or run can have; the message names it, its value and the remedy."""
 
 
-class _WithProblems(ParameterError):
+class _ProblemsError(ParameterError):
     """Several mistakes at once."""
 
     def __init__(self, problems: Sequence[str]) -> None:
@@ -59,7 +59,7 @@ class _WithProblems(ParameterError):
         super().__init__("\n".join(self.problems))
 
 
-class DescriptionError(_WithProblems):
+class ConfigError(_ProblemsError):
     """A TOML or JSON description with mistakes.
 
     Attributes
@@ -69,7 +69,7 @@ class DescriptionError(_WithProblems):
     """
 
 
-class ModelError(_WithProblems):
+class ModelError(_ProblemsError):
     """A model of a user's own whose members contradict each other or its equations.
 
     Attributes
@@ -109,7 +109,7 @@ class Interrupted(KeyboardInterrupt):
         self.partial = partial
 
 
-class SeldomMeant(UserWarning):
+class UnlikelyInputWarning(UserWarning):
     """Input that can be, but is more likely a slip; the message says what and how to mend it."""
 
 

@@ -20,7 +20,7 @@ def found():
     block = sb.Column.solid(radius=1.5, height=2.0, density=1000.0)
     model = sb.Sliding(block, friction_coefficient=0.2, incline=0.1)
     shaking = sb.Harmonic.straight(acceleration=1.0, angular_frequency=3.0)
-    return sb.studies.drift(model, shaking, over={"acceleration": np.linspace(0.5, 12.0, 4)}, periods=12.0, late=4)
+    return sb.conveying.drift(model, shaking, over={"acceleration": np.linspace(0.5, 12.0, 4)}, periods=12.0, late=4)
 
 
 def test_it_finds_saves_and_shows_what_the_study_finds(tmp_path, capsys, saved, found):

@@ -7,7 +7,7 @@ import typer
 
 from stylobate.cli import options as opt
 from stylobate.cli.main import app, run
-from stylobate.spec.motions import MotionDescription
+from stylobate.config.motions import MotionConfig
 
 
 def words(text):
@@ -77,11 +77,16 @@ BASES = {
 }
 
 COMPUTING = (
-    *("engine.simulate", "studies.ladder", "studies.response_curves", "studies.exact_response"),
-    *("studies.stability_boundary", "studies.overturning_map", "studies.contact_map", "studies.basins"),
-    *("studies.drift", "studies.overturning_bands", "studies.rocking_spectrum", "studies.FragilityStudy.runs"),
-    *("studies.assess", "studies.check_paper", "lab.serving.serve"),
-    *("cli.records.print_table", "plots.plot_records"),
+    *("engine.simulate", "studies.model_hierarchy", "studies.response_curves", "studies.exact_response"),
+    *("studies.stability_boundary", "studies.overturning_map", "conveying.contact_map", "studies.basins"),
+    *(
+        "conveying.drift",
+        "earthquakes.overturning_bands",
+        "earthquakes.rocking_spectrum",
+        "earthquakes.FragilityStudy.runs",
+    ),
+    *("earthquakes.assess", "paper.check_paper", "lab.serving.serve"),
+    *("cli.records.print_table", "earthquakes.plot_records"),
 )
 
 STUDY = """
@@ -92,7 +97,7 @@ dissipation = {low = {damping = 0.01}, central = {damping = 0.05}, high = {dampi
 records = {samples = ["el centro 1940"]}
 """
 
-MEMBERS = get_args(get_args(MotionDescription)[0])
+MEMBERS = get_args(get_args(MotionConfig)[0])
 PROGRAM = typer.main.get_command(app)
 COMMANDS = PROGRAM.commands
 

@@ -9,9 +9,8 @@ import xarray as xr
 import stylobate as sb
 from stylobate.cli.fragility_table import told_parts
 from stylobate.cli.main import run
-from stylobate.errors import DescriptionError
-from stylobate.spec import FragilityDescription
-from stylobate.studies import (
+from stylobate.config import FragilityConfig
+from stylobate.earthquakes import (
     Counting,
     FragilityStudy,
     HazardCurve,
@@ -23,6 +22,7 @@ from stylobate.studies import (
     incremental_dynamic_analysis,
     property_samples,
 )
+from stylobate.errors import ConfigError
 
 COLUMN = ["--radius", "0.4", "--height", "4", "--density", "2700", "--damping", "0.05"]
 MODEL = sb.Slender(sb.Column.solid(radius=0.4, height=4.0, density=2700.0), damping=0.05)
@@ -98,9 +98,9 @@ def test_options_run_what_python_runs(folder, capsys, saved):
 
 
 def test_a_described_study_is_that_of_its_parts(folder):
-    description = FragilityDescription.parse(
-        sb.spec.read_description(folder / "study.toml")
-        | {"fragility": sb.spec.read_description(folder / "study.toml")["fragility"] | {"hazard": HAZARD}}
+    description = FragilityConfig.parse(
+        sb.config.read_config(folder / "study.toml")
+        | {"fragility": sb.config.read_config(folder / "study.toml")["fragility"] | {"hazard": HAZARD}}
     )
     study = FragilityStudy.of(description.build())
     runs = study.runs()
@@ -264,8 +264,8 @@ def test_a_description_tells_all_its_mistakes():
         "duration": 3.0,
         "fragility": {"scales": {"from": 1.0, "to": 2.0, "number": 0}, "samples": 3, "years": -1.0, "hazard": {}},
     }
-    with pytest.raises(DescriptionError) as told:
-        FragilityDescription.parse(values).build()
+    with pytest.raises(ConfigError) as told:
+        FragilityConfig.parse(values).build()
     for words in ("duration is not known", "number must be", "go together", "years must be", "a file of them"):
         assert words in str(told.value)
     assert "quakes: cannot be read: No such file" in str(told.value)
@@ -279,8 +279,8 @@ def test_names_that_are_not_known_are_told_as_they_stand_in_the_file():
         "spreads": {"damping": {"kind": "lognormal", "dispersoin": 0.3}, "size": {"kind": "log"}},
     }
     column = {"shape": "dimensionless", "slenderness": 0.1}
-    with pytest.raises(DescriptionError) as told:
-        FragilityDescription.parse({"column": column, "records": "quakes", "fragility": table})
+    with pytest.raises(ConfigError) as told:
+        FragilityConfig.parse({"column": column, "records": "quakes", "fragility": table})
     assert told.value.problems[:-1] == (
         "fragility.intensity.period is missing",
         "fragility.intensity.perod is not known here; did you mean period?",

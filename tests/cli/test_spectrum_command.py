@@ -8,8 +8,8 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.cli.main import run
-from stylobate.errors import DescriptionError
-from stylobate.spec import SpectrumDescription
+from stylobate.config import SpectrumConfig
+from stylobate.errors import ConfigError
 
 SLENDER = ["--slenderness", "0.1", "--damping", "0.1"]
 OVER = ["--motion", "one-sine", "--x", "angular-frequency", "3", "6", "2"]
@@ -21,7 +21,7 @@ SINE = sb.Pulse.one_sine(acceleration=1.0, angular_frequency=1.0)
 @pytest.fixture(scope="module")
 def found():
     scales, over = np.geomspace(0.1, 1.5, 10), {"angular_frequency": [3.0, 6.0]}
-    return sb.studies.overturning_bands(MODEL, SINE, scales=scales, over=over, width=0.01)
+    return sb.earthquakes.overturning_bands(MODEL, SINE, scales=scales, over=over, width=0.01)
 
 
 def test_it_finds_saves_and_shows_what_the_study_finds(tmp_path, capsys, saved, found):
@@ -80,7 +80,7 @@ def test_a_rocking_spectrum_tells_peaks(tmp_path, capsys):
     first, second = json.loads(capsys.readouterr().out)["cases"]
     over = {"size": [1.0, 9.0]}
     pulse = sb.Pulse.one_sine(acceleration=0.15, angular_frequency=2.0)
-    found = sb.studies.rocking_spectrum(MODEL, pulse, over=over)
+    found = sb.earthquakes.rocking_spectrum(MODEL, pulse, over=over)
     assert first["outcome"] == "overturned"
     assert first["peak_tilt_ratio"] is None
     assert second["peak_tilt_ratio"] == found["peak_tilt_ratio"][1]
@@ -138,9 +138,9 @@ def test_a_description_says_the_same_and_leaves_other_commands_alone(found):
             "width": 0.01,
         },
     }
-    setup = SpectrumDescription.parse(values).build()
+    setup = SpectrumConfig.parse(values).build()
     assert setup.model == MODEL
     np.testing.assert_allclose(setup.options["scales"], found["scale"], rtol=1e-15)
     assert "periods" not in setup.options
-    with pytest.raises(DescriptionError, match=r"motion\.angular_frequency is missing"):
-        SpectrumDescription.parse({**values, "spectrum": {"scales": {"values": [1.0, 2.0]}}})
+    with pytest.raises(ConfigError, match=r"motion\.angular_frequency is missing"):
+        SpectrumConfig.parse({**values, "spectrum": {"scales": {"values": [1.0, 2.0]}}})

@@ -63,7 +63,7 @@ class SlenderBody:
         """Return what is positive where a standing column is released."""
         return math.hypot(*push[:2]) - self.c * (self.gravity + push[2])
 
-    def struck(self, y):
+    def impact_map(self, y):
         """Return None: nothing happens at a passage."""
         del y
 

@@ -77,7 +77,7 @@ def random_runs(count, seed, motion):
             "patch": rng.choice([0.0, 0.0, 0.0, 1.0], count) * rng.uniform(0.0, 0.5, count),
             "restitution": rng.choice([0.0, 0.0, 0.3, 0.8, 1.0], count),
             "damping": rng.choice([0.0, 0.0, 0.1], count),
-            "spin_friction": rng.choice([0.0, 0.1], count),
+            "spin_damping": rng.choice([0.0, 0.1], count),
             "rolling_resistance": rng.choice([0.0, 0.0, 0.02], count),
             "incline": rng.choice([0.0, 0.0, 0.05, 0.3], count),
             "incline_direction": rng.uniform(0.0, 6.0, count),

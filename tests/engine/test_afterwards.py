@@ -5,8 +5,8 @@ import math
 import pytest
 
 import stylobate as sb
+from stylobate.config.simulation import FREE_TAIL
 from stylobate.errors import Outcome, ParameterError
-from stylobate.spec.simulation import FREE_TAIL
 
 COLUMN = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)
 P = COLUMN.frequency_parameter

@@ -10,9 +10,9 @@ import pytest
 import xarray as xr
 
 import stylobate as sb
-from stylobate import spec
+from stylobate import config
+from stylobate.base_motions import BaseMotion
 from stylobate.errors import ParameterError, UnsupportedError
-from stylobate.motions import BaseMotion
 
 C = 0.1
 MODEL = sb.Slender(sb.Column.dimensionless(C), damping=0.1)
@@ -99,7 +99,7 @@ def test_a_subclass_is_not_described_as_its_base():
     run = sb.simulate(Dragged(sb.Column.dimensionless(C)), tilt=(0.05, 0.0), duration=1.0)
     assert run.provenance["model"]["kind"] == "other"
     with pytest.raises(UnsupportedError, match="only the repr is kept"):
-        spec.description_of(run.provenance)
+        config.config_of(run.provenance)
 
 
 def _counted_rates(x, y, vx, vy, turned, ax, ay, az, c, eta, _kappa):
@@ -118,7 +118,7 @@ class Counted(sb.Slender):
         return (*sb.Slender.start(self, tilt, tilt_rate), 1.0)
 
     @staticmethod
-    def lean(x, y, vx, vy, way, *_):
+    def tilt_of(x, y, vx, vy, way, *_):
         return x, y, vx, vy
 
     @staticmethod

@@ -34,7 +34,7 @@ NOT_REPEATING = straight(0.04, 2.0) + straight(0.04, 2.0 * math.sqrt(2.0), 1.6) 
         (MODEL, sb.Harmonic.circular(acceleration=0.05, angular_frequency=20.0), 1e15),
         (MODEL, straight(0.05, 1e10), 10.0),
         (sb.Slender(COLUMN, damping=1e9), straight(0.2, 2.0), 10.0),
-        (sb.SlenderRolling(COLUMN, damping=0.1, spin_friction=1e9), straight(0.2, 2.0), 10.0),
+        (sb.SlenderRolling(COLUMN, damping=0.1, spin_damping=1e9), straight(0.2, 2.0), 10.0),
     ],
 )
 def test_more_steps_than_there_may_be_are_announced_and_the_limit_is_named(model, motion, duration, caplog):

@@ -68,7 +68,7 @@ def test_what_a_passage_costs_is_the_part_of_the_kinetic_energy_that_is_scaled(m
     data = lossless.data.isel(time=least)
     spin = (float(data["spin"]),) if "spin" in data else ()
     state = (*data["tilt"].values, *data["tilt_rate"].values, *spin)
-    after = model.struck(*state, *model.parameters)
+    after = model.impact_map(*state, *model.parameters)
     run = released(model, 0.05, 2.0, samples=2001)
     energy = run.data["energy"].to_numpy() / UNIT
     assert 0.01 * C < float(data["amplitude"]) < 0.2 * C
@@ -78,7 +78,7 @@ def test_what_a_passage_costs_is_the_part_of_the_kinetic_energy_that_is_scaled(m
 
 def test_the_spin_is_kept_at_a_passage():
     model = with_loss(sb.Rolling, 0.8, passage_tilt=0.05 * C)
-    assert model.struck(0.001, 0.0, 0.0, 0.3, 0.4, *model.parameters) == pytest.approx((0.001, 0.0, 0.0, 0.24, 0.4))
+    assert model.impact_map(0.001, 0.0, 0.0, 0.3, 0.4, *model.parameters) == pytest.approx((0.001, 0.0, 0.0, 0.24, 0.4))
 
 
 @pytest.mark.parametrize("model_type", MODELS)

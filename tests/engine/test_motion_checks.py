@@ -126,7 +126,7 @@ def test_a_member_that_returns_no_numbers_is_refused_in_one_line_that_names_it(r
     [
         lambda own: own + sb.Harmonic.straight(acceleration=0.1, angular_frequency=2.0),
         lambda own: 0.5 * own.rotated(1.0).delayed(2.0),
-        lambda own: sb.OneOf(motions=(sb.motions.BASE_AT_REST, own), chosen=1),
+        lambda own: sb.OneOf(motions=(sb.base_motions.BASE_AT_REST, own), chosen=1),
     ],
 )
 def test_a_broken_promise_is_found_within_other_motions(combine):
@@ -148,7 +148,7 @@ OF_THE_PACKAGE = (
     sb.Pulse.ricker(acceleration=1.0, angular_frequency=3.0),
     sb.Pulse.gabor(velocity=1.0, frequency=0.5, phase=0.3, oscillations=2.0),
     sb.Pulse.mavroeidis_papageorgiou(velocity=0.9, frequency=0.5, phase=0.0, oscillations=1.8, start=1.0),
-    sb.Sweep.logarithmic(acceleration=0.5, frequencies=(0.5, 8.0), length=20.0),
+    sb.SineSweep.logarithmic(acceleration=0.5, frequencies=(0.5, 8.0), length=20.0),
     sb.records.sample_record(),
 )
 

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import stylobate as sb
+from stylobate.config import ResponseConfig, SimulationConfig
 from stylobate.lab import Limits
 from stylobate.lab.presets import presets
 from stylobate.lab.tasks import speed_of_pictures
-from stylobate.spec import ResponseDescription, SimulationDescription
 
 # Numbers are sent in nine digits.
 SENT = 1e-8
@@ -24,7 +24,7 @@ CIRCLE = {
 
 
 def described_run(values):
-    setup = SimulationDescription.parse(values).build()
+    setup = SimulationConfig.parse(values).build()
     return sb.simulate(setup.model, setup.motion, **setup.options)
 
 
@@ -81,7 +81,7 @@ def test_a_description_is_told_without_a_run(client):
 def test_response_curves_are_those_of_theory(client):
     values = {**CIRCLE, "angular_frequency_range": [0.5, 4.0], "points": 50}
     told = client.post("/api/response", json=values).json()
-    assert ResponseDescription.parse(values).points == len(told["angular_frequency"]) == 50
+    assert ResponseConfig.parse(values).points == len(told["angular_frequency"]) == 50
     steady = sb.theory.steady_rolling(np.linspace(0.5, 4.0, 50), 0.065, c=0.1, eta=0.1)
     upper = next(one for one in told["branches"] if one["branch"] == "upper")
     known = np.isfinite(steady.upper.amplitude)
@@ -94,7 +94,7 @@ def test_response_curves_are_those_of_theory(client):
 @pytest.mark.parametrize("branch", ["upper", "lower"])
 def test_a_start_on_a_branch_is_that_of_theory(client, branch):
     told = client.post("/api/start", json={**CIRCLE, "branch": branch}).json()
-    setup = SimulationDescription.parse({**CIRCLE, "duration": 1.0}).build()
+    setup = SimulationConfig.parse({**CIRCLE, "duration": 1.0}).build()
     start = sb.studies.steady_start(setup.model, setup.motion, branch=branch)
     assert told == {
         "tilt": pytest.approx(start["tilt"]),
@@ -208,7 +208,7 @@ def test_each_mistake_is_told_on_a_line_as_on_the_command_line(client):
 
 @pytest.mark.parametrize("preset", presets(), ids=lambda preset: preset.identity)
 def test_pictures_of_every_preset_show_each_swing_of_the_base(preset):
-    setup = SimulationDescription.parse(preset.description).build()
+    setup = SimulationConfig.parse(preset.description).build()
     end = setup.options["duration"]
     pictures_in_a_second = 25.0 / speed_of_pictures(setup, end)
     assert pictures_in_a_second * end <= 1400.5

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import stylobate as sb
+from stylobate.config import SimulationConfig
 from stylobate.errors import Outcome
 from stylobate.lab.grids import overturning_plane
 from stylobate.lab.messages import Found
 from stylobate.results.outcomes import code_of
-from stylobate.spec import SimulationDescription
 
 BOTTLE = {
     "column": {"shape": "solid", "radius": 0.03, "height": 0.2, "density": 1000.0},
@@ -48,7 +48,7 @@ def test_a_cell_is_the_run_of_the_case_with_its_numbers(motion, part, x, y):
     outcomes = set()
     for (ix, iy), code in cells.items():
         numbers = {x["name"]: axes["x"]["values"][ix], y["name"]: axes["y"]["values"][iy]}
-        setup = SimulationDescription.parse({**case, part: {**case[part], **numbers}}).build()
+        setup = SimulationConfig.parse({**case, part: {**case[part], **numbers}}).build()
         run = sb.simulate(setup.model, setup.motion, **setup.options)
         assert code == code_of(run.outcome), numbers
         outcomes.add(run.outcome)
@@ -67,5 +67,5 @@ def test_axes_tell_their_units_and_another_axis_may_be_one_of_a_sweep():
 def test_a_number_that_cannot_be_is_refused_by_name():
     x, y = axis("radius", -0.01, 0.02, 3), axis("acceleration", 0.1, 1.0, 2)
     motion = {"kind": "circular", "acceleration": 1.0, "angular_frequency": 2.0 * math.pi}
-    with pytest.raises((sb.errors.ParameterError, sb.errors.DescriptionError), match="radius must be positive"):
+    with pytest.raises((sb.errors.ParameterError, sb.errors.ConfigError), match="radius must be positive"):
         cells_of({**BOTTLE, "motion": motion, "duration": 1.0, "map": {"x": x, "y": y}})

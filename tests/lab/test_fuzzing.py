@@ -12,7 +12,7 @@ from stylobate.lab import Limits
 from stylobate.lab.presets import presets
 from stylobate.lab.schema import schema
 from stylobate.lab.schema.examples import JOBS, RESPONSES, STARTS
-from stylobate.lab.sizes import LEAST, MOST
+from stylobate.lab.size_limits import LEAST, MOST
 
 SMALL = Limits(body=20_000, cells=200, points=100, duration=5.0, steps=1000, run_time=4.0, waiting=1000)
 # A run with numbers of any size may take all the time that runs have; these end, most of them.

@@ -12,8 +12,8 @@ from tests.lab.conftest import client_of, laboratory
 
 import stylobate as sb
 from stylobate.lab import Limits
-from stylobate.lab.crew import LostError, Worker
-from stylobate.lab.refining import Refining
+from stylobate.lab.progressive_executor import Refining
+from stylobate.lab.worker_pool import LostError, Worker
 
 CIRCLE = {
     "column": {"shape": "dimensionless", "slenderness": 0.1},

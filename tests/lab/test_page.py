@@ -12,10 +12,10 @@ import pytest
 from tests.lab.browser import new_page, shown
 
 import stylobate as sb
+from stylobate.config import SimulationConfig
 from stylobate.lab.presets import presets
 from stylobate.lab.serving import listening
 from stylobate.results.summary import measure_rows
-from stylobate.spec import SimulationDescription
 
 PRESETS = {preset.identity: preset for preset in presets()}
 # What the page reads back from the drawn column: doubles, interpolated on samples of seven digits.
@@ -43,7 +43,7 @@ def test_the_motion_drawn_is_the_motion_computed(watched, preset):
     page.wait_for_function(f"() => window.stylobate.laboratory.answer.outcome === '{described.outcome}'")
     shown(page)
     page.evaluate("() => window.stylobate.laboratory.clock.pause()")
-    setup = SimulationDescription.parse(described.description).build()
+    setup = SimulationConfig.parse(described.description).build()
     run = sb.simulate(setup.model, setup.motion, **setup.options)
     times = page.evaluate("() => window.stylobate.laboratory.answer.drawn.time")
     radius = setup.model.column.radius
@@ -111,7 +111,7 @@ def test_a_part_that_slides_shows_how_far_and_the_numbers_of_the_command_line(wa
     upper = page.get_by_role("combobox", name="Upper history")
     assert upper.evaluate("one => one.value") == "displacement_x"
     page.get_by_role("tab", name="Numbers").click()
-    setup = SimulationDescription.parse(preset.description).build()
+    setup = SimulationConfig.parse(preset.description).build()
     rows = measure_rows(sb.simulate(setup.model, setup.motion, **setup.options))
     table = page.get_by_role("region", name="Numbers of the run")
     moved_by = next(text for label, text in rows if label == "moved by")

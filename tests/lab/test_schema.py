@@ -8,10 +8,10 @@ import pytest
 import schemathesis
 from tests.lab.conformity import DOCUMENT, component, conforms, endpoint, mistakes
 
+from stylobate.config.columns import implied_shape
 from stylobate.lab import Limits
 from stylobate.lab.api import Api
 from stylobate.lab.presets import presets
-from stylobate.spec.columns import implied_shape
 
 OPERATIONS = [
     (path, method, told)
@@ -177,7 +177,7 @@ MOTIONS = [
     {"kind": "scaled", "motion": {"kind": "straight", "acceleration": 0.1, "angular_frequency": 1.0}, "factor": 2.0},
 ]
 MODELS = [
-    {"kind": "slender_rolling", "damping": 0.1, "spin_friction": 0.1, "couples": "isotropic"},
+    {"kind": "slender_rolling", "damping": 0.1, "spin_damping": 0.1, "couples": "isotropic"},
     {"kind": "wobbling", "damping": 0.1, "rolling_resistance": 0.01, "restitution": 0.9, "passage_tilt": 1e-3},
     {"kind": "sliding", "friction_coefficient": 0.4, "static_friction_coefficient": 0.5, "patch": 0.1},
     {"kind": "planar_rocking", "restitution": 0.9},

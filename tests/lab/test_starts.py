@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import stylobate as sb
+from stylobate.config import SimulationConfig
 from stylobate.errors import NoOrbitError
 from stylobate.lab.presets import presets
 from stylobate.lab.starts import start
-from stylobate.spec import SimulationDescription
 
 # Numbers are sent in nine digits.
 SENT = 2e-8
@@ -30,7 +30,7 @@ def elliptic(angular_frequency, phase):
 
 def last_state(values, begun, periods=5):
     """Return where a run from a start is some periods of the base later."""
-    setup = SimulationDescription.parse({**values, "duration": 1.0}).build()
+    setup = SimulationConfig.parse({**values, "duration": 1.0}).build()
     begun = {name: begun[name] for name in ("tilt", "tilt_rate")}
     end = periods * setup.motion.period
     run = sb.simulate(setup.model, setup.motion, **begun, duration=end)
@@ -74,7 +74,7 @@ def test_without_an_exact_orbit_the_averaged_start_is_kept_and_said_to_be_approx
 
     monkeypatch.setattr(sb.orbits, "periodic_orbit", none_found)
     begun = start(straight(2.0))
-    setup = SimulationDescription.parse({**straight(2.0), "duration": 1.0}).build()
+    setup = SimulationConfig.parse({**straight(2.0), "duration": 1.0}).build()
     averaged = sb.studies.steady_start(setup.model, setup.motion)
     assert begun["tilt"] == pytest.approx(averaged["tilt"], rel=SENT)
     assert begun["warnings"] == ["start: averaged branch, approximate; no exact orbit was found from it"]

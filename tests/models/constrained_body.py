@@ -137,7 +137,7 @@ class ConstrainedBody:
         (``"wobbling"``) or ω·Z = 0 (``"rubber"``), along the vector of that constraint, so that it does no work.
     viscous
         D1 of the couple −D1 (w1 u + w2 n) [N m s].
-    spin_friction
+    spin_damping
         D0 of the couple −D0 (ω·Z) Z [N m s].
     rolling_arm, rolling_rate
         δ [m] and ε [rad/s] of rolling resistance: the couple −δN ω_h/√(|ω_h|² + ε²), ω_h the horizontal part of ω.
@@ -146,7 +146,7 @@ class ConstrainedBody:
     column: sb.Column
     hold: Literal["free", "wobbling", "rubber"] = "free"
     viscous: float = 0.0
-    spin_friction: float = 0.0
+    spin_damping: float = 0.0
     rolling_arm: float = 0.0
     rolling_rate: float = 1e-3
 
@@ -272,7 +272,7 @@ class ConstrainedBody:
 
     def _couples(self, spin, at):
         tilting = spin - (spin @ at.e3) * at.e3
-        return -self.viscous * tilting - self.spin_friction * spin[2] * UP
+        return -self.viscous * tilting - self.spin_damping * spin[2] * UP
 
     def _rolling(self, spin):
         level = np.array([spin[0], spin[1], 0.0])

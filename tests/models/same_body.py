@@ -25,13 +25,13 @@ def body_of(model):
     unit = column.frequency_scale * column.base_inertia
     axial = column.axial_inertia
     freedom = 1.0 + column.axial_ratio - column.inertia_ratio
-    zeta = getattr(model, "spin_friction", 0.0)
+    zeta = getattr(model, "spin_damping", 0.0)
     constraint = getattr(model, "constraint", None)
     return ConstrainedBody(
         column=column,
         hold={"pure_tilt": "wobbling", "rubber": "rubber", None: "free"}[constraint],
         viscous=model.damping * unit,
-        spin_friction=zeta * column.frequency_scale * axial * freedom / column.axial_ratio,
+        spin_damping=zeta * column.frequency_scale * axial * freedom / column.axial_ratio,
         rolling_arm=model.rolling_resistance * column.radius,
         rolling_rate=FADING * column.frequency_scale,
     )
@@ -61,7 +61,7 @@ def rates_of_body(model, theta, beta, w1, w2, w3, push):
     second = (tilting - theta * around**2) * at.d + (theta * swinging + 2.0 * falling * around) * at.n
     rates = [*second[:2], motion.rates[7:][ANGULAR] @ at.e3] if model.spin_state is not None else second[:2]
     weight = column.mass * column.gravity
-    moment = motion.couple[2] - body.spin_friction * state[TURNING] @ UP
+    moment = motion.couple[2] - body.spin_damping * state[TURNING] @ UP
     loads = motion.force[2], np.hypot(*motion.force[:2]), abs(moment) / column.radius
     return np.array(rates) / scale**2, np.array(loads) / weight
 

@@ -48,7 +48,7 @@ def follow(body, start, *, duration, acceleration=at_rest, times=None, limits=No
         while now < end and phase != ENDED:
             now, state, happened = run.advance(phase, now, state, end, all_steps=times is None)
             if happened is not None:
-                phase, state = run.react(happened, phase, now, state)
+                phase, state = run.reset_map(happened, phase, now, state)
                 if times is None:
                     run.record(now, phase, state)
         if times is not None or phase == ENDED:
@@ -80,7 +80,7 @@ class _Run:
             return self.body.rates_flying(state, self.push(time))
         return self.body.rates_touching(state, *self.load(phase, time, state))
 
-    def margins(self, phase, time, state):
+    def guards(self, phase, time, state):
         """What is positive until an event, by its kind."""
         if phase == FLIGHT:
             return {"land": self.body.gap(state) / self.body.column.radius + self.limits.deep}
@@ -112,7 +112,7 @@ class _Run:
                 self.record(begin, phase, state)
         return begin, state, None
 
-    def react(self, happened, phase, time, state):
+    def reset_map(self, happened, phase, time, state):
         """Return phase and state after what `happened`."""
         body = self.body
         if happened in {"flat", "fallen", "jam"}:
@@ -230,8 +230,8 @@ class _Run:
         dense, before = solver.dense_output(), solver.t_old
         for part in LOOKED:
             time = solver.t if part == 1.0 else solver.t_old + part * (solver.t - solver.t_old)
-            margins = self.margins(phase, time, solver.y if part == 1.0 else dense(time))
-            crossed = [kind for kind, margin in margins.items() if margin < 0.0]
+            guards = self.guards(phase, time, solver.y if part == 1.0 else dense(time))
+            crossed = [kind for kind, margin in guards.items() if margin < 0.0]
             if crossed:
                 return crossed[0], (before, time)
             before = time
@@ -249,7 +249,7 @@ class _Run:
             return solver.y
 
         def margin(time):
-            return self.margins(phase, time, at(time))[kind]
+            return self.guards(phase, time, at(time))[kind]
 
         low, high = bracket
         if margin(low) <= 0.0 or margin(high) >= 0.0:  # at a margin already, or so near that rounding decides

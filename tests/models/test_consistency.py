@@ -25,12 +25,12 @@ def levels(column):
     return [
         sb.Slender(column),
         sb.Slender(column, damping=0.1),
-        sb.SlenderRolling(column, damping=0.1, spin_friction=0.2),
+        sb.SlenderRolling(column, damping=0.1, spin_damping=0.2),
         sb.SlenderRolling(column, damping=0.1, couples="isotropic"),
         sb.Wobbling(column),
         sb.Wobbling(column, **loss, constraint="rubber"),
         sb.Rolling(column),
-        sb.Rolling(column, **loss, spin_friction=0.2),
+        sb.Rolling(column, **loss, spin_damping=0.2),
         sb.PlanarRocking(column, damping=0.1, rolling_resistance=0.01),
         sb.PlanarRocking(column, restitution=1.0),
         sb.Sliding(column, damping=0.1),
@@ -184,7 +184,7 @@ class Away(sb.Slender):
 
 class Mirrored(sb.Slender):
     @staticmethod
-    def lean(x, y, vx, vy, *numbers):
+    def tilt_of(x, y, vx, vy, *numbers):
         return x, -y, vx, -vy
 
 
@@ -213,7 +213,7 @@ class Fast(sb.Rolling):
     """Faster after a loss."""
 
     @staticmethod
-    def struck(x, y, vx, vy, spin, *numbers):
+    def impact_map(x, y, vx, vy, spin, *numbers):
         return x, y, 1.1 * vx, vy, spin
 
 
@@ -249,7 +249,7 @@ class Straight(sb.Slender):
         (Mirrored(COLUMN), r"lean: does not return the tilt and the rate with which start made the state"),
         (Fed(COLUMN), r"energy: grows in free motion"),
         (High(COLUMN), r"balance: a column at its tilt 0\.1 rad can have less energy than it says"),
-        (Fast(COLUMN, restitution=0.9), r"struck: moves the column or makes it faster"),
+        (Fast(COLUMN, restitution=0.9), r"impact_map: moves the column or makes it faster"),
         (Slanted(COLUMN), r"jacobian: entry \(\d, \d\) is not the derivative of rates"),
         (Warm(COLUMN, damping=0.1), r"rest_energy: grows in free motion near the upright"),
         (Straight(COLUMN), r"passage: does not end where rates lead"),

@@ -26,7 +26,7 @@ SLIM = sb.Column(
 D1, D0, ARM, RATE = 0.02, 0.005, 0.003, 0.05
 FRICTIONS = {
     "viscous": {"viscous": D1},
-    "spin": {"spin_friction": D0},
+    "spin": {"spin_damping": D0},
     "rolling": {"rolling_arm": ARM, "rolling_rate": RATE},
 }
 
@@ -219,7 +219,7 @@ def test_much_spin_friction_is_rubber():
         track = body.follow(body.state(**start), duration=0.4, acceleration=shaking, rtol=1e-10)
         return np.append(track.tilt[-1], track.twist[-1])
 
-    off = [np.abs(end(spin_friction=friction) - end(hold="rubber")).max() for friction in (2.0, 4.0)]
+    off = [np.abs(end(spin_damping=friction) - end(hold="rubber")).max() for friction in (2.0, 4.0)]
     assert off[1] < 1e-3
     assert off[0] / off[1] == pytest.approx(2.0, rel=0.05)
 

@@ -42,7 +42,7 @@ def test_steady_rolling_that_cannot_turn_needs_what_theory_says():
 
 def test_with_a_free_twist_the_spin_friction_gives_the_moment():
     branch = sb.theory.free_twist_rolling(THETA, A0, c=C, eta=ETA, zeta=0.1)
-    found = rolling(sb.SlenderRolling(COLUMN, damping=ETA, spin_friction=0.1), branch)
+    found = rolling(sb.SlenderRolling(COLUMN, damping=ETA, spin_damping=0.1), branch)
     friction, _ = needed(branch, float(branch.spin))
     np.testing.assert_allclose(found["friction_demand"], friction, rtol=1e-4)
     np.testing.assert_allclose(found["pivoting_demand"], float(branch.friction_moment), rtol=1e-4)

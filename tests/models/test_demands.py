@@ -14,7 +14,7 @@ COLUMN = sb.Column.solid(radius=0.3, height=2.0, density=2000.0)
 C, SCALE = COLUMN.slenderness, COLUMN.frequency_scale
 START = (0.07, 0.4, -0.05, 0.1, 0.1)
 MODELS = {
-    "rolling": sb.Rolling(COLUMN, damping=0.1, spin_friction=0.2),
+    "rolling": sb.Rolling(COLUMN, damping=0.1, spin_damping=0.2),
     "wobbling": sb.Wobbling(COLUMN, damping=0.1),
     "rubber": sb.Wobbling(COLUMN, damping=0.1, constraint="rubber"),
 }

@@ -13,10 +13,10 @@ C = 0.2
 COLUMN = sb.Column.dimensionless(C, 0.73, 0.5)
 MODELS = {
     "slender": sb.Slender(COLUMN, damping=0.1),
-    "slender rolling": sb.SlenderRolling(COLUMN, damping=0.1, spin_friction=0.2),
+    "slender rolling": sb.SlenderRolling(COLUMN, damping=0.1, spin_damping=0.2),
     "wobbling": sb.Wobbling(COLUMN, damping=0.1),
     "rubber": sb.Wobbling(COLUMN, damping=0.1, constraint="rubber"),
-    "rolling": sb.Rolling(COLUMN, damping=0.1, spin_friction=0.2),
+    "rolling": sb.Rolling(COLUMN, damping=0.1, spin_damping=0.2),
 }
 
 

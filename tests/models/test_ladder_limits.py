@@ -46,7 +46,7 @@ def slopes(off):
 def test_the_slender_models_do_not_depend_on_the_slenderness():
     for make in (
         lambda body: sb.Slender(body, damping=0.1),
-        lambda body: sb.SlenderRolling(body, damping=0.1, spin_friction=0.2),
+        lambda body: sb.SlenderRolling(body, damping=0.1, spin_damping=0.2),
     ):
         np.testing.assert_allclose(scaled_end(make(column(0.04))), scaled_end(make(column(0.01))), atol=1e-10)
 
@@ -62,7 +62,7 @@ def test_wobbling_tends_to_the_slender_column_as_the_square_of_the_slenderness(d
     np.testing.assert_allclose(slopes(off), 2.0, atol=0.05)
 
 
-@pytest.mark.parametrize("frictions", [{}, {"damping": 0.1}, {"damping": 0.1, "spin_friction": 0.4}])
+@pytest.mark.parametrize("frictions", [{}, {"damping": 0.1}, {"damping": 0.1, "spin_damping": 0.4}])
 def test_rolling_tends_to_the_slender_rolling_column_as_the_square_of_the_slenderness(frictions):
     off = errors(lambda body: sb.Rolling(body, **frictions), lambda body: sb.SlenderRolling(body, **frictions))
     assert off[-1] < 1e-3
@@ -125,7 +125,7 @@ def test_much_spin_friction_makes_rolling_rubber():
 
     exact = end(rubber, state)
     off = [
-        np.abs(end(sb.Rolling(body, spin_friction=friction), [*state, spin]) - exact).max()
+        np.abs(end(sb.Rolling(body, spin_damping=friction), [*state, spin]) - exact).max()
         for friction in (200.0, 400.0)
     ]
     assert off[1] < 2e-3
@@ -146,7 +146,7 @@ def test_in_a_plane_all_levels_at_finite_tilt_are_one():
     runs = [
         in_plane(model, motion, **start)
         for model in (
-            sb.Rolling(body, **frictions, spin_friction=0.3),
+            sb.Rolling(body, **frictions, spin_damping=0.3),
             sb.Wobbling(body, **frictions),
             sb.Wobbling(body, **frictions, constraint="rubber"),
             sb.PlanarRocking(body, **frictions, restitution=1.0),
@@ -187,7 +187,7 @@ def test_the_friction_that_slender_rolling_needs_is_the_limit_of_that_of_the_rol
     largest = []
     for c in (0.04, 0.02, 0.01):
         column = sb.Column.dimensionless(c)
-        frictions = {"damping": 0.1, "spin_friction": 0.1}
+        frictions = {"damping": 0.1, "spin_damping": 0.1}
         small, finite = sb.SlenderRolling(column, **frictions), sb.Rolling(column, **frictions)
         differences = []
         for draw in draws:

@@ -170,7 +170,7 @@ def test_it_can_be_described_and_saved(tmp_path):
     model = sb.PlanarRocking(SOLID, damping=0.01, rolling_resistance=0.02)
     run = sb.simulate(model, LINE.scaled(2.2), duration=3.0)
     loaded = sb.load(run.save(tmp_path / "run.nc"))
-    setup = sb.spec.description_of(loaded.provenance).build()
+    setup = sb.config.config_of(loaded.provenance).build()
     assert setup.model == model
     again = sb.simulate(setup.model, setup.motion, **setup.options)
     np.testing.assert_array_equal(again.data["tilt"], run.data["tilt"])

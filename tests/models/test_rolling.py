@@ -25,7 +25,7 @@ SHAKEN = sb.Column(
 SLIM = sb.Column(
     mass=1.0, radius=0.1, mass_height=1.0, transverse_inertia=0.3358333333333333, axial_inertia=0.005, gravity=1.0
 )  # fmt: skip
-FRICTIONS = {"damping": 0.1, "spin_friction": 0.2, "rolling_resistance": 0.05}
+FRICTIONS = {"damping": 0.1, "spin_damping": 0.2, "rolling_resistance": 0.05}
 # (1.2 sin 9t, 0.8 sin(9t + 0.7), 0.5 cos 14t) m/s²
 SHAKING = sb.Harmonic.elliptic(
     amplitude=(1.2, 0.8), phase=0.7, angular_frequency=9.0, start_phase=-math.pi / 2.0
@@ -228,7 +228,7 @@ def test_energy_changes_by_the_work_of_the_base_and_of_each_friction():
             lost = {
                 "none": 0.0,
                 "damping": 0.3 * (w1**2 + w2**2),
-                "spin_friction": 0.3 * kappa * c**2 * freedom * (w3 * cos - w1 * sine) ** 2,
+                "spin_damping": 0.3 * kappa * c**2 * freedom * (w3 * cos - w1 * sine) ** 2,
                 "rolling_resistance": 0.3 * c * normal[name] * level**2 / math.hypot(level, FADING),
             }[name]
             assert power(model, state, push) == pytest.approx(base - lost, abs=1e-9)
@@ -236,7 +236,7 @@ def test_energy_changes_by_the_work_of_the_base_and_of_each_friction():
 
 
 def test_spin_friction_slows_a_column_that_spins_almost_upright_at_its_rate():
-    model = sb.Rolling(SLIM, spin_friction=0.4)
+    model = sb.Rolling(SLIM, spin_damping=0.4)
     # Its lean is too small to matter: moments about the contact point are those of an upright column.
     rate = model.rates(1e-6, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, *model.parameters)[4]
     assert rate == pytest.approx(-0.4 * 2.0, rel=1e-4)
@@ -308,7 +308,7 @@ def test_a_passage_in_closed_form_is_the_orbit_integrated(spin, offset):
 
 
 def test_base_and_friction_act_during_a_passage():
-    model, push = sb.Rolling(STOUT, damping=0.5, spin_friction=0.7), (0.4, 0.6, 0.1)
+    model, push = sb.Rolling(STOUT, damping=0.5, spin_damping=0.7), (0.4, 0.6, 0.1)
     quiet, far, speed = sb.Rolling(STOUT), 5e-8, 0.05
     start = (-far, 1e-10, speed, 0.0, 0.0)  # how far spin bends the path would change with the speed
     _, pushed = model.passage(*start, *push, *model.parameters)
@@ -392,7 +392,7 @@ def test_it_can_be_described_and_saved_with_its_spin_and_place(tmp_path):
     loaded = sb.load(run.save(tmp_path / "run.nc"))
     assert loaded.provenance["model"]["kind"] == "rolling"
     assert loaded.warnings == run.warnings != ()
-    setup = sb.spec.description_of(loaded.provenance).build()
+    setup = sb.config.config_of(loaded.provenance).build()
     again = sb.simulate(setup.model, setup.motion, **setup.options)
     assert setup.model == model
     for name in ("tilt", "spin", "twist", "footprint"):
@@ -403,7 +403,7 @@ def test_it_can_be_described_and_saved_with_its_spin_and_place(tmp_path):
     ("change", "told"),
     [
         ({"damping": math.nan}, "damping must be zero or positive, got nan"),
-        ({"spin_friction": -1.0}, "spin_friction must be zero or positive, got -1.0"),
+        ({"spin_damping": -1.0}, "spin_damping must be zero or positive, got -1.0"),
         ({"rolling_resistance": -0.1}, "rolling_resistance must be zero or positive, got -0.1"),
         ({"restitution": 1.1}, "restitution must lie between 0 and 1, 1 for no loss, got 1.1"),
         ({"restitution": -0.1}, "restitution must lie between 0 and 1, 1 for no loss, got -0.1"),

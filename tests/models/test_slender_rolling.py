@@ -53,7 +53,7 @@ def test_rates_are_the_equations_written_with_vectors(x, y, vx, vy, spin, ax, ay
     if math.hypot(x, y) < 1e-6:
         return
     eta, zeta, kappa, i_a = 0.2, 0.3, 0.75, 0.5
-    model = sb.SlenderRolling(COLUMN, damping=eta, spin_friction=zeta)
+    model = sb.SlenderRolling(COLUMN, damping=eta, spin_damping=zeta)
     alpha, v, a = np.array([x, y]), np.array([vx, vy]), np.array([ax, ay])
     u = alpha / np.hypot(x, y)
     n = np.array([-u[1], u[0]])
@@ -123,7 +123,7 @@ def test_the_path_turns_near_the_upright_by_what_the_spin_says(spin):
 
 @pytest.mark.parametrize("spin", [0.0, 0.4, -2.0])
 def test_a_passage_in_closed_form_is_the_one_integrated(spin):
-    model = sb.SlenderRolling(COLUMN, damping=0.1, spin_friction=0.2)
+    model = sb.SlenderRolling(COLUMN, damping=0.1, spin_damping=0.2)
     far, speed = 1e-5, 0.05
     start = (-far, 1e-9, speed, 1e-6, spin)
     push = (0.02, 0.03, 0.0)
@@ -136,7 +136,7 @@ def test_a_passage_in_closed_form_is_the_one_integrated(spin):
 
 
 def test_departure_goes_over_into_the_motion_integrated():
-    model = sb.SlenderRolling(COLUMN, damping=0.1, spin_friction=0.2)
+    model = sb.SlenderRolling(COLUMN, damping=0.1, spin_damping=0.2)
     theta, a0 = 2.0, 0.13
     # Released while a circular motion grows: a_h = a0 (1 + 0.1 τ)(cos θτ, sin θτ), beyond c already by 0.03.
     push = Push((-1.0, 0.0), a0, a0 - C, 0.1 * a0, theta)
@@ -157,7 +157,7 @@ def test_departure_goes_over_into_the_motion_integrated():
 
 @pytest.mark.parametrize("method", ["dop853", pytest.param("taylor", marks=pytest.mark.slow)])
 def test_runs_and_ensembles_agree(method):
-    model = sb.SlenderRolling(COLUMN, damping=0.1, spin_friction=0.1)
+    model = sb.SlenderRolling(COLUMN, damping=0.1, spin_damping=0.1)
     circle = sb.Harmonic.circular(acceleration=0.065, angular_frequency=3.0)
     start = {"tilt": (0.016, 0.0), "tilt_rate": (0.0, 0.048), "duration": 60.0}
     single = sb.simulate(model, circle, **start)
@@ -167,11 +167,11 @@ def test_runs_and_ensembles_agree(method):
     np.testing.assert_allclose(together["end_tilt"].squeeze(), single.data["tilt"][-1], atol=1e-7)
 
 
-def settled(theta, spin_friction):
+def settled(theta, spin_damping):
     """A run that has settled on steady rolling, and what theory knows of it."""
-    model = sb.SlenderRolling(COLUMN, damping=0.1, spin_friction=spin_friction)
+    model = sb.SlenderRolling(COLUMN, damping=0.1, spin_damping=spin_damping)
     circle = sb.Harmonic.circular(acceleration=0.065, angular_frequency=theta)
-    known = sb.theory.free_twist_rolling(theta, 0.065, c=C, eta=0.1, zeta=spin_friction)
+    known = sb.theory.free_twist_rolling(theta, 0.065, c=C, eta=0.1, zeta=spin_damping)
     size = float(known.amplitude)
     run = sb.simulate(
         model, circle, tilt=(size, 0.0), tilt_rate=(0.0, theta * size), duration=320.0 * circle.period
@@ -198,7 +198,7 @@ def test_its_orbits_have_the_eigenvalues_of_theory():
 
 
 def test_a_column_pushed_along_a_line_keeps_to_it_without_spin():
-    model = sb.SlenderRolling(COLUMN, damping=0.1, spin_friction=0.1)
+    model = sb.SlenderRolling(COLUMN, damping=0.1, spin_damping=0.1)
     line = sb.Harmonic.straight(acceleration=0.11, angular_frequency=6.0)
     run = sb.simulate(model, line, duration=20.0)
     same = sb.simulate(sb.Slender(COLUMN, damping=0.1), line, duration=20.0)
@@ -209,7 +209,7 @@ def test_a_column_pushed_along_a_line_keeps_to_it_without_spin():
 
 
 def test_it_can_be_described_and_saved(tmp_path):
-    model = sb.SlenderRolling(COLUMN, damping=0.1, spin_friction=0.2, couples="isotropic")
+    model = sb.SlenderRolling(COLUMN, damping=0.1, spin_damping=0.2, couples="isotropic")
     circle = sb.Harmonic.circular(acceleration=0.065, angular_frequency=3.0)
     run = sb.simulate(model, circle, tilt=(0.01, 0.0), duration=5.0)
     again = sb.load(run.save(tmp_path / "run.nc"))
@@ -220,7 +220,7 @@ def test_it_can_be_described_and_saved(tmp_path):
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        ({"spin_friction": -1.0}, "spin_friction"),
+        ({"spin_damping": -1.0}, "spin_damping"),
         ({"damping": math.nan}, "damping"),
         ({"couples": "both"}, "couples must be 'contact' or 'isotropic', got 'both'"),
         ({"column": 3.0}, "column must be a Column"),

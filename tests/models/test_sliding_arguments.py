@@ -29,7 +29,7 @@ def refused(match, call):
         ("restitution", 1.1, "restitution must lie between 0 and 1"),
         ("restitution", -0.1, "restitution must lie between 0 and 1"),
         ("damping", -0.1, "damping must be zero or positive"),
-        ("spin_friction", -0.1, "spin_friction must be zero or positive"),
+        ("spin_damping", -0.1, "spin_damping must be zero or positive"),
         ("rolling_resistance", -0.1, "rolling_resistance must be zero or positive"),
         ("passage_tilt", -0.1, "passage_tilt must be zero or positive"),
         ("incline", -0.1, "incline must lie between 0 and 1.57"),

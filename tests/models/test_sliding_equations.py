@@ -109,7 +109,7 @@ def test_rates_and_forces_are_those_of_the_body(contact, patch, frictions):
 
 
 def test_in_the_air_the_body_is_free():
-    for model, body, theta, beta, w1, w2, w3, slip, push in cases(0.0, {"damping": 0.2, "spin_friction": 0.1}):
+    for model, body, theta, beta, w1, w2, w3, slip, push in cases(0.0, {"damping": 0.2, "spin_damping": 0.1}):
         state, _ = stated(model, body, Contact.FLYING, theta, beta, w1, w2, w3, slip)
         whole = body.state(theta=theta, beta=beta, w1=w1, w2=w2, w3=w3)
         rates = body.rates_flying(whole, push)

@@ -59,7 +59,7 @@ def velocities(state, body, place):
 def test_a_landing_is_one_impulse_at_the_lowest_point_within_the_cone(restitution):
     compared = 0
     for model, body, begun, before in arrivals(300, restitution):
-        elapsed, after = model.react(*begun, 2.0, *AT_REST, *model.parameters)
+        elapsed, after = model.reset_map(*begun, 2.0, *AT_REST, *model.parameters)
         if elapsed > 0.0:
             continue  # it slips anew, from a contact that the impact has stopped
         compared += 1
@@ -84,7 +84,7 @@ def test_a_landing_is_one_impulse_at_the_lowest_point_within_the_cone(restitutio
 @pytest.mark.parametrize("friction", [0.02, 0.3, 1.5])
 def test_a_stroke_of_the_base_never_adds_energy(friction, restitution, moving):
     rng = np.random.default_rng(5)
-    stroke = float(sb.Sliding(COLUMN).margin_names.index("stroke"))
+    stroke = float(sb.Sliding(COLUMN).guard_names.index("stroke"))
     # Where all moves at once the slip and spin may hold most of the energy.
     scale = 3.0 if moving == "all" else 1.0
     for c, kappa, axial in rng.uniform([0.05, 0.5, 0.3], [0.9, 0.8, 0.5], (100, 3)):
@@ -101,7 +101,7 @@ def test_a_stroke_of_the_base_never_adds_energy(friction, restitution, moving):
             *tilt * d, *fall * d + around * n, spin, 0.0, 0.0, 0.0, *slip, 0.0, 0.0, 0.0, 0.0, 0.0,
             float(Contact.SLIPPING if slip.any() else Contact.ROLLING),
         )  # fmt: skip
-        _, after = model.react(*begun, stroke, *AT_REST, *model.parameters)
+        _, after = model.reset_map(*begun, stroke, *AT_REST, *model.parameters)
         before, left = (
             float(model.outputs(np.array([state]).T, np.zeros((3, 1)), np.zeros(1, dtype=bool))["energy"].values[0])
             for state in (begun, after)

@@ -16,7 +16,7 @@ ROLLS = {"tilt": (0.08, 0.02), "tilt_rate": (0.03, -0.06)}
 SHAKEN = sb.Harmonic.elliptic(amplitude=(0.07, 0.05), phase=0.9, angular_frequency=2.3) + sb.Harmonic.vertical(
     acceleration=0.2, angular_frequency=3.1
 )
-FRICTIONS = [{}, {"damping": 0.1}, {"spin_friction": 0.2}, {"rolling_resistance": 0.05}]
+FRICTIONS = [{}, {"damping": 0.1}, {"spin_damping": 0.2}, {"rolling_resistance": 0.05}]
 SEEN = np.linspace(0.5, 4.0, 8)
 # The last 1e-6 of the way to the upright is told with constant speed, and misses as much of the energy at most.
 CLOSED = 1e-6
@@ -118,7 +118,7 @@ def test_steady_rolling_with_slip_stays(forcing, mu, frictions):
     branch = np.flatnonzero(known.stable)[-1]
     amplitude, phase = known.amplitude[branch], known.phase[branch]
     model = sb.Sliding(
-        column, friction_coefficient=mu, damping=0.1, spin_friction=frictions["zeta"], patch=frictions.get("patch", 0.0)
+        column, friction_coefficient=mu, damping=0.1, spin_damping=frictions["zeta"], patch=frictions.get("patch", 0.0)
     )
     d, n = np.array([math.cos(phase), math.sin(phase)]), np.array([-math.sin(phase), math.cos(phase)])
     slip = (known.slip_along[branch] * d + known.slip_across[branch] * n) * column.mass_height

@@ -269,7 +269,7 @@ def test_it_can_be_described_and_saved(tmp_path):
         model, SHAKING.scaled(0.05), tilt=(0.05, 0.0), twist=0.2, position=(0.1, 0.2), duration=2.0
     )  # fmt: skip
     loaded = sb.load(run.save(tmp_path / "run.nc"))
-    setup = sb.spec.description_of(loaded.provenance).build()
+    setup = sb.config.config_of(loaded.provenance).build()
     again = sb.simulate(setup.model, setup.motion, **setup.options)
     assert setup.model == model
     for name in ("tilt", "twist", "footprint"):

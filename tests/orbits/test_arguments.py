@@ -6,8 +6,8 @@ import time
 import pytest
 
 import stylobate as sb
+from stylobate.base_motions import BASE_AT_REST
 from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError
-from stylobate.motions import BASE_AT_REST
 from stylobate.orbits import (
     StepControl,
     bifurcation_curve,

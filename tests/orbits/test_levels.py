@@ -30,7 +30,7 @@ LEVELS = {
     "wobbling": (sb.Wobbling(COLUMN, damping=ETA), lambda theta: sb.theory.wobbling_rolling(theta, A0, c=C, eta=ETA)),
     **{
         f"rolling {zeta}": (
-            sb.Rolling(COLUMN, damping=ETA, spin_friction=zeta),
+            sb.Rolling(COLUMN, damping=ETA, spin_damping=zeta),
             lambda theta, zeta=zeta: sb.theory.full_rolling(theta, A0, c=C, eta=ETA, zeta=zeta),
         )
         for zeta in (0.1, 1.0)
@@ -125,7 +125,7 @@ def test_the_product_of_multipliers_tells_what_impacts_and_friction_take():
 
 def test_orbits_that_pass_the_upright_with_loss_out_of_a_plane_are_refused():
     amplitude, phase, _ = stable_one(LEVELS["rolling 0.1"][1](THETA))
-    frictions = {"damping": ETA, "spin_friction": 0.1}
+    frictions = {"damping": ETA, "spin_damping": 0.1}
     model = sb.Rolling(COLUMN, **frictions, restitution=0.9, passage_tilt=2.0 * amplitude)
     with pytest.raises(NoOrbitError, match="so near that it loses energy"):
         sb.orbits.periodic_orbit(model, CIRCLE, guess=near(amplitude, phase))
@@ -142,7 +142,7 @@ def test_a_restitution_that_is_not_given_cannot_be_followed():
 @pytest.mark.parametrize("sense", [1, -1])
 @pytest.mark.parametrize("name", [*NAMES, SLENDER])
 def test_steady_rolling_of_every_level_needs_no_guess(name, sense):
-    slender = sb.SlenderRolling(COLUMN, damping=ETA, spin_friction=0.1)
+    slender = sb.SlenderRolling(COLUMN, damping=ETA, spin_damping=0.1)
     model = slender if name == "slender rolling" else LEVELS[name][0]
     circle = sb.Harmonic.circular(acceleration=A0, angular_frequency=THETA, sense=sense)
     orbit = sb.orbits.periodic_orbit(model, circle)

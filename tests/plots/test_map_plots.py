@@ -15,8 +15,8 @@ from stylobate.plots.cells import cell_edges
 from stylobate.plots.classes import KIND_LOOKS, OUTCOME_LOOKS, UNFINISHED, attractor_classes
 from stylobate.plots.labels import axis_label
 from stylobate.results.outcomes import code_of
-from stylobate.studies.boundary import exponent_of
-from stylobate.studies.finding import KINDS
+from stylobate.studies.maps.attractor_search import KINDS
+from stylobate.studies.maps.uncertainty_exponent import exponent_of
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 REST, OVERTURNED, ROLLING = (code_of(one) for one in (Outcome.AT_REST, Outcome.OVERTURNED, Outcome.ROLLING))

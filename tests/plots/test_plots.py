@@ -97,4 +97,4 @@ def test_a_folder_that_cannot_be_written_is_told(tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("")
     with pytest.raises(FileError, match="cannot write into"):
-        sb.plots.paper_report(sb.results.PaperCheck({}), blocked)
+        sb.paper.paper_report(sb.results.PaperCheck({}), blocked)

@@ -77,7 +77,7 @@ def test_numbers_of_other_kinds_can_be_saved(tmp_path):
 def test_a_run_is_repeated_from_its_provenance(options, tmp_path):
     first = sb.simulate(MODEL, MOTION, tilt=(0.03, 0.01), duration=10.0, **options)
     loaded = sb.load(first.save(tmp_path / "run.nc"))
-    setup = sb.spec.description_of(loaded.provenance).build()
+    setup = sb.config.config_of(loaded.provenance).build()
     again = sb.simulate(setup.model, setup.motion, **setup.options)
     same(again, first)
     xr.testing.assert_identical(again.data, first.data)

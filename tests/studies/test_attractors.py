@@ -9,13 +9,11 @@ import xarray as xr
 import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
 from stylobate.results.outcomes import code_of
-from stylobate.studies.attractors import shares
-from stylobate.studies.branches import follow_branches
-from stylobate.studies.finding import UNSETTLED, Attractor, Found, find_attractors, with_turns
-from stylobate.studies.orbit_paths import turns_of_paths
-from stylobate.studies.proportions import wilson_interval
-from stylobate.studies.strobe_count import with_strobes
-from stylobate.studies.strobes import (
+from stylobate.studies.maps.attractor_continuation import follow_branches
+from stylobate.studies.maps.attractor_search import UNSETTLED, Attractor, Found, find_attractors, with_turns
+from stylobate.studies.maps.attractors import shares
+from stylobate.studies.maps.orbit_paths import turns_of_paths
+from stylobate.studies.maps.stroboscopic import (
     AttractorRules,
     OrbitScales,
     cycle_distance,
@@ -24,6 +22,8 @@ from stylobate.studies.strobes import (
     keeps_moving,
     repeating_periods,
 )
+from stylobate.studies.maps.stroboscopic_count import with_strobes
+from stylobate.studies.proportions import wilson_interval
 from stylobate.studies.sweeps import Sweep
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)

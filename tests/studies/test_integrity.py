@@ -7,7 +7,7 @@ import xarray as xr
 import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
 from stylobate.results.outcomes import code_of
-from stylobate.studies.safe_distance import Metric, distance_to_overturning
+from stylobate.studies.maps.safe_distance import Metric, distance_to_overturning
 
 FREE = sb.Slender(sb.Column.dimensionless(0.1))
 OVERTURNED, SAFE = code_of(Outcome.OVERTURNED), code_of(Outcome.AT_REST)

@@ -108,10 +108,10 @@ FULL = sb.Column.solid(radius=0.8, height=4.0, density=2700.0)
 @pytest.mark.parametrize(
     "model",
     [
-        sb.SlenderRolling(FULL, damping=0.1, spin_friction=0.2),
+        sb.SlenderRolling(FULL, damping=0.1, spin_damping=0.2),
         sb.Wobbling(FULL, damping=0.1),
         sb.Wobbling(FULL, damping=0.1, constraint="rubber"),
-        sb.Rolling(FULL, damping=0.1, spin_friction=0.2),
+        sb.Rolling(FULL, damping=0.1, spin_damping=0.2),
     ],
     ids=lambda model: f"{model.name}-{getattr(model, 'constraint', '')}",
 )
@@ -131,7 +131,7 @@ def test_a_start_is_on_the_steady_rolling_of_its_model(model, sense):
 
 
 def test_the_branches_of_full_rolling():
-    model = sb.Rolling(FULL, damping=0.1, spin_friction=0.2)
+    model = sb.Rolling(FULL, damping=0.1, spin_damping=0.2)
     motion = sb.Harmonic.circular(acceleration=1.2, angular_frequency=3.6)
     rolling = sb.theory.full_rolling(
         3.6 * model.time_scale,
@@ -163,7 +163,7 @@ class Own(sb.Slender):
         (sb.Rolling(FULL, rolling_resistance=0.01), "upper", "rolling_resistance must be 0"),
         (sb.SlenderRolling(FULL, couples="isotropic"), "upper", "couples must be 'contact'"),
         (sb.SlenderRolling(FULL), "lower", 'branch must be "upper" for slender rolling'),
-        (sb.Rolling(FULL, damping=0.1), "upper", "spin_friction must be above zero"),
+        (sb.Rolling(FULL, damping=0.1), "upper", "spin_damping must be above zero"),
         (sb.Rolling(FULL), "left", 'branch must be "upper" or "lower"'),
     ],
 )

@@ -164,7 +164,7 @@ def test_a_slimmer_one_loses_it_again_where_spin_friction_is_small(a, body):
 
 
 def test_nothing_where_there_is_nothing():
-    # No spin friction; no motion of the base; an amplitude below the start of the curve.
+    # No spin damping; no motion of the base; an amplitude below the start of the curve.
     found = free_twist_critical_frequency([0.065, 0.0, 0.001], c=C, eta=0.1, zeta=[0.0, 1.0, 1.0])
     assert np.isnan(found).all()
     assert free_twist_critical_frequency(np.full((2, 1), 0.065), c=C, eta=0.1, zeta=[0.1, 1.0, 2.0]).shape == (2, 3)

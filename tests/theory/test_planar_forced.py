@@ -139,7 +139,7 @@ def test_the_kick_out_of_the_plane_grows_with_the_logarithm_of_the_offset():
         return [y[2], y[3], y[0] - C * y[0] / tilt, y[1] - C * y[1] / tilt]
 
     def relative_kick(offset):
-        """Change of the rate across the plane, from half a window before the passage to half a window after."""
+        """Perturbation of the rate across the plane, from half a window before the passage to half a window after."""
         runs = [
             solve_ivp(
                 rates, [0.0, way * half_window], [0.0, offset, speed, 0.0], "DOP853", rtol=1e-12, atol=1e-13 * offset

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from stylobate import config, earthquakes, studies
 from stylobate.cli.assess_progress import parts_done
 from stylobate.cli.given import Given
 from stylobate.cli.interrupts import INTERRUPTED
@@ -18,8 +19,8 @@ from stylobate.cli.output import NETCDF, check_place, print_json, print_table
 from stylobate.errors import FileError, Interrupted
 
 if TYPE_CHECKING:
+    from stylobate.earthquakes.config import AssessmentSetup
     from stylobate.results.assessment import Assessment
-    from stylobate.spec import AssessmentSetup
 
 Source = Annotated[Path, typer.Argument(help="the study, a TOML file; or a saved assessment (.nc) to show again")]
 Folder = Annotated[
@@ -53,8 +54,6 @@ def assess(
 
     stylobate assess study-assessment/assessment.nc --folder again
     """
-    from stylobate import plots  # noqa: PLC0415  heavy imports wait until the options are read
-
     if not source.is_file():
         message = f"cannot read {source}: No such file or directory"
         raise FileError(message)
@@ -70,10 +69,10 @@ def assess(
     with _alone_in(target):
         found = _loaded(source) if setup is None else _computed(setup, store or target / "store", threads)
         with parts_done() as progress:
-            report = plots.assessment_report(
+            report = earthquakes.assessment_report(
                 found, target, progress=lambda done, total: progress("drawing figures", done, total)
             )
-    summary = plots.assessment_tables(found)["summary"]
+    summary = earthquakes.assessment_tables(found)["summary"]
     if as_json:
         print_json({"summary": _rows(summary), "setting": found.setting, "report": str(report)})
     else:
@@ -118,9 +117,7 @@ def _loaded(source: Path) -> "Assessment":
 
 
 def _described(source: Path, target: Path) -> "AssessmentSetup":
-    from stylobate import spec  # noqa: PLC0415
-
-    description = spec.AssessDescription.parse(spec.read_description(source))
+    description = earthquakes.config.AssessConfig.parse(config.read_config(source))
     _refuse_folder_of_another(target, description.title)
     setup = description.build()
     digest = hashlib.sha256(source.read_bytes()).hexdigest()
@@ -129,11 +126,9 @@ def _described(source: Path, target: Path) -> "AssessmentSetup":
 
 
 def _computed(setup: "AssessmentSetup", store: Path, threads: int | None) -> "Assessment":
-    from stylobate import studies  # noqa: PLC0415
-
     try:
         with _alone_in(store), parts_done() as progress:
-            return studies.assess(
+            return earthquakes.assess(
                 setup.columns,
                 setup.records,
                 **setup.options,

@@ -6,14 +6,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from stylobate import config, studies
 from stylobate.cli import options as opt
 from stylobate.cli.given import Given
 from stylobate.cli.many_runs import check_outputs, computed, end, is_to_compute, write
 from stylobate.cli.output import print_json, print_table
 from stylobate.cli.saved import axes_of, open_saved, plain_axes, provenance_of
 from stylobate.cli.source import read_source
-from stylobate.counted import counted
 from stylobate.errors import FileError
+from stylobate.text import plural
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -69,7 +70,7 @@ def basin(
     gravity: opt.Gravity = None,
     model: opt.Model = None,
     damping: opt.Damping = None,
-    spin_friction: opt.SpinFriction = None,
+    spin_damping: opt.SpinDamping = None,
     rolling_resistance: opt.RollingResistance = None,
     restitution: opt.Restitution = None,
     constraint: opt.Constraint = None,
@@ -120,17 +121,13 @@ def basin(
         assert saved is not None
         found = _labelled(saved, source, given["confidence"])
     else:
-        from stylobate import spec  # noqa: PLC0415  heavy imports wait until the options are read
-
         if saved is None:
             described = read_source(source)
         else:
-            described = spec.BasinDescription.of_saved(provenance_of(saved), axes_of(saved)).values()
-        kind = spec.BasinDescription
+            described = config.BasinConfig.of_saved(provenance_of(saved), axes_of(saved)).values()
+        kind = config.BasinConfig
         values = opt.overlay_sample(opt.overlay(described, given, kind.model_fields), given, "basin")
         setup = kind.parse(opt.overlay_axes(values, given, "basin")).build()
-        from stylobate import studies  # noqa: PLC0415  … and the heaviest until they can be used
-
         _check_names(setup.options)
         found, complete = computed(studies.basins, setup, given, "basins")
     write(found, given)
@@ -143,7 +140,7 @@ def basin(
 
 def _check_names(options: Mapping[str, Any]) -> None:
     """Raise ParameterError for a name that is no start, by its place on the command line or in the file."""
-    from stylobate.studies.varied import require_starts  # noqa: PLC0415
+    from stylobate.studies.checks import require_starts  # noqa: PLC0415
 
     places = ["over"] * len(options["over"]) if "count" in options else ["x", "y"]
     for place, name in zip(places, options["over"], strict=True):
@@ -152,8 +149,7 @@ def _check_names(options: Mapping[str, Any]) -> None:
 
 def _labelled(saved: "xr.Dataset", source: Path | None, confidence: float | None) -> "xr.Dataset":
     """Return saved basins; the runs of a store with the attractor that each has come to."""
-    from stylobate import spec, studies  # noqa: PLC0415
-    from stylobate.studies.finding import NOT_SETTLED  # noqa: PLC0415
+    from stylobate.studies.maps.attractor_search import NOT_SETTLED  # noqa: PLC0415
     from stylobate.studies.proportions import fraction_interval  # noqa: PLC0415
 
     if "attractor_name" in saved:
@@ -166,7 +162,7 @@ def _labelled(saved: "xr.Dataset", source: Path | None, confidence: float | None
     if "strobe_tilt" not in saved:
         message = f"{source} holds runs without strobed states, from which no attractors are told; see stylobate map"
         raise FileError(message)
-    setup = spec.BasinDescription.of_saved(provenance_of(saved), axes_of(saved)).build()
+    setup = config.BasinConfig.of_saved(provenance_of(saved), axes_of(saved)).build()
     share = 0.95 if confidence is None else confidence
     labelled = studies.label_attractors(saved, setup.model, setup.motion, confidence=share)
     return labelled.assign_attrs(kind="basins")
@@ -214,9 +210,9 @@ def _print(found: "xr.Dataset") -> None:
         )
         for one in told["attractors"]
     ]
-    title = counted(told["runs"], "start") + (f", {told['computed']} done" if told["computed"] < told["runs"] else "")
+    title = plural(told["runs"], "start") + (f", {told['computed']} done" if told["computed"] < told["runs"] else "")
     print_table(title, rows, ("attractor", "turns a period", "mean tilt", "starts", "fraction", confidence))
     if told["unsettled"]:
-        from stylobate.studies.finding import REMEDY  # noqa: PLC0415  heavy, as above
+        from stylobate.studies.maps.attractor_search import REMEDY  # noqa: PLC0415  heavy, as above
 
         print(REMEDY)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 import typer
 
+from stylobate import config, plots, studies
 from stylobate.cli import options as opt
 from stylobate.cli.given import Given
 from stylobate.cli.output import check_writable, print_json, print_table, save_figure
@@ -47,7 +48,7 @@ def boundary(
     gravity: opt.Gravity = None,
     model: opt.Model = None,
     damping: opt.Damping = None,
-    spin_friction: opt.SpinFriction = None,
+    spin_damping: opt.SpinDamping = None,
     rolling_resistance: opt.RollingResistance = None,
     restitution: opt.Restitution = None,
     constraint: opt.Constraint = None,
@@ -69,15 +70,13 @@ def boundary(
     stylobate boundary --slenderness 0.1 --damping 0.1 --motion straight --acceleration 0.1
     --angular-frequency-range 0.5 6 --bounds 0.02 0.4 --figure boundary.png
     """
-    from stylobate import plots, spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
-
     given = Given.of(context)
     check_writable(given["figure"], given["output"])
     if bounds is None:
         message = f"--bounds: missing. Give the lowest and the highest {parameter}: --bounds LOW HIGH."
         raise ParameterError(message)
-    values = opt.overlay(read_source(source), given, spec.ResponseDescription.model_fields)
-    setup = spec.ResponseDescription.parse(values).build()
+    values = opt.overlay(read_source(source), given, config.ResponseConfig.model_fields)
+    setup = config.ResponseConfig.parse(values).build()
     options = {
         "parameter": given["parameter"].replace("-", "_"),
         "bounds": given["bounds"],

@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from stylobate import conveying
 from stylobate.cli import options as opt
 from stylobate.cli.given import Given
 from stylobate.cli.many_runs import check_outputs, computed, end, is_to_compute, write
 from stylobate.cli.output import print_json, print_table
 from stylobate.cli.saved import axes_of, open_saved, plain_axes, provenance_of
 from stylobate.cli.source import read_source
-from stylobate.counted import counted
 from stylobate.errors import FileError, ParameterError
+from stylobate.text import plural
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -58,7 +59,7 @@ def drift(
     gravity: opt.Gravity = None,
     model: opt.Model = None,
     damping: opt.Damping = None,
-    spin_friction: opt.SpinFriction = None,
+    spin_damping: opt.SpinDamping = None,
     rolling_resistance: opt.RollingResistance = None,
     restitution: opt.Restitution = None,
     passage_tilt: opt.PassageTilt = None,
@@ -98,7 +99,6 @@ def drift(
 
     stylobate drift drift.toml --y friction-coefficient 0.1 0.5 9 --output drift.zarr
     """
-    from stylobate import spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
     from stylobate.studies.sweeps.quantities import check_quantities  # noqa: PLC0415
 
     given, complete = Given.of(context), True
@@ -111,16 +111,16 @@ def drift(
         if saved is None:
             described = {"model": {"kind": "sliding"}, **read_source(source)}
         else:
-            described = spec.DriftDescription.of_saved(provenance_of(saved), axes_of(saved)).values()
-        fields = spec.DriftDescription.model_fields
+            described = conveying.config.DriftConfig.of_saved(provenance_of(saved), axes_of(saved)).values()
+        fields = conveying.config.DriftConfig.model_fields
         values = opt.overlay_axes(opt.overlay(described, given, fields), given, "drift")
         if not values.get("drift"):
             message = "drift.x is missing: what varies, such as --x acceleration 2 30 29"
             raise ParameterError(message)
-        setup = spec.DriftDescription.parse(opt.overlay_late(values, given, "drift")).build()
+        setup = conveying.config.DriftConfig.parse(opt.overlay_late(values, given, "drift")).build()
         for place, name in zip("xy", setup.options["over"], strict=False):
             check_quantities(f"drift.{place}", setup.model, [name])
-        found, complete = computed(studies.drift, setup, given, "drift")
+        found, complete = computed(conveying.drift, setup, given, "drift")
     write(found, given)
     if as_json:
         print_json(_summary(found))
@@ -131,15 +131,14 @@ def drift(
 
 def _walked(saved: "xr.Dataset", source: Path | None) -> "xr.Dataset":
     """Return a saved drift; the runs of a store with speeds and throw numbers."""
-    from stylobate import spec  # noqa: PLC0415
-    from stylobate.studies.drift import walked  # noqa: PLC0415
+    from stylobate.conveying.transport import walked  # noqa: PLC0415
 
     if "transport_speed" in saved:
         return saved
     if saved.attrs["kind"] not in ("sweep", "drift") or "mean_twist_rate" not in saved:
         message = f"{source} holds a {saved.attrs['kind']}, and no drift; see stylobate map"
         raise FileError(message)
-    setup = spec.DriftDescription.of_saved(provenance_of(saved), axes_of(saved)).build()
+    setup = conveying.config.DriftConfig.of_saved(provenance_of(saved), axes_of(saved)).build()
     return walked(saved, setup.model, setup.motion)
 
 
@@ -177,7 +176,7 @@ def _print(found: "xr.Dataset") -> None:
     told = _rows(found)
     names = [str(dim) for dim in found["outcome"].dims]
     done, total = int(found["computed"]), found["outcome"].size
-    title = f"{counted(total, 'run')} over {' and '.join(names)}" + (f", {done} of them done" if done < total else "")
+    title = f"{plural(total, 'run')} over {' and '.join(names)}" + (f", {done} of them done" if done < total else "")
     if total > _ROWS:
         told = sorted(told, key=lambda row: -_or_zero(row["transport_speed"]))[:_FASTEST]
         title += f"; the {_FASTEST} fastest are shown, --json tells all"

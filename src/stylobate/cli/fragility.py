@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from stylobate import config, earthquakes, plots
 from stylobate.cli import options as opt
 from stylobate.cli.fragility_table import print_fits, summary
 from stylobate.cli.given import Given
@@ -19,7 +20,7 @@ from stylobate.errors import FileError, ParameterError
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stylobate.studies import FragilityStudy
+    from stylobate.earthquakes import FragilityStudy
 
 Source = Annotated[
     Path | None,
@@ -127,7 +128,7 @@ def fragility(
     gravity: opt.Gravity = None,
     model: opt.Model = None,
     damping: opt.Damping = None,
-    spin_friction: opt.SpinFriction = None,
+    spin_damping: opt.SpinDamping = None,
     rolling_resistance: opt.RollingResistance = None,
     restitution: opt.Restitution = None,
     constraint: opt.Constraint = None,
@@ -155,19 +156,17 @@ def fragility(
 
     stylobate fragility runs.nc --counting first --hazard site.csv
     """
-    from stylobate import spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
-
     given, complete = Given.of(context), True
     check_outputs(given)
     check_writable(given["runs_figure"])
     saved = _saved(source)
     values = _overlay(_described(source) if saved is None else _description(saved, source), given)
-    description = spec.FragilityDescription.parse(values)
+    description = earthquakes.config.FragilityConfig.parse(values)
     if not is_to_compute(saved, given, shown_with=_OF_FITS):
         assert saved is not None
-        found, study = saved, studies.FragilityStudy.of(description.build(read=False))
+        found, study = saved, earthquakes.FragilityStudy.of(description.build(read=False))
     else:
-        study = studies.FragilityStudy.of(description.build())
+        study = earthquakes.FragilityStudy.of(description.build())
         found, complete = _computed(study, given)
         found = found.assign_attrs(description=json.dumps(description.values()))
     fits = study.fits(found)
@@ -201,7 +200,7 @@ def _saved(source: Path | None) -> "xr.Dataset | None":
 
 def _description(saved: "xr.Dataset", source: Path | None) -> dict[str, Any]:
     if "description" not in saved.attrs:
-        message = f"{source} was saved from Python; fit it there: sb.studies.fragility_of_runs(runs)"
+        message = f"{source} was saved from Python; fit it there: sb.earthquakes.fragility_of_runs(runs)"
         raise FileError(message)
     found: dict[str, Any] = json.loads(saved.attrs["description"])
     return found
@@ -220,10 +219,10 @@ def _described(source: Path | None) -> dict[str, Any]:
 
 def _overlay(described: Mapping[str, Any], given: Given) -> dict[str, Any]:
     """Return the values `described` with the options laid over them."""
-    from stylobate.spec import FragilityDescription  # noqa: PLC0415
+    from stylobate.earthquakes.config import FragilityConfig  # noqa: PLC0415
 
     own = given.without("records", "units", "step", "single")
-    values = opt.overlay(described, own, FragilityDescription.model_fields)
+    values = opt.overlay(described, own, FragilityConfig.model_fields)
     if not values.get("motion"):
         values.pop("motion", None)
     return {**values, "records": _records(values.get("records"), given), "fragility": _table(values, given)}
@@ -305,13 +304,12 @@ def _spread(text: str) -> tuple[str, dict[str, Any]]:
 
 
 def _computed(study: "FragilityStudy", given: Given) -> "tuple[xr.Dataset, bool]":
-    from stylobate import spec  # noqa: PLC0415
-    from stylobate.motions import BASE_AT_REST  # noqa: PLC0415
+    from stylobate.base_motions import BASE_AT_REST  # noqa: PLC0415
 
     def run(_model: Any, _motion: Any, **computing: Any) -> "xr.Dataset":
         return study.runs(**computing)
 
-    return computed(run, spec.Setup(study.model, BASE_AT_REST, {}), given, "fragility")
+    return computed(run, config.Setup(study.model, BASE_AT_REST, {}), given, "fragility")
 
 
 def _write(found: "xr.Dataset", fits: "xr.Dataset", given: Mapping[str, Any]) -> None:
@@ -322,6 +320,4 @@ def _write(found: "xr.Dataset", fits: "xr.Dataset", given: Mapping[str, Any]) ->
         write_netcdf(found, output)
     for result, path in ((fits, given["figure"]), (found, given["runs_figure"])):
         if path is not None:
-            from stylobate import plots  # noqa: PLC0415
-
             save_figure(plots.plot(result), path)

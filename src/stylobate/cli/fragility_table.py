@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from stylobate.cli.output import print_table
 from stylobate.cli.saved import model_named, provenance_of
-from stylobate.counted import counted
 from stylobate.results.few_records import few_records
+from stylobate.text import plural
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -57,8 +57,8 @@ def _row(fits: "xr.Dataset", rates: "xr.Dataset | None", place: int) -> dict[str
     if rates is not None:
         told = rates.isel(limit_state=place)
         row |= {name: float(told[name]) for name in _OF_RATES}
-        row["rate_not_told"] = str(told["not_told"].item())
-        if row["rate_not_told"]:
+        row["rate_withheld"] = str(told["withheld_reason"].item())
+        if row["rate_withheld"]:
             row |= dict.fromkeys(("annual_rate", "probability"), math.nan)
     return row
 
@@ -91,8 +91,8 @@ _UNITS = {"m s-2": " [m/s²]", "m s-1": " [m/s]"}
 
 def _runs(found: "xr.Dataset") -> str:
     done, total = int(found["computed"]), found["outcome"].size
-    over = " × ".join(counted(found.sizes[dim], str(dim).replace("_", " ")) for dim in found["outcome"].dims)
-    return f"{counted(total, 'run')}: {over}" + (f", {done} of them done" if done < total else "")
+    over = " × ".join(plural(found.sizes[dim], str(dim).replace("_", " ")) for dim in found["outcome"].dims)
+    return f"{plural(total, 'run')}: {over}" + (f", {done} of them done" if done < total else "")
 
 
 def _cells(row: Mapping[str, Any]) -> list[str]:
@@ -115,7 +115,7 @@ def _cells(row: Mapping[str, Any]) -> list[str]:
 
 def _rate_cells(row: Mapping[str, Any]) -> list[str]:
     """Return the annual rate and the probability, if they are told."""
-    if row["rate_not_told"]:
+    if row["rate_withheld"]:
         return ["not told", "not told"]
     if not math.isfinite(row["annual_rate"]):
         return ["", ""]
@@ -147,7 +147,7 @@ def _told_rates(rows: Sequence[Mapping[str, Any]]) -> list[str]:
     shares = [row["share_beyond"] for row in rows if math.isfinite(row["annual_rate"])]
     lines = [f"annual rates: up to {100.0 * max(shares):.0f} % from beyond the hazard curve"] if shares else []
     for row in rows:
-        if why := row["rate_not_told"]:
+        if why := row["rate_withheld"]:
             bounds = f"it is between {row['rate_low']:.1e} and {row['rate_high']:.1e} a year"
             lines.append(f"annual rate of {row['name']!r}: not told, for {why}; {bounds}")
     return lines

@@ -7,7 +7,7 @@ from typing import Any, Self
 
 import typer
 
-from stylobate.errors import DescriptionError
+from stylobate.errors import ConfigError
 
 # Every command reads its source and prints its result.
 _USED_BY_ALL = ("source", "as_json")
@@ -86,15 +86,15 @@ class Given(Mapping[str, Any]):
 
         Raises
         ------
-        DescriptionError
+        ConfigError
             With one line for each of them.
         """
         unused = [name for name in self.flags if name not in self._used]
         if unused:
-            raise DescriptionError([self._refusal(name, because) for name in unused])
+            raise ConfigError([self._refusal(name, because) for name in unused])
 
     def _refusal(self, name: str, because: str) -> str:
-        from stylobate.spec.models import kinds_with  # noqa: PLC0415  heavy imports wait until they are needed
+        from stylobate.config.models import kinds_with  # noqa: PLC0415  heavy imports wait until they are needed
 
         got = f"(got {self.options[name]!r})" if isinstance(self.options[name], (bool, int, float, str)) else ""
         flag = f"{self.flags[name]}:"

@@ -13,9 +13,9 @@ from stylobate.cli.boundary import boundary
 from stylobate.cli.drift import drift
 from stylobate.cli.fragility import fragility
 from stylobate.cli.given import with_values
+from stylobate.cli.hierarchy import model_hierarchy
 from stylobate.cli.interrupts import INTERRUPTED, interrupted_by_signals
 from stylobate.cli.lab import lab
-from stylobate.cli.ladder import ladder
 from stylobate.cli.map import overturning_map
 from stylobate.cli.options import joined_ranges
 from stylobate.cli.paper import paper
@@ -25,7 +25,7 @@ from stylobate.cli.response import response
 from stylobate.cli.simulate import simulate
 from stylobate.cli.spectrum import spectrum
 from stylobate.cli.usage import told
-from stylobate.errors import DescriptionError, ModelError, SeldomMeant, StylobateError
+from stylobate.errors import ConfigError, ModelError, StylobateError, UnlikelyInputWarning
 
 _BAD_INPUT = 2
 
@@ -60,7 +60,7 @@ def _options(
     del version
 
 
-for command in (paper, simulate, ladder, response, boundary):
+for command in (paper, simulate, model_hierarchy, response, boundary):
     app.command()(with_values(command))
 app.command("map")(with_values(overturning_map))
 for command in (basin, drift, records, assess, spectrum, fragility, lab):
@@ -80,7 +80,7 @@ def main() -> None:
 def run(arguments: Sequence[str]) -> int:
     """Run one command and return its exit status."""
     with warnings.catch_warnings():
-        warnings.simplefilter("always", SeldomMeant)
+        warnings.simplefilter("always", UnlikelyInputWarning)
         warnings.showwarning = _show_warning
         with log_lines():
             return _run(joined_ranges(arguments) or ["--help"])
@@ -99,7 +99,7 @@ def _run(arguments: Sequence[str]) -> int:
         status = program.main(arguments, prog_name="stylobate", standalone_mode=False)
     except _UsageError as error:
         return _tell([told(error, program)])
-    except (DescriptionError, ModelError) as error:
+    except (ConfigError, ModelError) as error:
         return _tell(error.problems)
     except StylobateError as error:
         return _tell([str(error)])

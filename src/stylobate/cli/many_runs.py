@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from stylobate import plots, studies
 from stylobate.cli.given import Given
 from stylobate.cli.interrupts import INTERRUPTED
 from stylobate.cli.output import STORE, check_writable, save_figure
@@ -16,7 +17,7 @@ from stylobate.errors import Interrupted, ParameterError, StylobateError
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stylobate.spec import Setup
+    from stylobate.config import Setup
     from stylobate.studies import Dask, Threads
 
 # Options that do not change what is computed.
@@ -37,7 +38,7 @@ def is_to_compute(saved: "xr.Dataset | None", given: Given, *, shown_with: Seque
 
     Raises
     ------
-    DescriptionError
+    ConfigError
         If results are only shown and an option says how to compute them.
     """
     changes = any(name not in (*_HOW, *shown_with) for name in given.flags)
@@ -104,8 +105,6 @@ def write(found: "xr.Dataset", given: Mapping[str, Any]) -> None:
 
         write_netcdf(found, output)
     if given["figure"] is not None:
-        from stylobate import plots  # noqa: PLC0415  heavy imports wait until they are needed
-
         save_figure(plots.plot(found), given["figure"])
 
 
@@ -135,8 +134,6 @@ def _store(given: Mapping[str, Any]) -> Path | None:
 
 
 def _executor(text: str | None, threads: int | None) -> "Threads | Dask":
-    from stylobate import studies  # noqa: PLC0415  heavy imports wait until the options are read
-
     if text in (None, "threads"):
         return studies.Threads(threads)
     chosen = studies.executor_from(str(text))

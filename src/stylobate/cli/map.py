@@ -5,13 +5,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from stylobate import config, conveying, studies
 from stylobate.cli import options as opt
 from stylobate.cli.given import Given
 from stylobate.cli.many_runs import check_axes, check_outputs, computed, end, is_to_compute, write
 from stylobate.cli.output import print_json, print_table
 from stylobate.cli.saved import axes_of, open_saved, plain_axes, provenance_of
 from stylobate.cli.source import read_source
-from stylobate.counted import counted
+from stylobate.text import plural
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -52,7 +53,7 @@ def overturning_map(
     gravity: opt.Gravity = None,
     model: opt.Model = None,
     damping: opt.Damping = None,
-    spin_friction: opt.SpinFriction = None,
+    spin_damping: opt.SpinDamping = None,
     rolling_resistance: opt.RollingResistance = None,
     restitution: opt.Restitution = None,
     constraint: opt.Constraint = None,
@@ -111,19 +112,15 @@ def overturning_map(
         assert saved is not None
         found = _counted(saved)
     else:
-        from stylobate import spec  # noqa: PLC0415  heavy imports wait until the options are read
-
         if saved is None:
             described = read_source(source)
         else:
-            described = spec.MapDescription.of_saved(provenance_of(saved), axes_of(saved)).values()
-        kind = spec.MapDescription
+            described = config.MapConfig.of_saved(provenance_of(saved), axes_of(saved)).values()
+        kind = config.MapConfig
         values = opt.overlay_axes(opt.overlay(described, given, kind.model_fields), given, "map")
         setup = kind.parse(values).build()
-        from stylobate import studies  # noqa: PLC0415  … and the heaviest until they can be used
-
         check_axes("map", setup)
-        study = studies.contact_map if setup.model.switches else studies.overturning_map
+        study = conveying.contact_map if setup.model.switches else studies.overturning_map
         found, complete = computed(study, setup, given, "map")
     write(found, given)
     if as_json:
@@ -134,8 +131,8 @@ def overturning_map(
 
 
 def _counted(saved: "xr.Dataset") -> "xr.Dataset":
-    from stylobate.studies.contact_map import class_shares  # noqa: PLC0415
-    from stylobate.studies.overturning import outcome_shares  # noqa: PLC0415
+    from stylobate.conveying.contact_maps import class_shares  # noqa: PLC0415
+    from stylobate.studies.maps.overturning import outcome_shares  # noqa: PLC0415
 
     return class_shares(saved) if "time_flying" in saved else outcome_shares(saved)
 
@@ -165,6 +162,6 @@ def _print(found: "xr.Dataset") -> None:
     rows = [(name, str(count), f"{100.0 * share:.2f} %") for name, count, share in _shares(found) if count]
     over = " and ".join(str(dim) for dim in found["outcome"].dims)
     done, total = int(found["computed"]), found["outcome"].size
-    title = f"{counted(total, 'run')} over {over}" + (f", {done} of them done" if done < total else "")
+    title = f"{plural(total, 'run')} over {over}" + (f", {done} of them done" if done < total else "")
     uncertain = int(found["uncertain"].sum())
     print_table(title + (f"; {uncertain} uncertain" if uncertain else ""), rows, ("outcome", "runs", "share"))

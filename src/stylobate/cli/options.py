@@ -73,7 +73,7 @@ Model = Annotated[
     _option("slender (by default), slender-rolling, wobbling, rolling, sliding or planar-rocking", _MODEL),
 ]
 Damping = Annotated[float | None, _option("viscous friction η, dimensionless", _MODEL)]
-SpinFriction = Annotated[float | None, _option("ζ, of a column that may turn: its spin decays at ζω0", _MODEL)]
+SpinDamping = Annotated[float | None, _option("ζ, of a column that may turn: its spin decays at ζω0", _MODEL)]
 RollingResistance = Annotated[float | None, _option("lever arm of the normal force, in radii", _MODEL)]
 Restitution = Annotated[float | None, _option("part of the tilt rate left after passing the upright", _MODEL)]
 Constraint = Annotated[str | None, _option("of wobbling: pure-tilt (by default) or rubber", _MODEL)]
@@ -192,7 +192,7 @@ _COLUMN_NAMES = ("shape", "radius", "height", "density", "inner_radius", "top_ra
 _TABLES = ("column", "model", "motion", "records")
 _MODEL_NAMES = (
     "damping",
-    "spin_friction",
+    "spin_damping",
     "rolling_resistance",
     "restitution",
     "constraint",
@@ -300,7 +300,7 @@ def _azimuth_or_name(text: str) -> float | str:
 
 def _column(described: Any, options: dict[str, Any]) -> dict[str, Any]:
     """Return the options of the column with its shape told; they may not change the shape of a file unasked."""
-    from stylobate.spec.columns import implied_shape  # noqa: PLC0415  heavy imports wait until the options are read
+    from stylobate.config.columns import implied_shape  # noqa: PLC0415  heavy imports wait until the options are read
 
     implied = implied_shape(options)
     before = described.get("shape", implied_shape(described) or "solid") if isinstance(described, Mapping) else None
@@ -324,7 +324,7 @@ def _model(values: dict[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
     Another kind than that of the file keeps what it knows of the numbers there, and `values` lose the others: the same
     column by another model.
     """
-    from stylobate.spec.models import known_values  # noqa: PLC0415  heavy imports wait until the options are read
+    from stylobate.config.models import known_values  # noqa: PLC0415  heavy imports wait until the options are read
 
     described = values.get("model", {})
     if given.get("model") and isinstance(described, Mapping):

@@ -22,13 +22,13 @@ def paper(folder: Folder = Path("stylobate-paper"), workers: Workers = None, as_
 
     The folder keeps each finished section: after Ctrl-C the same command computes only the others.
     """
-    from stylobate import plots, studies  # noqa: PLC0415  heavy imports wait until the options are read
+    from stylobate.paper import check_paper, paper_report  # noqa: PLC0415  heavy imports wait until they are used
     from stylobate.results import Verdict  # noqa: PLC0415
 
     check_place(folder / "report.html" if folder.exists() else folder)
     with sections_done() as progress:
-        check = studies.check_paper(workers=workers or os.cpu_count() or 1, progress=progress, folder=folder)
-    report = plots.paper_report(check, folder)
+        check = check_paper(workers=workers or os.cpu_count() or 1, progress=progress, folder=folder)
+    report = paper_report(check, folder)
     rows = [(f.source, f.statement, f.measured, f.verdict.value) for f in check.findings]
     if as_json:
         print_json([dict(zip(("source", "statement", "measured", "verdict"), row, strict=True)) for row in rows])

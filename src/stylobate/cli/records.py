@@ -6,17 +6,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from stylobate import config, earthquakes
 from stylobate.cli import options as opt
 from stylobate.cli.given import Given
 from stylobate.cli.output import check_place, check_writable, print_json, print_table, save_figure
 from stylobate.cli.source import read_source
-from stylobate.counted import counted
 from stylobate.errors import FileError, ParameterError
 from stylobate.files import csv_text, write_whole
+from stylobate.text import plural
 
 if TYPE_CHECKING:
-    from stylobate.motions import Record
-    from stylobate.motions.records.listing import ComponentRow
+    from stylobate.base_motions import Record
+    from stylobate.base_motions.records.listing import ComponentRow
 
 Sources = Annotated[
     list[str] | None,
@@ -77,15 +78,13 @@ def records(
     """
     check_writable(figure)
     _check_table(output)
-    from stylobate import spec  # noqa: PLC0415  heavy imports wait until the options are read
-
     given = Given.of(context)
     given.use("sources", "sample_records", "figure", "output", *(("spectral_damping",) if figure else ()))
     values = _values(sources or [], given)
     given.refuse_unused()
-    description = spec.RecordsDescription.parse(values)
+    description = config.RecordsConfig.parse(values)
     found = list(description.build().values())
-    from stylobate.motions.records.listing import component_rows, notes_on  # noqa: PLC0415
+    from stylobate.base_motions.records.listing import component_rows, notes_on  # noqa: PLC0415
 
     rows = {record.name: component_rows(record) for record in found}
     notes = [note for record in found for note in notes_on(record)]
@@ -97,7 +96,7 @@ def records(
         print_json({"records": [_summary(record, rows[record.name]) for record in found], "notes": notes})
         return
     cells = [[_written(value) for value in _row(row, _SHOWN)] for group in rows.values() for row in group]
-    print_table(counted(len(found), "record"), cells, [_COLUMNS[name] for name in _SHOWN])
+    print_table(plural(len(found), "record"), cells, [_COLUMNS[name] for name in _SHOWN])
     for name, group in rows.items():
         print(f"{name}: {'; '.join(f'{row.axis} {row.origin}' for row in group)}")
     for note in notes:
@@ -145,15 +144,14 @@ def _save(rows: Mapping[str, Sequence["ComponentRow"]], output: Path) -> None:
 def _draw(found: Sequence["Record"], damping: float, figure: Path) -> None:
     import numpy as np  # noqa: PLC0415
 
-    from stylobate import plots  # noqa: PLC0415
-    from stylobate.motions.records import response_spectra  # noqa: PLC0415
+    from stylobate.base_motions.records import response_spectra  # noqa: PLC0415
 
     moving = [record for record in found if record.axes]
     if not moving:
         message = "--figure: no record accelerates, so there is nothing to draw. Check the files"
         raise ParameterError(message)
     spectra = {record.name: response_spectra(record, np.geomspace(*_PERIODS), damping=damping) for record in moving}
-    save_figure(plots.plot_records(moving, spectra), figure)
+    save_figure(earthquakes.plot_records(moving, spectra), figure)
 
 
 def _row(row: "ComponentRow", names: Sequence[str]) -> list[Any]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 import typer
 
+from stylobate import config, plots, studies
 from stylobate.cli import options as opt
 from stylobate.cli.given import Given
 from stylobate.cli.output import check_writable, print_json, print_table, save_figure
@@ -38,7 +39,7 @@ def response(
     gravity: opt.Gravity = None,
     model: opt.Model = None,
     damping: opt.Damping = None,
-    spin_friction: opt.SpinFriction = None,
+    spin_damping: opt.SpinDamping = None,
     rolling_resistance: opt.RollingResistance = None,
     restitution: opt.Restitution = None,
     constraint: opt.Constraint = None,
@@ -65,15 +66,13 @@ def response(
     stylobate response --exact --slenderness 0.1 --damping 0.1 --motion straight --acceleration 0.13
     --angular-frequency-range 0.8 8 --figure exact.png
     """
-    from stylobate import plots, spec, studies  # noqa: PLC0415  heavy imports wait until the options are read
-
     given = Given.of(context)
     check_writable(given["figure"], given["output"])
     if given["exact"] and points is not None:
         message = "--points counts the frequencies of theory; leave it out with --exact, which chooses its own steps"
         raise ParameterError(message)
-    values = opt.overlay(read_source(source), given, spec.ResponseDescription.model_fields)
-    setup = spec.ResponseDescription.parse(values).build()
+    values = opt.overlay(read_source(source), given, config.ResponseConfig.model_fields)
+    setup = config.ResponseConfig.parse(values).build()
     given.refuse_unused()
     low, high = setup.options["range"]
     if exact:

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from stylobate import config, studies
 from stylobate.cli.output import NETCDF, STORE
 from stylobate.errors import FileError
 
@@ -26,8 +27,6 @@ def open_saved(source: Path | None) -> "xr.Dataset | None":
         message = f"cannot read {source}: No such file or directory"
         raise FileError(message)
     if source.suffix == STORE:
-        from stylobate import studies  # noqa: PLC0415  heavy imports wait until the options are read
-
         return _relocated(studies.open_sweep(source, load=True), source)
     from stylobate.results import read_dataset  # noqa: PLC0415
 
@@ -40,9 +39,7 @@ def open_saved(source: Path | None) -> "xr.Dataset | None":
 
 def _relocated(data: "xr.Dataset", source: Path) -> "xr.Dataset":
     """Return `data` with the files of records that were moved together with them found again."""
-    from stylobate import spec  # noqa: PLC0415
-
-    return data.assign_attrs(provenance=json.dumps(spec.relocated(provenance_of(data), source.parent)))
+    return data.assign_attrs(provenance=json.dumps(config.relocated(provenance_of(data), source.parent)))
 
 
 def provenance_of(data: "xr.Dataset") -> dict[str, Any]:

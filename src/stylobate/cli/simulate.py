@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from stylobate import config, engine, plots
 from stylobate.cli import options as opt
 from stylobate.cli.given import Given
 from stylobate.cli.output import check_writable, print_json, print_table, save_figure
@@ -48,7 +49,7 @@ def simulate(
     gravity: opt.Gravity = None,
     model: opt.Model = None,
     damping: opt.Damping = None,
-    spin_friction: opt.SpinFriction = None,
+    spin_damping: opt.SpinDamping = None,
     rolling_resistance: opt.RollingResistance = None,
     restitution: opt.Restitution = None,
     constraint: opt.Constraint = None,
@@ -100,19 +101,13 @@ def simulate(
     given = Given.of(context)
     check_writable(given["figure"], given["output"])
     described = read_source(source)
-    from stylobate import spec  # noqa: PLC0415  heavy imports wait until the options are read
-
-    kind = spec.SimulationDescription
+    kind = config.SimulationConfig
     setup = kind.parse(opt.overlay(described, given, kind.model_fields)).build()
     given.refuse_unused()
-    from stylobate import engine  # noqa: PLC0415  … and the heaviest until they can be used
-
     run = engine.simulate(setup.model, setup.motion, **setup.options)
     if output is not None:
         run.save(output)
     if figure is not None:
-        from stylobate import plots  # noqa: PLC0415
-
         save_figure(plots.plot(run), figure)
     if as_json:
         print_json(_summary(run))

@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+from stylobate import config, results
 from stylobate.errors import FileError
 
 
@@ -23,8 +24,6 @@ def read_source(source: Path | None) -> dict[str, Any]:
     if not source.is_file():
         message = f"cannot read {source}: No such file or directory"
         raise FileError(message)
-    from stylobate import results, spec  # noqa: PLC0415  heavy imports wait until they are needed
-
     if source.suffix == ".nc":
-        return spec.description_of(spec.relocated(results.load(source).provenance, source.parent)).values()
-    return spec.read_description(source)
+        return config.config_of(config.relocated(results.load(source).provenance, source.parent)).values()
+    return config.read_config(source)

@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from stylobate import earthquakes
 from stylobate.cli import options as opt
 from stylobate.cli.given import Given
 from stylobate.cli.many_runs import check_axes, check_outputs, computed, end, is_to_compute, write
 from stylobate.cli.output import STORE, print_json, print_table
 from stylobate.cli.saved import axes_of, model_named, open_saved, provenance_of
 from stylobate.cli.source import read_source
-from stylobate.counted import counted
 from stylobate.errors import FileError
+from stylobate.text import plural
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -75,7 +76,7 @@ def spectrum(
     gravity: opt.Gravity = None,
     model: opt.Model = None,
     damping: opt.Damping = None,
-    spin_friction: opt.SpinFriction = None,
+    spin_damping: opt.SpinDamping = None,
     rolling_resistance: opt.RollingResistance = None,
     restitution: opt.Restitution = None,
     constraint: opt.Constraint = None,
@@ -133,17 +134,14 @@ def spectrum(
         assert saved is not None
         found = saved
     else:
-        from stylobate import spec  # noqa: PLC0415  heavy imports wait until the options are read
-
         described = read_source(source) if saved is None else _description(saved)
-        kind = spec.SpectrumDescription
+        kind = earthquakes.config.SpectrumConfig
         values = opt.overlay_axes(opt.overlay(described, given, kind.model_fields), given, "spectrum")
         description = kind.parse(_overlay(values, given))
         setup = description.build()
-        from stylobate import studies  # noqa: PLC0415  … and the heaviest until they can be used
 
         check_axes("spectrum", setup)
-        study = studies.rocking_spectrum if description.spectrum.rocking else studies.overturning_bands
+        study = earthquakes.rocking_spectrum if description.spectrum.rocking else earthquakes.overturning_bands
         found, complete = computed(study, setup, given, "spectrum")
     write(found, given)
     if as_json:
@@ -172,10 +170,9 @@ _KINDS = (_BANDS, _ROCKING)
 
 
 def _description(saved: "xr.Dataset") -> dict[str, Any]:
-    from stylobate import spec  # noqa: PLC0415
 
     provenance, rocking = provenance_of(saved), saved.attrs["kind"] == _ROCKING
-    return spec.SpectrumDescription.of_saved(provenance, axes_of(saved), rocking=rocking).values()
+    return earthquakes.config.SpectrumConfig.of_saved(provenance, axes_of(saved), rocking=rocking).values()
 
 
 def _overlay(values: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
@@ -265,10 +262,10 @@ def _print_bands(found: "xr.Dataset") -> None:
         for row in (rows[:_FIRST] if len(rows) > _ROWS else rows)
     ]
     header = (*dims, "overturns at scales", "least peak acceleration / (g tan α)")
-    told = [f"{counted(len(rows), 'case')}, {model_named(found)}"]
+    told = [f"{plural(len(rows), 'case')}, {model_named(found)}"]
     told += [f"the {_FIRST} that overturn first"] if len(rows) > _ROWS else []
     unknown = int(found["unknown"].sum())
-    told += [f"{unknown} of {counted(found['outcome'].size, 'run')} without an answer"] if unknown else []
+    told += [f"{unknown} of {plural(found['outcome'].size, 'run')} without an answer"] if unknown else []
     print_table("; ".join([*told, found.attrs["resolution"]]), table, header)
 
 
@@ -294,7 +291,7 @@ def _print_peaks(found: "xr.Dataset") -> None:
     table = [tuple(_written(row[name]) for name in (*dims, *names)) for row in rows]
     shown = f"; the {len(rows)} that rock most" if len(rows) < found["outcome"].size else ""
     header = (*dims, "2π/p [s]", "outcome", "peak tilt / α", "peak rate of tilt / p")
-    print_table(f"{counted(found['outcome'].size, 'case')}, {model_named(found)}{shown}", table, header)
+    print_table(f"{plural(found['outcome'].size, 'case')}, {model_named(found)}{shown}", table, header)
 
 
 def _written(value: Any) -> str:

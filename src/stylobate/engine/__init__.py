@@ -1,7 +1,8 @@
-"""Integration: single runs with dense output and events, and many runs at once."""
+"""Integration: single runs with dense output and events, and many runs at once.
 
-from stylobate.engine.ensemble import simulate_ensemble
-from stylobate.engine.parameters import with_parameters
-from stylobate.engine.single import simulate
+The public names, imported when they are first used, are those of `__init__.pyi`.
+"""
 
-__all__ = ["simulate", "simulate_ensemble", "with_parameters"]
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -4,13 +4,13 @@ import math
 
 import numpy as np
 
+from stylobate.base_motions import BaseMotion
+from stylobate.config.simulation import duration_with_tail
 from stylobate.engine.forcing import Floats
 from stylobate.engine.trajectory import Trajectory
 from stylobate.errors import ParameterError, require_positive
 from stylobate.models import Model
 from stylobate.models.inheritance import belongs_to_equations
-from stylobate.motions import BaseMotion
-from stylobate.spec.simulation import duration_with_tail
 
 
 def duration_of(duration: float | None, model: Model, motion: BaseMotion) -> float:

@@ -152,8 +152,8 @@ class Course:
         """Return tilt and rate after a passage of the upright with loss."""
         model = self.model
         assert model.from_plane is not None
-        struck = self.mover.struck(model.from_plane(state[0], state[1], *line, *model.parameters))
-        _, _, vx, vy = model.lean(*struck, *model.parameters)
+        after = self.mover.impact_map(model.from_plane(state[0], state[1], *line, *model.parameters))
+        _, _, vx, vy = model.tilt_of(*after, *model.parameters)
         return state[0], float(vx * line[0] + vy * line[1])
 
     def _move_in_space(self, state: tuple[float, ...]) -> tuple[float, ...] | None:
@@ -173,7 +173,7 @@ class Course:
                 return self.model.standing(leg.state)
             if leg.reason not in (Reason.CROSSED, Reason.STOP, Reason.STRUCK):
                 return None
-            state = self.mover.struck(leg.state) if leg.reason is Reason.STRUCK else leg.state
+            state = self.mover.impact_map(leg.state) if leg.reason is Reason.STRUCK else leg.state
         return None
 
     def _off_the_upright(self, state: tuple[float, ...]) -> tuple[float, ...]:

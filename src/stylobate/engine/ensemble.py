@@ -9,6 +9,9 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from stylobate.base_motions import BASE_AT_REST, BaseMotion
+from stylobate.base_motions.one_of import members_of
+from stylobate.config import provenance_of_run
 from stylobate.engine.ensembles.alone import follow_alone
 from stylobate.engine.ensembles.batch import Batch, Plan
 from stylobate.engine.ensembles.broadcasting import AXIS, ArrayLike, Runs, broadcast
@@ -24,11 +27,8 @@ from stylobate.engine.single import require_nouns
 from stylobate.errors import MOST_THREADS, Interrupted, Outcome, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.models.consistency import check_once
-from stylobate.motions import BASE_AT_REST, BaseMotion
-from stylobate.motions.one_of import members_of
 from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED, code_of
-from stylobate.spec import provenance_of_run
 
 
 def simulate_ensemble(

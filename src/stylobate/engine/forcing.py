@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.base_motions import BaseMotion
+from stylobate.base_motions.base import ACCELERATION
 from stylobate.engine.tolerances import PARALLEL_ULP
 from stylobate.models import Model
-from stylobate.motions import BaseMotion
-from stylobate.motions.base import ACCELERATION
 
 Floats = npt.NDArray[np.float64]
 

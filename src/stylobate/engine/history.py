@@ -9,12 +9,12 @@ import numpy.typing as npt
 import xarray as xr
 from scipy.optimize import minimize_scalar
 
+from stylobate.base_motions import BaseMotion
 from stylobate.engine.demands import Demands
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.trajectory import Trajectory
 from stylobate.errors import ParameterError
 from stylobate.models import Model
-from stylobate.motions import BaseMotion
 
 # Default samples: this many to each period of the forcing and unit of the column's own time, within the bounds.
 _PER_PERIOD, _PER_UNIT = 48, 24

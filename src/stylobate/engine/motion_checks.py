@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.base_motions import BaseMotion
+from stylobate.base_motions.base import ACCELERATION
+from stylobate.base_motions.combined import Following, Sum, Transformed
 from stylobate.engine.forcing import common_line
 from stylobate.engine.tolerances import SAMPLES_PER_PERIOD
 from stylobate.errors import ParameterError
-from stylobate.motions import BaseMotion
-from stylobate.motions.base import ACCELERATION
-from stylobate.motions.combined import Following, Sum, Transformed
 
 Floats = npt.NDArray[np.float64]
 

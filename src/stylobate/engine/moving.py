@@ -119,11 +119,11 @@ class Mover:
 
         return derivative
 
-    def struck(self, state: tuple[float, ...]) -> tuple[float, ...]:
+    def impact_map(self, state: tuple[float, ...]) -> tuple[float, ...]:
         """Return the state after a passage of the upright with the loss that the model tells."""
-        assert self.model.struck is not None
+        assert self.model.impact_map is not None
         moving, carried = state[: len(self.model.state_names)], state[len(self.model.state_names) :]
-        return *self.model.struck(*moving, *self.model.parameters), *carried
+        return *self.model.impact_map(*moving, *self.model.parameters), *carried
 
     def over_the_upright(self, start: float, state: tuple[float, ...], stop: float, azimuth: float) -> Leg | None:
         """Hop over the upright by the model's law of passage, where it has one and gets there before `stop`."""
@@ -281,7 +281,7 @@ class Mover:
     def _lean(self, state: Floats) -> tuple[float, float, float, float]:
         """Return tilt vector and rate of one state, as floats: asked for several times in each step."""
         model = self.model
-        x, y, vx, vy = model.lean(*state.tolist()[: len(model.state_names)], *model.parameters)
+        x, y, vx, vy = model.tilt_of(*state.tolist()[: len(model.state_names)], *model.parameters)
         return x, y, vx, vy
 
     def _space_leg(

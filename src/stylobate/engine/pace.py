@@ -12,7 +12,7 @@ EVERY = 1000
 
 # DOP853 takes at least two steps a period of the base motion, and is stable up to about so much times a rate of decay.
 _STEPS_PER_PERIOD, _STABLE = 2.0, 6.0
-_RATES = ("damping", "spin_friction")
+_RATES = ("damping", "spin_damping")
 
 
 def step_limit(most: int) -> str:
@@ -31,7 +31,7 @@ def expected_steps(model: Model, frequency: float, end: float) -> float:
     Parameters
     ----------
     model
-        Its damping and spin friction limit steps by stability.
+        Its damping and spin damping limit steps by stability.
     frequency
         Highest dimensionless frequency of the base motion.
     end

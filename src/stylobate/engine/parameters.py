@@ -4,13 +4,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from types import SimpleNamespace
 
+from stylobate.base_motions import BaseMotion, Harmonic
+from stylobate.base_motions.combined import Sum, Transformed
+from stylobate.base_motions.frequency import frequency_of, has_frequency_of_its_own, is_pulse, with_frequency
+from stylobate.base_motions.one_of import number_of, with_choice
 from stylobate.column import Column
 from stylobate.errors import ParameterError, UnsupportedError, require_finite
 from stylobate.models import Model
-from stylobate.motions import BaseMotion, Harmonic
-from stylobate.motions.combined import Sum, Transformed
-from stylobate.motions.frequency import frequency_of, has_frequency_of_its_own, is_pulse, with_frequency
-from stylobate.motions.one_of import number_of, with_choice
 
 COLUMN_NAMES = (
     "radius",

@@ -6,7 +6,8 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from stylobate.counted import counted
+from stylobate.base_motions import BASE_AT_REST, BaseMotion
+from stylobate.config import provenance_of_run
 from stylobate.engine.afterwards import duration_of, survivor_reason
 from stylobate.engine.course import Course
 from stylobate.engine.doubt import FALLEN, finer_rest, in_doubt, other_tolerance
@@ -32,9 +33,8 @@ from stylobate.errors import (
 )
 from stylobate.models import Model
 from stylobate.models.consistency import check_once
-from stylobate.motions import BASE_AT_REST, BaseMotion
 from stylobate.results import OutcomeRules, Response
-from stylobate.spec import provenance_of_run
+from stylobate.text import plural
 
 
 def simulate(
@@ -287,7 +287,7 @@ def _verdict(model: Model, motion: BaseMotion, course: Course, rules: OutcomeRul
         return Verdict(*_ENDINGS[course.ended], {})
     if course.stands:
         releases = sum(event.kind == "release" for event in course.events)
-        before = f", released {counted(releases, 'time')} before" if releases else ""
+        before = f", released {plural(releases, 'time')} before" if releases else ""
         left = motion.duration - course.trajectory.end * model.time_scale
         to_come = math.isfinite(left) and left > 0.0
         told = f", {left:.4g} s before the base motion stops; {_RELEASED}" if to_come else ""
@@ -306,7 +306,7 @@ _RACES = 1e-3
 
 def _races(model: Model, course: Course) -> bool:
     """Return whether close passages without loss, which the model could have, explain the number of steps."""
-    lossless = model.struck is not None and model.loss_tilt == 0.0
+    lossless = model.impact_map is not None and model.loss_tilt == 0.0
     return lossless and course.least_passage < _RACES * model.column.slenderness
 
 

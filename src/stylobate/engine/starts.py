@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from stylobate.base_motions import BaseMotion
 from stylobate.engine.forcing import common_line
 from stylobate.errors import ParameterError, require_finite, require_not_negative, require_vector
 from stylobate.models import Model
-from stylobate.motions import BaseMotion
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.base_motions import BaseMotion
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.errors import SMALLEST, require_not_negative, require_positive
 from stylobate.models import Model
-from stylobate.motions import BaseMotion
 
 Bools = npt.NDArray[np.bool_]
 

@@ -1,23 +1,8 @@
-"""The laboratory: a page on this machine in which one sets column and base motion and sees what becomes of it.
+"""The laboratory: a local page that shows the response of a column while its numbers change.
 
-Names are imported when they are first used: the processes that compute need no server.
+The public names, imported when they are first used, are those of `__init__.pyi`.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+import lazy_loader
 
-if TYPE_CHECKING:
-    from stylobate.lab.app import create_app
-    from stylobate.lab.limits import Limits
-    from stylobate.lab.serving import serve
-
-__all__ = ["Limits", "create_app", "serve"]
-
-_HOMES = {"Limits": "limits", "create_app": "app", "serve": "serving"}
-
-
-def __getattr__(name: str) -> Any:
-    if name in _HOMES:
-        return getattr(import_module(f"stylobate.lab.{_HOMES[name]}"), name)
-    message = f"module 'stylobate.lab' has no attribute {name!r}"
-    raise AttributeError(message)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -11,28 +11,28 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from stylobate import spec
-from stylobate.lab.answers import plain_column, snippets
+from stylobate import config
 from stylobate.lab.bodies import json_body
-from stylobate.lab.catalogue import about
-from stylobate.lab.crew import Answer, BusyError, Crew
 from stylobate.lab.curves import response
-from stylobate.lab.described import Described, described
 from stylobate.lab.jobs import Jobs, broken
 from stylobate.lab.limits import Limits
 from stylobate.lab.messages import Broken, Finished, Lost, Refused
+from stylobate.lab.options import about
 from stylobate.lab.refusals import RefusedError
+from stylobate.lab.request_parsing import Described, described
+from stylobate.lab.responses import plain_column, snippets
 from stylobate.lab.schema import schema
-from stylobate.lab.sizes import beyond_size
+from stylobate.lab.size_limits import beyond_size
 from stylobate.lab.uploads import Uploads
+from stylobate.lab.worker_pool import Answer, BusyError, Crew
 
 _log = logging.getLogger("stylobate.lab")
 
 _JOBS: dict[str, type[Any]] = {
-    "exact": spec.ResponseDescription,
-    "map": spec.MapDescription,
-    "basin": spec.BasinDescription,
-    "animation": spec.SimulationDescription,
+    "exact": config.ResponseConfig,
+    "map": config.MapConfig,
+    "basin": config.BasinConfig,
+    "animation": config.SimulationConfig,
 }
 
 
@@ -76,7 +76,7 @@ class Api:
         given = await self._described(request)
 
         def told() -> dict[str, Any]:
-            model = spec.SimulationDescription.parse(given.values).build().model
+            model = config.SimulationConfig.parse(given.values).build().model
             return {**snippets(given), "column": plain_column(model)}
 
         return JSONResponse(await to_thread.run_sync(told))

@@ -13,15 +13,15 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Mount, Router
 
-from stylobate.errors import DescriptionError, StylobateError
+from stylobate.errors import ConfigError, StylobateError
 from stylobate.lab.api import Api
-from stylobate.lab.crew import Crew
 from stylobate.lab.guards import Guard
 from stylobate.lab.jobs import Jobs, broken
 from stylobate.lab.limits import Limits
 from stylobate.lab.pages import page_routes
 from stylobate.lab.refusals import RefusedError
 from stylobate.lab.uploads import Uploads
+from stylobate.lab.worker_pool import Crew
 
 
 def create_app(
@@ -87,7 +87,7 @@ async def _refusal(request: Request, error: Exception) -> Response:
 async def _mistake(request: Request, error: Exception) -> Response:
     """Tell what the library says of the values."""
     del request
-    problems = error.problems if isinstance(error, DescriptionError) else str(error).splitlines()
+    problems = error.problems if isinstance(error, ConfigError) else str(error).splitlines()
     return JSONResponse({"problems": list(problems)}, status_code=422)
 
 

@@ -8,15 +8,15 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from stylobate import spec
+from stylobate import config
+from stylobate.conveying.contact_maps import class_shares
 from stylobate.engine.parameters import COLUMN_NAMES, present_value
 from stylobate.errors import UnsupportedError
 from stylobate.models import Model
-from stylobate.studies.contact_map import class_shares
-from stylobate.studies.labelled_sweeps import labelled_sweep
-from stylobate.studies.overturning import outcome_shares
+from stylobate.studies.maps.overturning import outcome_shares
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.labelled import labelled_sweep
 
 Floats = npt.NDArray[np.float64]
 
@@ -59,7 +59,7 @@ def case_numbers(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[
 
 
 def case_map(
-    setup: spec.Setup, values: Mapping[str, Any], *, executor: Executor, progress: Progress | None = None
+    setup: config.Setup, values: Mapping[str, Any], *, executor: Executor, progress: Progress | None = None
 ) -> xr.Dataset:
     """Compute a map whose axes are numbers of the described case.
 
@@ -79,7 +79,7 @@ def case_map(
 
     Raises
     ------
-    DescriptionError, ParameterError
+    ConfigError, ParameterError
         If an axis has a value that cannot be.
     """
     options = {name: value for name, value in setup.options.items() if name != "over"}
@@ -106,18 +106,18 @@ def _at(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[str, Floa
     return found | cells
 
 
-def _with(values: Mapping[str, Any], part: str, numbers: Mapping[str, float]) -> spec.Setup:
+def _with(values: Mapping[str, Any], part: str, numbers: Mapping[str, float]) -> config.Setup:
     """Return the setup of the case with other numbers of one part."""
     case = {name: values[name] for name in ("column", "model", "motion") if name in values}
     changed = {**case, part: {**case[part], **numbers}, "duration": 1.0}
-    return spec.SimulationDescription.parse(changed).build()
+    return config.SimulationConfig.parse(changed).build()
 
 
-def _body(setup: spec.Setup) -> dict[str, float]:
+def _body(setup: config.Setup) -> dict[str, float]:
     return {name: float(getattr(setup.model.column, name)) for name in _BODY}
 
 
-def _moved(setup: spec.Setup) -> dict[str, float]:
+def _moved(setup: config.Setup) -> dict[str, float]:
     found: dict[str, float] = {}
     for name in _MOVED:
         try:
@@ -127,4 +127,4 @@ def _moved(setup: spec.Setup) -> dict[str, float]:
     return found
 
 
-_READ: Mapping[str, Callable[[spec.Setup], dict[str, float]]] = {"column": _body, "motion": _moved}
+_READ: Mapping[str, Callable[[config.Setup], dict[str, float]]] = {"column": _body, "motion": _moved}

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stylobate import spec, studies
-from stylobate.counted import counted
+from stylobate import config, studies
+from stylobate.lab.json_values import numbers
 from stylobate.lab.messages import Emit, Note
-from stylobate.lab.plain import numbers
 from stylobate.orbits import StepControl
+from stylobate.text import plural
 
 _ORBITS = 400
 """Of a family each way: a plot shows no more, and close to the upright families go on for thousands."""
@@ -19,7 +19,7 @@ _ORBITS = 400
 
 def response(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return the curves of theory that `values` describe; milliseconds. What no machine number can be is none."""
-    setup = spec.ResponseDescription.parse(values).build()
+    setup = config.ResponseConfig.parse(values).build()
     low, high = setup.options["range"]
     frequencies = np.linspace(low, high, setup.options["points"])
     with np.errstate(all="ignore"):
@@ -53,12 +53,12 @@ def plain_curves(curves: xr.Dataset) -> dict[str, Any]:
 
 def exact_curves(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     """Return the exact orbits that `values` describe; how far they were followed is told on the way."""
-    setup = spec.ResponseDescription.parse(values).build()
+    setup = config.ResponseConfig.parse(values).build()
 
     number = count(1)
 
     def reached(frequency: float) -> None:
-        emit(Note(f"{counted(next(number), 'exact orbit')} found, the last at {frequency:.4g} rad/s"))
+        emit(Note(f"{plural(next(number), 'exact orbit')} found, the last at {frequency:.4g} rad/s"))
 
     low, high = setup.options["range"]
     control = StepControl(most=_ORBITS)

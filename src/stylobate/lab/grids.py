@@ -8,20 +8,20 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stylobate import spec, studies
+from stylobate import config, conveying, studies
 from stylobate.errors import Outcome, ParameterError
 from stylobate.lab.case_axes import case_map, case_numbers, units_of
+from stylobate.lab.json_values import number, numbers
 from stylobate.lab.messages import Emit, Found, Progress
-from stylobate.lab.plain import number, numbers
-from stylobate.lab.refining import Cells, Refining
+from stylobate.lab.progressive_executor import Cells, Refining
 from stylobate.results.outcomes import code_of
 from stylobate.studies.sweeps.quantities import attributes_of
 
 
 def overturning_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     """Return what becomes of the column over two quantities; of a model that slides, what it does."""
-    setup = spec.MapDescription.parse(values).build()
-    study = studies.contact_map if setup.model.switches else studies.overturning_map
+    setup = config.MapConfig.parse(values).build()
+    study = conveying.contact_map if setup.model.switches else studies.overturning_map
     if case_numbers(values, setup.options["over"]):
         found = _watched(partial(case_map, setup, values), setup, emit, keywords={}, flat=True)
     else:
@@ -33,7 +33,7 @@ def overturning_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
 
 def basin_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     """Return which attractor each start of a grid leads to."""
-    setup = spec.BasinDescription.parse(values).build()
+    setup = config.BasinConfig.parse(values).build()
     if "count" in setup.options:
         message = "basin.random is for the command line; the laboratory draws a grid: give basin.x and basin.y"
         raise ParameterError(message)
@@ -55,7 +55,12 @@ def _attractor(one: xr.Dataset) -> dict[str, Any]:
 
 
 def _watched(
-    study: Callable[..., xr.Dataset], setup: spec.Setup, emit: Emit, *, keywords: Mapping[str, Any], flat: bool = False
+    study: Callable[..., xr.Dataset],
+    setup: config.Setup,
+    emit: Emit,
+    *,
+    keywords: Mapping[str, Any],
+    flat: bool = False,
 ) -> xr.Dataset:
     """Run `study` and emit the outcomes as they come; a study whose runs lie in one row is `flat`."""
     over = setup.options["over"]
@@ -79,7 +84,7 @@ def _watched(
     )
 
 
-def _finer(found: xr.Dataset, variable: str, names: Any, setup: spec.Setup) -> dict[str, Any]:
+def _finer(found: xr.Dataset, variable: str, names: Any, setup: config.Setup) -> dict[str, Any]:
     """Return the cells once more, by what is known of them at the end."""
     codes = found[variable].transpose(*found["outcome"].dims).to_numpy()
     codes = codes.reshape([len(values) for values in setup.options["over"].values()])

@@ -13,11 +13,11 @@ from typing import Any
 import anyio
 from anyio.abc import TaskGroup
 
-from stylobate.counted import counted
-from stylobate.lab.crew import Answer, Crew, Told
 from stylobate.lab.limits import Limits
 from stylobate.lab.messages import Broken, Finished, Found, Lost, Note, Progress, Refused
 from stylobate.lab.refusals import RefusedError
+from stylobate.lab.worker_pool import Answer, Crew, Told
+from stylobate.text import plural
 
 _log = logging.getLogger("stylobate.lab")
 
@@ -79,7 +79,7 @@ class Job:
     def report(self, after: int, ahead: int) -> dict[str, Any]:
         """Describe the job in plain values: events from the number `after` on, `ahead` jobs before it in the queue."""
         self.asked_at = time.monotonic()
-        waits = f"waits for {counted(ahead, 'other job')}" if self.state is State.WAITING and ahead else ""
+        waits = f"waits for {plural(ahead, 'other job')}" if self.state is State.WAITING and ahead else ""
         return {
             "id": self.identity,
             "kind": self.kind,

@@ -6,23 +6,23 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from stylobate.errors import SeldomMeant
+from stylobate.errors import UnlikelyInputWarning
 
 
 @contextmanager
 def remarks(values: Mapping[str, Any]) -> Iterator[list[str]]:
-    """Collect each `SeldomMeant` warning that is issued inside, once, as a line; issue the others afterwards.
+    """Collect each `UnlikelyInputWarning` warning that is issued inside, once, as a line; issue the others afterwards.
 
     Files of `values` go by their name, without the folder in which the server keeps them. The filters of warnings are
     those of the whole process: use it where no other thread computes.
     """
     lines: list[str] = []
     with warnings.catch_warnings(record=True) as issued:
-        warnings.simplefilter("always", SeldomMeant)
+        warnings.simplefilter("always", UnlikelyInputWarning)
         yield lines
     folders = set(_folders(values))
     for one in issued:
-        if not issubclass(one.category, SeldomMeant):
+        if not issubclass(one.category, UnlikelyInputWarning):
             warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
             continue
         line = str(one.message)

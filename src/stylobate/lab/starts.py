@@ -4,15 +4,15 @@ from collections.abc import Mapping
 from typing import Any, Literal
 
 from stylobate import orbits, studies, theory
+from stylobate.base_motions import Harmonic
+from stylobate.config.columns import ColumnConfig
+from stylobate.config.description import Config
+from stylobate.config.models import ModelConfig, described_model
+from stylobate.config.motions import MotionConfig
+from stylobate.config.simulation import built_parts
 from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError
-from stylobate.lab.plain import numbers
+from stylobate.lab.json_values import numbers
 from stylobate.models import Model
-from stylobate.motions import Harmonic
-from stylobate.spec.columns import ColumnDescription
-from stylobate.spec.description import Description
-from stylobate.spec.models import ModelDescription, described_model
-from stylobate.spec.motions import MotionDescription
-from stylobate.spec.simulation import built_parts
 
 _NO_CIRCLE = 1e-12
 """A base moves in a circle if the circle against it is smaller than this fraction of it."""
@@ -26,12 +26,12 @@ _UNSTABLE = "start: the exact orbit is unstable, and the motion leaves it"
 _ASYMMETRIC = "start: the exact orbit has bifurcated from the branch and lacks its symmetry"
 
 
-class StartDescription(Description):
+class StartConfig(Config):
     """The case whose steady rolling is wanted: `column`, `model`, a horizontal harmonic `motion`, and which branch."""
 
-    column: ColumnDescription
-    model: ModelDescription = described_model("slender")
-    motion: MotionDescription
+    column: ColumnConfig
+    model: ModelConfig = described_model("slender")
+    motion: MotionConfig
     branch: Literal["upper", "lower"] = "upper"
 
 
@@ -49,10 +49,10 @@ def start(values: Mapping[str, Any]) -> dict[str, Any]:
 
     Raises
     ------
-    DescriptionError, ParameterError, UnsupportedError
+    ConfigError, ParameterError, UnsupportedError
         If the case cannot be, or has no steady rolling on the branch in closed form.
     """
-    given = StartDescription.parse(values)
+    given = StartConfig.parse(values)
     model, motion = built_parts(given.column, given.model, given.motion, [])
     if not isinstance(motion, Harmonic):
         message = f"motion.kind must be a horizontal harmonic motion for a start on a branch, got {given.motion.kind!r}"

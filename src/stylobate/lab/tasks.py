@@ -5,11 +5,11 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from stylobate import engine, spec
-from stylobate.lab.answers import plain_record, plain_run, snippets
-from stylobate.lab.described import Described
+from stylobate import config, engine
 from stylobate.lab.messages import Emit, Progress
 from stylobate.lab.remarks import remarks
+from stylobate.lab.request_parsing import Described
+from stylobate.lab.responses import plain_record, plain_run, snippets
 
 _USUAL_LENGTH = 12.0
 """How long a moving picture lasts [s], unless its base swings so fast that it must be slower."""
@@ -24,7 +24,7 @@ def run(given: Described, emit: Emit) -> bytes:
     """Return one run with all that is drawn of it, as JSON: so much is written where nobody else waits for it."""
     del emit
     with remarks(given.values) as remarked:
-        setup = spec.SimulationDescription.parse(given.values).build()
+        setup = config.SimulationConfig.parse(given.values).build()
     samples = setup.options["samples"] or _enough(setup)
     found = engine.simulate(setup.model, setup.motion, **{**setup.options, "samples": samples})
     answer = {**plain_run(found, setup.model), **snippets(given)}
@@ -32,7 +32,7 @@ def run(given: Described, emit: Emit) -> bytes:
     return json.dumps(answer, separators=(",", ":")).encode()
 
 
-def _enough(setup: spec.Setup) -> int:
+def _enough(setup: config.Setup) -> int:
     """Return how many samples draw a run smoothly: a page shows no more, and waits for each."""
     frequency = max(setup.motion.highest_frequency, setup.model.column.frequency_scale)
     swings = setup.options["duration"] * frequency / (2.0 * math.pi)
@@ -43,7 +43,7 @@ def record(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     """Return what a record holds, and the warnings that were issued while its files were read."""
     del emit
     with remarks(values) as remarked:
-        found = plain_record(spec.RecordMotion.parse(values).build())
+        found = plain_record(config.RecordMotion.parse(values).build())
     return {**found, "warnings": remarked}
 
 
@@ -80,14 +80,14 @@ def animation(values: Mapping[str, Any], emit: Emit) -> bytes:
     """Return a run as a moving picture (GIF), long ones faster than they are."""
     from stylobate.plots.animation import animate  # noqa: PLC0415
 
-    setup = spec.SimulationDescription.parse(values).build()
+    setup = config.SimulationConfig.parse(values).build()
     run = engine.simulate(setup.model, setup.motion, **setup.options)
     return animate(run, speed=speed_of_pictures(setup, float(run.data["time"][-1]))).gif(
         lambda done, total: emit(Progress(done, total))
     )
 
 
-def speed_of_pictures(setup: spec.Setup, end: float) -> float:
+def speed_of_pictures(setup: config.Setup, end: float) -> float:
     """Return how fast a run is shown: in about twelve seconds, but so slowly that each swing of the base is seen."""
     frequency = setup.motion.highest_frequency / (2.0 * math.pi)
     swings = setup.motion.period is not None and frequency > 0.0

@@ -34,11 +34,11 @@ def work(connection: Connection) -> None:
 
 
 def _done(task: Callable[[Any, Emit], Any], values: Any, emit: Emit) -> Finished | Refused | Broken:
-    from stylobate.errors import DescriptionError, StylobateError  # noqa: PLC0415  as above
+    from stylobate.errors import ConfigError, StylobateError  # noqa: PLC0415  as above
 
     try:
         return Finished(task(values, emit))
-    except DescriptionError as error:
+    except ConfigError as error:
         return Refused(error.problems)
     except StylobateError as error:
         return Refused(tuple(str(error).splitlines()) or (type(error).__name__,))

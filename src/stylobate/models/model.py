@@ -96,7 +96,7 @@ class Model(ABC):
     rates: ClassVar[Callable[..., tuple[float, ...]]]
     """(state…, ax, ay, az, parameters…) → rates of the state; accelerations in g."""
 
-    lean: ClassVar[Callable[..., tuple[Any, Any, Any, Any]]]
+    tilt_of: ClassVar[Callable[..., tuple[Any, Any, Any, Any]]]
     """(state…, parameters…) → the tilt vector [rad] and its rate in the model's time: x, y, vx, vy.
 
     It is called with floats and with arrays.
@@ -123,27 +123,27 @@ class Model(ABC):
     The normal force, the friction force, and the moment about the vertical, of a column that moves.
     """
 
-    struck: ClassVar[Callable[..., tuple[float, ...]] | None] = None
+    impact_map: ClassVar[Callable[..., tuple[float, ...]] | None] = None
     """(state…, parameters…) → the state after a passage of the upright below `loss_tilt`, with its loss."""
 
-    margin_names: ClassVar[tuple[str, ...]] = ()
-    """What the `margins` guard, of a model that changes between kinds of contact; empty for one that does not."""
+    guard_names: ClassVar[tuple[str, ...]] = ()
+    """What each of the `guards` watches, of a model that switches between kinds of contact; else empty."""
 
-    margins: ClassVar[Callable[..., tuple[float, ...]] | None] = None
+    guards: ClassVar[Callable[..., tuple[float, ...]] | None] = None
     """(state…, ax, ay, az, ε, parameters…) → what is positive as long as a kind of contact lasts.
 
     One that is below nought ends it; the last does so only where it was above before. The tilt of "fallen" counts as
-    overturned; all others lead to `react`. ε is the energy of rest.
+    overturned; all others lead to `reset_map`. ε is the energy of rest.
     """
 
-    react: ClassVar[Callable[..., tuple[float, tuple[float, ...]]] | None] = None
+    reset_map: ClassVar[Callable[..., tuple[float, tuple[float, ...]]] | None] = None
     """(state…, number of the margin, ax, ay, az, bx, by, bz, ahead, ε, parameters…) → elapsed time, and state.
 
     How the motion goes on; the base accelerates with (ax, ay, az) now and (bx, by, bz) a short time `ahead`, from which
     a release goes. With the number −1 it tells how a motion goes on that begins.
     """
 
-    refreshed: ClassVar[Callable[..., tuple[float, ...]] | None] = None
+    project: ClassVar[Callable[..., tuple[float, ...]] | None] = None
     """(state…, parameters…) → the state with what it keeps from step to step brought up to date, after each step."""
 
     slip_states: ClassVar[tuple[int, ...]] = ()
@@ -214,11 +214,11 @@ class Model(ABC):
 
     def tilt(self, states: Floats) -> Floats:
         """Return the tilt vectors [rad], shape (2, n), of `states`, shape (number of states, n)."""
-        return np.stack(self.lean(*states[: len(self.state_names)], *self.parameters)[:2])
+        return np.stack(self.tilt_of(*states[: len(self.state_names)], *self.parameters)[:2])
 
     def tilt_rate(self, states: Floats) -> Floats:
         """Return the rates of the tilt vectors in the model's own time, shape (2, n)."""
-        return np.stack(self.lean(*states[: len(self.state_names)], *self.parameters)[2:])
+        return np.stack(self.tilt_of(*states[: len(self.state_names)], *self.parameters)[2:])
 
     @property
     def time_scale(self) -> float:
@@ -237,7 +237,7 @@ class Model(ABC):
 
     @property
     def loss_tilt(self) -> float:
-        """Least tilt below which a passage of the upright loses energy, as `struck` tells [rad]; 0 where none does."""
+        """Least tilt below which a passage near the vertical loses energy by `impact_map` [rad]; 0 without loss."""
         return 0.0
 
     @property
@@ -263,7 +263,7 @@ class Model(ABC):
     @property
     def switches(self) -> bool:
         """Whether it changes between kinds of contact."""
-        return self.margins is not None
+        return self.guards is not None
 
     def begun(
         self,
@@ -292,7 +292,7 @@ class Model(ABC):
 
     def stands(self, state: tuple[float, ...]) -> bool:
         """Return whether the column stands on its base in this state: no tilt, and no rate of it."""
-        return not any(self.lean(*state[: len(self.state_names)], *self.parameters))
+        return not any(self.tilt_of(*state[: len(self.state_names)], *self.parameters))
 
     def standing(self, state: tuple[float, ...]) -> tuple[float, ...]:
         """Return the state in which a column that comes to rest from `state` stands; what is carried stays."""

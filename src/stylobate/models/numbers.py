@@ -8,7 +8,7 @@ from stylobate.quantities import Quantity
 _MOST_FRICTION = 1e8
 
 Damping = Annotated[float, Quantity(symbol="η", text="damping of tilting", ge=0.0, slider=(0.0, 0.5))]
-SpinFriction = Annotated[float, Quantity(symbol="ζ", text="damping of spin", ge=0.0, slider=(0.0, 2.0))]
+SpinDamping = Annotated[float, Quantity(symbol="ζ", text="damping of spin", ge=0.0, slider=(0.0, 2.0))]
 RollingResistance = Annotated[float, Quantity(symbol="μ_r", text="rolling resistance", ge=0.0, slider=(0.0, 0.05))]
 Restitution = Annotated[
     float,

@@ -78,7 +78,7 @@ def planar_rates(
     return rate, acceleration
 
 
-def struck(
+def impact_map(
     x: float,
     y: float,
     vx: float,
@@ -178,14 +178,14 @@ class PlanarRocking(Model):
         return cls(column, damping=damping, restitution=restitution)
 
     rates = staticmethod(rates)
-    lean = staticmethod(tilt_vector.lean)
+    tilt_of = staticmethod(tilt_vector.tilt_of)
     contact = staticmethod(contact)
     planar_rates = staticmethod(planar_rates)
     from_plane = staticmethod(tilt_vector.from_plane)
     rest_energy = staticmethod(without_spin.rest_energy)
     no_return_tilt = staticmethod(without_spin.no_return_tilt)
     departure = staticmethod(without_spin.departure)
-    struck = staticmethod(struck)
+    impact_map = staticmethod(impact_map)
 
     @property
     def impact_restitution(self) -> float:

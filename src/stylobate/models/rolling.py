@@ -13,7 +13,7 @@ from stylobate.models import finite_tilt, free_twist, tilt_vector
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
 from stylobate.models.model import Balance, Floats, Model, Output, Push
-from stylobate.models.numbers import Damping, PassageTilt, Restitution, RollingResistance, SpinFriction
+from stylobate.models.numbers import Damping, PassageTilt, Restitution, RollingResistance, SpinDamping
 
 
 def balance(
@@ -116,7 +116,7 @@ def contact(
     resistance: float,
     _restitution: float,
 ) -> tuple[float, float, float]:
-    """Return N and |T| over m g, and |M_z| over m g r, that of the spin friction."""
+    """Return N and |T| over m g, and |M_z| over m g r, that of the spin damping."""
     _, _, _, normal, along, across, moment = balance(
         x, y, vx, vy, spin, ax, ay, az, c, eta, zeta, kappa, axial, resistance
     )
@@ -185,7 +185,7 @@ def passage(
     return free_twist.passing((x, y, vx, vy), spin, (ax, ay, az), 1.0 + kappa * c * c, c, eta, zeta, kappa, axial)
 
 
-def struck(
+def impact_map(
     x: float,
     y: float,
     vx: float,
@@ -219,7 +219,7 @@ class Rolling(Model):
     damping
         Viscous friction η = D1/(ω0 J0), a couple −D1 times the angular velocity across the axis: −D1(w1 u + w2 n), n
         horizontal and u across axis and n.
-    spin_friction
+    spin_damping
         ζ, by a moment −D0 times the angular velocity about the vertical, D0 = ζ ω0 I_a D/i_a: a column that spins
         upright loses its spin at the rate ζ ω0.
     rolling_resistance
@@ -248,7 +248,7 @@ class Rolling(Model):
 
     column: Column
     damping: Damping = 0.0
-    spin_friction: SpinFriction = 0.0
+    spin_damping: SpinDamping = 0.0
     rolling_resistance: RollingResistance = 0.0
     restitution: Restitution = 1.0
     passage_tilt: PassageTilt | None = None
@@ -259,7 +259,7 @@ class Rolling(Model):
     carried_names: ClassVar[tuple[str, ...]] = ("twist", "footprint_x", "footprint_y")
 
     rates = staticmethod(rates)
-    lean = staticmethod(tilt_vector.lean)
+    tilt_of = staticmethod(tilt_vector.tilt_of)
     contact = staticmethod(contact)
     carried_rates = staticmethod(carried_rates)
     planar_rates = staticmethod(planar_rates)
@@ -267,7 +267,7 @@ class Rolling(Model):
     rest_energy = staticmethod(rest_energy)
     departure = staticmethod(departure)
     passage = staticmethod(passage)
-    struck = staticmethod(struck)
+    impact_map = staticmethod(impact_map)
 
     @property
     def parameters(self) -> tuple[float, ...]:
@@ -275,7 +275,7 @@ class Rolling(Model):
         column = self.column
         shape = (column.inertia_ratio, column.axial_ratio)
         frictions = (self.rolling_resistance, self.restitution)
-        return (column.slenderness, self.damping, self.spin_friction, *shape, *frictions)
+        return (column.slenderness, self.damping, self.spin_damping, *shape, *frictions)
 
     def start(
         self, tilt: tuple[float, float], tilt_rate: tuple[float, float]

@@ -106,7 +106,7 @@ class Slender(Model):
     state_names: ClassVar[tuple[str, ...]] = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
 
     rates = staticmethod(rates)
-    lean = staticmethod(tilt_vector.lean)
+    tilt_of = staticmethod(tilt_vector.tilt_of)
     contact = staticmethod(contact)
     planar_rates = staticmethod(planar_rates)
     from_plane = staticmethod(tilt_vector.from_plane)

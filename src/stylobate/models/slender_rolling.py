@@ -12,7 +12,7 @@ from stylobate.column import Column
 from stylobate.models import free_twist, slender, tilt_vector
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.model import Balance, Floats, Model, Output, Push
-from stylobate.models.numbers import Damping, SpinFriction
+from stylobate.models.numbers import Damping, SpinDamping
 from stylobate.quantities import Quantity
 
 # As in the slender model: keeps 1/|α| finite at the upright itself.
@@ -91,7 +91,7 @@ def contact(
     axial: float,
     couples: float,
 ) -> tuple[float, float, float]:
-    """Return N = 1 + a_z, |T| and, of the spin friction, |M_z|, to leading order.
+    """Return N = 1 + a_z, |T| and, of the spin damping, |M_z|, to leading order.
 
     T = a_h + κ(α̈ + cσβ̇ û − cσ̇ n): the centre of mass moves with the footprint, whose velocity is −cσ n.
     """
@@ -157,7 +157,7 @@ class SlenderRolling(Model):
         The column; its slenderness c should be well below 1.
     damping
         Viscous friction η = D1/(ω0 J0), a couple −D1 against the rate of tilt.
-    spin_friction
+    spin_damping
         ζ, by a moment −D0 times the angular velocity about the vertical, D0 = ζ ω0 I_a D/i_a: a column that spins
         upright loses its spin at the rate ζ ω0. Without any, and with damping, steady rolling dies out.
     couples
@@ -167,7 +167,7 @@ class SlenderRolling(Model):
     Raises
     ------
     ParameterError
-        If `column` is no Column, `damping` or `spin_friction` is negative or not finite, or `couples` none of the two.
+        If `column` is no Column, `damping` or `spin_damping` is negative or not finite, or `couples` none of the two.
 
     Notes
     -----
@@ -176,7 +176,7 @@ class SlenderRolling(Model):
 
     column: Column
     damping: Damping = 0.0
-    spin_friction: SpinFriction = 0.0
+    spin_damping: SpinDamping = 0.0
     couples: Couples = "contact"
 
     name: ClassVar[str] = "slender rolling"
@@ -185,7 +185,7 @@ class SlenderRolling(Model):
     carried_names: ClassVar[tuple[str, ...]] = ("twist", "footprint_x", "footprint_y")
 
     rates = staticmethod(rates)
-    lean = staticmethod(tilt_vector.lean)
+    tilt_of = staticmethod(tilt_vector.tilt_of)
     contact = staticmethod(contact)
     carried_rates = staticmethod(carried_rates)
     planar_rates = staticmethod(planar_rates)
@@ -198,7 +198,7 @@ class SlenderRolling(Model):
     def parameters(self) -> tuple[float, ...]:
         """c, η, ζ, κ, i_a, and 1 for contact couples, else 0."""
         column = self.column
-        numbers = (column.slenderness, self.damping, self.spin_friction, column.inertia_ratio, column.axial_ratio)
+        numbers = (column.slenderness, self.damping, self.spin_damping, column.inertia_ratio, column.axial_ratio)
         return (*numbers, float(self.couples == "contact"))
 
     def start(
@@ -234,7 +234,7 @@ class SlenderRolling(Model):
         """Return energy, spin, twist and footprint, the path of the contact point, and what the contact bears.
 
         The energy is ½|α̇|² + cA − ½A² − cκσ Aβ̇ + ½κ(1 + i_a)c²σ² in units of J0 ω0². The centre of pressure is as of
-        the slender model; the moment about the vertical is that of the spin friction.
+        the slender model; the moment about the vertical is that of the spin damping.
         """
         column, scale = self.column, self.time_scale
         spin, twist = states[4:6]

@@ -3,7 +3,7 @@
 from typing import Any
 
 
-def lean(x: Any, y: Any, vx: Any, vy: Any, *_: Any) -> tuple[Any, Any, Any, Any]:
+def tilt_of(x: Any, y: Any, vx: Any, vy: Any, *_: Any) -> tuple[Any, Any, Any, Any]:
     """Return the tilt vector and its rate: the state itself."""
     return x, y, vx, vy
 

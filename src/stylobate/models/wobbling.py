@@ -180,7 +180,7 @@ def passage(
     return past_the_upright((x, y, vx, vy), push, c * (1.0 + az), 0.0, eta, inertia)
 
 
-def struck(
+def impact_map(
     x: float,
     y: float,
     vx: float,
@@ -248,7 +248,7 @@ class Wobbling(Model):
     carried_names: ClassVar[tuple[str, ...]] = ("twist", "footprint_x", "footprint_y")
 
     rates = staticmethod(rates)
-    lean = staticmethod(tilt_vector.lean)
+    tilt_of = staticmethod(tilt_vector.tilt_of)
     contact = staticmethod(contact)
     carried_rates = staticmethod(carried_rates)
     planar_rates = staticmethod(planar_rates)
@@ -257,7 +257,7 @@ class Wobbling(Model):
     no_return_tilt = staticmethod(without_spin.no_return_tilt)
     departure = staticmethod(without_spin.departure)
     passage = staticmethod(passage)
-    struck = staticmethod(struck)
+    impact_map = staticmethod(impact_map)
 
     @property
     def parameters(self) -> tuple[float, ...]:

@@ -3,10 +3,10 @@
 import math
 from collections.abc import Sequence
 
+from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.errors import ParameterError, require_not_negative
 from stylobate.models import Model
-from stylobate.motions import BASE_AT_REST, BaseMotion
 from stylobate.orbits.bifurcations import Bifurcation
 from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.tracing import StepControl

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from stylobate.config import provenance_of_run
 from stylobate.engine.flow.tableau import Status
 from stylobate.engine.parameters import present_value
 from stylobate.errors import NoOrbitError, ParameterError, require_finite
@@ -20,7 +21,6 @@ from stylobate.orbits.multipliers import is_stable
 from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.shooting import WHY_LOST, arcs_of
 from stylobate.orbits.tracing import End, StepControl, Stretch, trace
-from stylobate.spec import provenance_of_run
 
 
 @dataclass(frozen=True)

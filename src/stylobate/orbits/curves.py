@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from stylobate.config import provenance_of_run
 from stylobate.engine.flow.periodic import Numbers, PeriodicSystem
 from stylobate.engine.flow.tableau import Status
 from stylobate.engine.parameters import present_value
@@ -20,7 +21,6 @@ from stylobate.orbits.bifurcations import Bifurcation, Kind
 from stylobate.orbits.normal_forms import PeriodMap, neimark_sacker_coefficient, period_doubling_coefficient
 from stylobate.orbits.shooting import Shots, shots
 from stylobate.orbits.tracing import ASTRAY, End, StepControl
-from stylobate.spec import provenance_of_run
 
 _log = logging.getLogger("stylobate")
 

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.base_motions import BaseMotion
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of, require_periodic
 from stylobate.engine.flow.tableau import Status
 from stylobate.engine.forcing import common_line
 from stylobate.errors import LARGEST_SEED, NoOrbitError, ParameterError, require_positive, require_whole
 from stylobate.models import Model
-from stylobate.motions import BaseMotion
 from stylobate.orbits.arguments import require_subject
 from stylobate.orbits.opening import require_sense, rolling_by_theory
 from stylobate.orbits.orbit import PeriodicOrbit

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.base_motions import BaseMotion, Harmonic, as_harmonic
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError
 from stylobate.models import Model
-from stylobate.motions import BaseMotion, Harmonic, as_harmonic
 from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.shooting import closed
 from stylobate.orbits.steady import steady_rolling_of, theory_knows
@@ -69,7 +69,7 @@ def rolling_by_theory(model: Model, motion: BaseMotion, sense: int | None) -> Fl
     if not theory_knows(model) or harmonic is None or harmonic.amplitude[2] != 0.0:
         message = (
             "guess must be given, such as a run that has settled: theory knows steady rolling under horizontal "
-            "Harmonic motion only, of models with no friction but damping and spin friction; got "
+            "Harmonic motion only, of models with no friction but damping and spin damping; got "
             f"{model.name} under {motion!r}"
         )
         raise UnsupportedError(message)

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.base_motions import BaseMotion
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.engine.forcing import common_line
 from stylobate.models import Model
-from stylobate.motions import BaseMotion
 from stylobate.orbits.multipliers import is_stable
 from stylobate.orbits.shooting import Shots
 
@@ -204,5 +204,5 @@ def lean_of(system: PeriodicSystem, states: Floats) -> Floats:
         ux, uy = system.line
         tilt, rate = states
         return np.stack([tilt * ux, tilt * uy, rate * ux, rate * uy])
-    lean = model.lean(*states, *model.parameters)
+    lean = model.tilt_of(*states, *model.parameters)
     return np.stack(np.broadcast_arrays(*lean)).astype(float)

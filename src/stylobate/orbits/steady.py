@@ -42,7 +42,7 @@ def steady_rolling_of(
         chosen = steady.upper if branch == "upper" else steady.lower
         return float(chosen.amplitude), float(chosen.phase), 0.0
     if isinstance(model, SlenderRolling):
-        free = theory.free_twist_rolling(theta, acceleration, c=c, eta=model.damping, zeta=model.spin_friction, **shape)
+        free = theory.free_twist_rolling(theta, acceleration, c=c, eta=model.damping, zeta=model.spin_damping, **shape)
         return float(free.amplitude), float(free.phase), float(free.spin)
     found = _at_finite_tilt(model, theta, acceleration)
     index = _place(found.phase, found.stable, found.exists, branch)
@@ -55,11 +55,11 @@ def _at_finite_tilt(model: Model, theta: float, acceleration: float) -> theory.F
     column = model.column
     shape = {"c": column.slenderness, "inertia_ratio": column.inertia_ratio, "axial_ratio": column.axial_ratio}
     if isinstance(model, Wobbling):
-        if model.constraint == "rubber":  # no rotation about the vertical, as an infinite spin friction has it
+        if model.constraint == "rubber":  # no rotation about the vertical, as an infinite spin damping has it
             return theory.full_rolling(theta, acceleration, eta=model.damping, zeta=math.inf, **shape)
         return theory.wobbling_rolling(theta, acceleration, eta=model.damping, **shape)
     assert isinstance(model, Rolling)
-    return theory.full_rolling(theta, acceleration, eta=model.damping, zeta=model.spin_friction, **shape)
+    return theory.full_rolling(theta, acceleration, eta=model.damping, zeta=model.spin_damping, **shape)
 
 
 def _place(

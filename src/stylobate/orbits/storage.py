@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from stylobate.base_motions import BaseMotion
+from stylobate.config import config_of, provenance_of_run
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.engine.flow.tableau import Status
 from stylobate.errors import FileError, ParameterError, UnsupportedError
 from stylobate.models import Model
-from stylobate.motions import BaseMotion
 from stylobate.orbits.arclength import Family, Point
 from stylobate.orbits.bifurcations import Bifurcation, Kind, orbit_at
 from stylobate.orbits.branch import Branch
@@ -22,7 +23,6 @@ from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.shooting import shots
 from stylobate.orbits.tracing import End
 from stylobate.results.storage import read_dataset, write_netcdf
-from stylobate.spec import description_of, provenance_of_run
 
 _ORBIT, _BRANCH, _CURVE = "stylobate orbit 1", "stylobate branch 1", "stylobate bifurcation curve 1"
 _SUFFIX = ".nc"
@@ -115,7 +115,7 @@ def _system(data: xr.Dataset) -> PeriodicSystem:
 
 
 def _parts(provenance: dict[str, Any]) -> tuple[Model, BaseMotion]:
-    setup = description_of({**provenance, "duration": 1.0}).build()
+    setup = config_of({**provenance, "duration": 1.0}).build()
     return setup.model, setup.motion
 
 

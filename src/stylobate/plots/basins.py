@@ -12,11 +12,12 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from stylobate.counted import counted
 from stylobate.plots.cells import fill_options, percent
 from stylobate.plots.classes import attractor_classes
+from stylobate.plots.kinds import figure_of
 from stylobate.plots.maps import draw_classes
 from stylobate.plots.style import BLACK, GREY, new_figure, styled
+from stylobate.text import plural
 
 _MAP_HEIGHT, _TABLE_HEIGHT = 4.6, 3.4
 _COMPONENTS = {"tilt_x": ("attractor_tilt", "x"), "tilt_y": ("attractor_tilt", "y")} | {
@@ -34,6 +35,7 @@ _ENTRY, _ENTRIES = 0.17, 2
 _MARKER: dict[str, Any] = {"marker": "o", "linestyle": "none", "markerfacecolor": "white", "markeredgecolor": BLACK}
 
 
+@figure_of("attractors", "basins")
 @styled
 def plot_basins(found: xr.Dataset) -> Figure:
     """Return a figure of basins: on a grid a map of which start leads where, else fractions and orbits.
@@ -46,7 +48,7 @@ def plot_basins(found: xr.Dataset) -> Figure:
     Parameters
     ----------
     found
-        Result of `stylobate.studies.basins` or `attractors`, finished or not.
+        Result of `stylobate.studies.maps.basins` or `attractors`, finished or not.
     """
     dims = found["attractor"].dims if "attractor" in found else ()
     if len(dims) == 2:  # noqa: PLR2004  a plane
@@ -110,7 +112,7 @@ def _draw_fractions(axes: Axes, found: xr.Dataset) -> None:
 
 def _runs(found: xr.Dataset) -> str:
     unsettled = int(found["unsettled"])
-    told = counted(int(found["computed"]), "start")
+    told = plural(int(found["computed"]), "start")
     return f"{told}, {unsettled} of them not settled" if unsettled else told
 
 

@@ -6,6 +6,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from stylobate.plots.kinds import figure_of
 from stylobate.plots.style import GREY, PALETTE, STABLE_WIDTH, UNSTABLE_WIDTH, new_figure, styled
 
 _DASHED = (0, (4, 2))
@@ -22,6 +23,7 @@ BIFURCATION_MARKS = {
 _FILLS = {1: ("black", ", soft loss"), 0: ("white", ", hard loss"), -1: ("#bbbbbb", "")}
 
 
+@figure_of("exact response")
 @styled
 def plot_exact_response(curves: xr.Dataset) -> Figure:
     """Return a figure of `curves` of the kind "exact response": mean tilt with its range above, phase below.

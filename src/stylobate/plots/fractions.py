@@ -9,11 +9,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from stylobate.counted import counted
 from stylobate.plots.cells import Floats, cell_edges, fill_options, is_geometric, set_scale
 from stylobate.plots.classes import Look, attractor_classes
+from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import BLACK, new_figure, styled
+from stylobate.text import plural
 
 _HEIGHT = 4.2
 # Height of a line of the legend [inches], which has one for each band, two for their intervals, and its edges.
@@ -24,6 +25,7 @@ _SEEN = 0.005
 _ROOM = 0.015
 
 
+@figure_of("basin fractions")
 @styled
 def plot_fractions(found: xr.Dataset) -> Figure:
     """Return a figure of basin fractions along a parameter, stacked.
@@ -56,7 +58,7 @@ def plot_fractions(found: xr.Dataset) -> Figure:
     axes.set(xlim=_limits(x), ylim=(0.0, 1.0))
     if x.size == 1:
         axes.set_xticks(x)
-    axes.set_ylabel(f"fraction of {counted(int(found.attrs['starts']), 'start')}")
+    axes.set_ylabel(f"fraction of {plural(int(found.attrs['starts']), 'start')}")
     axes.grid(visible=False)
     axes.set_xlabel(axis_label(found[str(name)]))
     figure.legend(handles=legend[::-1], loc="outside right upper")

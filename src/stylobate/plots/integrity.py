@@ -9,6 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Ellipse
 
 from stylobate.plots.cells import set_scale
+from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.maps import draw_outcomes
 from stylobate.plots.style import BLACK, BLUE, VERMILION, new_figure, styled
@@ -17,6 +18,7 @@ _NEAREST: dict[str, Any] = {"marker": "X", "color": VERMILION, "markeredgecolor"
 _MAP_HEIGHT, _CURVE_HEIGHT = 4.6, 3.8
 
 
+@figure_of("integrity")
 @styled
 def plot_integrity(found: xr.Dataset) -> Figure:
     """Return a figure of the outcomes over two starts, with the largest safe ellipse about the reference.
@@ -49,6 +51,7 @@ def plot_integrity(found: xr.Dataset) -> Figure:
     return figure
 
 
+@figure_of("erosion")
 @styled
 def plot_erosion(found: xr.Dataset) -> Figure:
     """Return a figure of the integrity along a parameter, with the band that the resolution of the grid leaves.

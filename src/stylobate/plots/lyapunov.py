@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import DASHES, GREY, PALETTE, new_figure, styled
 
@@ -12,6 +13,7 @@ _DIGITS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 _LARGEST_PLACE = 9
 
 
+@figure_of("Lyapunov exponents")
 @styled
 def plot_lyapunov(found: xr.Dataset) -> Figure:
     """Return a figure of the Lyapunov exponents against the periods from which they are told, with their errors."""

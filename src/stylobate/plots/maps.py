@@ -10,13 +10,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from stylobate.counted import counted
 from stylobate.errors import ParameterError
 from stylobate.plots.cells import Integers, class_legend, draw_cells
 from stylobate.plots.classes import MapClass, outcome_classes
+from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import BLACK, new_figure, styled
 from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.text import plural
 
 _PLANE = 2
 _HEIGHT = 4.6
@@ -28,6 +29,7 @@ _MOST_MARKED = 0.2
 _MAP_WIDTH = 330.0
 
 
+@figure_of("ensemble", "sweep", "overturning map")
 @styled
 def plot_map(runs: xr.Dataset) -> Figure:
     """Return a figure of the outcomes over two parameters.
@@ -80,7 +82,7 @@ def _mark_uncertain(axes: Axes, runs: xr.Dataset, x: str, y: str) -> list[Artist
         return []
     known = runs["uncertain"] & (runs["outcome"] != NOT_COMPUTED)
     rows, columns = np.nonzero(known.transpose(y, x).to_numpy())
-    told = f"uncertain  {counted(rows.size, 'run')}"
+    told = f"uncertain  {plural(rows.size, 'run')}"
     if rows.size > _MOST_MARKED * known.size:
         return [Line2D([], [], label=f"{told}, not marked", linestyle="none")]
     size = float(np.clip(_MAP_WIDTH / max(runs.sizes[x], runs.sizes[y]) / 2.0, *_DOTS))

@@ -5,9 +5,11 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from stylobate.plots.kinds import figure_of
 from stylobate.plots.style import GREY, PALETTE, STABLE_WIDTH, UNSTABLE_WIDTH, new_figure, styled
 
 
+@figure_of("response curves")
 @styled
 def plot_response(curves: xr.Dataset) -> Figure:
     """Return a figure of response `curves`: amplitude above, phase below, stable bold, unstable thin."""

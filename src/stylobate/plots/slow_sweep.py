@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from stylobate.errors import Outcome
+from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import GREY, PALETTE, new_figure, styled
 from stylobate.results.outcomes import code_of
@@ -24,6 +25,7 @@ _MARKERS = {Outcome.OVERTURNED: "X", Outcome.LIMIT_REACHED: "D", Outcome.LIFTED_
 _MOST_NAMED, _MOST_MARKED = 8, 30
 
 
+@figure_of("slow sweep")
 @styled
 def plot_slow_sweep(found: xr.Dataset) -> Figure:
     """Return a figure of tilt and turns a period against the parameter of a slow sweep.

@@ -9,6 +9,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import GREY, PALETTE, STABLE_WIDTH, new_figure, styled
 
@@ -23,6 +24,7 @@ _UNDECIDED = "unstable on both sides"
 _NAMES = {"Neimark-Sacker": "Neimark–Sacker"}
 
 
+@figure_of("stability boundary")
 @styled
 def plot_stability_boundary(boundary: xr.Dataset) -> Figure:
     """Return a figure of curves of the kind "stability boundary".
@@ -93,6 +95,7 @@ _CASES = (
 _LEVELS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
 
 
+@figure_of("averaging map")
 @styled
 def plot_averaging_map(found: xr.Dataset) -> Figure:
     """Return a figure of a map of the kind "averaging map": who is right about stability, and the error of the tilt."""

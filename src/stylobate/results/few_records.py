@@ -1,6 +1,6 @@
 """How many records a fragility needs, and what is said of fewer."""
 
-from stylobate.counted import counted
+from stylobate.text import plural
 
 FEW_RECORDS = 20
 """With fewer records the measured coverage of the intervals of a dispersion is well below what they claim."""
@@ -16,4 +16,4 @@ def few_records(count: int) -> str:
     """
     if count >= FEW_RECORDS:
         return ""
-    return f"{counted(count, 'record')}: with fewer than {FEW_RECORDS} the interval of the dispersion is too narrow"
+    return f"{plural(count, 'record')}: with fewer than {FEW_RECORDS} the interval of the dispersion is too narrow"

@@ -35,7 +35,7 @@ class FiniteTiltRolling:
     friction_demand
         Horizontal over vertical force of the contact: the coefficient of friction that it takes not to slip.
     friction_moment
-        Moment about the vertical, over m g r, that the spin friction takes up, or what forbids the twist.
+        Moment about the vertical, over m g r, that the spin damping takes up, or what forbids the twist.
     exists
         Whether there is such a solution.
     stable

@@ -1,7 +1,7 @@
 """Steady rolling of a slender column whose twist is free: nothing but friction keeps it from spinning about its axis.
 
 The paper forbids rotation about the vertical. A column that may turn lags behind the base by its friction, the lag
-leaves a part of the base acceleration across its lean, and that part spins the column up, until the spin friction ζ
+leaves a part of the base acceleration across its lean, and that part spins the column up, until the spin damping ζ
 balances it. The equations are those of rolling without slip in the limit of small tilts, seen from the frame that turns
 with the base.
 """
@@ -31,7 +31,7 @@ class FreeTwistRolling:
     spin
         Axial angular velocity σ, in units of ω0.
     friction_moment
-        Moment about the vertical that the spin friction takes up, over m g r; with infinite `zeta` the one that the
+        Moment about the vertical that the spin damping takes up, over m g r; with infinite `zeta` the one that the
         paper's assumption needs.
     exists
         Whether there is such a solution.
@@ -74,7 +74,7 @@ def free_twist_rolling(
     eta
         Viscous friction η, a couple against the rate of tilt.
     zeta
-        Spin friction ζ, a moment about the vertical that lets a free spin decay at the rate ζω0. Infinite, it forbids
+        Spin damping ζ, a moment about the vertical that lets a free spin decay at the rate ζω0. Infinite, it forbids
         the twist, as the paper does. Zero, with friction η, it leaves no steady rolling.
     inertia_ratio
         κ = m h²/J0; ¾ for a solid cylinder, as by default.

@@ -39,7 +39,7 @@ def free_twist_critical_frequency(
     eta
         Viscous friction η.
     zeta
-        Spin friction ζ. Infinite, it forbids the twist, as the paper does.
+        Spin damping ζ. Infinite, it forbids the twist, as the paper does.
     inertia_ratio
         κ = m h²/J0; ¾ for a solid cylinder, as by default.
     axial_ratio
@@ -49,7 +49,7 @@ def free_twist_critical_frequency(
     -------
     numpy.ndarray
         Critical frequency, of the broadcast shape. NaN where rolling gains its stability nowhere but across the band in
-        which there is none, as for `critical_frequency`, and without spin friction or base motion. Rolling is stable
+        which there is none, as for `critical_frequency`, and without spin damping or base motion. Rolling is stable
         from θ* up to `free_twist_upper_frequency`, which is infinite for most columns.
 
     Raises
@@ -94,7 +94,7 @@ def free_twist_upper_frequency(
     -------
     numpy.ndarray
         Upper frequency, of the broadcast shape; infinite where stability is not lost again below 10⁴ √(1 + a0/c), and
-        NaN without spin friction or base motion.
+        NaN without spin damping or base motion.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def free_twist_upper_frequency(
 
     Notes
     -----
-    Finite only for i_a < 2κ − 1 and weak spin friction. As ζ → 0 it tends to
+    Finite only for i_a < 2κ − 1 and weak spin damping. As ζ → 0 it tends to
 
         θ** → √((1 + a0/c + i_a)/(2κ − 1 − i_a)).
 

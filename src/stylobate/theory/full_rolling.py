@@ -41,7 +41,7 @@ def full_rolling(
     eta
         Viscous friction η, a couple against the rate of tilt.
     zeta
-        Spin friction ζ, a moment against rotation about the vertical. Infinite, it forbids that. Zero, with friction
+        Spin damping ζ, a moment against rotation about the vertical. Infinite, it forbids that. Zero, with friction
         η, it leaves no steady rolling.
     spin
         Axial angular velocity [ω0] where there is no friction at all and nothing decides it; not used elsewhere.
@@ -80,7 +80,7 @@ def full_rolling(
 
     The amplitudes are the zeros of (a0 cos ψ)² + (a0 sin ψ)² − a0²: with friction there have been two at most among
     100 000 random columns, one for a0 > c. They are those of the slender column but for a part of the order c². A
-    column that rolls against its spin may lean beyond its tipping angle and be stable. Infinite spin friction leaves
+    column that rolls against its spin may lean beyond its tipping angle and be stable. Infinite spin damping leaves
     the spin w3 = −θ sin A tan A, since it forbids rotation about the vertical and not about the axis.
 
     Stability is that of all five states, from the exact Jacobian. Without friction and base motion the phase is

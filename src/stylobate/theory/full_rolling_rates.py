@@ -36,7 +36,7 @@ def full_rolling_rates(
     eta
         Viscous friction η, a couple against the rate of tilt.
     zeta
-        Spin friction ζ, a moment against rotation about the vertical. Infinite, it forbids that; the state must then
+        Spin damping ζ, a moment against rotation about the vertical. Infinite, it forbids that; the state must then
         have σ cos A + ω sin²A = 0.
     inertia_ratio
         κ = m h²/J0; ¾ for a slender solid cylinder, as by default.
@@ -61,7 +61,7 @@ def full_rolling_rates(
     Notes
     -----
     Over J0, with s = sin A, w1 = −ωs, p = cos A + cs, D = 1 + i_a − κ, and the couples M1 = −ηw1 − Ms and M3 = M cos A,
-    M = −ζκc²D(σ cos A − w1 s) being the moment of the spin friction:
+    M = −ζκc²D(σ cos A − w1 s) being the moment of the spin damping:
 
         T = [κμ((I_a/I_t)σ − cw1) − a0 sin ψ − (κ/I_t)M1 − (κc/I_a)M3] I_t i_a/D
         ẇ1 = ωμ cos A − (I_a/I_t)μσ + (T + M1)/I_t
@@ -122,7 +122,7 @@ def _vertical_moment(
     mu: Numbers, w1: Numbers, spin: Numbers, tilt: Numbers, drive: Numbers, eta: FloatArray, zeta: FloatArray,
     body: RigidBody,
 ) -> Numbers:  # fmt: skip
-    """Return the moment of the spin friction or, where that is infinite, the one that keeps ω·Z as it is."""
+    """Return the moment of the spin damping or, where that is infinite, the one that keeps ω·Z as it is."""
     s, cosine = np.sin(tilt), np.cos(tilt)
     held = np.isinf(zeta)
     coefficient = np.where(held, 0.0, zeta) * body.kappa * body.c**2 * body.freedom

@@ -48,7 +48,7 @@ def rolling_required_friction(
     eta
         Viscous friction η, a couple against the rate of tilt.
     zeta
-        Spin friction ζ. Infinite, as by default, it forbids the twist, as the paper does.
+        Spin damping ζ. Infinite, as by default, it forbids the twist, as the paper does.
     inertia_ratio
         κ = m h²/J0; ¾ for a solid cylinder, as by default.
     axial_ratio

@@ -55,7 +55,7 @@ class Forced:
 
     @property
     def resistance(self) -> FloatArray:
-        """Moment of a finite spin friction per rate of turn, ζκc²D."""
+        """Moment of a finite spin damping per rate of turn, ζκc²D."""
         body = self.body
         return self.friction.zeta * body.kappa * body.c**2 * body.freedom
 

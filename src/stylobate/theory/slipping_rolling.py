@@ -80,7 +80,7 @@ def slipping_rolling(
     eta
         Viscous friction η, a couple against the rate of tilt.
     zeta
-        Spin friction ζ, a moment against rotation about the vertical. Infinite, it forbids that. Zero, with friction
+        Spin damping ζ, a moment against rotation about the vertical. Infinite, it forbids that. Zero, with friction
         η, it leaves no steady rolling but on a patch.
     patch
         Radius of the contact, in units of the radius of the base, whose friction resists pivoting (Coulomb and

@@ -60,7 +60,7 @@ def slipping_rolling_rates(
     eta
         Viscous friction η, a couple against the rate of tilt.
     zeta
-        Spin friction ζ, a moment against rotation about the vertical. Infinite, it forbids that; the state must then
+        Spin damping ζ, a moment against rotation about the vertical. Infinite, it forbids that; the state must then
         have σ cos A + ω sin²A = 0.
     patch
         Radius of the contact, in units of the radius of the base, for pivoting friction; 0 is a point.
@@ -92,7 +92,7 @@ def slipping_rolling_rates(
         N = [1 + κ(z'G2/I_t − pθ̇²)]/[1 + (κ/I_t) z'(z' + pT_d/N)]
         I_t θ̈ = G2 − N z' − p T_d,   ẇ1 = ωθ̇ cos A − (I_a/I_t)θ̇σ + (T_n + M1)/I_t,   σ̇ = (c T_n + M3)/I_a
 
-    M1 = −ηw1 − Ms, M3 = M cos A, M the moment about the vertical: −ζκc²Dω_z of the spin friction, and that of the
+    M1 = −ηw1 − Ms, M3 = M cos A, M the moment about the vertical: −ζκc²Dω_z of the spin damping, and that of the
     patch. The centre of mass has the velocity V = (v_d + pθ̇, v_n − cσ − w1) and the acceleration T/κ − a.
     """
     state = np.asarray(state, dtype=np.float64)

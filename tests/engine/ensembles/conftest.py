@@ -61,7 +61,7 @@ class Runs:
     def alone(self, index, *, off=0.0, **options):
         """Follow one run by `simulate`, its starting tilt larger by the part `off`."""
         values = {name: float(value[index]) for name, value in self.parameters.items()}
-        model, motion = sb.with_parameters(self.model, self.motion or sb.motions.BASE_AT_REST, **values)
+        model, motion = sb.with_parameters(self.model, self.motion or sb.base_motions.BASE_AT_REST, **values)
         start = {"tilt": tuple(self.tilt[index] * (1.0 + off)), "tilt_rate": tuple(self.tilt_rate[index])}
         options = {"samples": 2, "recheck": False, **self.options, **options}
         return sb.simulate(model, motion, **start, duration=float(self.duration[index]), **options)

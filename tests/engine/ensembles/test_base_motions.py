@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import stylobate as sb
+from stylobate.base_motions import BaseMotion
 from stylobate.engine.ensembles.polynomials import tabulated
 from stylobate.errors import ParameterError, UnsupportedError
-from stylobate.motions import BaseMotion
 
 STONE = sb.Slender(sb.Column.solid(radius=0.5, height=10.0, density=2700.0), damping=0.1)
 ONE = sb.Harmonic.elliptic(amplitude=(0.6, 0.3), phase=1.0, angular_frequency=2.0, start_phase=0.4)

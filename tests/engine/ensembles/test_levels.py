@@ -14,15 +14,15 @@ COLUMN = sb.Column.dimensionless(C)
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=3.0)
 STRONG = sb.Harmonic.circular(acceleration=0.12, angular_frequency=2.0)
 LINE = sb.Harmonic.straight(acceleration=0.13, angular_frequency=2.0)
-SWEEP = sb.Sweep.linear(acceleration=0.13, frequencies=(0.35, 0.45), length=20.0)
+SWEEP = sb.SineSweep.linear(acceleration=0.13, frequencies=(0.35, 0.45), length=20.0)
 VERTICAL = sb.Harmonic(amplitude=(0.065, 0.05, 0.2), phase=(0.0, 1.0, 2.0), angular_frequency=3.0)
 
 IN_SPACE = {
-    "slender rolling": sb.SlenderRolling(COLUMN, damping=0.1, spin_friction=0.1),
+    "slender rolling": sb.SlenderRolling(COLUMN, damping=0.1, spin_damping=0.1),
     "wobbling": sb.Wobbling(COLUMN, damping=0.1),
     "rubber": sb.Wobbling(COLUMN, damping=0.1, constraint="rubber"),
-    "rolling": sb.Rolling(COLUMN, damping=0.1, spin_friction=0.1),
-    "rolling resistance": sb.Rolling(COLUMN, spin_friction=0.1, rolling_resistance=0.02),
+    "rolling": sb.Rolling(COLUMN, damping=0.1, spin_damping=0.1),
+    "rolling resistance": sb.Rolling(COLUMN, spin_damping=0.1, rolling_resistance=0.02),
 }
 # In quick runs the column that rolls stands for all: each model has a kernel of its own to compile.
 NAMES = [pytest.param(name, marks=[] if name.startswith("rolling") else pytest.mark.slow) for name in IN_SPACE]
@@ -105,7 +105,7 @@ def test_losses_at_the_upright_are_those_of_single_runs(model):
 
 
 def test_a_loss_out_of_a_plane_beside_runs_in_forced_motion():
-    frictions = {"damping": 0.05, "spin_friction": 0.05}
+    frictions = {"damping": 0.05, "spin_damping": 0.05}
     starts = {"tilt": [(0.03, 0.0), (0.02, 0.01)], "tilt_rate": [(0.0, 0.0), (-0.02, 0.01)]}
     model = sb.Rolling(COLUMN, **frictions, restitution=0.8, passage_tilt=0.01)
     runs, alone = together_and_alone(model, CIRCLE, duration=6.0, **starts)

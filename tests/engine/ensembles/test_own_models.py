@@ -51,7 +51,7 @@ class Dragged(sb.Model):
         return tilt[0], tilt[1], tilt_rate[0] * scale, tilt_rate[1] * scale
 
     @staticmethod
-    def lean(x, y, vx, vy, *parameters):
+    def tilt_of(x, y, vx, vy, *parameters):
         return x, y, vx, vy
 """
 SLENDER_DRAGGED = """
@@ -193,7 +193,7 @@ class Counted(sb.Slender):
         return 0.0 * tilt[0], tilt[0], tilt[1], tilt_rate[0] * self.time_scale, tilt_rate[1] * self.time_scale
 
     @staticmethod
-    def lean(way, x, y, vx, vy, *_):
+    def tilt_of(way, x, y, vx, vy, *_):
         return x, y, vx, vy
 
     @staticmethod
@@ -238,7 +238,7 @@ def test_a_model_that_cannot_be_compiled_is_told_in_one_line(written, resistance
 def test_the_same_text_in_another_file_is_the_same_model(written):
     one, two = (written(dragged("resistance(vx, vy, k)", HELPERS)).Dragged for _ in range(2))
     assert fingerprint(one.rates) == fingerprint(two.rates)
-    assert fingerprint(one.lean) == fingerprint(two.lean) != fingerprint(one.rates)
+    assert fingerprint(one.tilt_of) == fingerprint(two.tilt_of) != fingerprint(one.rates)
 
 
 BEFORE = """

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import stylobate as sb
+from stylobate.base_motions.frequency import with_frequency
+from stylobate.base_motions.pulses import Waveform
 from stylobate.engine.ensembles.polynomials import tabulated
 from stylobate.engine.ensembles.stretched import tabulated_alike
 from stylobate.errors import ParameterError, UnsupportedError
-from stylobate.motions.frequency import with_frequency
-from stylobate.motions.pulses import Waveform
 
 MODEL = sb.Slender(sb.Column.solid(radius=0.2, height=2.0, density=2700.0), damping=0.05)
 P = sb.Pulse

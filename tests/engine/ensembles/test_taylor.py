@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import stylobate as sb
+from stylobate.base_motions import BaseMotion
 from stylobate.engine.ensembles import pool
 from stylobate.errors import ParameterError, UnsupportedError
-from stylobate.motions import BaseMotion
 
 C, ETA = 0.1, 0.1
 COLUMN = sb.Column.dimensionless(C)
@@ -188,7 +188,7 @@ def test_a_harmonic_motion_moves_runs_as_it_does_alone(outcome_in, end_of, ends_
 
 
 RARE = {
-    "at rest": sb.motions.BASE_AT_REST,
+    "at rest": sb.base_motions.BASE_AT_REST,
     "ramped": RAMPED,
     "ramped, delayed": RAMPED.delayed(0.9),
     "ramped, ahead": RAMPED.delayed(-0.9),
@@ -495,7 +495,7 @@ class Chained(Spatial):
         return -x - eta * vx - ax, vx, -y - eta * vy - ay, vy
 
     @staticmethod
-    def lean(vx, x, vy, y, *_):
+    def tilt_of(vx, x, vy, y, *_):
         return x, y, vx, vy
 
     def start(self, tilt, tilt_rate):

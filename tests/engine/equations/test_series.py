@@ -415,7 +415,7 @@ class Chained(Own):
         return y, vx, -y, -vy
 
     @staticmethod
-    def lean(x, y, vx, vy, *_):
+    def tilt_of(x, y, vx, vy, *_):
         return x, vy, y, 0.0
 
 

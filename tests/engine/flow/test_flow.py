@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import stylobate as sb
+from stylobate.base_motions.base import ACCELERATION
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of
 from stylobate.engine.flow.tableau import Status
 from stylobate.errors import UnsupportedError
-from stylobate.motions.base import ACCELERATION
 
 C, ETA = 0.1, 0.1
 MODEL = sb.Slender(sb.Column.dimensionless(C), damping=ETA)

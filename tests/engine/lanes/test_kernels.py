@@ -113,7 +113,7 @@ RARE = """
 import json
 import numpy as np
 import stylobate as sb
-from stylobate.motions import BaseMotion
+from stylobate.base_motions import BaseMotion
 
 class Burst(BaseMotion):
     breaks, highest_frequency = (0.7,), 4.0

@@ -11,7 +11,7 @@ SCRIPT = """
 import json
 import numpy as np
 import stylobate as sb
-from stylobate.motions import BASE_AT_REST
+from stylobate.base_motions import BASE_AT_REST
 
 model = sb.Wobbling(sb.Column.dimensionless(0.1), restitution=0.5, passage_tilt=0.03)
 # The tilt falls by these parts of its speed, and is least a moment later: 1e-6 and less is a passage just met.

@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 import stylobate as sb
-from stylobate.errors import FileError, ParameterError, SeldomMeant, UnsupportedError
+from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning, UnsupportedError
 from stylobate.plots.animation import Animation, drawn_motion, page
 from stylobate.plots.animation.painter import Painter
 
@@ -79,7 +79,7 @@ def test_too_few_pictures_of_a_swing_are_told_with_the_speed_that_shows_it():
     model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
     fast = sb.Harmonic.straight(acceleration=0.05, angular_frequency=60.0)
     run = sb.simulate(model, fast, tilt=(0.03, 0.0), duration=1.0)
-    with pytest.warns(SeldomMeant, match=r"9.549 times a second.*make speed 0.31 times"):
+    with pytest.warns(UnlikelyInputWarning, match=r"9.549 times a second.*make speed 0.31 times"):
         sb.animate(run, **SMALL)
     sb.animate(run, **SMALL, speed=0.31)
 

@@ -19,7 +19,7 @@ START = {"tilt": (0.1, 0.02), "tilt_rate": (0.0, 0.4)}
 
 @pytest.fixture(scope="module")
 def run():
-    return sb.simulate(sb.Rolling(COLUMN, damping=0.05, spin_friction=0.1), CIRCLE, **START, spin=1.5, duration=2.0)
+    return sb.simulate(sb.Rolling(COLUMN, damping=0.05, spin_damping=0.1), CIRCLE, **START, spin=1.5, duration=2.0)
 
 
 @pytest.fixture(scope="module")

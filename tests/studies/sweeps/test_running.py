@@ -242,7 +242,7 @@ def test_without_dask_the_remedy_is_told(points, monkeypatch):
 
 
 def test_a_mistake_in_a_worker_is_told_here(client):
-    class Broken(sb.motions.BaseMotion):
+    class Broken(sb.base_motions.BaseMotion):
         def derivative(self, time, order):
             message = "the record is empty"
             raise RuntimeError(message)

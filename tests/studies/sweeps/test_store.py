@@ -282,7 +282,7 @@ class Spring(Model):
     name = "spring"
     state_names = ("x", "y", "vx", "vy")
     rates = staticmethod(rates)
-    lean = staticmethod(lean)
+    tilt_of = staticmethod(tilt_of)
     @property
     def parameters(self):
         return self.column.slenderness, self.damping

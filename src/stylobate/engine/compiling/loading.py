@@ -20,7 +20,7 @@ from stylobate.engine.compiling.model_code import for_compiling
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 
-INLINED = ("rates", "lean", "contact", "margins", "refreshed")
+INLINED = ("rates", "tilt_of", "contact", "guards", "project")
 """What is called in loops over lanes, which would not become vector code round a call."""
 
 

@@ -64,7 +64,7 @@ class Plan:
             width=SWITCHING_WIDTH if self.model.switches else WIDTH,
             series=series_integrals(type(self.model), states, parameters, vertical=vertical) if by_series else (),
             demands=self.options.demands,
-            margins=len(self.model.margin_names),
+            guards=len(self.model.guard_names),
             slip=self.model.slip_states,
         )
 
@@ -157,7 +157,7 @@ class Batch:
         """Take the state of these runs from space to tilt and rate along their line."""
         part = self.table[chosen]
         states = len(self.plan.model.state_names)
-        leans = self.plan.model.lean(*part[:, STATE : STATE + states].T, *self.models.parameters[chosen].T)
+        leans = self.plan.model.tilt_of(*part[:, STATE : STATE + states].T, *self.models.parameters[chosen].T)
         line = part[:, Setup.LINE_X], part[:, Setup.LINE_Y]
         x, y, vx, vy = leans
         part[:, STATE] = x * line[0] + y * line[1]

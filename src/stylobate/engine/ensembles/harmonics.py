@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.motions import BaseMotion, Delayed, Harmonic, Rotated, Scaled, Sum
+from stylobate.base_motions import BaseMotion, Delayed, Harmonic, Rotated, Scaled, Sum
 
 Floats = npt.NDArray[np.float64]
 

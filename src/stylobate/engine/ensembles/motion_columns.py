@@ -8,6 +8,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.base_motions import BaseMotion
+from stylobate.base_motions.frequency import is_pulse, with_frequency
+from stylobate.base_motions.one_of import members_of
 from stylobate.engine.ensembles.harmonics import Term, Terms, factors, terms_of
 from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.polynomials import Table, one_after_another, tabulated
@@ -16,9 +19,6 @@ from stylobate.engine.lanes.forcing_source import ForcingSource, Harmonics, Poly
 from stylobate.engine.parameters import changed_motion, harmonic_part, largest_acceleration
 from stylobate.engine.thresholds import least_rest_energy
 from stylobate.errors import require_positive
-from stylobate.motions import BaseMotion
-from stylobate.motions.frequency import is_pulse, with_frequency
-from stylobate.motions.one_of import members_of
 
 Floats = npt.NDArray[np.float64]
 

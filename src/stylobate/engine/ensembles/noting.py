@@ -98,7 +98,7 @@ class _Noted:
         self.change(Change.SINCE, since)
         changes = [(switch.margin, switch.before, switch.after) for switch in self.course.switches]
         met = [change for change in changes if change[0] >= 0]
-        stroke = len(self.course.model.margin_names) - 1
+        stroke = len(self.course.model.guard_names) - 1
         rests = [place for place, (_, before, after) in enumerate(met) if after == Contact.RESTING != before]
         releases = [place for place, (_, before, after) in enumerate(met) if before == Contact.RESTING != after]
         self.change(Change.IMPACTS, sum(before == Contact.FLYING or number == stroke for number, before, _ in met))
@@ -196,7 +196,7 @@ class _Noted:
 
     def leans(self, tau: Floats) -> Floats:
         """Return tilt and tilt rate, shape (4, n)."""
-        return np.stack(self.course.model.lean(*self.course.trajectory.states(tau), *self.course.model.parameters))
+        return np.stack(self.course.model.tilt_of(*self.course.trajectory.states(tau), *self.course.model.parameters))
 
     def azimuths(self, tau: Floats) -> Floats:
         """Return the azimuth of the lean [turns]; the last one known while it stands, 0 before any."""

@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
+from stylobate.base_motions import BaseMotion
+from stylobate.base_motions.base import ACCELERATION
 from stylobate.errors import UnsupportedError
-from stylobate.motions import BaseMotion
-from stylobate.motions.base import ACCELERATION
 
 Floats = npt.NDArray[np.float64]
 

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.base_motions import BaseMotion
+from stylobate.base_motions.base import ACCELERATION
 from stylobate.engine.ensembles.polynomials import Table, tabulated
-from stylobate.motions import BaseMotion
-from stylobate.motions.base import ACCELERATION
 
 Floats = npt.NDArray[np.float64]
 

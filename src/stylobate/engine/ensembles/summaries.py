@@ -150,7 +150,7 @@ def _all(batch: Batch) -> Arrays:
     overturned = outcome == code_of(Outcome.OVERTURNED)
     passage = batch.log(Log.LEAST_PASSAGE)
     touched = batch.log(Log.TOUCHED_UPRIGHT) > 0.0
-    start = np.hypot(*batch.plan.model.lean(*batch.models.states.T, *batch.models.parameters.T)[:2])
+    start = np.hypot(*batch.plan.model.tilt_of(*batch.models.states.T, *batch.models.parameters.T)[:2])
     is_coarse = coarse(
         batch.rest_energy,
         batch.motions.mean_frequency,
@@ -222,7 +222,7 @@ def _in_doubt(batch: Batch, outcome: npt.NDArray[np.int8]) -> npt.NDArray[np.boo
 def _leans(batch: Batch) -> tuple[Floats, Floats]:
     """Return tilt vectors [rad] and their rates in the time of the models, shape (n, 2)."""
     states = batch.table[:, STATE : STATE + len(batch.plan.model.state_names)].T
-    leans = np.stack(batch.plan.model.lean(*states, *batch.models.parameters.T), axis=-1)
+    leans = np.stack(batch.plan.model.tilt_of(*states, *batch.models.parameters.T), axis=-1)
     line = batch.table[:, [Setup.LINE_X, Setup.LINE_Y]]
     plane = np.concatenate([states[0][:, np.newaxis] * line, states[1][:, np.newaxis] * line], axis=1)
     leans = np.where(batch.planar[:, np.newaxis], plane, leans)

@@ -45,10 +45,12 @@ def flow_module(model: type[Model], states: int, numbers: int, *, planar: bool) 
     if rates is None:
         message = f"model {model.name} has no equations of motion in a plane"
         raise UnsupportedError(message)
-    functions: dict[str, Callable[..., Any]] = {"rates": rates} if planar else {"rates": rates, "lean": model.lean}
-    loses = planar and model.struck is not None
+    functions: dict[str, Callable[..., Any]] = (
+        {"rates": rates} if planar else {"rates": rates, "tilt_of": model.tilt_of}
+    )
+    loses = planar and model.impact_map is not None
     if loses:
-        functions |= {"struck": model.struck, "from_plane": model.from_plane, "lean": model.lean}  # type: ignore[dict-item]
+        functions |= {"impact_map": model.impact_map, "from_plane": model.from_plane, "tilt_of": model.tilt_of}  # type: ignore[dict-item]
     given = None if planar else model.jacobian
     if given is not None:
         functions["jacobian"] = given
@@ -159,7 +161,7 @@ def _lean_source(arguments: _Arguments) -> str:
     else:
         states = [f"y[{j}]" for j in range(len(arguments.states))]
         numbers = [f"numbers[{j}]" for j in range(len(arguments.numbers))]
-        body = f"lean({', '.join([*states, *numbers])})"
+        body = f"tilt_of({', '.join([*states, *numbers])})"
     return f"@part\ndef lean_of(y, numbers):\n    return {body}"
 
 
@@ -171,8 +173,8 @@ def _loss_source(arguments: _Arguments, *, loses: bool) -> str:
         [
             "@part",
             "def speed_left(rate, numbers):",
-            f"    state = struck(*from_plane(0.0, rate, 1.0, 0.0, {numbers}), {numbers})",
-            f"    _, _, vx, _ = lean(*state, {numbers})",
+            f"    state = impact_map(*from_plane(0.0, rate, 1.0, 0.0, {numbers}), {numbers})",
+            f"    _, _, vx, _ = tilt_of(*state, {numbers})",
             "    return vx",
         ]
     )

@@ -8,6 +8,7 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.base_motions import BaseMotion
 from stylobate.engine.ensembles.harmonics import terms_of
 from stylobate.engine.flow.modules import flow_module
 from stylobate.engine.flow.tableau import Status
@@ -15,7 +16,6 @@ from stylobate.engine.forcing import common_line
 from stylobate.engine.parameters import present_value, with_parameters
 from stylobate.errors import StylobateError, UnsupportedError
 from stylobate.models import Model
-from stylobate.motions import BaseMotion
 
 Floats = npt.NDArray[np.float64]
 
@@ -230,7 +230,7 @@ class PeriodicSystem:
         """Return the azimuth of the lean [turns], −½ to ½; 0 in a plane."""
         if self.planar:
             return 0.0
-        x, y, _, _ = self.model.lean(*state, *self.model.parameters)
+        x, y, _, _ = self.model.tilt_of(*state, *self.model.parameters)
         return math.atan2(float(y), float(x)) / (2.0 * math.pi)
 
 
@@ -304,5 +304,5 @@ def plane_of(model: Model, motion: BaseMotion, state: Floats) -> tuple[float, fl
     """Return the line along which state and base motion lie, or None if they lie in no vertical plane."""
     if model.planar_rates is None:
         return None
-    x, y, vx, vy = (float(number) for number in model.lean(*state, *model.parameters))
+    x, y, vx, vy = (float(number) for number in model.tilt_of(*state, *model.parameters))
     return common_line((x, y), (vx, vy), *motion.directions())

@@ -39,7 +39,7 @@ class Expansion:
         state = tuple(moving[name] for name in self._names)
         rates = recorded(model.rates, (*state, *(moving.get(name, 0.0) for name in ("ax", "ay", "az")), *numbers))
         self._rates: list[Expression] = [record.known(rate) for rate in rates]
-        x, y, _, _ = recorded(model.lean, (*state, *numbers))
+        x, y, _, _ = recorded(model.tilt_of, (*state, *numbers))
         self._series = Series(record, [*self._rates, record.known(x * x + y * y)], moving)
 
     @property

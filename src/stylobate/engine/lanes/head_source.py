@@ -8,10 +8,10 @@ from stylobate.engine.lanes.shape import MARGIN_PLACES, SERIES_ORDER, Shape
 from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET, HOPS_APART, SLIP_SHARE, SLIP_SHORTER, SLIP_TURNS, STILL
 from stylobate.models import Model
 
-OPTIONAL = ("rest_energy", "no_return_tilt", "departure", "passage", "at_rest", "struck")
+OPTIONAL = ("rest_energy", "no_return_tilt", "departure", "passage", "at_rest", "impact_map")
 """Functions that a model may lack."""
 
-SWITCHING = ("margins", "react", "refreshed")
+SWITCHING = ("guards", "reset_map", "project")
 """Functions of a model that changes between kinds of contact."""
 
 
@@ -43,29 +43,29 @@ def constants_source(model: type[Model], shape: Shape, has: Mapping[str, bool], 
         "CAN_PASS": has["passage"] and not shape.planar,
         "CAN_PROVE_NO_RETURN": has["no_return_tilt"],
         "CAN_GO_TO_PLANE": to_plane,
-        "CAN_LOSE": has["struck"],
+        "CAN_LOSE": has["impact_map"],
         "DEMANDS": shape.demands,
         "KEPT": shape.order + len(shape.changes),
         **shape.forcing.constants(shape.rows()),
-        **(_contact_constants(model, shape) if shape.margins else {}),
+        **(_contact_constants(model, shape) if shape.guards else {}),
     }
     return "".join(f"{name} = {value!r}\n" for name, value in values.items())
 
 
 def _contact_constants(model: type[Model], shape: Shape) -> dict[str, float]:
-    """Return numbers of margins and of kinds of contact, and parts of a step; the limit of the tilt is a margin too."""
+    """Return numbers of guards and of kinds of contact, and parts of a step; the limit of the tilt is a margin too."""
     assert model.contact_kinds is not None
-    names = model.margin_names
+    names = model.guard_names
     return {
-        "MARGINS": shape.margins,
+        "GUARDS": shape.guards,
         "FALLEN": names.index("fallen"),
         "FRICTION": names.index("friction"),
         "SLIP_SHARE": SLIP_SHARE,
         "SLIP_SHORTER": SLIP_SHORTER,
         "SLIP_TURNS": SLIP_TURNS,
         **dict(zip(("SLIP_X", "SLIP_Y"), shape.slip, strict=True)),
-        "LAST": shape.margins - 1,
-        "LIMIT": shape.margins,
+        "LAST": shape.guards - 1,
+        "LIMIT": shape.guards,
         "PARTS": MARGIN_PLACES,
         **{kind.name: kind.value for kind in model.contact_kinds},
     }
@@ -84,8 +84,8 @@ def model_source(shape: Shape, has: Mapping[str, bool]) -> str:
     definitions = {
         "row_state(buf, i, row)": "(" + "".join(f"buf[row + {j}, i], " for j in range(shape.order)) + ")",
         "series_within(buf, i, elapsed)": _series_within(shape),
-        "model_lean(buf, i)": _plane_lean(state) if shape.planar else call("lean", *state),
-        "lean_of_new(buf, i)": _plane_lean(new) if shape.planar else call("lean", *new),
+        "model_lean(buf, i)": _plane_lean(state) if shape.planar else call("tilt_of", *state),
+        "lean_of_new(buf, i)": _plane_lean(new) if shape.planar else call("tilt_of", *new),
         "model_rest_energy(buf, i, tilt, speed, az)": call("rest_energy", "tilt", "speed", "az")
         if has["rest_energy"]
         else "math.inf",
@@ -97,10 +97,10 @@ def model_source(shape: Shape, has: Mapping[str, bool]) -> str:
         else f"(0.0, {nothing})",
         "model_at_rest(buf, i)": call("at_rest", *state) if has["at_rest"] and not shape.planar else nothing,
     }
-    if not has["struck"]:
+    if not has["impact_map"]:
         definitions["model_struck(buf, i)"] = nothing
     elif not shape.planar:
-        definitions["model_struck(buf, i)"] = call("struck", *state)
+        definitions["model_struck(buf, i)"] = call("impact_map", *state)
     definitions["model_contact(buf, i, ax, ay, az)"] = contact_call(
         shape, rows.of_lane, state, parameters, ("ax", "ay", "az")
     )
@@ -111,7 +111,7 @@ def model_source(shape: Shape, has: Mapping[str, bool]) -> str:
     source = "\n\n".join(f"@part\ndef {name}:\n    return {value}" for name, value in definitions.items()) + "\n"
     if has["departure"] and shape.planar:
         source += _plane_departure(call("departure", "push", "elapsed"), parameters)
-    if has["struck"] and shape.planar:
+    if has["impact_map"] and shape.planar:
         source += _plane_struck(state, parameters)
     return source
 
@@ -148,8 +148,8 @@ def _plane_struck(state: list[str], parameters: list[str]) -> str:
 
 @part
 def model_struck(buf, i):
-    state = struck(*from_plane({state[0]}, {state[1]}, 1.0, 0.0, {numbers}), {numbers})
-    x, y, vx, vy = lean(*state, {numbers})
+    state = impact_map(*from_plane({state[0]}, {state[1]}, 1.0, 0.0, {numbers}), {numbers})
+    x, y, vx, vy = tilt_of(*state, {numbers})
     return (x, vx)
 """
 
@@ -160,6 +160,6 @@ def _plane_departure(departure: str, parameters: list[str]) -> str:
 @part
 def model_departure(buf, i, push, elapsed, ux, uy):
     state = {departure}
-    x, y, vx, vy = lean(*state, {", ".join(parameters)})
+    x, y, vx, vy = tilt_of(*state, {", ".join(parameters)})
     return (x * ux + y * uy, vx * ux + vy * uy)
 """

@@ -78,7 +78,7 @@ def _acceptance(shape: Shape, rows: Rows) -> list[str]:
     if shape.planar:
         lean = [f"x1 = {new[0]}", "y1 = 0.0", f"vx1 = {new[1]}", "vy1 = 0.0"]
     else:
-        lean = [f"x1, y1, vx1, vy1 = lean({', '.join([*new, *(at(f'p{j}') for j in range(shape.parameters))])})"]
+        lean = [f"x1, y1, vx1, vy1 = tilt_of({', '.join([*new, *(at(f'p{j}') for j in range(shape.parameters))])})"]
     return [
         *lean,
         "tilt1 = math.sqrt(x1 * x1 + y1 * y1)",
@@ -96,7 +96,7 @@ def _acceptance(shape: Shape, rows: Rows) -> list[str]:
 def _past(shape: Shape, rows: Rows) -> list[str]:
     """Return what is positive where the step goes beyond an event."""
     at = rows.at
-    if shape.margins:  # looked at before
+    if shape.guards:  # looked at before
         return [f"past = {at('broken')}"]
     tilts = [f"past = min(tilt1 - {at('no_return')}, radial1)", f"past = max(past, tilt1 - {at('tilt_limit')})"]
     if not shape.planar:
@@ -157,7 +157,7 @@ def _slow(shape: Shape, at: Callable[[str], str]) -> list[str]:
     Its speed within lies no further below that at the ends than it changed, or its weight may have changed it. A step
     by series may be long: it is always looked at.
     """
-    if shape.planar or shape.margins:
+    if shape.planar or shape.guards:
         return []
     if shape.series:
         return [f"{at('slow')} = 1.0"]
@@ -345,11 +345,11 @@ def _suspicion(shape: Shape, rows: Rows) -> list[str]:
     """Return what marks the lanes that the driver must look at.
 
     Those held back by an event, at a stop, aimed at an event, out of steps or stuck; in space also those perhaps
-    coming to rest, or so near the upright that they pass it in closed form, where no margins tell so.
+    coming to rest, or so near the upright that they pass it in closed form, where no guards tell so.
     """
     at = rows.at
     near = ["near = 0.0"]
-    if not shape.planar and not shape.margins:
+    if not shape.planar and not shape.guards:
         c = at("slenderness")
         near = [
             f"square = {at('vx')} * {at('vx')} + {at('vy')} * {at('vy')}",
@@ -368,11 +368,11 @@ def _suspicion(shape: Shape, rows: Rows) -> list[str]:
         f"stuck = 1.0 if abs({at('tried')}) < {_SHORTEST!r} * abs({at('time')}) + 1e-300 else 0.0",
         f"met = {at('reached')} + {at('aimed')} + {at('peak')} + near + over",
         f"flag = {at('held')} + stuck * {at('rejected')} + {at('go')} * met",
-        # Of a lane without a run, margins tell nothing.
-        f"{at('flag')} = flag * (0.0 if {at('run')} < 0.0 else 1.0)" if shape.margins else f"{at('flag')} = flag",
+        # Of a lane without a run, guards tell nothing.
+        f"{at('flag')} = flag * (0.0 if {at('run')} < 0.0 else 1.0)" if shape.guards else f"{at('flag')} = flag",
     ]
 
 
 def _most_steps(shape: Shape, at: Callable[[str], str]) -> str:
     """Return after how many steps the driver must look at a lane."""
-    return f"min({at('most_steps')}, {at('stiff_look_at')})" if shape.margins else at("most_steps")
+    return f"min({at('most_steps')}, {at('stiff_look_at')})" if shape.guards else at("most_steps")

@@ -97,13 +97,13 @@ from stylobate.models.model import Push
 
 def _functions(model: type[Model], shape: Shape) -> dict[str, Callable[..., Any]]:
     """Return the model's functions as a kernel of this shape uses them, by name."""
-    functions = {"rates": model.planar_rates if shape.planar else model.rates, "lean": model.lean}
+    functions = {"rates": model.planar_rates if shape.planar else model.rates, "tilt_of": model.tilt_of}
     functions |= {name: getattr(model, name) for name in OPTIONAL}
     if shape.demands:
         functions["contact"] = model.contact
-    if shape.margins:
+    if shape.guards:
         functions |= {name: getattr(model, name) for name in SWITCHING}
-    if shape.planar and (shape.demands or model.struck is not None):
+    if shape.planar and (shape.demands or model.impact_map is not None):
         functions["from_plane"] = model.from_plane
     return {name: function for name, function in functions.items() if function is not None}
 
@@ -111,12 +111,12 @@ def _functions(model: type[Model], shape: Shape) -> dict[str, Callable[..., Any]
 def _contact_sources(shape: Shape) -> list[str]:
     """Return what the driver of a model that changes between kinds of contact calls."""
     rows, writers = shape.rows(), (margins_source, reaction_source, dense_source, stability_source)
-    return [write(shape, rows) for write in writers] if shape.margins else []
+    return [write(shape, rows) for write in writers] if shape.guards else []
 
 
 def _driver_text(shape: Shape) -> str:
     folder = Path(pattern.__file__).parent
-    order = pattern.SWITCHING_ORDER if shape.margins else pattern.ORDER
+    order = pattern.SWITCHING_ORDER if shape.guards else pattern.ORDER
     texts = ((folder / f"{name}.py").read_text(encoding="utf-8") for name in order)
     return "".join(text.split(_MARK, 1)[1] for text in texts)
 
@@ -138,7 +138,7 @@ def _with_numbers(text: str, shape: Shape) -> str:
     slopes = {"SLOPE": "k0_0", "SLOPE_NEW": f"k{STAGES}_0", "LAST_SLOPE": "last_slope0"}
     # Steps by series have no slopes; what reads them is left out by the compiler, as what is not followed.
     special |= {name: 0 if shape.series else rows[row] for name, row in slopes.items()}
-    if shape.margins:
+    if shape.guards:
         special |= {"CONTACT": rows[f"y{shape.order - 1}"]}
     special |= {f"{name.upper()}_NOW": rows[f"{name}_now"] if shape.demands else 0 for name in DEMANDS}
 

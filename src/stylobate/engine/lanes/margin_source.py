@@ -9,7 +9,7 @@ from stylobate.models import Model
 
 
 def margin_call(shape: Shape, at: Callable[[str], str], state: Sequence[str]) -> str:
-    """Return the call of the model's margins; `at` names a row, `state` are sources of the states."""
+    """Return the call of the model's guards; `at` names a row, `state` are sources of the states."""
     arguments = [
         *state,
         "ax",
@@ -18,7 +18,7 @@ def margin_call(shape: Shape, at: Callable[[str], str], state: Sequence[str]) ->
         at("rest_energy"),
         *(at(f"p{j}") for j in range(shape.parameters)),
     ]
-    return f"margins({', '.join(arguments)})"
+    return f"guards({', '.join(arguments)})"
 
 
 def refreshing_lines(shape: Shape, rows: Rows) -> list[str]:
@@ -27,7 +27,7 @@ def refreshing_lines(shape: Shape, rows: Rows) -> list[str]:
     names = [at(f"{name}{j}") for name, count in (("y", shape.order), ("p", shape.parameters)) for j in range(count)]
     lines = [
         f"go = {at('go')}",
-        f"{', '.join(f'r{j}' for j in range(shape.order))} = refreshed({', '.join(names)})",
+        f"{', '.join(f'r{j}' for j in range(shape.order))} = project({', '.join(names)})",
     ]
     kept = [(f"y{j}", f"r{j}") for j in range(shape.order)]
     kept.append(("last_margin", at("margin_now")))
@@ -37,16 +37,16 @@ def refreshing_lines(shape: Shape, rows: Rows) -> list[str]:
 
 
 def margins_source(shape: Shape, rows: Rows) -> str:
-    """Return the source of `margins_at(buf, i, t, state)`, for the driver: the margins, and behind them the limit's."""
+    """Return the source of `margins_at(buf, i, t, state)`, for the driver: the guards, and behind them the limit's."""
     at = rows.of_lane
     state = [f"state[{j}]" for j in range(shape.order)]
-    margins = [f"m{k}" for k in range(shape.margins)]
+    guards = [f"m{k}" for k in range(shape.guards)]
     parameters = ", ".join(at(f"p{j}") for j in range(shape.parameters))
     lines = [
         *shape.forcing.lines(at, "t"),
-        f"{', '.join(margins)} = {margin_call(shape, at, state)}",
-        f"x, y, _, _ = lean({', '.join(state)}, {parameters})",
-        f"return {', '.join(margins)}, {at('tilt_limit')} - math.sqrt(x * x + y * y)",
+        f"{', '.join(guards)} = {margin_call(shape, at, state)}",
+        f"x, y, _, _ = tilt_of({', '.join(state)}, {parameters})",
+        f"return {', '.join(guards)}, {at('tilt_limit')} - math.sqrt(x * x + y * y)",
     ]
     return "\n".join(["@part", "def margins_at(buf, i, t, state):", *(f"    {line}" for line in lines)]) + "\n"
 
@@ -58,7 +58,7 @@ _WINDOW_TIMES = (("sliding", ("SLIDING",)), ("rim", ("ROLLING", "SLIPPING")), ("
 def window_source(model: type[Model], shape: Shape, rows: Rows) -> str:
     """Return the source of `note_window`, for the driver; it does nothing where contacts do not change."""
     lines = ["@part", "def note_window(buf, i, t):"]
-    if not shape.margins:
+    if not shape.guards:
         return "\n".join([*lines, "    pass"]) + "\n"
     at = rows.of_lane
     lines += [f"    contact = {at(f'y{shape.order - 1}')}", f"    present = t - {at('since')}"]
@@ -83,6 +83,6 @@ def model_react(buf, i, number, now, later, ahead):
     ax, ay, az = now
     bx, by, bz = later
     rest = {at("rest_energy")}
-    elapsed, s = react({state}, number, ax, ay, az, bx, by, bz, ahead, rest, {parameters})
+    elapsed, s = reset_map({state}, number, ax, ay, az, bx, by, bz, ahead, rest, {parameters})
     return elapsed, ({after})
 """

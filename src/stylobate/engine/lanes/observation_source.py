@@ -113,4 +113,4 @@ def _state_within(shape: Shape, j: int) -> str:
 def _lean(shape: Shape, state: list[str]) -> str:
     if shape.planar:
         return f"{state[0]}, 0.0, {state[1]}, 0.0"
-    return f"lean({', '.join([*state, *(f'p{j}' for j in range(shape.parameters))])})"
+    return f"tilt_of({', '.join([*state, *(f'p{j}' for j in range(shape.parameters))])})"

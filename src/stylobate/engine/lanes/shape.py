@@ -13,7 +13,7 @@ DENSE_TERMS = 7
 """Terms of the polynomial that tells the state within a step of DOP853."""
 
 MARGIN_PLACES = 4
-"""Equal parts of a step, at the ends of which margins are looked at."""
+"""Equal parts of a step, at the ends of which guards are looked at."""
 
 SERIES_ORDER = 16
 """Order of Taylor series."""
@@ -41,8 +41,8 @@ class Shape:
         made by DOP853.
     demands
         Whether it follows what the contact must bear.
-    margins
-        How many margins guard a kind of contact, of a model that changes between kinds; else 0.
+    guards
+        How many guards guard a kind of contact, of a model that changes between kinds; else 0.
     slip
         Which of its states are the velocity of slip.
     """
@@ -54,7 +54,7 @@ class Shape:
     width: int
     series: tuple[int, ...] = ()
     demands: bool = False
-    margins: int = 0
+    guards: int = 0
     slip: tuple[int, ...] = ()
 
     @property
@@ -80,7 +80,7 @@ class Shape:
     @property
     def changes(self) -> list[str]:
         """Rows behind the state: what is noted of changes between kinds of contact."""
-        return [column.name.lower() for column in Change] if self.margins else []
+        return [column.name.lower() for column in Change] if self.guards else []
 
     @property
     def expanded(self) -> list[int]:
@@ -122,7 +122,7 @@ class Shape:
             for stage in range(STAGES + 1):
                 rows.add_many(f"k{stage}_", self.order)
             rows.add_many("last_slope", self.order)
-        if self.margins:
+        if self.guards:
             rows.add("last_margin", "margin_now", "broken", "stiff_looks", "stiff_look_at")
             for name in ("stage", "rate", "step"):
                 rows.add_many(name, self.order)

@@ -29,5 +29,5 @@ def stability_source(shape: Shape, rows: Rows) -> str:
         "    change += turned * turned",
         "return h * math.sqrt(change / apart) if apart > 0.0 else 0.0",
     ]
-    assert shape.margins
+    assert shape.guards
     return "\n".join(["@part", "def stability(buf, i):", *(f"    {line}" for line in lines)]) + "\n"

@@ -12,7 +12,7 @@ from stylobate.models import Model
 
 def step_source(model: type[Model], shape: Shape) -> str:
     """Return the source of `step(buf)`, one attempt at a step in every lane."""
-    if shape.margins:
+    if shape.guards:
         return switching_step_source(shape)
     rows = shape.rows()
     lines = ["@vectorised", "def step(buf):"]

@@ -1,6 +1,6 @@
 """Writes the step of models that change between kinds of contact.
 
-Their equations are long. They stand once, in a function that all stages call, and so do the margins: states are handed
+Their equations are long. They stand once, in a function that all stages call, and so do the guards: states are handed
 over in rows. What is done with each state alike is one loop over all states of all lanes, which lie in a block of rows.
 """
 
@@ -50,13 +50,13 @@ def _guarding(shape: Shape, rows: Rows) -> list[str]:
     at = rows.at
     state = [at(f"stage{j}") for j in range(shape.order)]
     parameters = [at(f"p{j}") for j in range(shape.parameters)]
-    last = f"m{shape.margins - 1}"
+    last = f"m{shape.guards - 1}"
     body = [
         *shape.forcing.lines(at, f"{at('time')} + share * {at('h')}"),
-        f"{_names('m', shape.margins)} = {margin_call(shape, at, state)}",
-        f"x, y, _, _ = lean({', '.join([*state, *parameters])})",
+        f"{_names('m', shape.guards)} = {margin_call(shape, at, state)}",
+        f"x, y, _, _ = tilt_of({', '.join([*state, *parameters])})",
         f"least = {at('tilt_limit')} - math.sqrt(x * x + y * y)",
-        *(f"least = min(least, m{k})" for k in range(shape.margins - 1)),
+        *(f"least = min(least, m{k})" for k in range(shape.guards - 1)),
         # The last margin counts only where it was above before.
         f"before = {at('margin_now')}",
         f"{at('margin_now')} = {last}",
@@ -80,7 +80,7 @@ def _stage(rows: Rows, stage: int) -> list[str]:
 
 
 def _place(rows: Rows, share: float) -> list[str]:
-    """Return what looks at the margins at a part of the step, on cubics through its ends."""
+    """Return what looks at the guards at a part of the step, on cubics through its ends."""
     values, slopes = cubic_weights(share)
     state = combination(values, [_block(rows, "y0"), _block(rows, "new0")])
     if share < 1.0:

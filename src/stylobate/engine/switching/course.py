@@ -163,7 +163,7 @@ class SwitchingCourse:
             self._rest(held, self.stop)
             return None
         # By a rounding none of them may be broken yet.
-        lift, *others = self._guard().margins(release, np.array(held))[:-1]
+        lift, *others = self._guard().guards(release, np.array(held))[:-1]
         broken = 0 if lift <= RELEASE_MARGIN else 1 + int(np.argmin(others))
         if release > start:
             self._rest(held, release)
@@ -173,20 +173,20 @@ class SwitchingCourse:
         """Move until an event; return the state after it, or None where it ends the run."""
         stop, guard = self._stops[bisect_right(self._stops, self._time)], self._guard()
         contact = self._contact(state)
-        margins = guard.margins(self._time, np.array(state))
-        broken = guard.broken(margins)
+        guards = guard.guards(self._time, np.array(state))
+        broken = guard.broken(guards)
         if broken is not None:
             return self._reaction(state, broken)
         stepper, steps, friction = (
             self._stepper(state, stop),
             Steps(self._time),
-            self.model.margin_names.index("friction"),
+            self.model.guard_names.index("friction"),
         )
         while stepper.running:
             if self._given_up(steps, contact):
                 return None
             failure = stepper.step()
-            if failure is not None and (number := guard.nearly_broken(margins)) is not None:
+            if failure is not None and (number := guard.nearly_broken(guards)) is not None:
                 self._take(steps, contact)
                 return self._reaction(tuple(stepper.solver.y.tolist()), number)
             if failure is not None:
@@ -194,12 +194,12 @@ class SwitchingCourse:
                 return None
             solver = stepper.solver
             dense = steps.add(solver)
-            time, number, found = guard.first_event(steps.times[-2], solver.t, dense, margins)
+            time, number, found = guard.first_event(steps.times[-2], solver.t, dense, guards)
             if number == friction and time - steps.times[-2] > _moment(time) and stepper.turned(dense(time)):
                 steps.drop()
                 stepper.again(SLIP_SHORTER * (time - steps.times[-1]))
                 continue
-            margins = found
+            guards = found
             limit = self._limit_time(dense, steps.times[-2], time)
             if limit is not None:
                 time, number = limit, _LIMIT
@@ -234,8 +234,8 @@ class SwitchingCourse:
         return Stepper(derivative, self._time, np.array(state), stop, self.method, slip)
 
     def _refreshed(self, y: Floats) -> Floats:
-        refreshed = self.model.refreshed
-        return y if refreshed is None else np.array(refreshed(*y.tolist(), *self.model.parameters))
+        project = self.model.project
+        return y if project is None else np.array(project(*y.tolist(), *self.model.parameters))
 
     def _guard(self) -> Guard:
         return Guard(self.model, self.forcing, self.thresholds.rest_energy)
@@ -243,8 +243,8 @@ class SwitchingCourse:
     def _reaction(self, state: tuple[float, ...], number: int) -> tuple[float, ...] | None:
         """Return the state after the margin of this number was broken; None where that ends the run."""
         model, time = self.model, self._time
-        assert model.react is not None
-        name = model.margin_names[number] if number >= 0 else ""
+        assert model.reset_map is not None
+        name = model.guard_names[number] if number >= 0 else ""
         if name == "fallen" or number == _LIMIT:
             self.ended = Reason.OVERTURNED if name == "fallen" else Reason.LIMIT
             self._note("overturned" if name == "fallen" else "limit", time)
@@ -257,7 +257,7 @@ class SwitchingCourse:
             return None
         ahead = departure_lapse(self.forcing)
         now, later = self.forcing.at(time), self.forcing.at(time + ahead)
-        elapsed, after = model.react(
+        elapsed, after = model.reset_map(
             *state, float(number), *now, *later, ahead, self.thresholds.rest_energy, *model.parameters
         )
         self.switches.append(Switch(time, number, self._contact(state), self._contact(after)))

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stylobate.base_motions import BaseMotion
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.models import Model
-from stylobate.motions import BaseMotion
 
 
 @dataclass(frozen=True, slots=True)

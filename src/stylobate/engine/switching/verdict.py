@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stylobate.base_motions import BaseMotion
 from stylobate.engine.forcing import Floats
 from stylobate.engine.switching.course import SwitchingCourse
 from stylobate.engine.switching.guard import Guard
@@ -14,7 +15,6 @@ from stylobate.engine.watch import Reason
 from stylobate.errors import Outcome
 from stylobate.models import Contact, Model
 from stylobate.models.sliding.equations import JAM
-from stylobate.motions import BaseMotion
 from stylobate.results import OutcomeRules
 
 # The end of a whole number of periods is told to this part of the time.
@@ -140,4 +140,4 @@ def _paths(course: SwitchingCourse) -> tuple[float, float, float]:
 
 def _denominator(course: SwitchingCourse, tau: float, state: Floats) -> float:
     guard = Guard(course.model, course.forcing, course.thresholds.rest_energy)
-    return guard.margins(tau, state)[course.model.margin_names.index("jam")] + JAM
+    return guard.guards(tau, state)[course.model.guard_names.index("jam")] + JAM

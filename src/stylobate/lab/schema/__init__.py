@@ -4,13 +4,13 @@ from importlib.metadata import version
 from typing import Any
 
 from stylobate.lab.limits import Limits
-from stylobate.lab.schema.catalogue import CATALOGUE
 from stylobate.lab.schema.curves import CURVES
 from stylobate.lab.schema.endpoints import paths
 from stylobate.lab.schema.jobs import JOBS
+from stylobate.lab.schema.options import CATALOGUE
 from stylobate.lab.schema.requests import components
 from stylobate.lab.schema.runs import RUNS
-from stylobate.lab.sizes import LEAST, MOST
+from stylobate.lab.size_limits import LEAST, MOST
 
 
 def schema(limits: Limits) -> dict[str, Any]:

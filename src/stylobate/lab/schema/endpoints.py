@@ -66,7 +66,7 @@ def paths() -> dict[str, Any]:
                 "The start on steady rolling, by theory or on the exact orbit",
                 ref("Start"),
                 _OF_RUNS,
-                body=("SteadyRolling", examples.STARTS),
+                body=("SteadyRollingStart", examples.STARTS),
             )
         },
         "/api/records": {
@@ -81,7 +81,7 @@ def paths() -> dict[str, Any]:
                 ref("Begun"),
                 (*_OF_BODIES, 429),
                 status=202,
-                body=("JobDescription", examples.JOBS),
+                body=("JobConfig", examples.JOBS),
             )
         },
         "/api/jobs/{identity}": {

@@ -4,28 +4,28 @@ from collections.abc import Collection, Mapping
 from dataclasses import fields
 from typing import Any
 
-from stylobate import spec
+from stylobate import config
+from stylobate.base_motions.declared import motion_quantities
+from stylobate.base_motions.pulses.sinusoid import MOST_CYCLES
+from stylobate.base_motions.pulses.waveform import MOST_OSCILLATIONS
+from stylobate.config.description import Config
+from stylobate.config.motions import ENDING
 from stylobate.errors import LARGEST
 from stylobate.lab.limits import Limits
-from stylobate.lab.numbers import NUMBERS
+from stylobate.lab.parameter_info import NUMBERS
 from stylobate.lab.schema.notation import Schema, listed, or_none, ref, table, text
-from stylobate.lab.sizes import HIGHEST_DEGREE, LEAST, MOST
-from stylobate.lab.starts import StartDescription
+from stylobate.lab.size_limits import HIGHEST_DEGREE, LEAST, MOST
+from stylobate.lab.starts import StartConfig
 from stylobate.models.declared import column_quantities, model_quantities
-from stylobate.motions.declared import motion_quantities
-from stylobate.motions.pulses.sinusoid import MOST_CYCLES
-from stylobate.motions.pulses.waveform import MOST_OSCILLATIONS
 from stylobate.quantities import Quantity
 from stylobate.results import OutcomeRules
-from stylobate.spec.description import Description
-from stylobate.spec.motions import ENDING
 
-_DESCRIPTIONS: dict[str, type[Description]] = {
-    "Simulation": spec.SimulationDescription,
-    "Response": spec.ResponseDescription,
-    "SteadyRolling": StartDescription,
-    "Map": spec.MapDescription,
-    "Basin": spec.BasinDescription,
+_DESCRIPTIONS: dict[str, type[Config]] = {
+    "Simulation": config.SimulationConfig,
+    "Response": config.ResponseConfig,
+    "SteadyRollingStart": StartConfig,
+    "Map": config.MapConfig,
+    "Basin": config.BasinConfig,
 }
 
 _OF_JOBS = {"exact": "Response", "map": "Map", "basin": "Basin", "animation": "Simulation"}
@@ -103,7 +103,7 @@ def components(limits: Limits) -> dict[str, Schema]:
         found |= {part: _part(schema) for part, schema in told.pop("$defs", {}).items()}
         found[name] = _within(told, limits)
     found["RecordMotion"] = _uploaded(found["RecordMotion"])
-    return {**{name: _finite(schema) for name, schema in found.items()}, "Record": _RECORD, "JobDescription": _job()}
+    return {**{name: _finite(schema) for name, schema in found.items()}, "Record": _RECORD, "JobConfig": _job()}
 
 
 def _finite(schema: Any) -> Any:

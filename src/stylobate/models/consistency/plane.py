@@ -15,7 +15,7 @@ def problems_of_maps(subject: Subject) -> Iterator[str]:
     c = subject.slenderness
     given = np.array([0.3 * c, -0.4 * c, 0.1 * c, 0.2 * c])
     state = subject.state((given[0], given[1]), (given[2], given[3]))
-    found = np.array(subject.model.lean(*state, *subject.numbers), dtype=float)
+    found = np.array(subject.model.tilt_of(*state, *subject.numbers), dtype=float)
     if np.abs(found - given).max() > _AGREE * c:
         yield (
             "lean: does not return the tilt and the rate with which start made the state "
@@ -49,7 +49,7 @@ def _state(subject: Subject, motion: tuple[float, float], line: tuple[float, flo
 
 
 def _mapped_wrongly(subject: Subject, motion: tuple[float, float], line: tuple[float, float]) -> str:
-    found = np.array(subject.model.lean(*_state(subject, motion, line), *subject.numbers), dtype=float)
+    found = np.array(subject.model.tilt_of(*_state(subject, motion, line), *subject.numbers), dtype=float)
     if np.abs(found - np.outer(motion, line).ravel()).max() <= _AGREE * subject.slenderness:
         return ""
     return (

@@ -76,7 +76,7 @@ class Subject:
         return found
 
     def _lean(self, state: tuple[float, ...]) -> np.ndarray:
-        return np.array(self.model.lean(*state, *self.numbers), dtype=float)
+        return np.array(self.model.tilt_of(*state, *self.numbers), dtype=float)
 
     def origin(self, name: str) -> str:
         """Return ", inherited from Slender," of a member that the class of the model does not state itself."""

@@ -17,13 +17,13 @@ _BEHIND_STATE = {
     "contact": _PUSH,
     "jacobian": _PUSH,
     "passage": _PUSH,
-    "lean": 0,
+    "tilt_of": 0,
     "carried_rates": 0,
-    "struck": 0,
-    "refreshed": 0,
+    "impact_map": 0,
+    "project": 0,
     "at_rest": 0,
-    "margins": _PUSH + 1,
-    "react": 1 + 2 * _PUSH + 2,
+    "guards": _PUSH + 1,
+    "reset_map": 1 + 2 * _PUSH + 2,
 }
 
 
@@ -63,7 +63,7 @@ def _positions(function: Callable[..., Any]) -> tuple[float, float] | None:
 def _remedy(subject: Subject, name: str) -> str:
     own = owner_of(type(subject.model), name) is type(subject.model)
     do = "Give it" if own else "Define it with"
-    alone = "" if name in ("rates", "lean") else f", or set {name} = None"
+    alone = "" if name in ("rates", "tilt_of") else f", or set {name} = None"
     return f"{do} an argument for each of `parameters`{alone}"
 
 
@@ -79,15 +79,15 @@ def problems_of_lengths(subject: Subject) -> Iterator[str]:
     push = Push((1.0, 0.0), subject.slenderness, 0.0, 1.0, 0.0)
     calls: Sequence[tuple[str, int, tuple[Any, ...]]] = (
         ("rates", states, (*state, *zero)),
-        ("lean", 4, state),
+        ("tilt_of", 4, state),
         ("contact", 3, (*state, *zero)),
         ("carried_rates", len(model.carried_names), state),
-        ("struck", states, state),
+        ("impact_map", states, state),
         ("at_rest", states, state),
         ("departure", states, (push, 1e-3)),
         ("passage", states, (*state, *zero)),
         ("planar_rates", 2, (subject.slenderness, 0.0, 1.0, *zero[:2])),
-        ("margins", len(model.margin_names), (*state, *zero, 1e-4)),
+        ("guards", len(model.guard_names), (*state, *zero, 1e-4)),
         *((("from_plane", states, (subject.slenderness, 0.0, 1.0, 0.0)),) if model.planar_rates is not None else ()),
     )
     for name, length, arguments in calls:

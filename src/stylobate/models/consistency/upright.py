@@ -60,20 +60,20 @@ def problems_of_rest(subject: Subject) -> Iterator[str]:
 
 
 def problems_of_loss(subject: Subject) -> Iterator[str]:
-    """Yield a line where `struck` adds speed, or moves the column."""
+    """Yield a line where `impact_map` adds speed, or moves the column."""
     model = subject.model
-    if model.struck is None or not model.loss_tilt > 0.0:
+    if model.impact_map is None or not model.loss_tilt > 0.0:
         return
     for state in subject.random_states(6):
         before, after = (
-            np.array(model.lean(*one, *subject.numbers), dtype=float)
-            for one in (state, model.struck(*state, *subject.numbers))
+            np.array(model.tilt_of(*one, *subject.numbers), dtype=float)
+            for one in (state, model.impact_map(*state, *subject.numbers))
         )
         if np.any(before[:2] != after[:2]) or np.hypot(*after[2:]) > np.hypot(*before[2:]) * (1.0 + 1e-12):
             yield (
-                f"struck: moves the column or makes it faster{subject.origin('struck')} (rate from "
-                f"{np.hypot(*before[2:]):.4g} to {np.hypot(*after[2:]):.4g}). Define struck for these "
-                "parameters, or set struck = None."
+                f"impact_map: moves the column or makes it faster{subject.origin('impact_map')} (rate from "
+                f"{np.hypot(*before[2:]):.4g} to {np.hypot(*after[2:]):.4g}). Define impact_map for these "
+                "parameters, or set impact_map = None."
             )
             return
 
@@ -91,7 +91,7 @@ def problems_of_passage(subject: Subject) -> Iterator[str]:
     found = solve_ivp(
         lambda _, y: subject.rates(tuple(y), push), (0.0, elapsed), state, method="DOP853", rtol=1e-10, atol=1e-13 * c
     ).y[:, -1]
-    tilts = np.array([model.lean(*one, *subject.numbers) for one in (end, found)], dtype=float)
+    tilts = np.array([model.tilt_of(*one, *subject.numbers) for one in (end, found)], dtype=float)
     error = np.abs(tilts[0] - tilts[1])
     if error[:2].max() > _CLOSE * far or error[2:].max() > _CLOSE * speed:
         yield (

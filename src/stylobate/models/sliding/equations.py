@@ -6,8 +6,8 @@ from stylobate.models.finite_tilt import TINY, cosine, sine_over_angle
 from stylobate.models.sliding.balance import balance
 from stylobate.models.sliding.phases import FLYING, RESTING, ROLLING, SLIDING, SLIPPING
 
-MARGINS = ("lift", "friction", "support", "rest", "jam", "fallen", "stroke")
-"""What each of the `margins` guards, in their order.
+GUARDS = ("lift", "friction", "support", "rest", "jam", "fallen", "stroke")
+"""What each of the `guards` watches, in their order.
 
 "lift": the contact presses. "friction": it holds, or still slips. "support": a base stands firm, or there is air under
 the rim. "rest": a column that rocks has energy left. "jam": Painlevé's denominator. "fallen": a tilt below π/2.
@@ -183,7 +183,7 @@ def contact_loads(
     return normal, math.sqrt(tx * tx + ty * ty), abs(moment) / c
 
 
-def margins(
+def guards(
     x: float,
     y: float,
     vx: float,
@@ -219,7 +219,7 @@ def margins(
     slope_y: float,
     relief: float,
 ) -> tuple[float, float, float, float, float, float, float]:
-    """Return what is positive as long as a kind of contact lasts, in the order of MARGINS.
+    """Return what is positive as long as a kind of contact lasts, in the order of GUARDS.
 
     Where one falls below nought an event ends it; the last where it does so from above only. `rest` is ε: on its rim a
     column comes to rest below the energy ε c² where the plane would hold it.

@@ -20,14 +20,14 @@ from stylobate.models.numbers import (
     PassageTilt,
     Restitution,
     RollingResistance,
-    SpinFriction,
+    SpinDamping,
     StaticFrictionCoefficient,
 )
-from stylobate.models.sliding.equations import MARGINS, contact_loads, margins, rates
+from stylobate.models.sliding.equations import GUARDS, contact_loads, guards, rates
 from stylobate.models.sliding.lift_off import lifted
 from stylobate.models.sliding.phases import Contact, Numbers, State
 from stylobate.models.sliding.posture import forces
-from stylobate.models.sliding.reactions import react, refreshed
+from stylobate.models.sliding.reactions import project, reset_map
 from stylobate.quantities import Quantity
 
 # A least tilt counts as a stroke of the base below this, where the user tells no other [c].
@@ -58,7 +58,7 @@ class Sliding(Model):
         the column rolls as on rubber. 0 is a point.
     restitution
         e_n, speed at which the struck point leaves the plane over that of its approach.
-    damping, spin_friction, rolling_resistance
+    damping, spin_damping, rolling_resistance
         As for `Rolling`, while the rim touches.
     passage_tilt
         Where a tilt below this stops falling [rad], the base strikes the plane; by default 0.01 c.
@@ -89,7 +89,7 @@ class Sliding(Model):
     patch: Annotated[float, Quantity(text="radius of the contact, in base radii", ge=0.0, slider=(0.0, 0.2))] = 0.0
     restitution: Restitution = 0.0
     damping: Damping = 0.0
-    spin_friction: SpinFriction = 0.0
+    spin_damping: SpinDamping = 0.0
     rolling_resistance: RollingResistance = 0.0
     passage_tilt: PassageTilt | None = None
     incline: Annotated[
@@ -111,7 +111,7 @@ class Sliding(Model):
     state_names: ClassVar[tuple[str, ...]] = State._fields
     spin_state: ClassVar[int | None] = State._fields.index("spin")
     slip_states: ClassVar[tuple[int, ...]] = tuple(map(State._fields.index, ("velocity_x", "velocity_y")))
-    margin_names: ClassVar[tuple[str, ...]] = MARGINS
+    guard_names: ClassVar[tuple[str, ...]] = GUARDS
     contact_kinds: ClassVar[type[IntEnum] | None] = Contact
 
     def validate(self) -> None:
@@ -122,11 +122,11 @@ class Sliding(Model):
             raise ParameterError(message)
 
     rates = staticmethod(rates)
-    lean = staticmethod(tilt_vector.lean)
+    tilt_of = staticmethod(tilt_vector.tilt_of)
     contact = staticmethod(contact_loads)
-    margins = staticmethod(margins)
-    react = staticmethod(react)
-    refreshed = staticmethod(refreshed)
+    guards = staticmethod(guards)
+    reset_map = staticmethod(reset_map)
+    project = staticmethod(project)
 
     @property
     def numbers(self) -> Numbers:
@@ -135,7 +135,7 @@ class Sliding(Model):
         return Numbers(
             c=column.slenderness,
             eta=self.damping,
-            zeta=self.spin_friction,
+            zeta=self.spin_damping,
             kappa=column.inertia_ratio,
             axial=column.axial_ratio,
             resistance=self.rolling_resistance,
@@ -188,7 +188,7 @@ class Sliding(Model):
         velocity: tuple[float, float, float],
         clearance: float,
     ) -> tuple[float, ...]:
-        """Return the state of a start, from which `react` tells how it touches.
+        """Return the state of a start, from which `reset_map` tells how it touches.
 
         Parameters
         ----------

@@ -1,10 +1,10 @@
-"""States of the column, made and looked at: lean, turning and slip, rates, forces and margins."""
+"""States of the column, made and looked at: lean, turning and slip, rates, forces and guards."""
 
 import math
 
 from stylobate.models.finite_tilt import cosine, sine_over_angle
 from stylobate.models.sliding.balance import balance
-from stylobate.models.sliding.equations import STILL, margins, rates
+from stylobate.models.sliding.equations import STILL, guards, rates
 from stylobate.models.sliding.phases import FLYING, SLIDING, Numbers, State
 
 # Slip begins with so much [STILL], too little to be seen and enough to have a direction.
@@ -38,8 +38,8 @@ def rates_of(state: State, now: Triple, n: Numbers) -> Forces:
 
 
 def margins_of(state: State, now: Triple, rest: float, n: Numbers) -> Margins:
-    """Return the margins of a state."""
-    return margins(
+    """Return the guards of a state."""
+    return guards(
         state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y, state.spin, state.twist, state.footprint_x,
         state.footprint_y, state.velocity_x, state.velocity_y, state.rise, state.rise_rate, state.heading_x,
         state.heading_y, state.heading_z, state.contact, now[0], now[1], now[2], rest, n.c, n.eta, n.zeta, n.kappa,

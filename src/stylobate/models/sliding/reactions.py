@@ -9,7 +9,7 @@ from stylobate.models.sliding.transitions import reaction
 _SLIDING, _SLIPPING = 1.0, 3.0
 
 
-def react(
+def reset_map(
     x: float,
     y: float,
     vx: float,
@@ -58,7 +58,7 @@ def react(
     return reaction(state, int(event), (ax, ay, az), (bx, by, bz), ahead, rest, numbers)
 
 
-def refreshed(
+def project(
     x: float,
     y: float,
     vx: float,

@@ -38,7 +38,7 @@ def reaction(
     state
         State at the event.
     event
-        Place of the margin in MARGINS; any other number asks how a column in this state goes on.
+        Place of the margin in GUARDS; any other number asks how a column in this state goes on.
     now, later, ahead
         Base accelerations [g] at the event, and so much `ahead` of it, from which a release goes.
     rest

@@ -12,7 +12,7 @@ from PIL import Image
 
 from stylobate.errors import (
     ParameterError,
-    SeldomMeant,
+    UnlikelyInputWarning,
     require_finite,
     require_positive,
     require_vector,
@@ -171,7 +171,7 @@ def animate(
 
     Warns
     -----
-    SeldomMeant
+    UnlikelyInputWarning
         If there are fewer than four pictures of each swing of the base: one then sees another motion.
 
     Examples
@@ -208,7 +208,7 @@ def _remark_on_few(run: Response, pictures: float) -> None:
         f"the base swings {frequency / (2.0 * math.pi):.4g} times a second, of which {pictures:.4g} pictures a second "
         f"show too little: make speed {least:.2g} times what it is, or less"
     )
-    warnings.warn(message, SeldomMeant, stacklevel=3)
+    warnings.warn(message, UnlikelyInputWarning, stacklevel=3)
 
 
 def checked_path(path: str | Path) -> Path:

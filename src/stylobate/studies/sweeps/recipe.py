@@ -7,9 +7,9 @@ from typing import Any, TypedDict
 
 import numpy as np
 
+from stylobate.base_motions import BaseMotion
+from stylobate.base_motions.one_of import members_of
 from stylobate.models import Model
-from stylobate.motions import BaseMotion
-from stylobate.motions.one_of import members_of
 from stylobate.results import OutcomeRules
 from stylobate.studies.sweeps.quantities import OF_A_RUN, Floats
 

@@ -21,7 +21,6 @@ import numpy as np
 import xarray as xr
 import zarr
 
-from stylobate.counted import counted
 from stylobate.errors import FileError
 from stylobate.files import written_aside
 from stylobate.studies.sweeps.blocks import Block, Blocks
@@ -32,6 +31,7 @@ from stylobate.studies.sweeps.layout import Layout, bytes_of_block, bytes_on_dis
 from stylobate.studies.sweeps.quantities import attributes_of
 from stylobate.studies.sweeps.resuming import differences
 from stylobate.studies.sweeps.sweep import Sweep
+from stylobate.text import plural
 
 _log = logging.getLogger("stylobate")
 
@@ -154,7 +154,7 @@ def _compute_again(chunks: Chunks, damaged: list[int]) -> None:
     if not damaged:
         return
     runs = sum(chunks.blocks[index].size for index in damaged)
-    _log.warning("%s is damaged: %s are computed again", chunks.path, counted(runs, "run"))
+    _log.warning("%s is damaged: %s are computed again", chunks.path, plural(runs, "run"))
     for index in damaged:
         if chunks.state(index) is State.DAMAGED:  # another process may have computed it meanwhile
             chunks.forget(index)
@@ -186,7 +186,7 @@ def open_sweep(path: str | Path, *, load: bool = False) -> xr.Dataset:
     chunks = Store(path).chunks(attributes)
     states = chunks.states()
     if damaged := sum(chunks.blocks[index].size for index, state in states.items() if state is State.DAMAGED):
-        message = f"{path} is damaged: {counted(damaged, 'run')} cannot be read. Continue it with resume=True"
+        message = f"{path} is damaged: {plural(damaged, 'run')} cannot be read. Continue it with resume=True"
         raise FileError(message)
     runs_done = sum(chunks.blocks[index].size for index, state in states.items() if state is State.DONE)
     data: xr.Dataset = xr.open_zarr(path, chunks=None, consolidated=False, decode_cf=False, drop_variables=MARK)

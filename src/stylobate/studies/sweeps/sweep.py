@@ -8,12 +8,12 @@ from typing import Any, Self, Unpack
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.base_motions import BASE_AT_REST, BaseMotion
+from stylobate.base_motions.frequency import is_pulse
+from stylobate.config import provenance_of_run
 from stylobate.errors import ParameterError, require_positive, require_vector
 from stylobate.models import Model
-from stylobate.motions import BASE_AT_REST, BaseMotion
-from stylobate.motions.frequency import is_pulse
 from stylobate.results import OutcomeRules
-from stylobate.spec import provenance_of_run
 from stylobate.studies.sweeps.blocks import Blocks
 from stylobate.studies.sweeps.designs import Box, Design, Grid, Points
 from stylobate.studies.sweeps.fingerprint import identity_of

@@ -186,11 +186,11 @@ def stand(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int]:
 @part
 def broken_at_release(buf: Table, i: int) -> int:
     """Return the margin that ends standing; by a rounding it may not be broken yet."""
-    margins = margins_at(buf, i, buf[R.TIME, i], row_state(buf, i, R.STATE))
+    guards = margins_at(buf, i, buf[R.TIME, i], row_state(buf, i, R.STATE))
     number = 0
-    if margins[0] > RELEASE_MARGIN:
+    if guards[0] > RELEASE_MARGIN:
         number = 1
         for k in range(2, LAST):
-            if margins[k] < margins[number]:
+            if guards[k] < guards[number]:
                 number = k
     return number

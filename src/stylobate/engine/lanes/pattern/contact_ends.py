@@ -31,7 +31,7 @@ NEXT_TO_NOUGHT = 1e-8
 
 @part
 def margins_within(buf: Table, i: int, elapsed: float) -> tuple[float, ...]:
-    """Return the margins at a time within the step that was held back, told by its dense output."""
+    """Return the guards at a time within the step that was held back, told by its dense output."""
     return margins_at(buf, i, buf[R.TIME, i] + elapsed, dense_state(buf, i, elapsed / buf[R.TRIED, i]))
 
 
@@ -42,20 +42,20 @@ def first_end(buf: Table, i: int) -> tuple[float, int]:
     past, before = 0.0, margins_within(buf, i, 0.0)
     for place in range(1, PARTS + 1):
         now = h if place == PARTS else h * place / PARTS
-        margins = margins_within(buf, i, now)
+        guards = margins_within(buf, i, now)
         first, number = math.inf, -1
         for k in range(LIMIT + 1):
-            if margins[k] < BROKEN and (before[k] >= BROKEN or k != LAST):
+            if guards[k] < BROKEN and (before[k] >= BROKEN or k != LAST):
                 end = (
                     past
                     if before[k] <= BROKEN
-                    else crossing_of(buf, i, k, past, now, before[k] - BROKEN, margins[k] - BROKEN)
+                    else crossing_of(buf, i, k, past, now, before[k] - BROKEN, guards[k] - BROKEN)
                 )
                 if end < first:
                     first, number = end, k
         if number >= 0:
             return first, number
-        past, before = now, margins
+        past, before = now, guards
     return h, -1
 
 
@@ -87,12 +87,12 @@ def crossing_of(buf: Table, i: int, number: int, low: float, high: float, at_low
 @part
 def broken_now(buf: Table, i: int) -> int:
     """Return the first margin that the state breaks with which a kind of contact begins, or −1; note the last one."""
-    margins = margins_at(buf, i, buf[R.TIME, i], row_state(buf, i, R.STATE))
-    buf[R.LAST_MARGIN, i] = margins[LAST]
-    buf[R.MARGIN_NOW, i] = margins[LAST]
+    guards = margins_at(buf, i, buf[R.TIME, i], row_state(buf, i, R.STATE))
+    buf[R.LAST_MARGIN, i] = guards[LAST]
+    buf[R.MARGIN_NOW, i] = guards[LAST]
     buf[R.BROKEN, i] = 0.0
     for k in range(LIMIT + 1):
-        if margins[k] < BROKEN and k != LAST:
+        if guards[k] < BROKEN and k != LAST:
             return k
     return -1
 
@@ -100,9 +100,9 @@ def broken_now(buf: Table, i: int) -> int:
 @part
 def nearly_broken(buf: Table, i: int) -> int:
     """Return the margin next to whose end no step can be made, as where slip is all but gone, or −1."""
-    margins = margins_at(buf, i, buf[R.TIME, i], row_state(buf, i, R.STATE))
+    guards = margins_at(buf, i, buf[R.TIME, i], row_state(buf, i, R.STATE))
     least = 0
     for k in range(1, LAST):
-        if margins[k] < margins[least]:
+        if guards[k] < guards[least]:
             least = k
-    return least if margins[least] < NEXT_TO_NOUGHT else -1
+    return least if guards[least] < NEXT_TO_NOUGHT else -1

@@ -52,7 +52,7 @@ SLIP_SHORTER: float
 SLIP_TURNS: float
 """See `engine.tolerances`."""
 PARTS: int
-"""Parts of a step at the ends of which margins are looked at."""
+"""Parts of a step at the ends of which guards are looked at."""
 RESTING: int
 SLIDING: int
 ROLLING: int

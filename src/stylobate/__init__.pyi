@@ -1,0 +1,72 @@
+from . import (
+    base_motions,
+    config,
+    conveying,
+    earthquakes,
+    errors,
+    models,
+    orbits,
+    paper,
+    plots,
+    results,
+    studies,
+    theory,
+)
+from .base_motions import BaseMotion, Harmonic, OneOf, Pulse, Record, SineSweep, records
+from .base_motions.records import read_record, read_records, sample_record
+from .column import Column
+from .engine import simulate, simulate_ensemble, with_parameters
+from .errors import Interrupted, Outcome
+from .models import Contact, Model, PlanarRocking, Rolling, Slender, SlenderRolling, Sliding, Wobbling
+from .plots import animate, plot
+from .quantities import Quantity
+from .results import Event, OutcomeRules, Response, load
+
+__version__: str
+
+__all__ = [
+    "BaseMotion",
+    "Column",
+    "Contact",
+    "Event",
+    "Harmonic",
+    "Interrupted",
+    "Model",
+    "OneOf",
+    "Outcome",
+    "OutcomeRules",
+    "PlanarRocking",
+    "Pulse",
+    "Quantity",
+    "Record",
+    "Response",
+    "Rolling",
+    "SineSweep",
+    "Slender",
+    "SlenderRolling",
+    "Sliding",
+    "Wobbling",
+    "__version__",
+    "animate",
+    "base_motions",
+    "config",
+    "conveying",
+    "earthquakes",
+    "errors",
+    "load",
+    "models",
+    "orbits",
+    "paper",
+    "plot",
+    "plots",
+    "read_record",
+    "read_records",
+    "records",
+    "results",
+    "sample_record",
+    "simulate",
+    "simulate_ensemble",
+    "studies",
+    "theory",
+    "with_parameters",
+]

@@ -1,0 +1,24 @@
+"""Base motions: the acceleration of the base against time."""
+
+from stylobate.base_motions.base import BaseMotion
+from stylobate.base_motions.combined import BASE_AT_REST, Delayed, Rotated, Scaled, Sum, as_harmonic
+from stylobate.base_motions.harmonic import Harmonic
+from stylobate.base_motions.one_of import OneOf
+from stylobate.base_motions.pulses.pulse import Pulse
+from stylobate.base_motions.records.record import Record
+from stylobate.base_motions.sweeps import SineSweep
+
+__all__ = [
+    "BASE_AT_REST",
+    "BaseMotion",
+    "Delayed",
+    "Harmonic",
+    "OneOf",
+    "Pulse",
+    "Record",
+    "Rotated",
+    "Scaled",
+    "SineSweep",
+    "Sum",
+    "as_harmonic",
+]

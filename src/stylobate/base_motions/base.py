@@ -1,0 +1,146 @@
+"""What a base motion is: an acceleration against time, and what integrators and criteria ask of it."""
+
+import math
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from stylobate.base_motions.combined import Delayed, Rotated, Scaled, Sum
+
+DISPLACEMENT, VELOCITY, ACCELERATION = range(3)
+"""Orders of the time derivative of the displacement."""
+
+Components = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64]]
+
+
+class BaseMotion(ABC):
+    """The motion of the base from t = 0 on, in SI units, along x, y (horizontal) and z (up).
+
+    Motions combine: `first + second`, `2.0 * motion`, `motion.rotated(angle)`, `motion.scaled(factor, vertical=0.0)`,
+    `motion.delayed(delay)`. Each is a value; combining makes a new one.
+
+    Notes
+    -----
+    For developers: a motion of your own implements `derivative`, `largest_horizontal`, `vertical_range` and
+    `directions`; `duration`, `period`, `highest_frequency`, `mean_frequency`, `breaks` and `degree` have defaults.
+    """
+
+    __slots__ = ()
+
+    @abstractmethod
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return the displacement (`order` 0), velocity (1) or acceleration (2) along x, y and z.
+
+        Parameters
+        ----------
+        time
+            Times of any shape [s].
+        order
+            DISPLACEMENT (0) [m], VELOCITY (1) [m/s] or ACCELERATION (2) [m/s²].
+
+        Returns
+        -------
+        tuple
+            Three arrays of the shape of `time`.
+        """
+
+    @abstractmethod
+    def largest_horizontal(self, since: float = 0.0) -> float:
+        """Return sup |a_h| from the time `since` [s] on, or a bound above it [m/s²]."""
+
+    @abstractmethod
+    def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
+        """Return inf a_z and sup a_z from the time `since` [s] on, or bounds outside them [m/s²]."""
+
+    @abstractmethod
+    def directions(self) -> tuple[tuple[float, float], ...]:
+        """Return horizontal vectors that span every horizontal acceleration of this motion [m/s²].
+
+        Parallel vectors (or none) mean a motion along one straight line, in which a column can rock in a plane.
+        """
+
+    @property
+    def duration(self) -> float:
+        """Time after which the base stands still [s]; infinite for a motion that never ends."""
+        return math.inf
+
+    @property
+    def period(self) -> float | None:
+        """Common period of the steady motion [s]; None where there is none."""
+        return None
+
+    @property
+    def highest_frequency(self) -> float:
+        """Highest angular frequency in the acceleration [rad/s]; 0 for one that is constant between its breaks.
+
+        Releases are sought on 64 samples to its period, and no step is longer than half of it. A motion of your own
+        whose acceleration changes must give it: runs refuse one that changes faster.
+        """
+        return 0.0
+
+    @property
+    def mean_frequency(self) -> float:
+        """Mean angular frequency of the acceleration [rad/s]: with it peaks rise and fall; by default the highest.
+
+        How long the base motion pushes a column that it releases, and so how small an energy counts as rest, is judged
+        by it.
+        """
+        return self.highest_frequency
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Times at which the acceleration is not smooth [s], increasing; integrators stop there."""
+        return ()
+
+    @property
+    def degree(self) -> int | None:
+        """Degree of the polynomials that the acceleration is between its breaks; None where it is none.
+
+        What is linear between breaks, as a record is, is tabulated exactly.
+        """
+        return None
+
+    def acceleration(self, time: npt.ArrayLike) -> npt.NDArray[np.float64]:
+        """Return the base acceleration at `time` [s], shape (..., 3) [m/s²]."""
+        return np.stack(self.derivative(time, ACCELERATION), axis=-1)
+
+    def velocity(self, time: npt.ArrayLike) -> npt.NDArray[np.float64]:
+        """Return the base velocity at `time` [s], shape (..., 3) [m/s]."""
+        return np.stack(self.derivative(time, VELOCITY), axis=-1)
+
+    def displacement(self, time: npt.ArrayLike) -> npt.NDArray[np.float64]:
+        """Return the base displacement at `time` [s], shape (..., 3) [m]."""
+        return np.stack(self.derivative(time, DISPLACEMENT), axis=-1)
+
+    def scaled(self, factor: float, *, vertical: float | None = None) -> "Scaled":
+        """Return this motion times `factor`; its vertical component times `vertical` where that is given."""
+        from stylobate.base_motions.combined import Scaled  # noqa: PLC0415  the two modules need each other
+
+        return Scaled(motion=self, factor=factor, vertical=factor if vertical is None else vertical)
+
+    def rotated(self, angle: float) -> "Rotated":
+        """Return this motion turned by `angle` [rad] about the vertical, anticlockwise seen from above."""
+        from stylobate.base_motions.combined import Rotated  # noqa: PLC0415
+
+        return Rotated(motion=self, angle=angle)
+
+    def delayed(self, delay: float) -> "Delayed":
+        """Return this motion begun `delay` [s] later; the base does not accelerate before."""
+        from stylobate.base_motions.combined import Delayed  # noqa: PLC0415
+
+        return Delayed(motion=self, delay=delay)
+
+    def __add__(self, other: object) -> "Sum":
+        if not isinstance(other, BaseMotion):
+            return NotImplemented
+        from stylobate.base_motions.combined import Sum  # noqa: PLC0415
+
+        return Sum(motions=(self, other))
+
+    def __mul__(self, factor: float) -> "Scaled":
+        return self.scaled(factor)
+
+    __rmul__ = __mul__

@@ -1,0 +1,300 @@
+"""Motions made of motions: sums, and scaled, rotated and delayed copies."""
+
+import cmath
+import math
+from abc import abstractmethod
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.base_motions.base import ACCELERATION, VELOCITY, BaseMotion, Components
+from stylobate.base_motions.harmonic import Harmonic
+from stylobate.errors import ParameterError, require_finite
+
+# Frequencies whose ratio is n/d to this relative accuracy, d up to the limit, share a period.
+_RATIO_TOLERANCE = 1e-12
+_LARGEST_DENOMINATOR = 64
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sum(BaseMotion):
+    """The sum of `motions`; of none, a base at rest."""
+
+    motions: tuple[BaseMotion, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "motions", tuple(self.motions))
+        for motion in self.motions:
+            require_motion("motions", motion)
+
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return the sum of the displacements (`order` 0), velocities (1) or accelerations (2)."""
+        t = np.asarray(time, dtype=float)
+        x, y, z = np.zeros_like(t), np.zeros_like(t), np.zeros_like(t)
+        for motion in self.motions:
+            dx, dy, dz = motion.derivative(t, order)
+            x, y, z = x + dx, y + dy, z + dz
+        return x, y, z
+
+    def largest_horizontal(self, since: float = 0.0) -> float:
+        """Return the sum of the parts' bounds [m/s²]: never below sup |a_h|, and above it where peaks do not meet."""
+        return math.fsum(motion.largest_horizontal(since) for motion in self.motions)
+
+    def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
+        """Return the sums of the parts' bounds [m/s²]."""
+        ranges = [motion.vertical_range(since) for motion in self.motions]
+        return math.fsum(low for low, _ in ranges), math.fsum(high for _, high in ranges)
+
+    def directions(self) -> tuple[tuple[float, float], ...]:
+        """Return the directions of all the parts [m/s²]."""
+        return tuple(vector for motion in self.motions for vector in motion.directions())
+
+    @property
+    def duration(self) -> float:
+        """The longest duration of a part [s]; 0 for none."""
+        return max((motion.duration for motion in self.motions), default=0.0)
+
+    @property
+    def period(self) -> float | None:
+        """The least common period of the parts [s], where their frequencies are in a simple ratio."""
+        periods = [motion.period for motion in self.motions if motion.duration > 0.0]
+        if not periods or periods[0] is None:
+            return None
+        common = periods[0]
+        for period in periods[1:]:
+            if period is None:
+                return None
+            ratio = Fraction(common / period).limit_denominator(_LARGEST_DENOMINATOR)
+            if ratio == 0 or abs(common / period / float(ratio) - 1.0) > _RATIO_TOLERANCE:
+                return None
+            common *= ratio.denominator
+        return common
+
+    @property
+    def highest_frequency(self) -> float:
+        """The highest angular frequency of a part [rad/s]."""
+        return max((motion.highest_frequency for motion in self.motions), default=0.0)
+
+    @property
+    def mean_frequency(self) -> float:
+        """The highest mean frequency of a part [rad/s]."""
+        return max((motion.mean_frequency for motion in self.motions), default=0.0)
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The breaks of all the parts [s]."""
+        return tuple(sorted({time for motion in self.motions for time in motion.breaks}))
+
+    @property
+    def degree(self) -> int | None:
+        """The highest degree of a part; 0 for none."""
+        degrees = [motion.degree for motion in self.motions]
+        return None if None in degrees else max((degree or 0 for degree in degrees), default=0)
+
+
+class Following(BaseMotion):
+    """What has all the properties of another motion but those that a subclass changes."""
+
+    __slots__ = ()
+
+    @property
+    @abstractmethod
+    def followed(self) -> BaseMotion:
+        """The other motion."""
+
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return the displacement (`order` 0), velocity (1) or acceleration (2) of the motion."""
+        return self.followed.derivative(time, order)
+
+    def largest_horizontal(self, since: float = 0.0) -> float:
+        """Return the bound of the motion [m/s²]."""
+        return self.followed.largest_horizontal(since)
+
+    def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
+        """Return the bounds of the motion [m/s²]."""
+        return self.followed.vertical_range(since)
+
+    def directions(self) -> tuple[tuple[float, float], ...]:
+        """Return the directions of the motion [m/s²]."""
+        return self.followed.directions()
+
+    @property
+    def duration(self) -> float:
+        """The duration of the motion [s]."""
+        return self.followed.duration
+
+    @property
+    def period(self) -> float | None:
+        """The period of the motion [s]."""
+        return self.followed.period
+
+    @property
+    def highest_frequency(self) -> float:
+        """The highest angular frequency of the motion [rad/s]."""
+        return self.followed.highest_frequency
+
+    @property
+    def mean_frequency(self) -> float:
+        """The mean angular frequency of the motion [rad/s]."""
+        return self.followed.mean_frequency
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The breaks of the motion [s]."""
+        return self.followed.breaks
+
+    @property
+    def degree(self) -> int | None:
+        """The degree of the motion."""
+        return self.followed.degree
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Transformed(Following):
+    """A copy of `motion` that has all its properties but those a subclass changes."""
+
+    motion: BaseMotion
+
+    def __post_init__(self) -> None:
+        require_motion("motion", self.motion)
+
+    @property
+    def followed(self) -> BaseMotion:
+        """The motion of which it is a copy."""
+        return self.motion
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scaled(Transformed):
+    """`motion` with its horizontal part times `factor` and its vertical part times `vertical`."""
+
+    factor: float
+    vertical: float
+
+    def __post_init__(self) -> None:
+        Transformed.__post_init__(self)
+        require_finite("factor", self.factor)
+        require_finite("vertical", self.vertical)
+
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return the scaled displacement (`order` 0), velocity (1) or acceleration (2)."""
+        x, y, z = self.motion.derivative(time, order)
+        return self.factor * x, self.factor * y, self.vertical * z
+
+    def largest_horizontal(self, since: float = 0.0) -> float:
+        """Return |factor| times the bound of the motion [m/s²]."""
+        return abs(self.factor) * self.motion.largest_horizontal(since)
+
+    def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
+        """Return the scaled bounds, in order [m/s²]."""
+        low, high = (self.vertical * bound for bound in self.motion.vertical_range(since))
+        return min(low, high), max(low, high)
+
+    def directions(self) -> tuple[tuple[float, float], ...]:
+        """Return the scaled directions of the motion [m/s²]."""
+        return tuple((self.factor * x, self.factor * y) for x, y in self.motion.directions())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rotated(Transformed):
+    """`motion` turned by `angle` [rad] about the vertical."""
+
+    angle: float
+
+    def __post_init__(self) -> None:
+        Transformed.__post_init__(self)
+        require_finite("angle", self.angle, "rad")
+
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return the turned displacement (`order` 0), velocity (1) or acceleration (2)."""
+        x, y, z = self.motion.derivative(time, order)
+        cos, sin = math.cos(self.angle), math.sin(self.angle)
+        return cos * x - sin * y, sin * x + cos * y, z
+
+    def directions(self) -> tuple[tuple[float, float], ...]:
+        """Return the turned directions of the motion [m/s²]."""
+        cos, sin = math.cos(self.angle), math.sin(self.angle)
+        return tuple((cos * x - sin * y, sin * x + cos * y) for x, y in self.motion.directions())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Delayed(Transformed):
+    """`motion` begun `delay` [s] later, without acceleration before; a negative delay skips its first part."""
+
+    delay: float
+
+    def __post_init__(self) -> None:
+        Transformed.__post_init__(self)
+        require_finite("delay", self.delay, "s")
+
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return the delayed displacement (`order` 0), velocity (1) or acceleration (2)."""
+        t = np.asarray(time, dtype=float) - self.delay
+        if self.delay <= 0.0:
+            return self.motion.derivative(t, order)
+        running = np.maximum(t, 0.0)
+        values = self.motion.derivative(running, order)
+        if order == ACCELERATION:
+            x, y, z = (np.where(t < 0.0, 0.0, value) for value in values)
+        elif order == VELOCITY:
+            x, y, z = values
+        else:
+            initial = self.motion.derivative(0.0, VELOCITY)
+            x, y, z = (value + rate * (t - running) for value, rate in zip(values, initial, strict=True))
+        return x, y, z
+
+    def largest_horizontal(self, since: float = 0.0) -> float:
+        """Return the bound of the motion from the delayed time on [m/s²]."""
+        return self.motion.largest_horizontal(max(0.0, since - self.delay))
+
+    def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
+        """Return the bounds of the motion from the delayed time on [m/s²], 0 included while it waits."""
+        low, high = self.motion.vertical_range(max(0.0, since - self.delay))
+        return (min(low, 0.0), max(high, 0.0)) if since < self.delay else (low, high)
+
+    @property
+    def duration(self) -> float:
+        """The duration of the motion, the delay added [s]; 0 for a base that never moves."""
+        return max(0.0, self.motion.duration + self.delay) if self.motion.duration > 0.0 else 0.0
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The onset and the delayed breaks of the motion [s]."""
+        onset = (self.delay,) if self.delay > 0.0 else ()
+        return onset + tuple(time + self.delay for time in self.motion.breaks if time + self.delay > 0.0)
+
+
+BASE_AT_REST = Sum()
+"""A base that does not move."""
+
+
+def require_motion(name: str, motion: object) -> None:
+    """Raise ParameterError if `motion` is none."""
+    if not isinstance(motion, BaseMotion):
+        message = f"{name} must be a base motion such as Harmonic.circular(...), got {motion!r}"
+        raise ParameterError(message)
+
+
+def as_harmonic(motion: BaseMotion) -> Harmonic | None:
+    """Return `motion` as one Harmonic if it is one that was scaled and turned, else None."""
+    if type(motion) is Harmonic:
+        return motion
+    if type(motion) not in (Scaled, Rotated):
+        return None
+    inner = as_harmonic(motion.motion)  # type: ignore[attr-defined]
+    if inner is None:
+        return None
+    x, y, z = (cmath.rect(a, phase) for a, phase in zip(inner.amplitude, inner.phase, strict=True))
+    if isinstance(motion, Scaled):
+        if motion.factor > 0.0 and motion.vertical > 0.0:  # without rounding of the phases
+            x_size, y_size, z_size = inner.amplitude
+            scaled = (motion.factor * x_size, motion.factor * y_size, motion.vertical * z_size)
+            return replace(inner, amplitude=scaled)
+        x, y, z = motion.factor * x, motion.factor * y, motion.vertical * z
+    elif isinstance(motion, Rotated):
+        cos, sin = math.cos(motion.angle), math.sin(motion.angle)
+        x, y = cos * x - sin * y, sin * x + cos * y
+    phases = (cmath.phase(x), cmath.phase(y), cmath.phase(z))
+    return replace(inner, amplitude=(abs(x), abs(y), abs(z)), phase=phases)

@@ -1,0 +1,362 @@
+"""Harmonic base motion: an ellipse in general, a circle or a straight line as special cases."""
+
+import cmath
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.base_motions.base import ACCELERATION, VELOCITY, BaseMotion, Components
+from stylobate.base_motions.numbers import (
+    Acceleration,
+    Amplitudes,
+    AngularFrequency,
+    Direction,
+    Frequency,
+    Phase,
+    Phases,
+    Ramp,
+    Sense,
+    StartPhase,
+)
+from stylobate.errors import ParameterError, require_finite, require_not_negative, require_positive, require_vector
+from stylobate.quantities import Quantity
+
+# Below this |z| the series of the integrals of exp is more accurate than their closed form.
+_SERIES_RADIUS = 0.5
+_SERIES_TERMS = 18
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Harmonic(BaseMotion):
+    """Base acceleration a_i cos(Ωt + start_phase + φ_i) along x, y and z, with an optional smooth start.
+
+    The named constructors say it in the terms at hand: `circular`, `straight`, `elliptic`, `vertical` by acceleration;
+    `displacement_amplitude`, `stroke`, `orbit` by the path of the base.
+
+    Parameters
+    ----------
+    amplitude
+        Acceleration amplitudes along x, y and z [m/s²].
+    phase
+        Phases φ of the three components [rad].
+    angular_frequency
+        Ω [rad/s].
+    start_phase
+        Phase of the whole motion at t = 0 [rad]. Without it a harmonic motion starts at its peak.
+    ramp
+        Time over which the amplitude rises from 0 to full as ½(1 − cos(πt/ramp)) [s]; 0 starts at once.
+
+    Notes
+    -----
+    Velocity and displacement are those without drift in the steady motion.
+
+    Raises
+    ------
+    ParameterError
+        If a number is not finite or the frequency is not positive.
+
+    Examples
+    --------
+    >>> motion = Harmonic.circular(acceleration=0.65, angular_frequency=1.8)
+    >>> motion.acceleration(0.0).round(12)
+    array([0.65, 0.  , 0.  ])
+    >>> Harmonic.orbit(diameter=0.02, rpm=300.0).largest_horizontal()  # 0.01 m (10π rad/s)²
+    9.869604401089358
+    """
+
+    amplitude: Annotated[tuple[float, float, float], Quantity(text="amplitudes along the axes", components=3)]
+    phase: Annotated[
+        tuple[float, float, float], Quantity(unit="rad", text="phases of the components", components=3)
+    ] = (0.0, 0.0, 0.0)
+    angular_frequency: AngularFrequency
+    start_phase: StartPhase = 0.0
+    ramp: Ramp = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "amplitude", require_vector("amplitude", self.amplitude, 3, "m/s²"))
+        object.__setattr__(self, "phase", require_vector("phase", self.phase, 3, "rad"))
+        frequency = require_positive("angular_frequency", self.angular_frequency, "rad/s")
+        object.__setattr__(self, "angular_frequency", frequency)
+        object.__setattr__(self, "start_phase", require_finite("start_phase", self.start_phase, "rad"))
+        object.__setattr__(self, "ramp", require_not_negative("ramp", self.ramp, "s"))
+
+    @classmethod
+    def elliptic(
+        cls,
+        *,
+        amplitude: Annotated[Sequence[float], Quantity(text="amplitudes along the axes", components=2)],
+        phase: Phase,
+        angular_frequency: AngularFrequency,
+        start_phase: StartPhase = 0.0,
+        ramp: Ramp = 0.0,
+    ) -> Self:
+        """Return a motion on an ellipse: amplitudes (a1, a2) [m/s²], `phase` φ0 of the second axis to the first."""
+        a1, a2 = require_vector("amplitude", amplitude, 2, "m/s²")
+        return cls(
+            amplitude=(a1, a2, 0.0),
+            phase=(0.0, phase, 0.0),
+            angular_frequency=angular_frequency,
+            start_phase=start_phase,
+            ramp=ramp,
+        )
+
+    @classmethod
+    def circular(
+        cls,
+        *,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        sense: Sense = 1,
+        start_phase: StartPhase = 0.0,
+        ramp: Ramp = 0.0,
+    ) -> Self:
+        """Return a motion on a circle with constant `acceleration` [m/s²]; `sense` +1 anticlockwise, −1 clockwise."""
+        acceleration = require_finite("acceleration", acceleration, "m/s²")
+        return cls.elliptic(
+            amplitude=(acceleration, acceleration),
+            phase=-_sense(sense) * math.pi / 2.0,
+            angular_frequency=angular_frequency,
+            start_phase=start_phase,
+            ramp=ramp,
+        )
+
+    @classmethod
+    def straight(
+        cls,
+        *,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        direction: Direction = 0.0,
+        start_phase: StartPhase = 0.0,
+        ramp: Ramp = 0.0,
+    ) -> Self:
+        """Return a motion along a horizontal line at `direction` [rad] from x, amplitude `acceleration` [m/s²]."""
+        acceleration = require_finite("acceleration", acceleration, "m/s²")
+        direction = require_finite("direction", direction, "rad")
+        return cls.elliptic(
+            amplitude=(acceleration * math.cos(direction), acceleration * math.sin(direction)),
+            phase=0.0,
+            angular_frequency=angular_frequency,
+            start_phase=start_phase,
+            ramp=ramp,
+        )
+
+    @classmethod
+    def vertical(
+        cls,
+        *,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        start_phase: StartPhase = 0.0,
+        ramp: Ramp = 0.0,
+    ) -> Self:
+        """Return a vertical motion of amplitude `acceleration` [m/s²]; add it to a horizontal one with `+`."""
+        acceleration = require_finite("acceleration", acceleration, "m/s²")
+        return cls(
+            amplitude=(0.0, 0.0, acceleration),
+            angular_frequency=angular_frequency,
+            start_phase=start_phase,
+            ramp=ramp,
+        )
+
+    @classmethod
+    def oblique(
+        cls,
+        *,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        angle: Annotated[float, Quantity(unit="rad", text="rise above the horizontal", slider=(-1.5, 1.5))],
+        direction: Direction = 0.0,
+        start_phase: StartPhase = 0.0,
+        ramp: Ramp = 0.0,
+    ) -> Self:
+        """Return a motion along a line that rises at `angle` [rad] towards `direction` [rad], as of a conveyor.
+
+        As in all studies `acceleration` is the horizontal amplitude [m/s²]; the vertical one is tan(angle) times it.
+        """
+        acceleration = require_finite("acceleration", acceleration, "m/s²")
+        direction = require_finite("direction", direction, "rad")
+        if not abs(angle) < math.pi / 2.0:
+            message = f"angle must lie between -pi/2 and pi/2 rad, got {angle!r}; see Harmonic.vertical"
+            raise ParameterError(message)
+        return cls(
+            amplitude=(
+                acceleration * math.cos(direction),
+                acceleration * math.sin(direction),
+                acceleration * math.tan(angle),
+            ),
+            angular_frequency=angular_frequency,
+            start_phase=start_phase,
+            ramp=ramp,
+        )
+
+    @classmethod
+    def displacement_amplitude(
+        cls,
+        *,
+        amplitude: Amplitudes,
+        phase: Phases = (0.0, 0.0, 0.0),
+        angular_frequency: AngularFrequency,
+        start_phase: StartPhase = 0.0,
+        ramp: Ramp = 0.0,
+    ) -> Self:
+        """Return the motion whose displacement is d_i cos(Ωt + start_phase + φ_i), d = `amplitude` (x, y, z) [m]."""
+        amplitude = require_vector("amplitude", amplitude, 3, "m")
+        phase = require_vector("phase", phase, 3, "rad")
+        square = require_positive("angular_frequency", angular_frequency, "rad/s") ** 2
+        x, y, z = (-square * number for number in amplitude)
+        return cls(
+            amplitude=(x, y, z),
+            phase=(phase[0], phase[1], phase[2]),
+            angular_frequency=angular_frequency,
+            start_phase=start_phase,
+            ramp=ramp,
+        )
+
+    @classmethod
+    def stroke(
+        cls,
+        *,
+        stroke: Annotated[float, Quantity(unit="m", text="stroke from peak to peak", gt=0.0)],
+        frequency: Frequency,
+        direction: Direction = 0.0,
+        start_phase: StartPhase = 0.0,
+        ramp: Ramp = 0.0,
+    ) -> Self:
+        """Return a straight motion by its `stroke` from peak to peak [m], `frequency` [Hz] and `direction` [rad]."""
+        half = require_positive("stroke", stroke, "m") / 2.0
+        direction = require_finite("direction", direction, "rad")
+        return cls.displacement_amplitude(
+            amplitude=(half * math.cos(direction), half * math.sin(direction), 0.0),
+            angular_frequency=2.0 * math.pi * require_positive("frequency", frequency, "Hz"),
+            start_phase=start_phase,
+            ramp=ramp,
+        )
+
+    @classmethod
+    def orbit(
+        cls,
+        *,
+        diameter: Annotated[float, Quantity(unit="m", text="diameter of the circle", gt=0.0)],
+        rpm: Annotated[float, Quantity(unit="1/min", text="turns a minute", gt=0.0)],
+        sense: Sense = 1,
+        start_phase: StartPhase = 0.0,
+        ramp: Ramp = 0.0,
+    ) -> Self:
+        """Return a circular motion by the `diameter` of its path [m] and its turns a minute (an orbital shaker)."""
+        radius = require_positive("diameter", diameter, "m") / 2.0
+        return cls.displacement_amplitude(
+            amplitude=(radius, radius, 0.0),
+            phase=(0.0, -_sense(sense) * math.pi / 2.0, 0.0),
+            angular_frequency=2.0 * math.pi * require_positive("rpm", rpm, "1/min") / 60.0,
+            start_phase=start_phase,
+            ramp=ramp,
+        )
+
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return the displacement (`order` 0), velocity (1) or acceleration (2) along x, y and z."""
+        t = np.asarray(time, dtype=float)
+        frequency = self.angular_frequency
+        gain = (-1.0, 1.0, 1.0)[order] / frequency ** (ACCELERATION - order)
+        angle = frequency * t + (self.start_phase - (math.pi / 2.0 if order == VELOCITY else 0.0))
+        (ax, ay, az), (fx, fy, fz) = self.amplitude, self.phase
+        x = gain * ax * np.cos(angle + fx)
+        y = gain * ay * np.cos(angle + fy)
+        z = gain * az * np.cos(angle + fz) if az != 0.0 else 0.0 * angle
+        if self.ramp > 0.0 and np.any(t < self.ramp):
+            early = t < self.ramp
+            x = np.where(early, self._ramped(t, order, ax, fx), x)
+            y = np.where(early, self._ramped(t, order, ay, fy), y)
+            z = np.where(early, self._ramped(t, order, az, fz), z)
+        return x, y, z
+
+    def largest_horizontal(self, since: float = 0.0) -> float:
+        """Return sup |a_h| = |p| + |q|, p and q being the two circular motions that make the ellipse [m/s²]."""
+        del since
+        p, q = self._circular_parts()
+        return abs(p) + abs(q)
+
+    def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
+        """Return the least and the largest vertical acceleration [m/s²]."""
+        del since
+        largest = abs(self.amplitude[2])
+        return -largest, largest
+
+    def directions(self) -> tuple[tuple[float, float], ...]:
+        """Return the two horizontal vectors that multiply cos Ωt and sin Ωt [m/s²]."""
+        (ax, ay, _), (fx, fy, _) = self.amplitude, self.phase
+        return (
+            (ax * _exact(math.cos(fx)), ay * _exact(math.cos(fy))),
+            (ax * _exact(math.sin(fx)), ay * _exact(math.sin(fy))),
+        )
+
+    @property
+    def period(self) -> float:
+        """2π/Ω [s]."""
+        return 2.0 * math.pi / self.angular_frequency
+
+    @property
+    def highest_frequency(self) -> float:
+        """Ω [rad/s]; the ramp is a stretch of its own, see `breaks`."""
+        return self.angular_frequency
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The end of the ramp [s]."""
+        return (self.ramp,) if self.ramp > 0.0 else ()
+
+    def _circular_parts(self) -> tuple[complex, complex]:
+        (ax, ay, _), (fx, fy, _) = self.amplitude, self.phase
+        x, y = cmath.rect(ax, fx), cmath.rect(ay, fy)
+        return 0.5 * (x + 1j * y), 0.5 * (x.conjugate() + 1j * y.conjugate())
+
+    def _ramped(self, t: npt.NDArray[np.float64], order: int, a: float, phase: float) -> npt.NDArray[np.float64]:
+        # ½(1 − cos νt) cos(Ωt + φ) is a sum of three harmonics, each integrated back from the end of the ramp,
+        # where the steady motion takes over.
+        end, s = self.ramp, np.minimum(t, self.ramp) - self.ramp
+        slow = math.pi / end
+        angle = self.angular_frequency * end + self.start_phase + phase
+        total = np.zeros_like(s)
+        for weight, rate, shift in ((0.5, 0.0, 0.0), (-0.25, slow, math.pi), (-0.25, -slow, -math.pi)):
+            w = self.angular_frequency + rate
+            total += (
+                weight
+                * a
+                * np.real(cmath.exp(1j * (angle + shift)) * _integral_of_exp(1j * w * s, ACCELERATION - order))
+            )
+        if order == ACCELERATION:
+            return total
+        frequency = self.angular_frequency
+        velocity = a * math.sin(angle) / frequency
+        if order == VELOCITY:
+            return velocity + s * total
+        return -a * math.cos(angle) / frequency**2 + velocity * s + s**2 * total
+
+
+def _integral_of_exp(z: npt.NDArray[np.complexfloating], times: int) -> npt.NDArray[np.complexfloating]:
+    """Return eᶻ, (eᶻ − 1)/z or (eᶻ − 1 − z)/z²: exp integrated 0, 1 or 2 times from 0, over zⁿ."""
+    if times == 0:
+        return np.asarray(np.exp(z))
+    series = np.zeros_like(z)
+    for n in range(_SERIES_TERMS, -1, -1):
+        series = series * z + 1.0 / math.factorial(n + times)
+    small = np.abs(z) < _SERIES_RADIUS
+    safe = np.where(small, 1.0, z)
+    closed = np.expm1(safe) / safe if times == 1 else (np.expm1(safe) - safe) / safe**2
+    return np.asarray(np.where(small, series, closed))
+
+
+def _exact(ratio: float) -> float:
+    """Return a sine or cosine, 0 where only the rounding of the angle keeps it from that."""
+    return 0.0 if abs(ratio) < 8.0 * np.finfo(float).eps else ratio
+
+
+def _sense(sense: int) -> int:
+    if sense not in (-1, 1):
+        message = f"sense must be +1 (anticlockwise) or -1 (clockwise), got {sense!r}"
+        raise ParameterError(message)
+    return sense

@@ -1,0 +1,83 @@
+"""One of several motions, told by its number: so that runs under different records are one ensemble."""
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+from stylobate.base_motions.base import BaseMotion
+from stylobate.base_motions.combined import Following, Transformed, require_motion
+from stylobate.errors import ParameterError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OneOf(Following):
+    """The motion of the number `chosen` among `motions`, counted from 0; ensembles vary it under the name `motion`.
+
+    Parameters
+    ----------
+    motions
+        At least one.
+    chosen
+        Which of them it is.
+
+    Raises
+    ------
+    ParameterError
+        If there are none, or none of this number.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> weak, strong = (sb.Pulse.one_sine(acceleration=a, angular_frequency=3.0) for a in (1.0, 5.0))
+    >>> model = sb.Slender(sb.Column.solid(radius=0.2, height=2.0, density=2700.0))
+    >>> shaken = sb.OneOf(motions=(weak, strong))
+    >>> sb.with_parameters(model, shaken, motion=1)[1].largest_horizontal()
+    5.0
+    """
+
+    motions: tuple[BaseMotion, ...]
+    chosen: int = 0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "motions", tuple(self.motions))
+        for motion in self.motions:
+            require_motion("motions", motion)
+        count, number = len(self.motions), self.chosen
+        if not (0 <= number < count and float(number).is_integer()):
+            message = f"motion must be a whole number from 0 to {count - 1}, of {count} motions; got {number!r}"
+            raise ParameterError(message)
+        object.__setattr__(self, "chosen", int(number))
+
+    def choose(self, number: float) -> Self:
+        """Return this with the motion of another `number` chosen."""
+        return replace(self, chosen=number)  # type: ignore[arg-type]  # checked where it is made
+
+    @property
+    def followed(self) -> BaseMotion:
+        """The motion that is chosen."""
+        return self.motions[self.chosen]
+
+
+def members_of(motion: BaseMotion) -> tuple[BaseMotion, ...]:
+    """Return the motions of which `motion` is one, each scaled, turned and delayed as it is; it alone if of none."""
+    if isinstance(motion, OneOf):
+        return motion.motions
+    if isinstance(motion, Transformed):
+        return tuple(replace(motion, motion=member) for member in members_of(motion.motion))
+    return (motion,)
+
+
+def number_of(motion: BaseMotion) -> int:
+    """Return which of `members_of` the `motion` is."""
+    if isinstance(motion, OneOf):
+        return motion.chosen
+    return number_of(motion.motion) if isinstance(motion, Transformed) else 0
+
+
+def with_choice(motion: BaseMotion, number: float) -> BaseMotion | None:
+    """Return `motion` with another `number` chosen, or None if it is not one of several."""
+    if isinstance(motion, OneOf):
+        return motion.choose(number)
+    if not isinstance(motion, Transformed):
+        return None
+    inner = with_choice(motion.motion, number)
+    return None if inner is None else replace(motion, motion=inner)

@@ -1,0 +1,10 @@
+"""Pulses: motions of the base along one line that begin and end."""
+
+from stylobate.base_motions.pulses.gabor import Gabor
+from stylobate.base_motions.pulses.mavroeidis_papageorgiou import MavroeidisPapageorgiou
+from stylobate.base_motions.pulses.pulse import Pulse
+from stylobate.base_motions.pulses.ricker import AntisymmetricRicker, Ricker
+from stylobate.base_motions.pulses.sinusoid import Sinusoid
+from stylobate.base_motions.pulses.waveform import Waveform
+
+__all__ = ["AntisymmetricRicker", "Gabor", "MavroeidisPapageorgiou", "Pulse", "Ricker", "Sinusoid", "Waveform"]

@@ -1,0 +1,105 @@
+"""The velocity pulse of Mavroeidis and Papageorgiou: a harmonic under one bell of a cosine."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from stylobate.base_motions.base import ACCELERATION, VELOCITY
+from stylobate.base_motions.pulses.waveform import (
+    MOST_OSCILLATIONS,
+    Floats,
+    Waveform,
+    found_turning_points,
+    require_few,
+    unseen,
+)
+from stylobate.errors import ParameterError, require_finite, require_positive
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MavroeidisPapageorgiou(Waveform):
+    """The velocity ½A [1 + cos(2πft/γ)] cos(2πft + ν) at times t within ±γ/(2f) of its middle.
+
+    Parameters
+    ----------
+    velocity
+        A, the height of the bell [m/s].
+    frequency
+        f, prevailing frequency [Hz].
+    phase
+        ν [rad]: 0 for a velocity with a peak in the middle, ±π/2 for one that passes zero there.
+    oscillations
+        γ, above 1 and at most 100: about the number of oscillations.
+
+    Raises
+    ------
+    ParameterError
+        If a number is not finite, the frequency not positive, or `oscillations` 1 or less or above 100.
+
+    Notes
+    -----
+    G. P. Mavroeidis and A. S. Papageorgiou, "A mathematical representation of near-fault ground motions", Bulletin of
+    the Seismological Society of America 93 (2003). Their velocity, acceleration and displacement, the constant of the
+    last such that it begins with 0. The acceleration has no jumps; its slope jumps at both ends.
+    """
+
+    velocity: float
+    frequency: float
+    phase: float
+    oscillations: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "velocity", require_finite("velocity", self.velocity, "m/s"))
+        object.__setattr__(self, "frequency", require_positive("frequency", self.frequency, "Hz"))
+        object.__setattr__(self, "phase", require_finite("phase", self.phase, "rad"))
+        oscillations = require_few("oscillations", self.oscillations, MOST_OSCILLATIONS)
+        if oscillations <= 1.0:
+            message = f"oscillations must be above 1, got {oscillations!r}: a bell is longer than an oscillation"
+            raise ParameterError(message)
+        object.__setattr__(self, "oscillations", oscillations)
+
+    @property
+    def duration(self) -> float:
+        """γ/f [s]."""
+        return self.oscillations / self.frequency
+
+    @property
+    def highest_frequency(self) -> float:
+        """2πf (1 + 1/γ) [rad/s], the highest of the three of which it is made."""
+        return self._harmonics()[2][1]
+
+    def derivative(self, time: Floats, order: int) -> Floats:
+        """Return the displacement (`order` 0), velocity (1) or acceleration (2)."""
+        values = self._differentiated(time, order - VELOCITY)
+        return values if order == ACCELERATION else values - self._differentiated(np.array(0.0), order - VELOCITY)
+
+    def turning_points(self) -> tuple[tuple[float, float], ...]:
+        """Return where the slope of the acceleration changes sign."""
+        return found_turning_points(
+            lambda t: self._differentiated(t, 1),
+            lambda t: self._differentiated(t, 2),
+            self.duration,
+            self.highest_frequency,
+        )
+
+    @property
+    def margin(self) -> float:
+        """What turning points in one cell could add [m/s²], below 1e-7 of 2πfA."""
+        third = math.fsum(abs(amplitude) * rate**4 for amplitude, rate in self._harmonics())
+        return unseen(third, self.duration, self.highest_frequency)
+
+    def _harmonics(self) -> tuple[tuple[float, float], ...]:
+        """Return amplitude [m/s] and angular frequency [rad/s] of the three harmonics of the velocity."""
+        carrier = 2.0 * math.pi * self.frequency
+        bell = carrier / self.oscillations
+        whole, half = 0.5 * self.velocity, 0.25 * self.velocity
+        return (half, carrier - bell), (whole, carrier), (half, carrier + bell)
+
+    def _differentiated(self, time: Floats, times: int) -> Floats:
+        """Return the velocity differentiated so many `times`; −1 is its integral."""
+        since_middle = time - 0.5 * self.duration
+        total = np.zeros_like(since_middle)
+        for amplitude, rate in self._harmonics():
+            total = total + amplitude * rate**times * np.cos(rate * since_middle + self.phase + 0.5 * math.pi * times)
+        return total

@@ -1,0 +1,297 @@
+"""The pulses of the literature as base motions."""
+
+import math
+from dataclasses import dataclass
+from typing import Self
+
+from stylobate.base_motions.numbers import (
+    Acceleration,
+    AngularFrequency,
+    Cycles,
+    Direction,
+    Frequency,
+    Oscillations,
+    Phase,
+    Start,
+    Velocity,
+    VerticalRatio,
+    WholeCycles,
+)
+from stylobate.base_motions.pulses.along_line import AlongLine
+from stylobate.base_motions.pulses.closing_phase import closing_phase
+from stylobate.base_motions.pulses.gabor import Gabor
+from stylobate.base_motions.pulses.mavroeidis_papageorgiou import MavroeidisPapageorgiou
+from stylobate.base_motions.pulses.ricker import AntisymmetricRicker, Ricker
+from stylobate.base_motions.pulses.sinusoid import Sinusoid
+from stylobate.errors import require_finite, require_positive, require_whole
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pulse(AlongLine):
+    """A motion along a line that begins and ends: a `waveform` from the time `start` on.
+
+    The named constructors make the pulses of the literature. All take `direction`, `start` and `vertical`.
+
+    Parameters
+    ----------
+    waveform
+        Acceleration along the line.
+    direction
+        Azimuth of the line [rad] from x.
+    start
+        When it begins [s]. A wavelet that is largest in its middle is so half its duration later.
+    vertical
+        Vertical acceleration over the horizontal one.
+
+    Notes
+    -----
+    The base is at rest until the pulse begins: velocity and displacement are the integrals of the acceleration. A pulse
+    that leaves a velocity, as half a sine does, is followed by a uniform motion, which the column does not feel.
+
+    Ricker and Gabor wavelets never end. They are cut 8 standard deviations of their bell from the middle, where it is
+    1.3e-14 of its height; the acceleration there is below 1e-11 of its largest value, and the velocity that is
+    left below 1e-12 of its own.
+
+    Raises
+    ------
+    ParameterError
+        If a number is not finite, or `start` negative.
+
+    Examples
+    --------
+    >>> pulse = Pulse.half_sine(acceleration=2.0, angular_frequency=math.pi, direction=math.pi / 2.0)
+    >>> pulse.acceleration(0.5).round(12), pulse.duration
+    (array([0., 2., 0.]), 1.0)
+    >>> print(pulse.velocity(7.0).round(4))  # 2 A/ω is left
+    [0.     1.2732 0.    ]
+    """
+
+    @classmethod
+    def sinusoidal(
+        cls,
+        *,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        phase: Phase = 0.0,
+        cycles: Cycles = 1.0,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
+    ) -> Self:
+        """Return the acceleration A sin(ωt + φ) over so many `cycles`; A [m/s²], ω [rad/s], φ = `phase` [rad]."""
+        waveform = Sinusoid(acceleration=acceleration, angular_frequency=angular_frequency, phase=phase, cycles=cycles)
+        return cls(waveform=waveform, direction=direction, start=start, vertical=vertical)
+
+    @classmethod
+    def half_sine(
+        cls,
+        *,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
+    ) -> Self:
+        """Return half a sine of acceleration, A sin ωt over π/ω (Housner 1963); it leaves the velocity 2A/ω."""
+        return cls.sinusoidal(
+            acceleration=acceleration,
+            angular_frequency=angular_frequency,
+            cycles=0.5,
+            direction=direction,
+            start=start,
+            vertical=vertical,
+        )
+
+    @classmethod
+    def half_cosine(
+        cls,
+        *,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
+    ) -> Self:
+        """Return half a cosine of acceleration, A cos ωt over π/ω: half a sine of velocity; the base goes on 2A/ω²."""
+        return cls.sinusoidal(
+            acceleration=acceleration,
+            angular_frequency=angular_frequency,
+            phase=0.5 * math.pi,
+            cycles=0.5,
+            direction=direction,
+            start=start,
+            vertical=vertical,
+        )
+
+    @classmethod
+    def one_sine(
+        cls,
+        *,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
+    ) -> Self:
+        """Return one sine of acceleration, A sin ωt over 2π/ω (Zhang and Makris 2001); the base goes on 2πA/ω²."""
+        return cls.sinusoidal(
+            acceleration=acceleration,
+            angular_frequency=angular_frequency,
+            direction=direction,
+            start=start,
+            vertical=vertical,
+        )
+
+    @classmethod
+    def one_cosine(
+        cls,
+        *,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
+    ) -> Self:
+        """Return one cosine of acceleration, A cos ωt over 2π/ω (Zhang and Makris 2001): forward and back."""
+        return cls.sinusoidal(
+            acceleration=acceleration,
+            angular_frequency=angular_frequency,
+            phase=0.5 * math.pi,
+            direction=direction,
+            start=start,
+            vertical=vertical,
+        )
+
+    @classmethod
+    def type_a(
+        cls,
+        *,
+        velocity: Velocity,
+        angular_frequency: AngularFrequency,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
+    ) -> Self:
+        """Return the forward pulse of velocity ½V(1 − cos ωt), one sine of acceleration ½ωV (Makris 1997)."""
+        frequency = require_positive("angular_frequency", angular_frequency, "rad/s")
+        return cls.one_sine(
+            acceleration=0.5 * frequency * require_finite("velocity", velocity, "m/s"),
+            angular_frequency=frequency,
+            direction=direction,
+            start=start,
+            vertical=vertical,
+        )
+
+    @classmethod
+    def type_b(
+        cls,
+        *,
+        velocity: Velocity,
+        angular_frequency: AngularFrequency,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
+    ) -> Self:
+        """Return the forward-and-back pulse of velocity V sin ωt, one cosine of acceleration ωV (Makris 1997)."""
+        frequency = require_positive("angular_frequency", angular_frequency, "rad/s")
+        return cls.one_cosine(
+            acceleration=frequency * require_finite("velocity", velocity, "m/s"),
+            angular_frequency=frequency,
+            direction=direction,
+            start=start,
+            vertical=vertical,
+        )
+
+    @classmethod
+    def type_c(
+        cls,
+        *,
+        velocity: Velocity,
+        angular_frequency: AngularFrequency,
+        cycles: WholeCycles = 1,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
+    ) -> Self:
+        """Return the pulse Cₙ of velocity V[sin(ωt + φ) − sin φ], n = `cycles` ≥ 1, over (n + ½ − φ/π) periods.
+
+        φ is such that the base ends where it began, without velocity (Makris 1997; Zhang and Makris 2001): 0.0697 π
+        for n = 1, 0.0410 π for n = 2.
+        """
+        frequency = require_positive("angular_frequency", angular_frequency, "rad/s")
+        number = require_whole("cycles", cycles, least=1)
+        phase = closing_phase(number)
+        return cls.sinusoidal(
+            acceleration=frequency * require_finite("velocity", velocity, "m/s"),
+            angular_frequency=frequency,
+            phase=phase + 0.5 * math.pi,
+            cycles=number + 0.5 - phase / math.pi,
+            direction=direction,
+            start=start,
+            vertical=vertical,
+        )
+
+    @classmethod
+    def ricker(
+        cls,
+        *,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
+    ) -> Self:
+        """Return a symmetric Ricker wavelet of this peak [m/s²], see `stylobate.base_motions.pulses.Ricker`."""
+        waveform = Ricker(acceleration=acceleration, angular_frequency=angular_frequency)
+        return cls(waveform=waveform, direction=direction, start=start, vertical=vertical)
+
+    @classmethod
+    def antisymmetric_ricker(
+        cls,
+        *,
+        acceleration: Acceleration,
+        angular_frequency: AngularFrequency,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
+    ) -> Self:
+        """Return an antisymmetric one, see `stylobate.base_motions.pulses.AntisymmetricRicker`."""
+        waveform = AntisymmetricRicker(acceleration=acceleration, angular_frequency=angular_frequency)
+        return cls(waveform=waveform, direction=direction, start=start, vertical=vertical)
+
+    @classmethod
+    def gabor(
+        cls,
+        *,
+        velocity: Velocity,
+        frequency: Frequency,
+        phase: Phase = 0.0,
+        oscillations: Oscillations,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
+    ) -> Self:
+        """Return a Gabor wavelet of `velocity` [m/s] and `frequency` [Hz], see `base_motions.pulses.Gabor`."""
+        waveform = Gabor(velocity=velocity, frequency=frequency, phase=phase, oscillations=oscillations)
+        return cls(waveform=waveform, direction=direction, start=start, vertical=vertical)
+
+    @classmethod
+    def mavroeidis_papageorgiou(
+        cls,
+        *,
+        velocity: Velocity,
+        frequency: Frequency,
+        phase: Phase = 0.0,
+        oscillations: Oscillations,
+        direction: Direction = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
+    ) -> Self:
+        """Return a near-fault pulse by its `velocity` A [m/s], `frequency` f [Hz], `phase` ν and `oscillations` γ > 1.
+
+        See `stylobate.base_motions.pulses.MavroeidisPapageorgiou`.
+        """
+        waveform = MavroeidisPapageorgiou(
+            velocity=velocity, frequency=frequency, phase=phase, oscillations=oscillations
+        )
+        return cls(waveform=waveform, direction=direction, start=start, vertical=vertical)

@@ -1,0 +1,75 @@
+"""A part of a sinusoid, half a period or some."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from stylobate.base_motions.base import ACCELERATION, VELOCITY
+from stylobate.base_motions.pulses.waveform import Floats, Waveform, require_few
+from stylobate.errors import require_finite, require_positive
+
+MOST_CYCLES = 1000.0
+"""A longer pulse is steady shaking."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sinusoid(Waveform):
+    """The acceleration A sin(ωt + φ) from t = 0 to n periods later.
+
+    Parameters
+    ----------
+    acceleration
+        Amplitude A [m/s²].
+    angular_frequency
+        ω [rad/s].
+    phase
+        φ [rad]; π/2 for a cosine.
+    cycles
+        n, whole or not; at most 1000.
+
+    Raises
+    ------
+    ParameterError
+        If a number is not finite, the frequency or `cycles` not positive, or `cycles` above 1000.
+    """
+
+    acceleration: float
+    angular_frequency: float
+    phase: float
+    cycles: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "acceleration", require_finite("acceleration", self.acceleration, "m/s²"))
+        frequency = require_positive("angular_frequency", self.angular_frequency, "rad/s")
+        object.__setattr__(self, "angular_frequency", frequency)
+        object.__setattr__(self, "phase", require_finite("phase", self.phase, "rad"))
+        object.__setattr__(self, "cycles", require_few("cycles", self.cycles, MOST_CYCLES))
+
+    @property
+    def duration(self) -> float:
+        """2πn/ω [s]."""
+        return 2.0 * math.pi * self.cycles / self.angular_frequency
+
+    @property
+    def highest_frequency(self) -> float:
+        """ω [rad/s]."""
+        return self.angular_frequency
+
+    def derivative(self, time: Floats, order: int) -> Floats:
+        """Return the displacement (`order` 0), velocity (1) or acceleration (2)."""
+        a, w, phase = self.acceleration, self.angular_frequency, self.phase
+        if order == ACCELERATION:
+            return np.asarray(a * np.sin(w * time + phase))
+        if order == VELOCITY:
+            return np.asarray(a / w * (math.cos(phase) - np.cos(w * time + phase)))
+        return np.asarray(a / w**2 * (w * time * math.cos(phase) + math.sin(phase) - np.sin(w * time + phase)))
+
+    def turning_points(self) -> tuple[tuple[float, float], ...]:
+        """Return where ωt + φ is an odd number of quarter turns: the acceleration is ±A."""
+        first = math.ceil(self.phase / math.pi - 0.5)
+        last = math.floor((self.phase + 2.0 * math.pi * self.cycles) / math.pi - 0.5)
+        return tuple(
+            (((k + 0.5) * math.pi - self.phase) / self.angular_frequency, self.acceleration * (-1.0) ** k)
+            for k in range(first, last + 1)
+        )

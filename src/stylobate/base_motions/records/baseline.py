@@ -1,0 +1,34 @@
+"""Correction of the baseline: drift of the velocity that no ground has."""
+
+import numpy as np
+
+from stylobate.base_motions.records.knots import integrals
+from stylobate.base_motions.records.record import Record
+from stylobate.errors import require_whole
+
+
+def baseline_corrected(record: Record, degree: int = 1) -> Record:
+    """Return `record` less the derivative of a polynomial fitted to its velocity.
+
+    Parameters
+    ----------
+    record
+        The record.
+    degree
+        Degree of the polynomial, 1 or more. It is zero at the first sample, where the velocity is; degree 1 takes a
+        constant off the acceleration.
+
+    Notes
+    -----
+    Least squares over the velocities at the samples, each component for itself. The remaining velocity is small but not
+    zero; a high-pass filter (`Record.filtered`) removes drift that is no polynomial.
+    """
+    degree = require_whole("degree", degree, least=1)
+    time = np.linspace(0.0, 1.0, len(record.samples))[:, np.newaxis]
+    powers = np.arange(1, degree + 1)
+    velocity, _ = integrals(record.samples, record.step)
+    fit, *_ = np.linalg.lstsq(time**powers, velocity, rcond=None)
+    length = record.step * (len(record.samples) - 1)
+    slope = (powers * time ** (powers - 1)) @ fit / length
+    told = f"baseline: derivative of a polynomial of degree {degree} fitted to the velocity taken off"
+    return record.changed(told, samples=record.samples - slope)

@@ -1,0 +1,242 @@
+"""Files of one event put together: two horizontal components and a vertical one."""
+
+import re
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import Enum
+from pathlib import Path
+
+import numpy as np
+
+from stylobate.base_motions.records.axes import Directed, along_axes
+from stylobate.base_motions.records.component import Component, Direction
+from stylobate.base_motions.records.events import Event, EventFile, Read, find_events
+from stylobate.base_motions.records.reading import RecordFormat, as_record, read_component
+from stylobate.base_motions.records.record import Record
+from stylobate.base_motions.records.sources import RecordSource
+from stylobate.base_motions.records.trimming import warn_of_lost_shaking
+from stylobate.errors import FileError, StylobateError, UnlikelyInputWarning, require_positive
+
+_SAME_STEP = 1e-9
+
+
+class Lengths(Enum):
+    """What becomes of components that differ in length."""
+
+    TRIM = "all end with the shortest"
+    PAD = "the shorter ones go on with zeros"
+
+
+class Steps(Enum):
+    """What becomes of components that differ in their time step."""
+
+    REFUSE = "an error"
+    RESAMPLE = "all are resampled to the finest step"
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    path: Path
+    direction: Direction | None
+    record: Record  # along x, in the sense of its direction; or of all axes, if its file has several
+
+
+def read_records(
+    source: RecordSource,
+    units: str | None = None,
+    *,
+    step: float | None = None,
+    columns: Mapping[str, str] | None = None,
+    directions: Mapping[str, float | str] | None = None,
+    lengths: Lengths = Lengths.TRIM,
+    steps: Steps = Steps.REFUSE,
+    format: RecordFormat | None = None,  # noqa: A002  the word of the field
+    single: bool = False,
+) -> tuple[Record, ...]:
+    """Read records and join the components of each event.
+
+    Files belong together, in this order: if the user lists them as one event; if they have one PEER record number
+    (`RSN143_…`) and are in one folder or have headers of one title; if their headers name one event, date and station
+    and their names differ by the direction only; if they are in one folder and their names differ by the direction
+    only: `CLS000`, `CLS090`, `CLS-UP`; `site_NS`, `site_EW`; `TAB-L1`, `TAB-T1`; `q_HNE`, `q_HNN`.
+    The direction of a component is the one in `directions`, else in the header, else in the name. Files with a remark
+    such as `_scaled` are not joined with files without it.
+
+    Parameters
+    ----------
+    source
+        A folder, a pattern such as `quakes/*.AT2`, or a file; or a list of these. A list in this list, or each value
+        of a mapping from names, holds the files of one event. Of a folder all files are read, except
+        hidden ones and those that by their names hold velocities, displacements or the search results of a PEER
+        download.
+    units, step, columns, format
+        As in `read_record`, of all files.
+    directions
+        By name of a file, with its ending: the azimuth, clockwise from north [degrees], "up", "down", or another name
+        of a direction, such as "N10E" or "L". Two or three listed files, all of whose directions are given and fit
+        together, are one event.
+    lengths
+        How components of different lengths are made alike.
+    steps
+        Whether components of different steps are resampled.
+    single
+        Whether a component alone is meant; else it is remarked on.
+
+    Returns
+    -------
+    tuple
+        Records in the order of their names.
+
+    Raises
+    ------
+    FileError
+        If a file is wrong, or the components of an event cannot be joined.
+    ParameterError
+        If `directions` names no file that is read.
+
+    Warns
+    -----
+    UnlikelyInputWarning
+        Of a record with one horizontal component, with a vertical one alone, or without acceleration, unless `single`;
+        of files listed as one event whose headers name several; of two files that are joined only because the numbers
+        at the end of their names look like perpendicular azimuths;
+        of a component that is trimmed to the length of the shortest and loses more than 1 % of its Arias intensity.
+
+    Notes
+    -----
+    Azimuths run clockwise seen from above, x to y anticlockwise. x points along the lower azimuth θ1 of two, y 90°
+    anticlockwise from it, z up. With Δ = θ2 − θ1 the components a1 and a2 give::
+
+        x = a1,    y = (a1 cos Δ − a2)/sin Δ
+
+    so that azimuths 0° and 90° make x point north and y west; 90° and 360° make x point east and y north. Components
+    that are only known to be perpendicular (L and T, H1 and H2, X and Y) are x and y, in this order. A single
+    horizontal component acts along x.
+    """
+    found = find_events(source, reader(step, columns, format), directions)
+    records = tuple(join_event(event, units, lengths, steps) for event in found)
+    for record in () if single else records:
+        remark_on_missing_components(record)
+    return records
+
+
+def reader(
+    step: float | None = None,
+    columns: Mapping[str, str] | None = None,
+    format: RecordFormat | None = None,  # noqa: A002
+) -> Read:
+    """Return what reads the component in a file, with these arguments of `read_record`."""
+    step = None if step is None else require_positive("step", step, "s")
+    return lambda path: read_component(path, step, columns, format)
+
+
+def join_event(
+    event: Event, units: str | None = None, lengths: Lengths = Lengths.TRIM, steps: Steps = Steps.REFUSE
+) -> Record:
+    """Join the components of an event into one record.
+
+    Raises
+    ------
+    FileError
+        If a file is wrong, or its direction is unknown, or the components do not fit together.
+    """
+    _require_one_title(event)
+    files = sorted(event.files, key=_order)
+    parts = [_part(file, units) for file in files]
+    if len(parts) == 1 and parts[0].direction is None:
+        return replace(parts[0].record, name=event.name)
+    for file, part in zip(files, parts, strict=True):
+        if part.direction is None:
+            whole = isinstance(file.content, Component) and file.content.samples.ndim > 1
+            message = f"{part.path}: " + (
+                "it has the components of an event already. List it alone"
+                if whole
+                else "its direction is unknown. State directions, its azimuth in degrees or up, or end its name with "
+                "it, such as _NS, _090 or _UP"
+            )
+            raise FileError(message)
+    records, notes = _alike(event.name, parts, lengths, steps)
+    directed = [
+        Directed(part.path.name, part.direction, record.samples[:, 0])
+        for part, record in zip(parts, records, strict=True)
+        if part.direction is not None
+    ]
+    axes, origin = along_axes(event.name, directed)
+    provenance = (*(line for record in records for line in record.provenance), *notes, origin)
+    first = records[0]
+    return Record.from_components(**axes, step=first.step, start=first.start, name=event.name, provenance=provenance)
+
+
+def remark_on_missing_components(record: Record) -> None:
+    """Warn with UnlikelyInputWarning of a record without acceleration, or without two horizontal components."""
+    flat = [axis for axis in record.axes if axis != "z"]
+    if len(flat) > 1:
+        return
+    files = ", ".join(re.findall(r"read from (.*?), in ", "\n".join(record.provenance))) or "no file"
+    if not record.axes:
+        message = f"{record.name}: all accelerations are zero ({files}). Check the files"
+    else:
+        what = "one horizontal component" if flat else "a vertical component and no horizontal one"
+        message = (
+            f"{record.name}: {what} ({files}). List the files of the event together, or set single if one component is "
+            "meant"
+        )
+    warnings.warn(message, UnlikelyInputWarning, stacklevel=3)
+
+
+def _order(file: EventFile) -> tuple[bool, float, str]:
+    """Return what sorts the files of an event: azimuths, x before y, the vertical last."""
+    way = file.direction or Direction()
+    return way.vertical != 0, way.azimuth or 0.0, way.axis or ""
+
+
+def _part(file: EventFile, units: str | None) -> _Part:
+    if isinstance(file.content, StylobateError):
+        raise file.content
+    if file.content.samples.ndim > 1:
+        return _Part(file.path, None, as_record(file.content, file.path, units, None))
+    record = as_record(replace(file.content, direction=None), file.path, units, "x")
+    return _Part(file.path, file.direction, record)
+
+
+def _require_one_title(event: Event) -> None:
+    """Raise FileError if headers name several events; warn if the user lists such files as one."""
+    titles = {file.title: file.path.name for file in event.files if file.title}
+    if len(titles) < 2:  # noqa: PLR2004
+        return
+    headers = ", ".join(f"{name} ({title})" for title, name in titles.items())
+    message = (
+        f"{event.name}: the headers name different events or stations: {headers}. List the files of each event together"
+    )
+    if not event.stated:
+        raise FileError(message)
+    warnings.warn(message, UnlikelyInputWarning, stacklevel=3)
+
+
+def _alike(event: str, parts: list[_Part], lengths: Lengths, steps: Steps) -> tuple[list[Record], list[str]]:
+    """Return the records of the parts with one step, start and length, and what was done for it."""
+    records = [part.record for part in parts]
+    finest = min(record.step for record in records)
+    if any(abs(record.step / finest - 1.0) > _SAME_STEP for record in records):
+        if steps is Steps.REFUSE:
+            told = ", ".join(f"{part.path.name} {part.record.step:g} s" for part in parts)
+            message = f"{event}: time steps differ ({told}); state steps to be resampled, or make them alike"
+            raise FileError(message)
+        records = [record.resampled(finest) for record in records]
+    if len({record.start for record in records}) > 1:
+        told = ", ".join(f"{part.path.name} {part.record.start:g} s" for part in parts)
+        message = f"{event}: components begin at different times ({told}); trim or pad them one by one"
+        raise FileError(message)
+    counts = [len(record.samples) for record in records]
+    if len(set(counts)) == 1:
+        return records, []
+    target = min(counts) if lengths is Lengths.TRIM else max(counts)
+    told = ", ".join(f"{part.path.name} {count}" for part, count in zip(parts, counts, strict=True))
+    notes = [f"{'trimmed' if lengths is Lengths.TRIM else 'padded with zeros'} to {target} samples: {told}"]
+    if lengths is Lengths.TRIM:
+        warn_of_lost_shaking(event, [part.path.name for part in parts], records, target)
+    fitted = [
+        np.pad(record.samples[:target], ((0, max(0, target - len(record.samples))), (0, 0))) for record in records
+    ]
+    return [replace(record, samples=samples) for record, samples in zip(records, fitted, strict=True)], notes

@@ -1,0 +1,200 @@
+"""One file, one record."""
+
+import os
+import warnings
+from collections.abc import Mapping
+from enum import Enum
+from pathlib import Path
+
+import numpy as np
+
+from stylobate.base_motions.records.asc import is_asc, read_asc
+from stylobate.base_motions.records.at2 import is_at2, is_wrapped, read_at2
+from stylobate.base_motions.records.component import Component
+from stylobate.base_motions.records.layout import plain_table
+from stylobate.base_motions.records.lines import REMARKS, Text, is_binary, read_bytes
+from stylobate.base_motions.records.named_columns import is_csv, read_csv
+from stylobate.base_motions.records.record import AXES, Floats, Record
+from stylobate.base_motions.records.sources import require_path
+from stylobate.base_motions.records.tables import read_table
+from stylobate.base_motions.records.units import KNOWN, in_si, require_unit
+from stylobate.base_motions.records.waveforms import read_waveform
+from stylobate.column import STANDARD_GRAVITY
+from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning, require_positive
+
+# Horizontal and vertical peaks of strong earthquakes are below, but for a few close to the fault [g].
+_LARGEST_PEAK = 3.0
+# Steps of records that can be read [s], and what no acceleration reaches in any unit.
+_STEPS = (1e-9, 1e6)
+_BEYOND_ALL = 1e30
+
+
+class RecordFormat(Enum):
+    """How a file is written."""
+
+    AT2 = "PEER AT2"
+    ASC = "ESM and ITACA ASC, with the header of DYNA 1.x"
+    TABLE = "one column of accelerations, or time and acceleration"
+    CSV = "named columns"
+    WAVEFORM = "whatever ObsPy reads"
+
+
+def read_record(
+    path: str | os.PathLike[str],
+    units: str | None = None,
+    *,
+    step: float | None = None,
+    columns: Mapping[str, str] | None = None,
+    axis: str | None = None,
+    format: RecordFormat | None = None,  # noqa: A002  the word of the field
+) -> Record:
+    """Return the record in one file.
+
+    Parameters
+    ----------
+    path
+        The file; gzip is unpacked.
+    units
+        Unit of the accelerations: "g", "m/s²" (m/s2), "cm/s²" (cm/s2, gal) or "mm/s²". Only to be left out where the
+        file tells: it is never guessed.
+    step
+        Time step [s], of a file that has none: a single column, or an AT2 file without the line of NPTS and DT.
+    columns
+        Which column of a CSV file is "time", "x", "y" and "z", by name.
+    axis
+        Axis of the record along which a single component acts: "x", "y" or "z". None is z where the file says up or
+        down (then the sign is turned), else x.
+    format
+        How the file is written; None finds out.
+
+    Raises
+    ------
+    FileError
+        If the file is missing, empty, cut short, holds something that is not a number or unequal steps, or does not
+        tell its unit; with the number of the line.
+    ParameterError
+        If units are unknown or contradict the file.
+    UnsupportedError
+        If only ObsPy reads the format and it is not installed.
+
+    Warns
+    -----
+    UnlikelyInputWarning
+        If the peak is beyond 3 g, as that of a file in cm/s² that is read in g.
+    """
+    path = require_path("path", path)
+    step = None if step is None else require_positive("step", step, "s")
+    return as_record(read_component(path, step, columns, format), path, units, axis)
+
+
+def read_component(
+    path: Path,
+    step: float | None,
+    columns: Mapping[str, str] | None,
+    format: RecordFormat | None,  # noqa: A002
+) -> Component:
+    """Return what the file gives, in its own units."""
+    content = read_bytes(path)
+    if is_binary(content) and format in (None, RecordFormat.AT2) and _is_called_at2(path):
+        message = f"{path}: no AT2 file: it is no text, and has no header with NPTS and DT"
+        raise FileError(message)
+    if format is RecordFormat.WAVEFORM or (
+        format is None and (is_binary(content) or content.startswith(b"Origin Time"))
+    ):
+        return read_waveform(path, content)
+    if is_binary(content):
+        message = f"{path}: a binary file, not {format.value if format else 'text'}"
+        raise FileError(message)
+    return _read_text(Text.of(path, content), step, columns, format)
+
+
+def _read_text(
+    text: Text,
+    step: float | None,
+    columns: Mapping[str, str] | None,
+    format: RecordFormat | None,  # noqa: A002
+) -> Component:
+    if all(not line.strip() or line.lstrip().startswith(REMARKS[0]) for line in text.lines):
+        raise text.fault(len(text.lines) - 1, "the file has no numbers")
+    without_header = _is_called_at2(text.path) and is_wrapped(text)
+    if format is RecordFormat.AT2 or (format is None and (is_at2(text) or without_header)):
+        return read_at2(text, step)
+    if format is RecordFormat.ASC or (format is None and is_asc(text)):
+        return read_asc(text)
+    table = plain_table(text, named=columns is not None)
+    named = table.named or columns is not None or is_csv(table.text)
+    if format is RecordFormat.CSV or (format is None and named):
+        return read_csv(table.text, columns, step)
+    return read_table(table.text, step)
+
+
+def _is_called_at2(path: Path) -> bool:
+    return path.name.lower().removesuffix(".gz").endswith(".at2")
+
+
+def as_record(component: Component, path: Path, units: str | None, axis: str | None) -> Record:
+    """Return the record of one file's content, in SI units."""
+    factor, told = _scale(component, path, units)
+    _require_possible(component, path)
+    provenance: tuple[str, ...] = (
+        f"read from {path.name}, {told}" + (f": {component.title}" if component.title else ""),
+    )
+    _remark_on_the_peak(factor * component.samples, path, told)
+    direction = component.direction
+    if component.samples.ndim > 1:
+        samples = factor * component.samples
+        return Record(
+            samples=samples, step=component.step, start=component.start, name=name_of(path), provenance=provenance
+        )
+    up = direction.vertical if direction else 0
+    axis = ("z" if up else "x") if axis is None else axis
+    if axis not in AXES:
+        message = f'axis must be "x", "y" or "z", got {axis!r}'
+        raise ParameterError(message)
+    if direction is not None:
+        provenance += (f"{direction} along {axis}" + (" with its sign turned" if up < 0 and axis == "z" else ""),)
+    sign = -1.0 if up < 0 and axis == "z" else 1.0
+    along = {axis: sign * factor * component.samples}
+    return Record.from_components(
+        **along, step=component.step, start=component.start, name=name_of(path), provenance=provenance
+    )
+
+
+def _require_possible(component: Component, path: Path) -> None:
+    """Refuse numbers with which floating-point arithmetic overflows; no record has them."""
+    for what, value, least, most in (
+        ("a time step [s]", component.step, *_STEPS),
+        ("a peak", float(np.abs(component.samples).max()), 0.0, _BEYOND_ALL),
+    ):
+        if not least <= value <= most:
+            message = f"{path}: {what} must be between {least:g} and {most:g}, got {value:g}. Check the numbers"
+            raise FileError(message)
+
+
+def _remark_on_the_peak(samples: Floats, path: Path, told: str) -> None:
+    peak = float(np.abs(samples).max()) / STANDARD_GRAVITY
+    if peak > _LARGEST_PEAK:
+        message = (
+            f"{path}: its peak is {peak:.3g} g, read {told}; hardly any earthquake shakes the ground beyond "
+            f"{_LARGEST_PEAK:g} g: if the file is in another unit, such as cm/s², name that (units)"
+        )
+        warnings.warn(message, UnlikelyInputWarning, stacklevel=2)
+
+
+def name_of(path: Path) -> str:
+    """Return the name of a file without its folder and endings."""
+    name = path.name.removesuffix(".gz")
+    return name.rpartition(".")[0] or name
+
+
+def _scale(component: Component, path: Path, units: str | None) -> tuple[float, str]:
+    given = None if units is None else require_unit(units)
+    if component.unit is None and given is None:
+        message = f"{path}: the file does not tell its unit: state units, {KNOWN}"
+        raise FileError(message)
+    if component.unit is not None and given is not None and component.unit != given:
+        message = f"{path}: units must be left out or {component.unit!r}, which the file says, got {units!r}"
+        raise ParameterError(message)
+    unit = component.unit or given
+    assert unit is not None
+    return in_si(unit), f"in {unit}" + (" as the file says" if component.unit else " as given")

@@ -1,0 +1,350 @@
+"""A recorded base motion: accelerations at equal steps, linear in between."""
+
+import hashlib
+import math
+from dataclasses import dataclass, field, replace
+from typing import Any, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.base_motions.base import ACCELERATION, VELOCITY, BaseMotion, Components
+from stylobate.base_motions.records.knots import corners, integrals, largest_from_each, mean_frequency
+from stylobate.errors import ParameterError, require_finite, require_not_negative, require_positive
+
+Floats = npt.NDArray[np.float64]
+
+AXES = ("x", "y", "z")
+# Horizontal accelerations this near to one line, in ulp of the largest, lie on it but for rounding.
+_ON_LINE_ULP = 8.0
+# A time this part of a step away from a knot is the knot.
+_KNOT_SLACK = 1e-6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Record(BaseMotion):
+    """Accelerations at equal steps, linear between the samples; zero before the first and after the last.
+
+    Parameters
+    ----------
+    samples
+        Accelerations [m/s²]: shape (n,) along x, or (n, 1), (n, 2), (n, 3) along x, y (horizontal) and z (up); at
+        least two. Kept as (n, 3).
+    step
+        Time between samples [s].
+    start
+        Time of the first sample [s]; what lies before t = 0 never acts.
+    name
+        What the record is called.
+    provenance
+        Where it comes from and what was done to it, one line each, in order.
+
+    Raises
+    ------
+    ParameterError
+        If samples are missing or not finite, or the step is not positive.
+
+    Notes
+    -----
+    Velocity and displacement are the exact integrals of that acceleration from rest. After the last sample the
+    acceleration is zero: the base goes on at the velocity it has then, as if at rest for the column. A record whose
+    `residual_velocity` is large wants `baseline_corrected` or `filtered`.
+
+    Examples
+    --------
+    >>> record = Record(samples=[0.0, 2.0, 0.0], step=0.5, name="triangle")
+    >>> record.velocity([0.0, 0.5, 1.0, 9.0])[:, 0]
+    array([0. , 0.5, 1. , 1. ])
+    >>> record.scaled(2.0).provenance
+    ('scaled by 2.0',)
+    """
+
+    samples: Floats
+    step: float
+    start: float = 0.0
+    name: str = ""
+    provenance: tuple[str, ...] = ()
+    _velocity: Floats = field(init=False)
+    _displacement: Floats = field(init=False)
+    _largest: Floats = field(init=False)
+    _lowest: Floats = field(init=False)
+    _highest: Floats = field(init=False)
+
+    def __post_init__(self) -> None:
+        samples = _checked(self.samples)
+        samples.flags.writeable = False
+        object.__setattr__(self, "samples", samples)
+        object.__setattr__(self, "step", require_positive("step", self.step, "s"))
+        object.__setattr__(self, "start", require_finite("start", self.start, "s"))
+        object.__setattr__(self, "provenance", tuple(self.provenance))
+        velocity, displacement = integrals(samples, self.step)
+        object.__setattr__(self, "_velocity", velocity)
+        object.__setattr__(self, "_displacement", displacement)
+        object.__setattr__(self, "_largest", largest_from_each(np.hypot(samples[:, 0], samples[:, 1])))
+        # the base stands still in the end: zero is always among what follows
+        object.__setattr__(self, "_lowest", -largest_from_each(np.maximum(-samples[:, 2], 0.0)))
+        object.__setattr__(self, "_highest", largest_from_each(np.maximum(samples[:, 2], 0.0)))
+
+    @classmethod
+    def from_components(
+        cls,
+        *,
+        x: npt.ArrayLike | None = None,
+        y: npt.ArrayLike | None = None,
+        z: npt.ArrayLike | None = None,
+        step: float,
+        **more: Any,
+    ) -> Self:
+        """Return the record with these accelerations along x, y and z, shape (n,) each [m/s²]; zero where not given.
+
+        Raises
+        ------
+        ParameterError
+            If none is given, or their lengths differ.
+        """
+        given = {
+            name: np.asarray(values, dtype=float)
+            for name, values in zip(AXES, (x, y, z), strict=True)
+            if values is not None
+        }
+        if not given or len({values.shape for values in given.values()}) > 1:
+            told = {name: values.shape for name, values in given.items()}
+            message = f"x, y and z must be arrays of one length, one of them at least, got the shapes {told}"
+            raise ParameterError(message)
+        shape = next(iter(given.values())).shape
+        samples = np.stack([given.get(name, np.zeros(shape)) for name in AXES], axis=-1)
+        return cls(samples=samples, step=step, **more)
+
+    @property
+    def times(self) -> Floats:
+        """Times of the samples, shape (n,) [s]."""
+        return np.asarray(self.start + self.step * np.arange(len(self.samples)))
+
+    @property
+    def end(self) -> float:
+        """Time of the last sample [s]."""
+        return self.start + self.step * (len(self.samples) - 1)
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """Names of the axes along which it accelerates."""
+        return tuple(name for name, moves in zip(AXES, np.any(self.samples != 0.0, axis=0), strict=True) if moves)
+
+    @property
+    def residual_velocity(self) -> Floats:
+        """Velocity after the last sample along x, y and z, shape (3,) [m/s]."""
+        return np.array(self._velocity[-1])
+
+    @property
+    def digest(self) -> str:
+        """What tells its numbers from those of others: SHA-256 of samples, step and start, in hexadecimal digits."""
+        numbers = np.array([self.step, self.start]).tobytes()
+        return hashlib.sha256(self.samples.tobytes() + numbers).hexdigest()
+
+    def __eq__(self, other: object) -> bool:
+        return self.digest == other.digest if isinstance(other, Record) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self.digest)
+
+    def __repr__(self) -> str:
+        peak, axes = float(np.abs(self.samples).max()), " ".join(self.axes) or "at rest"
+        begun = f" from {self.start:g} s" if self.start else ""
+        return (
+            f"Record({self.name!r}, {len(self.samples)} samples every {self.step:g} s{begun}, {axes}, "
+            f"peak {peak:.4g} m/s², {self.digest[:12]})"
+        )
+
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return the displacement (`order` 0), velocity (1) or acceleration (2), exact for the linear interpolation."""
+        t = np.asarray(time, dtype=float)
+        length = self.step * (len(self.samples) - 1)
+        since = np.minimum(np.maximum(t - self.start, 0.0), length)
+        knot = np.minimum((since / self.step).astype(int), len(self.samples) - 2)
+        s = (since - self.step * knot)[..., np.newaxis]
+        a = self.samples[knot]
+        slope = (self.samples[knot + 1] - a) / self.step
+        if order == ACCELERATION:
+            moving = (t >= self.start) & (t <= self.end)
+            values = np.where(moving[..., np.newaxis], a + slope * s, 0.0)
+        elif order == VELOCITY:
+            values = self._velocity[knot] + s * (a + slope * s / 2.0)
+        else:
+            values = self._displacement[knot] + s * (self._velocity[knot] + s * (a / 2.0 + slope * s / 6.0))
+            values = values + self._velocity[-1] * np.maximum(t - self.start - length, 0.0)[..., np.newaxis]
+        return values[..., 0], values[..., 1], values[..., 2]
+
+    def largest_horizontal(self, since: float = 0.0) -> float:
+        """Return sup |a_h| from the time `since` [s] on, exactly [m/s²]: |a_h| is convex on a step."""
+        if since > self.end:
+            return 0.0
+        x, y, _ = self.derivative(since, ACCELERATION)
+        return max(math.hypot(x, y), float(self._largest[self._knot_after(since)]))
+
+    def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
+        """Return inf a_z and sup a_z from the time `since` [s] on, exactly [m/s²]; the base ends at zero."""
+        if since > self.end:
+            return 0.0, 0.0
+        knot, now = self._knot_after(since), float(self.derivative(since, ACCELERATION)[2])
+        return min(now, float(self._lowest[knot])), max(now, float(self._highest[knot]))
+
+    def _knot_after(self, time: float) -> int:
+        return min(max(0, math.ceil((time - self.start) / self.step)), len(self.samples) - 1)
+
+    def directions(self) -> tuple[tuple[float, float], ...]:
+        """Return one horizontal sample where all lie on one line, else two that do not; none if all are zero."""
+        x, y = self.samples[:, 0], self.samples[:, 1]
+        longest = int(np.argmax(np.hypot(x, y)))
+        size = float(np.hypot(x[longest], y[longest]))
+        if size == 0.0:
+            return ()
+        first = (float(x[longest]), float(y[longest]))
+        aside = np.abs(first[0] * y - first[1] * x)
+        other = int(np.argmax(aside))
+        if aside[other] <= _ON_LINE_ULP * np.finfo(float).eps * size**2:
+            return (first,)
+        return first, (float(x[other]), float(y[other]))
+
+    @property
+    def duration(self) -> float:
+        """Time of the last sample [s], 0 if it lies before t = 0."""
+        return max(0.0, self.end)
+
+    @property
+    def highest_frequency(self) -> float:
+        """2/step [rad/s]: with it |ȧ| ≤ ω sup |a|, as in a harmonic motion; half a period is longer than a step."""
+        return 2.0 / self.step if np.any(self.samples) else 0.0
+
+    @property
+    def mean_frequency(self) -> float:
+        """Root mean square of ȧ over that of a, all components together [rad/s]: so often does a pass zero, over π.
+
+        S. O. Rice, "Mathematical analysis of random noise", Bell Syst. Tech. J. 23 (1944).
+        """
+        return mean_frequency(self.samples, self.step)
+
+    @property
+    def degree(self) -> int:
+        """1: linear between the samples."""
+        return 1
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Times of the samples at which the slope changes [s]."""
+        return tuple(self.times[corners(self.samples)].tolist())
+
+    # A record that was scaled, turned or delayed is a record still: it can be filtered and measured.
+
+    def scaled(self, factor: float, *, vertical: float | None = None) -> "Record":  # type: ignore[override]
+        """Return this record times `factor`; its vertical component times `vertical` where that is given."""
+        factor = require_finite("factor", factor)
+        vertical = factor if vertical is None else require_finite("vertical", vertical)
+        told = f"scaled by {factor!r}" + (f", vertical by {vertical!r}" if vertical != factor else "")
+        return self.changed(told, samples=self.samples * [factor, factor, vertical])
+
+    def scaled_to(self, peak: float) -> "Record":
+        """Return this record, all components times one factor, with sup |a_h| = `peak` [m/s²].
+
+        Raises
+        ------
+        ParameterError
+            If it has no horizontal acceleration, or the peak is not positive.
+        """
+        largest = float(self._largest[0])
+        if largest == 0.0:
+            message = "a record to scale must have a horizontal acceleration, got none"
+            raise ParameterError(message)
+        return self.scaled(require_positive("peak", peak, "m/s²") / largest)
+
+    def rotated(self, angle: float) -> "Record":  # type: ignore[override]
+        """Return this record turned by `angle` [rad] about the vertical, anticlockwise seen from above."""
+        angle = require_finite("angle", angle, "rad")
+        x, y, z = self.samples.T
+        cos, sin = math.cos(angle), math.sin(angle)
+        samples = np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
+        return self.changed(f"turned by {angle!r} rad", samples=samples)
+
+    def delayed(self, delay: float) -> "Record":  # type: ignore[override]
+        """Return this record begun `delay` [s] later."""
+        delay = require_finite("delay", delay, "s")
+        return self.changed(f"delayed by {delay!r} s", start=self.start + delay)
+
+    def inverted(self) -> "Record":
+        """Return this record with its horizontal components in the opposite sense, the vertical as it is."""
+        return self.changed("polarity reversed", samples=self.samples * [-1.0, -1.0, 1.0])
+
+    def trimmed(self, begin: float | None = None, end: float | None = None) -> "Record":
+        """Return the samples from time `begin` to `end` [s]; the first of them comes at `start`.
+
+        Raises
+        ------
+        ParameterError
+            If fewer than two samples lie between.
+        """
+        begin = self.start if begin is None else require_finite("begin", begin, "s")
+        end = self.end if end is None else require_finite("end", end, "s")
+        slack = _KNOT_SLACK * self.step
+        kept = (self.times >= begin - slack) & (self.times <= end + slack)
+        if np.count_nonzero(kept) < 2:  # noqa: PLR2004  a step has two ends
+            message = f"begin and end must leave two samples of {self!r}, got {begin!r} s and {end!r} s"
+            raise ParameterError(message)
+        return self.changed(f"trimmed to {begin!r} s … {end!r} s", samples=self.samples[kept])
+
+    def padded(self, *, before: float = 0.0, after: float = 0.0) -> "Record":
+        """Return this record with `before` and `after` [s] of zeros, in whole steps, none shorter than asked."""
+        counts = [self._steps("before", before), self._steps("after", after)]
+        samples = np.pad(self.samples, (counts, (0, 0)))
+        told = f"padded with {counts[0]} zeros before and {counts[1]} after"
+        return self.changed(told, samples=samples)
+
+    def with_tail(self, length: float) -> "Record":
+        """Return this record with `length` [s] of rest appended, in which the column may yet overturn or come to rest.
+
+        Run to its `duration`: whether a column survived is known after the tail, not at the last sample.
+        """
+        count = self._steps("length", length)
+        return self.changed(f"tail of {count} zeros", samples=np.pad(self.samples, ((0, count), (0, 0))))
+
+    def _steps(self, name: str, length: float) -> int:
+        return math.ceil(require_not_negative(name, length, "s") / self.step - _KNOT_SLACK)
+
+    def resampled(self, step: float) -> "Record":
+        """Return this record at another `step` [s], band-limited (see `records.resampling`)."""
+        from stylobate.base_motions.records.resampling import resampled  # noqa: PLC0415  takes SciPy; needs this module
+
+        return resampled(self, step)
+
+    def filtered(
+        self, *, highpass: float | None = None, lowpass: float | None = None, order: int = 4, causal: bool = False
+    ) -> "Record":
+        """Return this record through a Butterworth filter with corners in Hz (see `records.filtering`)."""
+        from stylobate.base_motions.records.filtering import filtered  # noqa: PLC0415
+
+        return filtered(self, highpass=highpass, lowpass=lowpass, order=order, causal=causal)
+
+    def baseline_corrected(self, degree: int = 1) -> "Record":
+        """Return this record less the derivative of a polynomial fitted to its velocity (see `records.baseline`)."""
+        from stylobate.base_motions.records.baseline import baseline_corrected  # noqa: PLC0415
+
+        return baseline_corrected(self, degree)
+
+    def changed(self, told: str, **changes: Any) -> "Record":
+        """Return this record with other fields and one more line `told` in its provenance."""
+        return replace(self, provenance=(*self.provenance, told), **changes)
+
+
+def _checked(samples: npt.ArrayLike) -> Floats:
+    try:
+        array = np.array(samples, dtype=float)
+    except (TypeError, ValueError):
+        array = np.empty(0)
+    if array.ndim == 1:
+        array = array[:, np.newaxis]
+    if array.ndim != 2 or len(array) < 2 or not 1 <= array.shape[1] <= len(AXES):  # noqa: PLR2004
+        message = f"samples must be numbers of shape (n,) or (n, 1 to 3) with n of at least 2, got {np.shape(samples)}"
+        raise ParameterError(message)
+    if not np.all(np.isfinite(array)):
+        row = int(np.argmax(~np.all(np.isfinite(array), axis=1)))
+        message = f"samples must be finite, got {array[row].tolist()} at index {row}"
+        raise ParameterError(message)
+    return np.ascontiguousarray(np.pad(array, ((0, 0), (0, len(AXES) - array.shape[1]))))

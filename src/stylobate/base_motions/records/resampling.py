@@ -1,0 +1,37 @@
+"""A record at another step."""
+
+from fractions import Fraction
+
+from scipy.signal import resample_poly
+
+from stylobate.base_motions.records.record import Record
+from stylobate.errors import ParameterError, require_positive
+
+_LARGEST_FACTOR = 1000
+_RATIO_TOLERANCE = 1e-9
+
+
+def resampled(record: Record, step: float) -> Record:
+    """Return `record` at another `step` [s], band-limited: what the coarser of the two steps cannot carry is removed.
+
+    Raises
+    ------
+    ParameterError
+        If the steps are not in a ratio of whole numbers up to 1000.
+
+    Notes
+    -----
+    Polyphase resampling with SciPy's zero-phase low-pass filter (`scipy.signal.resample_poly`, Kaiser window β = 5,
+    zeros beyond the ends). The motion between the old samples is no longer linear: peaks may change a little.
+    """
+    step = require_positive("step", step, "s")
+    ratio = Fraction(record.step / step).limit_denominator(_LARGEST_FACTOR)
+    up, down = ratio.numerator, ratio.denominator
+    if not 0 < up <= _LARGEST_FACTOR or abs(record.step / step / float(ratio) - 1.0) > _RATIO_TOLERANCE:
+        message = f"step must be in a ratio of whole numbers up to 1000 to {record.step!r} s, got {step!r} s"
+        raise ParameterError(message)
+    if up == down:
+        return record
+    samples = resample_poly(record.samples, up, down, axis=0)
+    told = f"resampled from {record.step!r} s to {step!r} s (polyphase {up}:{down}, anti-aliased)"
+    return record.changed(told, samples=samples, step=step)

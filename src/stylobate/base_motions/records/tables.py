@@ -1,0 +1,91 @@
+"""Text files of numbers: one column of accelerations, or time and acceleration."""
+
+import numpy as np
+
+from stylobate.base_motions.records.component import Component
+from stylobate.base_motions.records.lines import REMARKS, Floats, Text
+from stylobate.base_motions.records.rounded_times import even_grid
+
+# Times may be printed in a few digits: each may be this part of a step beside its place.
+_TIME_SLACK = 0.02
+_TIME_AND_ACCELERATION = 2
+
+
+def read_table(text: Text, step: float | None) -> Component:
+    """Return the component of a text file with one or two columns; remarks begin with #, %, ! or //.
+
+    Raises
+    ------
+    FileError
+        If a token is no number, lines differ in length, times are not in equal steps, or a single column comes
+        without `step` [s].
+    """
+    tokens = [(at, line.replace(",", " ").replace(";", " ").split()) for at, line in enumerate(text.lines)]
+    tokens = [(at, row) for at, row in tokens if row and not row[0].startswith(REMARKS)]
+    if not tokens:
+        raise text.fault(len(text.lines) - 1, "the file has no numbers")
+    width = len(tokens[0][1])
+    if width > _TIME_AND_ACCELERATION:
+        text.rows(tokens[:1])
+        what = "one (acceleration) or two (time, acceleration) are wanted. Name them in the first line"
+        raise text.fault(tokens[0][0], f"{width} columns: {what}")
+    for at, row in tokens:
+        if len(row) != width:
+            text.rows([(at, row)])
+            raise text.fault(at, f"{len(row)} columns, the lines before have {width}")
+    values = text.rows(tokens)
+    places = [at for at, _ in tokens]
+    if width == 1:
+        if step is None:
+            raise text.fault(places[0], "a single column tells no time step: state step, in s")
+        _require_two(text, places)
+        return Component(samples=values[:, 0], step=step, unit=None)
+    start, own = equal_steps(text, values[:, 0], places, step)
+    return Component(samples=values[:, 1], step=own, start=start, unit=None)
+
+
+def equal_steps(text: Text, times: Floats, places: list[int], step: float | None) -> tuple[float, float]:
+    """Return the first of equally spaced `times` and their step [s]; `step` is the one that was given, or None.
+
+    The times may be rounded to the digits that are printed. `places` are the indices of their lines.
+
+    Raises
+    ------
+    FileError
+        If the steps are not equal, or not the one that was given.
+    """
+    _require_two(text, places)
+    own = float(times[-1] - times[0]) / (len(times) - 1)
+    steps = np.diff(times)
+    typical = float(np.median(steps))
+    wrong = np.abs(steps - typical) > _TIME_SLACK * abs(typical)
+    if own <= 0.0 or typical <= 0.0 or np.any(wrong):
+        return _rounded(text, times, places, step)
+    if step is not None and abs(own - step) > _TIME_SLACK * step:
+        raise text.fault(places[1], f"the times are in steps of {own:g} s, not of the step given, {step:g} s")
+    return float(times[0]), float(step if step is not None else _as_printed(own))
+
+
+def _rounded(text: Text, times: Floats, places: list[int], step: float | None) -> tuple[float, float]:
+    """Return first time and step of times that are not in equal steps, but may be rounded from such."""
+    if (grid := even_grid(times, step)) is not None:
+        return grid
+    steps = np.diff(times)
+    common = float(np.median(steps))
+    wrong = np.abs(steps - common) > _TIME_SLACK * common if common > 0.0 else steps <= 0.0
+    first = int(np.argmax(wrong))
+    problem = f"unequal time steps: {times[first]:g} s to {times[first + 1]:g} s is {steps[first]:.3g} s"
+    problem += f", most are {common:.3g} s" if common > 0.0 else ""
+    remedy = "Resample the file" + (", or state step, in s, if its times are rounded" if step is None else "")
+    raise text.fault(places[first + 1], f"{problem}. {remedy}")
+
+
+def _require_two(text: Text, places: list[int]) -> None:
+    if len(places) < 2:  # noqa: PLR2004  a step has two ends
+        raise text.fault(places[-1] if places else len(text.lines) - 1, "the file is too short: one sample")
+
+
+def _as_printed(step: float) -> float:
+    # A quotient of sums is 0.02 but for rounding; the step that was meant has few digits.
+    short = float(f"{step:.9g}")
+    return short if abs(short - step) <= 1e-9 * step else step

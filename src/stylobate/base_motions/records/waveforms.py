@@ -1,0 +1,69 @@
+"""Every other format, through ObsPy where it is installed: miniSEED, SAC, K-NET and the like."""
+
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stylobate.base_motions.records.asc import direction_of_channel
+from stylobate.base_motions.records.component import Component, Direction
+from stylobate.errors import FileError, UnsupportedError
+
+# ObsPy's calibration of these formats is in m/s².
+_IN_SI = ("KNET",)
+
+
+def read_waveform(path: Path, content: bytes) -> Component:
+    """Return the component in a file that ObsPy reads.
+
+    Raises
+    ------
+    UnsupportedError
+        If ObsPy is not installed.
+    FileError
+        If ObsPy cannot read it, or it holds no trace or several.
+
+    Notes
+    -----
+    Samples are counts times the calibration in the header (`trace.stats.calib`); the instrument's response is not
+    removed.
+    """
+    try:
+        import obspy  # noqa: PLC0415  an extra, slow to import
+    except ImportError:
+        message = (
+            f'{path}: no text. To read a waveform such as miniSEED, install ObsPy: pip install "stylobate[records]"'
+        )
+        raise UnsupportedError(message) from None
+    try:
+        stream = obspy.read(io.BytesIO(content))
+    except Exception as error:  # ObsPy's readers raise whatever they meet
+        message = f"{path}: ObsPy cannot read it: {error}"
+        raise FileError(message) from error
+    if len(stream) != 1:
+        message = f"{path}: one trace without gaps is wanted, the file holds {len(stream)}"
+        raise FileError(message)
+    (trace,) = stream
+    stats = trace.stats
+    samples = np.ma.filled(np.ma.asarray(trace.data, dtype=float), np.nan) * float(stats.calib)
+    if len(samples) < 2 or not np.all(np.isfinite(samples)):  # noqa: PLR2004  a step has two ends
+        message = f"{path}: two finite samples at least are wanted, without gaps"
+        raise FileError(message)
+    return Component(
+        samples=samples,
+        step=float(stats.delta),
+        unit="m/s²" if stats.get("_format") in _IN_SI else None,
+        direction=_direction(stats),
+        title=f"{trace.id} {stats.starttime}",
+    )
+
+
+def _direction(stats: Any) -> Direction | None:
+    sac = stats.get("sac", {})
+    if "cmpaz" in sac and "cmpinc" in sac:
+        if float(sac["cmpinc"]) == 0.0:
+            return Direction(vertical=1)
+        return Direction.of(float(sac["cmpaz"]))
+    channel = str(stats.channel)
+    return direction_of_channel(channel)

@@ -1,0 +1,278 @@
+"""Sine sweeps: a straight harmonic motion whose frequency changes with time."""
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Self, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.base_motions.base import ACCELERATION, DISPLACEMENT, VELOCITY, BaseMotion, Components
+from stylobate.base_motions.pulses.quadrature import double_integral, integral
+from stylobate.errors import ParameterError, require_finite, require_not_negative, require_positive, require_vector
+
+Floats = npt.NDArray[np.float64]
+_Kind = TypeVar("_Kind", bound=StrEnum)
+
+MOST_CYCLES = 1e5
+"""Of a sweep: its integrals are stored cycle by cycle."""
+
+
+class SweepLaw(StrEnum):
+    """How the frequency of a sweep goes from its first to its last value."""
+
+    LINEAR = "linear"
+    """By as many hertz in any second."""
+    LOGARITHMIC = "logarithmic"
+    """By as many octaves in any second."""
+
+
+class SweepQuantity(StrEnum):
+    """What keeps its amplitude during a sweep."""
+
+    ACCELERATION = "acceleration"
+    DISPLACEMENT = "displacement"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SineSweep(BaseMotion):
+    """A straight motion of constant amplitude of acceleration or of displacement, and of a frequency that changes.
+
+    `linear` and `logarithmic` make one by `acceleration` or by `displacement`.
+
+    Parameters
+    ----------
+    amplitude
+        Of the quantity that keeps it [m/s²] or [m].
+    quantity
+        Acceleration: it is A cos ψ(t). Displacement: it is D cos ψ(t), and the acceleration −D(ψ̇² cos ψ + ψ̈ sin ψ).
+    law
+        ψ̇/2π goes from the first frequency to the last linearly, or exponentially.
+    frequencies
+        First and last frequency [Hz], either way up.
+    length
+        How long it takes [s]; nothing comes after.
+    direction
+        Azimuth of the line [rad] from x.
+    start_phase
+        ψ at the beginning [rad]; without it the acceleration (displacement) starts at its peak.
+    start
+        When it begins [s].
+    vertical
+        Vertical acceleration over the horizontal one.
+
+    Notes
+    -----
+    ψ is closed: 2π(f₁t + ½(f₂ − f₁)t²/T), or 2πf₁T (rᵗ⁄ᵀ − 1)/ln r with r = f₂/f₁. By displacement all is closed. By
+    acceleration velocity and displacement (Fresnel and exponential integrals) are integrated by Gauss quadrature, to
+    1e-12 of A/(2πf) and A T/(2πf) with the lower of the frequencies. They begin with those of the steady motion at the
+    first frequency. After the end the base moves on uniformly; before the beginning it moved so.
+
+    Raises
+    ------
+    ParameterError
+        If a number is not finite, `length` or a frequency not positive, `start` negative, or both or neither of
+        `acceleration` and `displacement` are given.
+
+    Examples
+    --------
+    >>> sweep = SineSweep.logarithmic(acceleration=0.5, frequencies=(0.5, 8.0), length=120.0)  # 2 octaves a minute
+    >>> print(sweep.frequency([0.0, 30.0, 60.0]).round(6))
+    [0.5 1.  2. ]
+    """
+
+    amplitude: float
+    quantity: SweepQuantity = SweepQuantity.ACCELERATION
+    law: SweepLaw = SweepLaw.LINEAR
+    frequencies: tuple[float, float]
+    length: float
+    direction: float = 0.0
+    start_phase: float = 0.0
+    start: float = 0.0
+    vertical: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "quantity", _member(SweepQuantity, "quantity", self.quantity))
+        object.__setattr__(self, "law", _member(SweepLaw, "law", self.law))
+        object.__setattr__(self, "frequencies", _two_frequencies(self.frequencies))
+        unit = "m/s²" if self.quantity is SweepQuantity.ACCELERATION else "m"
+        object.__setattr__(self, "amplitude", require_finite("amplitude", self.amplitude, unit))
+        object.__setattr__(self, "length", require_positive("length", self.length, "s"))
+        cycles = max(self.frequencies) * self.length
+        if cycles > MOST_CYCLES:
+            message = (
+                f"length: a sweep has at most {MOST_CYCLES:g} cycles, since all are stored (got {cycles:.4g}). "
+                "Shorten it, or lower its frequencies."
+            )
+            raise ParameterError(message)
+        object.__setattr__(self, "direction", require_finite("direction", self.direction, "rad"))
+        object.__setattr__(self, "start_phase", require_finite("start_phase", self.start_phase, "rad"))
+        object.__setattr__(self, "start", require_not_negative("start", self.start, "s"))
+        object.__setattr__(self, "vertical", require_finite("vertical", self.vertical))
+
+    @classmethod
+    def linear(
+        cls,
+        *,
+        acceleration: float | None = None,
+        displacement: float | None = None,
+        frequencies: tuple[float, float],
+        length: float,
+        direction: float = 0.0,
+        start_phase: float = 0.0,
+        start: float = 0.0,
+        vertical: float = 0.0,
+    ) -> Self:
+        """Return a sweep by as many hertz in any second, of this `acceleration` [m/s²] or `displacement` [m]."""
+        amplitude, quantity = _given_amplitude(acceleration, displacement)
+        return cls(
+            amplitude=amplitude,
+            quantity=quantity,
+            law=SweepLaw.LINEAR,
+            frequencies=frequencies,
+            length=length,
+            direction=direction,
+            start_phase=start_phase,
+            start=start,
+            vertical=vertical,
+        )
+
+    @classmethod
+    def logarithmic(
+        cls,
+        *,
+        acceleration: float | None = None,
+        displacement: float | None = None,
+        frequencies: tuple[float, float],
+        length: float,
+        direction: float = 0.0,
+        start_phase: float = 0.0,
+        start: float = 0.0,
+        vertical: float = 0.0,
+    ) -> Self:
+        """Return a sweep by as many octaves in any second, of this `acceleration` [m/s²] or `displacement` [m]."""
+        amplitude, quantity = _given_amplitude(acceleration, displacement)
+        return cls(
+            amplitude=amplitude,
+            quantity=quantity,
+            law=SweepLaw.LOGARITHMIC,
+            frequencies=frequencies,
+            length=length,
+            direction=direction,
+            start_phase=start_phase,
+            start=start,
+            vertical=vertical,
+        )
+
+    def frequency(self, time: npt.ArrayLike) -> Floats:
+        """Return the frequency at `time` [Hz], that of the ends outside."""
+        since = np.clip(np.asarray(time, dtype=float) - self.start, 0.0, self.length)
+        return self._rates(since)[1] / (2.0 * math.pi)
+
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return the displacement (`order` 0), velocity (1) or acceleration (2) along x, y and z."""
+        t = np.asarray(time, dtype=float)
+        since = t - self.start
+        along = self._along(np.clip(since, 0.0, self.length), order)
+        if order == ACCELERATION:
+            along = np.where((t >= self.start) & (t < self.duration), along, 0.0)
+        elif order == DISPLACEMENT:
+            first, last = self._along(np.array([0.0, self.length]), VELOCITY)
+            along = along + first * np.minimum(since, 0.0) + last * np.maximum(since - self.length, 0.0)
+        return math.cos(self.direction) * along, math.sin(self.direction) * along, self.vertical * along
+
+    def largest_horizontal(self, since: float = 0.0) -> float:
+        """Return a bound of |a_h| from `since` on [m/s²]: A, or D√(ψ̇⁴ + ψ̈²) at its largest; 0 after the end."""
+        if since >= self.duration:
+            return 0.0
+        if self.quantity is SweepQuantity.ACCELERATION:
+            return abs(self.amplitude)
+        # ψ̇ and |ψ̈| rise or fall together, or one is constant.
+        times = np.array([min(max(since - self.start, 0.0), self.length), self.length])
+        _, rate, change = self._rates(times)
+        return float(abs(self.amplitude) * np.hypot(rate**2, change).max())
+
+    def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
+        """Return bounds of a_z from `since` on [m/s²]: `vertical` times that of |a_h|, either way."""
+        largest = abs(self.vertical) * self.largest_horizontal(since)
+        return -largest, largest
+
+    def directions(self) -> tuple[tuple[float, float], ...]:
+        """Return the largest acceleration along the line [m/s²]."""
+        largest = self.largest_horizontal()
+        return ((largest * math.cos(self.direction), largest * math.sin(self.direction)),)
+
+    @property
+    def duration(self) -> float:
+        """When it ends [s]."""
+        return self.start + self.length
+
+    @property
+    def highest_frequency(self) -> float:
+        """The higher of the two frequencies [rad/s]."""
+        return 2.0 * math.pi * max(self.frequencies)
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Beginning, where that is not at once, and end [s]."""
+        return (self.start, self.duration) if self.start > 0.0 else (self.duration,)
+
+    def _along(self, since: Floats, order: int) -> Floats:
+        """Return the derivative along the line between beginning and end."""
+        a = self.amplitude
+        if self.quantity is SweepQuantity.DISPLACEMENT:
+            phase, rate, change = self._rates(since)
+            if order == DISPLACEMENT:
+                return np.asarray(a * np.cos(phase))
+            if order == VELOCITY:
+                return np.asarray(-a * rate * np.sin(phase))
+            return np.asarray(-a * (rate**2 * np.cos(phase) + change * np.sin(phase)))
+        if order == ACCELERATION:
+            return self._acceleration(since)
+        first, cycles = 2.0 * math.pi * self.frequencies[0], max(self.frequencies) * self.length
+        velocity = a / first * math.sin(self.start_phase)
+        if order == VELOCITY:
+            return velocity + integral(self._acceleration, since, self.length, cycles)
+        displacement = -a / first**2 * math.cos(self.start_phase)
+        return displacement + velocity * since + double_integral(self._acceleration, since, self.length, cycles)
+
+    def _acceleration(self, since: Floats) -> Floats:
+        return np.asarray(self.amplitude * np.cos(self._rates(since)[0]))
+
+    def _rates(self, since: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return ψ, ψ̇ and ψ̈."""
+        first, last = (2.0 * math.pi * frequency for frequency in self.frequencies)
+        if self.law is SweepLaw.LINEAR:
+            slope = (last - first) / self.length
+            return (
+                self.start_phase + since * (first + 0.5 * slope * since),
+                first + slope * since,
+                np.full_like(since, slope),
+            )
+        growth = math.log(last / first) / self.length
+        turned = first * since if growth == 0.0 else first * np.expm1(growth * since) / growth
+        rate = first * np.exp(growth * since)
+        return self.start_phase + turned, rate, growth * rate
+
+
+def _given_amplitude(acceleration: float | None, displacement: float | None) -> tuple[float, SweepQuantity]:
+    if acceleration is not None and displacement is None:
+        return require_finite("acceleration", acceleration, "m/s²"), SweepQuantity.ACCELERATION
+    if displacement is not None and acceleration is None:
+        return require_finite("displacement", displacement, "m"), SweepQuantity.DISPLACEMENT
+    message = f"acceleration or displacement must be given, one of them, got {acceleration!r} and {displacement!r}"
+    raise ParameterError(message)
+
+
+def _two_frequencies(frequencies: tuple[float, float]) -> tuple[float, float]:
+    first, last = require_vector("frequencies", frequencies, 2, "Hz")
+    return require_positive("frequencies[0]", first, "Hz"), require_positive("frequencies[1]", last, "Hz")
+
+
+def _member(kind: type[_Kind], name: str, value: str) -> _Kind:
+    try:
+        return kind(value)
+    except ValueError:
+        message = f"{name} must be one of {', '.join(kind)}, got {value!r}"
+        raise ParameterError(message) from None

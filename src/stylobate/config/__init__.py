@@ -1,0 +1,8 @@
+"""Configuration files: plain values, as in TOML and JSON, and the objects they describe.
+
+The public names, imported when they are first used, are those of `__init__.pyi`.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

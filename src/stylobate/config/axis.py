@@ -1,0 +1,62 @@
+"""The description of values of one quantity: evenly spaced, or listed."""
+
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+from pydantic import Field, field_validator
+
+from stylobate.config.description import Config
+from stylobate.errors import ParameterError, require_finite, require_positive, require_whole
+
+
+class Axis(Config):
+    """Values of the quantity `name`: `number` of them `from` … `to`, their `spacing` linear or log; or `values`."""
+
+    name: str
+    first: float | None = Field(default=None, alias="from")
+    last: float | None = Field(default=None, alias="to")
+    number: int | None = None
+    spacing: Literal["linear", "log"] = "linear"
+    listed: tuple[float, ...] | None = Field(default=None, alias="values")
+
+    @field_validator("name")
+    @classmethod
+    def _written_as_in_python(cls, name: str) -> str:
+        return name.replace("-", "_")
+
+    def build(self) -> npt.NDArray[np.float64]:
+        """Return the values, shape (n,).
+
+        Raises
+        ------
+        ParameterError
+            If they are given in no way, in two, or cannot be.
+        """
+        spaced = {"from": self.first, "to": self.last, "number": self.number}
+        missing = [name for name, value in spaced.items() if value is None]
+        if self.listed is not None and len(missing) == len(spaced):
+            return self._listed(self.listed)
+        if self.listed is not None or missing:
+            got = [name for name, value in {**spaced, "values": self.listed}.items() if value is not None]
+            message = f"{self.name} needs from, to and number, or values; got {', '.join(got) or 'none of them'}"
+            raise ParameterError(message)
+        return self._spaced()
+
+    def _listed(self, values: tuple[float, ...]) -> npt.NDArray[np.float64]:
+        if not values:
+            message = f"{self.name} must have at least one value, got none"
+            raise ParameterError(message)
+        return np.array([require_finite("values", value) for value in values])
+
+    def _spaced(self) -> npt.NDArray[np.float64]:
+        first, last, number = _known(self.first), _known(self.last), _known(self.number)
+        number = require_whole("number", number, least=1)
+        if self.spacing == "log":
+            return np.geomspace(require_positive("from", first), require_positive("to", last), number)
+        return np.linspace(require_finite("from", first), require_finite("to", last), number)
+
+
+def _known(value: Any) -> Any:
+    assert value is not None
+    return value

@@ -1,0 +1,102 @@
+"""The description of basins of attraction: what all runs share, and starts on a grid or drawn at random."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Self
+
+from pydantic import Field, field_validator
+
+from stylobate.config.axis import Axis
+from stylobate.config.description import Config, built
+from stylobate.config.many_runs import ManyRuns, common_values, refuse_design
+from stylobate.config.simulation import Setup
+from stylobate.errors import LARGEST_SEED, MOST_RUNS, require_whole
+
+
+class Starts(Config):
+    """Starts on a grid, `x` and `y`; or `random`, a number of them drawn with `seed` in the ranges `over`."""
+
+    x: Axis | None = None
+    y: Axis | None = None
+    random: int | None = None
+    seed: int = 0
+    over: dict[str, tuple[float, float]] = Field(default_factory=dict)
+
+    @field_validator("over")
+    @classmethod
+    def _written_as_in_python(cls, over: dict[str, tuple[float, float]]) -> dict[str, tuple[float, float]]:
+        return {name.replace("-", "_"): bounds for name, bounds in over.items()}
+
+    def arguments(self, problems: list[str]) -> dict[str, Any]:
+        """Return the arguments of `stylobate.studies.maps.basins`, with a line in `problems` for each mistake."""
+        axes = {place: axis for place, axis in (("x", self.x), ("y", self.y)) if axis is not None}
+        if self.random is None:
+            problems += _problems_of_the_grid(axes, self.over)
+            return {"over": {axis.name: built(f"basin.{place}", axis.build, problems) for place, axis in axes.items()}}
+        if axes:
+            problems.append(f"basin.{' and basin.'.join(axes)}: random starts have ranges (over) and no grid")
+        if not self.over:
+            problems.append("basin.over is missing: the ranges of random starts, by name")
+        built("basin", lambda: require_whole("random", self.random or 0, least=1, most=MOST_RUNS), problems)
+        built("basin", lambda: require_whole("seed", self.seed, least=0, most=LARGEST_SEED), problems)
+        return {"over": dict(self.over), "count": self.random, "seed": self.seed}
+
+
+def _problems_of_the_grid(axes: Mapping[str, Axis], over: Mapping[str, object]) -> list[str]:
+    if over:
+        return ["basin.random is missing: how many starts to draw in the ranges over"]
+    if len({axis.name for axis in axes.values()}) == 2:  # noqa: PLR2004  a plane
+        return []
+    if not axes:
+        return ["basin: x and y are missing (a grid of starts), or random and over (a random sample)"]
+    missing = [f"basin.{place} is missing" for place in "xy" if place not in axes]
+    return missing or [f"basin.x and basin.y must differ, got {axes['x'].name!r} in both"]
+
+
+class BasinConfig(ManyRuns):
+    """Basins of attraction: `column`, `model`, `motion`, the arguments of a run, and the starts `basin`."""
+
+    basin: Starts = Starts()
+    strobes: int | None = None
+    confidence: float = 0.95
+
+    @classmethod
+    def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]]) -> Self:
+        """Return the description that repeats saved basins.
+
+        Parameters
+        ----------
+        provenance
+            Of the basins.
+        axes
+            The coordinates of a grid: both names with their values, x first.
+
+        Raises
+        ------
+        UnsupportedError
+            If they were made with a model or motion that descriptions do not know.
+        ParameterError
+            If the starts were neither on a grid nor drawn at random.
+        """
+        design = refuse_design(provenance, "grid", "random")
+        if design["kind"] == "random":
+            starts = {"random": design["count"], "seed": design["seed"], "over": design["values"]}
+        else:
+            listed = ({"name": name, "values": list(values)} for name, values in axes.items())
+            starts = dict(zip("xy", listed, strict=False))
+        kept = {"strobes": provenance["strobes"]} if provenance.get("strobes") else {}
+        return cls.parse({**common_values(provenance), **kept, "basin": starts})
+
+    def build(self) -> Setup:
+        """Return model and motion; the options are arguments of `stylobate.studies.maps.basins`.
+
+        Raises
+        ------
+        ConfigError
+            With one line for each part that cannot be.
+        """
+        problems: list[str] = []
+        arguments = self.basin.arguments(problems)
+        problems += self.problems_of_the_length(())
+        model, motion, options = self.common(problems)
+        strobes = {} if self.strobes is None else {"strobes": self.strobes}
+        return Setup(model, motion, {**arguments, **options, **strobes, "confidence": self.confidence})

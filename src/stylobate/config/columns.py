@@ -1,0 +1,53 @@
+"""Descriptions of columns, made from the declarations of their numbers and told apart by their `shape`."""
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import BeforeValidator
+
+from stylobate.column import SHAPES, Column
+from stylobate.config.declared import configs_of, one_of
+from stylobate.config.description import Config
+from stylobate.quantities import parameters_of
+
+
+class DescribedColumn(Config):
+    """A column by the numbers of its shape."""
+
+    shape: str
+
+    def build(self) -> Column:
+        """Return the column."""
+        return SHAPES[self.shape](**self.model_dump(exclude={"shape"}))
+
+
+_BY_SHAPE = configs_of(DescribedColumn, "shape", SHAPES)
+
+
+def describe_column(column: Column) -> DescribedColumn:
+    """Return the description of `column` by its mass and inertia."""
+    return _BY_SHAPE["given"](shape="given", **{name: getattr(column, name) for name in parameters_of(Column)})
+
+
+def implied_shape(names: Iterable[str]) -> str | None:
+    """Return the only shape that has one of the numbers of these `names`, or None."""
+    given = set(names)
+    for shape, make in SHAPES.items():
+        others = {name for other in SHAPES.values() if other is not make for name in parameters_of(other)}
+        if given & (parameters_of(make).keys() - others):
+            return shape
+    return None
+
+
+def _with_shape(described: Any) -> Any:
+    """Add the shape that the numbers imply to the values of a column without one; solid by default."""
+    return {"shape": implied_shape(described) or "solid", **described} if isinstance(described, Mapping) else described
+
+
+if TYPE_CHECKING:
+    ColumnConfig = DescribedColumn
+else:
+    ColumnConfig = Annotated[one_of(_BY_SHAPE.values(), "shape"), BeforeValidator(_with_shape)]
+
+ANY_COLUMN = Column.dimensionless(0.1)
+"""Stands in for a column that cannot be built, so that mistakes in the model are told with it."""

@@ -1,0 +1,96 @@
+"""What all descriptions share: strict keys, and mistakes told one to a line."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, Self, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from stylobate.config.suggestions import with_suggestions
+from stylobate.errors import ConfigError, ParameterError
+
+_T = TypeVar("_T")
+
+# Fields whose value is one of several descriptions, told apart by a tag; so is each element of a list.
+_UNION_FIELDS = ("column", "model", "motion")
+# Fields that are tables of such, by names of the user's.
+_UNION_TABLES = ("columns",)
+# What is to be said of a part that is missing.
+_WANTED = {
+    "duration": ": how long to follow a run [s], such as 60; only under a motion that ends may it be left out",
+    "motion.velocity": ": velocity of the pulse [m/s]; on the command line --pulse-velocity",
+}
+
+
+class Config(BaseModel):
+    """A part of a TOML or JSON description; unknown keys are mistakes."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    @classmethod
+    def parse(cls, values: Mapping[str, Any]) -> Self:
+        """Return the description of these `values`.
+
+        Raises
+        ------
+        ConfigError
+            With one line for each mistake.
+        """
+        try:
+            return cls.model_validate(values)
+        except ValidationError as error:
+            raise ConfigError(with_suggestions(cls, [_line(problem) for problem in error.errors()])) from None
+
+    def values(self) -> dict[str, Any]:
+        """Return the description as plain values that JSON and TOML can hold, defaults left out."""
+        return self.model_dump(mode="json", exclude_none=True)
+
+
+def built(name: str, build: Callable[[], _T], problems: list[str]) -> _T | None:
+    """Return what `build` makes; where it cannot, None, and a line more in `problems`."""
+    try:
+        return build()
+    except ParameterError as error:
+        problems.append(f"{name}: {error}")
+    except ArithmeticError:
+        # Each number can be; what follows from all of them is beyond the numbers a machine has.
+        problems.append(f"{name}: its numbers are too large or too small to compute with; check their units")
+    return None
+
+
+def _line(problem: Any) -> str:
+    name = ".".join(_without_tags(problem["loc"])) or "the description"
+    given = problem.get("input")
+    context = problem.get("ctx", {})
+    tag = str(context.get("discriminator", "")).strip("'")
+    match problem["type"]:
+        case "missing":
+            return f"{name} is missing{_WANTED.get(name, '')}"
+        case "extra_forbidden":
+            return _unknown(name, problem["loc"])
+        case "union_tag_invalid":
+            return f"{name}.{tag} must be one of {context['expected_tags']}, got {context['tag']!r}"
+        case "union_tag_not_found":
+            return f"{name}.{tag} is missing"
+        case "value_error":
+            return str(context["error"])
+    return f"{name}: {problem['msg'][0].lower()}{problem['msg'][1:]}, got {given!r}"
+
+
+def _unknown(name: str, loc: tuple[int | str, ...]) -> str:
+    if loc[0] in _UNION_FIELDS and len(loc) > 1:
+        return f"{name} does not belong to {loc[0]} {loc[1]!r}; remove it or choose another"
+    return f"{name} is not known here; remove it, or see the documentation for the names"
+
+
+def _without_tags(loc: tuple[int | str, ...]) -> list[str]:
+    # pydantic puts the chosen member of a tagged union behind its field, as in ("motion", "circular", "acceleration").
+    return [
+        str(part)
+        for i, part in enumerate(loc)
+        if i == 0 or not (loc[i - 1] in _UNION_FIELDS or isinstance(loc[i - 1], int) or _in_table(loc, i))
+    ]
+
+
+def _in_table(loc: tuple[int | str, ...], place: int) -> bool:
+    """Return whether the part at this `place` tells which member of a union a named one is."""
+    return place == 2 and loc[0] in _UNION_TABLES and len(loc) > 3  # noqa: PLR2004  columns, name, shape, number

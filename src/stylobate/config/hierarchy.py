@@ -1,0 +1,98 @@
+"""The description of one case on the ladder of models."""
+
+from collections.abc import Mapping
+from functools import partial
+from typing import Any, Self
+
+from pydantic import Field
+
+from stylobate.config.columns import ColumnConfig
+from stylobate.config.description import Config, built
+from stylobate.config.models import default_values, described_model
+from stylobate.config.motions import MotionConfig, RestMotion
+from stylobate.config.simulation import (
+    OF_OTHER_COMMANDS,
+    Setup,
+    SimulationConfig,
+    built_parts,
+    built_rules,
+    duration_with_tail,
+    problems_of_the_run,
+    with_default_duration,
+)
+from stylobate.errors import ConfigError, require_positive
+
+
+class HierarchyFrictions(Config):
+    """The frictions of all levels: each takes what it knows."""
+
+    damping: float = 0.0
+    spin_damping: float = 0.0
+    restitution: float | None = None
+
+
+class HierarchyOptions(Config):
+    """What is compared: the case scaled to these slendernesses, and the level from which differences are taken."""
+
+    slenderness: tuple[float, ...] = ()
+    reference: str = "rolling"
+
+
+class HierarchyConfig(Config):
+    """A case on the ladder: `column`, frictions under `model`, `motion`, the arguments of a run, and `ladder`."""
+
+    column: ColumnConfig
+    model: HierarchyFrictions = HierarchyFrictions()
+    motion: MotionConfig = RestMotion(kind="rest")
+    tilt: tuple[float, float] = (0.0, 0.0)
+    tilt_rate: tuple[float, float] = (0.0, 0.0)
+    spin: float = 0.0
+    duration: float | None
+    friction_coefficient: float | None = None
+    rtol: float = 1e-8
+    atol: float | None = None
+    tilt_limit: float | None = None
+    rest_energy: float | None = None
+    max_steps: int = 200_000
+    samples: int | None = None
+    rules: dict[str, float] = Field(default_factory=dict)
+    ladder: HierarchyOptions = HierarchyOptions()
+
+    @classmethod
+    def parse(cls, values: Mapping[str, Any]) -> Self:
+        """Return the description of these `values`; the kind of the model, and what it does not change, is left out."""
+        of_others = {*OF_OTHER_COMMANDS, *SimulationConfig.model_fields} - set(cls.model_fields)
+        kept = {name: value for name, value in values.items() if name not in of_others}
+        described = kept.get("model")
+        if isinstance(described, Mapping):
+            usual = {**default_values(described.get("kind", "slender")), "kind": described.get("kind")}
+            kept["model"] = {name: one for name, one in described.items() if name not in usual or one != usual[name]}
+            strange = [name for name in kept["model"] if name not in HierarchyFrictions.model_fields]
+            if strange:
+                shared = ", ".join(HierarchyFrictions.model_fields)
+                raise ConfigError(
+                    [f"model.{name} is no friction of the ladder: {shared}; remove it" for name in strange]
+                )
+        return super().parse(with_default_duration(kept))
+
+    def build(self) -> Setup:
+        """Return the most general level and the motion; the options are those of `stylobate.studies.model_hierarchy`.
+
+        Raises
+        ------
+        ConfigError
+            With one line for each part that cannot be.
+        """
+        problems = problems_of_the_run(self)
+        for c in self.ladder.slenderness:
+            built("ladder", partial(require_positive, "slenderness", c), problems)
+        rules = built("rules", lambda: built_rules(self.rules), problems)
+        frictions = self.model.model_dump()
+        restitution = frictions.pop("restitution")
+        level = described_model("rolling", **frictions, restitution=1.0 if restitution is None else restitution)
+        model, motion = built_parts(self.column, level, self.motion, problems)
+        options = self.model_dump(exclude={"column", "model", "motion", "ladder"})
+        if self.duration is None:
+            options["duration"] = duration_with_tail(model, motion)
+        compared = {"slenderness": self.ladder.slenderness or None, "reference": self.ladder.reference}
+        return Setup(model, motion, options | compared | frictions | {"restitution": restitution, "rules": rules})

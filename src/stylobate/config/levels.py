@@ -1,0 +1,60 @@
+"""The levels of dissipation of an assessment, and what may be wrong with them."""
+
+from collections.abc import Mapping
+
+from stylobate.config.description import Config
+from stylobate.config.suggestions import did_you_mean
+from stylobate.errors import ParameterError, require_not_negative
+
+LEVELS = ("low", "central", "high")
+"""The levels that are needed."""
+
+OF_DISSIPATION = ("damping", "spin_damping", "rolling_resistance", "restitution")
+"""The numbers of a model that dissipate."""
+
+
+def problems_of_the_levels(levels: Mapping[str, Mapping[str, float]], model: type[Config]) -> list[str]:
+    """Return a line for each mistake in the numbers of the levels.
+
+    Parameters
+    ----------
+    levels
+        Low, central and high, and perhaps others.
+    model
+        The description of the model whose numbers they are.
+    """
+    problems = []
+    for level, numbers in levels.items():
+        for name, value in numbers.items():
+            try:
+                require_not_negative(f"dissipation.{level}.{name}", value)
+            except ParameterError as error:
+                problems.append(str(error))
+            if name not in OF_DISSIPATION:
+                remedy = did_you_mean(name, OF_DISSIPATION) or f"dissipation is told by {', '.join(OF_DISSIPATION)}"
+                problems.append(f"dissipation.{level}.{name} is not known here; {remedy}")
+    kind = model.model_fields["kind"].default
+    problems += [
+        f"dissipation: the model {kind} has no {name}; leave it out or choose another model"
+        for name in OF_DISSIPATION
+        if name not in model.model_fields and any(name in numbers for numbers in levels.values())
+    ]
+    return problems or [*_differing(levels), *_falling(levels)]
+
+
+def _differing(levels: Mapping[str, Mapping[str, float]]) -> list[str]:
+    """Return a line where not all levels name the same numbers, or name none."""
+    names = set(levels["central"])
+    if names and all(set(level) == names for level in levels.values()):
+        return []
+    told = ", ".join(f"{level} {' and '.join(sorted(numbers)) or 'nothing'}" for level, numbers in levels.items())
+    return [f"dissipation must name the same numbers at each level, one or more, got {told}"]
+
+
+def _falling(levels: Mapping[str, Mapping[str, float]]) -> list[str]:
+    """Return a line where a level loses less than one that is called lower."""
+    dampings = [levels[name]["damping"] for name in LEVELS if "damping" in levels[name]]
+    if len(dampings) < len(LEVELS) or dampings == sorted(dampings):
+        return []
+    told = ", ".join(f"{name} {value:g}" for name, value in zip(LEVELS, dampings, strict=True))
+    return [f"dissipation: damping must not fall from low to central to high, got {told}"]

@@ -1,0 +1,153 @@
+"""What descriptions of many runs share: a column, its model, a base motion, a start, how long and how closely."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, Self
+
+from pydantic import Field
+
+from stylobate.base_motions import BaseMotion
+from stylobate.config.columns import ColumnConfig
+from stylobate.config.description import Config, built
+from stylobate.config.models import ModelConfig, described_model
+from stylobate.config.motions import MotionConfig, RestMotion
+from stylobate.config.simulation import (
+    OF_OTHER_COMMANDS,
+    built_parts,
+    built_rules,
+    duration_with_tail,
+    is_to_end,
+    problems_of_the_run,
+    refuse_own_classes,
+)
+from stylobate.errors import ParameterError
+from stylobate.models import Model
+from stylobate.results import OutcomeRules
+
+
+class ManyRuns(Config):
+    """What all runs have in common, under the names of `simulate_ensemble`; `periods` may stand for `duration`."""
+
+    column: ColumnConfig
+    model: ModelConfig = described_model("slender")
+    motion: MotionConfig = RestMotion(kind="rest")
+    tilt: tuple[float, float] = (0.0, 0.0)
+    tilt_rate: tuple[float, float] = (0.0, 0.0)
+    spin: float = 0.0
+    duration: float | None = None
+    periods: float | None = None
+    method: Literal["dop853", "taylor"] = "dop853"
+    rtol: float = 1e-8
+    atol: float | None = None
+    tilt_limit: float | None = None
+    rest_energy: float | None = None
+    max_steps: int = 200_000
+    demands: bool = False
+    recheck: bool = False
+    rules: dict[str, float] = Field(default_factory=dict)
+
+    @classmethod
+    def parse(cls, values: Mapping[str, Any]) -> Self:
+        """Return the description of these `values`; what they say for other commands is of no concern here."""
+        of_others = {*OF_OTHER_COMMANDS, *_OF_A_SINGLE_RUN} - set(cls.model_fields)
+        return super().parse({name: value for name, value in values.items() if name not in of_others})
+
+    def values(self) -> dict[str, Any]:
+        """Return the description as plain values that JSON and TOML can hold, defaults left out."""
+        return self.model_dump(mode="json", exclude_none=True, by_alias=True)
+
+    def common(self, problems: list[str], varying: Sequence[str] = ()) -> tuple[Model, BaseMotion, dict[str, Any]]:
+        """Return model, motion and the arguments that all runs share but for those `varying`.
+
+        Raises
+        ------
+        ConfigError
+            With one line for each part that cannot be, and the `problems` known before.
+        """
+        problems += problems_of_the_run(self)
+        rules = built("rules", lambda: built_rules(self.rules), problems)
+        model, motion = built_parts(self.column, self.model, self.motion, problems)
+        options = {name: getattr(self, name) for name in _SHARED} | {"rules": rules or OutcomeRules()}
+        if self._lasts_as_its_motion(varying):
+            options["duration"] = duration_with_tail(model, motion)
+        return model, motion, options
+
+    def problems_of_the_length(self, names: tuple[str, ...]) -> list[str]:
+        """Return a line unless one of `duration` and `periods` is given, or a duration among the `names` that vary.
+
+        Under a motion that ends none is needed: see `SimulationConfig`.
+        """
+        if self._lasts_as_its_motion(names):
+            return []
+        given = [name for name in ("duration", "periods") if getattr(self, name) is not None]
+        given += ["a duration that varies"] if "duration" in names else []
+        if len(given) == 1:
+            return []
+        got = " and ".join(given) or "none of them"
+        return [f"duration [s], periods or a duration that varies is needed, one of them; got {got}"]
+
+    def _lasts_as_its_motion(self, names: Sequence[str]) -> bool:
+        untold = self.duration is None and self.periods is None and "duration" not in names
+        return untold and is_to_end(self.motion.model_dump())
+
+
+_OF_A_SINGLE_RUN = ("samples", "twist", "position", "friction_coefficient", "velocity", "clearance")
+"""What changes what is told of a run, and no outcome."""
+
+_SHARED = (
+    *("tilt", "tilt_rate", "spin", "duration", "periods"),
+    *("method", "rtol", "atol", "tilt_limit", "rest_energy", "max_steps", "demands", "recheck"),
+)
+
+
+def with_numbers_that_vary(values: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
+    """Return `values` with a number in the motion for each that it needs and that varies anyway, if it lacks one."""
+    motion = values.get("motion")
+    if not isinstance(motion, Mapping):
+        return dict(values)
+    needed = _NEEDED.get(str(motion.get("kind")), ())
+    # With an amplitude of 1 m/s² scaling to an acceleration is exact.
+    return {**values, "motion": {**{name: 1.0 for name in needed if name in names}, **motion}}
+
+
+_NEEDED = {
+    "circular": ("acceleration", "angular_frequency"),
+    "straight": ("acceleration", "angular_frequency"),
+    "oblique": ("acceleration", "angular_frequency"),
+    "elliptic": ("angular_frequency",),
+    "harmonic": ("angular_frequency",),
+    **dict.fromkeys(
+        (
+            *("half_sine", "half_cosine", "one_sine", "one_cosine", "sinusoidal"),
+            *("ricker", "antisymmetric_ricker"),
+        ),
+        ("acceleration",),
+    ),
+}
+
+
+def common_values(provenance: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values that all runs of a saved sweep shared, from its `provenance`.
+
+    Raises
+    ------
+    UnsupportedError
+        If it was made with a model or motion that descriptions do not know.
+    """
+    refuse_own_classes(provenance)
+    known = ("column", "model", "motion", "rules", *_SHARED)
+    return {name: provenance[name] for name in known if provenance.get(name) is not None}
+
+
+def name_of(axis: object) -> str:
+    """Return the name in the plain values of an axis, as in Python; nothing if it has none."""
+    name = axis.get("name") if isinstance(axis, Mapping) else None
+    return name.replace("-", "_") if isinstance(name, str) else ""
+
+
+def refuse_design(provenance: Mapping[str, Any], *known: str) -> Mapping[str, Any]:
+    """Return the design of a saved sweep, or raise ParameterError if its kind is not among those `known`."""
+    design: Mapping[str, Any] = provenance.get("design") or {"kind": "ensemble"}
+    if design["kind"] not in known:
+        message = f"the runs in it are those of a design {design['kind']!r}; only {' and '.join(known)} can be repeated"
+        raise ParameterError(message)
+    return design

@@ -1,0 +1,73 @@
+"""The description of an overturning map: what all runs share, and two quantities with their values."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Self
+
+from stylobate.base_motions.frequency import is_pulse, with_frequency
+from stylobate.config.axis import Axis
+from stylobate.config.description import Config, built
+from stylobate.config.many_runs import ManyRuns, common_values, name_of, refuse_design, with_numbers_that_vary
+from stylobate.config.simulation import Setup, duration_with_tail
+
+
+class Plane(Config):
+    """The two quantities `x` and `y` that vary."""
+
+    x: Axis
+    y: Axis
+
+
+class MapConfig(ManyRuns):
+    """An overturning map: `column`, `model`, `motion`, the arguments of a run, and `map.x`, `map.y`."""
+
+    map: Plane
+
+    @classmethod
+    def parse(cls, values: Mapping[str, Any]) -> Self:
+        """Return the description of these `values`; a motion may lack a number that varies."""
+        plane = values.get("map")
+        axes = plane if isinstance(plane, Mapping) else {}
+        return super().parse(with_numbers_that_vary(values, (name_of(axes.get("x")), name_of(axes.get("y")))))
+
+    @classmethod
+    def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]]) -> Self:
+        """Return the description that repeats a saved map.
+
+        Parameters
+        ----------
+        provenance
+            Of the map.
+        axes
+            Its coordinates: both names with their values, x first.
+
+        Raises
+        ------
+        UnsupportedError
+            If it was made with a model or motion that descriptions do not know.
+        ParameterError
+            If its runs are not on a grid.
+        """
+        refuse_design(provenance, "grid")
+        listed = ({"name": name, "values": list(values)} for name, values in axes.items())
+        return cls.parse({**common_values(provenance), "map": dict(zip("xy", listed, strict=False))})
+
+    def build(self) -> Setup:
+        """Return model and motion; the options are arguments of `stylobate.studies.overturning_map`.
+
+        Raises
+        ------
+        ConfigError
+            With one line for each part that cannot be.
+        """
+        x, y = self.map.x, self.map.y
+        problems: list[str] = []
+        over = {axis.name: built(f"map.{place}", axis.build, problems) for place, axis in (("x", x), ("y", y))}
+        if x.name == y.name:
+            problems.append(f"map.x and map.y must differ, got {x.name!r} in both")
+        problems += self.problems_of_the_length((x.name, y.name))
+        model, motion, options = self.common(problems, (x.name, y.name))
+        frequencies = over.get("angular_frequency")
+        if frequencies is not None and self.duration is None and self.periods is None and is_pulse(motion):
+            # Each to the end of its own pulse: that of the lowest frequency lasts longest.
+            options["duration"] = duration_with_tail(model, with_frequency(motion, float(frequencies.min())))
+        return Setup(model, motion, {"over": over, **options})

@@ -1,0 +1,81 @@
+"""Descriptions of models, made from the declarations of their numbers and told apart by their `kind`."""
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import BeforeValidator
+
+from stylobate.column import Column
+from stylobate.config.declared import configs_of, one_of
+from stylobate.config.description import Config
+from stylobate.errors import UnsupportedError
+from stylobate.models import Model
+from stylobate.models.declared import MODELS
+from stylobate.quantities import parameters_of
+
+
+class DescribedModel(Config):
+    """A model without its column."""
+
+    kind: str
+
+    def build(self, column: Column) -> Model:
+        """Return the model of `column`."""
+        model: Callable[..., Model] = MODELS[self.kind]
+        return model(column, **self.model_dump(exclude={"kind"}))
+
+
+_BY_KIND = configs_of(DescribedModel, "kind", MODELS)
+
+DESCRIBED_MODELS: tuple[type[Config], ...] = tuple(_BY_KIND.values())
+"""The descriptions of all models."""
+
+
+def _with_kind(described: Any) -> Any:
+    """Return the values of a model with its kind; it is the slender one where none is told."""
+    return {"kind": "slender", **described} if isinstance(described, dict) else described
+
+
+if TYPE_CHECKING:
+    ModelConfig = DescribedModel
+else:
+    ModelConfig = Annotated[one_of(DESCRIBED_MODELS, "kind"), BeforeValidator(_with_kind)]
+
+
+def described_model(kind: str, **values: Any) -> DescribedModel:
+    """Return the description of a model of this `kind`, with defaults for what is not given."""
+    return _BY_KIND[kind](**{"kind": kind, **values})
+
+
+def known_values(described: Mapping[str, Any], kind: str) -> dict[str, Any]:
+    """Return those of the `described` values of a model that one of this `kind` knows, all if there is no such kind."""
+    one = _BY_KIND.get(kind)
+    return {name: value for name, value in described.items() if one is None or name in one.model_fields}
+
+
+def kinds_with(name: str) -> tuple[str, ...]:
+    """Return the kinds of model that have a number of this `name`."""
+    return tuple(kind for kind, one in _BY_KIND.items() if name in one.model_fields)
+
+
+def default_values(kind: str) -> dict[str, Any]:
+    """Return what a description of this `kind` has where nothing is given; nothing if there is no such kind."""
+    return described_model(kind).model_dump() if kind in MODELS else {}
+
+
+def describe_model(model: Model) -> Config:
+    """Return the description of `model`, its column apart.
+
+    Raises
+    ------
+    UnsupportedError
+        If the model is of a class that descriptions do not know.
+    """
+    kind = _KINDS.get(type(model))  # a subclass is another model
+    if kind is not None:
+        return described_model(kind, **{name: getattr(model, name) for name in parameters_of(type(model))})
+    message = f"a model of class {type(model).__name__} has no description; results keep its repr only"
+    raise UnsupportedError(message)
+
+
+_KINDS: Mapping[type[Model], str] = {model: kind for kind, model in MODELS.items()}

@@ -1,0 +1,314 @@
+"""Descriptions of records: which files, in which unit, and what is done to them."""
+
+import hashlib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field
+
+from stylobate.base_motions import Record
+from stylobate.base_motions.records import Lengths, RecordFormat, Steps, read_record, sample_record
+from stylobate.base_motions.records.events import Event, find_events
+from stylobate.base_motions.records.grouping import join_event, reader, remark_on_missing_components
+from stylobate.base_motions.records.sources import RecordSource
+from stylobate.config.description import Config
+from stylobate.config.record_steps import (
+    AnyStep,
+    BaselineStep,
+    DelayedStep,
+    FilteredStep,
+    InvertedStep,
+    PaddedStep,
+    RecordStep,
+    ResampledStep,
+    RotatedStep,
+    ScaledStep,
+    TailStep,
+    TrimmedStep,
+    processed,
+)
+from stylobate.errors import FileError, ParameterError
+
+_LONGEST_EVENT = 3  # two horizontal components and a vertical one
+
+
+class Reading(Config):
+    """What `RecordMotion` and `RecordsConfig` share: arguments of `read_records`, and `processing`."""
+
+    units: str | None = None
+    step: float | None = None
+    columns: dict[str, str] | None = None
+    lengths: Literal["trim", "pad"] = "trim"
+    steps: Literal["refuse", "resample"] = "refuse"
+    format: Literal["at2", "asc", "table", "csv", "waveform"] | None = None
+    single: bool = False
+    processing: tuple[RecordStep, ...] = ()
+
+    def find(self, source: RecordSource, directions: Mapping[str, float | str]) -> tuple[Event, ...]:
+        """Return the events in these files; see `find_events`."""
+        return find_events(source, reader(self.step, self.columns, self._format()), directions)
+
+    def join(self, event: Event) -> Record:
+        """Return the record of an event; see `join_event`."""
+        return join_event(event, self.units, Lengths[self.lengths.upper()], Steps[self.steps.upper()])
+
+    def _format(self) -> RecordFormat | None:
+        return None if self.format is None else RecordFormat[self.format.upper()]
+
+
+class RecordMotion(Reading):
+    """A record: the file `path`, or a list of those of one event, or the `sample` that comes with the package.
+
+    `units`, `step`, `columns`, `axis`, `lengths`, `steps`, `format` and `single` are arguments of `read_record` and
+    `read_records`; `directions` are by name of a file, or a list in the order of the files; `name` is that of the
+    record. Then come the steps of `processing`, in their order, each with the name of a method of `Record`; at
+    last `scale`, `rotation` [rad] and `tail` [s of rest]. A saved result has `file_sha256` of its files, by path.
+    """
+
+    kind: Literal["record"] = "record"
+    path: str | tuple[str, ...] | None = None
+    sample: str | None = None
+    name: str | None = None
+    directions: dict[str, float | str] | tuple[float | str, ...] = ()
+    axis: Literal["x", "y", "z"] | None = None
+    scale: float | None = None
+    rotation: float | None = None
+    tail: float | None = None
+    file_sha256: dict[str, str] = Field(default_factory=dict)
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """The files."""
+        if self.path is None:
+            return ()
+        return (self.path,) if isinstance(self.path, str) else self.path
+
+    def build(self) -> "DescribedRecord":
+        """Return the record, which remembers this description and the SHA-256 of its files.
+
+        Raises
+        ------
+        ParameterError
+            If files and sample are contrary, the files are not those of one event, or one of them has changed since
+            its SHA-256 was kept.
+        FileError
+            If a file cannot be read, or does not tell its unit where `units` is not given.
+        """
+        self._checked_files()
+        return self.describe(self._read())
+
+    def describe(self, record: Record) -> "DescribedRecord":
+        """Return the `record` that was read from the files, processed as described, with its description.
+
+        Warns
+        -----
+        UnlikelyInputWarning
+            If it lacks a component, unless `single`, or the axis or the columns of one file are chosen.
+        """
+        if not (self.single or self.axis or (self.columns and isinstance(self.path, str))):
+            remark_on_missing_components(record)
+        digests = self._checked_files()
+        steps = (*self.processing, *self._last())
+        paths = tuple(str(Path(path).absolute()) for path in self.paths)
+        kept = self.model_copy(
+            update={
+                "path": paths[0] if isinstance(self.path, str) else paths or None,
+                "file_sha256": dict(zip(paths, digests, strict=True)),
+                "processing": steps,
+                **dict.fromkeys(("scale", "rotation", "tail")),
+            }
+        )
+        return DescribedRecord.of(processed(record, steps), kept)
+
+    def _last(self) -> list[AnyStep]:
+        """Return scale, rotation and tail as steps."""
+        last: list[AnyStep] = []
+        if self.scale is not None:
+            last.append(ScaledStep(factor=self.scale))
+        if self.rotation is not None:
+            last.append(RotatedStep(angle=self.rotation))
+        if self.tail is not None:
+            last.append(TailStep(length=self.tail))
+        return last
+
+    def _checked_files(self) -> list[str]:
+        """Return the SHA-256 of each file; a line where one is not what it was."""
+        if (self.path is None) == (self.sample is None):
+            message = "path (one file, or those of one event) or sample must be given, one of them"
+            raise ParameterError(message)
+        if self.path is not None and not 1 <= len(self.paths) <= _LONGEST_EVENT:
+            message = f"path must name one to three files of one event, got {len(self.paths)}"
+            raise ParameterError(message)
+        digests = [self._sha256(path) for path in self.paths]
+        for path, found in zip(self.paths, digests, strict=True):
+            was = self.file_sha256.get(path, found)
+            if was != found:
+                message = (
+                    f"{path} has changed since the result was saved: its SHA-256 was {was[:12]}…, is {found[:12]}…; "
+                    "put the old file back, or describe the run anew"
+                )
+                raise ParameterError(message)
+        return digests
+
+    def _sha256(self, path: str) -> str:
+        try:
+            return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+        except OSError as error:
+            remedy = "; the result was made with it: put it there or beside the result" if self.file_sha256 else ""
+            message = f"cannot read {path}: {error.strerror or error}{remedy}"
+            raise FileError(message) from None
+
+    def _read(self) -> Record:
+        if self.sample is not None:
+            self._refuse(("units", "step", "columns", "axis", "directions", "format", "name"), "a sample")
+            return sample_record(self.sample)
+        if isinstance(self.path, str) and not (self.directions or self.name):
+            return read_record(
+                self.path, self.units, step=self.step, columns=self.columns, axis=self.axis, format=self._format()
+            )
+        self._refuse(("axis",), "files that are put together")
+        (event,) = self.find({self.name: self.paths} if self.name else [self.paths], self._directions())
+        return self.join(event)
+
+    def _directions(self) -> Mapping[str, float | str]:
+        if isinstance(self.directions, dict):
+            return self.directions
+        if self.directions and len(self.directions) != len(self.paths):
+            message = (
+                f"directions: one for each file is needed (got {len(self.directions)} for {len(self.paths)} files). "
+                'List azimuths [degrees] or names such as "up", in the order of the files'
+            )
+            raise ParameterError(message)
+        return {Path(path).name: way for path, way in zip(self.paths, self.directions, strict=False)}
+
+    def _refuse(self, names: Iterable[str], what: str) -> None:
+        for name in names:
+            if getattr(self, name):
+                message = f"{name} does not belong to {what}; leave it out"
+                raise ParameterError(message)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class DescribedRecord(Record):
+    """A record that knows the `description` from which it can be built again, after processing too."""
+
+    description: RecordMotion
+
+    @classmethod
+    def of(cls, record: Record, description: RecordMotion) -> "DescribedRecord":
+        """Return `record` with its description."""
+        return cls(
+            samples=record.samples,
+            step=record.step,
+            start=record.start,
+            name=record.name,
+            provenance=record.provenance,
+            description=description,
+        )
+
+    def _after(self, step: AnyStep, record: Record) -> "DescribedRecord":
+        more = {"processing": (*self.description.processing, step)}
+        return DescribedRecord.of(record, self.description.model_copy(update=more))
+
+    def changed(self, told: str, **changes: Any) -> Record:
+        """Return a record with other fields, without a description: what was done is told in words only."""
+        fields = {name: getattr(self, name) for name in ("samples", "step", "start", "name")} | changes
+        return Record(**fields, provenance=(*self.provenance, told))
+
+    # Methods of slotted classes cannot say super().
+
+    def scaled(self, factor: float, *, vertical: float | None = None) -> "DescribedRecord":  # type: ignore[override]
+        """Return this record times `factor`; its vertical component times `vertical` where that is given."""
+        return self._after(ScaledStep(factor=factor, vertical=vertical), Record.scaled(self, factor, vertical=vertical))
+
+    def rotated(self, angle: float) -> "DescribedRecord":  # type: ignore[override]
+        """Return this record turned by `angle` [rad] about the vertical, anticlockwise seen from above."""
+        return self._after(RotatedStep(angle=angle), Record.rotated(self, angle))
+
+    def delayed(self, delay: float) -> "DescribedRecord":  # type: ignore[override]
+        """Return this record begun `delay` [s] later."""
+        return self._after(DelayedStep(delay=delay), Record.delayed(self, delay))
+
+    def inverted(self) -> "DescribedRecord":
+        """Return this record with its horizontal components in the opposite sense, the vertical as it is."""
+        return self._after(InvertedStep(), Record.inverted(self))
+
+    def trimmed(self, begin: float | None = None, end: float | None = None) -> "DescribedRecord":
+        """Return the samples from time `begin` to `end` [s]; the first of them comes at `start`."""
+        return self._after(TrimmedStep(begin=begin, end=end), Record.trimmed(self, begin, end))
+
+    def padded(self, *, before: float = 0.0, after: float = 0.0) -> "DescribedRecord":
+        """Return this record with `before` and `after` [s] of zeros, in whole steps, none shorter than asked."""
+        return self._after(PaddedStep(before=before, after=after), Record.padded(self, before=before, after=after))
+
+    def with_tail(self, length: float) -> "DescribedRecord":
+        """Return this record with `length` [s] of rest appended."""
+        return self._after(TailStep(length=length), Record.with_tail(self, length))
+
+    def resampled(self, step: float) -> "DescribedRecord":
+        """Return this record at another `step` [s], band-limited (see `records.resampling`)."""
+        return self._after(ResampledStep(step=step), Record.resampled(self, step))
+
+    def filtered(
+        self, *, highpass: float | None = None, lowpass: float | None = None, order: int = 4, causal: bool = False
+    ) -> "DescribedRecord":
+        """Return this record through a Butterworth filter with corners in Hz (see `records.filtering`)."""
+        step = FilteredStep(highpass=highpass, lowpass=lowpass, order=order, causal=causal)
+        found = Record.filtered(self, highpass=highpass, lowpass=lowpass, order=order, causal=causal)
+        return self._after(step, found)
+
+    def baseline_corrected(self, degree: int = 1) -> "DescribedRecord":
+        """Return this record less the derivative of a polynomial fitted to its velocity (see `records.baseline`)."""
+        return self._after(BaselineStep(degree=degree), Record.baseline_corrected(self, degree))
+
+
+def anchored(values: Any, folder: Path) -> Any:
+    """Return the plain values of a description with the files of its records told from `folder` on.
+
+    Parameters
+    ----------
+    values
+        As read from a file: tables, lists and plain values.
+    folder
+        Where that file lies.
+    """
+    if isinstance(values, list):
+        return [anchored(value, folder) for value in values]
+    if not isinstance(values, Mapping):
+        return values
+    of_files = {"path"} if values.get("kind") == "record" else set()
+    found = {
+        name: _from(value, folder) if name in of_files else anchored(value, folder) for name, value in values.items()
+    }
+    if "records" in values:
+        found["records"] = _source_from(values["records"], folder)
+    if isinstance(values.get("design_spectrum"), Mapping):
+        found["design_spectrum"] = _file_from(values["design_spectrum"], "file", folder)
+    return found
+
+
+def _source_from(records: Any, folder: Path) -> Any:
+    if not isinstance(records, Mapping):
+        return _from(records, folder)
+    found = {name: _from(value, folder) if name == "source" else value for name, value in records.items()}
+    if isinstance(events := records.get("event"), list):
+        found["event"] = [_source_of_event(one, folder) for one in events]
+    return found
+
+
+def _source_of_event(event: Any, folder: Path) -> Any:
+    return {**event, "files": _from(event.get("files"), folder)} if isinstance(event, Mapping) else event
+
+
+def _file_from(values: Any, key: str, folder: Path) -> Any:
+    if isinstance(values, Mapping):
+        return {name: _from(value, folder) if name == key else value for name, value in values.items()}
+    return _from(values, folder)
+
+
+def _from(value: Any, folder: Path) -> Any:
+    if isinstance(value, list):
+        return [_from(one, folder) for one in value]
+    return str(folder / value) if isinstance(value, str) else value

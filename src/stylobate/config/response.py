@@ -1,0 +1,67 @@
+"""The description of response curves: a column, its model, a harmonic motion and a range of frequencies."""
+
+import math
+from collections.abc import Mapping
+from functools import partial
+from typing import Any, Self
+
+from stylobate.config.columns import ColumnConfig
+from stylobate.config.description import Config, built
+from stylobate.config.models import ModelConfig, described_model
+from stylobate.config.motions import MotionConfig
+from stylobate.config.simulation import OF_OTHER_COMMANDS, Setup, SimulationConfig, built_parts
+from stylobate.errors import ConfigError, require_positive, require_whole
+
+
+class ResponseConfig(Config):
+    """Response curves: `column`, `model`, `motion` (its own frequency may be left out), range and number of points."""
+
+    column: ColumnConfig
+    model: ModelConfig = described_model("slender")
+    motion: MotionConfig
+    angular_frequency_range: tuple[float, float]
+    points: int = 400
+
+    @classmethod
+    def parse(cls, values: Mapping[str, Any]) -> Self:
+        """Return the description of these `values`; the frequency of the motion is taken from the range."""
+        motion = values.get("motion")
+        if isinstance(motion, Mapping) and motion.get("kind") in _BY_ACCELERATION:
+            # A mistake in the range is one mistake: the motion is built with a frequency that can be.
+            given = {"angular_frequency": _possible(values.get("angular_frequency_range"))}
+            values = {**values, "motion": {**given, **motion}}
+        kind = motion.get("kind") if isinstance(motion, Mapping) else None
+        if kind in _WITHOUT_RESPONSE:
+            message = f"motion.kind must be a horizontal harmonic motion for response curves, got {kind!r}"
+            raise ConfigError([message])
+        # What a description of runs says besides is of no concern here.
+        of_runs = {*SimulationConfig.model_fields, *OF_OTHER_COMMANDS} - set(cls.model_fields)
+        return super().parse({name: value for name, value in values.items() if name not in of_runs})
+
+    def build(self) -> Setup:
+        """Return model and motion; the options hold the range and number of frequencies.
+
+        Raises
+        ------
+        ConfigError
+            With one line for each part that cannot be.
+        """
+        problems: list[str] = []
+        low, high = self.angular_frequency_range
+        if not 0.0 < low < high:
+            problems.append(f"angular_frequency_range must rise from above zero, got {low!r} to {high!r} rad/s")
+        for end in (low, high) if 0.0 < low < high else ():
+            built("angular_frequency_range", partial(require_positive, "an end", end, "rad/s"), problems)
+        built("points", lambda: require_whole("points", self.points, least=2), problems)
+        model, motion = built_parts(self.column, self.model, self.motion, problems)
+        return Setup(model, motion, {"range": self.angular_frequency_range, "points": self.points})
+
+
+def _possible(frequencies: Any) -> float:
+    """Return the first frequency that is above zero of what is given as a range; of none, 1 rad/s."""
+    given = frequencies if isinstance(frequencies, (list, tuple)) else ()
+    return next((float(one) for one in given if isinstance(one, (int, float)) and 0.0 < one < math.inf), 1.0)
+
+
+_BY_ACCELERATION = ("circular", "straight", "elliptic")
+_WITHOUT_RESPONSE = ("rest", "vertical", "sum", "scaled", "rotated", "delayed")

@@ -1,0 +1,276 @@
+"""The description of one run: from TOML, from the command line, or from a saved result."""
+
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Self
+
+from pydantic import Field
+
+from stylobate.base_motions import BaseMotion, Record
+from stylobate.config.columns import ANY_COLUMN, ColumnConfig, describe_column
+from stylobate.config.description import Config, built
+from stylobate.config.file_values import DEEPEST, check_file_values
+from stylobate.config.models import ModelConfig, describe_model, described_model
+from stylobate.config.motions import ENDING, MotionConfig, RestMotion, describe_motion
+from stylobate.config.records import RecordMotion, anchored
+from stylobate.errors import (
+    MOST_STEPS,
+    ConfigError,
+    FileError,
+    ParameterError,
+    UnsupportedError,
+    require_finite,
+    require_not_negative,
+    require_positive,
+    require_vector,
+    require_whole,
+)
+from stylobate.models import Model
+from stylobate.results import OutcomeRules
+
+
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """What a description describes: a model, a motion and the keyword arguments of `simulate`."""
+
+    model: Model
+    motion: BaseMotion
+    options: dict[str, Any]
+
+
+class SimulationConfig(Config):
+    """A run: `column`, `model`, `motion` and the arguments of `simulate`, under the same names.
+
+    A run under a record, a pulse or a sine sweep needs no `duration`: it then lasts as long as the motion and a free
+    tail of 20/p.
+    """
+
+    column: ColumnConfig
+    model: ModelConfig = described_model("slender")
+    motion: MotionConfig = RestMotion(kind="rest")
+    tilt: tuple[float, float] = (0.0, 0.0)
+    tilt_rate: tuple[float, float] = (0.0, 0.0)
+    spin: float = 0.0
+    twist: float = 0.0
+    position: tuple[float, float] = (0.0, 0.0)
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    clearance: float = 0.0
+    duration: float | None
+    friction_coefficient: float | None = None
+    rtol: float = 1e-8
+    atol: float | None = None
+    tilt_limit: float | None = None
+    rest_energy: float | None = None
+    max_steps: int = 200_000
+    samples: int | None = None
+    rules: dict[str, float] = Field(default_factory=dict)
+    recheck: bool = True
+
+    @classmethod
+    def parse(cls, values: Mapping[str, Any]) -> Self:
+        """Return the description of these `values`; what they say for other commands is of no concern here."""
+        own = {name: value for name, value in values.items() if name not in OF_OTHER_COMMANDS}
+        return super().parse(with_default_duration(own))
+
+    def build(self) -> Setup:
+        """Return the objects described.
+
+        Raises
+        ------
+        ConfigError
+            With one line for each part that cannot be.
+        """
+        problems = problems_of_the_run(self)
+        rules = built("rules", lambda: built_rules(self.rules), problems)
+        model, motion = built_parts(self.column, self.model, self.motion, problems)
+        options = self.model_dump(exclude={"column", "model", "motion"}) | {"rules": rules}
+        if self.duration is None:
+            options["duration"] = duration_with_tail(model, motion)
+        return Setup(model, motion, options)
+
+
+def problems_of_the_run(description: Config) -> list[str]:
+    """Return one line for each number of a run, or of many, that cannot be."""
+    problems: list[str] = []
+    for name, check in _RUN_CHECKS.items():
+        value = getattr(description, name, None)
+        try:
+            if value is not None:
+                check(name, value)
+        except ParameterError as error:
+            problems.append(str(error))
+    return problems
+
+
+def built_parts(
+    column: ColumnConfig, model: ModelConfig, motion: MotionConfig, problems: Sequence[str]
+) -> tuple[Model, BaseMotion]:
+    """Return the model of the column and the motion.
+
+    Raises
+    ------
+    ConfigError
+        With one line for each part that cannot be, and the `problems` known before.
+    """
+    found: list[str] = []
+    if isinstance(motion, RecordMotion) and model.kind == "planar_rocking":
+        motion = motion.model_copy(update={"single": True})  # one component is all that a planar column follows
+    made = built("column", column.build, found)
+    moved = built("motion", motion.build, found)
+    modelled = built("model", lambda: model.build(made or ANY_COLUMN), found)
+    if modelled is None or moved is None or found or problems:
+        raise ConfigError([*found, *problems])
+    return modelled, moved
+
+
+FREE_TAIL = 20.0
+"""How long a run goes on after its base motion if no duration is given, in 1/p: near its balance all parts by e²⁰."""
+
+
+def is_to_end(motion: object) -> bool:
+    """Return whether the plain values of a `motion` are of one that ends: see `ENDING`; a scaled one too."""
+    if not isinstance(motion, Mapping):
+        return False
+    kind = motion.get("kind")
+    if kind in ("sum", "one_of"):
+        members = motion.get("motions")
+        return isinstance(members, Sequence) and bool(members) and all(is_to_end(one) for one in members)
+    changed = kind in ("scaled", "rotated", "delayed")
+    return kind in ENDING or (changed and is_to_end(motion.get("motion")))
+
+
+def with_default_duration(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return `values` without a `duration` that is not given, or with None for it if the motion ends."""
+    if values.get("duration") is not None:
+        return dict(values)
+    others = {name: value for name, value in values.items() if name != "duration"}
+    return others | ({"duration": None} if is_to_end(values.get("motion")) else {})
+
+
+def duration_with_tail(model: Model, motion: BaseMotion) -> float:
+    """Return how long a run lasts where no duration is given: the motion and a free tail of 20/p [s]."""
+    return motion.duration + FREE_TAIL / model.column.frequency_parameter
+
+
+def _require_share(name: str, value: float) -> None:
+    if not 0.0 < value < 1.0:
+        message = f"{name} must lie between 0 and 1, got {value!r}; 0.95 is usual"
+        raise ParameterError(message)
+
+
+OF_OTHER_COMMANDS = (
+    *("map", "basin", "spectrum", "fragility", "records", "ladder", "periods"),
+    *("method", "strobes", "confidence", "angular_frequency_range", "points"),
+)
+"""What a description may say that is no argument of a single run."""
+
+_RUN_CHECKS: Mapping[str, Callable[[str, Any], object]] = {
+    "duration": lambda name, value: require_positive(name, value, "s"),
+    "periods": require_positive,
+    "tilt_limit": lambda name, value: require_positive(name, value, "rad"),
+    "rtol": require_positive,
+    "atol": lambda name, value: require_positive(name, value, "rad"),
+    "rest_energy": require_not_negative,
+    "friction_coefficient": require_positive,
+    "spin": lambda name, value: require_finite(name, value, "rad/s"),
+    "twist": lambda name, value: require_finite(name, value, "rad"),
+    "position": lambda name, value: require_vector(name, value, 2, "m"),
+    "velocity": lambda name, value: require_vector(name, value, 3, "m/s"),
+    "clearance": lambda name, value: require_not_negative(name, value, "m"),
+    "max_steps": lambda name, value: require_whole(name, value, least=1, most=MOST_STEPS),
+    "samples": lambda name, value: require_whole(name, value, least=2),
+    "strobes": lambda name, value: require_whole(name, value, least=2),
+    "confidence": _require_share,
+    "tilt": lambda name, value: require_vector(name, value, 2, "rad"),
+    "tilt_rate": lambda name, value: require_vector(name, value, 2, "rad/s"),
+}
+
+
+def read_config(path: str | Path) -> dict[str, Any]:
+    """Return the plain values of the TOML file `path`; files of records are told from its folder on.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read or is not TOML.
+    ConfigError
+        If it is nested too deeply, a kind is no word, or a text holds a NUL character.
+    """
+    try:
+        values = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        message = f"cannot read {path}: {error.strerror or error}"
+        raise FileError(message) from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        message = f"{path} is not a TOML file: {error}"
+        raise FileError(message) from None
+    except RecursionError:
+        message = f"{path}: nested too deeply to be read. Describe it with at most {DEEPEST} levels."
+        raise FileError(message) from None
+    check_file_values(values)
+    found: dict[str, Any] = anchored(values, Path(path).parent)
+    return found
+
+
+def built_rules(rules: Mapping[str, Any]) -> OutcomeRules:
+    """Return the rules with these numbers, or raise ParameterError for one that is not known or cannot be."""
+    known = {field.name for field in fields(OutcomeRules)}
+    unknown = [name for name in rules if name not in known]
+    if unknown:
+        message = f"{unknown[0]} is not known here; the rules are {', '.join(sorted(known))}"
+        raise ParameterError(message)
+    return OutcomeRules(**rules)
+
+
+def provenance_of_run(model: Model, motion: BaseMotion, **options: Any) -> dict[str, Any]:
+    """Return what is needed to repeat a run, as plain values: `SimulationConfig` but for the version."""
+    return {
+        "version": version("stylobate"),
+        "column": describe_column(model.column).values(),
+        "model": _described(lambda: describe_model(model), model),
+        "motion": _described(lambda: describe_motion(motion), motion),
+        **{name: list(value) if isinstance(value, tuple) else value for name, value in options.items()},
+    }
+
+
+def config_of(provenance: Mapping[str, Any]) -> SimulationConfig:
+    """Return the description that repeats a run from its `provenance`.
+
+    Raises
+    ------
+    UnsupportedError
+        If the run was made with a model or motion that descriptions do not know.
+    """
+    refuse_own_classes(provenance)
+    return SimulationConfig.parse({name: value for name, value in provenance.items() if name != "version"})
+
+
+def refuse_own_classes(provenance: Mapping[str, Any]) -> None:
+    """Raise UnsupportedError if a run used a model or motion that descriptions do not know."""
+    for name in ("model", "motion"):
+        if provenance[name].get("kind") == "other":
+            if "record" in provenance[name]:
+                message = (
+                    f"the run was under the record {provenance[name]['record']!r}, read in Python, whose numbers are "
+                    f'not kept; describe it (kind = "record") to have it repeated'
+                )
+                raise UnsupportedError(message)
+            message = f"the run used a {name} of its own, of which only the repr is kept: {provenance[name]['repr']}"
+            raise UnsupportedError(message)
+
+
+def _described(describe: Callable[[], Config], thing: object) -> dict[str, Any]:
+    try:
+        return describe().values()
+    except UnsupportedError:
+        return {"kind": "other", "repr": repr(thing), **_told_of_record(thing)}
+
+
+def _told_of_record(thing: object) -> dict[str, Any]:
+    """Return what is told of a record that was read in Python."""
+    if not isinstance(thing, Record):
+        return {}
+    return {"record": thing.name, "digest": thing.digest, "processing": list(thing.provenance)}

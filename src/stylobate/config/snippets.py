@@ -1,0 +1,155 @@
+"""A description written for others to read: as TOML, and as the Python that does the same."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import tomlkit
+
+from stylobate.config.simulation import SimulationConfig
+
+
+def as_toml(values: Mapping[str, Any]) -> str:
+    """Return the TOML file with these plain `values`, such as those of a description; what is None is left out.
+
+    Examples
+    --------
+    >>> print(as_toml({"column": {"shape": "dimensionless", "slenderness": 0.1}, "duration": 20.0}), end="")
+    duration = 20.0
+    <BLANKLINE>
+    [column]
+    shape = "dimensionless"
+    slenderness = 0.1
+    """
+    return tomlkit.dumps(_without_none(values))
+
+
+def as_python(description: SimulationConfig) -> str:
+    """Return a Python program that makes the described run by the public names, and draws it.
+
+    What changes nothing is left out. A record that is put together or processed in another way than by scale, rotation
+    and tail stands as a description.
+
+    Examples
+    --------
+    >>> values = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "tilt": [0.05, 0.0], "duration": 20.0}
+    >>> print(as_python(SimulationConfig.parse(values)), end="")
+    import stylobate as sb
+    <BLANKLINE>
+    column = sb.Column.dimensionless(slenderness=0.1)
+    model = sb.Slender(column)
+    run = sb.simulate(model, tilt=(0.05, 0.0), duration=20.0)
+    print(run.outcome.name, "-", run.reason)
+    sb.plot(run).savefig("run.png")
+    """
+    column, model = description.column.model_dump(exclude_defaults=True), description.model
+    shape = str(getattr(description.column, "shape"))  # noqa: B009  every member of the union has one
+    column.pop("shape", None)
+    maker = "sb.Column" if shape == "given" else f"sb.Column.{shape}"
+    class_name = "".join(part.title() for part in model.kind.split("_"))
+    numbers = model.model_dump(exclude={"kind"}, exclude_defaults=True)
+    lines = ["import stylobate as sb", "", f"column = {maker}({_keywords(column)})"]
+    lines.append(f"model = sb.{class_name}({_joined(['column', _keywords(numbers)])})")
+    moved = description.motion.kind != "rest"
+    if moved:
+        lines.append(f"motion = {_motion(description.motion)}")
+    lines += _run(description, moved=moved)
+    return "\n".join([*lines, *_SHOWN, ""])
+
+
+def _run(description: SimulationConfig, *, moved: bool) -> Iterable[str]:
+    """Return the call of `simulate`; the rules are an object of their own."""
+    options = description.model_dump(exclude={"column", "model", "motion", "rules"}, exclude_defaults=True)
+    if options.get("duration", 0.0) is None:  # as long as the record
+        del options["duration"]
+    given = ["model", *(["motion"] if moved else []), _keywords(options)]
+    if description.rules:
+        given.append(f"rules=sb.OutcomeRules({_keywords(description.rules)})")
+    return [f"run = sb.simulate({_joined(given)})"]
+
+
+def _motion(motion: Any) -> str:
+    """Return the Python of a described motion."""
+    kind = str(motion.kind)
+    numbers = motion.model_dump(exclude={"kind", "motion", "motions"}, exclude_defaults=True, exclude_none=True)
+    if kind == "record":
+        return _record(motion, numbers)
+    if kind in _CHANGES:
+        return _motion(motion.motion) + _changed(kind, numbers)
+    if kind in _CONTAINERS:
+        members = ", ".join(_motion(member) for member in motion.motions)
+        return f"{_CONTAINERS[kind]}({_joined([f'motions=({members},)', _keywords(numbers)])})"
+    maker = _MAKERS.get(kind, f"sb.Pulse.{kind}")
+    return f"{maker}({_keywords(numbers)})"
+
+
+def _record(motion: Any, numbers: Mapping[str, Any]) -> str:
+    plain = {"sample", "path", "units", "step", "scale", "rotation", "tail", "directions", "single"}
+    several = not isinstance(numbers.get("path", ""), str)
+    by_name = several and isinstance(numbers.get("directions"), Mapping)
+    if set(numbers) - plain or ("directions" in numbers and not by_name):
+        unchanged = {name for name, kind in _LAST.items() if numbers.get(name) == _CHANGES[kind][1]}
+        values = {name: value for name, value in motion.values().items() if name not in unchanged}
+        return f"sb.config.RecordMotion.parse({values!r}).build()"
+    if "sample" in numbers:
+        made = f"sb.sample_record({numbers['sample']!r})"
+    else:
+        names = ("units", "step", *(("directions", "single") if several else ()))
+        reading = {name: value for name, value in numbers.items() if name in names}
+        paths = [list(numbers["path"])] if several else numbers["path"]
+        read = "sb.read_records" if several else "sb.read_record"
+        made = f"{read}({_joined([repr(paths), _keywords(reading)])})" + ("[0]" if several else "")
+    for name, kind in _LAST.items():
+        made += _changed(kind, {_CHANGES[kind][0]: numbers[name]}) if name in numbers else ""
+    return made
+
+
+def _changed(kind: str, numbers: Mapping[str, Any]) -> str:
+    """Return the call that changes a motion; none where its number leaves all as it is."""
+    name, neutral = _CHANGES[kind]
+    change = numbers[name]
+    # A vertical component is scaled as the others are, where nothing else is told.
+    apart = {other: value for other, value in numbers.items() if other != name and value != change}
+    if change == neutral and not apart:
+        return ""
+    return f".{kind}({_joined([repr(change), _keywords(apart)])})"
+
+
+def _keywords(values: Mapping[str, Any]) -> str:
+    return ", ".join(f"{name}={value!r}" for name, value in values.items())
+
+
+def _joined(parts: Iterable[str]) -> str:
+    return ", ".join(part for part in parts if part)
+
+
+def _without_none(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        name: _without_none(value) if isinstance(value, Mapping) else value
+        for name, value in values.items()
+        if value is not None
+    }
+
+
+_HARMONICS = ("circular", "straight", "elliptic", "vertical", "oblique", "displacement_amplitude", "stroke", "orbit")
+_MAKERS = {kind: f"sb.Harmonic.{kind}" for kind in _HARMONICS} | {
+    "harmonic": "sb.Harmonic",
+    "linear_sweep": "sb.SineSweep.linear",
+    "logarithmic_sweep": "sb.SineSweep.logarithmic",
+}
+"""What makes the motions of each kind but for pulses, whose kinds are methods of `Pulse`."""
+
+_CHANGES = {
+    "scaled": ("factor", 1.0),
+    "rotated": ("angle", 0.0),
+    "delayed": ("delay", 0.0),
+    "with_tail": ("length", 0.0),
+}
+"""Of each change of a motion its number, and that which changes nothing."""
+
+_LAST = {"scale": "scaled", "rotation": "rotated", "tail": "with_tail"}
+"""The changes that a record may have at last, in their order."""
+
+_SHOWN = ('print(run.outcome.name, "-", run.reason)', 'sb.plot(run).savefig("run.png")')
+"""The end of each program: what became of the column, and its history as a figure."""
+
+_CONTAINERS = {"sum": "sb.base_motions.Sum", "one_of": "sb.OneOf"}

@@ -1,0 +1,18 @@
+from . import config
+from .contact_maps import ContactClass, contact_classes, contact_map
+from .figures.slipping_boundary import plot_slipping_boundary
+from .motion_onset import start_boundary
+from .slip_limits import RollingRegime, slipping_boundary
+from .transport import drift
+
+__all__ = [
+    "ContactClass",
+    "RollingRegime",
+    "config",
+    "contact_classes",
+    "contact_map",
+    "drift",
+    "plot_slipping_boundary",
+    "slipping_boundary",
+    "start_boundary",
+]

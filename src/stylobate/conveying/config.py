@@ -1,0 +1,77 @@
+"""The description of a drift: what all runs share, and one or two quantities with their values."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Self
+
+from stylobate.config.axis import Axis
+from stylobate.config.description import Config, built
+from stylobate.config.many_runs import ManyRuns, common_values, name_of, refuse_design, with_numbers_that_vary
+from stylobate.config.simulation import Setup
+
+
+class Varied(Config):
+    """The quantity `x` that varies, perhaps another `y`; `late` tells over how many last periods means are taken."""
+
+    x: Axis
+    y: Axis | None = None
+    late: int = 20
+
+
+class DriftConfig(ManyRuns):
+    """A drift: `column`, `model`, `motion`, the arguments of a run, and `drift.x`, perhaps `drift.y`, `drift.late`."""
+
+    drift: Varied
+    periods: float | None = 60.0
+
+    @classmethod
+    def parse(cls, values: Mapping[str, Any]) -> Self:
+        """Return the description of these `values`; a motion may lack a number that varies."""
+        varied = values.get("drift")
+        axes = varied if isinstance(varied, Mapping) else {}
+        return super().parse(with_numbers_that_vary(values, (name_of(axes.get("x")), name_of(axes.get("y")))))
+
+    @classmethod
+    def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]]) -> Self:
+        """Return the description that repeats a saved drift.
+
+        Parameters
+        ----------
+        provenance
+            Of the drift.
+        axes
+            Its coordinates: one or two names with their values, x first.
+
+        Raises
+        ------
+        UnsupportedError
+            If it was made with a model or motion that descriptions do not know.
+        ParameterError
+            If its runs are not on a grid.
+        """
+        refuse_design(provenance, "grid")
+        values = common_values(provenance)
+        late = int(dict(values.pop("rules", {})).get("periods", Varied.model_fields["late"].default))
+        listed = ({"name": name, "values": list(values)} for name, values in axes.items())
+        return cls.parse({**values, "drift": {**dict(zip("xy", listed, strict=False)), "late": late}})
+
+    def build(self) -> Setup:
+        """Return model and motion; the options are arguments of `stylobate.conveying.drift`.
+
+        Raises
+        ------
+        ConfigError
+            With one line for each part that cannot be.
+        """
+        axes = {place: axis for place, axis in (("x", self.drift.x), ("y", self.drift.y)) if axis is not None}
+        problems: list[str] = []
+        over = {axis.name: built(f"drift.{place}", axis.build, problems) for place, axis in axes.items()}
+        if len(over) < len(axes):
+            problems.append(f"drift.x and drift.y must differ, got {self.drift.x.name!r} in both")
+        if self.duration is not None or self.periods is None:
+            problems.append("duration is not known of a drift: give periods, of its base motion")
+        if self.rules:
+            problems.append("rules are not known of a drift: late tells over how many last periods means are taken")
+        model, motion, options = self.common(problems)
+        for name in ("duration", "rules"):
+            del options[name]
+        return Setup(model, motion, {"over": over, "late": self.drift.late, **options})

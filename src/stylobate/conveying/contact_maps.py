@@ -1,0 +1,138 @@
+"""What a column that can slip does over two parameters: stays, slides, rocks or rolls, flies, overturns."""
+
+from collections.abc import Mapping
+from enum import IntEnum
+from pathlib import Path
+from typing import Any, Unpack
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion
+from stylobate.errors import Outcome, ParameterError, UnsupportedError
+from stylobate.models import Model
+from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.studies.checks import require_values
+from stylobate.studies.sweeps import Executor, Sweep
+from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.labelled import labelled_sweep
+from stylobate.studies.sweeps.recipe import RunOptions
+
+_PLANE = 2
+
+
+class ContactClass(IntEnum):
+    """What a column did in a run, by the kinds of contact that it had."""
+
+    STAYS = 0
+    """It stood all the time, and its base did not move on the plane."""
+    SLIDES = 1
+    """Its base slid; it never tipped."""
+    ROCKS = 2
+    """It rocked or rolled on its rim without slip."""
+    SLIDES_AND_ROCKS = 3
+    """It rocked or rolled, and slipped on its rim or slid on its base."""
+    FLIES = 4
+    """It left the plane."""
+    OVERTURNS = 5
+    FAILED = 6
+
+
+CONTACT_CLASSES = ("stays", "slides", "rocks or rolls", "slides and rocks", "flies", "overturns", "failed")
+"""Their names, in the order of their codes."""
+
+
+def contact_map(
+    model: Model,
+    motion: BaseMotion | None = None,
+    *,
+    over: Mapping[str, npt.ArrayLike],
+    duration: float | None = None,
+    periods: float | None = None,
+    least_share: float = 1e-3,
+    store: str | Path | None = None,
+    executor: Executor | None = None,
+    resume: bool = False,
+    progress: Progress | None = None,
+    **options: Unpack[RunOptions],
+) -> xr.Dataset:
+    """Return what a column that can slip does over two parameters, such as friction and acceleration of the base.
+
+    Parameters
+    ----------
+    model
+        A model that changes between kinds of contact, `Sliding`.
+    motion, over, duration, periods, store, executor, resume, progress, **options
+        As for `overturning_map`.
+    least_share
+        A kind of contact counts that takes more than this share of a run.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "contact map": the runs over the two names, with `contact_class` (see its `flag_meanings`) and all that
+        ensembles tell; over `class_name`, `count` and `share` of the runs computed; and `computed`.
+
+    Raises
+    ------
+    ParameterError
+        If `over` has not two names with one value or more, or an argument is out of range.
+    UnsupportedError
+        If the model does not change between kinds of contact.
+    """
+    if not model.switches:
+        message = f"model {model.name} holds its contact: a contact map needs one that slips, such as Sliding(column)"
+        raise UnsupportedError(message)
+    if not isinstance(over, Mapping) or len(over) != _PLANE:
+        message = f'over must name two parameters, such as "friction_coefficient" and "acceleration"; got {over!r}'
+        raise ParameterError(message)
+    if not 0.0 <= least_share < 1.0:
+        message = f"least_share must lie between 0 and 1, got {least_share!r}"
+        raise ParameterError(message)
+    require_values("over", over)
+    sweep = Sweep.grid(model, motion, over=over, duration=duration, periods=periods, **options)
+
+    def label(runs: xr.Dataset) -> xr.Dataset:
+        return class_shares(runs, least_share)
+
+    return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+
+
+def class_shares(runs: xr.Dataset, least_share: float = 1e-3) -> xr.Dataset:
+    """Return `runs` as a contact map: with the class of each, and the count and share of each class."""
+    classes = contact_classes(runs, least_share)
+    count = np.array([int((classes == kind).sum()) for kind in ContactClass], dtype=np.int64)
+    computed = int((classes != NOT_COMPUTED).sum())
+    return runs.assign(
+        contact_class=classes,
+        count=("class_name", count, {"units": "1", "long_name": "runs of this class"}),
+        share=("class_name", count / max(computed, 1), {"units": "1", "long_name": "share of the runs computed"}),
+        computed=((), computed, {"units": "1", "long_name": "runs computed"}),
+        class_name=np.array(CONTACT_CLASSES),
+    ).assign_attrs(kind="contact map", least_share=least_share)
+
+
+def contact_classes(runs: xr.Dataset, least_share: float = 1e-3) -> xr.DataArray:
+    """Return the `ContactClass` of each run, −1 where none has been computed."""
+    least = least_share * runs["end_time"]
+
+    def took(*kinds: str) -> xr.DataArray:
+        return sum((runs[f"time_{kind}"] for kind in kinds[1:]), runs[f"time_{kinds[0]}"]) > least
+
+    rocks, slides, outcome = took("rolling", "slipping"), took("sliding", "slipping"), runs["outcome"]
+    known: list[tuple[Any, ContactClass]] = [
+        (outcome == code_of(Outcome.FAILED), ContactClass.FAILED),
+        (outcome == code_of(Outcome.OVERTURNED), ContactClass.OVERTURNS),
+        (took("flying"), ContactClass.FLIES),
+        (rocks & slides, ContactClass.SLIDES_AND_ROCKS),
+        (rocks, ContactClass.ROCKS),
+        (slides, ContactClass.SLIDES),
+    ]
+    classes = xr.full_like(outcome, int(ContactClass.STAYS), dtype=np.int8)
+    for where, kind in reversed(known):
+        classes = classes.where(~where, int(kind))
+    classes = classes.where(outcome != NOT_COMPUTED, NOT_COMPUTED).astype(np.int8)
+    meanings = " ".join(["NOT_COMPUTED", *(kind.name for kind in ContactClass)])
+    values = np.arange(NOT_COMPUTED, len(ContactClass), dtype=np.int8)
+    return classes.assign_attrs(long_name="what the column did", flag_values=values, flag_meanings=meanings)

@@ -1,0 +1,1 @@
+"""Figures of contact and of conveying."""

@@ -1,0 +1,110 @@
+"""Maps of what a column that can slip does, and where a vibrating base walks it to."""
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from stylobate.plots.cells import cell_edges
+from stylobate.plots.classes import contact_classes
+from stylobate.plots.kinds import figure_of
+from stylobate.plots.labels import axis_label
+from stylobate.plots.maps import draw_classes
+from stylobate.plots.style import BLACK, BLUE, GREY, VERMILION, new_figure, styled
+
+Floats = npt.NDArray[np.float64]
+
+_HEIGHT, _TALL, _LOW = 4.6, 5.4, 3.6
+_PLANE = 2
+# A column whose rate of twist is less does not turn [rad/s].
+_STILL = 1e-9
+
+
+@figure_of("contact map")
+@styled
+def plot_contact_map(found: xr.Dataset) -> Figure:
+    """Return a figure of a contact map: what the column did over two parameters."""
+    figure = new_figure(_HEIGHT)
+    axes = figure.subplots()
+    figure.legend(
+        handles=draw_classes(axes, found, found["contact_class"], contact_classes(found)), loc="outside right upper"
+    )
+    return figure
+
+
+@figure_of("drift")
+@styled
+def plot_drift(found: xr.Dataset) -> Figure:
+    """Return a figure of a drift: velocity over one parameter, and rate of turn if it turns; or the speed over two.
+
+    A dotted line is where the throw number is 1, beyond which a base that is pressed down by nothing but weight hops.
+    """
+    if found["outcome"].ndim == _PLANE:
+        figure = new_figure(_HEIGHT)
+        _draw_speed(figure, figure.subplots(), found)
+        return figure
+    name = str(found["outcome"].dims[0])
+    ordered = found.sortby(name)
+    x, turning = ordered[name].to_numpy(), ordered["mean_twist_rate"].to_numpy()
+    turns = bool(np.any(np.abs(np.nan_to_num(turning)) > _STILL))
+    figure = new_figure(_TALL if turns else _LOW)
+    panels = list(figure.subplots(2 if turns else 1, 1, sharex=True, squeeze=False)[:, 0])
+    _draw_velocity(panels[0], x, ordered["mean_velocity"].to_numpy())
+    if turns:
+        panels[1].plot(x, turning, color=BLACK, marker=".")
+        panels[1].set_ylabel("mean rate of twist [rad/s]")
+    panels[-1].set_xlabel(axis_label(found[name]))
+    thrown = _where_thrown(x, ordered["throw_number"].to_numpy())
+    for axes in panels:
+        axes.axhline(0.0, color=BLACK, linewidth=0.5)
+        if thrown is not None:
+            axes.axvline(thrown, color=GREY, linewidth=0.9, linestyle=":")
+    if thrown is not None:
+        panels[0].annotate(
+            "throw number 1",
+            (thrown, 1.0),
+            xycoords=("data", "axes fraction"),
+            xytext=(3, 0),
+            textcoords="offset points",
+            va="top",
+            fontsize=8,
+            color=GREY,
+        )
+    return figure
+
+
+def _draw_velocity(axes: Axes, x: Floats, velocity: Floats) -> None:
+    axes.plot(x, velocity[:, 0], color=BLUE, marker=".", label="along x")
+    axes.plot(x, velocity[:, 1], color=VERMILION, linestyle="--", marker=".", label="along y")
+    if np.isnan(velocity).any():
+        axes.plot([], [], linestyle="none", label="gaps: it does not move on to the end")
+    axes.set_ylabel("mean velocity [m/s]")
+    axes.legend()
+
+
+def _where_thrown(x: Floats, throw: Floats) -> float | None:
+    """Return where the throw number first passes 1, if it does."""
+    passed = np.flatnonzero((throw[:-1] < 1.0) & (throw[1:] >= 1.0))
+    if not passed.size:
+        return None
+    k = int(passed[0])
+    return float(np.interp(1.0, throw[k : k + 2], x[k : k + 2]))
+
+
+def _draw_speed(figure: Figure, axes: Axes, found: xr.Dataset) -> None:
+    x, y = (str(dim) for dim in found["outcome"].dims)
+    ordered = found.sortby([x, y]).transpose(y, x, ...)
+    speed = np.ma.masked_invalid(ordered["transport_speed"].to_numpy())
+    axes.grid(visible=False)
+    axes.patch.set(facecolor="white", hatch="////", edgecolor=GREY)
+    drawn = axes.pcolormesh(cell_edges(ordered[x]), cell_edges(ordered[y]), speed, cmap="viridis", rasterized=True)
+    figure.colorbar(drawn, ax=axes, label="mean transport speed [m/s]")
+    throw = ordered["throw_number"].to_numpy()
+    if throw.min() < 1.0 < throw.max():
+        axes.contour(ordered[x], ordered[y], throw, levels=[1.0], colors="white", linestyles=":")
+        axes.set_title("dotted: throw number 1", fontsize=8.5)
+    if speed.mask.any():
+        axes.set_title("hatched: it does not move on to the end", loc="right", fontsize=8.5)
+    axes.set_xlabel(axis_label(found[x]))
+    axes.set_ylabel(axis_label(found[y]))

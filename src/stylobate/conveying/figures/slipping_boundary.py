@@ -1,0 +1,152 @@
+"""What friction does to steady rolling: its tilt over the frequency with and without slip, and which is stable."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from stylobate.errors import Outcome
+from stylobate.plots.cells import class_legend, draw_cells
+from stylobate.plots.classes import KIND_LOOKS, OUTCOME_LOOKS, UNFINISHED, MapClass
+from stylobate.plots.kinds import figure_of
+from stylobate.plots.labels import axis_label
+from stylobate.plots.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    PURPLE,
+    STABLE_WIDTH,
+    UNSTABLE_WIDTH,
+    VERMILION,
+    new_figure,
+    styled,
+)
+
+_HEIGHT, _WIDTH = 7.0, 8.4
+# What is told by colour is told by the marker too.
+_MARKED = ((BLUE, "o"), (VERMILION, "s"), (GREEN, "^"), (PURPLE, "D"))
+_DASHED = (0, (4, 2))
+# None, none stable, stable without slip, with it, both.
+_LOOKS = (
+    UNFINISHED,
+    OUTCOME_LOOKS[Outcome.STILL_MOVING],
+    OUTCOME_LOOKS[Outcome.ROLLING],
+    KIND_LOOKS["rolling clockwise"],
+    OUTCOME_LOOKS[Outcome.MODULATED],
+)
+
+
+@figure_of("slipping boundary")
+@styled
+def plot_slipping_boundary(found: xr.Dataset, *, friction_coefficient: Sequence[float] | None = None) -> Figure:
+    """Return a figure of steady rolling with slip: its tilt over the frequency above, where it is stable below.
+
+    Above in black rolling without slip, and in colours that with slip, at a few frictions: bold where stable, thin and
+    dashed where not. A marker on the black line is where that friction ends it. Below what is stable over frequency and
+    friction, with the friction that stable rolling without slip needs; ticks at the right are the frictions above.
+
+    Parameters
+    ----------
+    found
+        Of the kind "slipping boundary".
+    friction_coefficient
+        Up to four frictions for the curves, each taken as the nearest of `found`; by default four spread over them.
+    """
+    figure = new_figure(_HEIGHT, width=_WIDTH)
+    tilt, plane = figure.subplots(2, 1, sharex=True)
+    chosen = _nearest(found, friction_coefficient)
+    _draw_held(tilt, found)
+    for place, (colour, marker) in zip(chosen, _MARKED, strict=False):
+        part = found.isel(friction_coefficient=place)
+        friction = float(part["friction_coefficient"])
+        _draw_slipping(tilt, part, colour)
+        _mark_ends(tilt, part, colour, marker)
+        name = f"μ = {friction:.3g}" if part["slipping_amplitude"].isnull().all() else f"slipping, μ = {friction:.3g}"
+        tilt.plot([], [], color=colour, marker=marker, linewidth=STABLE_WIDTH, label=name)
+        plane.plot(
+            1.0, friction, color=colour, marker=marker, markersize=6, clip_on=False,
+            transform=plane.get_yaxis_transform(), zorder=6,
+        )  # fmt: skip
+    tilt.plot([], [], color=BLACK, linewidth=UNSTABLE_WIDTH, linestyle=_DASHED, label="thin, dashed: unstable")
+    tilt.set_ylabel("tilt A [rad]")
+    tilt.set_ylim(bottom=0.0)
+    codes, classes = found["steady_rolling"].to_numpy(), _classes(found)
+    draw_cells(plane, found["angular_frequency"], found["friction_coefficient"], codes, classes)
+    _draw_required(plane, found)
+    plane.set_ylabel(axis_label(found["friction_coefficient"]))
+    plane.set_xlabel("angular frequency of the base [rad/s]")
+    tilt.legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
+    handles = [*class_legend(codes, classes), *plane.get_legend_handles_labels()[0]]
+    plane.legend(handles=handles, loc="center left", bbox_to_anchor=(1.04, 0.5))
+    return figure
+
+
+def _nearest(found: xr.Dataset, wanted: Sequence[float] | None) -> list[int]:
+    """Return the places of the frictions that are nearest to those wanted, or of some spread over all."""
+    values, most = found["friction_coefficient"].to_numpy(), len(_MARKED)
+    if wanted is not None:
+        return [int(np.abs(values - one).argmin()) for one in wanted][:most]
+    if values.size <= most:
+        return list(range(values.size))
+    return [round((values.size - 1) * (place + 1) / (most + 1)) for place in range(most)]
+
+
+def _draw_held(axes: Axes, found: xr.Dataset) -> None:
+    x = found["angular_frequency"].to_numpy()
+    for index in range(found.sizes["branch"]):
+        branch = found.isel(branch=index)
+        _draw(axes, x, branch["rolling_amplitude"].to_numpy(), branch["rolling_stable"].to_numpy(), BLACK)
+    axes.plot([], [], color=BLACK, linewidth=STABLE_WIDTH, label="without slip")
+
+
+def _draw_slipping(axes: Axes, part: xr.Dataset, colour: str) -> None:
+    x, tilt, stable = (part[name].to_numpy() for name in ("angular_frequency", "slipping_amplitude", "slipping_stable"))
+    count = np.isfinite(tilt).sum(axis=-1)
+    # Branches are counted from the lowest: where their number changes another one may have the place.
+    for first, last in _stretches(count):
+        for index in range(int(count[first])):
+            some = slice(first, last)
+            _draw(axes, x[some], tilt[some, index], stable[some, index], colour)
+
+
+def _stretches(count: npt.NDArray[np.integer]) -> list[tuple[int, int]]:
+    edges = [0, *(np.flatnonzero(np.diff(count)) + 1).tolist(), count.size]
+    return list(pairwise(edges))
+
+
+def _draw(axes: Axes, x: np.ndarray, y: np.ndarray, stable: np.ndarray, colour: str) -> None:
+    bold = stable.astype(bool)  # a file holds numbers
+    axes.plot(x, np.where(bold, np.nan, y), color=colour, linewidth=UNSTABLE_WIDTH, linestyle=_DASHED)
+    axes.plot(x, np.where(bold, y, np.nan), color=colour, linewidth=STABLE_WIDTH)
+
+
+def _mark_ends(axes: Axes, part: xr.Dataset, colour: str, marker: str) -> None:
+    """Mark where friction ends stable rolling without slip: inside of what is stable for any friction."""
+    x, stable = part["angular_frequency"].to_numpy(), part["rolling_stable"].to_numpy().astype(bool)
+    slips = part["slips"].to_numpy().astype(bool)
+    for index in range(part.sizes["branch"]):
+        change = np.diff(slips[:, index].astype(int)) != 0
+        inner = change & stable[1:, index] & stable[:-1, index]
+        for place in np.flatnonzero(inner):
+            needed = part["required_friction"].to_numpy()[place : place + 2, index]
+            share = (float(part["friction_coefficient"]) - needed[0]) / (needed[1] - needed[0])
+            tilt = part["rolling_amplitude"].to_numpy()[place : place + 2, index]
+            at = x[place] + share * (x[place + 1] - x[place])
+            axes.plot(at, tilt[0] + share * (tilt[1] - tilt[0]), marker=marker, color=colour, zorder=5)
+
+
+def _draw_required(axes: Axes, found: xr.Dataset) -> None:
+    x, low, high = found["angular_frequency"].to_numpy(), *axes.get_ylim()
+    needed = np.where(found["rolling_stable"].to_numpy().astype(bool), found["required_friction"].to_numpy(), np.inf)
+    least = needed.min(axis=-1)
+    axes.plot(x, np.where((least >= low) & (least <= high), least, np.nan), color=BLACK, linewidth=1.4,
+              label="needed without slip")  # fmt: skip
+
+
+def _classes(found: xr.Dataset) -> tuple[MapClass, ...]:
+    names = [str(name) for name in found["class_name"].to_numpy()]
+    return tuple(MapClass(code, name, look) for code, (name, look) in enumerate(zip(names, _LOOKS, strict=True)))

@@ -1,0 +1,293 @@
+"""What friction does to steady rolling under circular base motion: where it ends by slip, and where slip goes on."""
+
+import json
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate import theory
+from stylobate.base_motions import BaseMotion, Harmonic
+from stylobate.config import provenance_of_run
+from stylobate.errors import ParameterError, UnsupportedError
+from stylobate.models import Model, Rolling, Sliding, Wobbling
+from stylobate.studies.ranges import require_rising_frequencies
+from stylobate.studies.responses.rolling_frame import RollingFrame
+from stylobate.studies.sweeps.quantities import attributes_of, checked_values
+
+Floats = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
+Predicate = Callable[[Floats, Floats], Flags]
+Variables = dict[str, tuple[tuple[str, ...], npt.NDArray[Any], dict[str, str]]]
+
+_PLANE = ("friction_coefficient", "angular_frequency")
+
+# Borders are found by halving this often the step of the frequencies in which they lie.
+_HALVINGS = 30
+# Both axes of a circle are as long, and a quarter of a turn apart, to this part.
+_ROUND = 1e-9
+
+
+class RollingRegime(IntEnum):
+    """What steady rolling there is at a friction and a frequency."""
+
+    NONE = 0
+    """None at all."""
+    UNSTABLE = 1
+    """Some, with or without slip, none of it stable."""
+    WITHOUT_SLIP = 2
+    """Stable without slip."""
+    WITH_SLIP = 3
+    """Stable with a contact that always slips."""
+    BOTH = 4
+    """Both are stable."""
+
+
+STEADY_ROLLING = ("no steady rolling", "none stable", "stable without slip", "stable with slip", "both stable")
+"""Their names, in the order of their codes."""
+
+
+def slipping_boundary(
+    model: Model, motion: BaseMotion, *, friction_coefficient: npt.ArrayLike, angular_frequency: Sequence[float]
+) -> xr.Dataset:
+    """Return over friction and frequency where a column rolls round its rim in steady motion, stably, or slipping.
+
+    Parameters
+    ----------
+    model
+        `Sliding` or `Rolling`, which may turn, or `Wobbling` with the constraint "rubber", which may not; with damping,
+        on a point and a level plane. A friction coefficient of its own does not count.
+    motion
+        A horizontal circular motion; its acceleration is kept, its frequency replaced.
+    friction_coefficient
+        Values of μ, rising; kinetic and static are the same.
+    angular_frequency
+        Frequencies [rad/s], rising.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "slipping boundary", exact at any tilt. Over `angular_frequency` and `branch`: `rolling_amplitude` [rad]
+        and `rolling_stable` of steady rolling without slip, and the `required_friction` of it. Over
+        `friction_coefficient`, `angular_frequency` and `branch`: `slips`, whether that is more than there is. With
+        `slipping_branch` instead: `slipping_amplitude` [rad], `slip_speed` [m/s], `slip_power` [W] and
+        `slipping_stable` of steady rolling with slip, NaN where there is none. Over the two: `steady_rolling`, a
+        `RollingRegime`. Over `friction_coefficient`: `rolling_from`, `rolling_to`, `slipping_from` and `slipping_to`
+        [rad/s], the lowest and the highest frequency at which rolling without slip, and with it, is stable, NaN where
+        it is nowhere, the end of the frequencies asked for where it goes on there. What begins and ends between two
+        neighbours of these is missed.
+
+    Raises
+    ------
+    ParameterError
+        If frictions or frequencies are no rising positive numbers, or the model has no damping, or no spin damping
+        while it may turn: nothing decays then, or nothing ends the spin.
+    UnsupportedError
+        If theory knows no steady rolling with slip of the model, or the motion is not circular.
+
+    See Also
+    --------
+    stylobate.theory.slipping_rolling, stylobate.theory.full_rolling : the equations.
+    stability_boundary : where rolling without slip loses its stability under any harmonic motion.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import stylobate as sb
+    >>> model = sb.Wobbling(sb.Column.dimensionless(slenderness=0.1), damping=0.1, constraint="rubber")
+    >>> motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.0)
+    >>> found = sb.conveying.slipping_boundary(
+    ...     model, motion, friction_coefficient=[0.04, 0.05, 0.1], angular_frequency=np.linspace(0.5, 8.0, 100)
+    ... )
+    >>> print(found["rolling_from"].values.round(3), found["rolling_to"].values.round(3))
+    [1.398 1.398 1.398] [2.325 3.576 8.   ]
+    """
+    case = _Case.of(model, motion)
+    friction = _rising_frictions(friction_coefficient)
+    frequency = require_rising_frequencies(angular_frequency)
+    theta = frequency * model.time_scale
+    held, slipping = case.held(theta), case.slipping(theta, friction[:, np.newaxis])
+    slips = held.friction_demand > friction[:, np.newaxis, np.newaxis]
+    sticks = held.exists & ~slips
+    rolls, slides = _any(sticks & held.stable), _any(slipping.stable)
+    exists = _any(sticks) | _any(slipping.exists)
+    ends = {
+        **_ends("rolling", rolls, theta, friction, case.rolls),
+        **_ends("slipping", slides, theta, friction, case.slips),
+    }
+    return xr.Dataset(
+        {
+            **_without_slip(held),
+            "slips": ((*_PLANE, "branch"), slips, _told("1", "needs more friction than there is")),
+            **_with_slip(slipping, model),
+            "steady_rolling": (_PLANE, _classes(exists, rolls, slides), _flags()),
+            **{
+                name: ("friction_coefficient", edge / model.time_scale, _told("rad s-1", name.replace("_", " ")))
+                for name, edge in ends.items()
+            },
+        },
+        coords={
+            "friction_coefficient": ("friction_coefficient", friction, _told("1", "friction coefficient")),
+            "angular_frequency": ("angular_frequency", frequency, attributes_of("angular_frequency")),
+            "class_name": np.array(STEADY_ROLLING),
+        },
+        attrs={
+            "kind": "slipping boundary",
+            "slenderness": model.column.slenderness,
+            "acceleration": case.a0 * model.column.gravity,
+            "provenance": json.dumps(provenance_of_run(model, motion)),
+        },
+    )
+
+
+def _without_slip(held: theory.FiniteTiltRolling) -> Variables:
+    over = ("angular_frequency", "branch")
+    return {
+        "rolling_amplitude": (over, held.amplitude, _told("rad", "tilt of rolling without slip")),
+        "rolling_stable": (over, held.stable, _told("1", "rolling without slip is stable")),
+        "required_friction": (over, held.friction_demand, _told("1", "friction that rolling without slip needs")),
+    }
+
+
+def _with_slip(slipping: theory.SlippingRolling, model: Model) -> Variables:
+    over, column = (*_PLANE, "slipping_branch"), model.column
+    unit = column.mass_height / model.time_scale  # of velocity, h ω0
+    speed = unit * np.hypot(slipping.slip_along, slipping.slip_across)
+    power = unit * column.mass * column.gravity * slipping.slip_power
+    return {
+        "slipping_amplitude": (over, slipping.amplitude, _told("rad", "tilt of rolling with slip")),
+        "slip_speed": (over, speed, _told("m s-1", "speed of slip")),
+        "slip_power": (over, power, _told("W", "power that slip takes")),
+        "slipping_stable": (over, slipping.stable, _told("1", "rolling with slip is stable")),
+    }
+
+
+@dataclass(frozen=True, slots=True)
+class _Case:
+    """A column and a circular base motion, as theory takes them, at any frequency and friction."""
+
+    a0: float
+    column: dict[str, float]
+
+    @classmethod
+    def of(cls, model: Model, motion: BaseMotion) -> "_Case":
+        """Return the case, or raise an error unless theory knows steady rolling with slip of it."""
+        zeta = _spin_friction(model)
+        if not isinstance(motion, Harmonic) or not _is_circle(motion):
+            message = f"motion must be a horizontal circular motion, such as Harmonic.circular(...), got {motion!r}"
+            raise UnsupportedError(message)
+        column = model.column
+        return cls(
+            RollingFrame.of(model, motion).drive,
+            {
+                "c": column.slenderness,
+                "eta": float(getattr(model, "damping", 0.0)),
+                "zeta": zeta,
+                "inertia_ratio": column.inertia_ratio,
+                "axial_ratio": column.axial_ratio,
+            },
+        )
+
+    def held(self, theta: Floats) -> theory.FiniteTiltRolling:
+        return theory.full_rolling(theta, self.a0, **self.column)
+
+    def slipping(self, theta: Floats, mu: Floats) -> theory.SlippingRolling:
+        return theory.slipping_rolling(theta, self.a0, mu=mu, **self.column)
+
+    def rolls(self, theta: Floats, mu: Floats) -> Flags:
+        """Whether rolling without slip is stable."""
+        found = self.held(theta)
+        return _any(found.stable & (found.friction_demand <= mu[..., np.newaxis]))
+
+    def slips(self, theta: Floats, mu: Floats) -> Flags:
+        """Whether rolling with slip is stable."""
+        return _any(self.slipping(theta, mu).stable)
+
+
+def _spin_friction(model: Model) -> float:
+    """Return ζ of a model, infinite where it may not turn, or raise an error unless theory knows its steady rolling."""
+    turns = type(model) in (Sliding, Rolling)
+    if not turns and not (type(model) is Wobbling and model.constraint == "rubber"):
+        message = (
+            'steady rolling with slip is known of Sliding, Rolling and Wobbling(constraint="rubber"), got model '
+            f"{getattr(model, 'name', model)!s}"
+        )
+        raise UnsupportedError(message)
+    for name in ("patch", "incline", "rolling_resistance"):
+        if getattr(model, name, 0.0) > 0.0:
+            message = f"{name} must be 0 for a closed form of steady rolling with slip, got {getattr(model, name)!r}"
+            raise UnsupportedError(message)
+    for name in ("damping", "spin_damping") if turns else ("damping",):
+        if not getattr(model, name) > 0.0:
+            message = (
+                f"{name} must be above zero, got {getattr(model, name)!r}: without it no steady rolling is decided"
+            )
+            raise ParameterError(message)
+    return float(getattr(model, "spin_damping", math.inf)) if turns else math.inf
+
+
+def _is_circle(motion: Harmonic) -> bool:
+    (a1, a2, a3), (phi1, phi2, _) = motion.amplitude, motion.phase
+    parts = sorted(abs(complex(part)) for part in theory.circular_components(a1, a2, phi2 - phi1))
+    return a3 == 0.0 and parts[0] <= _ROUND * parts[1]
+
+
+def _rising_frictions(given: npt.ArrayLike) -> Floats:
+    values = checked_values("friction_coefficient", "friction_coefficient", np.atleast_1d(np.asarray(given)))
+    if not values.size or np.any(np.diff(values) <= 0.0):
+        message = f"friction_coefficient must be one or more rising numbers, got {given!r}"
+        raise ParameterError(message)
+    return values
+
+
+def _classes(exists: Flags, rolls: Flags, slips: Flags) -> npt.NDArray[np.int8]:
+    classes = np.where(exists, RollingRegime.UNSTABLE, RollingRegime.NONE)
+    for where, kind in (
+        (rolls, RollingRegime.WITHOUT_SLIP),
+        (slips, RollingRegime.WITH_SLIP),
+        (rolls & slips, RollingRegime.BOTH),
+    ):
+        classes = np.where(where, kind, classes)
+    return classes.astype(np.int8)
+
+
+def _ends(name: str, inside: Flags, theta: Floats, mu: Floats, predicate: Predicate) -> dict[str, Floats]:
+    """Return for each μ the lowest and the highest θ at which the predicate holds, which on the grid is `inside`."""
+    return {
+        f"{name}_from": _first(inside, theta, mu, predicate),
+        f"{name}_to": _first(inside[:, ::-1], theta[::-1], mu, predicate),
+    }
+
+
+def _first(inside: Flags, theta: Floats, mu: Floats, predicate: Predicate) -> Floats:
+    """Return for each μ the first θ inside, halved between the first of the grid and the one before; NaN for none."""
+    first = inside.argmax(axis=1)
+    within, beyond = theta[first], theta[np.maximum(first - 1, 0)]
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (within + beyond)
+        holds = predicate(middle, mu)
+        within, beyond = np.where(holds, middle, within), np.where(holds, beyond, middle)
+    # Where the grid begins inside there is nothing to halve.
+    return np.where(inside.any(axis=1), np.where(first > 0, within, theta[0]), np.nan)
+
+
+def _any(branches: Flags) -> Flags:
+    """Return whether it is so of any branch."""
+    return np.asarray(branches.any(axis=-1))
+
+
+def _told(units: str, long_name: str) -> dict[str, str]:
+    return {"units": units, "long_name": long_name}
+
+
+def _flags() -> dict[str, Any]:
+    return {
+        "long_name": "steady rolling",
+        "flag_values": np.array([int(kind) for kind in RollingRegime], dtype=np.int8),
+        "flag_meanings": " ".join(kind.name for kind in RollingRegime),
+    }

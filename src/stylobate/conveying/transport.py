@@ -1,0 +1,139 @@
+"""Where a vibrating base walks a column to, and how it turns it: the question of a conveyor."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Unpack
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.base_motions import BASE_AT_REST, BaseMotion
+from stylobate.conveying.contact_maps import contact_classes
+from stylobate.engine.parameters import with_parameters
+from stylobate.errors import Outcome, ParameterError, UnsupportedError, require_whole
+from stylobate.models import Model
+from stylobate.results import OutcomeRules
+from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.studies.checks import require_values
+from stylobate.studies.sweeps import Executor, Sweep
+from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.labelled import labelled_sweep
+from stylobate.studies.sweeps.quantities import OF_A_RUN
+from stylobate.studies.sweeps.recipe import RunOptions
+
+_MOST_NAMES = 2
+
+
+def drift(
+    model: Model,
+    motion: BaseMotion,
+    *,
+    over: Mapping[str, npt.ArrayLike],
+    periods: float = 60.0,
+    late: int = 20,
+    store: str | Path | None = None,
+    executor: Executor | None = None,
+    resume: bool = False,
+    progress: Progress | None = None,
+    **options: Unpack[RunOptions],
+) -> xr.Dataset:
+    """Return the mean velocity at which a vibrating base walks a column along, and the rate at which it turns it.
+
+    Both are means over the last periods, from a whole number of them before the end to the end.
+
+    Parameters
+    ----------
+    model
+        A model that changes between kinds of contact, `Sliding`.
+    motion
+        A periodic base motion, such as `Harmonic.oblique`.
+    over
+        One or two names with their values, as for `overturning_map`.
+    periods
+        For how many periods of its base motion each column is followed.
+    late
+        Over how many of the last ones the means are taken.
+    store, executor, resume, progress, **options
+        As for `overturning_map`; `rules` are told by `late`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "drift": the runs over the names, with `mean_velocity` (axis) and `transport_speed` [m/s],
+        `mean_twist_rate` [rad/s], `contact_class`, `throw_number` and all that ensembles tell; NaN where a column did
+        not move on to the end, as one that overturns; 0 where it came to rest for good. A column that runs away down a
+        slope has the mean velocity of these periods, which grows with them.
+
+    Raises
+    ------
+    ParameterError
+        If `over` has not one or two names, `late` leaves no periods before, or an argument is out of range.
+    UnsupportedError
+        If the model does not change between kinds of contact, or the base motion has no period.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> block = sb.Column.solid(radius=1.5, height=2.0, density=1000.0)
+    >>> sloping = sb.Sliding(block, friction_coefficient=0.2, incline=0.1)
+    >>> shaking = sb.Harmonic.straight(acceleration=1.0, angular_frequency=3.0)
+    >>> found = sb.conveying.drift(sloping, shaking, over={"acceleration": [1.0, 3.0]}, periods=30, late=10)
+    >>> found["mean_velocity"].sel(axis="x").values.round(3).tolist()    # down the slope
+    [0.0, 0.388]
+    """
+    if not model.switches:
+        message = f"model {model.name} holds its contact: a drift needs one that slips, such as Sliding(column)"
+        raise UnsupportedError(message)
+    if not isinstance(motion, BaseMotion) or (motion.period is None and "angular_frequency" not in over):
+        got = "a base at rest" if motion in (None, BASE_AT_REST) else repr(motion)
+        message = f"a drift needs a periodic base motion, such as an oblique one; got {got}"
+        raise UnsupportedError(message)
+    if not isinstance(over, Mapping) or not 1 <= len(over) <= _MOST_NAMES:
+        message = f'over must name one or two parameters, such as "friction_coefficient"; got {over!r}'
+        raise ParameterError(message)
+    late = require_whole("late", late, least=1)
+    if not periods >= late + 1:
+        message = f"periods must be at least one more than late, which is {late}; got {periods!r}"
+        raise ParameterError(message)
+    require_values("over", over)
+    options["rules"] = OutcomeRules(periods=late)
+    sweep = Sweep.grid(model, motion, over=over, periods=periods, **options)
+
+    def label(runs: xr.Dataset) -> xr.Dataset:
+        return walked(runs, model, motion)
+
+    return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+
+
+def walked(runs: xr.Dataset, model: Model, motion: BaseMotion) -> xr.Dataset:
+    """Return `runs` of this `model` and `motion` as a drift: with speeds, classes and throw numbers."""
+    # A run that stands for good ends early in its last periods' stead: it goes nowhere.
+    stands = (runs["outcome"] == code_of(Outcome.AT_REST)) & runs["mean_twist_rate"].isnull()
+    velocity = runs["mean_velocity"].where(~stands, 0.0).assign_attrs(runs["mean_velocity"].attrs)
+    turning = runs["mean_twist_rate"].where(~stands, 0.0).assign_attrs(runs["mean_twist_rate"].attrs)
+    speed = (velocity**2).sum("axis", skipna=False) ** 0.5
+    return runs.assign(
+        mean_velocity=velocity,
+        mean_twist_rate=turning,
+        transport_speed=speed.assign_attrs(units="m s-1", long_name="mean transport speed"),
+        contact_class=contact_classes(runs),
+        throw_number=_throw_numbers(runs, model, motion),
+        computed=((), int((runs["outcome"] != NOT_COMPUTED).sum()), {"units": "1", "long_name": "runs computed"}),
+    ).assign_attrs(kind="drift")
+
+
+def _throw_numbers(runs: xr.Dataset, model: Model, motion: BaseMotion) -> xr.DataArray:
+    """Return the largest downward acceleration of each base over gravity along its normal."""
+    names = [str(dim) for dim in runs["outcome"].dims]
+    values = np.empty(runs["outcome"].shape)
+    for place in np.ndindex(*values.shape):
+        chosen = {
+            name: float(runs[name].to_numpy()[index])
+            for name, index in zip(names, place, strict=True)
+            if name not in OF_A_RUN
+        }
+        changed, moved = with_parameters(model, motion, **chosen)
+        low, _ = moved.vertical_range(0.0)
+        values[place] = -low / (changed.column.gravity * (1.0 + changed.slope[2]))
+    return xr.DataArray(values, dims=names, attrs={"units": "1", "long_name": "throw number"})

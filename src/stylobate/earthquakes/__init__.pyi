@@ -1,0 +1,60 @@
+from . import config, perturbations
+from .assessment.assess import assess
+from .figures.assessment import assessment_report, assessment_tables
+from .figures.planar_bias import plot_directions
+from .figures.records import plot_records
+from .fragility.annual_rate import annual_rate
+from .fragility.bands import reached_bands
+from .fragility.curves import lognormal_fragility
+from .fragility.dispersion import Samples, dispersion_parts
+from .fragility.fit import fit_fragility
+from .fragility.hazard import HazardCurve
+from .fragility.limit_states import limit_states
+from .fragility.observations import Counting
+from .fragility.probit import FitStatus
+from .fragility_study import FragilityStudy
+from .incremental import incremental_dynamic_analysis
+from .intensities import Intensity, SpectralAcceleration
+from .perturbations import SMALL_PERTURBATIONS, Perturbation
+from .planar_comparison import planar_bias
+from .property_spreads import LognormalSpread, NormalSpread, Spread, UniformSpread, property_samples
+from .robustness_study import robustness
+from .run_fragility import fragility_of_runs
+from .spectra.bands import overturning_bands
+from .spectra.rocking import rocking_spectrum
+
+__all__ = [
+    "SMALL_PERTURBATIONS",
+    "Counting",
+    "FitStatus",
+    "FragilityStudy",
+    "HazardCurve",
+    "Intensity",
+    "LognormalSpread",
+    "NormalSpread",
+    "Perturbation",
+    "Samples",
+    "SpectralAcceleration",
+    "Spread",
+    "UniformSpread",
+    "annual_rate",
+    "assess",
+    "assessment_report",
+    "assessment_tables",
+    "config",
+    "dispersion_parts",
+    "fit_fragility",
+    "fragility_of_runs",
+    "incremental_dynamic_analysis",
+    "limit_states",
+    "lognormal_fragility",
+    "overturning_bands",
+    "perturbations",
+    "planar_bias",
+    "plot_directions",
+    "plot_records",
+    "property_samples",
+    "reached_bands",
+    "robustness",
+    "rocking_spectrum",
+]

@@ -1,0 +1,289 @@
+"""`assess`: whether each column survives each record, how close it was, and how sure that is."""
+
+import datetime as dt
+import platform
+from collections.abc import Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Unpack
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.base_motions import Record
+from stylobate.config import provenance_of_run
+from stylobate.config.simulation import FREE_TAIL
+from stylobate.earthquakes import Perturbation
+from stylobate.earthquakes.assessment.fragilities import fragility_of
+from stylobate.earthquakes.assessment.governing import governing_record, histories_of
+from stylobate.earthquakes.assessment.ground_motions import ground_motions, spectra_of
+from stylobate.earthquakes.assessment.inputs import CENTRAL, Inputs
+from stylobate.earthquakes.assessment.margins import margin_runs, margins_of, of_one_width
+from stylobate.earthquakes.assessment.parts import Announce, Parts
+from stylobate.earthquakes.assessment.properties import column_properties, record_properties
+from stylobate.earthquakes.assessment.robust import planar_of, planar_runs, robustness_of, robustness_runs
+from stylobate.earthquakes.assessment.sliding import sliding_of, sliding_runs
+from stylobate.earthquakes.assessment.summary import summary_of
+from stylobate.earthquakes.assessment.verdicts import verdict_runs, verdicts_on
+from stylobate.earthquakes.named_records import Records
+from stylobate.earthquakes.remarks import remark_on
+from stylobate.errors import require_positive, require_whole
+from stylobate.models import Model
+from stylobate.results.assessment import Assessment
+from stylobate.results.few_records import FEW_RECORDS
+from stylobate.results.report_details import ReportDetails
+from stylobate.studies.checks import require_no_tilt_limit
+from stylobate.studies.sweeps import Executor
+from stylobate.studies.sweeps.recipe import RunOptions
+
+# Packages on whose versions the digits depend.
+_PACKAGES = ("stylobate", "numpy", "scipy", "numba", "llvmlite", "xarray")
+
+
+def assess(
+    columns: Mapping[str, Model],
+    records: Records,
+    *,
+    dissipation: Mapping[str, Mapping[str, float]] | None = None,
+    friction_coefficient: float | Mapping[str, float] | None = None,
+    scales: npt.ArrayLike = (1.0,),
+    margin_scales: npt.ArrayLike | None = None,
+    width: float = 5e-3,
+    tail: float | None = None,
+    changes: Sequence[Perturbation] | None = None,
+    changes_at: Sequence[str] | None = None,
+    sliding: bool = False,
+    planar: bool = True,
+    contact: bool = True,
+    least_records: int = FEW_RECORDS,
+    title: str = "Columns under records",
+    notes: Sequence[str] = (),
+    details: ReportDetails | None = None,
+    store: str | Path | None = None,
+    executor: Executor | None = None,
+    progress: Announce | None = None,
+    **options: Unpack[RunOptions],
+) -> Assessment:
+    """Return what becomes of each column under each record, how close it was, and how sure that is.
+
+    Parameters
+    ----------
+    columns
+        Models of columns in space, by name; the numbers in `dissipation` replace theirs.
+    records
+        Base motions that end: a sequence, or a mapping from names. They are told in the order of their names.
+    dissipation
+        By level, of which there are "low", "central" and "high" at least, the numbers of the model that dissipate:
+        damping, spin_damping, rolling_resistance, restitution; the same ones at each level. There is no default: it
+        must be stated.
+    friction_coefficient
+        Of the contact between column and base, one or one for each column by name: what the friction that a run
+        needs is compared with. It must be stated.
+    scales
+        Factors of the records at which verdicts are given; vertical components are scaled likewise.
+    margin_scales
+        Factors looked at for the bands that overturn, by default 60 from 0.2 to 5, evenly in their logarithm; besides
+        them the `scales` and what the changes make of them.
+    width
+        Relative width to which the edges of bands are found.
+    tail
+        How long columns are followed after a record [s]; by default 20/p.
+    changes
+        Small changes under which each verdict is repeated; by default `SMALL_PERTURBATIONS`; an empty
+        sequence for none.
+    changes_at
+        Levels of dissipation at which they are, such as ["central"]; by default every one that is stated.
+    sliding
+        Whether columns that slide before they rock, their friction being below r/h, are followed by the model `Sliding`
+        too, under each record at each of the `scales`: some seconds a run.
+    planar
+        Whether Housner's planar column answers too.
+    contact
+        Whether runs tell what the contact must bear.
+    least_records
+        Fewer records give no fragility: by default what its intervals need to be as wide as they claim.
+    title, notes
+        What the assessment is called; assumptions of its author, for the report.
+    details
+        Author, project, date, design spectrum and the period of Sa, for the report.
+    store
+        A folder that keeps each part that is computed: with it an interrupted assessment goes on where it was, and
+        logs how much of it was known.
+    executor
+        As in `run_sweep`.
+    progress
+        Told what is computed, the runs done and the runs in all, about.
+    **options
+        Of all runs, as in `simulate_ensemble`, such as `rest_energy`, the energy below which a column comes to rest.
+
+    Returns
+    -------
+    Assessment
+        Its data: "columns" and "records", their numbers; "verdicts" over column, record, dissipation, vertical and
+        scale: `overturned` (1, 0, −1 not decided), `outcome`, `tilt_ratio`, what the contact must bear; "margins" over
+        column, case, record and band; "robustness" over column, dissipation, scale, record and change; "sliding" over
+        column, record and scale; "planar"; "fragility" over column where there are records enough; "histories" over
+        column and run, of the record that governs each; "summary", counts;
+        "spectra" over record and period, "ground_motions" over record and instant, as the report draws them.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range, or dissipation or friction are not stated.
+    Interrupted
+        On Ctrl-C; the parts that were computed are in the store.
+
+    Warns
+    -----
+    UnlikelyInputWarning
+        Of a column of more than 60 m, and of records whose names differ by case only.
+
+    Notes
+    -----
+    Records are sorted by name and every column is computed by itself: the order of either changes no number.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import stylobate as sb
+    >>> column = sb.Slender(sb.Column.solid(radius=0.4, height=4.0, density=2700.0))
+    >>> pulse = sb.Pulse.one_sine(acceleration=2.5, angular_frequency=4.0)
+    >>> found = sb.earthquakes.assess(
+    ...     {"column": column},
+    ...     {"pulse": pulse},
+    ...     dissipation={"low": {"damping": 0.01}, "central": {"damping": 0.05}, "high": {"damping": 0.1}},
+    ...     friction_coefficient=0.6,
+    ...     margin_scales=np.linspace(0.5, 3.0, 11),
+    ...     changes=(),
+    ...     planar=False,
+    ...     contact=False,
+    ... )
+    >>> found.data["verdicts"]["overturned"].sel(vertical="with", scale=1.0).values
+    array([[[1, 1, 1]]], dtype=int8)
+    """
+    require_no_tilt_limit(options)
+    details = details or ReportDetails()
+    inputs = Inputs.of(
+        columns,
+        records,
+        dissipation,
+        friction_coefficient,
+        scales,
+        np.geomspace(0.2, 5.0, 60) if margin_scales is None else margin_scales,
+        changes,
+        changes_at,
+        width=require_positive("width", width),
+        tail=tail,
+        least_records=require_whole("least_records", least_records, least=2),
+        options=options,
+    )
+    remark_on({name: levels[CENTRAL].column for name, levels in inputs.columns.items()}, inputs.records)
+    parts = Parts(
+        None if store is None else Path(store), _runs(inputs, planar=planar, sliding=sliding), progress or _silence
+    )
+    names = list(inputs.columns)
+    verdicts = [verdicts_on(inputs, name, parts, contact=contact, executor=executor) for name in names]
+    margins = [margins_of(inputs, name, parts, contact=contact, executor=executor) for name in names]
+    data = {
+        "columns": column_properties(inputs),
+        "records": record_properties(inputs),
+        "spectra": spectra_of(inputs, parts, details.spectral_period),
+        "ground_motions": ground_motions(inputs),
+        "verdicts": _over_columns(verdicts, names),
+        "margins": _over_columns(of_one_width(margins), names),
+    }
+    if inputs.changes:
+        data["robustness"] = _over_columns(
+            [robustness_of(inputs, name, parts, executor=executor) for name in names], names
+        )
+    if sliding and inputs.sliding_first:
+        data["sliding"] = _over_columns([sliding_of(inputs, name, parts) for name in names], names)
+    if planar:
+        data["planar"] = _over_columns([planar_of(inputs, name, parts, executor=executor) for name in names], names)
+    if len(inputs.records) >= inputs.least_records:
+        peaks = data["records"]["median_peak_acceleration"]
+        data["fragility"] = _over_columns([fragility_of(one["reached"], peaks) for one in margins], names)
+    governing = [governing_record(one, other, inputs.as_recorded) for one, other in zip(verdicts, margins, strict=True)]
+    runs = [
+        histories_of(inputs, name, record, own, parts, contact=contact)
+        for name, record, own in zip(names, governing, margins, strict=True)
+    ]
+    data["histories"] = _over_columns(runs, names)
+    data["summary"] = summary_of(data, governing)
+    parts.tell()
+    more = {
+        "title": title,
+        "notes": list(notes),
+        "contact": contact,
+        "sliding": sliding,
+        "resolution": margins[0].attrs["resolution"],
+    }
+    return Assessment(data=data, setting={**_setting(inputs), **more, "details": _dated(details)})
+
+
+def _dated(details: ReportDetails) -> dict[str, Any]:
+    return {**details.values(), "date": details.date or dt.datetime.now().astimezone().date().isoformat()}
+
+
+def _software() -> dict[str, str]:
+    """Return the versions of the program, of what it computes with, and the machine."""
+    packages = {name: version(name) for name in _PACKAGES}
+    return {**packages, "Python": platform.python_version(), "machine": f"{platform.system()} {platform.machine()}"}
+
+
+def _runs(inputs: Inputs, *, planar: bool, sliding: bool) -> int:
+    each = verdict_runs(inputs) + margin_runs(inputs) + 3
+    each += robustness_runs(inputs) if inputs.changes else 0
+    each += planar_runs(inputs) if planar else 0
+    return each * len(inputs.columns) + (sliding_runs(inputs) if sliding else 0)
+
+
+def _over_columns(found: Sequence[xr.Dataset], names: Sequence[str]) -> xr.Dataset:
+    joined: xr.Dataset = xr.concat(
+        list(found),
+        dim=xr.Variable("column", list(names)),
+        data_vars="all",
+        join="outer",
+        combine_attrs="drop_conflicts",
+    )
+    return joined
+
+
+def _setting(inputs: Inputs) -> dict[str, Any]:
+    """Return what was assessed, as plain values."""
+    return {
+        "version": version("stylobate"),
+        "software": _software(),
+        "columns": {
+            name: {
+                part: provenance_of_run(levels[CENTRAL], motion)[part]
+                for motion in (next(iter(inputs.records.values())),)
+                for part in ("column", "model")
+            }
+            for name, levels in inputs.columns.items()
+        },
+        "records": {
+            name: {
+                "processing": list(motion.provenance) if isinstance(motion, Record) else [repr(motion)],
+                "digest": motion.digest if isinstance(motion, Record) else "",
+                "motion": provenance_of_run(next(iter(inputs.columns.values()))[CENTRAL], motion)["motion"],
+            }
+            for name, motion in inputs.records.items()
+        },
+        "dissipation": {level: dict(numbers) for level, numbers in inputs.dissipation.items()},
+        "friction_coefficient": dict(inputs.friction),
+        "scales": inputs.scales.tolist(),
+        "margin_scales": [float(inputs.margin_scales[0]), float(inputs.margin_scales[-1]), inputs.margin_scales.size],
+        "width": inputs.width,
+        "tail": "20/p" if inputs.tail is None else inputs.tail,
+        "tail_over_p": FREE_TAIL,
+        "changes": [change.name for change in inputs.changes],
+        "changes_at": list(inputs.changes_at) if inputs.changes else [],
+        "least_records": inputs.least_records,
+        "options": {name: repr(value) for name, value in inputs.options.items() if value is not None},
+    }
+
+
+def _silence(what: str, done: int, total: int) -> None:
+    del what, done, total

@@ -1,0 +1,135 @@
+"""Ground motions of an assessment as they are drawn, their response spectra, and their RotD50 intensities."""
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion, Record
+from stylobate.base_motions.base import ACCELERATION, VELOCITY
+from stylobate.base_motions.records import HorizontalComponent, response_spectra
+from stylobate.base_motions.records.record import AXES
+from stylobate.earthquakes.assessment.inputs import Inputs
+from stylobate.earthquakes.assessment.parts import Parts, identities
+from stylobate.earthquakes.intensities import has_two_components, horizontal_peak
+from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.quantities import Floats
+
+ROTD50, ONE_COMPONENT = HorizontalComponent.ROTD50.value, "one component"
+"""Definitions of a horizontal intensity: the median over all directions; the one component that a record has."""
+
+# A motion that is no record is sampled so often; a record is drawn with so many points at most.
+_SAMPLES, _DRAWN = 4001, 2000
+_PERIODS = np.concatenate(
+    [
+        [0.05, 0.075, 0.1, 0.12, 0.15, 0.17, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8],
+        [0.9, 1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 2.0, 2.2, 2.5, 2.8, 3.0, 3.5, 4.0, 4.5, 5.0],
+    ]
+)
+_DAMPING = 0.05
+
+
+def as_record(motion: BaseMotion) -> Record:
+    """Return the motion as a record: itself, or sampled at 4001 times up to its end."""
+    if isinstance(motion, Record):
+        return motion
+    step = motion.duration / (_SAMPLES - 1)
+    return Record(samples=motion.acceleration(step * np.arange(_SAMPLES)), step=step)
+
+
+def horizontal_peaks(motion: BaseMotion) -> tuple[str, float, float]:
+    """Return the definition, PGA [m/s²] and PGV [m/s] of the horizontal motion.
+
+    A motion along one straight line has no other direction: its peaks are those of that component.
+    """
+    definition = ROTD50 if has_two_components(motion) else ONE_COMPONENT
+    acceleration, velocity = (
+        horizontal_peak(motion, order, HorizontalComponent.ROTD50) for order in (ACCELERATION, VELOCITY)
+    )
+    return definition, acceleration, velocity
+
+
+def spectra_of(inputs: Inputs, parts: Parts, period: float) -> xr.Dataset:
+    """Return the 5 % damped response spectra of the records.
+
+    Parameters
+    ----------
+    inputs
+        What is assessed.
+    parts
+        Keeps the spectra once they are computed.
+    period
+        A natural period to compute besides those of the curves [s].
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `record` and `period`: `spectral_acceleration` [m/s²], RotD50 of the pseudo-acceleration, or that of the
+        one horizontal component.
+    """
+    periods = np.unique(np.append(_PERIODS, period))
+
+    def compute(progress: Progress) -> xr.Dataset:
+        found = []
+        for place, motion in enumerate(inputs.records.values()):
+            progress(place, len(inputs.records))
+            found.append(_spectrum(motion, periods))
+        about = {"units": "m s-2", "long_name": "spectral pseudo-acceleration, 5 % damping"}
+        return xr.Dataset(
+            {"spectral_acceleration": (("record", "period"), np.array(found), about)},
+            coords={"record": list(inputs.records), "period": ("period", periods, {"units": "s"})},
+        )
+
+    identity = {"records": identities(inputs.records), "periods": periods.tolist(), "damping": _DAMPING}
+    return parts.get("records: response spectra", len(inputs.records), identity, compute)
+
+
+def _spectrum(motion: BaseMotion, periods: Floats) -> Floats:
+    record = as_record(motion)
+    spectra = response_spectra(record, periods, damping=_DAMPING)
+    if has_two_components(motion):
+        return np.asarray(spectra["rotd50"].to_numpy())
+    # Oscillators along a line keep to it: their peaks along x and y are the components of the peak along the line.
+    squares = [spectra["psa"].sel(axis=axis).to_numpy() ** 2 for axis in record.axes if axis != "z"]
+    return np.sqrt(np.sum(squares, axis=0)) if squares else np.zeros(periods.size)
+
+
+def ground_motions(inputs: Inputs) -> xr.Dataset:
+    """Return the accelerations of the records as they are drawn.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `record`, `instant` and `axis`: `acceleration` [m/s²]; over `record` and `instant` `time` [s]; NaN beyond
+        the end of a record. A record of more than 2000 samples is given by the lowest and highest of each stretch.
+    """
+    drawn = [_envelope(as_record(motion)) for motion in inputs.records.values()]
+    longest = max(len(times) for times, _ in drawn)
+    times = np.full((len(drawn), longest), np.nan)
+    values = np.full((len(drawn), longest, len(AXES)), np.nan)
+    for place, (at, acceleration) in enumerate(drawn):
+        times[place, : len(at)], values[place, : len(at)] = at, acceleration
+    return xr.Dataset(
+        {
+            "time": (("record", "instant"), times, {"units": "s", "long_name": "time"}),
+            "acceleration": (
+                ("record", "instant", "axis"),
+                values,
+                {"units": "m s-2", "long_name": "ground acceleration"},
+            ),
+        },
+        coords={"record": list(inputs.records), "axis": list(AXES)},
+    )
+
+
+def _envelope(record: Record) -> tuple[Floats, Floats]:
+    """Return times and accelerations of a record, few enough to draw, its peaks among them."""
+    size = math.ceil(2 * len(record.samples) / _DRAWN)
+    if size <= 2:  # noqa: PLR2004  two samples stand for a stretch
+        return record.times, record.samples
+    padding = -len(record.samples) % size
+    stretches = np.pad(record.samples, ((0, padding), (0, 0)), mode="edge").reshape(-1, size, len(AXES))
+    ends = np.stack([stretches.min(axis=1), stretches.max(axis=1)], axis=1)
+    begins = record.start + record.step * size * np.arange(len(stretches))
+    times = begins[:, np.newaxis] + record.step * np.array([0.25, 0.75]) * size
+    return times.ravel(), ends.reshape(-1, len(AXES))

@@ -1,0 +1,242 @@
+"""What is assessed: columns with their dissipation and friction, records by name, and what is asked of them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from typing import Any, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.base_motions import BASE_AT_REST, BaseMotion
+from stylobate.config import provenance_of_run
+from stylobate.config.levels import LEVELS, OF_DISSIPATION
+from stylobate.earthquakes.assessment.parts import identities
+from stylobate.earthquakes.named_records import Records, named_records
+from stylobate.earthquakes.perturbations import SMALL_PERTURBATIONS, Perturbation, ScaledRecord
+from stylobate.engine.parameters import changed_model, model_names
+from stylobate.errors import ParameterError, require_not_negative, require_positive
+from stylobate.models import Model
+from stylobate.studies.sweeps.fingerprint import identity_of
+from stylobate.studies.sweeps.quantities import Floats
+from stylobate.studies.sweeps.recipe import RunOptions
+
+CENTRAL = "central"
+NO_VERTICAL = "central, no vertical"
+"""The case of margins in which the vertical component does not act."""
+
+# What the parts of an assessment hold: a store of another layout is not read.
+_LAYOUT = 3
+# Scales nearer than this part of themselves are one.
+_SAME_SCALE = 1e-9
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Inputs:
+    """Everything an assessment is told, checked.
+
+    Parameters
+    ----------
+    columns
+        The column with its equations by name, at each level of dissipation.
+    records
+        Base motions by name, sorted.
+    dissipation
+        The numbers of each level.
+    friction
+        The coefficient of friction of each column that its contact is said to have.
+    scales
+        Scale factors at which verdicts are given.
+    margin_scales
+        Scale factors looked at for margins, increasing, those of the verdicts and their small changes among them.
+    width
+        Relative width to which their edges are found.
+    tail
+        How long columns are followed after a record [s], by default 20/p.
+    changes
+        Small changes under which verdicts are repeated.
+    changes_at
+        Levels of dissipation at which they are.
+    least_records
+        Fewer records give no fragility.
+    options
+        Of all runs.
+    """
+
+    columns: Mapping[str, Mapping[str, Model]]
+    records: Mapping[str, BaseMotion]
+    dissipation: Mapping[str, Mapping[str, float]]
+    friction: Mapping[str, float]
+    scales: Floats
+    margin_scales: Floats
+    width: float
+    tail: float | None
+    changes: tuple[Perturbation, ...]
+    changes_at: tuple[str, ...]
+    least_records: int
+    options: RunOptions
+
+    @classmethod
+    def of(
+        cls,
+        columns: Mapping[str, Model],
+        records: Records,
+        dissipation: Mapping[str, Mapping[str, float]] | None,
+        friction_coefficient: float | Mapping[str, float] | None,
+        scales: npt.ArrayLike,
+        margin_scales: npt.ArrayLike,
+        changes: Sequence[Perturbation] | None,
+        changes_at: Sequence[str] | None,
+        **more: Any,
+    ) -> Self:
+        """Return the inputs, or raise ParameterError for one that cannot be."""
+        if not isinstance(columns, Mapping) or not columns:
+            message = f"columns must map names to models, at least one, got {columns!r}"
+            raise ParameterError(message)
+        levels = checked_dissipation(dissipation)
+        stated, tried = _rising("scales", scales, least=1), tuple(SMALL_PERTURBATIONS if changes is None else changes)
+        return cls(
+            columns={name: _at_levels(name, model, levels) for name, model in columns.items()},
+            records=dict(sorted(named_records(records).items())),
+            dissipation=levels,
+            friction=_frictions(friction_coefficient, list(columns)),
+            scales=stated,
+            margin_scales=_joined(_rising("margin_scales", margin_scales, least=2), stated, tried),
+            changes=tried,
+            changes_at=_levels_named(changes_at, levels),
+            **more,
+        )
+
+    @property
+    def as_recorded(self) -> int:
+        """The place of scale 1 among the scales; where it is not among them, of the nearest."""
+        return int(np.argmin(np.abs(np.log(self.scales))))
+
+    @property
+    def sliding_first(self) -> tuple[str, ...]:
+        """The columns that slide before they rock: their friction is below c = r/h."""
+        return tuple(
+            name for name, levels in self.columns.items() if self.friction[name] < levels[CENTRAL].column.slenderness
+        )
+
+    @property
+    def has_vertical(self) -> bool:
+        """Whether some record has a vertical component."""
+        return any(any(motion.vertical_range(0.0)) for motion in self.records.values())
+
+    def with_records(self, names: Sequence[str]) -> Self:
+        """Return these inputs with some of the records only."""
+        return replace(self, records={name: self.records[name] for name in names})
+
+    def identity(self, column: str, level: str | None = None) -> dict[str, Any]:
+        """Return what tells the runs of a column, at one level or at all, from others."""
+        models = self.columns[column]
+        chosen = models if level is None else {level: models[level]}
+        return {
+            "version": version("stylobate"),
+            "layout": _LAYOUT,
+            "models": {name: _told(model) for name, model in chosen.items()},
+            "records": identities(self.records),
+            "tail": self.tail,
+            "options": repr(dict(self.options)),
+        }
+
+
+def checked_dissipation(dissipation: Mapping[str, Mapping[str, float]] | None) -> dict[str, dict[str, float]]:
+    """Return the numbers of each level, or raise ParameterError with the remedy.
+
+    Raises
+    ------
+    ParameterError
+        If low, central and high are not all stated, name different numbers, or none.
+    """
+    remedy = "state it for low, central and high, such as low = {damping = 0.005}"
+    if not isinstance(dissipation, Mapping) or not dissipation:
+        message = f"dissipation is missing: how fast a column in space loses energy decides its fate; {remedy}"
+        raise ParameterError(message)
+    missing = [level for level in LEVELS if level not in dissipation]
+    if missing:
+        message = f"dissipation: {' and '.join(missing)} must be stated too; {remedy}"
+        raise ParameterError(message)
+    names = set(dissipation[CENTRAL])
+    if not names or any(set(level) != names for level in dissipation.values()):
+        told = ", ".join(
+            f"{level} {' and '.join(sorted(numbers)) or 'nothing'}" for level, numbers in dissipation.items()
+        )
+        message = f"dissipation must name the same numbers at each level, got {told}; {remedy}"
+        raise ParameterError(message)
+    unknown = sorted(names.difference(OF_DISSIPATION))
+    if unknown:
+        message = f"dissipation: {unknown[0]} is none; it is told by {', '.join(OF_DISSIPATION)}"
+        raise ParameterError(message)
+    return {
+        level: {name: require_not_negative(f"dissipation.{level}.{name}", value) for name, value in numbers.items()}
+        for level, numbers in dissipation.items()
+    }
+
+
+def _levels_named(given: Sequence[str] | None, levels: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the names of levels that are given, in the order of the levels; all of them for None."""
+    if given is None:
+        return tuple(levels)
+    chosen = (given,) if isinstance(given, str) else tuple(given)
+    unknown = [name for name in chosen if name not in levels]
+    if unknown or not chosen:
+        message = (
+            f"changes_at: must name levels of dissipation (got {unknown[0] if unknown else given!r}). Use some of "
+            f"{', '.join(levels)}."
+        )
+        raise ParameterError(message)
+    return tuple(level for level in levels if level in chosen)
+
+
+def _at_levels(name: str, model: Model, levels: Mapping[str, Mapping[str, float]]) -> dict[str, Model]:
+    if not isinstance(model, Model) or model.planar_only:
+        message = f"columns: {name!r} must be a model of a column in space, such as Wobbling(column), got {model!r}"
+        raise ParameterError(message)
+    lacking = [number for number in levels[CENTRAL] if number not in model_names(model)]
+    if lacking:
+        message = f"dissipation: the model {model.name} has no {lacking[0]}; leave it out or choose another model"
+        raise ParameterError(message)
+    return {level: changed_model(model, numbers) for level, numbers in levels.items()}
+
+
+def _frictions(given: float | Mapping[str, float] | None, columns: Sequence[str]) -> dict[str, float]:
+    if given is None:
+        message = (
+            "friction_coefficient is missing: the friction between column and base, such as 0.6; one, or by column"
+        )
+        raise ParameterError(message)
+    if not isinstance(given, Mapping):
+        return dict.fromkeys(columns, require_positive("friction_coefficient", given))
+    for name in (*given, *columns):
+        if (name in given) != (name in columns):
+            what = "is no column" if name in given else "has none; state one for each column"
+            message = f"friction_coefficient: {name!r} {what}"
+            raise ParameterError(message)
+    return {name: require_positive(f"friction_coefficient.{name}", given[name]) for name in columns}
+
+
+def _rising(name: str, values: npt.ArrayLike, *, least: int) -> Floats:
+    try:
+        array = np.atleast_1d(np.array(values, dtype=float))
+    except (TypeError, ValueError):
+        array = np.empty(0)
+    if array.ndim != 1 or array.size < least or not np.all(np.isfinite(array) & (array > 0.0)):
+        message = f"{name} must be positive numbers, {least} or more, got {values!r}"
+        raise ParameterError(message)
+    return np.unique(array)
+
+
+def _joined(scanned: Floats, stated: Floats, changes: Sequence[Perturbation]) -> Floats:
+    """Return the scales `scanned`, with those stated and their small changes: what is said of both is of one set."""
+    factors = [1.0, *(change.factor for change in changes if isinstance(change, ScaledRecord))]
+    rising = np.unique(np.concatenate([scanned, np.outer(stated, factors).ravel()]))
+    apart = np.diff(rising, prepend=0.0) > _SAME_SCALE * rising
+    return np.asarray(rising[apart])
+
+
+def _told(model: Model) -> dict[str, Any]:
+    provenance = provenance_of_run(model, BASE_AT_REST)
+    described = provenance["model"] if provenance["model"].get("kind") != "other" else identity_of(model)
+    return {"column": provenance["column"], "model": described}

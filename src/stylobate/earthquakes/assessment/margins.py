@@ -1,0 +1,168 @@
+"""Margins of one column: all bands of scale factors in which each record overturns it, case by case."""
+
+import numpy as np
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion, OneOf
+from stylobate.config.simulation import FREE_TAIL
+from stylobate.earthquakes.assessment.inputs import CENTRAL, NO_VERTICAL, Inputs
+from stylobate.earthquakes.assessment.parts import Parts
+from stylobate.earthquakes.assessment.slip import standing_slip
+from stylobate.earthquakes.fragility import limit_states
+from stylobate.earthquakes.incremental import tilt_ratios, without_vertical
+from stylobate.earthquakes.spectra import overturning_bands
+from stylobate.models import Model
+from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
+from stylobate.studies.sweeps import Executor
+from stylobate.studies.sweeps.computing import Progress
+
+_BAND = ("band_from", "band_to", "safe_below", "safe_above")
+_FLAGS = ("open_below", "open_above", "undecided_below", "undecided_above")
+_STRETCH = ("undecided_from", "undecided_to")
+_COUNTS = ("bands", "unknown", "decided_to")
+_RUNS = ("outcome", "largest_tilt", "friction_demand")
+
+
+def margins_of(inputs: Inputs, column: str, parts: Parts, *, contact: bool, executor: Executor | None) -> xr.Dataset:
+    """Return the bands of a column.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `case` (the levels of dissipation; and the central one without the vertical component) and `record`:
+        `least_overturning`, the least scale that overturned, NaN where none did; `largest_below`, the largest scale
+        below it that did not, NaN where none; `least_lasting`, the least scale at which a band begins that is wider
+        than its edges are known; `bands`; `unknown`, undecided runs of the scan; `decided_to`, the largest scale up to
+        which every run was decided; `stands_again`, whether it did not overturn at a scale above one that overturned
+        it; `standing_slip`, the least scale at which it slides before it rocks, NaN where it rocks first. Over `band`
+        and `stretch` too all of `overturning_bands`. Over `margin_scale` too: `outcome`, `tilt_ratio`; of the central
+        case over `limit_state`: `reached`. What the contact must bear, NaN without `contact`: over `margin_scale` too
+        `friction_demand`, while it stands and while it moves; `friction_to_margin`, the largest of the scales run below
+        the least that overturned, of all where none did. `least_slipping`, the least scale that needs more than the
+        stated friction, NaN where none does.
+    """
+    cases = cases_of(inputs)
+    found = of_one_width([_bands(inputs, column, case, parts, contact, executor) for case in cases])
+    joined: xr.Dataset = xr.concat(found, dim=xr.Variable("case", cases), data_vars="all", join="override")
+    body = inputs.columns[column][CENTRAL].column
+    scanned = joined[["outcome", "largest_tilt"]].sel(case=CENTRAL)
+    reached = limit_states(scanned, slenderness=body.slenderness).transpose("record", "limit_state", "margin_scale")
+    labelled = joined.drop_vars("largest_tilt").assign(
+        tilt_ratio=tilt_ratios(joined, body.slenderness),
+        reached=reached.drop_vars("case"),
+        standing_slip=standing_slip(inputs, column, cases),
+    )
+    return labelled.assign(demands_to_margin(labelled, inputs.friction[column]))
+
+
+def of_one_width(margins: list[xr.Dataset]) -> list[xr.Dataset]:
+    """Return the margins with as many bands and undecided stretches each, NaN beyond the last."""
+    for dim in ("band", "stretch"):
+        widest = max(one.sizes[dim] for one in margins)
+        margins = [one.pad({dim: (0, widest - one.sizes[dim])}) if one.sizes[dim] < widest else one for one in margins]
+    return margins
+
+
+def demands_to_margin(margins: xr.Dataset, stated: float) -> dict[str, xr.DataArray]:
+    """Return the friction that is needed up to the margin, and where it first exceeds the stated one."""
+    need, scale = margins["friction_demand"], margins["margin_scale"]
+    least = margins["least_overturning"]
+    one = {"units": "1"}
+    first = scale.where(need > stated).min("margin_scale")
+    root = margins["standing_slip"].where(margins["standing_slip"] <= scale[-1])
+    first = first.where(~(root < first.fillna(np.inf)), root)
+    return {
+        "friction_to_margin": need.where(~(scale >= least))
+        .max("margin_scale")
+        .assign_attrs(**one, long_name="largest friction needed below the least scale that overturned"),
+        "least_slipping": first.assign_attrs(**one, long_name="least scale that needs more than the stated friction"),
+    }
+
+
+def cases_of(inputs: Inputs) -> list[str]:
+    """Return the names of the cases."""
+    return [*inputs.dissipation, *([NO_VERTICAL] if inputs.has_vertical else [])]
+
+
+def margin_runs(inputs: Inputs) -> int:
+    """Return how many runs the margins of one column take at least."""
+    return len(cases_of(inputs)) * _scan_runs(inputs)
+
+
+def _scan_runs(inputs: Inputs) -> int:
+    return len(inputs.records) * inputs.margin_scales.size
+
+
+def _bands(
+    inputs: Inputs, column: str, case: str, parts: Parts, contact: bool, executor: Executor | None
+) -> xr.Dataset:
+    level = CENTRAL if case == NO_VERTICAL else case
+    model = inputs.columns[column][level]
+    motions = [without_vertical(one) if case == NO_VERTICAL else one for one in inputs.records.values()]
+
+    def compute(progress: Progress) -> xr.Dataset:
+        found = _found(inputs, model, motions, contact, executor, progress)
+        return _told(found, list(inputs.records), inputs.width)
+
+    identity = {
+        **inputs.identity(column, level),
+        "vertical": case != NO_VERTICAL,
+        "scales": inputs.margin_scales.tolist(),
+        "width": inputs.width,
+        "contact": contact,
+    }
+    return parts.get(f"{column}: margins, {case}", _scan_runs(inputs), identity, compute)
+
+
+def _found(
+    inputs: Inputs,
+    model: Model,
+    motions: list[BaseMotion],
+    contact: bool,
+    executor: Executor | None,
+    progress: Progress,
+) -> xr.Dataset:
+    options = inputs.options.copy()
+    options["demands"] = contact
+    tail = FREE_TAIL if inputs.tail is None else inputs.tail * model.column.frequency_parameter
+    return overturning_bands(
+        model,
+        OneOf(motions=tuple(motions)),
+        over={"motion": np.arange(len(motions))},
+        scales=inputs.margin_scales,
+        width=inputs.width,
+        tail=tail,
+        executor=executor,
+        progress=progress,
+        **options,
+    )
+
+
+def _told(found: xr.Dataset, names: list[str], width: float) -> xr.Dataset:
+    plain = found.rename(motion="record", scale="margin_scale")
+    plain = plain.drop_vars([name for name in plain.coords if name != "margin_scale"]).assign_coords(record=names)
+    demand = plain.get("largest_friction_demand", xr.full_like(plain["largest_tilt"], np.nan))
+    about = {"units": "1", "long_name": "largest friction force over normal force"}
+    plain = plain.assign(friction_demand=demand.assign_attrs(about))
+    kept = plain[[*_BAND, *_FLAGS, *_STRETCH, *_COUNTS, *_RUNS]].transpose("record", ...)
+    flags = {name: kept[name].astype(float) for name in (*_FLAGS, "bands", "unknown")}
+    first = kept.isel(band=0)
+    lasting = kept["band_to"] > kept["band_from"] * (1.0 + width)
+    stood = kept["outcome"].copy(data=overturned_or_not(kept) == 0)
+    higher = (stood & (kept["margin_scale"] > first["band_from"])).any("margin_scale")
+    again = kept["safe_above"].notnull().any("band") | higher
+    return (
+        kept.assign(flags)
+        .assign(
+            least_overturning=first["band_from"].assign_attrs(units="1", long_name="least scale that overturned"),
+            least_lasting=kept["band_from"]
+            .where(lasting)
+            .min("band")
+            .assign_attrs(units="1", long_name="least scale at which a band begins that is no hairline"),
+            largest_below=first["safe_below"].assign_attrs(units="1", long_name="largest scale below that did not"),
+            stands_again=again.astype(float).assign_attrs(
+                long_name="did not overturn at a scale above one that overturned"
+            ),
+        )
+        .assign_attrs(resolution=found.attrs["resolution"], provenance=found.attrs["provenance"])
+    )

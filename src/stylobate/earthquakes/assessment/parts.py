@@ -1,0 +1,112 @@
+"""The parts of an assessment, each kept in a file once it is computed: what was interrupted goes on from there."""
+
+import hashlib
+import json
+import logging
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion, Record
+from stylobate.errors import FileError
+from stylobate.results.storage import read_dataset, write_netcdf
+from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.fingerprint import identity_of
+
+_log = logging.getLogger("stylobate")
+
+Announce: TypeAlias = Callable[[str, int, int], None]
+"""Told what is computed, how much of everything is done and how much there is, in runs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """Parts computed or, from the folder `store`, known.
+
+    Parameters
+    ----------
+    store
+        Where they are kept; None keeps nothing.
+    total
+        Runs of all parts, about.
+    announce
+        Gets the progress while a part is computed; it begins at the runs of the parts that are known.
+    """
+
+    store: Path | None
+    total: int
+    announce: Announce
+    _done: list[int] = field(default_factory=list, init=False)
+    _known: list[str] = field(default_factory=list, init=False)
+
+    def get(
+        self, name: str, runs: int, identity: Mapping[str, Any], compute: Callable[[Progress], xr.Dataset]
+    ) -> xr.Dataset:
+        """Return the part `name` of about so many `runs`; it is computed if none of the same `identity` is kept.
+
+        Raises
+        ------
+        FileError
+            If the store cannot be written.
+        """
+        before = sum(self._done)
+        path = None if self.store is None else self.store / f"{_digest({'part': name, **identity})}.nc"
+        found = None if path is None else _kept(path)
+        if found is not None:
+            self._known.append(name)
+        else:
+            self._tell_where_it_goes_on()
+            self.announce(name, before, self.total)
+            found = compute(
+                lambda done, total: self.announce(name, before + round(runs * done / max(total, 1)), self.total)
+            )
+            if path is not None:
+                _keep(found, path)
+            self.announce(name, before + runs, self.total)
+        self._done.append(runs)
+        return found
+
+    def tell(self) -> None:
+        """Log in one line how many parts were known, if any were."""
+        if self._known:
+            _log.info(
+                "%d of %d parts were kept in %s and not computed again", len(self._known), len(self._done), self.store
+            )
+
+    def _tell_where_it_goes_on(self) -> None:
+        """Log, before the first part that is computed, how many parts are known."""
+        if self._known and len(self._known) == len(self._done):
+            _log.info("%d parts are kept in %s; the work goes on from there", len(self._known), self.store)
+
+
+def identities(motions: Mapping[str, BaseMotion]) -> dict[str, Any]:
+    """Return what tells these motions from others, by name."""
+    return {
+        name: motion.digest if isinstance(motion, Record) else identity_of(motion) for name, motion in motions.items()
+    }
+
+
+def _digest(identity: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(identity, sort_keys=True, default=repr).encode()).hexdigest()[:24]
+
+
+def _kept(path: Path) -> xr.Dataset | None:
+    if not path.exists():
+        return None
+    try:
+        return read_dataset(path)
+    except FileError as error:
+        _log.warning("%s; it is computed again", error)
+        return None
+
+
+def _keep(data: xr.Dataset, path: Path) -> None:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        message = f"cannot write {path}: {error.strerror or error}"
+        raise FileError(message) from None
+    write_netcdf(data, path)

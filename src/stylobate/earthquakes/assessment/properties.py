@@ -1,0 +1,91 @@
+"""What is known of columns and records before anything is run."""
+
+import numpy as np
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion, Record
+from stylobate.base_motions.base import ACCELERATION
+from stylobate.base_motions.records.listing import drifts
+from stylobate.earthquakes.assessment.ground_motions import as_record, horizontal_peaks
+from stylobate.earthquakes.assessment.inputs import CENTRAL, Inputs
+from stylobate.earthquakes.intensities import peak_horizontal_velocity
+
+# Peaks of a motion that is no record are looked at at so many times.
+_TIMES = 20_001
+
+
+def column_properties(inputs: Inputs) -> xr.Dataset:
+    """Return the numbers of each column, over `column`."""
+    bodies = [levels[CENTRAL].column for levels in inputs.columns.values()]
+    numbers = {
+        "radius": ([body.radius for body in bodies], "m", "base radius r"),
+        "height": ([np.nan if body.height is None else body.height for body in bodies], "m", "height"),
+        "mass_height": ([body.mass_height for body in bodies], "m", "height of the centre of mass h"),
+        "mass": ([body.mass for body in bodies], "kg", "mass"),
+        "slenderness": ([body.slenderness for body in bodies], "1", "slenderness c = r/h"),
+        "tipping_angle": ([body.tipping_angle for body in bodies], "rad", "tipping angle α"),
+        "rim_distance": ([body.rim_distance for body in bodies], "m", "size R"),
+        "frequency_parameter": ([body.frequency_parameter for body in bodies], "rad s-1", "frequency parameter p"),
+        "uplift_acceleration": (
+            [body.gravity * body.slenderness for body in bodies],
+            "m s-2",
+            "horizontal acceleration above which it rocks",
+        ),
+        "friction_coefficient": (list(inputs.friction.values()), "1", "stated friction coefficient"),
+    }
+    return xr.Dataset(
+        {
+            name: ("column", np.array(values, dtype=float), {"units": units, "long_name": long_name})
+            for name, (values, units, long_name) in numbers.items()
+        },
+        coords={"column": list(inputs.columns)},
+    )
+
+
+def record_properties(inputs: Inputs) -> xr.Dataset:
+    """Return the numbers of each record, over `record`; `definition` names that of the horizontal intensities.
+
+    `drifts` is 1 where the velocity at the end is more than 5 % of the PGV along some axis.
+    """
+    motions = list(inputs.records.values())
+    definitions, accelerations, velocities = zip(*map(horizontal_peaks, motions), strict=True)
+    axes = np.array([_peaks(motion) for motion in motions])
+    numbers = {
+        "peak_acceleration": (
+            [motion.largest_horizontal(0.0) for motion in motions],
+            "m s-2",
+            "PGA, horizontal vector",
+        ),
+        **{
+            f"peak_acceleration_{axis}": (axes[:, place], "m s-2", f"largest acceleration along {axis}")
+            for place, axis in enumerate("xyz")
+        },
+        "peak_velocity": ([peak_horizontal_velocity(motion) for motion in motions], "m s-1", "PGV, horizontal vector"),
+        "median_peak_acceleration": (accelerations, "m s-2", "PGA, RotD50 or of the one component"),
+        "median_peak_velocity": (velocities, "m s-1", "PGV, RotD50 or of the one component"),
+        "length": ([motion.duration for motion in motions], "s", "length"),
+        "step": ([motion.step if isinstance(motion, Record) else np.nan for motion in motions], "s", "time step"),
+        "residual_velocity": (
+            [float(np.linalg.norm(motion.velocity(motion.duration))) for motion in motions],
+            "m s-1",
+            "velocity left at its end",
+        ),
+    }
+    return xr.Dataset(
+        {
+            name: ("record", np.array(values, dtype=float), {"units": units, "long_name": long_name})
+            for name, (values, units, long_name) in numbers.items()
+        }
+        | {
+            "definition": ("record", np.array(definitions)),
+            "drifts": ("record", np.array([bool(drifts(as_record(motion))) for motion in motions], np.int8)),
+        },
+        coords={"record": list(inputs.records)},
+    )
+
+
+def _peaks(motion: BaseMotion) -> tuple[float, ...]:
+    if isinstance(motion, Record):
+        return tuple(np.abs(motion.samples).max(axis=0).tolist())
+    times = np.linspace(0.0, motion.duration, _TIMES)
+    return tuple(float(np.abs(values).max()) for values in motion.derivative(times, ACCELERATION))

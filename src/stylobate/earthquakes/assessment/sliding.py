@@ -1,0 +1,112 @@
+"""Columns that slide before they rock, by the model that slides: how far they go, and whether they overturn."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from stylobate.earthquakes.assessment.inputs import CENTRAL, Inputs
+from stylobate.earthquakes.assessment.parts import Parts
+from stylobate.earthquakes.following import tail_of
+from stylobate.engine import simulate
+from stylobate.engine.parameters import model_names
+from stylobate.errors import Outcome
+from stylobate.models import Model, Sliding
+from stylobate.results.outcomes import NOT_COMPUTED, code_of, outcome_attributes
+from stylobate.studies.sweeps.computing import Progress
+
+# Of the numbers of a model that dissipate, stated or not, those that `Sliding` has too: its restitution is another one.
+_DISSIPATION = ("damping", "spin_damping", "rolling_resistance")
+_OPTIONS = ("rtol", "atol", "rest_energy", "max_steps")
+_NUMBERS = {
+    "tilt_ratio": ("1", "largest tilt over α"),
+    "residual_slip": ("m", "distance of the footprint from its place at the end"),
+    "largest_slip": ("m", "largest distance of the footprint from its place"),
+    "slip_path": ("m", "length of the path of slip"),
+    "time_sliding": ("s", "how long it slid on its base"),
+}
+Run = dict[str, float]
+
+
+def sliding_of(inputs: Inputs, column: str, parts: Parts) -> xr.Dataset:
+    """Return the runs of a column by `Sliding`, at its stated friction and the central dissipation.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `record` and `scale`: `outcome`; `overturned` (1, 0, −1 not decided); `uncertain` (1 where rounding could
+        change the outcome); `tilt_ratio`, infinite where it overturned; `residual_slip`, `largest_slip` and
+        `slip_path` [m]; `time_sliding` [s]. A column that rocks before it slides is not followed: outcome and
+        `overturned` −1, NaN.
+    """
+    followed = column in inputs.sliding_first
+    rows = [
+        [_run(inputs, column, record, scale, parts) if followed else _NOT_FOLLOWED for scale in inputs.scales.tolist()]
+        for record in inputs.records
+    ]
+
+    def over(name: str, dtype: type, **attributes: Any) -> xr.Variable:
+        return xr.Variable(
+            ("record", "scale"), np.array([[run[name] for run in row] for row in rows], dtype), attributes
+        )
+
+    return xr.Dataset(
+        {
+            "outcome": over("outcome", np.int8, **outcome_attributes()),
+            "overturned": over("overturned", np.int8, long_name="overturned"),
+            "uncertain": over("uncertain", np.int8, long_name="rounding could change the outcome"),
+            **{
+                name: over(name, float, units=unit, long_name=long_name) for name, (unit, long_name) in _NUMBERS.items()
+            },
+        },
+        coords={"record": list(inputs.records), "scale": inputs.scales},
+    )
+
+
+def sliding_runs(inputs: Inputs) -> int:
+    """Return how many runs the columns that slide take."""
+    return len(inputs.sliding_first) * len(inputs.records) * inputs.scales.size
+
+
+_NOT_FOLLOWED: Run = {"outcome": NOT_COMPUTED, "overturned": -1.0, "uncertain": 0.0, **dict.fromkeys(_NUMBERS, np.nan)}
+
+
+def sliding_model(given: Model, friction: float) -> Sliding:
+    """Return the model that slides with the column of a model and what dissipates in it."""
+    losses = {name: getattr(given, name) for name in _DISSIPATION if name in model_names(given)}
+    return Sliding(given.column, friction_coefficient=friction, **losses)
+
+
+def _run(inputs: Inputs, column: str, record: str, scale: float, parts: Parts) -> Run:
+    given = inputs.columns[column][CENTRAL]
+    model = sliding_model(given, inputs.friction[column])
+    motion = inputs.records[record].scaled(scale)
+    options: dict[str, Any] = {name: value for name, value in inputs.options.items() if name in _OPTIONS}
+
+    def compute(progress: Progress) -> xr.Dataset:
+        progress(0, 1)
+        duration = motion.duration + tail_of(given.column, inputs.tail)
+        run = simulate(model, motion, duration=duration, **options)
+        fallen, undecided = run.outcome is Outcome.OVERTURNED, run.outcome is Outcome.FAILED
+        places = run.data["footprint"].transpose("axis", "time").to_numpy()
+        tilt = run.measures["largest_tilt"] / given.column.tipping_angle
+        return xr.Dataset(
+            {
+                "outcome": code_of(run.outcome),
+                "overturned": -1.0 if undecided else float(fallen),
+                "uncertain": float(run.uncertain),
+                "tilt_ratio": np.inf if fallen else np.nan if undecided else tilt,
+                "residual_slip": run.measures["residual_displacement"],
+                "largest_slip": float(np.hypot(*places).max()),
+                "slip_path": run.measures["slip_distance"],
+                "time_sliding": run.measures["time_sliding"],
+            }
+        )
+
+    identity = {
+        **inputs.with_records([record]).identity(column, CENTRAL),
+        "scale": scale,
+        "sliding": inputs.friction[column],
+    }
+    found = parts.get(f"{column}: sliding under {record}, scale {scale:g}", 1, identity, compute)
+    return {str(name): float(value) for name, value in found.data_vars.items()}

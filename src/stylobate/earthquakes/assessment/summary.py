@@ -1,0 +1,101 @@
+"""The counts that a reader sees first: of how many records a column overturned, and of how many that is not sure."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from stylobate.earthquakes.assessment.inputs import CENTRAL
+
+_ACTS = "with"
+
+
+def summary_of(data: Mapping[str, xr.Dataset], governing: list[str]) -> xr.Dataset:
+    """Return the counts over the records.
+
+    Parameters
+    ----------
+    data
+        The parts of an assessment.
+    governing
+        The record that governs each column.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `column` and `scale`: `overturned`, `undecided` and `stood`, numbers of records at the central dissipation
+        with the vertical component; `overturned_in_some`, numbers of records that overturned it in some run, whatever
+        the dissipation; `undecided_in_some` and `uncertain_in_some`, of those with some run that is undecided, or that
+        a small change could alter; `on_dissipation` and `on_vertical`, of records whose verdict depends on these;
+        `not_robust`, of those with a verdict, at any dissipation at which it was repeated, that a small change flips;
+        `changes_undecided`, of those with a small change that applies and is not decided; `planar_differs`, of those by
+        which the planar column does otherwise; `largest_tilt_ratio`; `friction_demand`, the largest of all runs, and
+        over `record` too `friction_by_record`. Over `column`: `governing`;
+        `least_overturning` of the central case, NaN where none overturned, and `least_record` that has it, empty where
+        none does; `least_of_all`, of all cases; `friction_to_margin`, the largest of all cases, and the
+        `least_slipping` of them; `slips_first`, whether in some case a record needs more than the stated friction below
+        the scale that overturns; `slides_first`, whether the stated friction is below r/h, so that it slides before it
+        rocks; `never_overturned` and `stands_again`, numbers of records in the central case; `scan_undecided`, of
+        those with undecided runs in the scan of the margin, and `decided_to`, the largest scale up to which all runs of
+        all records were decided, NaN if already the first was not.
+    """
+    verdicts, margins = data["verdicts"], data["margins"]
+    fallen = verdicts["overturned"]
+    central = fallen.sel(dissipation=CENTRAL, vertical=_ACTS, drop=True)
+    counts = {
+        "stood": (central == 0).sum("record"),
+        "overturned": (central == 1).sum("record"),
+        "undecided": (central < 0).sum("record"),
+        "overturned_in_some": (fallen == 1).any(("dissipation", "vertical")).sum("record"),
+        "undecided_in_some": (fallen < 0).any(("dissipation", "vertical")).sum("record"),
+        "uncertain_in_some": (verdicts["uncertain"] == 1).any(("dissipation", "vertical")).sum("record"),
+        "on_dissipation": _differs(fallen.sel(vertical=_ACTS, drop=True), "dissipation"),
+        "on_vertical": _differs(fallen.sel(dissipation=CENTRAL, drop=True), "vertical"),
+    }
+    if "robustness" in data:
+        for name, changes in (("not_robust", "flipped"), ("changes_undecided", "undecided")):
+            counts[name] = (data["robustness"][changes] > 0).any("dissipation").sum("record")
+    if "planar" in data:
+        tilts = data["planar"]["planar_tilt_ratio"]
+        decided = (central >= 0) & tilts.notnull()
+        counts["planar_differs"] = (decided & (np.isinf(tilts) != (central == 1))).sum("record")
+    tilt = verdicts["tilt_ratio"].sel(dissipation=CENTRAL, vertical=_ACTS, drop=True)
+    least = margins["least_overturning"]
+    central_margins = margins.sel(case=CENTRAL, drop=True)
+    return xr.Dataset(
+        {
+            **counts,
+            "largest_tilt_ratio": tilt.max("record"),
+            "friction_demand": verdicts["friction_demand"].max(("record", "dissipation", "vertical")),
+            "friction_by_record": verdicts["friction_demand"].max(("dissipation", "vertical")),
+            "governing": ("column", governing),
+            "least_overturning": central_margins["least_overturning"].min("record"),
+            "least_record": ("column", _least_records(central_margins)),
+            "least_of_all": least.min(("record", "case")),
+            "friction_to_margin": margins["friction_to_margin"].max(("record", "case")),
+            "least_slipping": margins["least_slipping"].min(("record", "case")),
+            "slips_first": _slips_first(margins).any(("record", "case")).astype(np.int8),
+            "slides_first": margins["standing_slip"].notnull().any(("record", "case")).astype(np.int8),
+            "never_overturned": (central_margins["bands"] == 0).sum("record"),
+            "stands_again": (central_margins["stands_again"] > 0).sum("record"),
+            "scan_undecided": (central_margins["unknown"] > 0).sum("record"),
+            "decided_to": central_margins["decided_to"].min("record", skipna=False),
+        }
+    ).transpose("column", ...)
+
+
+def _least_records(margins: xr.Dataset) -> list[str]:
+    """Return the record of the least scale that overturned, for each column; the first of equals by name."""
+    least = margins["least_overturning"].transpose("column", "record").to_numpy()
+    names = margins["record"].to_numpy()
+    return [str(names[np.nanargmin(row)]) if np.isfinite(row).any() else "" for row in least]
+
+
+def _slips_first(margins: xr.Dataset) -> xr.DataArray:
+    """Return whether more than the stated friction is needed below the least scale that overturned, or none did."""
+    slipping, falling = margins["least_slipping"], margins["least_overturning"]
+    return slipping.notnull() & ~(slipping >= falling)
+
+
+def _differs(states: xr.DataArray, dim: str) -> xr.DataArray:
+    return ((states == 1).any(dim) & (states == 0).any(dim)).sum("record")

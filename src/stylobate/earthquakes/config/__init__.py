@@ -1,0 +1,7 @@
+"""File formats of studies of earthquakes: assessments, fragilities and spectra."""
+
+from stylobate.earthquakes.config.assess import AssessConfig, AssessmentSetup
+from stylobate.earthquakes.config.fragility import FragilityConfig, FragilitySetup
+from stylobate.earthquakes.config.spectrum import SpectrumConfig
+
+__all__ = ["AssessConfig", "AssessmentSetup", "FragilityConfig", "FragilitySetup", "SpectrumConfig"]

@@ -1,0 +1,284 @@
+"""The description of an assessment: columns, records, dissipation, friction, and what is asked of them."""
+
+import datetime as dt
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Annotated, Any, Self
+
+import numpy as np
+import numpy.typing as npt
+from pydantic import BeforeValidator, Field, TypeAdapter, ValidationInfo, field_validator
+
+from stylobate.base_motions import Record
+from stylobate.config.axis import Axis
+from stylobate.config.columns import ColumnConfig
+from stylobate.config.description import Config, built
+from stylobate.config.levels import LEVELS, problems_of_the_levels
+from stylobate.config.models import ModelConfig, described_model
+from stylobate.config.record_collection import RecordsConfig
+from stylobate.config.suggestions import did_you_mean
+from stylobate.earthquakes.config.design_spectrum import DesignSpectrumConfig
+from stylobate.errors import (
+    MOST_STEPS,
+    ConfigError,
+    FileError,
+    ParameterError,
+    UnlikelyInputWarning,
+    require_not_negative,
+    require_positive,
+    require_whole,
+)
+from stylobate.models import Model
+from stylobate.results.few_records import FEW_RECORDS
+from stylobate.results.report_details import ReportDetails
+
+_MARGIN = {"from": 0.2, "to": 5.0, "number": 60, "spacing": "log"}
+
+
+def _with_name(values: Any) -> Any:
+    """Return the values of a margin as those of an axis."""
+    return {**_MARGIN, **values, "name": "scale"} if isinstance(values, dict) and "values" not in values else values
+
+
+def _as_source(values: Any) -> Any:
+    """Return the values of records; a folder, a pattern or a list of files is their source."""
+    return {"source": values} if isinstance(values, (str, list, tuple)) else values
+
+
+def _as_friction(values: Any) -> Any:
+    """Return a coefficient, or one for each column."""
+    return (_BY_COLUMN if isinstance(values, Mapping) else _ONE).validate_python(values)
+
+
+_ONE: TypeAdapter[float] = TypeAdapter(float)
+_BY_COLUMN: TypeAdapter[dict[str, float]] = TypeAdapter(dict[str, float])
+
+
+@dataclass(frozen=True, slots=True)
+class AssessmentSetup:
+    """Models, records and the other arguments of `earthquakes.assess`, read from a file."""
+
+    columns: dict[str, Model]
+    records: dict[str, Record]
+    options: dict[str, Any]
+
+
+class AssessConfig(Config):
+    """An assessment: `columns` by name, `records`, `dissipation`, `friction_coefficient`, and what is asked of them."""
+
+    title: str = "Columns under records"
+    columns: dict[str, ColumnConfig]
+    model: ModelConfig = described_model("wobbling")
+    dissipation: dict[str, dict[str, float]]
+    friction_coefficient: Annotated[float | dict[str, float], BeforeValidator(_as_friction)]
+    records: Annotated[RecordsConfig, BeforeValidator(_as_source)]
+    scales: tuple[float, ...] = (1.0,)
+    margin: Annotated[Axis, BeforeValidator(_with_name)] = Field(
+        default_factory=lambda: Axis.parse({**_MARGIN, "name": "scale"})
+    )
+    width: float = 5e-3
+    tail: float | None = None
+    robustness: bool | tuple[str, ...] = True
+    sliding: bool = False
+    planar: bool = True
+    contact: bool = True
+    least_records: int = FEW_RECORDS
+    rtol: float = 1e-8
+    rest_energy: float | None = None
+    max_steps: int = 200_000
+    notes: tuple[str, ...] = ()
+    author: str = ""
+    project: str = ""
+    date: dt.date | None = None
+    about_records: dict[str, str] = Field(default_factory=dict)
+    design_spectrum: DesignSpectrumConfig | None = None
+    spectral_period: float = 1.0
+
+    @classmethod
+    def parse(cls, values: Mapping[str, Any]) -> Self:
+        """Return the description of these `values`.
+
+        Raises
+        ------
+        ConfigError
+            With one line for each mistake; one says how to state the dissipation where it is missing.
+        """
+        problems: list[str] = []
+        given = dict(values)
+        model = given.get("model")
+        if isinstance(model, Mapping):
+            given["model"] = {"kind": "wobbling", **model}
+        for name, remedy in _NEEDED.items():
+            if name not in given:
+                problems.append(f"{name} is missing: {remedy}")
+                given[name] = _STANDS_IN[name]
+        try:
+            found = super().parse(given)
+        except ConfigError as error:
+            raise ConfigError([*error.problems, *problems]) from None
+        if problems:
+            raise ConfigError(problems)
+        return found
+
+    @field_validator("dissipation")
+    @classmethod
+    def _at_three_levels(cls, given: dict[str, dict[str, float]], info: ValidationInfo) -> dict[str, dict[str, float]]:
+        del info
+        missing = [level for level in LEVELS if level not in given]
+        if missing:
+            message = f"dissipation: {' and '.join(missing)} must be stated too: {_NEEDED['dissipation']}"
+            raise ValueError(message)
+        return given
+
+    def build(self) -> AssessmentSetup:
+        """Return models, records and the other arguments of `stylobate.earthquakes.assess`.
+
+        Raises
+        ------
+        ConfigError
+            With one line for each part that cannot be.
+        """
+        problems: list[str] = []
+        problems += self._problems_of_the_model()
+        models = {name: self._model(name, problems) for name in self.columns}
+        if not models:
+            problems.append("columns must hold at least one column, such as [columns.tank]")
+        scales = built("margin", self.margin.build, problems)
+        problems += [] if scales is None else _problems_of_the_margin(scales)
+        problems += problems_of_the_levels(self.dissipation, type(self.model))
+        problems += self._problems_of_the_numbers()
+        records: dict[str, Record] = {}
+        with warnings.catch_warnings(record=True) as remarks:
+            warnings.simplefilter("always")
+            try:
+                records = self.records.build()
+            except ConfigError as error:
+                problems += error.problems
+        for remark in remarks:
+            warnings.warn(remark.message, remark.category, stacklevel=2)
+        problems += self._problems_of_the_remarks(records)
+        details = self._details(problems)
+        if problems:
+            raise ConfigError(problems)
+        options = {"details": details} | {name: getattr(self, name) for name in _PASSED}
+        options["notes"] = (
+            *self.notes,
+            *(f"Warning: {one.message}" for one in remarks if one.category is UnlikelyInputWarning),
+        )
+        repeated = self._repeated()
+        built_models = {name: model for name, model in models.items() if model is not None}
+        return AssessmentSetup(built_models, records, {**options, **repeated, "margin_scales": scales})
+
+    def _repeated(self) -> dict[str, Any]:
+        """Return which verdicts are repeated under small changes, as arguments of `earthquakes.assess`."""
+        if isinstance(self.robustness, bool):
+            return {} if self.robustness else {"changes": ()}
+        return {"changes_at": self.robustness} if self.robustness else {"changes": ()}
+
+    def _details(self, problems: list[str]) -> ReportDetails | None:
+        """Return what the report shows besides its numbers; None, and a line in `problems`, for what cannot be."""
+        given = self.design_spectrum
+        try:
+            return ReportDetails(
+                author=self.author,
+                project=self.project,
+                date="" if self.date is None else self.date.isoformat(),
+                about_records=self.about_records,
+                design_spectrum=None if given is None else given.build(),
+                spectral_period=self.spectral_period,
+            )
+        except (ParameterError, FileError) as error:
+            problems.append(str(error))
+            return None
+
+    def _problems_of_the_remarks(self, records: Mapping[str, Record]) -> list[str]:
+        return [
+            f"about_records: {name!r} is no record; {did_you_mean(name, records) or 'leave it out'}"
+            for name in self.about_records
+            if records and name not in records
+        ]
+
+    def _model(self, name: str, problems: list[str]) -> Model | None:
+        column = built(f"columns.{name}", self.columns[name].build, problems)
+        if column is None:
+            return None
+        return built("model", lambda: self.model.build(column), problems) if not self._problems_of_the_model() else None
+
+    def _problems_of_the_model(self) -> list[str]:
+        if self.model.kind == "sliding":
+            return ["model.kind must be one that holds the contact, such as wobbling, got 'sliding'"]
+        told = [name for name in self.dissipation["central"] if name in self.model.model_fields_set]
+        return [f"model.{name} is told by dissipation; leave it out" for name in told]
+
+    def _problems_of_the_numbers(self) -> list[str]:
+        """Return a line for each number that no assessment can have."""
+        friction = self.friction_coefficient
+        by_column = friction if isinstance(friction, dict) else {}
+        checks: list[Callable[[], object]] = [
+            lambda: require_positive("width", self.width),
+            lambda: require_positive("rtol", self.rtol),
+            lambda: require_whole("max_steps", self.max_steps, least=1, most=MOST_STEPS),
+            lambda: require_whole("least_records", self.least_records, least=2),
+            lambda: require_not_negative("tail", self.tail or 0.0, "s"),
+            *(partial(require_positive, "scales", scale) for scale in self.scales),
+            *(partial(require_positive, f"friction_coefficient.{name}", one) for name, one in by_column.items()),
+        ]
+        if not isinstance(friction, dict):
+            checks.append(lambda: require_positive("friction_coefficient", friction))
+        if self.rest_energy is not None:
+            checks.append(partial(require_not_negative, "rest_energy", self.rest_energy))
+        problems = [] if self.scales else ["scales must hold at least one scale factor, such as [1.0]"]
+        for check in checks:
+            try:
+                check()
+            except ParameterError as error:
+                problems.append(str(error))
+        return [*problems, *self._problems_of_the_frictions(by_column), *self._problems_of_the_levels_repeated()]
+
+    def _problems_of_the_levels_repeated(self) -> list[str]:
+        named = () if isinstance(self.robustness, bool) else self.robustness
+        return [
+            f"robustness: must name levels of dissipation (got {name!r}). "
+            f"Use true, false, or some of {', '.join(self.dissipation)}."
+            for name in named
+            if name not in self.dissipation
+        ]
+
+    def _problems_of_the_frictions(self, by_column: Mapping[str, float]) -> list[str]:
+        if not by_column:
+            return []
+        unknown = [
+            f"friction_coefficient: {name!r} is no column; {did_you_mean(name, self.columns) or 'leave it out'}"
+            for name in by_column
+            if name not in self.columns
+        ]
+        lacking = [name for name in self.columns if name not in by_column]
+        return [*unknown, *(f"friction_coefficient: {name!r} has none; state one for each column" for name in lacking)]
+
+
+def _problems_of_the_margin(scales: npt.NDArray[np.float64]) -> list[str]:
+    if scales.size < 2:  # noqa: PLR2004  edges lie between two
+        return [f"margin.number must be 2 or more, got {scales.size}"]
+    if np.all(np.diff(scales) > 0.0):
+        return []
+    return [f"margin.from must be less than margin.to, got {scales[0]:g} and {scales[-1]:g}"]
+
+
+_NEEDED = {
+    "dissipation": (
+        "how fast a column in space loses energy decides its fate and is seldom known; state it for three levels, such "
+        "as [dissipation] low = {damping = 0.005}, central = {damping = 0.02}, high = {damping = 0.05}"
+    ),
+    "friction_coefficient": "the friction between column and base, with which what the runs need is compared",
+}
+_STANDS_IN: dict[str, Any] = {
+    "dissipation": {level: {"damping": 0.0} for level in LEVELS},
+    "friction_coefficient": 1.0,
+}
+
+_PASSED = (
+    *("title", "dissipation", "friction_coefficient", "scales", "width", "tail", "planar", "contact"),
+    *("sliding", "least_records", "notes", "rtol", "rest_energy", "max_steps"),
+)

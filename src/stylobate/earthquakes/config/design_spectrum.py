@@ -1,0 +1,93 @@
+"""The description of a design spectrum: points of period and spectral acceleration, or a file of two columns."""
+
+import re
+from pathlib import Path
+
+from stylobate.base_motions.records.layout import plain_table
+from stylobate.base_motions.records.lines import REMARKS, Text, begins_with_a_number, read_bytes
+from stylobate.base_motions.records.units import KNOWN, in_si, unit_of
+from stylobate.config.description import Config
+from stylobate.errors import ParameterError
+from stylobate.results.report_details import DesignSpectrum
+
+_BRACKETED = re.compile(r"[\[(]([^\])]*)[\])]")
+_COLUMNS = 2
+_SECONDS = ("s", "sec", "second", "seconds")
+
+
+class DesignSpectrumConfig(Config):
+    """A design spectrum: `points`, pairs of period [s] and spectral acceleration, or a `file` of these two columns.
+
+    `units` is the unit of the accelerations, such as "g" or "m/s²"; the first line of a file may state it instead:
+    `period [s], Sa [g]`. Commas are decimal where semicolons or tabs separate the columns. `name` is what the report
+    calls the spectrum, `damping` its damping ratio.
+    """
+
+    points: tuple[tuple[float, float], ...] = ()
+    file: str | None = None
+    units: str | None = None
+    name: str = "design spectrum"
+    damping: float = 0.05
+
+    def build(self) -> DesignSpectrum:
+        """Return the spectrum in SI units.
+
+        Raises
+        ------
+        ParameterError
+            If both or neither of points and file are given, or the unit is missing.
+        FileError
+            If the file cannot be read.
+        """
+        if (self.file is None) == (not self.points):
+            message = "design_spectrum: give points or file, one of the two."
+            raise ParameterError(message)
+        points, stated = (self.points, None) if self.file is None else _read(self.file)
+        given = None if self.units is None else unit_of(self.units)
+        if self.units is not None and given is None:
+            message = f"design_spectrum.units: unknown unit (got {self.units!r}). Use {KNOWN}."
+            raise ParameterError(message)
+        if given and stated and given != stated:
+            message = f"design_spectrum.units: {given!r} contradicts {stated!r} in {self.file}. Remove one of them."
+            raise ParameterError(message)
+        units = given or stated
+        if units is None:
+            message = 'design_spectrum.units: the unit of the accelerations is missing. Add units = "g" or "m/s²".'
+            raise ParameterError(message)
+        return DesignSpectrum(
+            period=tuple(float(period) for period, _ in points),
+            acceleration=tuple(float(value) * in_si(units) for _, value in points),
+            name=self.name,
+            damping=self.damping,
+        )
+
+
+def _read(path: str) -> tuple[tuple[tuple[float, float], ...], str | None]:
+    """Return the points of a file, and the unit of accelerations that its first line states."""
+    text = plain_table(Text.of(Path(path), read_bytes(Path(path)))).text
+    units: str | None = None
+    points: list[tuple[float, float]] = []
+    for at, line in enumerate(text.lines):
+        plain = line.strip()
+        if not plain or plain.startswith(REMARKS):
+            continue
+        if not points and units is None and not begins_with_a_number(plain):
+            units = _stated_unit(text, at, plain)
+            continue
+        cells = [cell for cell in re.split(r"[,;\s]+", plain) if cell]
+        if len(cells) != _COLUMNS:
+            remedy = ". Write decimal points" if "," in plain else ""
+            raise text.fault(
+                at, f"two numbers are needed, period [s] and spectral acceleration (got {plain!r}){remedy}"
+            )
+        points.append((text.number(at, cells[0]), text.number(at, cells[1])))
+    return tuple(points), units
+
+
+def _stated_unit(text: Text, at: int, header: str) -> str | None:
+    """Return the unit of the accelerations in the line of names, whose periods must be in seconds."""
+    found = [_BRACKETED.findall(name) for name in re.split(r"[,;\t]", header.rstrip(",;"))]
+    period, acceleration = found if len(found) == _COLUMNS else ([], _BRACKETED.findall(header))
+    if period and period[-1].strip().lower() not in _SECONDS:
+        raise text.fault(at, f"the first column must be the period in s (got [{period[-1]}]). Convert it")
+    return unit_of(acceleration[-1]) if acceleration else None

@@ -1,0 +1,208 @@
+"""The description of a fragility: records, their scales, uncertain properties, how it is fitted, and the hazard."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BeforeValidator, Field
+from pydantic_core import PydanticCustomError
+
+from stylobate.base_motions import Record
+from stylobate.config.description import Config, built
+from stylobate.config.many_runs import ManyRuns
+from stylobate.config.record_collection import RecordsConfig
+from stylobate.earthquakes.config.hazard import Hazard, HazardPoints
+from stylobate.earthquakes.config.spectrum import Scales
+from stylobate.errors import (
+    LARGEST_SEED,
+    ConfigError,
+    FileError,
+    ParameterError,
+    require_finite,
+    require_not_negative,
+    require_positive,
+    require_whole,
+)
+from stylobate.models import Model
+
+
+class Lognormal(Config):
+    """The logarithm is normal with this `dispersion`; `median` by default as the model has it."""
+
+    kind: Literal["lognormal"]
+    dispersion: float
+    median: float | None = None
+
+
+class Normal(Config):
+    """Normal with this standard `deviation`, cut at `least` and `most`; `mean` by default as the model has it."""
+
+    kind: Literal["normal"]
+    deviation: float
+    mean: float | None = None
+    least: float = 0.0
+    most: float | None = None
+
+
+class Uniform(Config):
+    """Even from `least` to `most`."""
+
+    kind: Literal["uniform"]
+    least: float
+    most: float
+
+
+_SPREADS: dict[str, type[Lognormal | Normal | Uniform]] = {"lognormal": Lognormal, "normal": Normal, "uniform": Uniform}
+
+
+def _as_spread(values: Any) -> Any:
+    """Return the spread of this kind; its mistakes are told by the names in the file, without those of classes."""
+    if isinstance(values, Config):
+        return values
+    kind = values.get("kind") if isinstance(values, Mapping) else None
+    if kind not in _SPREADS:
+        message = f"a spread must have a kind, {', '.join(map(repr, _SPREADS))}, such as {_EXAMPLE}"
+        raise PydanticCustomError("spread", message)  # noqa: EM101  the first is its type
+    return _SPREADS[str(kind)].model_validate(values)
+
+
+_EXAMPLE = '{kind = "lognormal", dispersion = 0.4}'
+AnySpread = Annotated[Lognormal | Normal | Uniform, BeforeValidator(_as_spread)]
+
+
+class Spectral(Config):
+    """Spectral acceleration at `period` [s]."""
+
+    period: float
+    damping: float = 0.05
+
+
+def _as_intensity(values: Any) -> Any:
+    if isinstance(values, (str, Spectral)):
+        return values
+    if isinstance(values, Mapping):
+        return Spectral.model_validate(values)
+    message = "must be a name, or a table with a period such as {period = 0.5}"
+    raise PydanticCustomError("intensity", message)  # noqa: EM101  the first is its type
+
+
+class Fragility(Config):
+    """The `scales` of the records and what else varies; how runs are counted and fitted; the hazard."""
+
+    scales: Scales
+    intensity: Annotated[str | Spectral, BeforeValidator(_as_intensity)] = "peak ground acceleration"
+    component: str = "RotD50"
+    rotations: tuple[float, ...] = (0.0,)
+    vertical: tuple[bool, ...] = (True,)
+    tail: float | None = None
+    samples: int = 0
+    spreads: dict[str, AnySpread] = Field(default_factory=dict)
+    seed: int = 0
+    counting: Literal["as computed", "first"] = "as computed"
+    confidence: float = 0.95
+    resamples: int = 1000
+    hazard: Hazard | None = None
+    years: float = 50.0
+
+
+@dataclass(frozen=True, slots=True)
+class FragilitySetup:
+    """What a description of a fragility describes.
+
+    Parameters
+    ----------
+    model, records
+        The column, and the records by name.
+    table
+        What is varied and how it is fitted, as described.
+    scales
+        Factors of the records.
+    hazard
+        Points of the hazard curve, or None.
+    options
+        Arguments that all runs share.
+    """
+
+    model: Model
+    records: Mapping[str, Record]
+    table: Fragility
+    scales: tuple[float, ...]
+    hazard: HazardPoints | None
+    options: dict[str, Any]
+
+
+class FragilityConfig(ManyRuns):
+    """A fragility: `column`, `model`, `records`, the arguments of a run, and `fragility`."""
+
+    records: RecordsConfig
+    fragility: Fragility
+
+    @classmethod
+    def parse(cls, values: Mapping[str, Any]) -> Self:
+        """Return the description of these `values`; `records` may be the folder alone.
+
+        Raises
+        ------
+        ConfigError
+            With one line for each mistake.
+        """
+        records = values.get("records")
+        if isinstance(records, (str, list, tuple)):
+            values = {**values, "records": {"source": records}}
+        return super().parse(values)
+
+    def build(self, *, read: bool = True) -> FragilitySetup:
+        """Return model, records, and what is described of them; without records unless these are to be `read`.
+
+        Raises
+        ------
+        ConfigError
+            With one line for each part that cannot be.
+        """
+        table, problems = self.fragility, self._problems()
+        scales = built("fragility.scales", table.scales.build, problems)
+        hazard = None if table.hazard is None else _points(table.hazard, problems)
+        records = self._records(problems) if read else {}
+        model, _, options = self.common(problems)
+        for name in ("duration", "periods", "tilt_limit"):
+            del options[name]
+        assert scales is not None
+        return FragilitySetup(model, records, table, tuple(scales.tolist()), hazard, options)
+
+    def _records(self, problems: list[str]) -> dict[str, Record]:
+        try:
+            return self.records.build()
+        except ConfigError as error:
+            problems += error.problems
+            return {}
+
+    def _problems(self) -> list[str]:
+        table = self.fragility
+        problems = [
+            f"{name} is not known of a fragility: runs last as their records and fragility.tail"
+            for name in ("duration", "periods")
+            if getattr(self, name) is not None
+        ]
+        if self.tilt_limit is not None:
+            problems.append("tilt_limit must be left out: a run stopped at it is not known to overturn")
+        if bool(table.samples) != bool(table.spreads):
+            problems.append("fragility.samples and fragility.spreads go together; give both or none of them")
+        checks = {
+            "samples": lambda: require_whole("samples", table.samples, least=0),
+            "seed": lambda: require_whole("seed", table.seed, least=0, most=LARGEST_SEED),
+            "resamples": lambda: require_whole("resamples", table.resamples, least=0),
+            "years": lambda: require_positive("years", table.years, "a"),
+            "tail": lambda: require_not_negative("tail", table.tail or 0.0, "s"),
+            "rotations": lambda: [require_finite("rotations", angle, "rad") for angle in table.rotations],
+        }
+        for name, check in checks.items():
+            built(f"fragility.{name}", check, problems)
+        return problems
+
+
+def _points(hazard: Hazard, problems: list[str]) -> HazardPoints | None:
+    try:
+        return hazard.points()
+    except (ParameterError, FileError) as error:
+        problems.append(f"fragility.hazard: {error}")
+        return None

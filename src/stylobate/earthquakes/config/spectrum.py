@@ -1,0 +1,125 @@
+"""The description of a spectrum: what all runs share, one quantity or two with their values, and the scales."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, Self
+
+from stylobate.config.axis import Axis
+from stylobate.config.description import Config, built
+from stylobate.config.many_runs import ManyRuns, common_values, name_of, with_numbers_that_vary
+from stylobate.config.motions import PULSES
+from stylobate.config.simulation import Setup
+
+
+class Scales(Axis):
+    """Factors of the base motion: `number` of them `from` … `to`, spaced in the logarithm; or `values`."""
+
+    name: str = "scale"
+    spacing: Literal["linear", "log"] = "log"
+
+
+class Spectrum(Config):
+    """The quantity `x` that varies, perhaps another `y`, and the `scales`; of a rocking spectrum there are none."""
+
+    x: Axis | None = None
+    y: Axis | None = None
+    scales: Scales | None = None
+    rocking: bool = False
+    width: float | None = None
+    tail: float | None = None
+
+
+class SpectrumConfig(ManyRuns):
+    """A spectrum: `column`, `model`, `motion`, the arguments of a run, and `spectrum`: what varies, and the scales.
+
+    Without a `duration` columns are followed to `spectrum.tail` over p after the end of the base motion.
+    """
+
+    spectrum: Spectrum
+
+    @classmethod
+    def parse(cls, values: Mapping[str, Any]) -> Self:
+        """Return the description of these `values`; a motion may lack a number that varies.
+
+        A motion that is scaled may lack its acceleration too: it is 1 m/s².
+        """
+        table = values.get("spectrum")
+        table = table if isinstance(table, Mapping) else {}
+        varied = tuple(name_of(table.get(place)) for place in "xy")
+        scaled = () if table.get("rocking") else ("acceleration",)
+        own = {name: value for name, value in values.items() if name != "periods"}  # those are of other commands
+        return super().parse(_with_frequency(with_numbers_that_vary(own, (*varied, *scaled)), varied))
+
+    @classmethod
+    def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]], *, rocking: bool) -> Self:
+        """Return the description that repeats a saved spectrum.
+
+        Parameters
+        ----------
+        provenance
+            Of the spectrum.
+        axes
+            Its coordinates: one or two names with their values, and the scale.
+        rocking
+            Whether it is a rocking spectrum.
+
+        Raises
+        ------
+        UnsupportedError
+            If it was made with a model or motion that descriptions do not know.
+        """
+        over = {name: list(values) for name, values in axes.items() if rocking or name != "scale"}
+        listed = ({"name": name, "values": values} for name, values in over.items())
+        table: dict[str, Any] = {**dict(zip("xy", listed, strict=False)), "rocking": rocking}
+        table |= {name: provenance[name] for name in ("width", "tail") if provenance.get(name) is not None}
+        if not rocking:
+            table["scales"] = {"values": list(axes["scale"])}
+        return cls.parse({**common_values(provenance), "spectrum": table})
+
+    def build(self) -> Setup:
+        """Return model and motion; the options are arguments of `overturning_bands`, or of `rocking_spectrum`.
+
+        Raises
+        ------
+        ConfigError
+            With one line for each part that cannot be.
+        """
+        told, problems = self.spectrum, self._problems()
+        axes = {place: axis for place, axis in (("x", told.x), ("y", told.y)) if axis is not None}
+        over = {axis.name: built(f"spectrum.{place}", axis.build, problems) for place, axis in axes.items()}
+        chosen: dict[str, Any] = {"over": over}
+        if told.scales is not None:
+            chosen["scales"] = built("spectrum.scales", told.scales.build, problems)
+        chosen |= {name: getattr(told, name) for name in ("width", "tail") if getattr(told, name) is not None}
+        model, motion, options = self.common(problems, ("duration",))
+        del options["periods"]
+        return Setup(model, motion, {**options, **chosen})
+
+    def _problems(self) -> list[str]:
+        told = self.spectrum
+        problems: list[str] = []
+        if told.tail is not None and self.duration is not None:
+            problems.append(
+                f"spectrum.tail: duration says how long to follow a column (got {self.duration!r} s and a tail of "
+                f"{told.tail!r}). Remove one of them."
+            )
+        if told.rocking:
+            problems += [
+                f"spectrum.{name} is not known of a rocking spectrum: leave it out"
+                for name in ("scales", "width")
+                if getattr(told, name) is not None
+            ]
+            if told.x is None:
+                problems.append("spectrum.x is missing: what varies, such as size")
+        elif told.scales is None:
+            problems.append("spectrum.scales are missing: factors of the base motion, such as from 0.2 to 5, number 40")
+        if told.x is not None and told.y is not None and told.x.name == told.y.name:
+            problems.append(f"spectrum.x and spectrum.y must differ, got {told.x.name!r} in both")
+        return problems
+
+
+def _with_frequency(values: Mapping[str, Any], varied: tuple[str, ...]) -> Mapping[str, Any]:
+    """Return `values` with a frequency of the pulse, if it varies and there is none."""
+    motion = values.get("motion")
+    if "angular_frequency" not in varied or not isinstance(motion, Mapping) or motion.get("kind") not in PULSES:
+        return values
+    return {**values, "motion": {"angular_frequency": 1.0, **motion}}

@@ -1,0 +1,128 @@
+"""What the runs on one column at one scale found, record by record: the ground of every verdict."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stylobate.earthquakes.figures.assessment.wording import CENTRAL
+from stylobate.results.assessment import Assessment
+
+_ACTS = "with"
+_NO_VERTICAL = ", no vertical"
+_EXTRA = ("dissipation", "change", "vertical")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cases:
+    """Outcomes of the runs on one column at one scale, as names of records.
+
+    Attributes
+    ----------
+    records
+        All of them.
+    overturned, undecided
+        In the central case: central dissipation, vertical component included.
+    none_decided
+        Whether no run at all was decided.
+    at_other_dissipation
+        Records that overturned it with the vertical component at another dissipation only, with these levels.
+    without_vertical
+        Records that overturned it without their vertical component only, with the levels of dissipation.
+    undecided_elsewhere
+        Records with a run that was not decided in another case.
+    flipped
+        Records whose verdict some small change flips.
+    changes_undecided
+        Records with a small change that applies and is not decided.
+    borderline
+        Records with a run whose outcome rounding could change.
+    slipping
+        Records under which some run needed more than the stated friction, with the largest friction needed.
+    """
+
+    records: tuple[str, ...]
+    overturned: tuple[str, ...]
+    undecided: tuple[str, ...]
+    none_decided: bool
+    at_other_dissipation: dict[str, tuple[str, ...]]
+    without_vertical: dict[str, tuple[str, ...]]
+    undecided_elsewhere: tuple[str, ...]
+    flipped: tuple[str, ...]
+    changes_undecided: tuple[str, ...]
+    borderline: tuple[str, ...]
+    slipping: dict[str, float]
+
+    @property
+    def stood(self) -> tuple[str, ...]:
+        """Records that did not overturn it in the central case."""
+        return tuple(name for name in self.records if name not in (*self.overturned, *self.undecided))
+
+
+def cases_of(assessment: Assessment, column: str, scale: float) -> Cases:
+    """Return what the runs on a column found at a scale."""
+    runs = assessment.data["verdicts"].sel(column=column, scale=scale)
+    central = runs["overturned"].sel(dissipation=CENTRAL, vertical=_ACTS)
+    overturned, undecided = _where(central == 1), _where(central < 0)
+    fallen = runs["overturned"] == 1
+    at_other = _levels(fallen.sel(vertical=_ACTS), overturned)
+    others = runs["overturned"]
+    return Cases(
+        records=_names(runs),
+        overturned=overturned,
+        undecided=undecided,
+        none_decided=bool((others < 0).all()),
+        at_other_dissipation=at_other,
+        without_vertical=_levels(fallen.any("vertical"), (*overturned, *at_other)),
+        undecided_elsewhere=tuple(name for name in _where(_any(others < 0)) if name not in undecided),
+        flipped=_with_changes(assessment, "flipped", column, scale),
+        changes_undecided=_with_changes(assessment, "undecided", column, scale),
+        borderline=_where(_any(runs["uncertain"] > 0)),
+        slipping=_slipping(runs, float(assessment.setting["friction_coefficient"][column])),
+    )
+
+
+def case_name(level: str, vertical: str) -> str:
+    """Return the name of a case: a level of dissipation, with the vertical component or without."""
+    return level if vertical == _ACTS else f"{level}{_NO_VERTICAL}"
+
+
+def acts_in(assessment: Assessment, record: str, case: str) -> bool:
+    """Return whether a case is one of its own for a record: only a vertical component can be left out."""
+    rises = float(assessment.data["records"]["peak_acceleration_z"].sel(record=record)) > 0.0
+    return rises or not case.endswith(_NO_VERTICAL)
+
+
+def _names(data: xr.Dataset | xr.DataArray) -> tuple[str, ...]:
+    return tuple(str(name) for name in np.atleast_1d(data["record"].to_numpy()))
+
+
+def _where(flags: xr.DataArray) -> tuple[str, ...]:
+    return tuple(name for name, flag in zip(_names(flags), flags.to_numpy(), strict=True) if flag)
+
+
+def _any(flags: xr.DataArray) -> xr.DataArray:
+    return flags.any([dim for dim in flags.dims if dim != "record"])
+
+
+def _levels(fallen: xr.DataArray, known: tuple[str, ...]) -> dict[str, tuple[str, ...]]:
+    """Return the levels of dissipation at which records overturned it, of those records that are not `known`."""
+    levels = [str(level) for level in fallen["dissipation"].to_numpy()]
+    flags = fallen.transpose("record", "dissipation").to_numpy()
+    found = {
+        name: tuple(level for level, flag in zip(levels, row, strict=True) if flag)
+        for name, row in zip(_names(fallen), flags, strict=True)
+    }
+    return {name: at for name, at in found.items() if at and name not in known}
+
+
+def _with_changes(assessment: Assessment, counted: str, column: str, scale: float) -> tuple[str, ...]:
+    """Return the records of which some small change is `counted`, at any dissipation."""
+    if "robustness" not in assessment.data:
+        return ()
+    return _where(_any(assessment.data["robustness"][counted].sel(column=column, scale=scale) > 0))
+
+
+def _slipping(runs: xr.Dataset, stated: float) -> dict[str, float]:
+    need = runs["friction_demand"].max([dim for dim in runs["friction_demand"].dims if dim in _EXTRA])
+    return {name: float(one) for name, one in zip(_names(need), need.to_numpy(), strict=True) if one > stated}

@@ -1,0 +1,195 @@
+"""The verdict on one column in one line: overturned, survived with reservations, survived, or not described."""
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from stylobate.earthquakes.figures.assessment.cases import Cases, cases_of
+from stylobate.earthquakes.figures.assessment.wording import (
+    CENTRAL,
+    OVERTURNED,
+    STOOD,
+    UNDECIDED,
+    listed,
+    number,
+    records,
+)
+from stylobate.results.assessment import Assessment
+
+_SLID = {1: OVERTURNED, -1: f"was {UNDECIDED}", 0: STOOD}
+
+
+class VerdictClass(Enum):
+    """The classes of verdicts; the value is its label in the report."""
+
+    OVERTURNED = "NOT shown safe"
+    OPEN = "Survival NOT robust"
+    SURVIVED = "Survived every run"
+    NOT_DESCRIBED = "Not described by these runs"
+
+
+@dataclass(frozen=True, slots=True)
+class ColumnVerdict:
+    """A verdict: its class and one sentence or two."""
+
+    verdict: VerdictClass
+    sentence: str
+
+    @property
+    def describes(self) -> bool:
+        """Whether the runs describe the column."""
+        return self.verdict is not VerdictClass.NOT_DESCRIBED
+
+    @property
+    def line(self) -> str:
+        """Label and sentence together."""
+        return f"{self.verdict.value}: {self.sentence}"
+
+
+def recorded_scale(assessment: Assessment) -> float:
+    """Return the stated scale at which the verdicts are given first: that nearest to 1."""
+    return float(min(assessment.setting["scales"], key=lambda scale: abs(math.log(scale))))
+
+
+def level_words(scale: float) -> str:
+    """Return a scale in words."""
+    return "at the recorded level" if scale == 1.0 else f"at {scale:g} times the recorded level"
+
+
+def column_verdict(assessment: Assessment, column: str, scale: float) -> ColumnVerdict:
+    """Return the verdict on a column at a scale."""
+    cases, where = cases_of(assessment, column, scale), level_words(scale)
+    total = len(cases.records)
+    if slides := _slides_first(assessment, column, scale):
+        return ColumnVerdict(VerdictClass.NOT_DESCRIBED, slides)
+    if cases.overturned or cases.at_other_dissipation:
+        return ColumnVerdict(VerdictClass.OVERTURNED, _overturned(cases, where))
+    if cases.none_decided:
+        return ColumnVerdict(VerdictClass.NOT_DESCRIBED, f"no run {where} could be followed to a decision.")
+    doubts = _reservations(assessment, column, scale, cases)
+    survived = f"did not overturn {where} under {records(len(cases.stood), total)}"
+    if doubts:
+        sentence = f"{survived} at {CENTRAL} dissipation. Reservations: {'; '.join(doubts)}."
+        return ColumnVerdict(VerdictClass.OPEN, sentence)
+    sentence = f"{survived}, at every stated dissipation and under every small change tried{_tried_at(assessment)}."
+    return ColumnVerdict(VerdictClass.SURVIVED, sentence)
+
+
+def _overturned(cases: Cases, where: str) -> str:
+    """Return under which records a column overturned at any stated dissipation."""
+    total, phrases = len(cases.records), []
+    if cases.overturned:
+        phrases.append(f"under {records(len(cases.overturned), total)} ({listed(cases.overturned)})")
+    if cases.at_other_dissipation:
+        names = [f"{name} at {listed(levels, 'and')}" for name, levels in cases.at_other_dissipation.items()]
+        count = len(names)
+        more = f"{count} more" if cases.overturned else records(count, total)
+        phrases.append(f"under {more} only at another dissipation than central ({listed(names)})")
+    undecided = f" Not decided: {listed(cases.undecided)}." if cases.undecided else ""
+    return f"overturned {where} {listed(phrases, 'and')}.{undecided}"
+
+
+def least_overturning_scale(assessment: Assessment, column: str) -> str:
+    """Return the least scale that overturned the column in any case, or the largest that was run, in a sentence."""
+    least, words = _least(assessment, column)
+    decided, highest = largest_decided(assessment, column), float(assessment.setting["margin_scales"][1])
+    if math.isnan(decided):
+        found = "No run that was decided overturned it" if math.isnan(least) else f"Overturned at scale {words}"
+        return f"{found}; already at the smallest scale some run was not decided."
+    known = decided >= (highest if math.isnan(least) else least)
+    open_scales = "" if known else f"; not every scale from {number(decided)} on was decided"
+    if math.isnan(least):
+        return f"No scale up to {number(decided)} overturned it in any case{open_scales}."
+    return f"Least overturning scale of all cases: {words}{open_scales}."
+
+
+def _least(assessment: Assessment, column: str) -> tuple[float, str]:
+    """Return the least scale that overturned the column in any case, and that in words; NaN where none did."""
+    least = assessment.data["margins"]["least_overturning"].sel(column=column).transpose("case", "record")
+    if bool(least.isnull().all()):
+        return math.nan, ""
+    case, record = np.unravel_index(int(np.nanargmin(least.to_numpy())), least.shape)
+    level, _, rest = str(least["case"].to_numpy()[case]).partition(",")
+    where = f"{level} dissipation{',' if rest else ''}{rest}"
+    scale = float(least.min())
+    return scale, f"{number(scale)} ({least['record'].to_numpy()[record]}, {where})"
+
+
+def _tried_at(assessment: Assessment) -> str:
+    """Return at which dissipation small changes were tried, where that is not every one."""
+    changes, levels = assessment.data["robustness"], assessment.data["verdicts"]["dissipation"].to_numpy()
+    tried = [str(level) for level in changes["dissipation"].to_numpy()]
+    return "" if len(tried) == levels.size else f" at {listed(tried, 'and')} dissipation"
+
+
+def largest_decided(assessment: Assessment, column: str, record: str | None = None, case: str | None = None) -> float:
+    """Return the largest scale up to which every run of the margin was decided; NaN if already the first was not."""
+    margins = assessment.data["margins"].sel(column=column)
+    chosen = {name: value for name, value in (("record", record), ("case", case)) if value is not None}
+    return float(margins["decided_to"].sel(chosen).min(skipna=False))
+
+
+def _slides_first(assessment: Assessment, column: str, scale: float) -> str:
+    """Return why a column slides before it rocks; nothing if it does not, or if no record makes it slide."""
+    slips = (assessment.data["margins"]["standing_slip"].sel(column=column) <= scale).any("case")
+    sliding = [str(name) for name in slips["record"].to_numpy()[slips.to_numpy()]]
+    if not sliding:
+        return ""
+    own, total = assessment.data["columns"].sel(column=column), slips.sizes["record"]
+    friction, slenderness = float(own["friction_coefficient"]), float(own["slenderness"])
+    return (
+        f"the stated friction {number(friction)} is less than r/h = {number(slenderness)}, so the column slides before "
+        f"it rocks. Horizontal accelerations above about {number(friction)} g make it slide: {level_words(scale)} "
+        f"under {records(len(sliding), total)} ({listed(sliding)}).{_slid(assessment, column, scale)}"
+    )
+
+
+def _slid(assessment: Assessment, column: str, scale: float) -> str:
+    """Return the outcomes by the model that slides, where its runs were made."""
+    if "sliding" not in assessment.data:
+        return ""
+    runs = assessment.data["sliding"].sel(column=column, scale=scale)
+    names = runs["record"].to_numpy().astype(str)
+    by_state = [(words, names[runs["overturned"].to_numpy() == state]) for state, words in _SLID.items()]
+    found = [
+        words if some.size == names.size and words == STOOD else f"{words} under {listed(some.tolist())}"
+        for words, some in by_state
+        if some.size
+    ]
+    most = float(runs["largest_slip"].max())
+    slid = [] if math.isnan(most) else [f"and slid by up to {number(1000.0 * most)} mm"]
+    doubtful = names[runs["uncertain"].to_numpy() == 1].tolist()
+    doubt = f" Rounding could change the outcome under {listed(doubtful)}." if doubtful else ""
+    return f" By the model that slides it {', '.join([*found, *slid])}.{doubt}"
+
+
+def _reservations(assessment: Assessment, column: str, scale: float, cases: Cases) -> list[str]:
+    """Return what the survival of a column depends on, a phrase each."""
+    least, words = _least(assessment, column)
+    decided = largest_decided(assessment, column)
+    undecided = (*cases.undecided, *cases.undecided_elsewhere)
+    need = number(max(cases.slipping.values(), default=math.nan))
+    under = {
+        "not decided under {}": cases.undecided,
+        "overturned under {} without the vertical component": tuple(cases.without_vertical),
+        "a small change flips the verdict under {}": cases.flipped,
+        "a small change was not decided under {}": [one for one in cases.changes_undecided if one not in undecided],
+        "some run was not decided under {}": cases.undecided_elsewhere,
+        "rounding could change the outcome under {}": cases.borderline,
+        f"the base would slip under {{}} (friction {need} needed)": tuple(cases.slipping),
+    }
+    holds = {
+        f"a smaller scale overturned it: {words}": least < scale,
+        f"not every scale up to this one was decided{_beyond(decided)}": not decided >= scale,
+        "small changes were not tried": "robustness" not in assessment.data,
+        "the friction needed was not computed": not assessment.setting["contact"],
+    }
+    named = [phrase.format(listed(names)) for phrase, names in under.items() if names]
+    return [*named, *(phrase for phrase, is_so in holds.items() if is_so)]
+
+
+def _beyond(decided: float) -> str:
+    """Return from which scale on runs were not decided; nothing if already the first was not."""
+    return "" if math.isnan(decided) else f" (from {number(decided)} on)"

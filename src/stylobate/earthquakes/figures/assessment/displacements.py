@@ -1,0 +1,56 @@
+"""Displacement of the top of a tilted column, in the words and units of a report."""
+
+import math
+
+import xarray as xr
+
+from stylobate.earthquakes.figures.assessment.wording import number, tilt
+
+_MM = 1000.0
+SMALLEST_TILT = 1e-3
+"""Tilts over α below this one are not worth a figure."""
+# Smaller tilts over α, tilts [°] and displacements [mm] are shown as less than these.
+_LEAST = (SMALLEST_TILT, 0.01, 0.1)
+TILT_HEADER = ("tilt / α", "tilt [°]", "displacement [mm]")
+
+
+def displacement(angle: float, *, radius: float, height: float) -> float:
+    """Return the horizontal displacement of a point of the axis, relative to the base [m].
+
+    The column stands on its rim and the point of contact does not move. A point at the height H of the axis is then
+    displaced by H sin θ + r (1 − cos θ), whatever the direction of the tilt θ.
+
+    Parameters
+    ----------
+    angle
+        Tilt θ [rad].
+    radius, height
+        Base radius r, height H of the point above the base [m].
+    """
+    return height * math.sin(angle) + radius * (1.0 - math.cos(angle))
+
+
+def shown_point(column: xr.Dataset) -> tuple[float, str]:
+    """Return height [m] and name of the point whose displacement is shown: the top where the height is known."""
+    height = float(column["height"])
+    return (float(column["mass_height"]), "centre of mass") if math.isnan(height) else (height, "top")
+
+
+def tilt_cells(ratio: float, column: xr.Dataset) -> tuple[str, str, str]:
+    """Return a largest tilt as a fraction of α, in degrees, and as the displacement of the shown point in mm."""
+    if not math.isfinite(ratio):
+        return tilt(ratio), "–", "–"
+    angle = ratio * float(column["tipping_angle"])
+    moved = displacement(angle, radius=float(column["radius"]), height=shown_point(column)[0])
+    fraction, degrees, millimetres = map(_at_least, (ratio, math.degrees(angle), _MM * moved), _LEAST)
+    return fraction, degrees, millimetres
+
+
+def _at_least(value: float, least: float) -> str:
+    return f"< {least:g}" if 0.0 < value < least else number(value)
+
+
+def tilt_words(ratio: float, column: xr.Dataset) -> str:
+    """Return a largest tilt in words."""
+    fraction, angle, moved = tilt_cells(ratio, column)
+    return f"{angle}° ({fraction} α), which displaces its {shown_point(column)[1]} by {moved} mm"

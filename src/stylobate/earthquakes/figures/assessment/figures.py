@@ -1,0 +1,260 @@
+"""The figures of an assessment: margins, tilts, contact, robustness, the history of the governing record."""
+
+import math
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import FuncFormatter, NullFormatter
+
+from stylobate.earthquakes.figures.assessment.wording import number
+from stylobate.earthquakes.figures.band_regions import UNDECIDED, undecided_label, undecided_reasons
+from stylobate.plots.cells import fill_options
+from stylobate.plots.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, new_figure, styled
+from stylobate.results.assessment import Assessment
+
+# Heights [inches]: of a line in a figure of records, of its frame, and the most that is drawn.
+_ROW, _FRAME, _TALLEST = 0.17, 1.5, 9.0
+_BAR = 0.8
+_MARKS = ("v", "o", "^", "D", "s", "P", "X")
+_COLOURS = (SKY, BLUE, BLACK, GREEN, PURPLE, ORANGE)
+# How far tilts are drawn, over α.
+_MOST_TILT = 1.5
+_HISTORY_LOOKS: dict[str, dict[str, Any]] = {
+    "stated": {"color": GREY, "linewidth": 1.6},
+    "stands": {"color": BLUE, "linewidth": 1.0},
+    "overturns": {"color": VERMILION, "linewidth": 1.0, "linestyle": "-."},
+}
+# Where overturned runs are marked, in tilts over α.
+_FALLEN = 1.25
+# Where undecided runs are.
+_UNKNOWN = 1.5
+_UNDECIDED_MARK: dict[str, Any] = {"marker": "x", "linestyle": "none", "markersize": 5.5}
+
+
+@styled
+def margins_figure(assessment: Assessment, column: str) -> Figure:
+    """Return all bands of scale factors in which each record overturns a column, a line for each case."""
+    own = assessment.data["margins"].sel(column=column)
+    cases, records = ([str(name) for name in own[dim].to_numpy()] for dim in ("case", "record"))
+    lines = len(records) * (len(cases) + 1)
+    figure = new_figure(min(_FRAME + _ROW * lines, _TALLEST))
+    axes = figure.subplots()
+    low, high, _ = assessment.setting["margin_scales"]
+    heights, labels = [], []
+    for place, record in enumerate(records):
+        for line, case in enumerate(cases):
+            height = place * (len(cases) + 1) + line
+            _band_line(axes, own.sel(record=record, case=case), height, (low, high))
+            heights.append(height)
+            labels.append(f"{record} · {case}" if line == 0 else case)
+    axes.set_yticks(heights, labels, fontsize=7.5)
+    axes.set(xscale="log", xlim=(low, high), xlabel="scale factor of the record [1]", ylim=(lines - 0.5, -1.0))
+    _plain(axes)
+    axes.grid(visible=False, axis="y")
+    for scale in assessment.setting["scales"]:
+        axes.axvline(scale, color=BLACK, linewidth=1.2, linestyle="-" if scale == 1.0 else "--")
+    handles: list[Patch | Line2D] = [
+        Patch(facecolor=SKY, label="did not overturn"),
+        Patch(facecolor=VERMILION, hatch="////", edgecolor="white", label="overturned"),
+    ]
+    if bool(own["undecided_from"].notnull().any()):
+        handles.append(Patch(label=undecided_label(own["outcome"]), **fill_options(UNDECIDED)))
+    handles += [
+        Line2D([], [], color=BLACK, label="as recorded"),
+        Line2D([], [], linestyle="none", marker="|", color=GREY, label="scales run first"),
+    ]
+    if any(scale != 1.0 for scale in assessment.setting["scales"]):
+        handles.append(Line2D([], [], color=BLACK, linestyle="--", label="other stated scales"))
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    scanned = own["margin_scale"].to_numpy()
+    axes.plot(scanned, np.full(scanned.size, -0.75), "|", color=GREY, markersize=4.0)
+    axes.set_title(f"{column}: scale factors that overturned it")
+    return figure
+
+
+def _band_line(axes: Axes, own: xr.Dataset, height: float, ends: tuple[float, float]) -> None:
+    axes.barh(height, ends[1] - ends[0], _BAR, left=ends[0], color=SKY, linewidth=0.0)
+    overturned = {"color": VERMILION, "hatch": "////", "edgecolor": "white"}
+    _bars(axes, own["undecided_from"], own["undecided_to"], height, fill_options(UNDECIDED))
+    _bars(axes, own["band_from"], own["band_to"], height, overturned)
+    # A narrow band is to be seen all the same.
+    first = own["band_from"].to_numpy()
+    axes.plot(first, np.full(first.size, height), "|", color=VERMILION, markersize=6.5)
+
+
+def _bars(axes: Axes, low: xr.DataArray, high: xr.DataArray, height: float, look: dict[str, Any]) -> None:
+    known = low.notnull().to_numpy()
+    left, right = low.to_numpy()[known], high.to_numpy()[known]
+    axes.barh(np.full(left.size, height), right - left, _BAR, left=left, **{**look, "linewidth": 0.0})
+
+
+@styled
+def tilts_figure(assessment: Assessment, column: str, scale: float) -> Figure:
+    """Return the largest tilts of a column under each record, for each dissipation, and those of the planar column."""
+    own = assessment.data["verdicts"]["tilt_ratio"].sel(column=column, scale=scale)
+    records = [str(name) for name in own["record"].to_numpy()]
+    figure, axes = _rows_figure(records)
+    heights = np.arange(len(records), dtype=float)
+    handles, undecided = [], False
+    levels = [str(name) for name in own["dissipation"].to_numpy()]
+    for place, level in enumerate(levels):
+        values = own.sel(dissipation=level, vertical="with").to_numpy()
+        undecided |= bool(np.isnan(values).any())
+        look: dict[str, Any] = {"marker": _MARKS[place % len(_MARKS)], "color": _COLOURS[place % len(_COLOURS)]}
+        axes.plot(_placed(values), heights + 0.18 * (place - 1), linestyle="none", markersize=5.5, **look)
+        axes.plot(
+            *_undecided_marks(values, heights + 0.18 * (place - 1)), **{**_UNDECIDED_MARK, "color": look["color"]}
+        )
+        handles.append(Line2D([], [], linestyle="none", label=f"{level} dissipation", **look))
+    if "planar" in assessment.data:
+        flat = assessment.data["planar"]["planar_tilt_ratio"].sel(column=column, scale=scale).to_numpy()
+        axes.plot(_placed(flat), heights, linestyle="none", marker="s", mfc="none", mec=VERMILION, markersize=8.0)
+        handles.append(
+            Line2D([], [], linestyle="none", marker="s", mfc="none", mec=VERMILION, label="planar (Housner)")
+        )
+    axes.axvspan(_FALLEN - 0.12, _FALLEN + 0.12, color="#eeeeee", zorder=0)
+    last = _UNKNOWN if undecided else _FALLEN
+    axes.set(xlim=(-0.03, last + 0.12), xlabel="largest tilt / α [1]")
+    ticks = {0.0: "0", 0.25: "0.25", 0.5: "0.5", 0.75: "0.75", 1.0: "1", _FALLEN: "overturned"}
+    ticks |= {_UNKNOWN: "not\ndecided"} if undecided else {}
+    axes.set_xticks(list(ticks), list(ticks.values()))
+    axes.set_title(f"{column}, scale {scale:g}: largest tilt")
+    figure.legend(handles=handles, loc="outside lower center", ncols=4)
+    return figure
+
+
+def _undecided_marks(values: np.ndarray, heights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return where undecided runs are drawn: beyond those that overturned."""
+    chosen = np.isnan(values)
+    return np.full(int(chosen.sum()), _UNKNOWN), heights[chosen]
+
+
+def _placed(values: np.ndarray) -> np.ndarray:
+    """Return where tilts are drawn: overturned ones beyond all others, those above α at α's place or beyond."""
+    return np.where(np.isinf(values), _FALLEN, np.minimum(values, _FALLEN - 0.16))
+
+
+@styled
+def contact_figure(assessment: Assessment, column: str) -> Figure:
+    """Return the friction that the runs of each record needed, against the stated coefficient."""
+    own = assessment.data["verdicts"]["friction_demand"].sel(column=column)
+    records = [str(name) for name in own["record"].to_numpy()]
+    figure, axes = _rows_figure(records)
+    scales = own["scale"].to_numpy()
+    handles = []
+    for place, scale in enumerate(scales):
+        values = own.sel(scale=scale).stack(run=("dissipation", "vertical")).transpose("record", "run").to_numpy()
+        look: dict[str, Any] = {"marker": _MARKS[place % len(_MARKS)], "color": _COLOURS[place % len(_COLOURS)]}
+        heights = np.repeat(np.arange(len(records)), values.shape[1]) + 0.15 * (place - 0.5 * (scales.size - 1))
+        axes.plot(values.ravel(), heights, linestyle="none", markersize=4.5, **look)
+        handles.append(Line2D([], [], linestyle="none", label=f"scale {scale:g}, each run", **look))
+    stated = float(assessment.setting["friction_coefficient"][column])
+    axes.axvline(stated, color=VERMILION, linestyle="--", linewidth=1.6)
+    handles.append(Line2D([], [], color=VERMILION, linestyle="--", label=f"stated coefficient {stated:g}"))
+    axes.set(xlim=(0.0, None), xlabel="friction force needed / normal force [1]")
+    axes.set_title(f"{column}: what the contact must bear")
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    return figure
+
+
+@styled
+def robustness_figure(assessment: Assessment, column: str, scale: float) -> Figure:
+    """Return which small change flips the verdict under which record, at each dissipation."""
+    own = assessment.data["robustness"].sel(column=column, scale=scale)
+    records, changes, levels = (
+        [str(name) for name in own[dim].to_numpy()] for dim in ("record", "change", "dissipation")
+    )
+    flips, applies = (
+        own[name].transpose("record", "dissipation", "change").to_numpy().reshape(-1, len(changes))
+        for name in ("flips", "applies")
+    )
+    figure = new_figure(min(1.9 + _ROW * 1.3 * len(flips), _TALLEST))
+    axes = figure.subplots()
+    for state, mark, colour, size in ((0, "o", SKY, 4.5), (1, "X", VERMILION, 8.0), (-1, "x", GREY, 5.5)):
+        rows, places = np.nonzero((flips == state) & (applies == 1))
+        axes.plot(places, rows, linestyle="none", marker=mark, color=colour, markersize=size)
+    names = [f"{record} · {level}" if place == 0 else level for record in records for place, level in enumerate(levels)]
+    axes.set_xticks(range(len(changes)), changes, rotation=60, ha="right", rotation_mode="anchor", fontsize=7.5)
+    axes.set_yticks(range(len(names)), names, fontsize=8 if len(levels) == 1 else 7)
+    for place in range(len(levels), len(names), len(levels)):
+        axes.axhline(place - 0.5, color=GREY, linewidth=0.4)
+    axes.set(ylim=(len(names) - 0.5, -0.5), xlim=(-0.5, len(changes) - 0.5))
+    axes.set_title(f"{column}, scale {scale:g}: does the verdict flip?")
+    handles = [
+        Line2D([], [], linestyle="none", marker="o", color=SKY, label="the same verdict"),
+        Line2D([], [], linestyle="none", marker="X", color=VERMILION, label="flipped"),
+        Line2D([], [], linestyle="none", marker="x", color=GREY, label="not decided"),
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    return figure
+
+
+@styled
+def history_figure(assessment: Assessment, column: str) -> Figure:
+    """Return the motion of a column under its governing record, at the stated scale and on both sides of the margin.
+
+    Tilt against time, the base acceleration of the record, and where it leans.
+    """
+    own = assessment.data["histories"].sel(column=column)
+    figure = new_figure(4.4)
+    grid = figure.add_gridspec(2, 2, width_ratios=(1.6, 1.0))
+    above = figure.add_subplot(grid[0, 0])
+    below = figure.add_subplot(grid[1, 0], sharex=above)
+    path = figure.add_subplot(grid[:, 1])
+    shown = [own.sel(run=run) for run in own["run"].to_numpy() if np.isfinite(float(own["scale"].sel(run=run)))]
+    for one in shown:
+        look = _HISTORY_LOOKS[str(one["run"].item())]
+        above.plot(one["time"], one["amplitude"], label=_run_words(one), **look)
+        path.plot(one["tilt_x"], one["tilt_y"], **{**look, "linewidth": 0.7})
+    above.axhline(1.0, color=VERMILION, linestyle="--", linewidth=1.0)
+    above.set(ylabel="tilt / α [1]", ylim=(0.0, 1.05 * min(_MOST_TILT, max(1.0, float(own["amplitude"].max())))))
+    recorded = max(shown, key=lambda one: float(one["time"].max()))
+    for axis, colour, width in (("x", BLACK, 0.6), ("y", ORANGE, 0.6)):
+        below.plot(
+            recorded["time"], recorded[f"base_{axis}"] / recorded["scale"], color=colour, linewidth=width, label=axis
+        )
+    below.set(xlabel="time [s]", ylabel="record [m/s²]")
+    below.legend(loc="upper right", ncols=2)
+    around = np.linspace(0.0, 2.0 * math.pi, 181)
+    path.plot(np.cos(around), np.sin(around), color=VERMILION, linestyle="--", linewidth=1.0)
+    path.set(xlabel="lean along x / α [1]", ylabel="along y / α [1]", aspect="equal")
+    path.set(xlim=(-_MOST_TILT, _MOST_TILT), ylim=(-_MOST_TILT, _MOST_TILT))
+    figure.legend(*above.get_legend_handles_labels(), loc="outside lower center", ncols=1)
+    record = str(assessment.data["summary"]["governing"].sel(column=column).item())
+    figure.suptitle(f"{column} under {record}", fontsize=10)
+    return figure
+
+
+def _run_words(run: xr.Dataset) -> str:
+    """Return scale, case and outcome of a run of a governing record."""
+    tilt = float(run["largest_tilt_ratio"])
+    if undecided_reasons(run["outcome"]):
+        came_to = undecided_label(run["outcome"])
+    elif math.isinf(tilt):
+        came_to = "overturned"
+    else:
+        came_to = f"did not overturn, largest tilt {number(tilt)} α" if tilt > 0.0 else "did not move"
+    case = str(run["case"].item())
+    level = f"{case} dissipation" if "," not in case else case.replace(",", " dissipation,")
+    return f"scale {number(float(run['scale']), 4)}, {level}: {came_to}"
+
+
+def _rows_figure(records: list[str]) -> tuple[Figure, Axes]:
+    figure = new_figure(min(_FRAME + 2.0 * _ROW * len(records), _TALLEST))
+    axes = figure.subplots()
+    axes.set_yticks(range(len(records)), records, fontsize=8)
+    axes.set_ylim(len(records) - 0.5, -0.5)
+    return figure, axes
+
+
+def _plain(axes: Axes) -> None:
+    low, high = axes.get_xlim()
+    ticks = [value for value in (0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0) if low <= value <= high]
+    axes.set_xticks(ticks)
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())

@@ -1,0 +1,90 @@
+"""Tables of margins: bands of scale factors, governing records, friction up to the margin."""
+
+import math
+
+import xarray as xr
+
+from stylobate.earthquakes.figures.assessment.cases import acts_in
+from stylobate.earthquakes.figures.assessment.displacements import tilt_cells
+from stylobate.earthquakes.figures.assessment.wording import CENTRAL, bands, degrees, least_scale, number
+from stylobate.plots.page import Table
+from stylobate.results.assessment import Assessment
+
+
+def bands_by_record(assessment: Assessment) -> Table:
+    """Return all bands of scale factors that overturned a column, by record and case."""
+    own = assessment.data["margins"]
+    header = (
+        "column",
+        "record",
+        "case of dissipation",
+        "least scale that overturned",
+        "bands found that overturned",
+        "runs not decided",
+    )
+    rows = []
+    for column in own["column"].to_numpy():
+        for record in own["record"].to_numpy():
+            for case in cases(assessment, record):
+                one = own.sel(column=column, record=record, case=case)
+                rows.append(
+                    (str(column), str(record), str(case), least_scale(one), bands(one), f"{int(one['unknown'])}")
+                )
+    return Table(header, rows)
+
+
+def cases(assessment: Assessment, record: str) -> list[str]:
+    """Return the cases of a record."""
+    return [
+        case for case in map(str, assessment.data["margins"]["case"].to_numpy()) if acts_in(assessment, record, case)
+    ]
+
+
+def governing(assessment: Assessment) -> Table:
+    """Return the governing record of each column, and the largest tilt in each of its runs that are drawn."""
+    own, runs = assessment.data["summary"], assessment.data["histories"]
+    header = (
+        *("column", "governing record", "least scale that overturned", "least of all cases", "scale of the run"),
+        *("its largest tilt / α", "tilt [°]", "displacement [mm]", "azimuth, from x to y", "at [s]"),
+    )
+    rows = []
+    for column in own["column"].to_numpy():
+        one, body = own.sel(column=column), assessment.data["columns"].sel(column=column)
+        record = str(one["governing"].item())
+        margins = assessment.data["margins"].sel(column=column, case=CENTRAL, record=record)
+        first = (str(column), record, least_scale(margins), number(float(one["least_of_all"]), 4))
+        for scale, run in drawn_runs(runs.sel(column=column)):
+            ratio = float(run["largest_tilt_ratio"])
+            azimuth = degrees(float(run["azimuth"])) if ratio > 0.0 else "–"
+            at = number(float(run["time_of_largest_tilt"]))
+            rows.append((*first, number(scale, 4), *tilt_cells(ratio, body), azimuth, at))
+    return Table(header, rows)
+
+
+def drawn_runs(histories: xr.Dataset) -> list[tuple[float, xr.Dataset]]:
+    """Return the runs of one column whose histories are drawn, each with the scale of its record."""
+    runs = [histories.sel(run=run) for run in histories["run"].to_numpy()]
+    return [(float(run["scale"]), run) for run in runs if math.isfinite(float(run["scale"]))]
+
+
+def friction_to_margin(assessment: Assessment) -> Table:
+    """Return the friction needed below the least scale that overturned, and the least scale that needs too much."""
+    header = (
+        *("column", "record", "case of dissipation", "least scale that overturned", "friction needed below it"),
+        *("stated", "least scale that needs more"),
+    )
+    own = assessment.data["margins"]
+    rows = []
+    for column in own["column"].to_numpy() if assessment.setting["contact"] else []:
+        stated = float(assessment.setting["friction_coefficient"][str(column)])
+        for record in own["record"].to_numpy():
+            for case in cases(assessment, record):
+                one = own.sel(column=column, record=record, case=case)
+                need, slipping = (float(one[name]) for name in ("friction_to_margin", "least_slipping"))
+                if math.isnan(need) and math.isnan(slipping):
+                    continue
+                first = "none that was run" if math.isnan(slipping) else number(slipping, 4)
+                rows.append(
+                    (str(column), str(record), str(case), least_scale(one), number(need), number(stated), first)
+                )
+    return Table(header, rows)

@@ -1,0 +1,93 @@
+"""The figures of the report with their captions; those that would show that nothing happened are left out."""
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from stylobate.earthquakes.figures.assessment.displacements import SMALLEST_TILT
+from stylobate.earthquakes.figures.assessment.figures import (
+    contact_figure,
+    history_figure,
+    margins_figure,
+    robustness_figure,
+    tilts_figure,
+)
+from stylobate.earthquakes.figures.assessment.record_figures import RECORDS_A_FIGURE, records_figure, spectra_figure
+from stylobate.earthquakes.figures.fragility import plot_fragility
+from stylobate.plots.page import Picture
+from stylobate.results.assessment import Assessment
+
+Pictures = dict[str, Picture]
+
+
+def report_pictures(assessment: Assessment) -> Pictures:
+    """Return the pictures by the name of their file, which begins with that of their section."""
+    found = _of_records(assessment)
+    for place, name in enumerate(assessment.data["columns"]["column"].to_numpy()):
+        found |= _of_column(assessment, str(name), place + 1)
+    return found
+
+
+def _of_records(assessment: Assessment) -> Pictures:
+    if "ground_motions" not in assessment.data:
+        return {}
+    names = [str(name) for name in assessment.data["ground_motions"]["record"].to_numpy()]
+    found = {}
+    for first in range(0, len(names), RECORDS_A_FIGURE):
+        some = names[first : first + RECORDS_A_FIGURE]
+        found[f"records-{first // RECORDS_A_FIGURE + 1}"] = Picture(
+            records_figure(assessment, some), "Ground accelerations as recorded (scale 1), along x and y, and up."
+        )
+    design = assessment.setting.get("details", {}).get("design_spectrum")
+    over = f" Dashed: {design['name']}, {100.0 * design['damping']:g} % damping." if design else ""
+    found["spectra-1"] = Picture(
+        spectra_figure(assessment),
+        "Pseudo-acceleration of the records (RotD50, of a record along one axis that of this component), and the "
+        f"mean.{over}",
+    )
+    return found
+
+
+def _of_column(assessment: Assessment, column: str, place: int) -> Pictures:
+    found = {}
+    if bool((assessment.data["margins"]["bands"].sel(column=column) > 0).any()):
+        found[f"margins-{place}"] = Picture(
+            margins_figure(assessment, column),
+            f"{column}: scale factors of each record that overturned it (hatched) and did not, at each dissipation. An "
+            "interval narrower than the step of the scan may have been missed.",
+        )
+    if bool((assessment.data["histories"]["largest_tilt_ratio"].sel(column=column) > SMALLEST_TILT).any()):
+        found[f"history-{place}"] = Picture(
+            history_figure(assessment, column),
+            f"{column} under its governing record: tilt and base acceleration against time; right, the direction of "
+            "the tilt. Dashed: α, at which the centre of mass stands above the rim.",
+        )
+    if bool((assessment.data["verdicts"]["friction_demand"].sel(column=column) > 0.0).any()):
+        found[f"contact-{place}"] = Picture(
+            contact_figure(assessment, column), f"{column}: friction needed in each run; dashed, what is stated."
+        )
+    for scale in assessment.setting["scales"]:
+        if not _rocked(assessment, column, scale):
+            continue
+        found[f"tilts-{place}-scale-{scale:g}"] = Picture(
+            tilts_figure(assessment, column, scale),
+            f"{column}, records times {scale:g}: largest tilts at each dissipation, vertical component included, "
+            "and those of the planar column where it was computed.",
+        )
+        if "robustness" in assessment.data:
+            found[f"robustness-{place}-scale-{scale:g}"] = Picture(
+                robustness_figure(assessment, column, scale),
+                f"{column}, records times {scale:g}: does a small change flip the verdict?",
+            )
+    if "fragility" in assessment.data:
+        found[f"fragility-{place}"] = Picture(_fragility(assessment, column), f"{column}: fragility.")
+    return found
+
+
+def _rocked(assessment: Assessment, column: str, scale: float) -> bool:
+    """Return whether any run at a scale tilted the column, or was not decided."""
+    runs = assessment.data["verdicts"].sel(column=column, scale=scale)
+    return bool(np.any((runs["tilt_ratio"].to_numpy() > SMALLEST_TILT) | (runs["overturned"].to_numpy() != 0)))
+
+
+def _fragility(assessment: Assessment, column: str) -> Figure:
+    return plot_fragility(assessment.data["fragility"].sel(column=column))

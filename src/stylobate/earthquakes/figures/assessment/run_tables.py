@@ -1,0 +1,218 @@
+"""Tables of single runs: verdicts, tilts, friction, small changes, and the planar column."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from stylobate.earthquakes.figures.assessment.cases import acts_in, case_name, cases_of
+from stylobate.earthquakes.figures.assessment.column_verdict import column_verdict
+from stylobate.earthquakes.figures.assessment.displacements import TILT_HEADER, shown_point, tilt_cells
+from stylobate.earthquakes.figures.assessment.wording import CENTRAL, listed, number, tilt, verdict
+from stylobate.plots.page import Table
+from stylobate.results.assessment import Assessment
+
+_ACTS = "with"
+
+
+def verdicts(assessment: Assessment) -> Table:
+    """Return the class of each verdict, and the names of the records on which it rests."""
+    header = (
+        *("column", "scale", "verdict", "overturned it (central dissipation)", "only at another dissipation"),
+        *("only without the vertical component", "flipped by a small change", "small change not decided"),
+        *("not decided", "more friction needed than stated"),
+    )
+    rows = []
+    for column, scale in _columns_and_scales(assessment):
+        cases = cases_of(assessment, column, scale)
+        at_other, without = (
+            [f"{name} ({listed(levels, 'and')})" for name, levels in one.items()]
+            for one in (cases.at_other_dissipation, cases.without_vertical)
+        )
+        undecided = (*cases.undecided, *cases.undecided_elsewhere)
+        changed = (cases.flipped, cases.changes_undecided)
+        names = (cases.overturned, at_other, without, *changed, undecided, tuple(cases.slipping))
+        label = column_verdict(assessment, column, scale).verdict.value
+        rows.append((column, f"{scale:g}", label, *(", ".join(one) or "none" for one in names)))
+    return Table(header, rows)
+
+
+def tilts(assessment: Assessment) -> Table:
+    """Return the largest tilts by record: at the central dissipation, and the largest of all cases."""
+    header = (
+        *("column", "record", "scale", *(f"{name}, central" for name in TILT_HEADER)),
+        *(*(f"{name}, largest of all cases" for name in TILT_HEADER), "displacement of the"),
+    )
+    own, rows = assessment.data["verdicts"]["tilt_ratio"], []
+    for column in own["column"].to_numpy():
+        body = assessment.data["columns"].sel(column=column)
+        for record in own["record"].to_numpy():
+            for scale in own["scale"].to_numpy():
+                one = own.sel(column=column, record=record, scale=scale)
+                central = tilt_cells(float(one.sel(dissipation=CENTRAL, vertical=_ACTS)), body)
+                most = tilt_cells(float(one.max()), body)
+                rows.append((str(column), str(record), f"{scale:g}", *central, *most, shown_point(body)[1]))
+    return Table(header, rows)
+
+
+def verdicts_by_record(assessment: Assessment) -> Table:
+    """Return the verdict of each record at each dissipation, with and without the vertical component."""
+    own = assessment.data["verdicts"]
+    levels, acting = (own[dim].to_numpy() for dim in ("dissipation", "vertical"))
+    cases = [(level, acts) for acts in acting for level in levels if acts == _ACTS or level == CENTRAL]
+    header = ("column", "record", "scale", *(case_name(str(level), str(acts)) for level, acts in cases))
+    rows = []
+    for column in own["column"].to_numpy():
+        for record in own["record"].to_numpy():
+            for scale in own["scale"].to_numpy():
+                runs = own["overturned"].sel(column=column, record=record, scale=scale)
+                states = (verdict(float(runs.sel(dissipation=level, vertical=acts))) for level, acts in cases)
+                rows.append((str(column), str(record), f"{scale:g}", *states))
+    return Table(header, rows)
+
+
+def friction_by_record(assessment: Assessment) -> Table:
+    """Return the largest friction that the runs under each record needed."""
+    header = ("column", "record", "scale", "largest friction needed", "stated", "enough")
+    own, rows = assessment.data["summary"]["friction_by_record"], []
+    for column in own["column"].to_numpy() if assessment.setting["contact"] else []:
+        stated = float(assessment.setting["friction_coefficient"][str(column)])
+        for record in own["record"].to_numpy():
+            for scale in own["scale"].to_numpy():
+                need = float(own.sel(column=column, record=record, scale=scale))
+                enough = "–" if math.isnan(need) else "yes" if need <= stated else "no"
+                rows.append((str(column), str(record), f"{scale:g}", number(need), number(stated), enough))
+    return Table(header, rows)
+
+
+def every_run(assessment: Assessment) -> Table:
+    """Return every run at the stated scales."""
+    header = (
+        *("column", "record", "scale", "dissipation", "vertical", "verdict", *TILT_HEADER),
+        *("friction needed", "enough", "pivoting moment / (N r)", "least normal force / weight"),
+    )
+    rows = []
+    for where, one in _runs(assessment.data["verdicts"]):
+        column, record, _, level, acts = where
+        if not acts_in(assessment, record, case_name(level, acts)):
+            continue
+        need, stated = float(one["friction_demand"]), float(assessment.setting["friction_coefficient"][column])
+        enough = "–" if math.isnan(need) else "yes" if need <= stated else "no"
+        more = (number(float(one[name])) for name in ("pivoting_demand", "least_normal_force"))
+        cells = tilt_cells(float(one["tilt_ratio"]), assessment.data["columns"].sel(column=column))
+        rows.append(
+            (
+                *where[:-1],
+                "yes" if acts == _ACTS else "no",
+                verdict(float(one["overturned"])),
+                *cells,
+                number(need),
+                enough,
+                *more,
+            )
+        )
+    return Table(header, rows)
+
+
+def sliding(assessment: Assessment) -> Table:
+    """Return the runs by the model that slides, of the columns that slide before they rock."""
+    header = (
+        *("column", "record", "scale", "verdict by the model that slides", "largest slip [mm]", "slip left [mm]"),
+        "sliding for [s]",
+    )
+    if "sliding" not in assessment.data:
+        return Table(header, [])
+    own, rows = assessment.data["sliding"], []
+    for column in own["column"].to_numpy():
+        for record in own["record"].to_numpy():
+            for scale in own["scale"].to_numpy():
+                run = own.sel(column=column, record=record, scale=scale)
+                if math.isnan(float(run["time_sliding"])):
+                    continue
+                slips = (number(1000.0 * float(run[name])) for name in ("largest_slip", "residual_slip"))
+                where = (str(column), str(record), f"{scale:g}", verdict(float(run["overturned"])))
+                rows.append((*where, *slips, number(float(run["time_sliding"]))))
+    return Table(header, rows)
+
+
+def small_changes(assessment: Assessment) -> Table:
+    """Return how many small changes flip each verdict, and which."""
+    header = (
+        *("column", "record", "scale", "dissipation", "verdict", "changes that flip it", "changes decided"),
+        *("tilt / α from", "to", "which flip it", "which are not decided"),
+    )
+    if "robustness" not in assessment.data:
+        return Table(header, [])
+    own, rows = assessment.data["robustness"], []
+    states = assessment.data["verdicts"]["overturned"].sel(vertical=_ACTS)
+    changes = np.array([str(name) for name in own["change"].to_numpy()])
+    for column in own["column"].to_numpy():
+        for record in own["record"].to_numpy():
+            for scale in own["scale"].to_numpy():
+                for level in own["dissipation"].to_numpy():
+                    place = {"column": column, "record": record, "scale": scale, "dissipation": level}
+                    one, state = own.sel(place), verdict(float(states.sel(place)))
+                    flips, applies = one["flips"].to_numpy(), one["applies"].to_numpy() == 1
+                    which = (", ".join(changes[some]) or "none" for some in (flips == 1, applies & (flips < 0)))
+                    counts = (f"{int(one['flipped'])}", f"{int(one['compared'])}")
+                    ends = (tilt(float(one[f"tilt_ratio_{end}"])) for end in ("low", "high"))
+                    where = (str(column), str(record), f"{scale:g}", str(level))
+                    rows.append((*where, state, *counts, *ends, *which))
+    return Table(header, rows)
+
+
+def planar(assessment: Assessment) -> Table:
+    """Return the verdicts in three dimensions beside those of the planar column."""
+    header = (
+        *("column", "record", "scale", "three-dimensional", "largest tilt / α", "planar (worse component)"),
+        "largest tilt / α",
+    )
+    if "planar" not in assessment.data:
+        return Table(header, [])
+    own, runs = assessment.data["planar"], assessment.data["verdicts"].sel(dissipation=CENTRAL, vertical=_ACTS)
+    rows = []
+    for column in own["column"].to_numpy():
+        for record in own["record"].to_numpy():
+            for scale in own["scale"].to_numpy():
+                place = {"column": column, "record": record, "scale": scale}
+                spatial, flat = runs.sel(place), float(own["planar_tilt_ratio"].sel(place))
+                state = "not decided" if math.isnan(flat) else verdict(float(math.isinf(flat)))
+                first = (verdict(float(spatial["overturned"])), tilt(float(spatial["tilt_ratio"])))
+                rows.append((str(column), str(record), f"{scale:g}", *first, state, tilt(flat)))
+    return Table(header, rows)
+
+
+def planar_bias(assessment: Assessment) -> Table:
+    """Return the mean logarithm of the tilts in three dimensions over those of the planar column."""
+    header = (
+        *("column", "scale", "mean ln(tilt in three dimensions / planar)", "standard error", "records compared"),
+        *("overturn in three dimensions only", "planar only"),
+    )
+    if "planar" not in assessment.data:
+        return Table(header, [])
+    own, rows = assessment.data["planar"], []
+    for column in own["column"].to_numpy():
+        for scale in own["scale"].to_numpy():
+            one = own.sel(column=column, scale=scale)
+            counts = (f"{int(one[name])}" for name in ("compared", "only_space", "only_planar"))
+            mean = float(one["bias"])
+            words = "too few records" if math.isnan(mean) else number(mean)
+            rows.append((str(column), f"{scale:g}", words, number(float(one["standard_error"])), *counts))
+    return Table(header, rows)
+
+
+def _columns_and_scales(assessment: Assessment) -> Iterator[tuple[str, float]]:
+    for column in assessment.data["columns"]["column"].to_numpy():
+        for scale in assessment.setting["scales"]:
+            yield str(column), float(scale)
+
+
+def _runs(runs: xr.Dataset) -> Iterator[tuple[tuple[str, ...], xr.Dataset]]:
+    for column in runs["column"].to_numpy():
+        for record in runs["record"].to_numpy():
+            for scale in runs["scale"].to_numpy():
+                for level in runs["dissipation"].to_numpy():
+                    for acts in runs["vertical"].to_numpy():
+                        one = runs.sel(column=column, record=record, scale=scale, dissipation=level, vertical=acts)
+                        yield (str(column), str(record), f"{scale:g}", str(level), str(acts)), one

@@ -1,0 +1,215 @@
+"""The sections of the report, in their order, with the texts that introduce them."""
+
+from collections.abc import Mapping
+
+from stylobate.earthquakes.figures.assessment.record_tables import drifting
+from stylobate.earthquakes.figures.assessment.summary import column_findings, columns_of, how_to_read
+from stylobate.earthquakes.figures.assessment.texts import (
+    ASSUMPTIONS,
+    NOT_COVERED,
+    PLANAR,
+    REFERENCES,
+    SLIP_AND_FLIGHT,
+    VERDICT_CLASSES,
+)
+from stylobate.earthquakes.figures.assessment.wording import listed, number, scales
+from stylobate.plots.page import Picture, Section, Table
+from stylobate.results.assessment import Assessment
+from stylobate.results.few_records import few_records
+
+Part = str | Picture | Table
+
+
+def document_table(assessment: Assessment) -> Table:
+    """Return project, author, date, study file and program, those that are stated."""
+    details = assessment.setting.get("details", {})
+    study = details.get("study_file", "")
+    lines = {
+        "project": details.get("project", ""),
+        "author": details.get("author", ""),
+        "date": details.get("date", ""),
+        "study file": f"{study}, SHA-256 {details.get('study_sha256', '')}" if study else "",
+        "computed with": f"stylobate {assessment.setting['version']}",
+    }
+    return Table(("document", ""), [(name, str(words)) for name, words in lines.items() if words])
+
+
+def report_sections(
+    assessment: Assessment, tables: Mapping[str, Table], pictures: Mapping[str, Picture]
+) -> list[Section]:
+    """Return the sections of the report; those without content are left out."""
+
+    def drawn(name: str) -> list[Part]:
+        return [picture for file, picture in pictures.items() if file.startswith(f"{name}-")]
+
+    def shown(*names: str) -> list[Part]:
+        return [tables[name] for name in names if name in tables]
+
+    found = [
+        Section("Verdicts", [*shown("verdicts"), Table(("class of verdict", "meaning"), VERDICT_CLASSES)]),
+        Section(
+            "The columns one by one",
+            [*(column_findings(assessment, name) for name in columns_of(assessment)), how_to_read(assessment)],
+        ),
+        Section("Records", [_record_text(assessment), *shown("events"), *drawn("records"), *drawn("spectra")]),
+        Section("Intensities of the records", [_intensity_text(assessment), *shown("records", "spectra")]),
+        Section(
+            "Margins",
+            [
+                _margin_text(assessment),
+                *(*shown("margin-intensities", "governing"), *drawn("margins"), *drawn("history"), *shown("margins")),
+            ],
+        ),
+        Section("Tilt and displacement", [_tilt_text(), *drawn("tilts"), *shown("tilts")]),
+        Section(
+            "Dissipation and vertical component",
+            [_verdict_text(assessment), *shown("summary", "verdicts-by-record")],
+        ),
+        Section(
+            "What the contact must bear",
+            [_contact_text(assessment), *drawn("contact"), *shown("contact-by-record", "contact-to-margin", "sliding")],
+        ),
+        Section(
+            "Does the verdict stand under small changes",
+            [_robust_text(assessment), *drawn("robustness"), *shown("robustness")],
+        ),
+        Section("Against the planar calculation", [*_planar_text(assessment), *shown("planar", "planar-bias")]),
+        Section("Fragility", [_fragility_text(assessment), *drawn("fragility"), *shown("fragility")]),
+        Section("Columns and damping", [_model_text(assessment), *shown("columns", "dissipation")]),
+        Section("Assumptions", [_assumptions(assessment)]),
+        Section("What is not covered", [not_covered(assessment)]),
+        Section("References", [Table(("subject", "source"), REFERENCES)]),
+        Section("Software", [_software(assessment)]),
+        Section("Appendix: origin of the records", shown("record-provenance")),
+        Section("Appendix: every run", shown("runs")),
+    ]
+    return [section for section in found if section.content]
+
+
+def _record_text(assessment: Assessment) -> str:
+    drift = drifting(assessment)
+    remark = (
+        f" Drift: {listed(drift)} ends with a velocity of more than 5 % of its PGV; filter it or correct its baseline, "
+        "or state why it may stay."
+        if drift
+        else ""
+    )
+    return (
+        f"Verdicts are given at the scale factors {scales(assessment.setting['scales'])}; 1 is the record as listed in "
+        f"the appendix on its origin.{remark}"
+    )
+
+
+def _intensity_text(assessment: Assessment) -> str:
+    del assessment
+    return (
+        "PGA, PGV and Sa (5 % damping) are RotD50, the median over all horizontal directions (Boore 2010); of a record "
+        "along one axis they are those of this component. “Vector” is the largest length of the horizontal vector, "
+        "which is never less than RotD50: compare hazard curves and design spectra with RotD50. Drift is a velocity of "
+        "more than 5 % of PGV at the end of a record, along x, y or z."
+    )
+
+
+def _margin_text(assessment: Assessment) -> str:
+    low, high, count = assessment.setting["margin_scales"]
+    resolution = assessment.setting["resolution"]
+    return (
+        f"Every record was run at {count} scale factors from {number(low)} to {number(high)}, and every change of the "
+        f"outcome was bisected to {100.0 * assessment.setting['width']:g} %. The margin is the least scale factor that "
+        "overturned the column. Overturning is not monotonic: a column may survive above that scale, so the last table "
+        "lists every interval found. Near the limit the outcome is erratic: a scan at other factors finds other narrow "
+        f"intervals. {resolution[0].upper()}{resolution[1:]}. “Governs” marks the record whose runs are drawn. “>” "
+        "marks records that overturned the column at no scale: the value is that of the largest scale decided."
+    )
+
+
+def _tilt_text() -> str:
+    return (
+        "α = atan(r/h) is the tilt at which the centre of mass stands above the rim. The displacement is horizontal "
+        "and relative to the base: H sin θ + r (1 − cos θ) for a point at the height H of the axis and a tilt θ, with "
+        "the point of contact at rest. H is the height of the column; where only the centre of mass is known, the "
+        "displacement is that of the centre of mass. The edge of a wide top can move farther."
+    )
+
+
+def _verdict_text(assessment: Assessment) -> str:
+    tail = assessment.setting["tail"]
+    followed = f"{tail} of free motion" if isinstance(tail, str) else f"{number(tail)} s of free motion"
+    return (
+        f"Records at the scale factors {scales(assessment.setting['scales'])}, at every stated dissipation, with the "
+        f"vertical component and without where a record has one. Each run went on for {followed} after its record; "
+        "a column that had not overturned by then counts as not overturned. A run that could not be followed to its "
+        "end, for instance because it would have taken too many steps, is not decided."
+    )
+
+
+def _contact_text(assessment: Assessment) -> str:
+    if not assessment.setting["contact"]:
+        return "The friction needed was not computed (contact = false): it is not known whether the base would slip."
+    return (
+        "The friction needed is the largest ratio of horizontal to normal force in a run, up to overturning if the "
+        "column overturned. Where it exceeds the stated coefficient the base would slip, and the run no longer "
+        "describes the column. A normal force of zero would be lift-off. The last table gives the friction needed at "
+        "the scale factors that were run for the margin."
+    )
+
+
+def _robust_text(assessment: Assessment) -> str:
+    changes = assessment.setting["changes"]
+    if not changes:
+        return "Not asked for: no verdict was repeated under small changes, so it is not known which are repeatable."
+    return (
+        "Each verdict was repeated under small changes of record, dissipation, size and integration, one at a time: "
+        f"{', '.join(changes)}. A cross: a run was not decided, so neither is whether the verdict "
+        "stands. No mark: the change does not apply to the record."
+    )
+
+
+def _planar_text(assessment: Assessment) -> list[str]:
+    return list(PLANAR) if "planar" in assessment.data else ["Not asked for."]
+
+
+def _fragility_text(assessment: Assessment) -> str:
+    count, least = assessment.data["records"].sizes["record"], assessment.setting["least_records"]
+    few = few_records(count)
+    if "fragility" not in assessment.data:
+        why = few or "a probability needs more records"
+        return f"Not fitted: at least {least} records are asked for (least_records). {why[0].upper()}{why[1:]}."
+    return (f"{few}. " if few else "") + (
+        f"Lognormal curves by maximum likelihood over the peak ground acceleration (RotD50) of {count} "
+        "scaled records, at the central dissipation; intervals by bootstrap over the records. Records with survival "
+        "above an overturning scale are counted run by run. The curves describe these records, not a site."
+    )
+
+
+def _model_text(assessment: Assessment) -> str:
+    kinds = sorted({str(one["model"].get("kind", "own")) for one in assessment.setting["columns"].values()})
+    return (
+        f"Equations of motion: {', '.join(kinds)}. The damping of a column that rocks in three dimensions is not a "
+        "material constant and is seldom measured. So several levels were stated, and each verdict is given at all of "
+        "them."
+    )
+
+
+def _assumptions(assessment: Assessment) -> Table:
+    notes = [
+        ("records, as read" if note.startswith("Warning: ") else "stated by the author", note)
+        for note in map(str, assessment.setting["notes"])
+    ]
+    return Table(("subject", "what is assumed"), [*ASSUMPTIONS, *notes])
+
+
+def not_covered(assessment: Assessment) -> Table:
+    """Return the subjects that the assessment leaves out."""
+    return Table(("subject", "why it matters"), [*NOT_COVERED, SLIP_AND_FLIGHT[bool(assessment.setting["sliding"])]])
+
+
+def _software(assessment: Assessment) -> str:
+    options = ", ".join(f"{name} = {value}" for name, value in assessment.setting["options"].items())
+    versions = ", ".join(f"{name} {value}" for name, value in assessment.setting.get("software", {}).items())
+    return (
+        f"Computed with stylobate {assessment.setting['version']}. "
+        + (f"Versions: {versions}. " if versions else "")
+        + (f"Options of the runs: {options}. " if options else "")
+        + "All numbers are in assessment.nc beside this page, from which the page can be made again."
+    )

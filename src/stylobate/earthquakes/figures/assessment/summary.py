@@ -1,0 +1,174 @@
+"""The text that a reader sees first: a line on each column, then findings by subject."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from stylobate.earthquakes.figures.assessment.column_verdict import (
+    column_verdict,
+    largest_decided,
+    least_overturning_scale,
+    level_words,
+    recorded_scale,
+)
+from stylobate.earthquakes.figures.assessment.displacements import SMALLEST_TILT, tilt_words
+from stylobate.earthquakes.figures.assessment.record_tables import margin_intensities
+from stylobate.earthquakes.figures.assessment.wording import CENTRAL, number, records
+from stylobate.plots.page import Table
+from stylobate.results.assessment import Assessment
+
+
+def verdict_table(assessment: Assessment) -> Table:
+    """Return the verdict on each column in one line, at the scale nearest to 1."""
+    rows = []
+    for name in columns_of(assessment):
+        found = column_verdict(assessment, name, recorded_scale(assessment))
+        margin = f" {least_overturning_scale(assessment, name)}" if found.describes else ""
+        rows.append((name, found.verdict.value, f"{found.sentence[0].upper()}{found.sentence[1:]}{margin}"))
+    return Table(("column", "verdict", "in one line"), rows)
+
+
+def column_findings(assessment: Assessment, name: str) -> Table:
+    """Return what the runs found for one column, a row for each subject, in words that promise nothing."""
+    own = assessment.data["summary"].sel(column=name)
+    first = recorded_scale(assessment)
+    described = column_verdict(assessment, name, first).describes
+    subjects = {f"tilt, {level_words(first)}": _tilt(assessment, name, first) if described else ""}
+    for scale in (float(one) for one in own["scale"].to_numpy() if one != first):
+        found = column_verdict(assessment, name, scale)
+        words = f"{found.line} {_tilt(assessment, name, scale) if found.describes else ''}"
+        subjects[level_words(scale)] = words.strip()
+    subjects["margin"] = _margin(assessment, name, own) if described else ""
+    subjects["contact"] = _contact(assessment, name, own)
+    return Table((name, ""), [(subject, words) for subject, words in subjects.items() if words])
+
+
+def summary_text(assessment: Assessment, heads: Sequence[Table]) -> str:
+    """Return the summary as plain text: the tables `heads`, the findings on each column, and how to read them."""
+    blocks = ["\n".join(": ".join(row) for row in table.rows) for table in heads]
+    for name in columns_of(assessment):
+        findings = column_findings(assessment, name)
+        blocks.append("\n".join([findings.header[0], *(": ".join(row) for row in findings.rows)]))
+    return "\n\n".join([str(assessment.setting["title"]), *blocks, how_to_read(assessment)]) + "\n"
+
+
+def columns_of(assessment: Assessment) -> list[str]:
+    """Return the names of the columns."""
+    return [str(name) for name in assessment.data["columns"]["column"].to_numpy()]
+
+
+def _tilt(assessment: Assessment, name: str, scale: float) -> str:
+    """Return the largest tilt of the central runs that did not overturn."""
+    runs = assessment.data["verdicts"].sel(column=name, scale=scale, dissipation=CENTRAL, vertical="with")
+    ratios = runs["tilt_ratio"].where(runs["overturned"] == 0).dropna("record")
+    if ratios.size == 0:
+        return ""
+    most = ratios.isel(record=int(np.argmax(ratios.to_numpy())))
+    if float(most) == 0.0:
+        others = ratios.size < runs.sizes["record"]
+        return f"It did not rock{' under the other records' if others else ''}."
+    if float(most) < SMALLEST_TILT:
+        return f"It hardly rocked: the largest tilt without overturning is below {SMALLEST_TILT:g} α."
+    words = tilt_words(float(most), assessment.data["columns"].sel(column=name))
+    return f"Largest tilt without overturning: {words} ({most['record'].item()})."
+
+
+def _margin(assessment: Assessment, name: str, own: xr.Dataset) -> str:
+    low, high = float(assessment.setting["margin_scales"][0]), largest_decided(assessment, name, case=CENTRAL)
+    record = str(own["least_record"].item())
+    least, least_of_all = float(own["least_overturning"]), float(own["least_of_all"])
+    if math.isnan(least) and math.isnan(high):
+        sentence = f"At central dissipation already the smallest scale factor {number(low)} was not decided."
+    elif math.isnan(least):
+        sentence = f"No scale factor from {number(low)} to {number(high)} overturned it at central dissipation."
+    else:
+        sentence = (
+            f"At central dissipation the least scale that overturned it is {number(least, 4)} ({record})"
+            f"{_lasting(assessment, name, record)}. {_intensity(assessment, name, record)}"
+        )
+    if not math.isnan(least_of_all) and least_of_all != least:
+        sentence += f" {least_overturning_scale(assessment, name)}"
+    again = int(own["stands_again"])
+    if again:
+        under = records(again, assessment.data["records"].sizes["record"])
+        sentence += f" Some larger scales did not overturn it, under {under}: more shaking is not always worse."
+    return sentence
+
+
+def _intensity(assessment: Assessment, column: str, record: str) -> str:
+    """Return PGA, PGV and Sa of a record at the least scale that overturned a column."""
+    table = margin_intensities(assessment)
+    row = next(row for row in table.rows if tuple(row[:2]) == (column, record))
+    cells = dict(zip(table.header, row, strict=True))
+    spectral = next(name for name in table.header if name.startswith("Sa") and name.endswith("[g]"))
+    return (
+        f"There PGA is {cells['PGA [g]']} g, PGV {cells['PGV [m/s]']} m/s and {spectral.removesuffix(' [g]')} "
+        f"{cells[spectral]} g ({cells['definition']})."
+    )
+
+
+def _lasting(assessment: Assessment, column: str, record: str) -> str:
+    """Return a remark on a least scale with survival at the scales just below and above."""
+    margins = assessment.data["margins"].sel(column=column, record=record, case=CENTRAL)
+    least, lasting = float(margins["least_overturning"]), float(margins["least_lasting"])
+    if lasting == least:
+        return ""
+    alone = ", in an interval so narrow that another scan might miss it"
+    return alone if math.isnan(lasting) else f"{alone}; a wider interval begins at {number(lasting, 4)}"
+
+
+def _contact(assessment: Assessment, name: str, own: xr.Dataset) -> str:
+    need = float(own["friction_demand"].max())
+    if math.isnan(need):
+        return ""
+    stated = float(assessment.setting["friction_coefficient"][name])
+    if need <= stated:
+        at_stated = (
+            f"The largest friction that any run at {_stated_scales(assessment)} needed is {number(need)}; the stated "
+            f"coefficient is {number(stated)}."
+        )
+    else:
+        at_stated = (
+            f"Some run needed a friction of {number(need)}, above the stated coefficient {number(stated)}: "
+            "there the base would slip, which these runs do not follow."
+        )
+    return f"{at_stated} {_contact_to_margin(own)}"
+
+
+def _contact_to_margin(own: xr.Dataset) -> str:
+    """Return the friction needed up to the margin, and the least scale that needs more than is stated."""
+    need, slipping = (float(own[name]) for name in ("friction_to_margin", "least_slipping"))
+    if math.isnan(need) and math.isnan(slipping):
+        return "The friction needed at other scales was not computed."
+    if math.isnan(slipping):
+        return "No scale factor that was run for the margin needed more than the stated friction."
+    sentence = f"The least scale that needs more friction than stated is {number(slipping, 4)}"
+    if math.isnan(float(own["least_of_all"])):
+        return f"{sentence}: beyond that scale the base would slip, and these runs do not describe the column."
+    if int(own["slips_first"]):
+        return (
+            f"{sentence}, in some case below the least scale that overturned it: the base would slip first, and these "
+            "runs do not give its margin."
+        )
+    return f"{sentence}, above the least scale that overturned it: beyond that scale the base would slip."
+
+
+def _stated_scales(assessment: Assessment) -> str:
+    scales = assessment.setting["scales"]
+    return f"scale {scales[0]:g}" if len(scales) == 1 else "the stated scales"
+
+
+def how_to_read(assessment: Assessment) -> str:
+    """Return what a verdict says, and what it does not."""
+    repeated = (
+        "Verdicts were therefore repeated under small changes; take a verdict that flips as open."
+        if assessment.setting["changes"]
+        else "No verdict was repeated under small changes here, so it is not known whether any verdict is repeatable."
+    )
+    return (
+        "How to read this: a verdict reports the runs that were made, of a rigid column under these records only. "
+        "“Did not overturn” is no proof that the column cannot overturn. A single rocking run is barely repeatable "
+        f"near the limit. {repeated}"
+    )

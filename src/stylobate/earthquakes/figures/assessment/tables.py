@@ -1,0 +1,113 @@
+"""The tables of an assessment: the same in the report and as files."""
+
+import math
+from collections.abc import Callable
+
+from stylobate.earthquakes.figures.assessment import margin_tables, record_tables, run_tables
+from stylobate.earthquakes.figures.assessment.displacements import TILT_HEADER, shown_point, tilt_cells
+from stylobate.earthquakes.figures.assessment.wording import number
+from stylobate.plots.page import Table
+from stylobate.results.assessment import Assessment
+
+
+def assessment_tables(assessment: Assessment) -> dict[str, Table]:
+    """Return the tables by name: all numbers of the report, as text."""
+    made = {name: make(assessment) for name, make in _TABLES.items()}
+    return {name: table for name, table in made.items() if table.rows}
+
+
+def _columns(assessment: Assessment) -> Table:
+    header = (
+        *("column", "radius [m]", "height [m]", "centre of mass [m]", "mass [kg]", "c = r/h", "α [°]", "R [m]"),
+        *("p [1/s]", "rocks above [m/s²]", "stated friction", "displacements are of the"),
+    )
+    own = assessment.data["columns"]
+    names = (
+        *("radius", "height", "mass_height", "mass", "slenderness", "tipping_angle", "rim_distance"),
+        *("frequency_parameter", "uplift_acceleration", "friction_coefficient"),
+    )
+    rows = []
+    for column in own["column"].to_numpy():
+        one = own.sel(column=column)
+        values = {name: float(one[name]) for name in names}
+        values["tipping_angle"] = math.degrees(values["tipping_angle"])
+        rows.append((str(column), *(number(value, 4) for value in values.values()), shown_point(one)[1]))
+    return Table(header, rows)
+
+
+def _summary(assessment: Assessment) -> Table:
+    own = assessment.data["summary"]
+    names = ("stood", "overturned", "undecided", "overturned_in_some", "on_dissipation", "on_vertical")
+    optional = {
+        "not_robust": "flip under small changes",
+        "changes_undecided": "small changes not decided",
+        "planar_differs": "planar column differs",
+    }
+    optional = {name: words for name, words in optional.items() if name in own}
+    header = (
+        *("column", "scale", "did not overturn it", "overturned it", "not decided", "overturned it in some case"),
+        *("depend on dissipation", "depend on vertical", *optional.values()),
+        *(f"largest {name}" for name in TILT_HEADER),
+        "largest friction needed",
+    )
+    rows = []
+    for column in own["column"].to_numpy():
+        body = assessment.data["columns"].sel(column=column)
+        for scale in own["scale"].to_numpy():
+            one = own.sel(column=column, scale=scale)
+            counts = (f"{int(one[name])}" for name in (*names, *optional))
+            cells = tilt_cells(float(one["largest_tilt_ratio"]), body)
+            rows.append((str(column), f"{scale:g}", *counts, *cells, number(float(one["friction_demand"]))))
+    return Table(header, rows)
+
+
+def _fragility(assessment: Assessment) -> Table:
+    header = (
+        *("column", "limit state", "median PGA, RotD50 [m/s²]", "from", "to", "dispersion β", "from", "to", "runs"),
+        *("reached", "records with survival above an overturning scale"),
+    )
+    if "fragility" not in assessment.data:
+        return Table(header, [])
+    own = assessment.data["fragility"]
+    numbers = ("median", "median_low", "median_high", "dispersion", "dispersion_low", "dispersion_high")
+    rows = []
+    for column in own["column"].to_numpy():
+        for state in own["limit_state"].to_numpy():
+            one = own.sel(column=column, limit_state=state)
+            counts = (f"{int(one[name])}" for name in ("runs", "runs_reached", "non_monotone_records"))
+            rows.append((str(column), str(state), *(number(float(one[name])) for name in numbers), *counts))
+    return Table(header, rows)
+
+
+def _dissipation(assessment: Assessment) -> Table:
+    rows = [
+        (level, name, number(value, 4))
+        for level, numbers in assessment.setting["dissipation"].items()
+        for name, value in numbers.items()
+    ]
+    return Table(("level", "number of the model", "value"), rows)
+
+
+_TABLES: dict[str, Callable[[Assessment], Table]] = {
+    "verdicts": run_tables.verdicts,
+    "summary": _summary,
+    "events": record_tables.events,
+    "records": record_tables.intensities,
+    "spectra": record_tables.spectra,
+    "margin-intensities": record_tables.margin_intensities,
+    "governing": margin_tables.governing,
+    "margins": margin_tables.bands_by_record,
+    "tilts": run_tables.tilts,
+    "verdicts-by-record": run_tables.verdicts_by_record,
+    "contact-by-record": run_tables.friction_by_record,
+    "contact-to-margin": margin_tables.friction_to_margin,
+    "sliding": run_tables.sliding,
+    "robustness": run_tables.small_changes,
+    "planar": run_tables.planar,
+    "planar-bias": run_tables.planar_bias,
+    "fragility": _fragility,
+    "columns": _columns,
+    "dissipation": _dissipation,
+    "record-provenance": record_tables.provenance,
+    "runs": run_tables.every_run,
+}

@@ -1,0 +1,108 @@
+"""How an assessment says things: verdicts without promises, numbers with three digits."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from stylobate.column import STANDARD_GRAVITY
+from stylobate.earthquakes.figures.band_regions import undecided_reasons
+
+CENTRAL = "central"
+OVERTURNED, STOOD, UNDECIDED = "overturned", "did not overturn", "not decided"
+_MOST_NAMES = 8
+_OF_STATE = {1: OVERTURNED, 0: STOOD, -1: UNDECIDED}
+
+
+def verdict(state: float) -> str:
+    """Return the words for a run: 1 overturned, 0 did not, −1 does not tell."""
+    return _OF_STATE[int(state)]
+
+
+def number(value: float, digits: int = 3) -> str:
+    """Return a number with so many significant digits; a dash where there is none."""
+    if not math.isfinite(value):
+        return "–" if math.isnan(value) else "∞"
+    return f"{value:.{digits}g}"
+
+
+def tilt(value: float) -> str:
+    """Return a largest tilt over α in words."""
+    return OVERTURNED if math.isinf(value) else number(value)
+
+
+def least_scale(margins: xr.Dataset) -> str:
+    """Return the least scale that overturned, of one column, case and record, with the next below that did not."""
+    if int(margins["bands"]) == 0:
+        if undecided := undecided_scales(margins):
+            return f"none found; {undecided}"
+        return f"none up to {number(float(margins['margin_scale'][-1]))}"
+    found, below = float(margins["least_overturning"]), float(margins["largest_below"])
+    if not math.isnan(below):
+        return f"{number(found, 4)} (not at {number(below, 4)})"
+    if bool(margins["undecided_below"][0]):
+        return f"{number(found, 4)} (not decided just below)"
+    return f"{number(found)} or below"
+
+
+def bands(margins: xr.Dataset) -> str:
+    """Return all bands of scales that overturned, of one column, case and record, and those that are not decided."""
+    names = ("band_from", "band_to", "open_below", "open_above", "undecided_below", "undecided_above")
+    found = []
+    for low, high, below, above, unknown_below, unknown_above in zip(
+        *(margins[name].to_numpy() for name in names), strict=True
+    ):
+        if math.isnan(low):
+            continue
+        ends = [number(low, 4), number(high, 4)]
+        words = ends[0] if ends[0] == ends[1] else " to ".join(ends)
+        words += " and below" * bool(below and not unknown_below) + " and beyond" * bool(above and not unknown_above)
+        found.append(words)
+    undecided = undecided_scales(margins)
+    return "; ".join([*(found or ["none found" if undecided else "none"]), *([undecided] if undecided else [])])
+
+
+def undecided_scales(margins: xr.Dataset) -> str:
+    """Return the scales at which one column, case and record is not decided, with the reasons; nothing if none."""
+    pairs = zip(margins["undecided_from"].to_numpy(), margins["undecided_to"].to_numpy(), strict=True)
+    stretches = [f"{number(low, 4)} to {number(high, 4)}" for low, high in pairs if not math.isnan(low)]
+    if not stretches:
+        return ""
+    return f"not decided from {' and from '.join(stretches)} ({', '.join(undecided_reasons(margins['outcome']))})"
+
+
+def listed(names: Sequence[str], last: str = "") -> str:
+    """Return names with commas between, at most eight; the word `last` goes before the last of them.
+
+    >>> listed(("low", "high"), "and")
+    'low and high'
+    """
+    shown = [*names[:_MOST_NAMES], *([f"{len(names) - _MOST_NAMES} more"] if len(names) > _MOST_NAMES else [])]
+    if last and len(shown) > 1:
+        return f"{', '.join(shown[:-1])} {last} {shown[-1]}"
+    return ", ".join(shown)
+
+
+def in_g(acceleration: float) -> str:
+    """Return an acceleration [m/s²] in g."""
+    return number(acceleration / STANDARD_GRAVITY)
+
+
+def scales(values: np.ndarray) -> str:
+    """Return scale factors in words."""
+    return ", ".join(f"{value:g}" for value in values)
+
+
+def degrees(angle: float) -> str:
+    """Return an azimuth in degrees from x."""
+    return "–" if math.isnan(angle) else f"{math.degrees(angle) % 360.0:.0f}°"
+
+
+def records(count: int, total: int) -> str:
+    """Return how many of the records, in words."""
+    if total == 1:
+        return "the one record" if count == 1 else "not the one record"
+    if count == total:
+        return f"all {total} records"
+    return f"{count} of {total} records"

@@ -1,0 +1,233 @@
+"""Fragility curves with what was observed, annual rates with what contributes to them, bands of safety by record."""
+
+import textwrap
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from stylobate.plots.kinds import figure_of
+from stylobate.plots.labels import axis_label
+from stylobate.plots.style import BLACK, BLUE, DASHES, GREY, PALETTE, SKY, VERMILION, new_figure, styled
+
+_HEIGHT = 4.2
+_RATE_HEIGHT = 5.2
+_MARKS = ("o", "s", "^", "D", "v", "P", "X")
+_BAND = 0.18
+# Height of a record's bar in the figure of bands [inches], and of the rest of that figure.
+_ROW, _FRAME = 0.17, 1.5
+_TALLEST = 7.5
+_BAR = 0.72
+# Letters in a line of a legend.
+_LEGEND = 30
+# Points of several limit states at one intensity stand apart by this factor.
+_APART = 1.012
+
+
+@figure_of("fragility")
+@styled
+def plot_fragility(found: xr.Dataset) -> Figure:
+    """Return a figure of fragility curves with their confidence bands and the shares observed.
+
+    Curves end where the data end. Points are shares of the runs at an intensity, or near it, with intervals of Wilson;
+    the points of several limit states stand a little apart. A limit state without a fit has its points, and the legend
+    says why. The title tells of records that are safe again above an intensity that reached the limit state, and how
+    runs of them are counted.
+    """
+    figure = new_figure(_HEIGHT)
+    axes = figure.subplots()
+    handles = [_draw_state(axes, found.isel(limit_state=place), place) for place in range(found.sizes["limit_state"])]
+    if "stripe_share" in found:
+        handles.append(_interval_mark(found))
+    axes.set(xscale="log", ylim=(-0.02, 1.02), ylabel="probability of reaching the limit state")
+    axes.set_xlabel(axis_label(found["curve_intensity"]))
+    _plain_ticks(axes)
+    axes.set_title("\n".join(_told(found)))
+    figure.legend(handles=handles, loc="outside right upper")
+    return figure
+
+
+def _draw_state(axes: Axes, state: xr.Dataset, place: int) -> Line2D:
+    """Draw one limit state and return its entry in the legend."""
+    colour, mark = PALETTE[place % len(PALETTE)], _MARKS[place % len(_MARKS)]
+    dash: Any = DASHES[place % len(DASHES)]
+    x = state["curve_intensity"].to_numpy()
+    axes.plot(x, state["probability"].to_numpy(), color=colour, linestyle=dash, linewidth=1.8)
+    if "probability_low" in state:
+        low, high = (state[name].to_numpy() for name in ("probability_low", "probability_high"))
+        axes.fill_between(x, low, high, color=colour, alpha=_BAND, linewidth=0.0)
+    if "stripe_share" not in state:
+        mark = ""
+    else:
+        share = state["stripe_share"].to_numpy()
+        spread = [
+            share - state["stripe_share_low"].to_numpy(),
+            state["stripe_share_high"].to_numpy() - share,
+        ]
+        axes.errorbar(
+            state["stripe_intensity"].to_numpy() * _APART**place,
+            share,
+            yerr=np.maximum(spread, 0.0),
+            fmt=mark,
+            markersize=4.0,
+            color=colour,
+            mfc="white",
+            elinewidth=0.9,
+            capsize=0.0,
+            zorder=3,
+        )
+    fitted = bool(np.isfinite(state["median"]))
+    return Line2D(
+        [],
+        [],
+        color=colour,
+        linestyle=dash if fitted else "none",
+        marker=mark,
+        markersize=4.0,
+        mfc="white",
+        label=_named(state, fitted=fitted),
+    )
+
+
+def _named(state: xr.Dataset, *, fitted: bool) -> str:
+    name = str(state["limit_state"].item())
+    unit = axis_label(state["median"]).partition("[")[2].rstrip("]")
+    if fitted:
+        return f"{name}\nmedian {state['median'].item():.3g} {unit}".rstrip() + f", β {state['dispersion'].item():.2g}"
+    meanings = str(state["status"].attrs["flag_meanings"]).split()
+    reason = meanings[int(state["status"])].lower().replace("_", " ")
+    low, high = (state[f"median_{side}"].item() for side in ("low", "high"))
+    return f"{name}\nno fit: {reason}\nmedian {_between(low, high)} {unit}".rstrip()
+
+
+def _between(low: float, high: float) -> str:
+    if low > 0.0 and np.isfinite(high):
+        return f"from {low:.3g} to {high:.3g}"
+    if low > 0.0:
+        return f"above {low:.3g}"
+    return f"below {high:.3g}" if np.isfinite(high) else "open"
+
+
+def _interval_mark(found: xr.Dataset) -> Line2D:
+    percent = 100.0 * float(found.attrs["confidence"])
+    return Line2D([], [], color=GREY, marker="|", markersize=9, linestyle="none", label=f"{percent:g} % intervals")
+
+
+def _told(found: xr.Dataset) -> list[str]:
+    """Return the lines of the title: where intervals come from, and records that are not monotone."""
+    lines = []
+    if "confidence" in found.attrs and np.isfinite(found["median"]).any():
+        lines.append(f"band: {found.attrs['band']}")
+    worst = int(found["non_monotone_records"].max()) if "non_monotone_records" in found else 0
+    if worst > 0:
+        lines.append(f"not monotone: {worst} of {found.attrs['records']} records safe again higher up,")
+        lines.append(f"runs counted {found.attrs['counting']}")
+    return lines
+
+
+def _plain_ticks(axes: Axes) -> None:
+    """Write intensities as plain numbers; in between too where there is less than about a decade."""
+    low, high = axes.get_xlim()
+    short = high / low < 30.0  # noqa: PLR2004  a decade and a half
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 3.0, 5.0) if short else (1.0,)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+
+
+@figure_of("annual rate")
+@styled
+def plot_annual_rate(found: xr.Dataset) -> Figure:
+    """Return a figure of the hazard curve, and below it what each intensity contributes to the annual rate.
+
+    Contributions are shares of the rate of their limit state, over the logarithm of the intensity: areas are shares.
+    Vertical lines are the medians of the fragilities. What lies beyond the hazard curve is told in the legend.
+    """
+    figure = new_figure(_RATE_HEIGHT)
+    above, below = figure.subplots(2, 1, sharex=True)
+    above.plot(found["hazard_intensity"], found["hazard_rate"], color=BLACK, marker="o", markersize=3.5)
+    above.set(xscale="log", yscale="log", ylabel="annual rate\nof exceedance [1/a]")
+    edges = np.append(found["bin_from"].to_numpy(), found["bin_to"].to_numpy()[-1:])
+    width = np.diff(np.log(edges))
+    handles = []
+    for place in range(found.sizes["limit_state"]):
+        state = found.isel(limit_state=place)
+        colour = PALETTE[place % len(PALETTE)]
+        dash: Any = DASHES[place % len(DASHES)]
+        share = state["contribution"].to_numpy() / state["annual_rate"].item()
+        below.stairs(share / width, edges, color=colour, linestyle=dash, linewidth=1.6)
+        above.axvline(state["median"].item(), color=colour, linestyle=dash, linewidth=1.2)
+        handles.append(Line2D([], [], color=colour, linestyle=dash, label=_rate_of(state, found.attrs["years"])))
+    below.set_ylabel("share of the annual rate,\nfor each factor e of intensity")
+    below.set_ylim(bottom=0.0)
+    below.set_xlabel(axis_label(found["bin_intensity"]))
+    _plain_ticks(below)
+    figure.legend(handles=handles, loc="outside right upper")
+    return figure
+
+
+def _rate_of(state: xr.Dataset, years: float) -> str:
+    name = str(state["limit_state"].item())
+    rate, low, high = (state[key].item() for key in ("annual_rate", "rate_low", "rate_high"))
+    if not np.isfinite(rate):
+        return f"{name}\nno fit"
+    bounds = f"bounds {low:.2e} to {high:.2e}"
+    if why := str(state["withheld_reason"].item()):
+        reason = textwrap.fill(f"not told: {why}", _LEGEND)
+        return f"{name}\n{reason}\n{bounds}"
+    return (
+        f"{name}\n{rate:.2e} /a, {100.0 * state['probability'].item():.2g} % in {years:g} a\n"
+        f"{bounds}\n{100.0 * state['share_beyond'].item():.2g} % from beyond the curve"
+    )
+
+
+@figure_of("reached bands")
+@styled
+def plot_reached_bands(found: xr.Dataset) -> Figure:
+    """Return a figure of the bands of each record: safe, reached, and safe again.
+
+    Records are ordered by the first scale that reached the limit state; names of those that are not monotone are marked
+    with a star, and where records are many only these are named. Between bands nothing was computed.
+    """
+    rows = found.sizes["record"]
+    figure = new_figure(_FRAME + min(_ROW * rows, _TALLEST))
+    axes = figure.subplots()
+    first = found["first_reached"].to_numpy()
+    order = np.argsort(np.where(np.isnan(first), np.inf, first), kind="stable")
+    height = np.empty(rows)
+    height[order] = np.arange(rows)
+    owner = found["band_record"].to_numpy()
+    reached = found["band_reached"].to_numpy()
+    low, high = found["band_from"].to_numpy(), found["band_to"].to_numpy()
+    kinds = {
+        "safe": (~reached & ~(low > first[owner]), SKY, "", "o"),
+        "reached": (reached, VERMILION, "", "s"),
+        "safe again": (~reached & (low > first[owner]), BLUE, "////", "D"),
+    }
+    legend: list[Patch] = []
+    for name, (chosen, colour, hatch, mark) in kinds.items():
+        if not chosen.any():
+            continue
+        look: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": "white"}
+        axes.barh(height[owner[chosen]], (high - low)[chosen], _BAR, left=low[chosen], linewidth=0.0, **look)
+        # A band of one scale has no length.
+        single = chosen & (high == low)
+        axes.plot(low[single], height[owner[single]], linestyle="none", marker=mark, markersize=3.5, color=colour)
+        legend.append(Patch(label=name, **look))
+    names, monotone = found["record"].to_numpy()[order], found["monotone"].to_numpy()[order]
+    named = np.flatnonzero(~monotone | (_ROW * rows <= _TALLEST))
+    axes.set_yticks(named, [f"{names[row]}{'' if monotone[row] else ' *'}" for row in named])
+    axes.set(ylim=(-0.7, rows - 0.3), ylabel="record", xscale="log")
+    axes.set_xlabel(axis_label(found["band_from"]))
+    _plain_ticks(axes)
+    axes.grid(visible=False, axis="y")
+    share = 100.0 * float(found.attrs["non_monotone_share"])
+    axes.set_title(
+        f"{found.attrs['limit_state']}: {share:.0f} % of {rows} records are safe again at a higher scale (*)"
+    )
+    figure.legend(handles=legend, loc="outside right upper")
+    return figure

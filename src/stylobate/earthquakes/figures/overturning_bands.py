@@ -1,0 +1,131 @@
+"""Overturning spectra: which amplitudes overturn, and above which the column is safe again."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from stylobate.earthquakes.figures.band_regions import (
+    UNCERTAIN,
+    UNKNOWN,
+    UNRESOLVED,
+    WEAKEST,
+    Regions,
+    amplitude_ends,
+    amplitude_label,
+    band_legend,
+    is_normalized,
+    run_legend,
+)
+from stylobate.earthquakes.figures.bands_of_one import plot_bands_of_one
+from stylobate.earthquakes.figures.spectrum_axes import Horizontal, finish, motion_names, named, split
+from stylobate.plots.cells import cell_edges, is_geometric, set_scale
+from stylobate.plots.kinds import figure_of
+from stylobate.plots.labels import axis_label
+from stylobate.plots.style import new_figure, styled
+from stylobate.results.outcomes import NOT_COMPUTED
+
+Floats = npt.NDArray[np.float64]
+
+_HEIGHT, _MOST_PANELS = 4.4, 4
+# A dot on an uncertain run is at least and at most this large, and the panels together so wide [points].
+_DOTS, _WIDTH = (1.0, 3.2), 400.0
+# What changes ω/p most.
+_OF_THE_RATIO = ("angular_frequency", "size", "mass_height", "gravity")
+# Where more than this part of all runs is uncertain, dots would hide the bands: they are counted only.
+_MOST_MARKED = 0.2
+
+
+@dataclass(slots=True)
+class _Marks:
+    """What the panels show, for the legend: runs that are uncertain, undecided ones, hairlines."""
+
+    panels: int = 1
+    counts: list[int] = field(default_factory=lambda: [0, 0])
+    hairlines: int = 0
+    wide_edges: bool = False
+
+
+@figure_of("overturning bands")
+@styled
+def plot_overturning_bands(found: xr.Dataset) -> Figure:
+    """Return a figure of the bands of amplitude that overturn, a panel for each value of a second parameter.
+
+    White is safe, dark overturns, hatched is safe again above a band that overturns, grey and cross-hatched is not
+    decided. Dots mark runs of the scan that are uncertain, crosses those that are not decided. Pulses and harmonic
+    motions are drawn as in the literature: peak base acceleration over g tan α, against ω/p. Others by their scale,
+    over the size 2R if it varies; below the dashed line the peak acceleration is below g tan α. Bands too narrow to be
+    seen are drawn as lines. Of a single column the amplitude runs along the axis, and the peak tilts of the runs that
+    stand are drawn over it.
+
+    Raises
+    ------
+    ParameterError
+        If the bands are over more than two parameters, or there are more than four panels: choose some by `found.sel`.
+    """
+    dims = [str(dim) for dim in found["bands"].dims]
+    along, panel = split(found, dims, _MOST_PANELS, "overturning bands")
+    if along is None or found.sizes[along] == 1:
+        return plot_bands_of_one(found.squeeze(dims))
+    count = 1 if panel is None else found.sizes[panel]
+    figure = new_figure(_HEIGHT)
+    rows = figure.subplots(1, count, sharey=True, squeeze=False)[0]
+    marks = _Marks(panels=count)
+    for place, axes in enumerate(rows):
+        one = found if panel is None else found.isel({panel: place})
+        one = one.sortby(along).transpose(along, ...)
+        _draw(axes, one, _horizontal(one, along), marks)
+        if panel is not None:
+            axes.set_title(named(found, panel, place))
+    rows[0].set_ylabel(amplitude_label(found))
+    handles = band_legend(found, hairlines=marks.hairlines, wide_edges=marks.wide_edges)
+    columns = 3 if marks.hairlines else 4
+    figure.legend(handles=[*handles, *run_legend(marks.counts, _DOTS[1])], loc="outside lower center", ncols=columns)
+    return figure
+
+
+def _horizontal(one: xr.Dataset, along: str) -> Horizontal:
+    if along == "motion":
+        return motion_names(one)
+    if is_normalized(one) and along in _OF_THE_RATIO:
+        return Horizontal(one["frequency_ratio"].to_numpy(), "ω / p")
+    if along == "size":
+        return Horizontal(2.0 * one["rim_distance"].to_numpy(), "size 2R [m]")
+    return Horizontal(one[along].to_numpy(), axis_label(one[along]))
+
+
+def _draw(axes: Axes, one: xr.Dataset, along: Horizontal, marks: _Marks) -> None:
+    scales, ratio = one["scale"].to_numpy(), np.broadcast_to(one["acceleration_ratio"].to_numpy(), along.values.shape)
+    factor = ratio if is_normalized(one) else np.ones(ratio.shape)
+    order = np.argsort(along.values)
+    edges = np.empty((along.values.size, 2))
+    sides = cell_edges(along.values[order])
+    edges[order] = np.stack([sides[:-1], sides[1:]], axis=1)
+    regions = Regions.of(one, factor, edges, geometric=is_geometric(scales))
+    regions.draw(axes)
+    marks.hairlines += len(regions.hairlines)
+    marks.wide_edges |= regions.has_wide_edges
+    _mark(axes, one, along, factor, marks)
+    if not is_normalized(one) and np.all(ratio > 0.0):
+        axes.step(edges.T.ravel("F"), np.repeat(1.0 / ratio, 2), **WEAKEST)
+    finish(axes, along)
+    set_scale(axes, "y", scales)
+    axes.set_xlim(edges.min(), edges.max())
+    axes.set_ylim(amplitude_ends(one, factor))
+    axes.grid(visible=False)
+
+
+def _mark(axes: Axes, one: xr.Dataset, along: Horizontal, factor: Floats, marks: _Marks) -> None:
+    """Mark the runs of the scan that are uncertain or undecided, and count them."""
+    codes, scales = one["outcome"].to_numpy(), one["scale"].to_numpy()
+    size = float(np.clip(_WIDTH / marks.panels / max(codes.shape) / 2.0, *_DOTS))
+    uncertain = one["uncertain"].to_numpy() & (codes != NOT_COMPUTED)
+    unknown = one["outcome"].isin(UNRESOLVED).to_numpy()
+    for kind, (chosen, look) in enumerate(((uncertain, UNCERTAIN), (unknown, UNKNOWN))):
+        rows, columns = np.nonzero(chosen)
+        marks.counts[kind] += rows.size
+        if rows.size <= _MOST_MARKED * chosen.size:
+            axes.plot(along.values[rows], factor[rows] * scales[columns], **look, markersize=size)

@@ -1,0 +1,27 @@
+"""Statistics of fragility: how often a column reaches a limit state at an intensity, and how often in a year.
+
+However the runs were made: what is needed is the intensity of each, whether it reached the limit state, and its record.
+"""
+
+from stylobate.earthquakes.fragility.annual_rate import annual_rate
+from stylobate.earthquakes.fragility.bands import reached_bands
+from stylobate.earthquakes.fragility.curves import lognormal_fragility
+from stylobate.earthquakes.fragility.dispersion import Samples, dispersion_parts
+from stylobate.earthquakes.fragility.fit import fit_fragility
+from stylobate.earthquakes.fragility.hazard import HazardCurve
+from stylobate.earthquakes.fragility.limit_states import limit_states
+from stylobate.earthquakes.fragility.observations import Counting
+from stylobate.earthquakes.fragility.probit import FitStatus
+
+__all__ = [
+    "Counting",
+    "FitStatus",
+    "HazardCurve",
+    "Samples",
+    "annual_rate",
+    "dispersion_parts",
+    "fit_fragility",
+    "limit_states",
+    "lognormal_fragility",
+    "reached_bands",
+]

@@ -1,0 +1,112 @@
+"""Bands of intensity, record by record, in which a column is safe, fails, and is safe again.
+
+Overturning is not monotone: more of the same motion may bring the column home. See Zhang and Makris, "Rocking response
+of free-standing blocks under cycloidal pulses", J. Eng. Mech. 127 (2001).
+"""
+
+from typing import TypeAlias
+
+import numpy as np
+import xarray as xr
+
+from stylobate.earthquakes.fragility.observations import Data, Floats, Integers, Observations
+from stylobate.errors import ParameterError
+
+
+def reached_bands(scale: Data, reached: Data, *, record: Data | None = None) -> xr.Dataset:
+    """Return the bands of successive scales with one answer, for each record, and whether the record is monotone.
+
+    Bands are as fine as the scales: what happens between two of them is not seen.
+
+    Parameters
+    ----------
+    scale
+        Scale or intensity of each run, positive.
+    reached
+        Whether each run reached the limit state, as in `fit_fragility`; one limit state. Runs not known are left out.
+    record
+        Which record each run had; by default the dimension or coordinate `record` of `reached`, or one record.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "reached bands". Over `record`: `monotone`, False where it is safe again above a scale that reached it;
+        `first_reached` [as scale], NaN where none did; `last_safe`, NaN where none was; `safe_again`, the number of
+        safe bands above the first reached; `runs`. Over `band`, by record and scale: `band_record`, `band_reached`,
+        `band_from` and `band_to`, the first and last scale computed in it, and `band_runs`. Attribute
+        `non_monotone_share` of the records.
+
+    Raises
+    ------
+    ParameterError
+        As `fit_fragility`; if `reached` has several limit states; or if two runs of a record at one scale disagree.
+
+    Examples
+    --------
+    >>> found = reached_bands([1.0, 2.0, 3.0, 4.0], [False, True, False, True])
+    >>> found["monotone"].item(), found["band_from"].values.tolist(), found["band_reached"].values.tolist()
+    (False, [1.0, 2.0, 3.0, 4.0], [False, True, False, True])
+    """
+    seen = Observations.of(scale, reached, record)
+    if len(seen.names) > 1:
+        message = f"reached must have one limit state, got {', '.join(seen.names)}; choose one with .sel"
+        raise ParameterError(message)
+    groups = np.zeros(seen.intensity.size, dtype=np.int64) if seen.record is None else seen.record
+    state = seen.reached[0]
+    names = seen.records or ("all",)
+    told = [(groups == place) & (state >= 0) for place in range(len(names))]
+    parts = [_bands_of(seen.intensity[runs], state[runs], name) for runs, name in zip(told, names, strict=True)]
+    flat = [(place, *band) for place, part in enumerate(parts) for band in part]
+    return _dataset(seen, names, parts, flat)
+
+
+# Reached, first scale, last scale, number of runs.
+Band: TypeAlias = tuple[bool, float, float, int]
+
+
+def _bands_of(scale: Floats, state: Integers, name: str) -> list[Band]:
+    x, where = np.unique(scale, return_inverse=True)
+    runs = np.bincount(where, minlength=x.size)
+    hits = np.bincount(where, weights=state, minlength=x.size)
+    torn = np.flatnonzero((hits > 0.0) & (hits < runs))
+    if torn.size:
+        message = (
+            f"reached must agree between runs of one record at one scale, got both at {float(x[torn[0]])!r} "
+            f"of record {name}; tell bands for each property sample by itself"
+        )
+        raise ParameterError(message)
+    if not x.size:
+        return []
+    edges = np.flatnonzero(np.diff(hits > 0.0)) + 1
+    parts = np.split(np.arange(x.size), edges)
+    return [(bool(hits[p[0]] > 0.0), float(x[p[0]]), float(x[p[-1]]), int(runs[p].sum())) for p in parts]
+
+
+def _dataset(
+    seen: Observations, names: tuple[str, ...], parts: list[list[Band]], flat: list[tuple[int, bool, float, float, int]]
+) -> xr.Dataset:
+    first = [min((low for hit, low, _, _ in part if hit), default=np.nan) for part in parts]
+    safe = [max((high for hit, _, high, _ in part if not hit), default=np.nan) for part in parts]
+    again = [sum(not hit for hit, _, _, _ in part[1:]) for part in parts]
+    columns = [np.array(column) for column in zip(*flat, strict=True)] or [np.zeros(0)] * 5
+    unit = {"units": seen.attributes["units"]}
+    return xr.Dataset(
+        {
+            "monotone": ("record", np.array(again) == 0, {"long_name": "never safe above a scale that reached it"}),
+            "first_reached": ("record", first, {**unit, "long_name": "first scale that reached it"}),
+            "last_safe": ("record", safe, {**unit, "long_name": "last scale that was safe"}),
+            "safe_again": ("record", again, {"units": "1", "long_name": "safe bands above the first reached"}),
+            "runs": ("record", [sum(band[3] for band in part) for part in parts], {"units": "1", "long_name": "runs"}),
+            "band_record": ("band", columns[0].astype(np.int64), {"long_name": "place of its record"}),
+            "band_reached": ("band", columns[1].astype(bool), {"long_name": "reached the limit state"}),
+            "band_from": ("band", columns[2].astype(float), {**seen.attributes}),
+            "band_to": ("band", columns[3].astype(float), {**seen.attributes}),
+            "band_runs": ("band", columns[4].astype(np.int64), {"units": "1", "long_name": "runs"}),
+        },
+        coords={"record": list(names)},
+        attrs={
+            "kind": "reached bands",
+            "limit_state": seen.names[0],
+            "non_monotone_share": float(np.mean(np.array(again) > 0)),
+        },
+    )

@@ -1,0 +1,255 @@
+"""How much of the dispersion of capacities is of the records, and how much of the column's properties.
+
+The capacity of a column in a record is the scale at which the limit state is reached first. Its logarithm is
+
+    ln C = μ + r(record) + p(property sample) + e                                                        (1)
+
+with independent r, p, e of variances β_RR², β_P², β_E²; the total dispersion is β² = β_RR² + β_P² + β_E². The variances
+are those whose mean squares are expected to be what they are: the analysis of variance of a two-way layout without
+replication, Searle, Casella and McCulloch, "Variance Components" (1992), chapter 4. e is what a property does in one
+record and not in another, and the step between scales: a capacity between two scales of ratio exp(d) is put at their
+geometric mean, and Sheppard's d²/12 is taken off β_E².
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.earthquakes.fragility.observations import NOT_KNOWN, Floats
+from stylobate.errors import ParameterError, require_whole
+from stylobate.studies.proportions import require_confidence
+
+_DIMS = ("record", "property_sample", "scale")
+_LEAST = 2
+# Variances are differences of mean squares: what is less than this part of these is their rounding.
+_ROUNDING = 1e-12
+
+
+class Samples(Enum):
+    """How property samples and records go together."""
+
+    CROSSED = "crossed"
+    """Every record meets the same property samples."""
+    NESTED = "nested"
+    """Each record has property samples of its own: β_P² then holds β_E²."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeanSquares:
+    """Mean squares of an analysis of variance, with their degrees of freedom.
+
+    Parameters
+    ----------
+    values, freedom
+        Of records, property samples and the rest; NaN for the property samples where they are nested.
+    records, samples
+        How many there are.
+    step
+        Sheppard's correction, the mean of d²/12.
+    """
+
+    values: Floats
+    freedom: Floats
+    records: int
+    samples: int
+    step: float
+
+    def variances(self, values: Floats) -> Floats:
+        """Return β_RR², β_P², β_E² for mean squares of shape (…, 3), negative ones included."""
+        record, sample, rest = np.moveaxis(values, -1, 0)
+        if np.isnan(self.freedom[1]):
+            return np.stack([(record - rest) / self.samples, rest - self.step, np.zeros_like(rest)], axis=-1)
+        return np.stack([(record - rest) / self.samples, (sample - rest) / self.records, rest - self.step], axis=-1)
+
+    def estimate(self) -> Floats:
+        """Return the variances, those that are not positive as 0, and so those that are a rounding of the others."""
+        found = self.variances(self.values)
+        largest = self.values[~np.isnan(self.freedom)].max()
+        return np.where(found <= _ROUNDING * largest, 0.0, found)
+
+    def drawn(self, count: int, rng: np.random.Generator) -> Floats:
+        """Return variances that would explain the mean squares, drawn with their χ² distributions.
+
+        Generalised pivots: Weerahandi, "Generalized confidence intervals", J. Am. Stat. Assoc. 88 (1993).
+        """
+        freedom = np.where(np.isnan(self.freedom), 1.0, self.freedom)
+        chi_square = rng.chisquare(freedom, size=(count, 3))
+        return np.maximum(self.variances(self.values * freedom / chi_square), 0.0)
+
+
+def dispersion_parts(
+    scale: npt.ArrayLike | xr.DataArray,
+    reached: xr.DataArray,
+    *,
+    samples: Samples = Samples.CROSSED,
+    confidence: float = 0.95,
+    resamples: int = 10_000,
+    rng: np.random.Generator,
+) -> xr.Dataset:
+    """Return the dispersion of capacities that is of records, of properties, and of both together.
+
+    Parameters
+    ----------
+    scale
+        Intensities, positive, increasing along the dimension `scale`: as many as that has, or a DataArray over some of
+        the dimensions of `reached`.
+    reached
+        1, 0 or −1 for not known, over the dimensions `record`, `property_sample` and `scale`, of one limit state.
+    samples
+        Whether all records meet the same property samples.
+    confidence
+        Of the intervals.
+    resamples, rng
+        How many mean squares are drawn for the intervals, and what draws them. The draws are those of normal r, p, e.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "dispersion parts": `median`, the geometric mean of the capacities; `total_dispersion`,
+        `record_dispersion` β_RR, `property_dispersion` β_P, `joint_dispersion` β_E, each with `_low` and `_high`; an
+        estimate whose variance is not positive is 0. Over `record` and `property_sample` `log_capacity`; over each of
+        them `median_of_record`, `median_of_sample` and the `dispersion_of_record`, `dispersion_of_sample` of the
+        capacities in it. Attributes `non_monotone_share` of the series that are safe again above their capacity,
+        `never_reached` and `reached_at_once`, numbers of series whose capacity is beyond the scales, or not known;
+        `resolution`, the dispersion that the steps between scales hide, d/√12: an estimate of 0 is none seen above it.
+        Where there are such, capacities are NaN there and so are all dispersions: give more scales.
+
+    Raises
+    ------
+    ParameterError
+        If dimensions are missing, there are fewer than two records or property samples, or scales do not increase.
+    """
+    level = require_confidence(confidence)
+    count = require_whole("resamples", resamples, least=1)
+    if not isinstance(rng, np.random.Generator):
+        message = f"rng must be a numpy.random.Generator, got {rng!r}; try numpy.random.default_rng(0)"
+        raise ParameterError(message)
+    state, x = _series(reached, scale)
+    capacity, step = _capacities(state, np.log(x))
+    squares = _mean_squares(capacity, step, samples)
+    estimate = squares.estimate()
+    draws = squares.drawn(count, rng)
+    tail = 0.5 - 0.5 * level
+    ends = np.quantile(_with_total(draws), [tail, 1.0 - tail], axis=0)
+    labels = {dim: reached[dim].to_numpy() if dim in reached.coords else np.arange(reached.sizes[dim]) for dim in _DIMS}
+    unit = scale.attrs.get("units", "1") if isinstance(scale, xr.DataArray) else "1"
+    return xr.Dataset(
+        {
+            "median": ((), np.exp(capacity.mean()), {"units": unit, "long_name": "geometric mean of the capacities"}),
+            **_with_ends(_with_total(estimate), ends),
+            "log_capacity": (_DIMS[:2], capacity, {"long_name": f"logarithm of the capacity in {unit}"}),
+            "median_of_record": ("record", np.exp(capacity.mean(axis=1)), {"units": unit}),
+            "dispersion_of_record": ("record", capacity.std(axis=1, ddof=1), {"units": "1"}),
+            "median_of_sample": ("property_sample", np.exp(capacity.mean(axis=0)), {"units": unit}),
+            "dispersion_of_sample": ("property_sample", capacity.std(axis=0, ddof=1), {"units": "1"}),
+        },
+        coords={dim: labels[dim] for dim in _DIMS[:2]},
+        attrs={
+            "kind": "dispersion parts",
+            "samples": samples.value,
+            "confidence": level,
+            "resamples": count,
+            "resolution": float(np.sqrt(squares.step)),
+            **_flags(state),
+        },
+    )
+
+
+_NAMES = {
+    "total_dispersion": "dispersion of the capacities",
+    "record_dispersion": "of it, from record to record",
+    "property_dispersion": "of it, from property sample to property sample",
+    "joint_dispersion": "of it, of record and property sample together",
+}
+
+
+def _with_total(variances: Floats) -> Floats:
+    """Return total and three dispersions."""
+    return np.asarray(np.sqrt(np.concatenate([variances.sum(axis=-1, keepdims=True), variances], axis=-1)))
+
+
+def _with_ends(values: Floats, ends: Floats) -> dict[str, tuple[tuple[()], float, dict[str, str]]]:
+    told: dict[str, tuple[tuple[()], float, dict[str, str]]] = {}
+    for place, (name, about) in enumerate(_NAMES.items()):
+        told[name] = ((), float(values[place]), {"units": "1", "long_name": about})
+        for end, side in zip(ends, ("low", "high"), strict=True):
+            told[f"{name}_{side}"] = ((), float(end[place]), {"units": "1", "long_name": f"its interval, {side} end"})
+    return told
+
+
+def _series(reached: xr.DataArray, scale: npt.ArrayLike | xr.DataArray) -> tuple[npt.NDArray[np.int64], Floats]:
+    """Return states and scales, both of shape (record, property sample, scale)."""
+    if not isinstance(reached, xr.DataArray) or set(reached.dims) != set(_DIMS):
+        got = reached.dims if isinstance(reached, xr.DataArray) else type(reached).__name__
+        message = f"reached must be a DataArray over {', '.join(_DIMS)}, got {got}; choose one limit state with .sel"
+        raise ParameterError(message)
+    for dim in _DIMS[:2]:
+        if reached.sizes[dim] < _LEAST:
+            message = f"reached must have two or more along {dim}, got {reached.sizes[dim]}"
+            raise ParameterError(message)
+    states = reached.transpose(*_DIMS)
+    try:
+        named = scale if isinstance(scale, xr.DataArray) else xr.DataArray(np.asarray(scale, float), dims="scale")
+        x = np.asarray(named.broadcast_like(states).transpose(*_DIMS).to_numpy(), dtype=float)
+    except ValueError as error:
+        message = f"scale must have as many numbers as reached along scale, {reached.sizes['scale']}: {error}"
+        raise ParameterError(message) from None
+    if x.shape != states.shape or not np.all(np.isfinite(x) & (x > 0.0)) or np.any(np.diff(x, axis=-1) <= 0.0):
+        message = f"scale must be positive and increase along the dimension scale, got {np.asarray(scale)!r}"
+        raise ParameterError(message)
+    codes = states.to_numpy()
+    bad = codes[~np.isin(codes, (NOT_KNOWN, 0, 1))]
+    if bad.size:
+        message = f"reached must hold True or False (or 1, 0, and -1 for not known), got {bad.flat[0]!r}"
+        raise ParameterError(message)
+    return codes.astype(np.int64), x
+
+
+def _capacities(state: npt.NDArray[np.int64], u: Floats) -> tuple[Floats, Floats]:
+    """Return ln C and the step d about it, NaN where it is beyond the scales or a run below it is not known."""
+    first = np.argmax(state == 1, axis=-1)[..., np.newaxis]
+    known = (state == 1).any(axis=-1) & (first[..., 0] > 0) & ~_unknown_below(state)
+    high = np.take_along_axis(u, first, axis=-1)[..., 0]
+    low = np.take_along_axis(u, np.maximum(first - 1, 0), axis=-1)[..., 0]
+    return np.where(known, 0.5 * (low + high), np.nan), np.where(known, high - low, np.nan)
+
+
+def _unknown_below(state: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
+    """Return whether a run at or below the first that reached the limit state is not known."""
+    before = np.cumsum(state == 1, axis=-1) == 0
+    return np.asarray(np.any(before & (state == NOT_KNOWN), axis=-1))
+
+
+def _mean_squares(capacity: Floats, step: Floats, samples: Samples) -> MeanSquares:
+    records, count = capacity.shape
+    of_record = count * capacity.mean(axis=1).var(ddof=1)
+    within = float(np.mean(step**2) / 12.0)
+    if samples is Samples.NESTED:
+        values = np.array([of_record, 1.0, capacity.var(axis=1, ddof=1).mean()])
+        freedom = np.array([records - 1.0, np.nan, records * (count - 1.0)])
+        return MeanSquares(values=values, freedom=freedom, records=records, samples=count, step=within)
+    of_sample = records * capacity.mean(axis=0).var(ddof=1)
+    left = capacity - capacity.mean(axis=1, keepdims=True) - capacity.mean(axis=0) + capacity.mean()
+    free = (records - 1.0) * (count - 1.0)
+    return MeanSquares(
+        values=np.array([of_record, of_sample, float(np.sum(left**2)) / free]),
+        freedom=np.array([records - 1.0, count - 1.0, free]),
+        records=records,
+        samples=count,
+        step=within,
+    )
+
+
+def _flags(state: npt.NDArray[np.int64]) -> dict[str, float]:
+    ever = (state == 1).any(axis=-1)
+    passed = np.cumsum(state == 1, axis=-1) > 0
+    again = np.any(passed & (state == 0), axis=-1)
+    return {
+        "non_monotone_share": float(again.mean()),
+        "never_reached": int(np.count_nonzero(~ever)),
+        "reached_at_once": int(np.count_nonzero(state[..., 0] == 1)),
+        "not_known": int(np.count_nonzero(_unknown_below(state) & ever)),
+    }

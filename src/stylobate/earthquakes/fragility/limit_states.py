@@ -1,0 +1,104 @@
+"""Limit states of columns: peak tilts and overturning, from the results of ensembles."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.earthquakes.fragility.observations import LIMIT_STATE, NOT_KNOWN
+from stylobate.errors import Outcome, ParameterError, require_positive
+from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.studies.maps.safe_distance import UNRESOLVED
+
+
+def limit_states(
+    runs: xr.Dataset,
+    *,
+    slenderness: npt.ArrayLike | xr.DataArray | None = None,
+    tilt_ratios: Sequence[float] = (1e-3, 0.1, 0.5, 1.0),
+) -> xr.DataArray:
+    """Find which limit states each run reached: peak tilts in fractions of α = atan(c), and overturning.
+
+    α is the tilt at which the mass centre of a column that tilts over its rim stands above the point of contact. The
+    smallest tilt by default, 0.001 α, separates columns that rock from those that stand. It is not uplift: an upright
+    column lifts as soon as |a_h| > c (g + a_z), and may then tilt less.
+
+    Parameters
+    ----------
+    runs
+        With `outcome` and `largest_tilt` [rad], such as from `simulate_ensemble`, `overturning_map` or a sweep.
+    slenderness
+        c of each run; by default the coordinate `slenderness` of `runs`.
+    tilt_ratios
+        Peak tilts over α, positive. A run that starts at a larger tilt has reached it from the start.
+
+    Returns
+    -------
+    xarray.DataArray
+        Over `limit_state` and the dimensions of `runs`: 1 reached, 0 not, −1 not known. A run that overturned has
+        reached them all. One that failed, lifted off or was stopped at a tilt limit has reached what its tilt had
+        exceeded; of the rest it does not tell. Nor does one that was not computed.
+
+    Raises
+    ------
+    ParameterError
+        If `runs` lack a variable, the slenderness is not known, or a ratio is not positive.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from stylobate.results import code_of
+    >>> from stylobate import Outcome
+    >>> codes = [code_of(one) for one in (Outcome.AT_REST, Outcome.STILL_MOVING, Outcome.OVERTURNED)]
+    >>> runs = xr.Dataset({"outcome": ("run", codes), "largest_tilt": ("run", [0.0, 0.06, 0.09])})
+    >>> states = limit_states(runs, slenderness=0.1)
+    >>> print(states.sel(limit_state="tilt 0.5 α").values, states.sel(limit_state="overturning").values)
+    [0 1 1] [0 0 1]
+    """
+    for name in ("outcome", "largest_tilt"):
+        if name not in runs:
+            message = f"runs must hold the variable {name}, got {', '.join(map(str, runs.data_vars)) or 'none'}"
+            raise ParameterError(message)
+    critical = np.arctan(_slenderness(runs, slenderness))
+    codes, tilt = runs["outcome"], runs["largest_tilt"]
+    fallen = codes == code_of(Outcome.OVERTURNED)
+    told = ~codes.isin([NOT_COMPUTED, *(code_of(one) for one in UNRESOLVED)])
+    limits = {
+        f"tilt {require_positive(f'tilt_ratios[{place}]', ratio):g} α": ratio for place, ratio in enumerate(tilt_ratios)
+    }
+    exceeded = [fallen | (tilt > ratio * critical) for ratio in limits.values()]
+    computed = codes != NOT_COMPUTED
+    unreached = xr.zeros_like(codes, dtype=np.int8).where(told, np.int8(NOT_KNOWN))
+    states = [unreached.where(~(reached & computed), np.int8(1)) for reached in [*exceeded, fallen]]
+    names = xr.DataArray([*limits, "overturning"], dims=LIMIT_STATE, name=LIMIT_STATE)
+    joined: xr.DataArray = xr.concat(states, dim=names).rename("reached")
+    joined.attrs = {}
+    return joined.assign_attrs(
+        long_name="limit state reached",
+        flag_values=np.array([NOT_KNOWN, 0, 1], dtype=np.int8),
+        flag_meanings="NOT_KNOWN NOT_REACHED REACHED",
+    )
+
+
+def _slenderness(runs: xr.Dataset, given: npt.ArrayLike | xr.DataArray | None) -> xr.DataArray:
+    if given is None:
+        if "slenderness" not in runs.coords:
+            message = "slenderness must be given where runs have no coordinate of that name, got None"
+            raise ParameterError(message)
+        return runs["slenderness"]
+    if isinstance(given, xr.DataArray):
+        values = given
+    else:
+        array = np.asarray(given, dtype=float)
+        if array.ndim and array.shape != runs["outcome"].shape:
+            message = (
+                f"slenderness must be a number or have the shape of runs, {runs['outcome'].shape}; got {array.shape}"
+            )
+            raise ParameterError(message)
+        values = xr.DataArray(array, dims=runs["outcome"].dims if array.ndim else ())
+    numbers = values.to_numpy()
+    bad = numbers[~(np.isfinite(numbers) & (numbers > 0.0))]
+    if bad.size:
+        require_positive("slenderness", bad.flat[0])
+    return values

@@ -1,0 +1,186 @@
+"""What a fragility is fitted to: the intensity of each run, whether it reached a limit state, its record and sample."""
+
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Any, Self, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.errors import ParameterError
+
+Floats: TypeAlias = npt.NDArray[np.float64]
+Integers: TypeAlias = npt.NDArray[np.int64]
+Data: TypeAlias = npt.ArrayLike | xr.DataArray
+
+NOT_KNOWN = -1
+"""The code of a run that does not tell whether it reached a limit state."""
+
+LIMIT_STATE = "limit_state"
+
+
+class Counting(Enum):
+    """Which runs of a record count as reached where it is safe again at a higher intensity."""
+
+    AS_COMPUTED = "as computed"
+    """Each run by itself."""
+    FIRST = "first"
+    """Every run above the first that reached it: what was reached once stays reached."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Observations:
+    """Runs, one after the other.
+
+    Parameters
+    ----------
+    intensity
+        Shape (runs,), positive.
+    reached
+        Shape (limit states, runs): 1 reached, 0 not, NOT_KNOWN.
+    record
+        Number of the record of each run, from 0, shape (runs,); None where nobody named it.
+    series
+        Number of the record and property sample of each run together, likewise.
+    records
+        Names of the records, by their numbers.
+    names
+        Of the limit states.
+    attributes
+        Unit and long name of the intensity.
+    """
+
+    intensity: Floats
+    reached: Integers
+    record: Integers | None
+    series: Integers | None
+    records: tuple[str, ...]
+    names: tuple[str, ...]
+    attributes: dict[str, Any]
+
+    @classmethod
+    def of(cls, intensity: Data, reached: Data, record: Data | None, property_sample: Data | None = None) -> Self:
+        """Return the runs in arrays that broadcast by the names of their dimensions, or have one shape.
+
+        Raises
+        ------
+        ParameterError
+            If shapes differ, an intensity is not positive, or `reached` holds other than truth values, 0, 1 and −1.
+        """
+        told = _labelled("reached", reached, ())
+        if LIMIT_STATE not in told.dims:
+            name = str(told[LIMIT_STATE].item()) if LIMIT_STATE in told.coords else "reached"
+            told = told.drop_vars(LIMIT_STATE, errors="ignore").expand_dims({LIMIT_STATE: [name]})
+        dims = tuple(str(dim) for dim in told.dims if dim != LIMIT_STATE)
+        shaped = told.isel({LIMIT_STATE: 0}, drop=True)
+        levels = _labelled("intensity", intensity, dims, shaped.shape)
+        given = [_named(told, "record", record), _named(told, "property_sample", property_sample)]
+        named = [None if one is None else _labelled(*one, dims, shaped.shape) for one in given]
+        try:
+            parts = xr.broadcast(shaped, levels, *(one for one in named if one is not None))
+            told = told.broadcast_like(parts[0]).transpose(LIMIT_STATE, *parts[0].dims)
+        except ValueError as error:
+            message = f"intensity, reached and record must have one shape or share named dimensions: {error}"
+            raise ParameterError(message) from None
+        values = parts[1].to_numpy().ravel()
+        known, number = (None, None) if named[0] is None else _numbered(parts[2])
+        series = number
+        if number is not None and named[1] is not None:
+            samples, sample = _numbered(parts[3])
+            series = number * samples.size + sample
+        return cls(
+            intensity=_positive(values),
+            reached=_codes(told.to_numpy().reshape(told.sizes[LIMIT_STATE], -1)),
+            record=number,
+            series=None if series is None else np.unique(series, return_inverse=True)[1],
+            records=() if known is None else tuple(str(one) for one in known),
+            names=tuple(str(name) for name in told[LIMIT_STATE].to_numpy()),
+            attributes={"long_name": "intensity", "units": "1", **levels.attrs},
+        )
+
+    def plural(self, counting: Counting) -> Self:
+        """Return the runs with those above a first one reached, by record, counted as `counting` says.
+
+        Raises
+        ------
+        ParameterError
+            If records are needed and not known.
+        """
+        if counting is Counting.AS_COMPUTED:
+            return self
+        if self.series is None:
+            message = "counting must be Counting.AS_COMPUTED where no record is named, got Counting.FIRST; give record"
+            raise ParameterError(message)
+        reached = self.reached.copy()
+        for state in reached:
+            for one in range(self.series.max() + 1):
+                runs = self.series == one
+                first = np.min(self.intensity, where=runs & (state == 1), initial=np.inf)
+                state[runs & (self.intensity >= first)] = 1
+        return replace(self, reached=reached)
+
+    def non_monotone(self) -> Integers:
+        """Return the number of records that are safe again above an intensity that reached each limit state."""
+        if self.record is None or self.series is None:
+            return np.full(len(self.names), NOT_KNOWN, dtype=np.int64)
+        found = []
+        for state in self.reached:
+            all_series = [self.series == one for one in range(self.series.max() + 1)]
+            back = [int(self.record[runs][0]) for runs in all_series if self._falls_back(state, runs)]
+            found.append(len(set(back)))
+        return np.array(found, dtype=np.int64)
+
+    def _falls_back(self, state: Integers, runs: npt.NDArray[np.bool_]) -> bool:
+        first = np.min(self.intensity, where=runs & (state == 1), initial=np.inf)
+        return bool(np.any(runs & (state == 0) & (self.intensity > first)))
+
+
+def _labelled(name: str, values: Data, dims: tuple[str, ...], shape: tuple[int, ...] = ()) -> xr.DataArray:
+    if isinstance(values, xr.DataArray):
+        return values
+    array = np.asarray(values)
+    if not dims:
+        return xr.DataArray(array, dims=[f"run_{place}" if place else "run" for place in range(array.ndim)])
+    if array.shape != shape:
+        message = f"{name} must have the shape of reached, {shape}, or named dimensions; got shape {array.shape}"
+        raise ParameterError(message)
+    return xr.DataArray(array, dims=dims)
+
+
+def _named(reached: xr.DataArray, name: str, values: Data | None) -> tuple[str, Data] | None:
+    """Return names that were given, or those that `reached` has in a dimension or coordinate."""
+    if values is not None:
+        return name, values
+    if name in reached.coords:
+        return name, reached[name]
+    return (name, xr.DataArray(np.arange(reached.sizes[name]), dims=name)) if name in reached.dims else None
+
+
+def _numbered(values: xr.DataArray) -> tuple[npt.NDArray[Any], Integers]:
+    """Return the different values, and the place of each run's value among them."""
+    known, number = np.unique(values.to_numpy().ravel(), return_inverse=True)
+    return known, number.astype(np.int64)
+
+
+def _positive(given: npt.NDArray[Any]) -> Floats:
+    if given.size and given.dtype.kind not in "iuf":
+        message = f"intensity must hold real numbers, got {given[0]!r}"
+        raise ParameterError(message)
+    values = given.astype(np.float64)
+    if not values.size:
+        message = "intensity must hold at least one run, got none"
+        raise ParameterError(message)
+    bad = values[~(np.isfinite(values) & (values > 0.0))]
+    if bad.size:
+        message = f"intensity must be positive and finite, got {float(bad[0])!r}; leave out runs without base motion"
+        raise ParameterError(message)
+    return values
+
+
+def _codes(values: npt.NDArray[Any]) -> Integers:
+    bad = values[~np.isin(values, (NOT_KNOWN, 0, 1))]
+    if bad.size:
+        message = f"reached must hold True or False (or 1, 0, and -1 for not known), got {bad.flat[0]!r}"
+        raise ParameterError(message)
+    return np.asarray(values, dtype=np.int64)

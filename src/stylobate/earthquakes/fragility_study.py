@@ -1,0 +1,183 @@
+"""A fragility as it is described: the runs, the fits to them, what of it is of records, and how often in a year."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion
+from stylobate.base_motions.records import HorizontalComponent
+from stylobate.earthquakes.config.fragility import AnySpread, FragilitySetup, Lognormal, Normal
+from stylobate.earthquakes.fragility import Counting, HazardCurve, annual_rate, dispersion_parts
+from stylobate.earthquakes.incremental import incremental_dynamic_analysis
+from stylobate.earthquakes.intensities import Intensity, IntensityMeasure, SpectralAcceleration
+from stylobate.earthquakes.property_spreads import (
+    LognormalSpread,
+    NormalSpread,
+    Spread,
+    UniformSpread,
+    property_samples,
+)
+from stylobate.earthquakes.remarks import remark_on
+from stylobate.earthquakes.run_fragility import fragility_of_runs
+from stylobate.earthquakes.site_hazard import site_hazard
+from stylobate.models import Model
+from stylobate.studies.sweeps import Executor
+from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.recipe import RunOptions
+
+_OVERTURNING = "overturning"
+_LEAST = 2
+# Streams of random numbers of one seed.
+_OF_SAMPLES, _OF_RESAMPLES, _OF_PARTS = range(3)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FragilityStudy:
+    """Records, scales and spreads, and what is made of the runs.
+
+    Parameters
+    ----------
+    model, records
+        The column, and base motions by name.
+    scales, rotations, vertical, tail, intensity, component
+        As for `incremental_dynamic_analysis`.
+    spreads, samples
+        How properties spread, and how many samples of them are drawn; none without spreads.
+    seed
+        Of everything drawn.
+    counting, confidence, resamples
+        As for `fit_fragility`.
+    hazard
+        The hazard curve, in `intensity` and `component`.
+    years
+        For which probabilities are told.
+    options
+        Of all runs.
+    """
+
+    model: Model
+    records: Mapping[str, BaseMotion]
+    scales: tuple[float, ...]
+    rotations: tuple[float, ...] = (0.0,)
+    vertical: tuple[bool, ...] = (True,)
+    tail: float | None = None
+    intensity: Intensity | SpectralAcceleration = Intensity.PEAK_ACCELERATION
+    component: HorizontalComponent = HorizontalComponent.ROTD50
+    spreads: Mapping[str, Spread]
+    samples: int = 0
+    seed: int = 0
+    counting: Counting = Counting.AS_COMPUTED
+    confidence: float = 0.95
+    resamples: int = 1000
+    hazard: HazardCurve | None = None
+    years: float = 50.0
+    options: RunOptions
+
+    @classmethod
+    def of(cls, setup: FragilitySetup) -> Self:
+        """Return the study that is described.
+
+        Raises
+        ------
+        ParameterError
+            If an intensity is not known, the hazard is of another one or no curve, or a spread cannot be.
+        """
+        table = setup.table
+        spectral = None if isinstance(table.intensity, str) else table.intensity
+        measure = table.intensity if spectral is None else SpectralAcceleration(spectral.period, spectral.damping)
+        intensity = IntensityMeasure.named(measure, table.component)  # type: ignore[arg-type]
+        return cls(
+            model=setup.model,
+            records=setup.records,
+            scales=setup.scales,
+            rotations=table.rotations,
+            vertical=table.vertical,
+            tail=table.tail,
+            intensity=intensity.quantity,
+            component=intensity.component,
+            spreads={name: _spread(spread) for name, spread in table.spreads.items()},
+            samples=table.samples,
+            seed=table.seed,
+            counting=Counting(table.counting),
+            confidence=table.confidence,
+            resamples=table.resamples,
+            hazard=None if setup.hazard is None else site_hazard(setup.hazard, intensity),
+            years=table.years,
+            options=RunOptions(**setup.options),  # type: ignore[typeddict-item]
+        )
+
+    def runs(
+        self,
+        *,
+        store: str | Path | None = None,
+        executor: Executor | None = None,
+        resume: bool = False,
+        progress: Progress | None = None,
+    ) -> xr.Dataset:
+        """Return the incremental dynamic analysis, with the samples of the properties."""
+        remark_on({"column": self.model.column}, self.records)
+        samples = None
+        if self.spreads:
+            rng = self._stream(_OF_SAMPLES)
+            samples = property_samples(self.model, self.spreads, count=self.samples, rng=rng)
+        return incremental_dynamic_analysis(
+            self.model,
+            self.records,
+            scales=self.scales,
+            rotations=self.rotations,
+            vertical=self.vertical,
+            parameters=samples,
+            tail=self.tail,
+            intensity=self.intensity,
+            component=self.component,
+            store=store,
+            executor=executor,
+            resume=resume,
+            progress=progress,
+            **self.options,
+        )
+
+    def fits(self, runs: xr.Dataset) -> xr.Dataset:
+        """Return the fragility of each limit state; intervals from resamples where there are two records or more."""
+        several = runs.sizes.get("record", 1) >= _LEAST
+        return fragility_of_runs(
+            runs,
+            counting=self.counting,
+            confidence=self.confidence,
+            resamples=self.resamples if several else 0,
+            rng=self._stream(_OF_RESAMPLES),
+        )
+
+    def parts(self, runs: xr.Dataset, limit_state: str = _OVERTURNING) -> xr.Dataset | None:
+        """Return how much of the dispersion is of records and how much of properties; None where that is not told.
+
+        It is told of one rotation and one choice of the vertical component, two records and two samples or more.
+        """
+        sizes = [runs.sizes.get(name, 1) for name in ("record", "property_sample", "scale")]
+        if min(sizes) < _LEAST or any(name in runs.dims for name in ("rotation", "vertical")):
+            return None
+        reached = runs["reached"].sel(limit_state=limit_state)
+        plain = reached.drop_vars([name for name in reached.coords if name not in reached.dims])
+        level = runs["intensity"].drop_vars([name for name in runs["intensity"].coords if name not in reached.dims])
+        rng = self._stream(_OF_PARTS)
+        return dispersion_parts(level, plain, confidence=self.confidence, rng=rng).assign_attrs(limit_state=limit_state)
+
+    def rates(self, fits: xr.Dataset) -> xr.Dataset | None:
+        """Return annual rates of the limit states, None without a hazard."""
+        return None if self.hazard is None else annual_rate(fits, self.hazard, years=self.years)
+
+    def _stream(self, place: int) -> np.random.Generator:
+        return np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(place,)))
+
+
+def _spread(described: AnySpread) -> Spread:
+    if isinstance(described, Lognormal):
+        return LognormalSpread(described.dispersion, described.median)
+    if isinstance(described, Normal):
+        most = np.inf if described.most is None else described.most
+        return NormalSpread(described.deviation, described.mean, described.least, most)
+    return UniformSpread(described.least, described.most)

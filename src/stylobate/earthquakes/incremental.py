@@ -1,0 +1,344 @@
+"""Incremental dynamic analysis: each record at many scales, from rest to overturning and perhaps safe again."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Self, Unpack
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion, OneOf
+from stylobate.base_motions.records import HorizontalComponent
+from stylobate.earthquakes.crossing import crossed, unfolded
+from stylobate.earthquakes.following import tail_of
+from stylobate.earthquakes.fragility import limit_states
+from stylobate.earthquakes.intensities import Intensity, IntensityMeasure, SpectralAcceleration
+from stylobate.earthquakes.named_records import Records, named_records
+from stylobate.engine.parameters import changed_model
+from stylobate.errors import Outcome, ParameterError, require_finite
+from stylobate.models import Model
+from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.studies.checks import remark_on_lengths, require_no_tilt_limit
+from stylobate.studies.maps.safe_distance import UNRESOLVED
+from stylobate.studies.sweeps import Executor, Sweep
+from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.labelled import labelled_sweep
+from stylobate.studies.sweeps.quantities import Floats, attributes_of, checked_values
+from stylobate.studies.sweeps.recipe import RunOptions
+
+_TOLD_OTHERWISE = {
+    "motion": "records",
+    "scale": "scales",
+    "acceleration": "scales",
+    "rotation": "rotations",
+    "delay": "records",
+}
+
+
+def incremental_dynamic_analysis(
+    model: Model,
+    records: Records,
+    *,
+    scales: npt.ArrayLike,
+    rotations: float | Sequence[float] = (0.0,),
+    vertical: bool | Sequence[bool] = (True,),
+    parameters: Mapping[str, npt.ArrayLike] | None = None,
+    tail: float | None = None,
+    intensity: str | Intensity | SpectralAcceleration = Intensity.PEAK_ACCELERATION,
+    component: str | HorizontalComponent = HorizontalComponent.ROTD50,
+    store: str | Path | None = None,
+    executor: Executor | None = None,
+    resume: bool = False,
+    progress: Progress | None = None,
+    **options: Unpack[RunOptions],
+) -> xr.Dataset:
+    """Return what becomes of a column under each record at each scale.
+
+    All runs begin upright at rest unless `tilt` says otherwise; the column is released when the base acceleration
+    exceeds c g. Each lasts to the end of its record and a `tail` of free vibration longer.
+
+    Parameters
+    ----------
+    model
+        The column with its equations of motion.
+    records
+        A base motion that ends, or several: a sequence, named as they name themselves, or a mapping from names.
+    scales
+        Factors of the records, vertical components included; positive.
+    rotations
+        Angles about the vertical by which the records are turned [rad]. Turning the base turns the motion of a round
+        column that stands upright on level ground and changes nothing else: there it shows how repeatable a run is.
+    vertical
+        Whether the vertical component acts, with and without it for (True, False).
+    parameters
+        Numbers of column and model that differ from one property sample to the next, such as {"damping": […], "size":
+        […]}, arrays of one length as from `property_samples`; or numbers that all runs have.
+    tail
+        How long columns are followed after the end of the record [s]; by default 20/p, of each column its own p.
+    intensity, component
+        The intensity measure of each run, and the definition of its horizontal component: "RotD50", "RotD100",
+        "geometric mean" or "larger component". A motion along one line has one component, the same in all of them.
+    store, executor, resume, progress
+        As in `run_sweep`.
+    **options
+        What all runs have in common, as in `simulate_ensemble`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "incremental dynamic analysis". Over `record`, `rotation` [rad], `vertical`, `property_sample` and
+        `scale`: all that ensembles tell; `tilt_ratio`, the largest tilt over α = atan c, infinite where the column
+        overturned and NaN where a run does not tell; `intensity` (over what it depends on); `followed`, the duration
+        [s]; and over `limit_state` too `reached`, from `limit_states`. A dimension of one record given alone, or of
+        one rotation, or one answer to `vertical`, is left out but for its coordinate; `property_sample` is there
+        where samples are given. `computed` is the number of runs computed.
+
+    Raises
+    ------
+    ParameterError
+        If a record never ends, two have one name, a scale is not positive, or an argument is out of range.
+    Interrupted
+        On Ctrl-C; `partial` holds what was computed, with outcome −1 elsewhere.
+
+    Notes
+    -----
+    D. Vamvatsikos and C. A. Cornell, "Incremental dynamic analysis", Earthquake Engng Struct. Dyn. 31 (2002). Nothing
+    is taken to be monotonic: every scale is run.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.solid(radius=0.2, height=2.0, density=2700.0), damping=0.02)
+    >>> pulses = {"long": sb.Pulse.one_sine(acceleration=1.0, angular_frequency=4.0),
+    ...           "short": sb.Pulse.one_sine(acceleration=1.0, angular_frequency=12.0)}
+    >>> found = incremental_dynamic_analysis(model, pulses, scales=[1.5, 3.0, 6.0])
+    >>> found["reached"].sel(limit_state="overturning").values
+    array([[0, 1, 1],
+           [0, 0, 1]], dtype=int8)
+    """
+    require_no_tilt_limit(options)
+    plan = Plan.of(
+        model, records, scales, rotations, vertical, parameters, tail, IntensityMeasure.named(intensity, component)
+    )
+
+    def label(runs: xr.Dataset) -> xr.Dataset:
+        return plan.labelled(unfolded(runs, plan.lengths))
+
+    sweep = Sweep.points(model, plan.motion, at=plan.points, **options)
+    return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plan:
+    """The choices of an incremental dynamic analysis.
+
+    Parameters
+    ----------
+    model
+        What all runs have in common.
+    records
+        Base motions by name.
+    scales, rotations, vertical
+        Their values.
+    parameters
+        Numbers of column and model by name, of one length: a value for each property sample.
+    tail
+        Free vibration after the record [s], by default 20/p.
+    intensity
+        The measure, with its horizontal component.
+    left_out
+        Dimensions of one value that the result has as coordinates only.
+    """
+
+    model: Model
+    records: Mapping[str, BaseMotion]
+    scales: Floats
+    rotations: Floats
+    vertical: tuple[bool, ...]
+    parameters: Mapping[str, Floats]
+    tail: float | None
+    intensity: IntensityMeasure
+    left_out: tuple[str, ...]
+
+    @classmethod
+    def of(
+        cls,
+        model: Model,
+        records: Records,
+        scales: npt.ArrayLike,
+        rotations: float | Sequence[float],
+        vertical: bool | Sequence[bool],
+        parameters: Mapping[str, npt.ArrayLike] | None,
+        tail: float | None,
+        intensity: IntensityMeasure,
+    ) -> Self:
+        """Return the plan of these arguments, or raise ParameterError for one that cannot be."""
+        named = named_records(records)
+        factors = positive_values("scales", scales)
+        angles = checked_values("rotations", "rotation", np.atleast_1d(np.asarray(rotations)))
+        chosen = _choices(vertical)
+        samples = _samples(parameters)
+        one = {
+            "record": isinstance(records, BaseMotion),
+            "rotation": angles.size == 1,
+            "vertical": len(chosen) == 1,
+            "property_sample": not any(np.ndim(values) for values in (parameters or {}).values()),
+        }
+        if not angles.size:
+            message = "rotations must hold at least one angle, got none"
+            raise ParameterError(message)
+        return cls(
+            model=model,
+            records=named,
+            scales=factors,
+            rotations=angles,
+            vertical=chosen,
+            parameters=samples,
+            tail=tail,
+            intensity=intensity,
+            left_out=tuple(name for name, alone in one.items() if alone),
+        )
+
+    @property
+    def lengths(self) -> dict[str, int]:
+        """The dimensions and their lengths, those left out included."""
+        return {
+            "record": len(self.records),
+            "rotation": self.rotations.size,
+            "vertical": len(self.vertical),
+            "property_sample": self.sample_count,
+            "scale": self.scales.size,
+        }
+
+    @property
+    def sample_count(self) -> int:
+        """The number of property samples."""
+        return next((values.size for values in self.parameters.values()), 1)
+
+    @property
+    def motion(self) -> OneOf:
+        """All records, each with every choice of its vertical component."""
+        with_choice: list[Callable[[BaseMotion], BaseMotion]] = [
+            (lambda motion: motion) if acts else without_vertical for acts in self.vertical
+        ]
+        return OneOf(motions=tuple(make(motion) for motion in self.records.values() for make in with_choice))
+
+    @property
+    def sampled(self) -> list[Model]:
+        """The model with each property sample."""
+        names = list(self.parameters)
+        columns = zip(*self.parameters.values(), strict=True) if names else [()]
+        return [
+            changed_model(self.model, {name: float(value) for name, value in zip(names, values, strict=True)})
+            for values in columns
+        ]
+
+    @property
+    def followed(self) -> Floats:
+        """Durations of the runs [s], over record and property sample."""
+        tails = np.array([tail_of(model.column, self.tail) for model in self.sampled])
+        ends = np.array([motion.duration for motion in self.records.values()])
+        return np.asarray(ends[:, np.newaxis] + tails)
+
+    @property
+    def points(self) -> dict[str, npt.ArrayLike]:
+        """The values of the runs, flat."""
+        at = crossed(self.lengths)
+        return {
+            "motion": at["record"] * len(self.vertical) + at["vertical"],
+            "scale": self.scales[at["scale"]],
+            "rotation": self.rotations[at["rotation"]],
+            "duration": self.followed[at["record"], at["property_sample"]],
+            **{name: values[at["property_sample"]] for name, values in self.parameters.items()},
+        }
+
+    @property
+    def levels(self) -> xr.DataArray:
+        """The intensity of the runs, over record, property sample where it depends on it, and scale."""
+        of_column = self.intensity.quantity in (Intensity.ACCELERATION_RATIO, Intensity.VELOCITY_RATIO)
+        columns = [model.column for model in (self.sampled if of_column else self.sampled[:1])]
+        values = np.array([[self.intensity.of(motion, one) for one in columns] for motion in self.records.values()])
+        dims = ("record", "property_sample", "scale") if of_column else ("record", "scale")
+        scaled = values[:, :, np.newaxis] * self.scales
+        return xr.DataArray(scaled if of_column else scaled[:, 0], dims=dims, attrs=self.intensity.attributes)
+
+    def labelled(self, runs: xr.Dataset) -> xr.Dataset:
+        """Return `runs`, over all dimensions, as an incremental dynamic analysis."""
+        slenderness = xr.DataArray([model.column.slenderness for model in self.sampled], dims="property_sample")
+        told = runs.assign(
+            tilt_ratio=tilt_ratios(runs, slenderness),
+            reached=limit_states(runs, slenderness=slenderness),
+            intensity=self.levels,
+            followed=(("record", "property_sample"), self.followed, {"units": "s", "long_name": "duration"}),
+            computed=((), int((runs["outcome"] != NOT_COMPUTED).sum()), {"units": "1", "long_name": "runs computed"}),
+        ).assign_coords(self._coordinates())
+        lone = dict.fromkeys(self.left_out, 0)
+        found = told.isel(lone).drop_vars("property_sample" if "property_sample" in self.left_out else [])
+        return found.assign_attrs(kind="incremental dynamic analysis", intensity=self.intensity.name)
+
+    def _coordinates(self) -> dict[str, Any]:
+        samples = {name: ("property_sample", values, attributes_of(name)) for name, values in self.parameters.items()}
+        return {
+            "record": list(self.records),
+            "rotation": ("rotation", self.rotations, attributes_of("rotation")),
+            "vertical": ("vertical", list(self.vertical), {"long_name": "vertical component acts"}),
+            "property_sample": np.arange(self.sample_count),
+            "scale": ("scale", self.scales, attributes_of("scale")),
+            **samples,
+        }
+
+
+def tilt_ratios(runs: xr.Dataset, slenderness: float | xr.DataArray) -> xr.DataArray:
+    """Return the largest tilt over α = atan c: infinite where overturned, NaN where a run does not tell."""
+    codes = runs["outcome"]
+    told = ~codes.isin([NOT_COMPUTED, *(code_of(one) for one in UNRESOLVED)])
+    ratio = (runs["largest_tilt"] / np.arctan(slenderness)).where(told)
+    ratio = ratio.where(codes != code_of(Outcome.OVERTURNED), np.inf)
+    return ratio.assign_attrs(units="1", long_name="largest tilt over α")
+
+
+def without_vertical(motion: BaseMotion) -> BaseMotion:
+    """Return `motion` without its vertical component."""
+    return motion.scaled(1.0, vertical=0.0)
+
+
+def positive_values(name: str, values: npt.ArrayLike) -> Floats:
+    """Return `values` as an array of at least one positive number, or raise ParameterError."""
+    array = checked_values(name, "scale", np.atleast_1d(np.asarray(values)))
+    bad = array[~(array > 0.0)]
+    if bad.size or not array.size:
+        got = repr(float(bad[0])) if bad.size else "none"
+        message = f"{name} must hold at least one number, all positive, got {got}; Polarity is for the opposite sense"
+        raise ParameterError(message)
+    return array
+
+
+def _choices(vertical: bool | Sequence[bool]) -> tuple[bool, ...]:
+    given = (vertical,) if isinstance(vertical, (bool, np.bool_)) else tuple(vertical)
+    if not given or len(set(given)) < len(given) or not all(isinstance(one, (bool, np.bool_)) for one in given):
+        message = f"vertical must be True, False or (True, False), got {vertical!r}"
+        raise ParameterError(message)
+    return tuple(bool(one) for one in given)
+
+
+def _samples(parameters: Mapping[str, npt.ArrayLike] | None) -> dict[str, Floats]:
+    """Return the numbers of the property samples, of one length."""
+    if parameters is not None and not isinstance(parameters, Mapping):
+        message = f'parameters must name what differs, such as {{"damping": […]}}, got {parameters!r}'
+        raise ParameterError(message)
+    given = dict(parameters or {})
+    for name in given:
+        if name in _TOLD_OTHERWISE:
+            message = f"parameters cannot name {name}: it is told by {_TOLD_OTHERWISE[name]}"
+            raise ParameterError(message)
+    remark_on_lengths("parameters", given)
+    several = {name: checked_values("parameters", name, values) for name, values in given.items() if np.ndim(values)}
+    sizes = {name: values.size for name, values in several.items()}
+    if len(set(sizes.values())) > 1 or 0 in sizes.values():
+        message = f"parameters must have one value for each property sample, all as many, got {sizes}"
+        raise ParameterError(message)
+    count = next(iter(sizes.values()), 1)
+    same = {name: np.full(count, require_finite(name, value)) for name, value in given.items() if name not in several}  # type: ignore[arg-type]
+    return {name: {**several, **same}[name] for name in given}

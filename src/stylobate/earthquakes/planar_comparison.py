@@ -1,0 +1,229 @@
+"""Housner's planar column against the column in space, record by record: which of the two falls, and the bias."""
+
+import math
+from collections.abc import Sequence
+from typing import Any, Unpack
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.earthquakes.fragility.observations import LIMIT_STATE
+from stylobate.earthquakes.in_one_direction import in_one_direction
+from stylobate.earthquakes.incremental import incremental_dynamic_analysis
+from stylobate.earthquakes.intensities import Intensity, SpectralAcceleration
+from stylobate.earthquakes.named_records import Records, named_records
+from stylobate.errors import ParameterError, UnsupportedError
+from stylobate.models import Model, PlanarRocking
+from stylobate.studies.sweeps import Executor
+from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.quantities import Floats, checked_values
+from stylobate.studies.sweeps.recipe import RunOptions
+
+AXES = (0.0, 0.5 * math.pi)
+"""The directions of the two horizontal components [rad]."""
+
+# One record tells no bias: nothing tells how far the next would lie from it.
+_LEAST = 2
+
+
+def planar_bias(
+    model: Model,
+    records: Records,
+    *,
+    scales: npt.ArrayLike,
+    directions: Sequence[float] = AXES,
+    planar: PlanarRocking | None = None,
+    tail: float | None = None,
+    intensity: str | Intensity | SpectralAcceleration = Intensity.PEAK_ACCELERATION,
+    least_ratio: float = 1e-3,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+    **options: Unpack[RunOptions],
+) -> xr.Dataset:
+    """Return the answer of Housner's planar column to each horizontal component, against that of the column in space.
+
+    The planar column sees the component along one direction and the vertical one; of several directions the worst
+    counts, as in practice. The column in space sees the whole record.
+
+    Parameters
+    ----------
+    model
+        The column in space.
+    records, scales, tail, intensity
+        As for `incremental_dynamic_analysis`.
+    directions
+        Azimuths of the planes [rad]; by default the two components of the records.
+    planar
+        The planar column; by default that of the same body with the same `damping` and `rolling_resistance`, and
+        with Housner's restitution at impacts, which keeps the angular momentum about the edge on which it lands.
+    least_ratio
+        Peak tilts below this part of α are no rocking, and their ratio is not told.
+    executor, progress, **options
+        As for `incremental_dynamic_analysis`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "planar bias". Over `record`, `direction` and `scale` `planar_outcome` and `planar_tilt_ratio`; over
+        `record` and `scale` `outcome` and `tilt_ratio` of the column in space, `worst_planar_tilt_ratio`, the largest
+        over the directions, `log_ratio` = ln(tilt in space/worst planar tilt) where both rock and neither overturns,
+        and `intensity`. Over `record` `least_overturning` and, over `direction` too, `least_planar_overturning`: the
+        least of the scales that overturns, NaN where none does; `worst_least_planar_overturning`, and
+        `log_capacity_ratio` = ln(least scale in space/least planar one). Over `scale` the bias: `bias`, the mean of
+        `log_ratio` over the records, its `scatter` (standard deviation), `standard_error` (scatter/√records) and
+        `compared`, how many records; `overall_bias`, `overall_scatter`, `overall_standard_error` and
+        `overall_compared`, those of the mean of `log_ratio` over the scales of each record; `only_space` and
+        `only_planar`, over `scale`, how many records overturn one of the two only. Likewise `capacity_bias`,
+        `capacity_scatter`, `capacity_standard_error`, `capacities_compared` of
+        `log_capacity_ratio`. All these are NaN of fewer than two records. A positive bias of tilts, or a negative one
+        of capacities, says that the planar column is on the unsafe side.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range.
+    UnsupportedError
+        If `model` is planar itself.
+
+    Notes
+    -----
+    With the same restitution, and no loss else, `Wobbling` under a record along one line is the planar column: the
+    ratio is 1. In space a column hardly ever passes the upright, so that restitution takes next to nothing from it:
+    the bias is of geometry and dissipation together, and as good as the dissipation chosen for both.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.solid(radius=0.05, height=5.0, density=2700.0), damping=0.02)
+    >>> planar = sb.PlanarRocking(model.column, damping=0.02, restitution=1.0)
+    >>> pulse = sb.Pulse.one_sine(acceleration=1.0, angular_frequency=8.0)
+    >>> found = planar_bias(model, pulse, scales=[0.25, 0.3], directions=[0.0], planar=planar)
+    >>> found["log_ratio"].values.round(3).tolist()    # a slender column in its plane
+    [[0.0, 0.0]]
+    """
+    if not isinstance(model, Model) or model.planar_only:
+        message = (
+            f"model must be a column in space, such as Wobbling(column), to compare with a planar one; got {model!r}"
+        )
+        raise UnsupportedError(message)
+    angles = checked_values("directions", "rotation", np.atleast_1d(np.asarray(directions)))
+    if not angles.size:
+        message = "directions must hold at least one angle, got none"
+        raise ParameterError(message)
+    named = named_records(records)
+    common: dict[str, Any] = {"scales": scales, "tail": tail, "executor": executor, **options}
+    runs = np.size(scales) * len(named)
+    space = incremental_dynamic_analysis(
+        model, named, intensity=intensity, progress=_part_of(progress, 0, runs * (1 + angles.size)), **common
+    )
+    lines = {
+        f"{name}, direction {place}": in_one_direction(motion, float(angle))
+        for name, motion in named.items()
+        for place, angle in enumerate(angles)
+    }
+    flat = incremental_dynamic_analysis(
+        planar_of(model) if planar is None else planar,
+        lines,
+        progress=_part_of(progress, runs, runs * (1 + angles.size)),
+        **common,
+    )
+    return _compared(space, _by_direction(flat, list(named), angles), least_ratio)
+
+
+def _part_of(progress: Progress | None, before: int, total: int) -> Progress | None:
+    return None if progress is None else (lambda done, _: progress(before + done, total))
+
+
+def planar_of(model: Model) -> PlanarRocking:
+    """Return the planar column of the same body, damping and rolling resistance, with Housner's restitution."""
+    return PlanarRocking(
+        model.column,
+        damping=float(getattr(model, "damping", 0.0)),
+        rolling_resistance=float(getattr(model, "rolling_resistance", 0.0)),
+    )
+
+
+def _by_direction(flat: xr.Dataset, names: list[str], angles: Floats) -> xr.Dataset:
+    shape = (len(names), angles.size, flat.sizes["scale"])
+    dims = ("record", "direction", "scale")
+    fallen = flat["reached"].sel({LIMIT_STATE: "overturning"})
+    arrays = {"outcome": flat["outcome"], "tilt_ratio": flat["tilt_ratio"], "fallen": fallen}
+    about = {"units": "rad", "long_name": "azimuth of the plane"}
+    return xr.Dataset(
+        {name: (dims, one.to_numpy().reshape(shape), one.attrs) for name, one in arrays.items()},
+        coords={"record": names, "direction": ("direction", angles, about), "scale": flat["scale"]},
+    )
+
+
+def _compared(space: xr.Dataset, flat: xr.Dataset, least_ratio: float) -> xr.Dataset:
+    fallen = space["reached"].sel({LIMIT_STATE: "overturning"}, drop=True)
+    worst = flat["tilt_ratio"].max("direction").assign_attrs(flat["tilt_ratio"].attrs)
+    planar_fallen = flat["fallen"].max("direction")
+    both = np.isfinite(space["tilt_ratio"]) & np.isfinite(worst)
+    rocking = both & (space["tilt_ratio"] > least_ratio) & (worst > least_ratio)
+    log_ratio = _logarithm(space["tilt_ratio"].where(rocking) / worst.where(rocking))
+    least, least_flat = _least_scale(fallen), _least_scale(flat["fallen"])
+    worst_least = least_flat.min("direction").assign_attrs(least_flat.attrs)
+    log_capacity = _logarithm(least / worst_least)
+    return xr.Dataset(
+        {
+            "outcome": space["outcome"],
+            "tilt_ratio": space["tilt_ratio"],
+            "planar_outcome": flat["outcome"],
+            "planar_tilt_ratio": flat["tilt_ratio"],
+            "worst_planar_tilt_ratio": worst,
+            "log_ratio": _named(log_ratio, "ln(peak tilt in space/in a plane)"),
+            "intensity": space["intensity"],
+            "only_space": _records((fallen == 1) & (planar_fallen == 0), "records that overturn it in space only"),
+            "only_planar": _records((fallen == 0) & (planar_fallen == 1), "records that overturn it in a plane only"),
+            "least_overturning": least,
+            "least_planar_overturning": least_flat,
+            "worst_least_planar_overturning": worst_least,
+            "log_capacity_ratio": _named(log_capacity, "ln(least overturning scale in space/in a plane)"),
+            **bias_of(log_ratio),
+            **_moments(
+                log_ratio.mean("scale"),
+                ("overall_bias", "overall_scatter", "overall_standard_error", "overall_compared"),
+            ),
+            **_moments(
+                log_capacity,
+                ("capacity_bias", "capacity_scatter", "capacity_standard_error", "capacities_compared"),
+            ),
+        },
+        attrs={"kind": "planar bias", "provenance": space.attrs["provenance"], "intensity": space.attrs["intensity"]},
+    )
+
+
+def bias_of(log_ratio: xr.DataArray) -> dict[str, xr.DataArray]:
+    """Return mean, scatter, standard error and number over the records of ln(tilt in space/planar tilt)."""
+    return _moments(log_ratio, ("bias", "scatter", "standard_error", "compared"))
+
+
+def _logarithm(values: xr.DataArray) -> xr.DataArray:
+    return values.copy(data=np.log(values.to_numpy()))
+
+
+def _named(values: xr.DataArray, long_name: str) -> xr.DataArray:
+    return values.assign_attrs(units="1", long_name=long_name)
+
+
+def _records(chosen: xr.DataArray, long_name: str) -> xr.DataArray:
+    return _named(chosen.sum("record"), long_name)
+
+
+def _least_scale(fallen: xr.DataArray) -> xr.DataArray:
+    least = fallen["scale"].where(fallen == 1).min("scale")
+    return least.assign_attrs(units="1", long_name="least scale that overturns")
+
+
+def _moments(values: xr.DataArray, names: tuple[str, str, str, str]) -> dict[str, xr.DataArray]:
+    """Return mean, standard deviation, standard error and number over the records; NaN where they are too few."""
+    number = values.notnull().sum("record")
+    enough = number >= _LEAST
+    mean = values.mean("record").where(enough)
+    scatter = (((values - mean) ** 2).sum("record") / (number - 1).where(enough)) ** 0.5
+    error = scatter / number.where(enough) ** 0.5
+    told = ("mean over the records", "standard deviation over the records", "standard error of the mean")
+    parts = zip((mean, scatter, error, number), (*told, "records compared"), strict=True)
+    return dict(zip(names, (_named(one, long_name) for one, long_name in parts), strict=True))

@@ -1,0 +1,157 @@
+"""Uncertain properties of a column: how each spreads, and samples of them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from scipy.special import ndtr, ndtri
+
+from stylobate.base_motions import BASE_AT_REST
+from stylobate.engine.parameters import COLUMN_NAMES, check_names, model_names, present_value
+from stylobate.errors import ParameterError, require_not_negative, require_positive, require_whole
+from stylobate.models import Model
+from stylobate.studies.sweeps.quantities import Floats
+
+
+class Spread(Protocol):
+    """How a property spreads."""
+
+    def draw(self, nominal: float, shares: Floats) -> Floats:
+        """Return the values below which these `shares` of the distribution lie; `nominal` is that of the model."""
+
+
+@dataclass(frozen=True, slots=True)
+class LognormalSpread:
+    """The logarithm is normal.
+
+    Parameters
+    ----------
+    dispersion
+        Its standard deviation.
+    median
+        Of the property; by default the value that the model has.
+    """
+
+    dispersion: float
+    median: float | None = None
+
+    def __post_init__(self) -> None:
+        require_not_negative("dispersion", self.dispersion)
+        if self.median is not None:
+            require_positive("median", self.median)
+
+    def draw(self, nominal: float, shares: Floats) -> Floats:
+        """Return the values below which these `shares` lie."""
+        median = require_positive("median", nominal if self.median is None else self.median)
+        return np.asarray(median * np.exp(self.dispersion * ndtri(shares)))
+
+
+@dataclass(frozen=True, slots=True)
+class NormalSpread:
+    """Normal, cut at `least` and `most`.
+
+    Parameters
+    ----------
+    deviation
+        Standard deviation before the cut, in the unit of the property.
+    mean
+        Likewise; by default the value that the model has.
+    least, most
+        Bounds.
+    """
+
+    deviation: float
+    mean: float | None = None
+    least: float = 0.0
+    most: float = np.inf
+
+    def __post_init__(self) -> None:
+        require_positive("deviation", self.deviation)
+        if not self.least < self.most:
+            message = f"least must be below most, got {self.least!r} and {self.most!r}"
+            raise ParameterError(message)
+
+    def draw(self, nominal: float, shares: Floats) -> Floats:
+        """Return the values below which these `shares` lie."""
+        mean = nominal if self.mean is None else self.mean
+        low, high = (ndtr((bound - mean) / self.deviation) for bound in (self.least, self.most))
+        values = mean + self.deviation * ndtri(low + shares * (high - low))
+        return np.asarray(np.clip(values, self.least, self.most))
+
+
+@dataclass(frozen=True, slots=True)
+class UniformSpread:
+    """Even between two values: what is known of a property of which only bounds are known."""
+
+    least: float
+    most: float
+
+    def __post_init__(self) -> None:
+        if not self.least <= self.most:
+            message = f"least must not lie above most, got {self.least!r} and {self.most!r}"
+            raise ParameterError(message)
+
+    def draw(self, nominal: float, shares: Floats) -> Floats:
+        """Return the values below which these `shares` lie."""
+        del nominal
+        return np.asarray((1.0 - shares) * self.least + shares * self.most)
+
+
+def property_samples(
+    model: Model, spreads: Mapping[str, Spread], *, count: int, rng: np.random.Generator
+) -> dict[str, Floats]:
+    """Return samples of uncertain properties, independent of each other, for the argument `parameters`.
+
+    Parameters
+    ----------
+    model
+        The column as it is thought to be.
+    spreads
+        How each property spreads, by the names of parameters of column and model: damping, slenderness (changes the
+        radius), size (all lengths at one density; nominally 1), restitution, mass_height …
+    count
+        The number of samples.
+    rng
+        What draws them; the first samples of a longer series are those of a shorter one.
+
+    Returns
+    -------
+    dict
+        Arrays of shape (count,), in the order of `spreads`.
+
+    Raises
+    ------
+    ParameterError
+        If a name is no number of column or model, or a spread does not suit it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.solid(radius=0.2, height=2.0, density=2700.0), damping=0.02)
+    >>> spreads = {"damping": LognormalSpread(0.4), "size": NormalSpread(0.02)}
+    >>> samples = property_samples(model, spreads, count=2000, rng=np.random.default_rng(0))
+    >>> print(f"{np.median(samples['damping']):.3f} {samples['size'].std():.3f}")
+    0.020 0.020
+    """
+    if not isinstance(spreads, Mapping) or not spreads:
+        message = f'spreads must name properties, such as {{"damping": LognormalSpread(0.4)}}, got {spreads!r}'
+        raise ParameterError(message)
+    number = require_whole("count", count, least=1)
+    if not isinstance(rng, np.random.Generator):
+        message = f"rng must be a numpy.random.Generator, got {rng!r}; try numpy.random.default_rng(0)"
+        raise ParameterError(message)
+    check_names(model, spreads, where="spreads")
+    for name, spread in spreads.items():
+        if name not in (*COLUMN_NAMES, *model_names(model)):
+            message = f"spreads cannot name {name}: it belongs to the base motion"
+            raise ParameterError(message)
+        if not hasattr(spread, "draw"):
+            message = f"spreads[{name!r}] must be a spread such as LognormalSpread(0.4), got {spread!r}"
+            raise ParameterError(message)
+    shares = rng.random((number, len(spreads)))
+    return {
+        name: spread.draw(present_value(model, BASE_AT_REST, name), shares[:, place])
+        for place, (name, spread) in enumerate(spreads.items())
+    }

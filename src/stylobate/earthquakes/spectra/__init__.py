@@ -1,0 +1,6 @@
+"""Spectra: peaks of rocking, and the bands of amplitude that overturn, over size, slenderness, frequency."""
+
+from stylobate.earthquakes.spectra.bands import overturning_bands
+from stylobate.earthquakes.spectra.rocking import rocking_spectrum
+
+__all__ = ["overturning_bands", "rocking_spectrum"]

@@ -1,0 +1,242 @@
+"""All bands of amplitude in which a base motion overturns a column: overturning spectra."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Unpack
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion
+from stylobate.earthquakes.spectra.band_table import band_table
+from stylobate.earthquakes.spectra.cases import TAIL, Cases
+from stylobate.earthquakes.spectra.edges import Edges, Ends, Integers
+from stylobate.earthquakes.spectra.provenance import provenance_of_spectrum
+from stylobate.errors import Interrupted, ParameterError, require_positive
+from stylobate.models import Model
+from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.studies.checks import require_no_tilt_limit
+from stylobate.studies.sweeps import Executor, run_sweep
+from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.quantities import Floats, attributes_of, checked_values
+from stylobate.studies.sweeps.recipe import RunOptions
+
+# Nearer than this the ends of an edge are told apart by rounding only.
+_NARROWEST = 1e-9
+
+
+def overturning_bands(
+    model: Model,
+    motion: BaseMotion,
+    *,
+    scales: npt.ArrayLike,
+    over: Mapping[str, npt.ArrayLike] | None = None,
+    width: float = 1e-3,
+    tail: float = TAIL,
+    duration: float | None = None,
+    store: str | Path | None = None,
+    executor: Executor | None = None,
+    resume: bool = False,
+    progress: Progress | None = None,
+    **options: Unpack[RunOptions],
+) -> xr.Dataset:
+    """Return all bands of amplitude in which a base motion overturns a column, over any parameters.
+
+    Overturning is not monotone: above a scale that overturns the column may be safe again. So each case is run at all
+    `scales`, and every change between neighbours, from overturned to not, or from decided to undecided, is halved until
+    its ends are as near as `width`. So is every pair that overturns in opposite directions: between them may be a gap
+    in which it does not. Over the size, or the frequency of a pulse, this is the overturning spectrum of the motion.
+
+    Parameters
+    ----------
+    model, motion
+        The column and the base motion, such as a `Pulse`, a `Record` or a `OneOf` several.
+    scales
+        Factors of the base motion: positive, increasing, two or more.
+    over
+        Parameters with their values, as for `overturning_map`: size (all lengths times it at one density), slenderness,
+        damping, rotation [rad], …; angular_frequency [rad/s], here of a pulse too, whose other numbers stay; `motion`,
+        the numbers of those in a `OneOf`. By default one case.
+    width
+        Relative width, high/low − 1, to which edges are halved.
+    tail
+        How long each column is followed after the end of its base motion, over 1/p: what has not overturned by then
+        counts as safe. After 20/p that may be wrong nearer than about 10⁻⁶ to an edge, after 40/p than 10⁻¹².
+    duration
+        Instead, how long to follow all [s]; needed for a motion that never ends.
+    store, executor, resume, progress
+        As in `run_sweep`; the store keeps the runs at the edges too.
+    **options
+        What all runs have in common: tilt, tilt_rate, rtol, rules …
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "overturning bands": the runs over the names and `scale`, with `outcome`, `uncertain` and all that
+        ensembles tell; and over the names and `band`, from the weakest on, NaN beyond the last:
+
+        * `band_from`, `band_to`: the least and the largest scale that was seen to overturn;
+        * `safe_below`, `safe_above`: the nearest scales outside that were seen not to; NaN where the band is
+          `open_below` or `open_above`, reaching the first or last scale, or a run that is not decided, for which
+          `undecided_below` or `undecided_above` is True;
+        * `uncertain_below`, `uncertain_above`: a small change may move that edge.
+
+        A run that failed or lifted off is not decided: it ended before it showed whether the column overturns. No band
+        and no safe interval reaches across. Over the names and `stretch`: `undecided_from` and `undecided_to`, the
+        nearest decided scales on both sides, or the ends of the scan. `bands` counts bands; `reversals` the changes of
+        direction in them between which no safe scale was found; `unknown` the undecided runs of the scan; `decided_to`
+        is the largest scale up to which every run was decided. Coordinates normalize: `frequency_parameter` p,
+        `tipping_angle` α, `rim_distance` R, `acceleration_ratio` (peak horizontal base acceleration over g tan α, at
+        scale 1) and, of pulses and harmonic motions, `frequency_ratio` ω/p.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range, or `tilt_limit` is given: a run stopped there is not known to overturn.
+    UnsupportedError
+        If the motion lacks a number that is to vary.
+    Interrupted
+        On Ctrl-C; `partial` has the bands as far as they are known.
+
+    Warns
+    -----
+    UnlikelyInputWarning
+        If `over` names a length of the column, such as its radius, and neither its mass nor its inertia: `size` makes a
+        larger column.
+
+    See Also
+    --------
+    reached_bands : bands of runs that were made already, as fine as their scales.
+
+    Notes
+    -----
+    A band narrower than the step between two scales may be missed, and so may a gap on both sides of which the column
+    overturns in nearly one direction: nothing short of all scales excludes them.
+
+    That overturning may cease above an amplitude is in Zhang and Makris, "Rocking response of free-standing blocks
+    under cycloidal pulses", J. Eng. Mech. 127 (2001), and for records in Yim, Chopra and Penzien, "Rocking response of
+    rigid blocks to earthquakes", Earthquake Eng. Struct. Dyn. 8 (1980).
+
+    Without dissipation motion in space may overturn later than any tail.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> pulse = sb.Pulse.one_sine(acceleration=0.1, angular_frequency=5.0)
+    >>> found = sb.earthquakes.overturning_bands(model, pulse, scales=np.geomspace(1.0, 20.0, 21))
+    >>> print(found["band_from"].values.round(2), found["band_to"].values.round(2), found["open_above"].values)
+    [2.57 7.72] [ 6.9 20. ] [False  True]
+    """
+    require_no_tilt_limit(options)
+    cases = Cases.of(model, motion, over)
+    search = _Search(
+        cases=cases,
+        durations=cases.durations(duration, tail),
+        scales=_checked_scales(scales),
+        width=_checked_width(width),
+        options=options,
+        provenance=provenance_of_spectrum(model, motion, options, tail=tail, duration=duration, width=float(width)),
+        store=None if store is None else Path(store),
+        how={"executor": executor, "resume": resume},
+        progress=progress or _silence,
+    )
+    return search.result()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Search:
+    """A scan, and its edges halved round by round, each a sweep; those of a store lie inside that of the scan."""
+
+    cases: Cases
+    durations: Floats
+    scales: Floats
+    width: float
+    options: RunOptions
+    provenance: str
+    store: Path | None
+    how: Mapping[str, Any]
+    progress: Progress
+    done: list[int] = field(default_factory=list)
+
+    def result(self) -> xr.Dataset:
+        case, scale = np.meshgrid(np.arange(self.cases.count), self.scales, indexing="ij")
+        try:
+            runs = self._runs(case.ravel(), scale.ravel(), self.store, case.size)
+        except Interrupted as stop:
+            scan = Ends.of(stop.partial, scale)
+            raise Interrupted(str(stop), self._told(stop.partial, scan, Edges.between(scan))) from None
+        scan = Ends.of(runs, scale)
+        edges = Edges.between(scan)
+        total, number = case.size + edges.halvings(self.width), 0
+        try:
+            while (wide := edges.wide(self.width)).any():
+                number += 1
+                store = None if self.store is None else self.store / f"edges {self.width:g} {number}"
+                middle = edges.middle[wide]
+                cut = self._runs(edges.case[wide], middle, store, total)
+                edges = edges.halved(wide, Ends.of(cut, middle))
+        except Interrupted as stop:
+            raise Interrupted(str(stop), self._told(runs, scan, edges)) from None
+        return self._told(runs, scan, edges)
+
+    def _runs(self, case: Integers, scale: Floats, store: Path | None, total: int) -> xr.Dataset:
+        before = sum(self.done)
+
+        def progress(done: int, _: int) -> None:
+            self.progress(before + done, max(total, before + case.size))
+
+        sweep = self.cases.sweep(case, self.durations, scale, **self.options)
+        runs = run_sweep(sweep, store=store, progress=progress, **self.how)
+        self.done.append(case.size)
+        return runs.load()
+
+    def _told(self, runs: xr.Dataset, scan: Ends, edges: Edges) -> xr.Dataset:
+        dims, shape = (*self.cases.axes, "scale"), (*self.cases.shape, self.scales.size)
+        kept = {
+            name: xr.Variable((*dims, *value.dims[1:]), value.to_numpy().reshape(*shape, *value.shape[1:]), value.attrs)
+            for name, value in runs.data_vars.items()
+        }
+        computed = int((runs["outcome"] != NOT_COMPUTED).sum())
+        step = float((self.scales[1:] / self.scales[:-1]).max())
+        return (
+            band_table(self.cases, scan, edges)
+            .assign({**kept, "computed": ((), computed, {"units": "1", "long_name": "runs of the scan computed"})})
+            .assign_coords(
+                {
+                    **self.cases.coordinates(),
+                    "scale": ("scale", self.scales, attributes_of("scale")),
+                    "axis": runs["axis"],
+                }
+            )
+            .assign_attrs(
+                kind="overturning bands",
+                provenance=self.provenance,
+                width=self.width,
+                scale_step=step - 1.0,
+                resolution=f"bands and gaps narrower than the step between scales, a factor {step:.4g}, may be missed",
+                runs=sum(self.done) or computed,
+            )
+        )
+
+
+def _checked_scales(scales: npt.ArrayLike) -> Floats:
+    values = checked_values("scales", "scale", scales)
+    if values.size < 2 or not (values[0] > 0.0 and np.all(np.diff(values) > 0.0)):  # noqa: PLR2004  an interval
+        message = f"scales must be two or more positive numbers, increasing; got {values.tolist()}"
+        raise ParameterError(message)
+    return values
+
+
+def _checked_width(width: float) -> float:
+    if require_positive("width", width) < _NARROWEST:
+        message = f"width must be at least {_NARROWEST:g}, below which rounding decides; got {width!r}"
+        raise ParameterError(message)
+    return float(width)
+
+
+def _silence(done: int, total: int) -> None:
+    del done, total

@@ -1,0 +1,174 @@
+"""The cases of a spectrum: every combination of the values of some parameters, and what normalizes each."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Self, Unpack
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion
+from stylobate.base_motions.frequency import frequency_of
+from stylobate.base_motions.one_of import members_of
+from stylobate.engine.parameters import with_parameters
+from stylobate.errors import ParameterError, require_positive
+from stylobate.models import Model
+from stylobate.studies.checks import remark_on_lengths, require_values
+from stylobate.studies.sweeps import Sweep
+from stylobate.studies.sweeps.quantities import OF_A_RUN, Floats, attributes_of, check_quantities, checked_values
+from stylobate.studies.sweeps.recipe import RunOptions
+
+Integers = npt.NDArray[np.int64]
+
+TAIL = 40.0
+"""How long columns are followed after the end of their base motion, over 1/p.
+
+Near the edge of a band a column stays near its balance, which it leaves as e^(pt), and perhaps comes back to that on
+its other side: after 20/p still, within about 10⁻⁶ of the edge; after 40/p, within 10⁻¹².
+"""
+
+_MOTION = "motion"
+# What normalizes a spectrum, for each case.
+_NUMBERS: Mapping[str, Mapping[str, str]] = {
+    "frequency_parameter": {"units": "rad s-1", "long_name": "frequency parameter p"},
+    "tipping_angle": {"units": "rad", "long_name": "tipping angle α"},
+    "rim_distance": {"units": "m", "long_name": "distance R of the centre of mass from the rim"},
+    "acceleration_ratio": {"units": "1", "long_name": "peak base acceleration / (g tan α), at scale 1"},
+    "frequency_ratio": {"units": "1", "long_name": "angular frequency of the base motion / p"},
+    "motion_end": {"units": "s", "long_name": "end of the base motion"},
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cases:
+    """What the runs of a spectrum are made of.
+
+    `axes` are the parameters with their values as they were asked for; `values` are those that ensembles vary, and
+    `numbers` what normalizes, both flat over the cases.
+    """
+
+    model: Model
+    motion: BaseMotion
+    axes: Mapping[str, Floats]
+    values: Mapping[str, Floats]
+    numbers: Mapping[str, Floats]
+
+    @classmethod
+    def of(
+        cls, model: Model, motion: BaseMotion, over: Mapping[str, npt.ArrayLike] | None, *, scaled: bool = False
+    ) -> Self:
+        """Return the cases `over` these values.
+
+        Parameters
+        ----------
+        scaled
+            Whether `over` may name the scale.
+
+        Raises
+        ------
+        ParameterError
+            If a name cannot vary here, or has no values.
+        UnsupportedError
+            If the motion lacks a number that is to vary.
+        """
+        if not isinstance(model, Model):
+            message = f"model must be a model such as Slender(column), got {model!r}"
+            raise ParameterError(message)
+        if not isinstance(motion, BaseMotion):
+            message = f"motion must be a base motion such as Pulse.one_sine(...), got {motion!r}"
+            raise ParameterError(message)
+        over = _checked_names(model, {} if over is None else over, scaled=scaled)
+        axes = {name: checked_values("over", name, values) for name, values in over.items()}
+        meshes = np.meshgrid(*axes.values(), indexing="ij") if axes else []
+        values = {name: mesh.ravel() for name, mesh in zip(axes, meshes, strict=True)}
+        return cls(model, motion, axes, values, _numbers(model, motion, values))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Lengths of the axes."""
+        return tuple(axis.size for axis in self.axes.values())
+
+    @property
+    def count(self) -> int:
+        """Number of cases."""
+        return math.prod(self.shape)
+
+    def durations(self, duration: float | None, tail: float) -> Floats:
+        """Return how long to follow each case [s]: to `tail`/p after the end of its motion, or for the `duration`.
+
+        Raises
+        ------
+        ParameterError
+            If one is not positive, or the motion never ends and there is no `duration`.
+        """
+        if duration is not None:
+            return np.full(self.count, require_positive("duration", duration, "s"))
+        ends = self.numbers["motion_end"] + require_positive("tail", tail) / self.numbers["frequency_parameter"]
+        if not np.all(np.isfinite(ends)):
+            message = f"duration must be given, in s, for a base motion that never ends; got None with {self.motion!r}"
+            raise ParameterError(message)
+        return ends
+
+    def sweep(self, case: Integers, durations: Floats, scale: Floats | None, **options: Unpack[RunOptions]) -> Sweep:
+        """Return the runs of these cases, each for its one of the `durations` and perhaps with a `scale`."""
+        at = {name: values[case] for name, values in self.values.items()}
+        scaled = {} if scale is None else {"scale": scale}
+        return Sweep.points(self.model, self.motion, at={**at, **scaled, "duration": durations[case]}, **options)
+
+    def over_axes(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Return `values`, flat over the cases in their first dimension, over the axes."""
+        return values.reshape(self.shape + values.shape[1:])
+
+    def coordinates(self) -> dict[str, xr.Variable]:
+        """Return the axes, what normalizes over them, and the names of motions."""
+        dims = tuple(self.axes)
+        found = {name: xr.Variable((name,), axis, attributes_of(name)) for name, axis in self.axes.items()}
+        for name, attributes in _NUMBERS.items():
+            if np.all(np.isfinite(self.numbers[name])):
+                found[name] = xr.Variable(dims, self.over_axes(self.numbers[name]), dict(attributes))
+        if _MOTION in self.axes:
+            found["motion_name"] = xr.Variable((_MOTION,), _names(self.motion, self.axes[_MOTION]))
+        return found
+
+
+def _checked_names(model: Model, over: Mapping[str, npt.ArrayLike], *, scaled: bool) -> Mapping[str, npt.ArrayLike]:
+    if not isinstance(over, Mapping):
+        message = f'over must name parameters with their values, such as {{"size": […]}}; got {over!r}'
+        raise ParameterError(message)
+    refused = {"duration": "give duration or tail", **({} if scaled else {"scale": "give scales"})}
+    for name, remedy in refused.items():
+        if name in over:
+            message = f"over cannot name {name}: {remedy}"
+            raise ParameterError(message)
+    if over:
+        check_quantities("over", model, over)
+    require_values("over", over)
+    remark_on_lengths("over", over)
+    return over
+
+
+def _numbers(model: Model, motion: BaseMotion, values: Mapping[str, Floats]) -> dict[str, Floats]:
+    rows = []
+    count = next(iter(values.values())).size if values else 1
+    for case in range(count):
+        chosen = {name: float(array[case]) for name, array in values.items() if name not in OF_A_RUN}
+        changed, moved = with_parameters(model, motion, **chosen)
+        column = changed.column
+        rows.append(
+            (
+                column.frequency_parameter,
+                column.tipping_angle,
+                column.rim_distance,
+                moved.largest_horizontal(0.0) / (column.gravity * column.slenderness),
+                frequency_of(moved) / column.frequency_parameter,
+                moved.duration,
+            )
+        )
+    return dict(zip(_NUMBERS, np.array(rows).T, strict=True))
+
+
+def _names(motion: BaseMotion, numbers: Floats) -> list[str]:
+    members = members_of(motion)
+    return [str(getattr(members[int(number)], "name", "") or f"motion {int(number)}") for number in numbers]

@@ -1,0 +1,21 @@
+"""What repeats a spectrum, as plain values."""
+
+import json
+from dataclasses import asdict
+from typing import Any
+
+from stylobate.base_motions import BaseMotion
+from stylobate.config import provenance_of_run
+from stylobate.models import Model
+from stylobate.results import OutcomeRules
+from stylobate.studies.sweeps.recipe import DEFAULTS, RunOptions
+
+
+def provenance_of_spectrum(
+    model: Model, motion: BaseMotion, options: RunOptions, *, tail: float, duration: float | None, **own: float
+) -> str:
+    """Return model, motion, options and how long columns are followed, in JSON."""
+    chosen: dict[str, Any] = {**DEFAULTS, **options}
+    chosen["rules"] = asdict(chosen["rules"] or OutcomeRules())
+    length = {"tail": float(tail)} if duration is None else {"duration": float(duration)}
+    return json.dumps({**provenance_of_run(model, motion, **chosen), **length, **own})

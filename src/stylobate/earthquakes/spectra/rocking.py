@@ -1,0 +1,126 @@
+"""Rocking spectra: peak tilt and peak rate of tilt against size and slenderness."""
+
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+from typing import Unpack
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion
+from stylobate.earthquakes.spectra.cases import TAIL, Cases
+from stylobate.earthquakes.spectra.peak_rate import peak_tilt_rate
+from stylobate.earthquakes.spectra.provenance import provenance_of_spectrum
+from stylobate.errors import ParameterError, require_whole
+from stylobate.models import Model
+from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.studies.checks import require_no_tilt_limit
+from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
+from stylobate.studies.sweeps import Executor
+from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.labelled import labelled_sweep
+from stylobate.studies.sweeps.recipe import RunOptions
+
+_SAMPLES = 2001
+# What is kept of the histories is the peak rate.
+_HISTORIES = ("sample_time", "sampled_tilt", "sampled_tilt_rate")
+
+
+def rocking_spectrum(
+    model: Model,
+    motion: BaseMotion,
+    *,
+    over: Mapping[str, npt.ArrayLike] | None = None,
+    tail: float = TAIL,
+    duration: float | None = None,
+    store: str | Path | None = None,
+    executor: Executor | None = None,
+    resume: bool = False,
+    progress: Progress | None = None,
+    **options: Unpack[RunOptions],
+) -> xr.Dataset:
+    """Return the peak tilt and the peak rate of tilt of columns of many sizes under one base motion.
+
+    The rocking spectrum of Makris and Konstantinidis, "The rocking spectrum and the limitations of practical design
+    methodologies", Earthquake Eng. Struct. Dyn. 32 (2003): there of Housner's block, `PlanarRocking`, here of any
+    model.
+
+    Parameters
+    ----------
+    model, motion
+        The column and the base motion: a `Pulse`, a `Record`, or a `OneOf` several.
+    over
+        Parameters with their values, one at least, as for `overturning_bands`, and `scale`: size, which sets
+        p ~ 1/√size, and slenderness, motion, angular_frequency …
+    tail, duration
+        As for `overturning_bands`.
+    store, executor, resume, progress, **options
+        As for `overturning_bands`; of `samples`, 2001 by default, at equal times of each run the peak rate is told. Its
+        error is of the second order of the time between two. Peak tilts do not depend on it.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "rocking spectrum", over the names: `peak_tilt_ratio`, peak tilt over α; `peak_rate_ratio`, peak rate
+        of the tilt vector over p [rad]; both NaN where the column overturned or its end is not known, see `outcome`;
+        and all that ensembles tell. Coordinates as for `overturning_bands`, and `rocking_period` 2π/p [s].
+
+    Raises
+    ------
+    ParameterError, UnsupportedError, Interrupted
+        As `overturning_bands`.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.solid(radius=0.5, height=5.0, density=2000.0), damping=0.05)
+    >>> pulse = sb.Pulse.one_sine(acceleration=3.0, angular_frequency=6.0)
+    >>> found = sb.earthquakes.rocking_spectrum(model, pulse, over={"size": [0.2, 1.0, 5.0]})
+    >>> print(found["peak_tilt_ratio"].values.round(3))
+    [  nan   nan 0.113]
+    """
+    require_no_tilt_limit(options)
+    cases = Cases.of(model, motion, over, scaled=True)
+    if not cases.axes:
+        message = f'over must name a parameter with its values, such as {{"size": […]}}; got {over!r}'
+        raise ParameterError(message)
+    options["samples"] = require_whole("samples", options.get("samples") or _SAMPLES, least=2)
+    durations = cases.durations(duration, tail)
+    sweep = cases.sweep(np.arange(cases.count), durations, None, **options)
+    provenance = provenance_of_spectrum(model, motion, options, tail=tail, duration=duration)
+    label = partial(_spectrum, cases=cases, provenance=provenance)
+    return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+
+
+def _spectrum(runs: xr.Dataset, cases: Cases, provenance: str) -> xr.Dataset:
+    runs = runs.load()
+    dims = tuple(cases.axes)
+    safe = overturned_or_not(runs) == 0
+    rate = peak_tilt_rate(*(runs[name].to_numpy() for name in _HISTORIES))
+    ratios = {
+        "peak_tilt_ratio": (runs["largest_tilt"].to_numpy() / cases.numbers["tipping_angle"], "1", "peak tilt / α"),
+        "peak_rate_ratio": (rate / cases.numbers["frequency_parameter"], "rad", "peak rate of tilt / p"),
+    }
+    kept = {
+        name: xr.Variable((*dims, *value.dims[1:]), cases.over_axes(value.to_numpy()), value.attrs)
+        for name, value in runs.drop_vars(_HISTORIES).data_vars.items()
+    }
+    peaks = {
+        name: xr.Variable(
+            dims, cases.over_axes(np.where(safe, values, np.nan)), {"units": unit, "long_name": long_name}
+        )
+        for name, (values, unit, long_name) in ratios.items()
+    }
+    period = cases.over_axes(2.0 * np.pi / cases.numbers["frequency_parameter"])
+    computed = int((runs["outcome"] != NOT_COMPUTED).sum())
+    return xr.Dataset(
+        {**peaks, **kept, "computed": ((), computed, {"units": "1", "long_name": "runs computed"})},
+        coords={
+            **cases.coordinates(),
+            "rocking_period": xr.Variable(dims, period, {"units": "s", "long_name": "period 2π/p"}),
+            "axis": runs["axis"],
+        },
+        attrs={"kind": "rocking spectrum", "provenance": provenance},
+    )

@@ -1,0 +1,85 @@
+"""Runs and records as plain values that JSON can hold."""
+
+from typing import Any
+
+import numpy as np
+
+from stylobate import config
+from stylobate.base_motions import Record
+from stylobate.lab.json_values import numbers, table
+from stylobate.lab.request_parsing import Described
+from stylobate.models import Model
+from stylobate.plots.animation import drawn_motion
+from stylobate.results import Response
+from stylobate.results.summary import column_rows, measure_rows
+
+
+def plain_run(run: Response, model: Model) -> dict[str, Any]:
+    """Return what a page shows of `run`: what became of it, its history, and how it is drawn."""
+    return {
+        "outcome": run.outcome.name,
+        "told": run.outcome.value,
+        "reason": run.reason,
+        "decided_at": run.decided_at,
+        "uncertain": run.uncertain,
+        "planar": run.planar,
+        "warnings": list(run.warnings),
+        "events": [{"kind": event.kind, "time": event.time} for event in run.events],
+        "measures": table(run.measures),
+        "summary": [*column_rows(model.column), *measure_rows(run)],
+        "thresholds": table(run.thresholds),
+        "column": plain_column(model),
+        "drawn": drawn_motion(run),
+        "series": _series(run, model),
+    }
+
+
+def snippets(given: Described) -> dict[str, str]:
+    """Return what is described as a TOML file and as a Python program."""
+    description = config.SimulationConfig.parse(given.told)
+    return {"toml": config.as_toml(given.told), "python": config.as_python(description)}
+
+
+def plain_column(model: Model) -> dict[str, float]:
+    """Return the numbers of the column that decide."""
+    column = model.column
+    names = ("radius", "mass_height", "mass", "slenderness", "inertia_ratio", "axial_ratio", "frequency_scale")
+    told = {name: float(getattr(column, name)) for name in names}
+    return {
+        **told,
+        "frequency_parameter": column.frequency_parameter,
+        "gravity": column.gravity,
+        "releasing_acceleration": column.slenderness * column.gravity,
+    }
+
+
+def _series(run: Response, model: Model) -> dict[str, Any]:
+    """Return the histories that a page draws: numbers over time, lengths along the plane from where they began."""
+    data = run.data
+    told = {name: numbers(data[name]) for name in _HISTORIES if name in data}
+    if "normal_force" in data:
+        told["normal_force"] = numbers(data["normal_force"] / (model.column.mass * model.column.gravity))
+    if "footprint" in data:
+        told["displacement"] = numbers(data["footprint"] - data["footprint"][0])
+    if "slip_velocity" in data:
+        told["slip_speed"] = numbers(np.hypot(*data["slip_velocity"].transpose("axis", "time").to_numpy()))
+    return told
+
+
+_HISTORIES = (
+    *("time", "base_acceleration", "amplitude", "azimuth", "rolling_rate", "spin"),
+    *("friction_demand", "pivoting_demand", "contact", "clearance"),
+)
+
+
+def plain_record(record: Record) -> dict[str, Any]:
+    """Return what is told of an uploaded record."""
+    peaks = {axis: float(abs(record.samples[:, index]).max()) for index, axis in enumerate("xyz")}
+    return {
+        "name": record.name,
+        "samples": len(record.samples),
+        "step": record.step,
+        "duration": record.duration,
+        "peaks": table({axis: peak for axis, peak in peaks.items() if peak > 0.0}),
+        "provenance": list(record.provenance),
+    }

@@ -1,0 +1,24 @@
+from .bifurcations import Bifurcation, Kind
+from .branch import Branch, continue_branch
+from .curves import BifurcationCurve, bifurcation_curve
+from .finding import periodic_orbit, periodic_orbits
+from .orbit import PeriodicOrbit
+from .storage import load
+from .switching import switch_branch
+from .tracing import End, StepControl
+
+__all__ = [
+    "Bifurcation",
+    "BifurcationCurve",
+    "Branch",
+    "End",
+    "Kind",
+    "PeriodicOrbit",
+    "StepControl",
+    "bifurcation_curve",
+    "continue_branch",
+    "load",
+    "periodic_orbit",
+    "periodic_orbits",
+    "switch_branch",
+]

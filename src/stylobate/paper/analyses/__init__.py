@@ -1,0 +1,104 @@
+"""The source paper, checked: every claim measured, the data of its figures.
+
+"Dynamic of a cylindrical column on a vibrating base" (Vibroengineering Procedia).
+"""
+
+import tempfile
+from collections.abc import Callable, Generator, Mapping
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+
+from stylobate.paper.analyses.circular import check_circular
+from stylobate.paper.analyses.exact import check_exact
+from stylobate.paper.analyses.finished import FinishedAnalyses
+from stylobate.paper.analyses.free import check_free
+from stylobate.paper.analyses.modulated import check_modulated
+from stylobate.paper.analyses.planar import check_planar
+from stylobate.paper.analyses.standing import check_standing
+from stylobate.paper.analyses.straight import check_straight
+from stylobate.paper.analyses.twist import check_twist
+from stylobate.processes import computed
+from stylobate.results import PaperCheck, Section
+
+__all__ = ["check_paper"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Analysis:
+    """One section of the paper: how it is checked, and the usual processor time of that [s]."""
+
+    check: Callable[[], Section]
+    cost: float
+
+
+# In the order of the paper.
+_ANALYSES: Mapping[str, _Analysis] = {
+    "Free vibration": _Analysis(check_free, 3.0),
+    "Circular base motion": _Analysis(check_circular, 2.0),
+    "Below the critical frequency": _Analysis(check_modulated, 60.0),
+    "A column that may turn": _Analysis(check_twist, 8.0),
+    "Straight-line base motion": _Analysis(check_straight, 30.0),
+    "Exact periodic orbits": _Analysis(check_exact, 40.0),
+    "Motion in a plane": _Analysis(check_planar, 3.0),
+    "The standing column": _Analysis(check_standing, 1.0),
+}
+
+
+def check_paper(
+    *,
+    workers: int = 1,
+    progress: Callable[[str, int, int, float], None] | None = None,
+    folder: str | Path | None = None,
+) -> PaperCheck:
+    """Check every claim of the source paper and compute its figures.
+
+    Parameters
+    ----------
+    workers
+        Processes to use; with 1 everything runs in this one.
+    progress
+        Called with the heading of each section that is done, how many sections are done, how many there are, and the
+        fraction of the work that is done; first with an empty heading, for what an earlier call had finished.
+    folder
+        Folder that keeps each finished section, in `analyses`. A later call with the same version of stylobate and of
+        the libraries under it takes the section from there, so that an interrupted check goes on where it stopped.
+
+    Returns
+    -------
+    PaperCheck
+        Findings and data; `stylobate.paper.report` draws them.
+
+    Raises
+    ------
+    FileError
+        If the folder cannot be written.
+    WorkerLostError
+        If a process ends before its answer.
+    """
+    with tempfile.TemporaryDirectory(prefix="stylobate-") as passing:
+        kept = FinishedAnalyses(Path(passing if folder is None else folder) / "analyses")
+        done = {heading: section for heading in _ANALYSES if (section := kept.read(heading)) is not None}
+
+        def advance(heading: str) -> None:
+            if progress is not None:
+                cost = sum(_ANALYSES[heading].cost for heading in done)
+                progress(heading, len(done), len(_ANALYSES), cost / sum(one.cost for one in _ANALYSES.values()))
+
+        advance("")
+        with closing(_computed([heading for heading in _ANALYSES if heading not in done], workers)) as sections:
+            for heading, section in sections:
+                # Read back, so that the report is the same whether the section was computed now or earlier.
+                done[heading] = kept.write(heading, section)
+                advance(heading)
+    return PaperCheck({heading: done[heading] for heading in _ANALYSES})
+
+
+def _computed(headings: list[str], workers: int) -> Generator[tuple[str, Section], None, None]:
+    if workers == 1:
+        for heading in headings:
+            yield heading, _ANALYSES[heading].check()
+        return
+    # The longest first, so that the processes end together.
+    order = sorted(headings, key=lambda heading: -_ANALYSES[heading].cost)
+    yield from computed({heading: _ANALYSES[heading].check for heading in order}, workers=workers)

@@ -1,0 +1,127 @@
+"""Free vibration: planar, rolling and general motion, (2) to (5) and (11)."""
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from stylobate import theory
+from stylobate.engine import simulate
+from stylobate.paper.analyses.setting import SLENDERNESS, judged, paper_model
+from stylobate.results import Finding, Section, Verdict
+
+_C = SLENDERNESS
+
+
+def check_free() -> Section:
+    """Check the paper's statements about a base at rest."""
+    return Section((_planar(), _rolling(), _planar_rate(), _general(), _runaway()), {"runaway": runaway_data()})
+
+
+def runaway_data() -> xr.Dataset:
+    """Return azimuth and tilt vector of free motions that begin ever closer to a plane."""
+    model = paper_model(damping=0.0)
+    offsets = [1e-1, 1e-2, 1e-4, 0.0]
+    tilt = 0.7 * _C
+    time = np.linspace(0.0, 30.0, 3001)
+    runs = [
+        simulate(model, tilt=(tilt, 0.0), tilt_rate=(0.0, rate * _C), duration=time[-1], rtol=1e-10).sample(time)
+        for rate in offsets
+    ]
+    return xr.Dataset(
+        {
+            "azimuth": (("offset", "time"), np.stack([run["azimuth"] for run in runs])),
+            "tilt": (("offset", "time", "axis"), np.stack([run["tilt"] for run in runs])),
+        },
+        coords={"offset": offsets, "time": time, "axis": ["x", "y"]},
+        attrs={"c": _C, "tilt": tilt},
+    )
+
+
+def _planar() -> Finding:
+    amplitude = 0.6 * _C
+    period = float(theory.planar_free_period(amplitude, _C))
+    run = simulate(paper_model(damping=0.0), tilt=(amplitude, 0.0), duration=2.0 * period, rtol=1e-11)
+    tau = run.data["time"].to_numpy()
+    tilt = run.data["tilt"].sel(axis="x").to_numpy()
+    corrected = theory.planar_free_motion(tau, amplitude, _C)[0]
+    # The formula as printed has the same sign on both half periods.
+    printed = np.abs(corrected)
+    right, wrong = float(np.abs(tilt - corrected).max()), float(np.abs(tilt - printed).max())
+    return Finding(
+        "(2), (3)",
+        "In a plane the column swings as α = c − (c − A) cosh τ, with the same formula on the next half period.",
+        f"Integrated from A = 0.6c: with the opposite sign on alternate half periods the formula is met to {right:.0e} "
+        f"rad; as printed it is off by {wrong:.2g} rad. Amplitude and frequency obey (3).",
+        judged(right < 1e-9 < wrong, Verdict.ERRATUM),  # noqa: PLR2004  a hundred times the tolerance
+    )
+
+
+def _rolling() -> Finding:
+    worst = 0.0
+    for omega in (0.7, 1.0, 3.0):
+        tilt = float(theory.rolling_backbone(omega, _C))
+        run = simulate(
+            paper_model(damping=0.0), tilt=(tilt, 0.0), tilt_rate=(0.0, tilt * omega), duration=60.0, rtol=1e-11
+        )
+        worst = max(worst, float(np.abs(run.data["amplitude"] - tilt).max()))
+    return Finding(
+        "(4), (5)",
+        "The column can roll freely at any rate ω with the constant tilt c/(1 + ω²).",
+        f"Integrated at ω = 0.7, 1 and 3 over τ = 60: the tilt stays within {worst:.0e} rad. Below ω = 1/√3 this "
+        "rolling exists but is unstable: a deviation of the tilt grows at the rate √(1 − 3ω²).",
+        judged(worst < 1e-9, Verdict.SHARPENED),  # noqa: PLR2004  a hundred times the tolerance
+    )
+
+
+def _general() -> Finding:
+    tilt, rate = 0.6 * _C, 0.5
+    motion = theory.free_motion(tilt, rate, _C)
+    period, advance = float(motion.period), float(motion.azimuth_advance)
+    run = simulate(
+        paper_model(damping=0.0), tilt=(tilt, 0.0), tilt_rate=(0.0, tilt * rate), duration=20.0 * period, rtol=1e-11
+    )
+    end = run.sample(20.0 * period)
+    turned, back = float(end["azimuth"][0]) / 20.0, float(end["amplitude"][0])
+    gap = max(abs(turned - advance), abs(back - tilt) / tilt)
+    # Ä at the start by the equation as printed, with the sign of its terms reversed, against the integrated one.
+    momentum = tilt**2 * rate
+    true = momentum**2 / tilt**3 + tilt - _C
+    near = run.sample(np.array([1e-3]))
+    measured = 2.0 * (float(near["amplitude"][0]) - tilt) / 1e-6
+    return Finding(
+        "after (11)",
+        "With angular momentum ℓ the tilt obeys Ä = −ℓ²/A³ − A + c, where ω0 is the initial β̇.",
+        f"All signs are reversed in print: from A = 0.6c, β̇ = 0.5 the integration starts with Ä = {measured:.5f}, "
+        f"ℓ²/A³ + A − c = {true:.5f}; its ω0 is the initial A0 β̇. Period {period:.6f} and advance of the azimuth "
+        f"{advance:.6f} rad by quadrature agree with the integration to {gap:.0e}.",
+        judged(abs(measured - true) < 1e-3 * abs(true) and gap < 1e-8, Verdict.ERRATUM),  # noqa: PLR2004
+    )
+
+
+def _planar_rate() -> Finding:
+    amplitude, tau = 0.6 * _C, 0.5
+    run = simulate(paper_model(damping=0.0), tilt=(amplitude, 0.0), duration=1.0, rtol=1e-11)
+    measured = float(run.sample(tau)["amplitude_rate"][0])
+    printed = (_C - amplitude) * math.sinh(tau)
+    return Finding(
+        "after (11)",
+        "In the planar motion the tilt rate is μ = (c − A0) sinh τ.",
+        f"Its sign is wrong: from A0 = 0.6c at rest the tilt falls, at τ = 0.5 with μ = {measured:.6f}; printed "
+        f"{printed:.6f}. It is the derivative of A = c − (c − A0) cosh τ, −(c − A0) sinh τ.",
+        judged(abs(measured + printed) < 1e-10, Verdict.ERRATUM),  # noqa: PLR2004  ten times the tolerance
+    )
+
+
+def _runaway() -> Finding:
+    rates = np.array([1e-1, 1e-3, 1e-6])
+    motion = theory.free_motion(0.7 * _C, rates, _C)
+    excess = motion.azimuth_advance / math.pi - 1.0
+    shown = ", ".join(f"{value:.1e}" for value in excess)
+    return Finding(
+        "after (11)",
+        "With any angular momentum at all the azimuth runs away: planar free motion is unstable.",
+        "The azimuth always turns the same way, by π at each passage of the upright in the limit ℓ → 0: for "
+        f"β̇(0) = 0.1, 1e-3, 1e-6 the turn exceeds π by the parts {shown}.",
+        judged(bool(np.all(np.diff(np.abs(excess)) < 0.0) and abs(excess[-1]) < 1e-4)),  # noqa: PLR2004
+    )

@@ -1,0 +1,247 @@
+"""What the paper's assumption that the column cannot turn about the vertical is worth."""
+
+import math
+
+import numpy as np
+import xarray as xr
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from stylobate import theory
+from stylobate.base_motions import Harmonic
+from stylobate.column import Column
+from stylobate.engine import simulate
+from stylobate.errors import Outcome
+from stylobate.models import Model, SlenderRolling
+from stylobate.paper.analyses.setting import CIRCULAR_AMPLITUDES, DAMPING, SLENDERNESS, judged
+from stylobate.paper.analyses.twist_at_finite_tilt import findings_at_finite_tilt
+from stylobate.results import Finding, Response, Section, Verdict
+
+_C = SLENDERNESS
+_A0 = CIRCULAR_AMPLITUDES[1]
+_THETA = 3.0
+_SPIN_FRICTIONS = (math.inf, 1.0, 0.3, 0.1, 0.03)
+"""ζ of the curves drawn."""
+
+_AXIAL_RATIOS = (0.1, 0.25, 0.5, 1.0, 2.0)
+"""i_a of the curves drawn: ½ is a solid cylinder, 1 a thin tube."""
+
+_SLIM = (0.1, 0.2, 0.3, 0.4)
+"""i_a of columns whose foot is wide against what stands on it, below 2κ − 1."""
+
+_KAPPA = 0.75
+_PERIODS, _PERIODS_WITHOUT = 300, 15
+_GONE = 0.01
+"""Tilt that counts as none [c]."""
+
+# The slowest deviation decays by exp(−0.0254 τ), 1e-7 in all these periods.
+_SETTLED = 1e-4
+
+_DEVIATION = 1e-5
+"""Deviations integrated, in parts of the tilt: with the square of this the derivatives are off, by 1e-10."""
+
+_SEARCHED = (0.8, 1.6)
+"""Frequencies between which integration looks for θ*."""
+
+_BOUNDARY, _LINEAR = 1e-6, 0.01
+"""How well integration must give θ*; how well θ* − θ*(η = 0) must be proportional to η."""
+
+
+def check_twist() -> Section:
+    """Check what the assumption of no rotation about the vertical needs, and what becomes of (8) without it."""
+    findings: tuple[Finding, ...] = (_needed(), _with_spin_friction(), _without())
+    findings += (_stability(), _weak_friction(), _upper_frequency())
+    findings += findings_at_finite_tilt()
+    return Section(findings, {"twist": twist_data(), "twist_boundary": boundary_data()})
+
+
+def twist_data() -> xr.Dataset:
+    """Return steady rolling with a free twist against frequency, for several spin damping."""
+    theta, zeta = np.linspace(0.5, 4.0, 281), np.array(_SPIN_FRICTIONS)
+    found = _steady(theta[np.newaxis], zeta[:, np.newaxis])
+    dims = ("zeta", "theta")
+    fields = {name: (dims, getattr(found, name)) for name in ("amplitude", "spin", "friction_moment", "stable")}
+    return xr.Dataset(fields, coords={"zeta": zeta, "theta": theta}, attrs={"a0": _A0, "c": _C})
+
+
+def boundary_data() -> xr.Dataset:
+    """Return the frequencies at which steady rolling with a free twist gains its stability, and loses it again."""
+    a0, zeta = np.linspace(0.002, 0.2, 199), np.array(_SPIN_FRICTIONS)
+    eta, axial, slim = np.geomspace(1e-4, 1.0, 161), np.array(_AXIAL_RATIOS), np.array(_SLIM)
+    friction, least = np.geomspace(1e-3, 1e2, 161), np.geomspace(1e-5, 0.0125, 401)
+    damped = {"c": _C, "eta": DAMPING}
+    fields = {
+        "by_amplitude": (("zeta", "a0"), theory.free_twist_critical_frequency(a0, zeta=zeta[:, None], **damped)),
+        "by_friction": (("zeta", "eta"), theory.free_twist_critical_frequency(_A0, c=_C, eta=eta, zeta=zeta[:, None])),
+        "by_spin_friction": (
+            ("axial_ratio", "spin_damping"),
+            theory.free_twist_critical_frequency(_A0, zeta=friction, axial_ratio=axial[:, None], **damped),
+        ),
+        "upper": (
+            ("slim", "least_spin_friction"),
+            theory.free_twist_upper_frequency(_A0, zeta=least, axial_ratio=slim[:, None], **damped),
+        ),
+        "upper_limit": ("slim", np.sqrt((1.0 + _A0 / _C + slim) / (2.0 * _KAPPA - 1.0 - slim))),
+    }
+    coordinates = {
+        "a0": a0,
+        "zeta": zeta,
+        "eta": eta,
+        "axial_ratio": axial,
+        "slim": slim,
+        "spin_damping": friction,
+        "least_spin_friction": least,
+    }
+    without = float(theory.critical_frequency(_A0, **damped))
+    about = {"weak_limit": _weak_limit(), "without": without, "a0": _A0, "eta": DAMPING}
+    return xr.Dataset(fields, coords=coordinates, attrs=about)
+
+
+def _weak_limit() -> float:
+    """Return the critical frequency with a free twist as the friction η vanishes."""
+    return math.sqrt(1.0 + 2.0 * _A0 / _C)
+
+
+def _steady(theta: object, zeta: object) -> theory.FreeTwistRolling:
+    return theory.free_twist_rolling(theta, _A0, c=_C, eta=DAMPING, zeta=zeta)  # type: ignore[arg-type]
+
+
+def _run_from_paper(zeta: float, periods: float) -> Response:
+    """Return the motion of a column that may turn, begun on the paper's solution (8) without spin."""
+    motion = Harmonic.circular(acceleration=_A0, angular_frequency=_THETA)
+    model = SlenderRolling(Column.dimensionless(_C), damping=DAMPING, spin_damping=zeta)
+    branch = theory.steady_rolling(_THETA, _A0, c=_C, eta=DAMPING).upper
+    size, psi = float(branch.amplitude), float(branch.phase)
+    x, y = size * math.cos(psi), size * math.sin(psi)
+    rate = (-_THETA * y, _THETA * x)
+    return simulate(model, motion, tilt=(x, y), tilt_rate=rate, duration=periods * motion.period, rest_energy=0.0)
+
+
+def _needed() -> Finding:
+    held = _steady(_THETA, math.inf)
+    moment = float(held.friction_moment)
+    expected = DAMPING * _THETA * float(held.amplitude)
+    return Finding(
+        "before (1)",
+        "The column cannot rotate about the vertical.",
+        "On (8) the contact must bear the moment m r a_n about the vertical, a_n = g η θ A: at a0 = 0.065, θ = 3 it is "
+        f"{100.0 * moment:.2f} % of weight times radius. A small contact patch can give that, a point cannot.",
+        judged(math.isclose(moment, expected, rel_tol=1e-12), Verdict.LIMITED),
+    )
+
+
+def _with_spin_friction() -> Finding:
+    zeta = 0.1
+    known, paper = _steady(_THETA, zeta), _steady(_THETA, math.inf)
+    run = _run_from_paper(zeta, _PERIODS)
+    tilt = float(np.hypot(*run.data["tilt"].to_numpy()[-1]))
+    off = abs(tilt / float(known.amplitude) - 1.0)
+    return Finding(
+        "(8)",
+        "Steady rolling at the tilt A.",
+        "With a free twist and spin damping ζ it is (8) with θ² replaced by θ²(1 + η/(ζD)) in a0 cos ψ = A(1+θ²) − c, "
+        "D = 1 + i_a − κ: the column spins at σ = −ηθA/(cζκD) and leans less. Solid cylinder, ζ = 0.1, θ = 3: "
+        f"A = {float(known.amplitude):.5f} instead of {float(paper.amplitude):.5f}, σ = {float(known.spin):.4f}; "
+        f"integration begun on (8) gives A = {tilt:.5f} after {_PERIODS} periods.",
+        judged(off < _SETTLED and run.outcome is not Outcome.OVERTURNED, Verdict.LIMITED),
+    )
+
+
+def _without() -> Finding:
+    run = _run_from_paper(0.0, _PERIODS_WITHOUT)
+    tilt = np.hypot(*run.data["tilt"].to_numpy().T)
+    fallen = np.flatnonzero(tilt < _GONE * _C)
+    when = float(run.data["time"][fallen[0]]) if fallen.size else math.nan
+    spin = float(run.data["spin"][fallen[0]]) if fallen.size else math.nan
+    return Finding(
+        "(8)",
+        "The same without any friction about the vertical.",
+        "None is left: what the base gives across the lean spins the column up, and the tilt dies. Begun on (8) at "
+        f"a0 = 0.065, θ = 3 it falls below {_GONE:g}c at τ = {when:.1f}, with σ = {spin:.2f}.",
+        judged(bool(fallen.size), Verdict.FAILS),
+    )
+
+
+def _stability() -> Finding:
+    zeta = np.array([math.inf, 1.0, 0.1])
+    known = theory.free_twist_critical_frequency(_A0, c=_C, eta=DAMPING, zeta=zeta)
+    paper, much, little = (float(one) for one in known)
+    off = [abs(_integrated_boundary(zeta=float(zeta[k])) - float(known[k])) for k in (1, 2)]
+    return Finding(
+        "after (8)",
+        "Rolling is stable above the critical frequency.",
+        f"A free twist lowers it: at a0 = 0.065 from {paper:.4f} to {much:.4f} (ζ = 1) and {little:.4f} (ζ = 0.1), "
+        f"for the column leans less. Integrated over a period, deviations neither grow nor decay within {max(off):.0e} "
+        "of these.",
+        judged(little < much < paper and max(off) < _BOUNDARY, Verdict.SHARPENED),
+    )
+
+
+def _weak_friction() -> Finding:
+    weak, zeta, theta = 0.01, 1.0, 1.45
+    paper = float(theory.critical_frequency(_A0, c=_C, eta=weak))
+    known = float(theory.free_twist_critical_frequency(_A0, c=_C, eta=weak, zeta=zeta))
+    gaps = [
+        _weak_limit() - float(theory.free_twist_critical_frequency(_A0, c=_C, eta=eta, zeta=zeta))
+        for eta in (1e-5, 2e-5)
+    ]
+    growth = _largest_multiplier(theta, eta=weak, zeta=zeta)
+    without = float(theory.critical_frequency_frictionless(_A0, c=_C))
+    return Finding(
+        "conclusions",
+        "The critical frequency depends on the parameters: weak friction hardly moves it.",
+        f"With a free twist it does: as η → 0, at any ζ and shape, it tends to √(1 + 2a0/c) = {_weak_limit():.4f} and "
+        f"not to {without:.4f}, and a twist raises it. At η = {weak:g}, ζ = 1 it is {known:.4f} instead of "
+        f"{paper:.4f}; at θ = {theta:g}, between the two, integration makes deviations {growth:.4f} times as large in "
+        "a period.",
+        judged(
+            paper < theta < known and growth > 1.0 and abs(gaps[1] / gaps[0] - 2.0) < _LINEAR,
+            Verdict.LIMITED,
+        ),
+    )
+
+
+def _upper_frequency() -> Finding:
+    column = {"zeta": 0.003, "axial_ratio": 0.1}
+    low = float(theory.free_twist_critical_frequency(_A0, c=_C, eta=DAMPING, **column))
+    high = float(theory.free_twist_upper_frequency(_A0, c=_C, eta=DAMPING, **column))
+    solid = float(theory.free_twist_upper_frequency(_A0, c=_C, eta=DAMPING, zeta=column["zeta"]))
+    below, above = (_largest_multiplier(share * high, **column) for share in (0.97, 1.03))
+    return Finding(
+        "after (8)",
+        "The same at high frequency.",
+        "Not for every column that may turn: with i_a < 2κ − 1, a foot wide against what stands on it, and little spin "
+        f"friction it is lost again. At i_a = 0.1, ζ = 0.003 rolling is stable for {low:.4f} < θ < {high:.4f}; in a "
+        f"period integration makes deviations {below:.4f} and {above:.4f} times as large 3 % below and above that end. "
+        "A solid cylinder is on the border i_a = 2κ − 1 and stays stable.",
+        judged(below < 1.0 < above and math.isinf(solid), Verdict.LIMITED),
+    )
+
+
+def _integrated_boundary(*, zeta: float) -> float:
+    """Return the frequency at which integration makes deviations neither grow nor decay."""
+    return float(brentq(lambda theta: _largest_multiplier(theta, zeta=zeta) - 1.0, *_SEARCHED, xtol=1e-9))
+
+
+def _largest_multiplier(theta: float, *, zeta: float, eta: float = DAMPING, axial_ratio: float = 0.5) -> float:
+    """Return by which factor a deviation from steady rolling can grow in a period, from runs of the model."""
+    found = theory.free_twist_rolling(theta, _A0, c=_C, eta=eta, zeta=zeta, axial_ratio=axial_ratio)
+    model: Model = SlenderRolling(Column.dimensionless(_C, _KAPPA, axial_ratio), damping=eta, spin_damping=zeta)
+    size, psi = float(found.amplitude), float(found.phase)
+    x, y = size * math.cos(psi), size * math.sin(psi)
+    steady = np.array([x, y, -theta * y, theta * x, float(found.spin)])
+    scale = _DEVIATION * np.array([size, size, theta * size, theta * size, 1.0])
+
+    def rates(tau: float, state: np.ndarray) -> tuple[float, ...]:
+        push = (_A0 * math.cos(theta * tau), _A0 * math.sin(theta * tau), 0.0)
+        return model.rates(*state, *push, *model.parameters)
+
+    def after_a_period(start: np.ndarray) -> np.ndarray:
+        run = solve_ivp(rates, (0.0, 2.0 * math.pi / theta), start, "DOP853", rtol=1e-11, atol=1e-14)
+        return np.asarray(run.y[:, -1])
+
+    columns = [
+        (after_a_period(steady + off) - after_a_period(steady - off)) / (2.0 * step)
+        for off, step in zip(np.diag(scale), scale, strict=True)
+    ]
+    return float(np.abs(np.linalg.eigvals(np.column_stack(columns))).max())

@@ -1,0 +1,218 @@
+"""The levels of the ladder of models compared: histories over one another, what the contact bears, convergence."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from stylobate.plots.cells import fill_options, percent
+from stylobate.plots.classes import Look, MapClass
+from stylobate.plots.kinds import figure_of
+from stylobate.plots.maps import draw_classes
+from stylobate.plots.style import BLACK, GREY, PALETTE, new_figure, styled
+from stylobate.results.outcomes import NOT_COMPUTED, outcome_of
+
+# Levels that cannot turn are blue and black, those that may turn vermilion and orange; finite tilt is dashed, over it.
+_LINES: dict[str, dict[str, Any]] = {
+    "slender": {"color": PALETTE[4], "linestyle": "-", "linewidth": 2.8},
+    "slender rolling": {"color": PALETTE[5], "linestyle": "-", "linewidth": 2.8},
+    "wobbling": {"color": PALETTE[0], "linestyle": "--", "linewidth": 1.3},
+    "rolling": {"color": PALETTE[1], "linestyle": "--", "linewidth": 1.3},
+    "planar rocking": {"color": BLACK, "linestyle": ":", "linewidth": 1.3},
+}
+_MARKS = {"slender": "o", "slender rolling": "s", "wobbling": "D", "rolling": "^", "planar rocking": "v"}
+# Pairs whose deviation is drawn against the slenderness: what differs by the tilt alone, and what by the twist.
+_PAIRS = (("slender", "rolling"), ("slender", "wobbling"), ("slender rolling", "rolling"))
+# The line in proportion to c² stands below what it is compared with.
+_BELOW, _ORDER = 0.3, 2
+
+_DIFFERENCES = (
+    Look("#F6F1DA", ink="#333333"),
+    Look(PALETTE[0], "///"),
+    Look(PALETTE[5], "...", "#333333"),
+    Look("#1B0B16"),
+    Look("#ffffff", "xxx", "#D55E00"),
+)
+_UNFINISHED = MapClass(NOT_COMPUTED, "not computed", Look("#ffffff", "//////", "#b0b0b0"))
+
+
+@figure_of("model hierarchy")
+@styled
+def plot_hierarchy(found: xr.Dataset) -> Figure:
+    """Return a figure of the levels of a `ladder` compared.
+
+    Where it keeps histories: the tilt of all levels against time, and the spin where there is some. Below, over several
+    slendernesses, how the levels come together as c falls; of one case what the contact must bear. Histories of several
+    slendernesses are those of the largest.
+    """
+    if found.sizes.get("slenderness") == 1:  # one case: nothing to come together
+        found = found.isel(slenderness=0)
+        found = found.assign_attrs(column_slenderness=float(found["slenderness"]))
+    several = "slenderness" in found.dims
+    shown = found.isel(slenderness=int(np.argmax(found["slenderness"].to_numpy()))) if several else found
+    c = float(shown["slenderness"]) if several else float(found.attrs["column_slenderness"])
+    kept = "amplitude" in found
+    spinning = kept and bool(np.nanmax(np.abs(shown["spin"].fillna(0.0))) > 0.0)
+    rows = 1.6 * kept, 1.0 * spinning, 1.5
+    heights = [height for height in rows if height]
+    figure = new_figure(0.5 + 1.75 * sum(heights))
+    grid = figure.add_gridspec(len(heights), 2, height_ratios=heights)
+    if kept:
+        tilt = figure.add_subplot(grid[0, :])
+        _draw_histories(tilt, shown, c)
+        if spinning:
+            spin = figure.add_subplot(grid[1, :], sharex=tilt)
+            _draw_spin(spin, shown)
+            tilt.tick_params(labelbottom=False)
+            tilt.set_xlabel("")
+    left, right = figure.add_subplot(grid[-1, 0]), figure.add_subplot(grid[-1, 1])
+    if several:
+        _draw_convergence(left, found)
+        _draw_over_slenderness(right, found)
+    else:
+        _draw_tilts(left, found, c)
+        _draw_demands(right, found)
+    return figure
+
+
+def _draw_histories(axes: Axes, shown: xr.Dataset, c: float) -> None:
+    for level in shown["level"].to_numpy():
+        axes.plot(shown["time"], shown["amplitude"].sel(level=level), label=_told(shown, level), **_LINES[str(level)])
+    axes.axhline(c, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)))
+    axes.set_ylim(0.0, 1.05 * max(c, min(float(shown["amplitude"].max()), 3.0 * c)))
+    axes.annotate(
+        "A = c", (1.0, c), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=8, color=GREY
+    )
+    axes.set_ylabel("tilt angle A [rad]")
+    axes.set_xlabel("time [s]")
+    axes.margins(x=0.0)
+    axes.set_title(f"c = {c:.4g}")
+    assert isinstance(axes.figure, Figure)
+    axes.figure.legend(*axes.get_legend_handles_labels(), loc="outside upper center", ncols=2)
+
+
+def _told(shown: xr.Dataset, level: str) -> str:
+    outcome = outcome_of(int(shown["outcome"].sel(level=level)))
+    return f"{level}: {outcome.value if outcome else 'not computed'}"
+
+
+def _draw_spin(axes: Axes, shown: xr.Dataset) -> None:
+    for level in shown["level"].to_numpy():
+        spin = shown["spin"].sel(level=level)
+        if bool(spin.notnull().any()):
+            axes.plot(shown["time"], spin, **_LINES[str(level)])
+    axes.set_ylabel("spin [rad/s]")
+    axes.set_xlabel("time [s]")
+
+
+def _draw_tilts(axes: Axes, found: xr.Dataset, c: float) -> None:
+    place = np.arange(found.sizes["level"])[::-1]
+    for name, label, filled in (("largest_tilt", "largest", True), ("mean_late_tilt", "late mean", False)):
+        _draw_dots(axes, place, found[name].to_numpy() / c, found["level"].to_numpy(), filled=filled)
+        axes.plot([], [], "o", color=GREY, markerfacecolor=GREY if filled else "white", label=label)
+    axes.set_yticks(place, list(found["level"].to_numpy()))
+    axes.set_ylim(-0.6, place.size - 0.1)
+    axes.set_xlim(left=0.0)
+    axes.set_xlabel("tilt over c")
+    axes.legend(loc="upper right", ncols=2, fontsize=7.5, borderpad=0.1, handletextpad=0.1, columnspacing=0.8)
+
+
+def _draw_dots(axes: Axes, place: np.ndarray, values: np.ndarray, levels: np.ndarray, *, filled: bool) -> None:
+    for at, value, level in zip(place, values, levels, strict=True):
+        colour = _LINES[str(level)]["color"]
+        axes.plot(value, at, "o", color=colour, markerfacecolor=colour if filled else "white", markersize=6)
+
+
+def _draw_demands(axes: Axes, found: xr.Dataset) -> None:
+    place = np.arange(found.sizes["level"])[::-1]
+    for name, label, filled in (
+        ("largest_friction_demand", "friction", True),
+        ("largest_pivoting_demand", "pivoting", False),
+    ):
+        values = found[name].to_numpy()
+        _draw_dots(axes, place, np.where(np.isfinite(values), values, np.nan), found["level"].to_numpy(), filled=filled)
+        axes.plot([], [], "o", color=GREY, markerfacecolor=GREY if filled else "white", label=label)
+    given = found.attrs.get("friction_coefficient")
+    if given is not None:
+        axes.axvline(given, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)), label="coefficient")
+    axes.set_yticks(place, [])
+    axes.set_ylim(-0.6, place.size - 0.1)
+    axes.set_xlim(left=0.0)
+    axes.set_xlabel("largest demand on the contact")
+    axes.legend(loc="upper left", ncols=3, fontsize=7.5, borderpad=0.1, handletextpad=0.1, columnspacing=0.8)
+
+
+def _draw_convergence(axes: Axes, found: xr.Dataset) -> None:
+    """Draw the deviations over c against c, and c² beside them."""
+    c = found["slenderness"].sortby("slenderness").to_numpy()
+    levels = set(found["level"].to_numpy())
+    deviation = found["deviation"].sortby("slenderness")
+    styles = ((BLACK, "v", ":"), (PALETTE[0], "o", "-"), (PALETTE[1], "^", "-"))
+    for (first, second), (colour, marker, style) in zip(_PAIRS, styles, strict=True):
+        if {first, second} <= levels:
+            relative = deviation.sel(level=first, other_level=second).to_numpy() / c
+            name = f"{second} from {first}"
+            axes.plot(c, relative, color=colour, marker=marker, markersize=4.5, linestyle=style, label=name)
+    least = deviation.sel(level="slender", other_level="wobbling").to_numpy() / c
+    guide = _BELOW * least[-1] * (c / c[-1]) ** _ORDER
+    axes.plot(c, guide, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), label="in proportion to c²")
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.legend(loc="upper left", bbox_to_anchor=(0.0, 0.93), fontsize=7)
+    _set_slendernesses(axes, c)
+    axes.set_ylabel("largest distance of tilts over c")
+
+
+def _draw_over_slenderness(axes: Axes, found: xr.Dataset) -> None:
+    ordered = found.sortby("slenderness")
+    c = ordered["slenderness"].to_numpy()
+    top = 0.0
+    for level in found["level"].to_numpy():
+        line = _LINES[str(level)]
+        values = ordered["mean_late_tilt"].sel(level=level).to_numpy() / c
+        axes.plot(c, values, marker=_MARKS[str(level)], markersize=4.5, label=str(level), **{**line, "linewidth": 1.3})
+        top = float(np.nanmax([top, *values]))
+    axes.set_xscale("log")
+    _set_slendernesses(axes, c)
+    axes.set_ylim(0.0, 1.1 * top or 1.0)
+    axes.set_ylabel("late mean of the tilt over c")
+    axes.legend(fontsize=7.5)
+
+
+def _set_slendernesses(axes: Axes, c: np.ndarray) -> None:
+    axes.set_xticks(c, [f"{value:g}" for value in c])
+    axes.set_xticks([], minor=True)
+    axes.set_xlabel("slenderness c")
+
+
+@figure_of("outcome differences")
+@styled
+def plot_outcome_differences(found: xr.Dataset) -> Figure:
+    """Return a figure of the kind "outcome differences": where two models disagree whether the column overturns."""
+    figure = new_figure(4.6)
+    axes = figure.subplots()
+    names = [
+        str(name).replace("the first", found.attrs["first"]).replace("the second", found.attrs["second"])
+        for name in found["comparison_name"].to_numpy()
+    ]
+    classes = [MapClass(code, name, look) for code, (name, look) in enumerate(zip(names, _DIFFERENCES, strict=True))]
+    draw_classes(axes, found, found["comparison"], [*classes, _UNFINISHED])
+    figure.legend(handles=_entries(found, classes), loc="outside upper center", ncols=2)
+    return figure
+
+
+def _entries(found: xr.Dataset, classes: Sequence[MapClass]) -> list[Artist]:
+    codes = found["comparison"].to_numpy()
+    counts = [int(np.count_nonzero(codes == one.code)) for one in classes]
+    entries: list[Artist] = [
+        Patch(label=f"{one.name}  {percent(count, codes.size)}", **fill_options(one.look))
+        for one, count in zip(classes, counts, strict=True)
+        if count
+    ]
+    return entries or [Line2D([], [], label="nothing computed", linestyle="none")]

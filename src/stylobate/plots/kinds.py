@@ -1,0 +1,58 @@
+"""Which function draws a result: each figure states the kinds of result that it shows."""
+
+import pkgutil
+from collections.abc import Callable
+from functools import cache
+from importlib import import_module
+from typing import TypeAlias, TypeVar
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+Draw: TypeAlias = Callable[[xr.Dataset], Figure]
+_Draw = TypeVar("_Draw", bound=Draw)
+
+# Rooms whose modules draw; each is looked through once, when the first result is drawn.
+_FOLDERS = ("stylobate.plots", "stylobate.earthquakes.figures", "stylobate.conveying.figures")
+
+_FIGURES: dict[str, Draw] = {}
+
+
+def figure_of(*kinds: str) -> Callable[[_Draw], _Draw]:
+    """Register a function as the one that draws results of these kinds; `stylobate.plot` finds it.
+
+    Parameters
+    ----------
+    kinds
+        Values of the attribute `kind` of Datasets.
+
+    Examples
+    --------
+    A figure for a study of your own:
+
+    >>> from matplotlib.figure import Figure
+    >>> from stylobate.plots import figure_of
+    >>> @figure_of("peak displacements")
+    ... def plot_peak_displacements(data):
+    ...     return Figure()
+    """
+
+    def registered(draw: _Draw) -> _Draw:
+        _FIGURES.update(dict.fromkeys(kinds, draw))
+        return draw
+
+    return registered
+
+
+def figure_for(kind: str) -> Draw | None:
+    """Return the function that draws results of this `kind`, or None."""
+    _import_figures()
+    return _FIGURES.get(kind)
+
+
+@cache
+def _import_figures() -> None:
+    for folder in _FOLDERS:
+        for module in pkgutil.iter_modules(import_module(folder).__path__, f"{folder}."):
+            if not module.ispkg:
+                import_module(module.name)

@@ -1,0 +1,51 @@
+from .hierarchy.outcomes import Comparison, outcome_differences
+from .hierarchy.study import model_hierarchy
+from .maps.attractors import attractors, label_attractors
+from .maps.basin_fractions import basin_fractions
+from .maps.basins import basins
+from .maps.integrity import erosion, integrity
+from .maps.overturning import overturning_map
+from .maps.stroboscopic import AttractorRules
+from .maps.uncertainty_exponent import uncertainty_exponent
+from .responses.after_bifurcation import after_bifurcation
+from .responses.averaged_motion import averaged_motion
+from .responses.averaging_map import averaging_map
+from .responses.exact_response import exact_response
+from .responses.initial_conditions import steady_start
+from .responses.lyapunov import lyapunov_exponents
+from .responses.poincare_sections import poincare_section
+from .responses.response_curves import response_curves
+from .responses.slow_sweep import slow_sweep
+from .responses.stability_boundary import stability_boundary
+from .sweeps import Dask, Sweep, Threads, executor_from, open_sweep, run_sweep
+
+__all__ = [
+    "AttractorRules",
+    "Comparison",
+    "Dask",
+    "Sweep",
+    "Threads",
+    "after_bifurcation",
+    "attractors",
+    "averaged_motion",
+    "averaging_map",
+    "basin_fractions",
+    "basins",
+    "erosion",
+    "exact_response",
+    "executor_from",
+    "integrity",
+    "label_attractors",
+    "lyapunov_exponents",
+    "model_hierarchy",
+    "open_sweep",
+    "outcome_differences",
+    "overturning_map",
+    "poincare_section",
+    "response_curves",
+    "run_sweep",
+    "slow_sweep",
+    "stability_boundary",
+    "steady_start",
+    "uncertainty_exponent",
+]

@@ -1,5 +1,0 @@
-"""The assessment of columns under a set of records."""
-
-from stylobate.studies.assessment.assess import assess
-
-__all__ = ["assess"]

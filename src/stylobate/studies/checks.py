@@ -1,0 +1,82 @@
+"""What studies let vary: the starts of one system, and one parameter."""
+
+import warnings
+from collections.abc import Iterable, Mapping
+
+import numpy.typing as npt
+
+from stylobate.errors import ParameterError, UnlikelyInputWarning
+from stylobate.models import Model
+from stylobate.studies.sweeps.quantities import STARTS, Floats, check_quantities, checked_values
+
+SYSTEM_STARTS = (*STARTS, "start_phase")
+"""What can differ between runs of one column under one base motion."""
+
+
+def require_starts(where: str, over: Mapping[str, object]) -> None:
+    """Raise ParameterError unless `over` names starts only, which leave column and base motion as they are."""
+    if not isinstance(over, Mapping) or not over:
+        message = f'{where} must name starts, such as {where}={{"tilt_x": …, "tilt_rate_x": …}}; got {over!r}'
+        raise ParameterError(message)
+    for name in over:
+        if name not in SYSTEM_STARTS:
+            message = f"{where} must name starts of one system, {', '.join(SYSTEM_STARTS)}; got {name!r}"
+            raise ParameterError(message)
+
+
+def require_values(where: str, over: Mapping[str, npt.ArrayLike]) -> None:
+    """Raise ParameterError if a name in `over` has no values: a study of nothing tells nothing."""
+    for name, values in over.items():
+        _require_some(where, name, checked_values(where, name, values))
+
+
+def one_parameter(model: Model, along: Mapping[str, npt.ArrayLike], over: Mapping[str, object]) -> tuple[str, Floats]:
+    """Return the one name in `along` and its values.
+
+    Raises
+    ------
+    ParameterError
+        If there are more names, or no values, or `over` names it too, or it is no quantity that can vary.
+    """
+    if not isinstance(along, Mapping) or len(along) != 1:
+        message = f'along must name one parameter with its values, such as {{"acceleration": […]}}; got {along!r}'
+        raise ParameterError(message)
+    ((name, given),) = along.items()
+    if name in over:
+        message = f"along and over must differ, got {name!r} in both"
+        raise ParameterError(message)
+    if name not in SYSTEM_STARTS:
+        check_quantities("along", model, [name])
+    values = checked_values("along", name, given)
+    _require_some("along", name, values)
+    return name, values
+
+
+def remark_on_lengths(where: str, names: Iterable[str]) -> None:
+    """Warn if one length of a column varies and nothing else of its body: the result is no larger column."""
+    given = set(names)
+    alone = [name for name in _LENGTHS if name in given]
+    if alone and given.isdisjoint(_OF_THE_BODY):
+        message = (
+            f"{where}: {alone[0]} changes without mass and moments of inertia, which belong to another body then; "
+            "size scales a column at one shape and density, slenderness its radius with the axial inertia"
+        )
+        warnings.warn(message, UnlikelyInputWarning, stacklevel=3)
+
+
+_LENGTHS = ("radius", "mass_height")
+_OF_THE_BODY = ("mass", "transverse_inertia", "axial_inertia")
+
+
+def _require_some(where: str, name: str, values: Floats) -> None:
+    if not values.size:
+        message = f"{where}[{name!r}] must have at least one value, got none"
+        raise ParameterError(message)
+
+
+def require_no_tilt_limit(options: Mapping[str, object]) -> None:
+    """Raise ParameterError if `options` name a tilt limit: a run stopped there is not known to overturn, or not to."""
+    if options.get("tilt_limit") is not None:
+        given = options["tilt_limit"]
+        message = f"tilt_limit must be left out: a run stopped at it is not known to overturn or not; got {given!r} rad"
+        raise ParameterError(message)

@@ -1,0 +1,1 @@
+"""Models of one column side by side."""

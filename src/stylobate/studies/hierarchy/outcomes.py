@@ -1,0 +1,142 @@
+"""Where two models of a column tell different outcomes, over two parameters."""
+
+import json
+from collections.abc import Mapping
+from enum import Enum
+from typing import Any, Unpack
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion
+from stylobate.errors import Outcome
+from stylobate.models import Model
+from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.studies.maps.overturning import overturning_map
+from stylobate.studies.sweeps import Executor
+from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.recipe import RunOptions
+
+
+class Comparison(Enum):
+    """What two models tell of the same run, in the order of the codes."""
+
+    BOTH_STAY = "overturns in neither"
+    ONLY_FIRST = "overturns in the first only"
+    ONLY_SECOND = "overturns in the second only"
+    BOTH_OVERTURN = "overturns in both"
+    UNDECIDED = "undecided"
+    """A run failed, or lifted off, or was stopped by a tilt limit."""
+
+
+def outcome_differences(
+    first: Model,
+    second: Model,
+    motion: BaseMotion | None = None,
+    *,
+    over: Mapping[str, npt.ArrayLike],
+    duration: float | None = None,
+    periods: float | None = None,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+    **options: Unpack[RunOptions],
+) -> xr.Dataset:
+    """Tell over two parameters where two models of a column disagree whether it overturns.
+
+    With models that differ in one assumption, such as `Slender` and `SlenderRolling`, this is where that assumption
+    decides the outcome.
+
+    Parameters
+    ----------
+    first, second
+        The models, of one column as a rule.
+    motion, over, duration, periods, executor, progress, **options
+        As in `overturning_map`; `over` names what both models know.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "outcome differences": over the two names `comparison`, codes of `Comparison`; `first_outcome`,
+        `second_outcome`, and `first_largest_tilt`, `second_largest_tilt` [rad], with demands=True also those on the
+        contact; `count` and `share` over `comparison_name`.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range.
+    Interrupted
+        After Ctrl-C; its `partial` is the overturning map of the model that was being computed.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> column = sb.Column.dimensionless(slenderness=0.1)
+    >>> held, free = sb.Slender(column, damping=0.1), sb.SlenderRolling(column, damping=0.1, spin_damping=0.1)
+    >>> motion = sb.Harmonic.circular(acceleration=0.13, angular_frequency=3.0)
+    >>> over = {"angular_frequency": [2.0, 3.0], "acceleration": [0.12, 0.13]}
+    >>> found = sb.studies.outcome_differences(held, free, motion, over=over, periods=60.0)
+    >>> print(found["comparison"].dims, int(found["count"].sum()))
+    ('angular_frequency', 'acceleration') 4
+    """
+    maps = [
+        overturning_map(
+            model,
+            motion,
+            over=over,
+            duration=duration,
+            periods=periods,
+            executor=executor,
+            progress=progress,
+            **options,
+        )
+        for model in (first, second)
+    ]
+    codes = _compared(*(found["outcome"].to_numpy() for found in maps))
+    return _dataset(maps, codes, (first, second))
+
+
+def _compared(first: npt.NDArray[np.int8], second: npt.NDArray[np.int8]) -> npt.NDArray[np.int8]:
+    fallen = code_of(Outcome.OVERTURNED)
+    places = {one: code for code, one in enumerate(Comparison)}
+    told = np.where(first == fallen, places[Comparison.ONLY_FIRST], places[Comparison.BOTH_STAY])
+    told = np.where(second == fallen, told + places[Comparison.ONLY_SECOND], told)
+    unclear = [code_of(one) for one in (Outcome.FAILED, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED)]
+    told = np.where(np.isin(first, unclear) | np.isin(second, unclear), places[Comparison.UNDECIDED], told)
+    return np.where((first == NOT_COMPUTED) | (second == NOT_COMPUTED), NOT_COMPUTED, told).astype(np.int8)
+
+
+# What is kept of each model's runs; the demands where they were asked for.
+_TOLD = ("outcome", "largest_tilt", "largest_friction_demand", "largest_pivoting_demand", "least_normal_force")
+
+
+def _dataset(maps: list[xr.Dataset], codes: npt.NDArray[np.int8], models: tuple[Model, Model]) -> xr.Dataset:
+    dims = maps[0]["outcome"].dims
+    names = [one.value for one in Comparison]
+    about: dict[str, Any] = {
+        "long_name": "what the two models tell",
+        "flag_values": np.arange(NOT_COMPUTED, len(names), dtype=np.int8),
+        "flag_meanings": " ".join(["NOT_COMPUTED", *(one.name for one in Comparison)]),
+    }
+    count = np.array([np.count_nonzero(codes == code) for code in range(len(names))], dtype=np.int64)
+    variables: dict[str, Any] = {
+        "comparison": (dims, codes, about),
+        "count": ("comparison_name", count, {"units": "1", "long_name": "runs compared so"}),
+        "share": ("comparison_name", count / max(codes.size, 1), {"units": "1", "long_name": "share of the runs"}),
+    }
+    for place, found in zip(("first", "second"), maps, strict=True):
+        told = [name for name in _TOLD if name in found]
+        variables |= {f"{place}_{name}": found[name].variable for name in told}
+    provenance = {
+        place: json.loads(found.attrs["provenance"]) for place, found in zip(("first", "second"), maps, strict=True)
+    }
+    return xr.Dataset(
+        variables,
+        coords={**{dim: maps[0][dim] for dim in dims}, "comparison_name": names},
+        attrs={
+            "kind": "outcome differences",
+            "first": models[0].name,
+            "second": models[1].name,
+            "provenance": json.dumps(provenance),
+        },
+    )

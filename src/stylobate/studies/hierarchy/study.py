@@ -1,0 +1,276 @@
+"""One case through all levels of the ladder of models: what each assumption costs."""
+
+import json
+import math
+from collections.abc import Sequence
+from typing import Any, Unpack
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.base_motions import BASE_AT_REST, BaseMotion
+from stylobate.column import Column
+from stylobate.config import provenance_of_run
+from stylobate.errors import ParameterError, require_finite, require_positive, require_vector, require_whole
+from stylobate.models import Rolling
+from stylobate.models.model import require_column
+from stylobate.results import Response
+from stylobate.results.outcomes import code_of, outcome_attributes
+from stylobate.studies.hierarchy.models import Case, RunArguments
+from stylobate.studies.hierarchy.runs import Course, Floats, largest_distance
+
+# Times at which levels are compared, unless the user asks for histories of another length.
+_TIMES = 2001
+
+_OF_SIMULATE = tuple(RunArguments.__annotations__)
+
+
+def model_hierarchy(
+    column: Column,
+    motion: BaseMotion | None = None,
+    *,
+    damping: float = 0.0,
+    spin_damping: float = 0.0,
+    restitution: float | None = None,
+    tilt: Sequence[float] = (0.0, 0.0),
+    tilt_rate: Sequence[float] = (0.0, 0.0),
+    spin: float = 0.0,
+    duration: float,
+    slenderness: npt.ArrayLike | None = None,
+    friction_coefficient: float | None = None,
+    reference: str = Rolling.name,
+    samples: int | None = None,
+    **arguments: Unpack[RunArguments],
+) -> xr.Dataset:
+    """Run one case through the levels of the ladder of models, and compare what they tell.
+
+    The levels are slender, slender rolling, wobbling and rolling; where start and base motion lie in a vertical plane
+    also planar rocking.
+
+    Parameters
+    ----------
+    column, motion
+        The column, and how its base moves; None is a base at rest.
+    damping
+        η of all levels.
+    spin_damping
+        ζ of the levels that may turn.
+    restitution
+        e on passing the upright, of the levels at finite tilt; by default Housner's in planar rocking and 1 elsewhere.
+    tilt, tilt_rate, spin
+        Start [rad], [rad/s], [rad/s]; levels that cannot turn start without spin.
+    duration
+        How long to follow each run [s].
+    slenderness
+        Slendernesses to which the case is scaled, shape (n,): tilt, its rate and the base motion in proportion to c,
+        radius by `Column.with_slenderness`. To small tilts all of them are the same case.
+    friction_coefficient
+        Of the contact; runs warn where more is needed.
+    reference
+        The level from which differences are taken.
+    samples
+        Number of samples of the histories that are kept; none by default.
+    **arguments
+        Arguments of `simulate`: rtol, atol, tilt_limit, rest_energy, max_steps, rules.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "model hierarchy", over `level`, and `slenderness` where it is given: `outcome`, `uncertain`,
+        `largest_tilt`,
+        `mean_late_tilt`, `mean_late_spin` (over the last fifth of the run; NaN where it ended before, or cannot spin),
+        largest demands on the contact, `least_normal_force` over the weight, `steps`, `warnings`; differences from the
+        `reference`; `deviation` (level, other_level), the largest distance of the tilt vectors while both runs last
+        [rad]. With two slendernesses or more `deviation_order`, the power of c with which `deviation`/c falls. With
+        `samples` the histories `amplitude` [rad] and `spin` [rad/s] over `time`.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range, or there is no such level.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> column = sb.Column.dimensionless(slenderness=0.1)
+    >>> motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
+    >>> start = {"tilt": (0.04, 0.0), "tilt_rate": (0.0, 0.07), "duration": 80.0}
+    >>> found = sb.studies.model_hierarchy(column, motion, damping=0.1, spin_damping=0.1, **start)
+    >>> print((found["mean_late_tilt"] / 0.1).round(3).to_series().to_string(header=False))
+    slender            0.388
+    slender rolling    0.193
+    wobbling           0.388
+    rolling            0.193
+    """
+    strange = [name for name in arguments if name not in _OF_SIMULATE]
+    if strange:
+        message = f"{strange[0]} is no argument of ladder; of those of simulate it takes {', '.join(_OF_SIMULATE)}"
+        raise ParameterError(message)
+    moved = BASE_AT_REST if motion is None else motion
+    case = _case(column, moved, damping, spin_damping, restitution, tilt, tilt_rate, spin)
+    duration = require_positive("duration", duration, "s")
+    levels = [model.name for model in case.models()]
+    if reference not in levels:
+        message = f"reference must be a level of this case, {', '.join(levels)}; got {reference!r}"
+        raise ParameterError(message)
+    time = np.linspace(0.0, duration, _TIMES if samples is None else require_whole("samples", samples, least=2))
+
+    def compared(one: Case) -> xr.Dataset:
+        runs = [one.run(model, duration, friction_coefficient, arguments) for model in one.models()]
+        return _compared(one, runs, time, duration)
+
+    if slenderness is None:
+        found = compared(case)
+    else:
+        scales = _slendernesses(slenderness)
+        found = xr.concat([compared(one) for one in _scaled(case, scales)], dim="slenderness")
+        found = found.assign_coords(slenderness=("slenderness", scales, {"units": "1", "long_name": "slenderness"}))
+        found = _with_order(found) if scales.size > 1 else found
+    found = _with_differences(found, reference)
+    if samples is None:
+        found = found.drop_vars(["amplitude", "spin", "time"])
+    provenance = provenance_of_run(
+        case.models()[levels.index(reference)],
+        moved,
+        tilt=case.tilt,
+        tilt_rate=case.tilt_rate,
+        spin=case.spin,
+        duration=duration,
+        friction_coefficient=friction_coefficient,
+        restitution=restitution,
+        slenderness=None if slenderness is None else np.asarray(slenderness, dtype=float).tolist(),
+        **{name: value for name, value in arguments.items() if name != "rules"},
+    )
+    attributes = {"kind": "model hierarchy", "reference": reference, "column_slenderness": column.slenderness}
+    if friction_coefficient is not None:
+        attributes["friction_coefficient"] = friction_coefficient
+    return found.assign_attrs(**attributes, provenance=json.dumps(provenance))
+
+
+def _case(
+    column: Column,
+    motion: BaseMotion,
+    damping: float,
+    spin_damping: float,
+    restitution: float | None,
+    tilt: Sequence[float],
+    tilt_rate: Sequence[float],
+    spin: float,
+) -> Case:
+    require_column(column)
+    if not isinstance(motion, BaseMotion):
+        message = f"motion must be a base motion such as Harmonic.circular(...) or None, got {motion!r}"
+        raise ParameterError(message)
+    x, y = require_vector("tilt", tilt, 2, "rad")
+    vx, vy = require_vector("tilt_rate", tilt_rate, 2, "rad/s")
+    return Case(
+        column=column,
+        motion=motion,
+        damping=damping,
+        spin_damping=spin_damping,
+        restitution=restitution,
+        tilt=(x, y),
+        tilt_rate=(vx, vy),
+        spin=require_finite("spin", spin, "rad/s"),
+    )
+
+
+def _slendernesses(given: npt.ArrayLike) -> Floats:
+    values = np.atleast_1d(np.asarray(given, dtype=float))
+    if values.ndim != 1 or not values.size or not np.all(np.isfinite(values) & (values > 0.0)):
+        message = f"slenderness must be a list of positive numbers, got {given!r}"
+        raise ParameterError(message)
+    return values
+
+
+def _scaled(case: Case, slendernesses: Floats) -> list[Case]:
+    """Return the case at each slenderness, or raise ParameterError where it would begin beyond π/2."""
+    found = []
+    for c in slendernesses:
+        try:
+            one = case.scaled_to(float(c))
+        except ParameterError as error:
+            message = f"the column cannot be scaled to slenderness {c:.6g}: {error}"
+            raise ParameterError(message) from None
+        found.append(one)
+        if math.hypot(*one.tilt) >= 0.5 * math.pi:
+            message = (
+                f"tilt {case.tilt!r} rad at slenderness {case.column.slenderness:.6g} becomes "
+                f"({one.tilt[0]:.6g}, {one.tilt[1]:.6g}) rad where the case is scaled to slenderness {c:.6g}, and must "
+                "stay below π/2 in length; scale to less, or tilt less"
+            )
+            raise ParameterError(message)
+    return found
+
+
+_MEASURES = {
+    "largest_tilt": ("rad", "largest tilt angle"),
+    "mean_late_tilt": ("rad", "mean tilt angle over the last fifth of the run"),
+    "mean_late_spin": ("rad s-1", "mean spin over the last fifth of the run"),
+    "largest_friction_demand": ("1", "largest friction force over normal force"),
+    "largest_pivoting_demand": ("1", "largest moment about the vertical over normal force and radius"),
+    "least_normal_force": ("1", "least normal force over weight"),
+    "decided_at": ("s", "time at which the outcome was decided"),
+    "steps": ("1", "integration steps"),
+}
+_DIFFERENT = ("largest_tilt", "mean_late_tilt", "largest_friction_demand", "largest_pivoting_demand")
+
+
+def _compared(case: Case, runs: Sequence[Response], time: Floats, duration: float) -> xr.Dataset:
+    """Return what the `runs` of all levels of a case tell."""
+    courses = [Course(run, duration) for run in runs]
+    told = [
+        {**run.measures, "decided_at": run.decided_at, **course.late_means(case.motion)}
+        for run, course in zip(runs, courses, strict=True)
+    ]
+    histories = [course.history(time) for course in courses]
+    tilt = xr.DataArray([tilt for tilt, _ in histories], dims=("level", "time", "axis"))
+    variables: dict[str, Any] = {
+        name: ("level", [one.get(name, np.nan) for one in told], {"units": units, "long_name": long_name})
+        for name, (units, long_name) in _MEASURES.items()
+    }
+    levels = [model.name for model in case.models()]
+    deviation = [[largest_distance(one, other) for other in tilt] for one in tilt]
+    return xr.Dataset(
+        {
+            "outcome": ("level", np.array([code_of(run.outcome) for run in runs], np.int8), outcome_attributes()),
+            "uncertain": ("level", [run.uncertain for run in runs], {"long_name": "uncertain"}),
+            **variables,
+            "warnings": ("level", ["; ".join(run.warnings) for run in runs], {"long_name": "warnings"}),
+            "deviation": (
+                ("level", "other_level"),
+                deviation,
+                {"units": "rad", "long_name": "largest distance of the tilt vectors"},
+            ),
+            "amplitude": (
+                ("level", "time"),
+                np.hypot(tilt[..., 0], tilt[..., 1]).data,
+                {"units": "rad", "long_name": "tilt angle"},
+            ),
+            "spin": (("level", "time"), [spin for _, spin in histories], {"units": "rad s-1", "long_name": "spin"}),
+        },
+        coords={"level": levels, "other_level": levels, "time": ("time", time, {"units": "s", "long_name": "time"})},
+    )
+
+
+def _with_order(found: xr.Dataset) -> xr.Dataset:
+    """Add the power of c with which the deviation over c falls, by least squares; NaN where there is no deviation."""
+    c = found["slenderness"].to_numpy()
+    relative = (found["deviation"] / found["slenderness"]).transpose("slenderness", ...).to_numpy()
+    with np.errstate(divide="ignore", invalid="ignore"):
+        logarithm = np.log(np.where(relative > 0.0, relative, np.nan))
+    offset = np.log(c) - np.log(c).mean()
+    slope = (offset[:, None, None] * logarithm).sum(axis=0) / (offset**2).sum()
+    about = {"units": "1", "long_name": "power of the slenderness with which the deviation over it falls"}
+    return found.assign(deviation_order=(("level", "other_level"), slope, about))
+
+
+def _with_differences(found: xr.Dataset, reference: str) -> xr.Dataset:
+    base = found.sel(level=reference)
+    added = {}
+    for name in _DIFFERENT:
+        difference = found[name] - base[name].drop_vars("level")
+        about = {**found[name].attrs, "long_name": f"{found[name].attrs['long_name']}, less that of {reference}"}
+        added[f"{name}_difference"] = difference.assign_attrs(about)
+    return found.assign(added)

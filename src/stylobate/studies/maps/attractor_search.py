@@ -1,0 +1,285 @@
+"""Attractors found in the runs of one column under one base motion, none of them listed in advance."""
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.errors import Outcome, ParameterError
+from stylobate.results import OutcomeRules
+from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.studies.maps.stroboscopic import (
+    AttractorRules,
+    Complexes,
+    Floats,
+    Integers,
+    OrbitScales,
+    group_cycles,
+    is_flat,
+    keeps_moving,
+    repeating_periods,
+)
+
+UNSETTLED = -2
+"""The label of a run that has reached no attractor by its end: followed longer it may."""
+
+NOT_SETTLED = "not settled"
+"""What such runs are listed as, beside the attractors."""
+REMEDY = "not settled: follow them for more periods and with more strobes, 32 at least"
+
+AT_REST, ROCKING, OVERTURNED = "at rest", "rocking", "overturned"
+ROLLING = {1: "rolling anticlockwise", -1: "rolling clockwise"}
+MODULATED = {1: "modulated anticlockwise", -1: "modulated clockwise"}
+APERIODIC = {1: "aperiodic anticlockwise", -1: "aperiodic clockwise", 0: "aperiodic"}
+ENDINGS = {
+    Outcome.OVERTURNED: OVERTURNED,
+    Outcome.LIMIT_REACHED: "tilt limit reached",
+    Outcome.LIFTED_OFF: "lifted off",
+}
+
+KINDS = (AT_REST, *ROLLING.values(), ROCKING, *MODULATED.values(), *APERIODIC.values(), *ENDINGS.values(), NOT_SETTLED)
+"""All kinds, in the order in which attractors are listed."""
+
+# Mean turns of the contact point in a forcing period that are told from none, and from one: half a turn in ten.
+_TURNING = 0.05
+# Outcomes of runs that move to their end; a column that stands at the end may rest for a part of each period only.
+_MOVING = (Outcome.ROLLING, Outcome.ROCKING, Outcome.MODULATED, Outcome.STILL_MOVING, Outcome.AT_REST)
+
+
+@dataclass(frozen=True, slots=True)
+class Attractor:
+    """One thing that runs come to.
+
+    Attributes
+    ----------
+    kind
+        What it is, in words.
+    period
+        After how many forcing periods it repeats; 0 where it does not.
+    turns
+        Mean turns of the contact point in a forcing period, anticlockwise positive. NaN for an orbit whose period does
+        not divide the periods over which the mean rolling rate was taken (`OutcomeRules.periods`): the mean then tells
+        its sense, not its turns.
+    mean_tilt
+        Mean tilt over the last periods of its runs [rad]; 0 at rest, NaN where it ends a run.
+    states
+        Dimensionless strobed states (`OrbitScales.states`), shape (period, 2); a single one where it has no period,
+        none where it ends a run.
+    """
+
+    kind: str
+    period: int
+    turns: float
+    mean_tilt: float
+    states: Complexes
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """The `attractors` of some runs, and the place in them of each run: `labels`, of the shape of the runs."""
+
+    attractors: tuple[Attractor, ...]
+    labels: Integers
+
+    def listed(self) -> "Found":
+        """Return the same with the runs that have not settled listed last, if there are any, as if an attractor."""
+        unsettled = self.labels == UNSETTLED
+        if not unsettled.any():
+            return self
+        place = len(self.attractors)
+        row = Attractor(NOT_SETTLED, 0, np.nan, np.nan, np.empty((0, 2), dtype=complex))
+        return Found((*self.attractors, row), np.where(unsettled, place, self.labels))
+
+
+def find_attractors(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules) -> Found:
+    """Return the attractors that `runs` of one column under one base motion have come to, and which run came to which.
+
+    At rest, overturned and what else ends a run is told by the outcome. A run that moves to its end is on a periodic
+    orbit if its strobed states repeat; orbits are told apart by the set of their strobed states. A motion that goes on
+    without repeating (`keeps_moving`) is modulated rolling if it turns with the forcing, else aperiodic (quasi-periodic
+    or chaotic), and told by its sense; all others are unsettled, whatever the outcome of the run alone. A column that
+    stands at every strobe counts as at rest.
+
+    Parameters
+    ----------
+    runs
+        Result of an ensemble or sweep with strobes.
+    scales
+        Units of the strobed states, and the period of the forcing.
+    rules
+        When states repeat, and when two orbits are one.
+
+    Returns
+    -------
+    Found
+        The attractors in an order that depends on them alone, and labels: UNSETTLED, NOT_COMPUTED, or their place.
+
+    Raises
+    ------
+    ParameterError
+        If the runs were followed without strobes, or all that move for too short to have them.
+    """
+    if "strobe_tilt" not in runs:
+        message = "runs must have strobed states to tell attractors from; follow them with strobes=32, say"
+        raise ParameterError(message)
+    shape, flat = runs["outcome"].shape, _Flat.of(runs, scales)
+    labels = np.full(flat.outcome.shape, UNSETTLED)
+    labels[flat.outcome == NOT_COMPUTED] = NOT_COMPUTED
+    if scales.period is not None:
+        flat.require_strobes()
+    groups = sorted(_groups(flat, rules), key=lambda group: rank(group[0], rules.match_tolerance))
+    for place, (_, members) in enumerate(groups):
+        labels[members] = place
+    return Found(tuple(attractor for attractor, _ in groups), labels.reshape(shape))
+
+
+@dataclass(frozen=True, slots=True)
+class _Flat:
+    """What tells attractors, flat over the runs: strobed states of shape (n, strobes, 2)."""
+
+    outcome: npt.NDArray[np.int8]
+    strobes: Complexes
+    turns: Floats
+    mean_tilt: Floats
+    periods_of_mean: int
+
+    @classmethod
+    def of(cls, runs: xr.Dataset, scales: OrbitScales) -> "_Flat":
+        """Return the arrays of `runs`."""
+        dims = runs["outcome"].dims
+        vectors = [runs[name].transpose(*dims, "strobe", "axis").to_numpy() for name in _STROBED]
+        count, strobes = runs["outcome"].size, vectors[0].shape[-2]
+        tilt, rate = (vector.reshape(count, strobes, 2) for vector in vectors)
+        return cls(
+            runs["outcome"].to_numpy().ravel(),
+            scales.states(tilt, rate),
+            runs["mean_rolling_rate"].to_numpy().ravel() * (scales.period or 0.0) / (2.0 * np.pi),
+            runs["mean_tilt"].to_numpy().ravel(),
+            _periods_of_mean(runs),
+        )
+
+    def require_strobes(self) -> None:
+        """Raise ParameterError if there are runs that move to their end and none of them has all its strobes."""
+        outcomes = [code_of(outcome) for outcome in _MOVING if outcome is not Outcome.AT_REST]
+        moving = np.isin(self.outcome, outcomes)
+        if moving.any() and np.isnan(self.strobes[moving]).any(axis=(1, 2)).all():
+            count = self.strobes.shape[1]
+            message = (
+                f"runs must last as many periods of the base motion as they have strobes, {count}, got shorter ones; "
+                "follow them longer or with fewer strobes"
+            )
+            raise ParameterError(message)
+
+
+def _periods_of_mean(runs: xr.Dataset) -> int:
+    """Return over how many of the last periods the mean rolling rate of `runs` was taken."""
+    rules = json.loads(runs.attrs.get("provenance", "{}")).get("rules")
+    return int(rules["periods"]) if isinstance(rules, dict) and "periods" in rules else OutcomeRules().periods
+
+
+_STROBED = ("strobe_tilt", "strobe_tilt_rate")
+
+
+def _groups(runs: _Flat, rules: AttractorRules) -> Iterator[tuple[Attractor, Integers]]:
+    """Yield each attractor with its runs."""
+    for outcome, kind in ENDINGS.items():
+        if (ended := np.flatnonzero(runs.outcome == code_of(outcome))).size:
+            yield Attractor(kind, 0, 0.0, np.nan, np.empty((0, 2), dtype=complex)), ended
+    moving = np.isin(runs.outcome, [code_of(outcome) for outcome in _MOVING])
+    stands = (runs.outcome == code_of(Outcome.AT_REST)) & ~(np.abs(runs.strobes) > 0.0).any(axis=(1, 2))
+    if stands.any():
+        yield Attractor(AT_REST, 0, 0.0, 0.0, np.zeros((1, 2), dtype=complex)), np.flatnonzero(stands)
+    candidates = np.flatnonzero(moving & ~stands)
+    periods, left = repeating_periods(runs.strobes[candidates], rules)
+    for period in np.unique(periods[periods > 0]):
+        chosen = periods == period
+        yield from _orbits(runs, candidates[chosen], int(period), left[chosen], rules.match_tolerance)
+    yield from _unrepeated(runs, candidates[periods == 0], rules)
+
+
+def _orbits(
+    runs: _Flat, candidates: Integers, period: int, left: Floats, tolerance: float
+) -> Iterator[tuple[Attractor, Integers]]:
+    cycles = runs.strobes[candidates, -period:]
+    groups, leaders = group_cycles(cycles, left, tolerance)
+    for group, leader in enumerate(leaders):
+        members = candidates[groups == group]
+        # An orbit of k periods makes a whole number of turns in them; none where the rate is unknown, or where the
+        # lean only changes sides.
+        mean = 0.0 if is_flat(cycles[leader], tolerance) else _median(runs.turns[members], otherwise=0.0)
+        counted = not mean or runs.periods_of_mean % period == 0  # else a part of the orbit is in the mean once more
+        turns = round(period * mean) / period if counted else np.nan
+        kind = kind_of_orbit(turns if counted else mean * (abs(mean) > _TURNING))
+        yield Attractor(kind, period, turns, _median(runs.mean_tilt[members]), _ordered(cycles[leader])), members
+
+
+def _unrepeated(runs: _Flat, candidates: Integers, rules: AttractorRules) -> Iterator[tuple[Attractor, Integers]]:
+    settled = candidates[keeps_moving(runs.strobes[candidates], rules)]
+    turns = runs.turns[settled]
+    senses = np.where(np.abs(turns) > _TURNING, np.sign(turns), 0.0)
+    with_forcing = np.abs(np.abs(turns) - 1.0) < _TURNING
+    for kinds, chosen in ((MODULATED, with_forcing), (APERIODIC, ~with_forcing)):
+        for sense, kind in kinds.items():
+            members = settled[chosen & (senses == sense)]
+            if members.size:
+                # It fills a curve or more: the state that leans farthest stands for it, whatever the order of the runs.
+                last = runs.strobes[members, -1]
+                farthest = last[np.argmax(np.abs(last[:, 0]))]
+                mean = _median(runs.turns[members])
+                yield Attractor(kind, 0, mean, _median(runs.mean_tilt[members]), farthest[np.newaxis]), members
+
+
+def kind_of_orbit(turns: float) -> str:
+    """Return what a periodic orbit is that makes so many turns in a forcing period: rolling, or rocking if none."""
+    return ROLLING[int(np.sign(turns))] if turns else ROCKING
+
+
+def with_turns(found: Found, turns: Floats, tolerance: float) -> tuple[Found, Integers]:
+    """Return `found` with the orbits whose turns were not known as these `turns` show them, and the new order.
+
+    The order has for each place the one that its attractor had before.
+    """
+    told = [
+        replace(one, turns=float(value), kind=kind_of_orbit(value))
+        if np.isnan(one.turns) and np.isfinite(value)
+        else one
+        for one, value in zip(found.attractors, turns, strict=True)
+    ]
+    order = np.array(sorted(range(len(told)), key=lambda place: rank(told[place], tolerance)), dtype=np.int64)
+    place = np.empty_like(order)
+    place[order] = np.arange(order.size)
+    labels, told_runs = found.labels.copy(), found.labels >= 0
+    labels[told_runs] = place[found.labels[told_runs]]
+    return Found(tuple(told[old] for old in order), labels), order
+
+
+def _ordered(cycle: Complexes) -> Complexes:
+    """Return the states of an orbit begun with the one that leans farthest."""
+    return np.roll(cycle, -int(np.argmax(np.abs(cycle[:, 0]))), axis=0)
+
+
+def _median(values: Floats, *, otherwise: float = np.nan) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if known.size else otherwise
+
+
+def rank(attractor: Attractor, tolerance: float) -> tuple[float, ...]:
+    """Return the place of an attractor: by kind and period, then by tilt, the largest first, then by its state.
+
+    Rounded to the `tolerance`, so that two orbits alike but for rounding keep their places.
+    """
+    first = attractor.states[0] if len(attractor.states) else np.zeros(2, dtype=complex)
+    state = np.round(np.array([np.abs(first).max(), *first.real, *first.imag]) / tolerance)
+    return (KINDS.index(attractor.kind), attractor.period, *(-state))
+
+
+def names_of(attractors: Sequence[Attractor]) -> list[str]:
+    """Return a name for each: its kind, its period if longer than the forcing's, and a number where several agree."""
+    plain = [found.kind + (f", period {found.period}" if found.period > 1 else "") for found in attractors]
+    return [
+        f"{name} ({plain[:place].count(name) + 1})" if plain.count(name) > 1 else name
+        for place, name in enumerate(plain)
+    ]

@@ -1,0 +1,247 @@
+"""Attractors of one column under one base motion, found from many starts."""
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any, Unpack
+
+import numpy as np
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion
+from stylobate.errors import MOST_RUNS, require_whole
+from stylobate.models import Model
+from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.studies.checks import require_starts
+from stylobate.studies.maps.attractor_search import (
+    NOT_SETTLED,
+    REMEDY,
+    Attractor,
+    Found,
+    find_attractors,
+    names_of,
+    with_turns,
+)
+from stylobate.studies.maps.orbit_paths import orbit_paths, turns_of_paths
+from stylobate.studies.maps.stroboscopic import AttractorRules, OrbitScales
+from stylobate.studies.maps.stroboscopic_count import with_strobes
+from stylobate.studies.proportions import fraction_interval
+from stylobate.studies.sweeps import Executor, Sweep
+from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.labelled import labelled_sweep
+from stylobate.studies.sweeps.recipe import RunOptions
+
+_TABLE = "attractor_index"
+
+
+def attractors(
+    model: Model,
+    motion: BaseMotion | None = None,
+    *,
+    over: Mapping[str, Sequence[float]],
+    count: int,
+    seed: int = 0,
+    duration: float | None = None,
+    periods: float | None = None,
+    attractor_rules: AttractorRules | None = None,
+    confidence: float = 0.95,
+    store: str | Path | None = None,
+    executor: Executor | None = None,
+    resume: bool = False,
+    progress: Progress | None = None,
+    **options: Unpack[RunOptions],
+) -> xr.Dataset:
+    """Return what a column can come to under one base motion, and how often it does so from random starts.
+
+    Nothing is listed in advance: at rest, rolling in either sense, rocking and other periodic motions, modulated
+    rolling, aperiodic motions and overturning are told from the runs by the rules of `label_attractors`.
+
+    Parameters
+    ----------
+    model, motion
+        The column and its base motion.
+    over
+        Range of each start that varies: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s], start_phase [rad].
+    count, seed
+        Number of starts, drawn uniformly, and the seed they are drawn with.
+    duration, periods
+        How long to follow each [s], or for how many periods of the base motion: long enough to settle, before the
+        strobed states that tell it. Friction η forgets a start as exp(−ηω0 t/2): to a thousandth in 14/(ηω0).
+    attractor_rules
+        When states repeat, and when two orbits are one.
+    confidence
+        Of the intervals of the fractions.
+    store, executor, resume, progress
+        As in `run_sweep`.
+    **options
+        What all runs have in common: tilt, tilt_rate, rtol, rules, strobes (by default 32, or half of what
+        shorter runs hold) …
+
+    Returns
+    -------
+    xarray.Dataset
+        The table of `label_attractors`, of kind "attractors", without the runs.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range, a name in `over` changes the system, or runs are too short for the strobes.
+    """
+    require_starts("over", over)
+    sweep = Sweep.random(
+        model,
+        motion,
+        over=over,
+        count=require_whole("count", count, least=1, most=MOST_RUNS),
+        seed=seed,
+        duration=duration,
+        periods=periods,
+        **options,
+    )
+    label = partial(label_attractors, model=model, motion=motion, rules=attractor_rules, confidence=confidence)
+    sweep = with_strobes(sweep, options.get("strobes"))
+    found = labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+    return found.drop_dims("run").assign_attrs(kind="attractors")
+
+
+def label_attractors(
+    runs: xr.Dataset,
+    model: Model,
+    motion: BaseMotion | None = None,
+    *,
+    rules: AttractorRules | None = None,
+    confidence: float = 0.95,
+) -> xr.Dataset:
+    """Return `runs` of one column under one base motion with the attractor that each has come to.
+
+    A run that moves to its end is on a periodic orbit if its strobed states repeat, after up to half as many periods
+    as there are strobes. Orbits are one if their strobed states agree wherever they begin. A motion that goes on
+    without repeating is modulated rolling if it turns once round with each period of the forcing, else aperiodic:
+    quasi-periodic or chaotic. Those are told apart by their sense only. A run of none of these has "not settled": it
+    still creeps, or there are too few strobes to tell; more periods and more strobes will.
+
+    The strobes alone decide, not the outcome of a run, which rests on its last periods: those may hold too little of a
+    slow modulation to tell it, and the run is STILL_MOVING by itself.
+
+    Parameters
+    ----------
+    runs
+        Result of an ensemble or sweep with strobes. Column and base motion are the same for all but for the start
+        phase.
+    model, motion
+        The column and its base motion.
+    rules
+        When states repeat, when two orbits are one, when a motion has settled.
+    confidence
+        Of the intervals of the fractions (Wilson's), which count none of the runs not settled to an attractor at their
+        lower end and all at their upper end. Runs on a grid are taken as if drawn at random, which makes
+        their intervals too wide rather than too narrow where basins are larger than the cells.
+
+    Returns
+    -------
+    xarray.Dataset
+        The runs with `attractor`, −1 where not computed, the strobed states left out; and over `attractor_index`, by
+        kind and size, those "not settled" last: `attractor_name`, `attractor_kind`, `attractor_period` [forcing
+        periods, 0 for none], `attractor_turns` [a forcing period; NaN where not known, see `Attractor`], mean and
+        largest tilt [rad], its strobed states
+        `attractor_tilt` [rad] and `attractor_tilt_rate` [rad/s] over `orbit_point` (those that lean farthest first),
+        `orbit_tilt` along its path, `count`, `fraction` of all runs computed, `fraction_low` and `fraction_high`.
+        `unsettled` and `computed` count runs; fractions add up to one.
+
+    Raises
+    ------
+    ParameterError
+        If the runs were followed without strobes.
+    """
+    chosen, scales = rules or AttractorRules(), OrbitScales.of(model, motion)
+    found = find_attractors(runs, scales, chosen).listed()
+    paths = orbit_paths(model, motion, found.attractors, scales)
+    found, order = with_turns(found, turns_of_paths(paths, found.attractors), chosen.match_tolerance)
+    labels = found.labels.astype(np.int16)
+    labelled = runs.drop_dims("strobe").assign(attractor=(runs["outcome"].dims, labels, _label_attributes(found)))
+    table = xr.merge(
+        [attractor_table(found.attractors, scales), paths.isel(attractor_index=order)],
+        combine_attrs="drop",
+    )
+    whole = labelled.merge(table).merge(shares(found, confidence))
+    own = {"tilt_scale": scales.tilt, "tilt_rate_scale": scales.tilt_rate}
+    return whole.assign_attrs({**runs.attrs, **rule_attributes(chosen, confidence), **own})
+
+
+def attractor_table(attractors: Sequence[Attractor], scales: OrbitScales) -> xr.Dataset:
+    """Return names, periods, turns and strobed states of `attractors` over `attractor_index`."""
+    points = max((len(attractor.states) for attractor in attractors), default=1)
+    states = np.full((len(attractors), max(points, 1), 2), np.nan, dtype=complex)
+    for i, attractor in enumerate(attractors):
+        states[i, : len(attractor.states)] = attractor.states
+    tilt, tilt_rate = scales.vectors(states)
+    along = (_TABLE, "orbit_point", "axis")
+    return xr.Dataset(
+        {
+            "attractor_period": (
+                _TABLE,
+                np.array([attractor.period for attractor in attractors], dtype=np.int32),
+                {"units": "1", "long_name": "period in forcing periods"},
+            ),
+            "attractor_turns": (
+                _TABLE,
+                np.array([attractor.turns for attractor in attractors], dtype=float),
+                {"units": "1", "long_name": "turns of the contact point in a forcing period"},
+            ),
+            "attractor_tilt": (along, tilt, {"units": "rad", "long_name": "tilt at the strobe"}),
+            "attractor_tilt_rate": (along, tilt_rate, {"units": "rad s-1", "long_name": "rate of tilt at the strobe"}),
+        },
+        coords={
+            _TABLE: np.arange(len(attractors)),
+            "attractor_name": (_TABLE, np.array(names_of(attractors), dtype=str)),
+            "attractor_kind": (_TABLE, np.array([attractor.kind for attractor in attractors], dtype=str)),
+            "axis": ["x", "y"],
+        },
+    )
+
+
+def shares(found: Found, confidence: float) -> xr.Dataset:
+    """Return how many runs came to each attractor, and the fraction with its interval.
+
+    Where a run that has not settled would come to is not known: the lower end counts none of them to the attractor, the
+    upper end all.
+    """
+    found = found.listed()
+    labels = found.labels.ravel()
+    count = np.array([np.count_nonzero(labels == place) for place in range(len(found.attractors))], dtype=np.int64)
+    computed = int(np.count_nonzero(labels != NOT_COMPUTED))
+    rest = np.array([attractor.kind == NOT_SETTLED for attractor in found.attractors], dtype=bool)
+    unsettled = int(count[rest].sum())
+    low, high = fraction_interval(count, np.where(rest, 0, unsettled), computed, confidence=confidence)
+    interval = f"end of the {100.0 * confidence:g} % interval of the fraction"
+    return xr.Dataset(
+        {
+            "count": (_TABLE, count, {"units": "1", "long_name": "runs that came to it"}),
+            "fraction": (_TABLE, count / max(computed, 1), {"units": "1", "long_name": "fraction of the runs"}),
+            "fraction_low": (_TABLE, low, {"units": "1", "long_name": f"lower {interval}"}),
+            "fraction_high": (_TABLE, high, {"units": "1", "long_name": f"upper {interval}"}),
+            "unsettled": ((), unsettled, {"units": "1", "long_name": "runs that have not settled", "comment": REMEDY}),
+            "computed": ((), computed, {"units": "1", "long_name": "runs computed"}),
+        }
+    )
+
+
+def rule_attributes(rules: AttractorRules, confidence: float) -> dict[str, Any]:
+    """Return the attributes that say by what rules attractors were told."""
+    return {
+        "repeat_tolerance": rules.repeat_tolerance,
+        "match_tolerance": rules.match_tolerance,
+        "settled_tolerance": rules.settled_tolerance,
+        "sampling_errors": rules.sampling_errors,
+        "branch_tolerance": rules.branch_tolerance,
+        "confidence": confidence,
+    }
+
+
+def _label_attributes(found: Found) -> dict[str, Any]:
+    names = ["not computed", *names_of(found.attractors)]
+    return {
+        "long_name": "attractor",
+        "flag_values": np.arange(NOT_COMPUTED, len(found.attractors), dtype=np.int16),
+        "flag_meanings": " ".join(name.replace(",", "").replace(" ", "_") for name in names),
+    }

@@ -1,0 +1,200 @@
+"""Basin fractions along a parameter: how often random starts come to each attractor."""
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Unpack
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.base_motions import BASE_AT_REST, BaseMotion
+from stylobate.engine import with_parameters
+from stylobate.errors import MOST_RUNS, require_whole
+from stylobate.models import Model
+from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.studies.checks import SYSTEM_STARTS, one_parameter, require_starts
+from stylobate.studies.maps.attractor_continuation import Branches, follow_branches
+from stylobate.studies.maps.attractor_search import NOT_SETTLED, REMEDY, Found, find_attractors
+from stylobate.studies.maps.attractors import attractor_table, rule_attributes
+from stylobate.studies.maps.stroboscopic import AttractorRules, OrbitScales
+from stylobate.studies.maps.stroboscopic_count import with_strobes
+from stylobate.studies.proportions import fraction_interval, require_confidence
+from stylobate.studies.sweeps import Executor, Sweep
+from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.designs import Box, whole
+from stylobate.studies.sweeps.labelled import labelled_sweep
+from stylobate.studies.sweeps.quantities import attributes_of
+from stylobate.studies.sweeps.recipe import RunOptions
+
+
+def basin_fractions(
+    model: Model,
+    motion: BaseMotion | None = None,
+    *,
+    along: Mapping[str, npt.ArrayLike],
+    over: Mapping[str, Sequence[float]],
+    count: int,
+    seed: int = 0,
+    duration: float | None = None,
+    periods: float | None = None,
+    attractor_rules: AttractorRules | None = None,
+    confidence: float = 0.95,
+    store: str | Path | None = None,
+    executor: Executor | None = None,
+    resume: bool = False,
+    progress: Progress | None = None,
+    **options: Unpack[RunOptions],
+) -> xr.Dataset:
+    """Return how often random starts come to each attractor, along one parameter.
+
+    The starts are the same at every value of the parameter, so that differences between values are those of the basins
+    more than those of the sample. Attractors of successive values are matched by kind, period and nearness: an orbit
+    that jumps farther than `branch_tolerance` of the rules is listed as another one.
+
+    Parameters
+    ----------
+    model, motion
+        The column and its base motion.
+    along
+        One parameter of the column, the model or the base motion, with its values in order.
+    over
+        Range of each start that varies: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s], start_phase [rad].
+    count, seed
+        Number of starts, drawn uniformly, and the seed they are drawn with.
+    duration, periods
+        How long to follow each run [s], or for how many periods of its base motion.
+    attractor_rules
+        When states repeat, and when two orbits are one.
+    confidence
+        Of the intervals, each by itself; intervals of successive values go up and down together.
+    store, executor, resume, progress
+        As in `run_sweep`.
+    **options
+        What all runs have in common: tilt, tilt_rate, rtol, rules, strobes (by default 32, or half of what
+        shorter runs hold) …
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "basin fractions", over the parameter and `attractor_index`: `count`, `fraction` of the runs computed
+        with `fraction_low` and `fraction_high` (none, and all, of the runs not settled counted to it), `present` where
+        the attractor was found and there `mean_tilt` [rad] of its runs and its strobed states; over the parameter
+        `unsettled` and `computed` count runs. Those "not settled" are listed last.
+
+    Raises
+    ------
+    ParameterError
+        If `along` has not one name, a name in `over` changes the system, an argument is out of range, or runs are
+        too short for the strobes.
+    """
+    require_starts("over", over)
+    name, values = one_parameter(model, along, over)
+    starts = Box.of(over, require_whole("count", count, least=1, most=MOST_RUNS), seed)
+    points = {start: np.tile(drawn, values.size) for start, drawn in starts.values(whole(starts)).items()}
+    sweep = Sweep.points(
+        model,
+        motion,
+        at={name: np.repeat(values, starts.count), **points},
+        duration=duration,
+        periods=periods,
+        **options,
+    )
+    label = partial(
+        fractions_along,
+        name=name,
+        scales=[scales_at(model, motion, name, float(value)) for value in values],
+        rules=attractor_rules or AttractorRules(),
+        confidence=require_confidence(confidence),
+    )
+    sweep = with_strobes(sweep, options.get("strobes"))
+    return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+
+
+def fractions_along(
+    runs: xr.Dataset, *, name: str, scales: Sequence[OrbitScales], rules: AttractorRules, confidence: float
+) -> xr.Dataset:
+    """Return the basin fractions of `runs` that stand in blocks, one for each value of the parameter `name`.
+
+    Parameters
+    ----------
+    runs
+        Over `run`, with the coordinate `name`.
+    scales
+        Units of the strobed states at each value.
+    """
+    count = runs.sizes["run"] // max(len(scales), 1)
+    blocks = [runs.isel(run=slice(i * count, (i + 1) * count)) for i in range(len(scales))]
+    found = [find_attractors(block, unit, rules).listed() for block, unit in zip(blocks, scales, strict=True)]
+    branches = follow_branches([one.attractors for one in found], rules.branch_tolerance)
+    values = runs[name].to_numpy()[::count]
+    return (
+        xr.merge(
+            [
+                _fractions(name, found, branches, confidence),
+                _states(name, found, branches, scales),
+                attractor_table(branches.last, scales[-1]).drop_vars(["attractor_tilt", "attractor_tilt_rate"]),
+            ],
+            combine_attrs="drop",
+        )
+        .assign_coords({name: (name, values, attributes_of(name))})
+        .assign_attrs({**runs.attrs, **rule_attributes(rules, confidence), "kind": "basin fractions", "starts": count})
+    )
+
+
+def _fractions(name: str, found: Sequence[Found], branches: Branches, confidence: float) -> xr.Dataset:
+    count = np.zeros((len(found), len(branches.last)), dtype=np.int64)
+    present = np.zeros(count.shape, dtype=bool)
+    for i, (one, places) in enumerate(zip(found, branches.places, strict=True)):
+        present[i, list(places)] = True
+        count[i, list(places)] = [np.count_nonzero(one.labels == label) for label in range(len(places))]
+    computed = np.array([np.count_nonzero(one.labels != NOT_COMPUTED) for one in found])
+    rest = np.array([branch.kind == NOT_SETTLED for branch in branches.last], dtype=bool)
+    unsettled = count[:, rest].sum(axis=1)
+    known = computed[:, np.newaxis] > 0
+    total = np.maximum(computed, 1)[:, np.newaxis]
+    unknown = np.where(rest, 0, unsettled[:, np.newaxis])
+    low, high = fraction_interval(count, unknown, total, confidence=confidence)
+    dims, interval = (name, "attractor_index"), f"end of its {100.0 * confidence:g} % interval"
+    return xr.Dataset(
+        {
+            "count": (dims, count, {"units": "1", "long_name": "runs that came to it"}),
+            "present": (dims, present, {"long_name": "found at this value"}),
+            "fraction": (dims, np.where(known, count / total, np.nan), {"units": "1", "long_name": "basin fraction"}),
+            "fraction_low": (dims, np.where(known, low, np.nan), {"units": "1", "long_name": f"lower {interval}"}),
+            "fraction_high": (dims, np.where(known, high, np.nan), {"units": "1", "long_name": f"upper {interval}"}),
+            "unsettled": (
+                name,
+                unsettled,
+                {"units": "1", "long_name": "runs that have not settled", "comment": REMEDY},
+            ),
+            "computed": (name, computed, {"units": "1", "long_name": "runs computed"}),
+        }
+    )
+
+
+def _states(name: str, found: Sequence[Found], branches: Branches, scales: Sequence[OrbitScales]) -> xr.Dataset:
+    points = max([1, *(branch.period for branch in branches.last)])
+    tilt = np.full((len(found), len(branches.last), points, 2), np.nan)
+    tilt_rate, mean_tilt = tilt.copy(), tilt[:, :, 0, 0].copy()
+    for i, (one, places) in enumerate(zip(found, branches.places, strict=True)):
+        for attractor, branch in zip(one.attractors, places, strict=True):
+            states = len(attractor.states)
+            tilt[i, branch, :states], tilt_rate[i, branch, :states] = scales[i].vectors(attractor.states)
+            mean_tilt[i, branch] = attractor.mean_tilt
+    along, dims = (name, "attractor_index"), (name, "attractor_index", "orbit_point", "axis")
+    return xr.Dataset(
+        {
+            "mean_tilt": (along, mean_tilt, {"units": "rad", "long_name": "mean tilt"}),
+            "attractor_tilt": (dims, tilt, {"units": "rad", "long_name": "tilt at the strobe"}),
+            "attractor_tilt_rate": (dims, tilt_rate, {"units": "rad s-1", "long_name": "rate of tilt at the strobe"}),
+        }
+    )
+
+
+def scales_at(model: Model, motion: BaseMotion | None, name: str, value: float) -> OrbitScales:
+    """Return the units of strobed states where the parameter `name` has this `value`."""
+    if name in SYSTEM_STARTS or name == "duration":
+        return OrbitScales.of(model, motion)
+    return OrbitScales.of(*with_parameters(model, BASE_AT_REST if motion is None else motion, **{name: value}))

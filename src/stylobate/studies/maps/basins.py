@@ -1,0 +1,114 @@
+"""Basins of attraction: which starts lead where, on a grid of two of them or from a random sample."""
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Unpack
+
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion
+from stylobate.errors import MOST_RUNS, ParameterError, require_whole
+from stylobate.models import Model
+from stylobate.studies.checks import require_starts, require_values
+from stylobate.studies.maps.attractors import label_attractors
+from stylobate.studies.maps.stroboscopic import AttractorRules
+from stylobate.studies.maps.stroboscopic_count import with_strobes
+from stylobate.studies.sweeps import Executor, Sweep
+from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.labelled import labelled_sweep
+from stylobate.studies.sweeps.recipe import RunOptions
+
+_PLANE = 2
+
+
+def basins(
+    model: Model,
+    motion: BaseMotion | None = None,
+    *,
+    over: Mapping[str, npt.ArrayLike],
+    count: int | None = None,
+    seed: int = 0,
+    duration: float | None = None,
+    periods: float | None = None,
+    attractor_rules: AttractorRules | None = None,
+    confidence: float = 0.95,
+    store: str | Path | None = None,
+    executor: Executor | None = None,
+    resume: bool = False,
+    progress: Progress | None = None,
+    **options: Unpack[RunOptions],
+) -> xr.Dataset:
+    """Return where starts lead: on a grid of two of them, or `count` random ones.
+
+    Parameters
+    ----------
+    model, motion
+        The column and its base motion, the same for all runs.
+    over
+        What varies, among tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s] and start_phase [rad]. Without
+        `count` two names with their values, a grid; with it any number of names with their ranges (low, high).
+    count, seed
+        Number of random starts, drawn uniformly in the ranges, and the seed they are drawn with.
+    duration, periods
+        How long to follow each [s], or for how many periods of the base motion.
+    attractor_rules
+        When states repeat, and when two orbits are one.
+    confidence
+        Of the intervals of the fractions.
+    store, executor, resume, progress
+        As in `run_sweep`.
+    **options
+        What all runs have in common: tilt, tilt_rate (the start but for what varies), rtol, rules, strobes (by default
+        32, or half of what shorter runs hold) …
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "basins", as `label_attractors` describes it: the runs with `attractor`, and the table of attractors
+        with the fraction of the runs that come to each.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range, a name in `over` changes the system, a grid has not two names with one value
+        or more, or runs are too short for the strobes.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> found = sb.studies.basins(model, over={"tilt_x": [-0.06, 0.06, 0.12], "tilt_y": [0.0, 0.03]}, duration=200.0)
+    >>> found["attractor_name"].values.tolist(), found["count"].values.tolist()
+    (['at rest', 'overturned'], [4, 2])
+    """
+    require_starts("over", over)
+    if count is not None:
+        ranges: Mapping[str, Sequence[float]] = over  # type: ignore[assignment]  # the sweep tells what is no range
+        sweep = Sweep.random(
+            model,
+            motion,
+            over=ranges,
+            count=require_whole("count", count, least=1, most=MOST_RUNS),
+            seed=seed,
+            duration=duration,
+            periods=periods,
+            **options,
+        )
+    elif len(over) == _PLANE:
+        require_values("over", over)
+        sweep = Sweep.grid(model, motion, over=over, duration=duration, periods=periods, **options)
+    else:
+        message = f"over must name two starts with their values, or give count for random ones; got {', '.join(over)}"
+        raise ParameterError(message)
+    label = partial(_basins_of, model=model, motion=motion, rules=attractor_rules, confidence=confidence)
+    sweep = with_strobes(sweep, options.get("strobes"))
+    return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+
+
+def _basins_of(
+    runs: xr.Dataset, model: Model, motion: BaseMotion | None, rules: AttractorRules | None, confidence: float
+) -> xr.Dataset:
+    labelled = label_attractors(runs, model, motion, rules=rules, confidence=confidence)
+    return labelled.assign_attrs(kind="basins")

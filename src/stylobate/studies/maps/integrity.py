@@ -1,0 +1,179 @@
+"""Integrity: how far from its state a column can be pushed before it overturns, and how that erodes."""
+
+from collections.abc import Mapping
+from dataclasses import fields
+from functools import partial
+from pathlib import Path
+from typing import Any, Unpack
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion
+from stylobate.errors import ParameterError
+from stylobate.models import Model
+from stylobate.studies.checks import (
+    SYSTEM_STARTS,
+    one_parameter,
+    require_no_tilt_limit,
+    require_starts,
+    require_values,
+)
+from stylobate.studies.maps.safe_distance import Metric, distance_to_overturning
+from stylobate.studies.sweeps import Executor, Sweep
+from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.labelled import labelled_sweep
+from stylobate.studies.sweeps.recipe import RunOptions
+
+
+def integrity(
+    model: Model,
+    motion: BaseMotion | None = None,
+    *,
+    over: Mapping[str, npt.ArrayLike],
+    reference: Mapping[str, float] | None = None,
+    duration: float | None = None,
+    periods: float | None = None,
+    store: str | Path | None = None,
+    executor: Executor | None = None,
+    resume: bool = False,
+    progress: Progress | None = None,
+    **options: Unpack[RunOptions],
+) -> xr.Dataset:
+    """Return the distance from a state to the nearest start that overturns.
+
+    The local integrity measure of Soliman and Thompson, "Integrity measures quantifying the erosion of smooth and
+    fractal basins of attraction", J. Sound Vib. 135 (1989), on a grid of starts: tilts in units of c, rates of tilt
+    in units of cω0, distances Euclidean. A start phase among the names counts for no distance: the nearest start at
+    any phase.
+
+    Parameters
+    ----------
+    model, motion
+        The column and its base motion.
+    over
+        Values of each start that varies, increasing: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s], and
+        start_phase [rad]. Starts not named are those of `tilt` and `tilt_rate`.
+    reference
+        The state from which distances are taken, by the same names; 0, a column that stands, where it names none.
+    duration, periods
+        How long to follow each run [s], or for how many periods of the base motion.
+    store, executor, resume, progress
+        As in `run_sweep`.
+    **options
+        What all runs have in common: tilt, tilt_rate, rtol, rules …
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "integrity": the runs over the grid; `distance`; `resolution`, half the diagonal of the largest cell;
+        `distance_low` and `distance_high`, between which the boundary is: the distance less two resolutions, and the
+        distance itself, which an overturning start proves. The lower end holds for boundaries that are smooth on the
+        scale of the grid; finer tongues may come nearer. `at_least` is true where no overturning start is nearer than
+        the edge of the grid or a start that is not known (failed, lifted off or not computed), to which the distance
+        then reaches, with `distance_high` infinite; and the `nearest` overturning start over `start`, NaN there.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range, a name in `over` changes the system, the reference lies outside the grid, or
+        `tilt_limit` is given: a run stopped there is not known to be safe.
+    """
+    require_starts("over", over)
+    require_values("over", over)
+    require_no_tilt_limit(options)
+    metric = Metric.of(model, over, reference)
+    sweep = Sweep.grid(model, motion, over=over, duration=duration, periods=periods, **options)
+    label = partial(_integrity_of, metric=metric)
+    return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+
+
+def erosion(
+    model: Model,
+    motion: BaseMotion | None = None,
+    *,
+    along: Mapping[str, npt.ArrayLike],
+    over: Mapping[str, npt.ArrayLike],
+    reference: Mapping[str, float] | None = None,
+    duration: float | None = None,
+    periods: float | None = None,
+    store: str | Path | None = None,
+    executor: Executor | None = None,
+    resume: bool = False,
+    progress: Progress | None = None,
+    **options: Unpack[RunOptions],
+) -> xr.Dataset:
+    """Return the distance to the nearest overturning start along a parameter, such as the amplitude as it grows.
+
+    Parameters
+    ----------
+    along
+        One parameter of the model or the base motion with its values, such as acceleration [m/s²].
+    model, motion, over, reference, duration, periods, store, executor, resume, progress, **options
+        As in `integrity`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "erosion", over the parameter: `distance`, `distance_low`, `distance_high`, `resolution`, `at_least`
+        and `nearest` as in `integrity`; and `integrity`, the distance over that at the first value, between
+        `integrity_low` and `integrity_high`, the ratios of the ends of both distances. Where the first distance is an
+        `at_least`, all the ratios are too high and their lower end is 0: the grid should reach farther.
+
+    Raises
+    ------
+    ParameterError
+        As in `integrity`; or if `along` has not one name, or one that changes the units of the distance.
+    """
+    require_starts("over", over)
+    require_values("over", over)
+    require_no_tilt_limit(options)
+    metric = Metric.of(model, over, reference)
+    name = _leaves_units(model, one_parameter(model, along, over)[0])
+    sweep = Sweep.grid(model, motion, over={**along, **over}, duration=duration, periods=periods, **options)
+    label = partial(_erosion_of, name=name, metric=metric)
+    return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+
+
+def _integrity_of(runs: xr.Dataset, metric: Metric) -> xr.Dataset:
+    measured = distance_to_overturning(runs["outcome"], metric)
+    return runs.merge(measured).assign_attrs({**runs.attrs, **_metric_attributes(metric), "kind": "integrity"})
+
+
+def _erosion_of(runs: xr.Dataset, name: str, metric: Metric) -> xr.Dataset:
+    slices = [distance_to_overturning(runs["outcome"].isel({name: i}), metric) for i in range(runs.sizes[name])]
+    measured = xr.concat(slices, dim=runs[name])
+    attributes = {**runs.attrs, **_metric_attributes(metric), "kind": "erosion"}
+    return measured.assign(_ratios(measured)).assign_attrs(attributes)
+
+
+def _ratios(measured: xr.Dataset) -> dict[str, Any]:
+    distance, least, largest = (measured[name].to_numpy() for name in ("distance", "distance_low", "distance_high"))
+    first, dim = distance[0], measured["distance"].dims
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = np.where(first > 0.0, distance / first, np.nan)
+        low = np.where(largest[0] > 0.0, least / largest[0], 0.0)
+        high = np.where(least[0] > 0.0, largest / least[0], np.inf)
+    return {
+        "integrity": (dim, ratio, {"units": "1", "long_name": "integrity"}),
+        "integrity_low": (
+            dim,
+            low,
+            {"units": "1", "long_name": "least integrity on a boundary smooth on the scale of the grid"},
+        ),
+        "integrity_high": (dim, high, {"units": "1", "long_name": "largest integrity on such a boundary"}),
+    }
+
+
+def _metric_attributes(metric: Metric) -> dict[str, float]:
+    units = {f"unit_{name}": unit for name, unit in metric.units.items()}
+    return units | {f"reference_{name}": value for name, value in metric.reference.items()}
+
+
+def _leaves_units(model: Model, name: str) -> str:
+    own = {field.name for field in fields(model.column)} | {"slenderness", "size"}
+    if name in own or name in SYSTEM_STARTS:
+        message = f"along must name a parameter of the model or the base motion, which leave the units; got {name!r}"
+        raise ParameterError(message)
+    return name

@@ -1,0 +1,93 @@
+"""Overturning maps: what becomes of the column over any two parameters."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Unpack
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion
+from stylobate.errors import Outcome, ParameterError
+from stylobate.models import Model
+from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.studies.checks import require_values
+from stylobate.studies.sweeps import Executor, Sweep
+from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.labelled import labelled_sweep
+from stylobate.studies.sweeps.recipe import RunOptions
+
+_PLANE = 2
+
+
+def overturning_map(
+    model: Model,
+    motion: BaseMotion | None = None,
+    *,
+    over: Mapping[str, npt.ArrayLike],
+    duration: float | None = None,
+    periods: float | None = None,
+    store: str | Path | None = None,
+    executor: Executor | None = None,
+    resume: bool = False,
+    progress: Progress | None = None,
+    **options: Unpack[RunOptions],
+) -> xr.Dataset:
+    """Return what becomes of a column over two parameters, from rest or from a given start.
+
+    Parameters
+    ----------
+    model, motion
+        What all runs have in common but for what varies.
+    over
+        Two names with their values: parameters of the column, the model or the base motion, such as
+        angular_frequency [rad/s], acceleration [m/s²], start_phase [rad], damping, size; or components of the start,
+        tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s].
+    duration, periods
+        How long to follow each run [s], or for how many periods of its base motion.
+    store, executor, resume, progress
+        As in `run_sweep`.
+    **options
+        What all runs have in common: tilt [rad] and tilt_rate [rad/s] (the start, by default at rest), rtol, rules …
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "overturning map": the runs over the two names, with `outcome`, the time it was decided at, `uncertain`
+        and all that ensembles tell; over `outcome_name`, `count` and `share` of the runs computed; and `computed`.
+
+    Raises
+    ------
+    ParameterError
+        If `over` has not two names with one value or more, or an argument is out of range.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> motion = sb.Harmonic.circular(acceleration=0.15, angular_frequency=1.0)
+    >>> over = {"angular_frequency": [0.5, 6.0], "acceleration": [0.09, 0.15]}
+    >>> found = sb.studies.overturning_map(model, motion, over=over, periods=30.0)
+    >>> found["share"].sel(outcome_name=["at rest", "overturned"]).values
+    array([0.5 , 0.25])
+    """
+    if not isinstance(over, Mapping) or len(over) != _PLANE:
+        message = f'over must name two parameters, such as "angular_frequency" and "acceleration"; got {over!r}'
+        raise ParameterError(message)
+    require_values("over", over)
+    sweep = Sweep.grid(model, motion, over=over, duration=duration, periods=periods, **options)
+    return labelled_sweep(sweep, outcome_shares, store=store, executor=executor, resume=resume, progress=progress)
+
+
+def outcome_shares(runs: xr.Dataset) -> xr.Dataset:
+    """Return `runs` as an overturning map: with the count and share of each outcome."""
+    codes = runs["outcome"].to_numpy()
+    count = np.array([np.count_nonzero(codes == code_of(outcome)) for outcome in Outcome], dtype=np.int64)
+    computed = int(np.count_nonzero(codes != NOT_COMPUTED))
+    return runs.assign(
+        count=("outcome_name", count, {"units": "1", "long_name": "runs with this outcome"}),
+        share=("outcome_name", count / max(computed, 1), {"units": "1", "long_name": "share of the runs computed"}),
+        computed=((), computed, {"units": "1", "long_name": "runs computed"}),
+        outcome_name=np.array([outcome.value for outcome in Outcome]),
+    ).assign_attrs(kind="overturning map")

@@ -1,0 +1,149 @@
+"""The distance from a state to the nearest overturning start on a grid of starts."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.errors import Outcome, ParameterError, require_finite
+from stylobate.models import Model
+from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.studies.maps.stroboscopic import Floats
+from stylobate.studies.sweeps.quantities import STARTS, checked_values
+
+UNRESOLVED = (Outcome.FAILED, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED)
+"""Outcomes of runs that end before they show whether the column overturns."""
+
+
+@dataclass(frozen=True, slots=True)
+class Metric:
+    """How distances between starts are measured.
+
+    Attributes
+    ----------
+    axes
+        Values of each component of the start along the grid [rad or rad/s], increasing.
+    units
+        c for tilts [rad], cω0 for rates of tilt [rad/s].
+    reference
+        The state from which distances are taken.
+    """
+
+    axes: Mapping[str, Floats]
+    units: Mapping[str, float]
+    reference: Mapping[str, float]
+
+    @classmethod
+    def of(cls, model: Model, over: Mapping[str, npt.ArrayLike], reference: Mapping[str, float] | None) -> Self:
+        """Return the metric of a column on the grid `over`.
+
+        Raises
+        ------
+        ParameterError
+            If a component has fewer than two values or they do not increase, or the reference is not in the grid.
+        """
+        axes = {name: _increasing(name, values) for name, values in over.items() if name in STARTS}
+        if not axes:
+            message = f"over must name at least one of {', '.join(STARTS)}; got {', '.join(over) or 'nothing'}"
+            raise ParameterError(message)
+        c = model.column.slenderness
+        units = {name: c / model.time_scale if "rate" in name else c for name in axes}
+        chosen = dict(reference or {})
+        for name in chosen:
+            if name not in axes:
+                message = f"reference must name starts of the grid, {', '.join(axes)}; got {name!r}"
+                raise ParameterError(message)
+        return cls(axes, units, {name: _within(name, chosen.get(name, 0.0), axis) for name, axis in axes.items()})
+
+    @property
+    def resolution(self) -> float:
+        """Half the diagonal of the largest cell."""
+        sides = [float(np.diff(axis).max()) / self.units[name] for name, axis in self.axes.items()]
+        return float(np.hypot.reduce(sides)) / 2.0
+
+    @property
+    def reach(self) -> float:
+        """Distance to the nearest edge of the grid."""
+        return min(
+            float(min(self.reference[name] - axis[0], axis[-1] - self.reference[name])) / self.units[name]
+            for name, axis in self.axes.items()
+        )
+
+    def distances(self, dims: tuple[str, ...]) -> Floats:
+        """Return the distance of every start of the grid over `dims`; it broadcasts along what is no start."""
+        squares = np.zeros((1,) * len(dims))
+        for name, axis in self.axes.items():
+            shape = tuple(axis.size if dim == name else 1 for dim in dims)
+            squares = squares + np.reshape(((axis - self.reference[name]) / self.units[name]) ** 2, shape)
+        return np.asarray(np.sqrt(squares))
+
+
+def distance_to_overturning(outcome: xr.DataArray, metric: Metric) -> xr.Dataset:
+    """Return the distance from the reference to the nearest start of the grid that overturned, and what it leaves open.
+
+    A grid start that overturns at the distance d proves that the boundary is no farther than d. It may be nearer by
+    up to the diagonal of a cell: a boundary that is straight on the scale of the cells, at the distance r, has a grid
+    start behind it within r and a diagonal. Folds and tongues finer than the cells may come nearer still.
+
+    Parameters
+    ----------
+    outcome
+        Codes of the outcomes over the grid.
+    metric
+        How distances are measured on it.
+
+    Returns
+    -------
+    xarray.Dataset
+        `distance`; `distance_low` and `distance_high`, between which the boundary is; `at_least` (nothing overturned
+        within the known part of the grid, to which the distance reaches: then `distance_high` is infinite);
+        `resolution`, and `nearest` over `start`.
+    """
+    dims = tuple(str(dim) for dim in outcome.dims)
+    codes = outcome.to_numpy()
+    distances = np.broadcast_to(metric.distances(dims), codes.shape)
+    overturned = np.where(codes == code_of(Outcome.OVERTURNED), distances, np.inf)
+    unknown = np.where(np.isin(codes, [NOT_COMPUTED, *(code_of(one) for one in UNRESOLVED)]), distances, np.inf)
+    nearest, known = float(overturned.min(initial=np.inf)), min(float(unknown.min(initial=np.inf)), metric.reach)
+    at_least = not nearest <= known
+    place = np.unravel_index(int(np.argmin(overturned)), codes.shape) if codes.size else ()
+    start = [np.nan if at_least else float(axis[place[dims.index(name)]]) for name, axis in metric.axes.items()]
+    distance, diagonal = min(nearest, known), 2.0 * metric.resolution
+    return xr.Dataset(
+        {
+            "distance": ((), distance, {"units": "1", "long_name": "distance to the nearest overturning start"}),
+            "distance_low": (
+                (),
+                max(distance - diagonal, 0.0),
+                {"units": "1", "long_name": "least distance of a boundary that is smooth on the scale of the grid"},
+            ),
+            "distance_high": (
+                (),
+                np.inf if at_least else distance,
+                {"units": "1", "long_name": "largest distance of the boundary"},
+            ),
+            "at_least": ((), at_least, {"long_name": "nothing overturned nearer than this"}),
+            "resolution": ((), metric.resolution, {"units": "1", "long_name": "half the diagonal of a cell"}),
+            "nearest": ("start", start, {"long_name": "nearest overturning start"}),
+        },
+        coords={"start": np.array(list(metric.axes))},
+    )
+
+
+def _increasing(name: str, values: npt.ArrayLike) -> Floats:
+    axis = checked_values("over", name, values)
+    if axis.size < 2 or not np.all(np.diff(axis) > 0.0):  # noqa: PLR2004
+        message = f"over[{name!r}] must be two or more increasing values, got {values!r}"
+        raise ParameterError(message)
+    return axis
+
+
+def _within(name: str, value: float, axis: Floats) -> float:
+    value = require_finite(f"reference[{name!r}]", value)
+    if not axis[0] <= value <= axis[-1]:
+        message = f"reference[{name!r}] must lie within the grid, {axis[0]:g} to {axis[-1]:g}; got {value!r}"
+        raise ParameterError(message)
+    return value

@@ -1,0 +1,250 @@
+"""Orbits in strobed states: which runs repeat, after how many periods, and which of them are on the same orbit."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.base_motions import BaseMotion
+from stylobate.errors import require_positive
+from stylobate.models import Model
+
+Complexes = npt.NDArray[np.complex128]
+Floats = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int64]
+
+
+# Stands for no difference at all where its logarithm is taken; far below any that is resolved.
+_LEAST = 1e-12
+
+
+# Differences in each half of the strobes that give their mean and its error: of 32 strobes.
+_ENOUGH_DIFFERENCES = 15
+# An orbit that a run may be nearing has at most this part of the strobes for its period, so that its returns are many …
+_RETURNS = 4
+# … and returns to within this part of what the run moves from strobe to strobe.
+_NEAR = 0.1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AttractorRules:
+    """When strobed states repeat, when two orbits are one, and when a motion that does not repeat has settled.
+
+    The first two are parts of the tilt c/(1 + θ²) and the tilt rate cθ/(1 + θ²) of free rolling (5) at the forcing
+    frequency θ: the size of the motions in question at every frequency.
+
+    Parameters
+    ----------
+    repeat_tolerance
+        A run repeats every k periods if all its strobed states differ from the last k by less than this.
+    match_tolerance
+        Runs are on the same orbit if their strobed states differ by less than this, and those of one orbit differ by
+        more. Well above `repeat_tolerance`: a run that still creeps is farther from its orbit than it moves while it
+        is watched, and one that spirals in must not pass for an orbit of several periods.
+    settled_tolerance
+        A run that does not repeat is settled if the differences of successive strobed states are as large, in the
+        geometric mean, in the second half of the strobes as in the first, to this part; and if those after k strobes,
+        where they are small beside the former, do not shrink by more: else it nears an orbit of k periods …
+    sampling_errors
+        … or to so many standard errors of the two means: the few differences of a chaotic run scatter, and their
+        means with them, while those of a run that creeps shrink one after the other. Told from 32 strobes or more.
+    branch_tolerance
+        Along a parameter, a periodic orbit is the continuation of one at an earlier value if their strobed states
+        differ by less than this; else it begins a branch. To be widened where the values are far apart.
+
+    Raises
+    ------
+    ParameterError
+        If one of them is not positive.
+    """
+
+    repeat_tolerance: float = 1e-3
+    match_tolerance: float = 3e-2
+    settled_tolerance: float = 0.1
+    sampling_errors: float = 3.0
+    branch_tolerance: float = 0.5
+
+    def __post_init__(self) -> None:
+        for name in self.__slots__:
+            object.__setattr__(self, name, require_positive(f"attractor_rules.{name}", getattr(self, name)))
+
+
+@dataclass(frozen=True, slots=True)
+class OrbitScales:
+    """Units in which strobed states are compared: `tilt` [rad], `tilt_rate` [rad/s]; and the forcing's `period` [s]."""
+
+    tilt: float
+    tilt_rate: float
+    period: float | None
+
+    @classmethod
+    def of(cls, model: Model, motion: BaseMotion | None) -> Self:
+        """Return the tilt and rate of free rolling (5) at the frequency of `motion`; c and cω0 where it has none."""
+        c, scale = model.column.slenderness, 1.0 / model.time_scale
+        period = None if motion is None else motion.period
+        if period is None:
+            return cls(c, c * scale, None)
+        theta = 2.0 * np.pi / (period * scale)
+        return cls(c / (1.0 + theta**2), c * theta * scale / (1.0 + theta**2), period)
+
+    def states(self, tilt: Floats, tilt_rate: Floats) -> Complexes:
+        """Return vectors (..., 2) of tilt and rate as dimensionless states (..., 2): tilt and rate, each x + iy."""
+        return np.stack(
+            [
+                (tilt[..., 0] + 1j * tilt[..., 1]) / self.tilt,
+                (tilt_rate[..., 0] + 1j * tilt_rate[..., 1]) / self.tilt_rate,
+            ],
+            axis=-1,
+        )
+
+    def vectors(self, states: Complexes) -> tuple[Floats, Floats]:
+        """Return the vectors of tilt [rad] and rate [rad/s] of dimensionless `states`: the inverse of `states`."""
+        parts = np.stack([states.real, states.imag], axis=-1)
+        return parts[..., 0, :] * self.tilt, parts[..., 1, :] * self.tilt_rate
+
+
+def repeating_periods(strobes: Complexes, rules: AttractorRules) -> tuple[Integers, Floats]:
+    """Return after how many periods strobed states repeat.
+
+    Parameters
+    ----------
+    strobes
+        Dimensionless states of n runs at m successive strobes, shape (n, m, 2), the newest last.
+    rules
+        By how much states may differ from the last ones, and by how much those of an orbit must differ.
+
+    Returns
+    -------
+    tuple
+        The smallest such number up to m/2, shape (n,), 0 where there is none, and the difference that is left.
+    """
+    runs, window = strobes.shape[:2]
+    periods, left = np.zeros(runs, dtype=np.int64), np.full(runs, np.inf)
+    place = np.arange(window) - window
+    for k in range(1, window // 2 + 1):
+        open_runs = periods == 0
+        # The last k states, repeated backwards through the window; NaN (no strobe) never repeats.
+        difference = np.abs(strobes[open_runs] - strobes[open_runs][:, window - k + place % k]).max(axis=(1, 2))
+        repeats = difference < rules.repeat_tolerance
+        for divisor in (d for d in range(1, k) if k % d == 0):
+            cycle = strobes[open_runs][:, -k:]
+            apart = np.abs(cycle - np.roll(cycle, divisor, axis=1)).max(axis=(1, 2))
+            repeats &= apart > rules.match_tolerance
+        found = np.flatnonzero(open_runs)[repeats]
+        periods[found], left[found] = k, difference[repeats]
+    return periods, left
+
+
+def keeps_moving(strobes: Complexes, rules: AttractorRules) -> npt.NDArray[np.bool_]:
+    """Return which motions go on as they are, without repeating: they neither die down, grow nor near an orbit.
+
+    Told from the differences of successive strobed states (`strobes` of shape (n, m, 2)): those of a run that creeps
+    towards an orbit shrink from the first half of the strobes to the second. In the logarithm a constant rate of decay
+    ρ is a straight line: over h differences in each half the means differ by ρh, √(6h) of their standard errors (10
+    for h = 16) whatever the rate, while those of a stationary run differ by about one. Fewer than 15 differences in
+    each half (32 strobes) tell too little: no run of them counts as going on. Nor does one that moves from strobe to
+    strobe by no more than what counts as repeating.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (n,).
+    """
+    if (strobes.shape[1] - 1) // 2 < _ENOUGH_DIFFERENCES:
+        return np.zeros(len(strobes), dtype=bool)
+    steps = _differences(strobes, 1)
+    half = steps.shape[1] // 2
+    growth, bound = _growth(steps, rules)
+    moves = np.sqrt(np.mean(steps[:, -half:] ** 2, axis=1)) > rules.repeat_tolerance
+    return np.asarray((np.abs(growth) < bound) & moves & ~_nears_an_orbit(strobes, rules))
+
+
+def _nears_an_orbit(strobes: Complexes, rules: AttractorRules) -> npt.NDArray[np.bool_]:
+    """Return which runs near an orbit of several periods, shape (n,).
+
+    From strobe to strobe they move as the orbit does, by as much from first to last. But after its k periods they come
+    back closely, and ever more so. Told of the k after which a run comes back most closely.
+    """
+    periods = range(1, max(strobes.shape[1] // _RETURNS, 1) + 1)
+    returns = [_differences(strobes, k) for k in periods]
+    sizes = np.stack([np.log(each).mean(axis=1) for each in returns])
+    shrinks = np.stack([-growth > bound for growth, bound in (_growth(each, rules) for each in returns)])
+    closest = sizes.argmin(axis=0)
+    each_run = np.arange(len(strobes))
+    near = sizes[closest, each_run] < sizes[0] + np.log(_NEAR)
+    return np.asarray(near & shrinks[closest, each_run])
+
+
+def _differences(strobes: Complexes, periods: int) -> Floats:
+    """Return how far apart states are that lie so many periods from each other, shape (n, m − periods)."""
+    apart = np.abs(strobes[:, periods:] - strobes[:, :-periods]).max(axis=2)
+    return np.asarray(np.maximum(apart, _LEAST))
+
+
+def _growth(differences: Floats, rules: AttractorRules) -> tuple[Floats, Floats]:
+    """Return by how much the logarithm of differences grows from the first half to the second, and what is nothing."""
+    half = differences.shape[1] // 2
+    before, after = np.log(differences[:, :half]), np.log(differences[:, -half:])
+    error = np.sqrt((before.var(axis=1) + after.var(axis=1)) / (half - 1))
+    bound = np.maximum(np.log1p(rules.settled_tolerance), rules.sampling_errors * error)
+    return after.mean(axis=1) - before.mean(axis=1), bound
+
+
+def is_flat(cycle: Complexes, tolerance: float) -> bool:
+    """Return whether an orbit runs in a vertical plane: no angular momentum about the vertical at any strobe.
+
+    Parameters
+    ----------
+    cycle
+        Dimensionless states, shape (k, 2).
+    tolerance
+        Of the angular momentum, as a part of the largest tilt times the largest rate.
+    """
+    tilt, rate = cycle.T
+    return bool(np.abs(np.imag(np.conj(tilt) * rate)).max() < tolerance * np.abs(tilt).max() * np.abs(rate).max())
+
+
+def cycle_distance(cycles: Complexes, cycle: Complexes) -> Floats:
+    """Return how far orbits of k states are from another, shape (n,), wherever each of them begins.
+
+    Parameters
+    ----------
+    cycles
+        Shape (n, k, 2).
+    cycle
+        Shape (k, 2).
+    """
+    shifted = [np.abs(cycles - np.roll(cycle, shift, axis=0)).max(axis=(1, 2)) for shift in range(len(cycle))]
+    return np.asarray(np.min(shifted, axis=0))
+
+
+def group_cycles(cycles: Complexes, left: Floats, tolerance: float) -> tuple[Integers, Integers]:
+    """Gather orbits of k states into groups.
+
+    Each group has for its leader the run that repeats best among those in no group yet, and holds whatever is closer
+    to it than `tolerance`: the order of the runs does not matter.
+
+    Parameters
+    ----------
+    cycles
+        Shape (n, k, 2).
+    left
+        By how much each misses repeating, shape (n,).
+
+    Returns
+    -------
+    tuple
+        The group of each run, shape (n,), and the leader of each group.
+    """
+    flat = cycles.reshape(len(cycles), -1)
+    # Among equally good runs the state decides, not the order.
+    order = np.lexsort((*flat.real.T, *flat.imag.T, left))
+    groups, leaders = np.full(len(cycles), -1, dtype=np.int64), list[int]()
+    for candidate in order:
+        if groups[candidate] < 0:
+            open_runs = np.flatnonzero(groups < 0)
+            close = cycle_distance(cycles[open_runs], cycles[candidate]) < tolerance
+            groups[open_runs[close]] = len(leaders)
+            leaders.append(int(candidate))
+    return groups, np.array(leaders, dtype=np.int64)

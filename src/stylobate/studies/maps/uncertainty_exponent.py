@@ -1,0 +1,272 @@
+"""How uncertain the final state is near the boundary of a basin: the uncertainty exponent."""
+
+import logging
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Unpack
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion
+from stylobate.errors import MOST_RUNS, Outcome, ParameterError, require_whole
+from stylobate.models import Model
+from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.studies.checks import require_no_tilt_limit, require_starts
+from stylobate.studies.maps.attractor_search import UNSETTLED, find_attractors
+from stylobate.studies.maps.power_law import fit_power_law
+from stylobate.studies.maps.safe_distance import UNRESOLVED
+from stylobate.studies.maps.stroboscopic import AttractorRules, Floats, Integers, OrbitScales
+from stylobate.studies.maps.stroboscopic_count import with_strobes
+from stylobate.studies.proportions import require_confidence, wilson_interval
+from stylobate.studies.sweeps import Executor, Sweep
+from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.designs import Box, whole
+from stylobate.studies.sweeps.labelled import labelled_sweep
+from stylobate.studies.sweeps.quantities import attributes_of, checked_values
+from stylobate.studies.sweeps.recipe import RunOptions
+
+# Shifts where nobody names others: this many, geometric, between these parts of the range of the start shifted.
+_USUAL_SHIFTS = np.geomspace(1e-5, 3e-2, 8)
+# A share of dropped starts above which a warning is due.
+_MANY_DROPPED = 0.1
+
+_log = logging.getLogger("stylobate")
+
+
+def uncertainty_exponent(
+    model: Model,
+    motion: BaseMotion | None = None,
+    *,
+    over: Mapping[str, Sequence[float]],
+    shifted: str,
+    shifts: npt.ArrayLike | None = None,
+    count: int,
+    seed: int = 0,
+    overturning_only: bool = False,
+    duration: float | None = None,
+    periods: float | None = None,
+    attractor_rules: AttractorRules | None = None,
+    confidence: float = 0.95,
+    store: str | Path | None = None,
+    executor: Executor | None = None,
+    resume: bool = False,
+    progress: Progress | None = None,
+    **options: Unpack[RunOptions],
+) -> xr.Dataset:
+    """Return how the share of uncertain starts falls with the error of the start, f(ε) ~ ε^α, and the dimension.
+
+    A random start is uncertain at ε if it comes to another attractor when one of its components is shifted by +ε or
+    −ε; a run that overturned has come to another one than any that did not, though that be unsettled. α = 1 is a smooth
+    boundary; the smaller α, the less a better known start helps. The boundary has the dimension D − α within the D
+    starts that vary: McDonald, Grebogi, Ott, Yorke, "Fractal basin boundaries", Physica D 17 (1985).
+    Each ε has starts of its own, so that the shares err independently and the standard error of α is that of the fit
+    (`fit_power_law`).
+
+    Parameters
+    ----------
+    model, motion
+        The column and its base motion.
+    over
+        Range of each start that varies: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s], start_phase [rad].
+    shifted
+        The one among them that is shifted.
+    shifts
+        ε, in its unit, increasing; by default 8 in geometric order between 1e-5 and 3e-2 of its range. Not so small
+        that the integration error (rtol) decides.
+    count, seed
+        Number of starts for each ε, three runs each, and the seed they are drawn with.
+    overturning_only
+        Tell only whether the column overturns: the boundary of the safe starts.
+    duration, periods
+        How long to follow each run [s], or for how many periods of the base motion.
+    attractor_rules
+        When states repeat, and when two orbits are one.
+    confidence
+        Of the intervals of the shares.
+    store, executor, resume, progress
+        As in `run_sweep`.
+    **options
+        What all runs have in common: tilt, tilt_rate, rtol, rules, strobes …
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "uncertainty exponent", over `epsilon`: `uncertain` of `pairs` starts, `fraction`, `fraction_low`,
+        `fraction_high`, `fitted` and the `fit`; `dropped`, the number of starts of which it cannot be told, because a
+        run is unsettled or failed and none differs for certain; and `uncertainty_exponent`, its `standard_error`,
+        `boundary_dimension`, `misfit`. A warning is logged where more than a tenth of the starts is dropped.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range, a name in `over` changes the system, runs are too short for the strobes, or
+        `tilt_limit` is given with `overturning_only`: a run stopped there is not known to overturn.
+    """
+    require_starts("over", over)
+    epsilon = _shifts(shifts, over, shifted)
+    base = Box.of(over, epsilon.size * require_whole("count", count, least=1, most=MOST_RUNS), seed)
+    if overturning_only:
+        require_no_tilt_limit(options)
+    sweep = Sweep.points(
+        model,
+        motion,
+        at=shifted_starts(base.values(whole(base)), shifted, epsilon),
+        duration=duration,
+        periods=periods,
+        **options,
+    )
+
+    tell: Callable[[xr.Dataset], Integers] = overturned_or_not
+    if not overturning_only:
+        sweep = with_strobes(sweep, options.get("strobes"))
+        rules = attractor_rules or AttractorRules()
+        tell = partial(_attractor_of_each, scales=OrbitScales.of(model, motion), rules=rules)
+    label = partial(
+        _labelled,
+        tell=tell,
+        epsilon=epsilon,
+        shifted=shifted,
+        dimension=len(over),
+        confidence=require_confidence(confidence),
+    )
+    found = labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+    _warn_of_dropped(found)
+    return found.assign_attrs(overturning_only=int(overturning_only))
+
+
+def _warn_of_dropped(found: xr.Dataset) -> None:
+    dropped, told = int(found["dropped"].sum()), int(found["pairs"].sum())
+    if dropped > _MANY_DROPPED * (dropped + told):
+        _log.warning(
+            "uncertainty_exponent dropped %d of %d starts, which do not tell whether they are uncertain; "
+            "follow the runs longer to settle them",
+            dropped,
+            dropped + told,
+        )
+
+
+def _labelled(
+    runs: xr.Dataset,
+    tell: Callable[[xr.Dataset], Integers],
+    epsilon: Floats,
+    shifted: str,
+    dimension: int,
+    confidence: float,
+) -> xr.Dataset:
+    overturned = overturned_or_not(runs)
+    found = exponent_of(tell(runs), epsilon, overturned=overturned, dimension=dimension, confidence=confidence)
+    found["epsilon"].attrs = attributes_of(shifted)
+    return found.assign_attrs({**runs.attrs, **found.attrs, "shifted": shifted})
+
+
+def overturned_or_not(runs: xr.Dataset) -> Integers:
+    """Return 1 for each run that overturned and 0 for those that did not.
+
+    UNSETTLED where that is not known: the run failed, lifted off or was stopped at a tilt limit; NOT_COMPUTED likewise.
+    """
+    codes = runs["outcome"].to_numpy().astype(np.int64)
+    states: Integers = (codes == code_of(Outcome.OVERTURNED)).astype(np.int64)
+    states[np.isin(codes, [code_of(outcome) for outcome in UNRESOLVED])] = UNSETTLED
+    states[codes == NOT_COMPUTED] = NOT_COMPUTED
+    return states
+
+
+def _attractor_of_each(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules) -> Integers:
+    return find_attractors(runs, scales, rules).labels
+
+
+def shifted_starts(base: Mapping[str, Floats], shifted: str, epsilon: Floats) -> dict[str, Floats]:
+    """Return the `base` starts, and after them all those with `shifted` lowered by ε, then raised by it.
+
+    The starts stand in blocks of one length, one for each ε.
+    """
+    change = np.repeat(epsilon, base[shifted].size // epsilon.size)
+    moved = {shifted: np.concatenate([base[shifted], base[shifted] - change, base[shifted] + change])}
+    return {name: moved[name] if name in moved else np.tile(values, 3) for name, values in base.items()}
+
+
+def exponent_of(
+    states: npt.NDArray[np.integer],
+    epsilon: Floats,
+    *,
+    overturned: npt.NDArray[np.integer] | None = None,
+    dimension: int,
+    confidence: float = 0.95,
+) -> xr.Dataset:
+    """Return the uncertainty exponent from the final `states` of the runs of `shifted_starts`.
+
+    Parameters
+    ----------
+    states
+        A number for each run that tells its final state, negative where that is not known: NOT_COMPUTED or UNSETTLED.
+    epsilon
+        The shifts.
+    overturned
+        1 for each run that overturned, 0 for those that did not, negative where that is not known: it may tell apart
+        states that are not known.
+    dimension
+        Number D of the starts that vary.
+    confidence
+        Of the intervals of the shares.
+    """
+    differ, agree = _compared(np.reshape(states, (3, epsilon.size, -1)))
+    if overturned is not None:
+        differ |= _compared(np.reshape(overturned, (3, epsilon.size, -1)))[0]
+    computed = (np.reshape(states, (3, epsilon.size, -1)) != NOT_COMPUTED).all(axis=0)
+    one_differs, both_agree = differ.any(axis=0) & computed, agree.all(axis=0)
+    uncertain = np.count_nonzero(one_differs, axis=1)
+    pairs = np.count_nonzero(one_differs | both_agree, axis=1)
+    dropped = np.count_nonzero(computed, axis=1) - pairs
+    low, high = wilson_interval(uncertain, pairs, confidence=confidence)
+    law = fit_power_law(epsilon, uncertain, pairs)
+    interval = f"end of its {100.0 * confidence:g} % interval"
+    return xr.Dataset(
+        {
+            "uncertain": ("epsilon", uncertain, {"units": "1", "long_name": "uncertain starts"}),
+            "pairs": ("epsilon", pairs, {"units": "1", "long_name": "starts told to be uncertain or not"}),
+            "dropped": ("epsilon", dropped, {"units": "1", "long_name": "starts dropped, of which it cannot be told"}),
+            "fraction": (
+                "epsilon",
+                np.where(pairs > 0, uncertain / np.maximum(pairs, 1), np.nan),
+                {"units": "1", "long_name": "fraction of uncertain starts"},
+            ),
+            "fraction_low": ("epsilon", low, {"units": "1", "long_name": f"lower {interval}"}),
+            "fraction_high": ("epsilon", high, {"units": "1", "long_name": f"upper {interval}"}),
+            "fitted": ("epsilon", law.used, {"long_name": "used for the fit"}),
+            "fit": ("epsilon", law.at(epsilon), {"units": "1", "long_name": "fraction by the fit"}),
+            "uncertainty_exponent": ((), law.exponent, {"units": "1", "long_name": "uncertainty exponent α"}),
+            "standard_error": ((), law.standard_error, {"units": "1", "long_name": "standard error of α"}),
+            "boundary_dimension": (
+                (),
+                dimension - law.exponent,
+                {"units": "1", "long_name": f"dimension of the boundary within {dimension}"},
+            ),
+            "misfit": ((), law.misfit, {"units": "1", "long_name": "deviance of the fit to a degree of freedom"}),
+        },
+        coords={"epsilon": epsilon},
+        attrs={"kind": "uncertainty exponent", "confidence": confidence},
+    )
+
+
+def _compared(states: npt.NDArray[np.integer]) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+    """Return whether each start differs for certain from that lowered and that raised, and whether it agrees so."""
+    base, shifted = states[:1], states[1:]
+    known = (base >= 0) & (shifted >= 0)
+    return known & (base != shifted), known & (base == shifted)
+
+
+def _shifts(shifts: npt.ArrayLike | None, over: Mapping[str, Sequence[float]], shifted: str) -> Floats:
+    if shifted not in over:
+        message = f"shifted must be one of {', '.join(over)}, got {shifted!r}"
+        raise ParameterError(message)
+    if shifts is None:
+        low, high = checked_values("over", shifted, over[shifted])[[0, -1]]
+        return np.asarray(_USUAL_SHIFTS * (high - low))
+    epsilon = checked_values("shifts", shifted, shifts)
+    if epsilon.size < 2 or not (epsilon[0] > 0.0 and np.all(np.diff(epsilon) > 0.0)):  # noqa: PLR2004
+        message = f"shifts must be at least two positive numbers, increasing; got {shifts!r}"
+        raise ParameterError(message)
+    return epsilon

@@ -1,0 +1,108 @@
+"""What becomes of the column beside a bifurcation, from starts on the orbit that lost its stability there."""
+
+import json
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import xarray as xr
+
+from stylobate.config import provenance_of_run
+from stylobate.engine import simulate_ensemble
+from stylobate.errors import ParameterError, require_positive, require_whole
+from stylobate.orbits import Bifurcation
+from stylobate.orbits.arguments import require_bifurcation
+from stylobate.studies.maps.attractors import label_attractors
+from stylobate.studies.sweeps.quantities import attributes_of
+
+
+def after_bifurcation(
+    bifurcation: Bifurcation,
+    *,
+    values: Sequence[float],
+    count: int = 48,
+    size: float = 1e-3,
+    periods: float = 600.0,
+    seed: int = 0,
+    progress: Callable[[int, int], None] | None = None,
+) -> xr.Dataset:
+    """Return what runs come to that begin near the orbit of a bifurcation, at values of the parameter around it.
+
+    Where the loss of stability is soft they come to what is born beside the orbit, as long as that lives; where it is
+    hard they leave for elsewhere at once.
+
+    Parameters
+    ----------
+    bifurcation
+        Of a branch, see `sb.orbits.continue_branch`.
+    values
+        Values of the branch's parameter.
+    count, size, seed
+        Number of starts at each value: the orbit's state at the bifurcation, off by normal disturbances of tilt and
+        of tilt rate (per unit of the model's time) of this size, in units of c; and their seed.
+    periods
+        How many periods of the base motion each is followed.
+    progress
+        Called with how many values are done, and of how many.
+
+    Returns
+    -------
+    xarray.Dataset
+        `count` over the parameter and `fate`: overturned, at rest, rolling, modulated and so on, told as by
+        `label_attractors`, with the length of orbits that take more than one period; and those not settled.
+
+    Raises
+    ------
+    ParameterError
+        If values or numbers are out of range.
+    """
+    require_bifurcation(bifurcation)
+    chosen = np.asarray(values, dtype=float)
+    if chosen.ndim != 1 or chosen.size == 0 or not np.all(np.isfinite(chosen)):
+        message = f"values must be a list of numbers, got {values!r}"
+        raise ParameterError(message)
+    count, size = require_whole("count", count, least=1), require_positive("size", size)
+    orbit, name = bifurcation.orbit, bifurcation.point.family.name
+    c, scale = orbit.model.column.slenderness, orbit.model.time_scale
+    off = size * c * np.random.default_rng(seed).standard_normal((2, count, 2))
+    told: list[dict[str, int]] = []
+    for index, value in enumerate(chosen):
+        system = orbit.system.changed(**{name: float(value)})
+        period = system.motion.period
+        assert period is not None
+        runs = simulate_ensemble(
+            system.model,
+            system.motion,
+            tilt=orbit.tilt + off[0],
+            tilt_rate=orbit.tilt_rate + off[1] / scale,
+            duration=require_positive("periods", periods) * period,
+            strobes=32,
+        )
+        told.append(_counted(label_attractors(runs, system.model, system.motion)))
+        if progress is not None:
+            progress(index + 1, chosen.size)
+    names = sorted({name for counts in told for name in counts})
+    table = np.array([[counts.get(name, 0) for name in names] for counts in told])
+    return xr.Dataset(
+        {"count": ((name, "fate"), table, {"units": "1", "long_name": "runs"})},
+        coords={name: (name, chosen, attributes_of(name)), "fate": names},
+        attrs={
+            "kind": "after bifurcation",
+            "parameter": name,
+            "bifurcation": bifurcation.kind.value,
+            "at": bifurcation.parameter,
+            "provenance": json.dumps(provenance_of_run(orbit.model, orbit.motion)),
+        },
+    )
+
+
+def _counted(labelled: xr.Dataset) -> dict[str, int]:
+    counts: dict[str, int] = {}
+    for kind, period, number in zip(
+        labelled["attractor_kind"].to_numpy(),
+        labelled["attractor_period"].to_numpy(),
+        labelled["count"].to_numpy(),
+        strict=True,
+    ):
+        name = f"{kind}, period {period}" if period > 1 else str(kind)
+        counts[name] = counts.get(name, 0) + int(number)
+    return counts

@@ -1,0 +1,137 @@
+"""Where averaging is right: predicted stability and amplitude against exact orbits."""
+
+import json
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion
+from stylobate.config import provenance_of_run
+from stylobate.engine import with_parameters
+from stylobate.errors import NoOrbitError
+from stylobate.models import Model
+from stylobate.orbits import Branch, continue_branch
+from stylobate.orbits.arguments import require_subject
+from stylobate.studies.ranges import require_rising_frequencies, require_values
+from stylobate.studies.responses.first_orbit import first_orbit
+from stylobate.studies.responses.orbit_families import told_between_bifurcations
+from stylobate.studies.responses.response_curves import response_curves
+from stylobate.studies.sweeps.quantities import attributes_of
+
+Floats = npt.NDArray[np.float64]
+
+_UNSTABLE, _STABLE, _NONE = 0, 1, -1
+_ROUNDED = 1e-12
+
+
+def averaging_map(
+    model: Model,
+    motion: BaseMotion,
+    *,
+    parameter: str = "acceleration",
+    values: Sequence[float],
+    angular_frequency: Sequence[float],
+    sense: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> xr.Dataset:
+    """Return over a parameter and the frequency how averaged rolling compares with the exact orbit of its family.
+
+    Parameters
+    ----------
+    model, motion
+        The slender column and a harmonic base motion.
+    parameter, values
+        Name and values of a parameter, such as acceleration, or amplitude_y as an ellipse opens.
+    angular_frequency
+        Frequencies [rad/s], increasing.
+    sense
+        Of rolling, +1 or −1; by default that of the larger circle of the base motion.
+    progress
+        Called with how many values are done, and of how many.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over the parameter and `angular_frequency`: `exact` and `averaged` (1 stable, 0 unstable, −1 no such rolling),
+        `error`, the mean tilt of the exact orbit over the averaged one less 1, and `swing`, its largest tilt over the
+        averaged one. Without friction stable means neutrally stable.
+
+    Raises
+    ------
+    ParameterError
+        If values are none, or negative where none can be, or the frequencies do not rise from above zero.
+    """
+    require_subject(model, motion)
+    frequencies, chosen = require_rising_frequencies(angular_frequency), require_values(values, parameter)
+    shape = (chosen.size, frequencies.size)
+    exact, averaged = (np.full(shape, _NONE, dtype=np.int8) for _ in range(2))
+    error, swing = np.full(shape, np.nan), np.full(shape, np.nan)
+    for row, value in enumerate(chosen):
+        changed = with_parameters(model, motion, **{parameter: float(value)})
+        theory = response_curves(*changed, angular_frequency=frequencies)
+        wanted = "clockwise" if sense == -1 else "anticlockwise"
+        name = wanted if wanted in theory["sense"] else str(theory["sense"][0].item())
+        upper = theory.sel(sense=name, branch="upper")
+        amplitude = upper["amplitude"].to_numpy()
+        averaged[row] = np.where(np.isfinite(amplitude), upper["stable"].to_numpy(), _NONE)
+        branch = _followed(*changed, frequencies, sense)
+        if branch is not None:
+            at = branch.points["angular_frequency"].to_numpy()
+            of_theory = response_curves(*changed, angular_frequency=at)["amplitude"].sel(sense=name, branch="upper")
+            exact[row], error[row], swing[row] = _at(branch, of_theory.to_numpy(), frequencies)
+        if progress is not None:
+            progress(row + 1, chosen.size)
+    dims = (parameter, "angular_frequency")
+    states = {"long_name": "1 stable, 0 unstable, -1 no such rolling"}
+    return xr.Dataset(
+        {
+            "exact": (dims, exact, states),
+            "averaged": (dims, averaged, states),
+            "error": (dims, error, {"units": "1", "long_name": "exact mean tilt over averaged tilt, less 1"}),
+            "swing": (dims, swing, {"units": "1", "long_name": "largest exact tilt over averaged tilt"}),
+        },
+        coords={
+            parameter: (parameter, chosen, attributes_of(parameter)),
+            "angular_frequency": ("angular_frequency", frequencies, {"units": "rad s-1"}),
+        },
+        attrs={
+            "kind": "averaging map",
+            "parameter": parameter,
+            "friction": int(model.comes_to_rest),
+            "provenance": json.dumps(provenance_of_run(model, motion)),
+        },
+    )
+
+
+def _followed(model: Model, motion: BaseMotion, frequencies: Floats, sense: int | None) -> Branch | None:
+    bounds = (float(frequencies[0]), float(frequencies[-1]))
+    try:
+        orbit = first_orbit(model, motion, bounds, sense)
+    except NoOrbitError:
+        return None
+    return told_between_bifurcations(continue_branch(orbit, "angular_frequency", bounds=bounds))
+
+
+def _at(branch: Branch, amplitude: Floats, frequencies: Floats) -> tuple[npt.NDArray[np.int8], Floats, Floats]:
+    """Return stability, and error and swing against the averaged `amplitude` at each point, at these frequencies.
+
+    Stability changes at bifurcations only, which are points of the branch; ratios to the averaged amplitude, which
+    change slowly, are interpolated between points. Where a branch is folded, its first orbit counts.
+    """
+    points = branch.points
+    at, stable = points["angular_frequency"].to_numpy(), points["stable"].to_numpy()
+    ratios = [points[name].to_numpy() / amplitude for name in ("mean_tilt", "largest_tilt")]
+    found = [np.full(frequencies.size, np.nan) for _ in ratios]
+    told = np.full(frequencies.size, _NONE, dtype=np.int8)
+    for index in range(at.size - 1):
+        low, high = sorted(at[index : index + 2])
+        inside = (frequencies >= low * (1.0 - _ROUNDED)) & (frequencies <= high * (1.0 + _ROUNDED)) & (told == _NONE)
+        if not inside.any() or low == high:
+            continue
+        share = (frequencies[inside] - at[index]) / (at[index + 1] - at[index])
+        for ratio, into in zip(ratios, found, strict=True):
+            into[inside] = ratio[index] + share * (ratio[index + 1] - ratio[index])
+        told[inside] = _STABLE if stable[index] or stable[index + 1] else _UNSTABLE
+    return told, found[0] - 1.0, found[1]

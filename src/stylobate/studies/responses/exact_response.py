@@ -1,0 +1,180 @@
+"""Frequency response with exact periodic orbits, beside that of theory."""
+
+import json
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion
+from stylobate.config import provenance_of_run
+from stylobate.engine import with_parameters
+from stylobate.engine.parameters import present_value
+from stylobate.errors import ParameterError, UnsupportedError, require_whole
+from stylobate.models import Model
+from stylobate.orbits import PeriodicOrbit, StepControl, continue_branch
+from stylobate.orbits.arguments import require_orbit, require_subject
+from stylobate.studies.ranges import require_frequencies
+from stylobate.studies.responses.first_orbit import first_orbit
+from stylobate.studies.responses.orbit_families import Followed, born, told_between_bifurcations
+from stylobate.studies.responses.response_curves import response_curves
+
+_AVERAGED_POINTS = 400
+# Two base motions, or two models, are one if their numbers agree to this part of the largest.
+_SAME, _PHASES = 1e-9, 16
+_BIFURCATION_UNITS = {"angular_frequency": "rad s-1", "mean_tilt": "rad", "largest_tilt": "rad"}
+
+
+def exact_response(
+    model: Model,
+    motion: BaseMotion,
+    *,
+    angular_frequency: tuple[float, float],
+    orbit: PeriodicOrbit | None = None,
+    sense: int | None = None,
+    generations: int = 1,
+    control: StepControl | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> xr.Dataset:
+    """Return exact rolling against the frequency of the base motion: tilts, phase, stability, bifurcations.
+
+    Parameters
+    ----------
+    model, motion
+        The column and a harmonic base motion; its acceleration is kept, its frequency replaced.
+    angular_frequency
+        Lowest and highest frequency [rad/s].
+    orbit
+        Where to begin: of this model under this motion at a frequency of the range. By default rolling by theory, at
+        the highest frequency at which it is found.
+    sense
+        Of rolling, +1 or −1, for the orbit by theory.
+    generations
+        How many times families that are born at pitchforks and period doublings are followed: 0 for none.
+    control
+        Length of steps along the families.
+    progress
+        Called with the frequency of each new orbit.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `point`: `angular_frequency`, `mean_tilt`, `least_tilt`, `largest_tilt`, `phase` [rad], `stable` (of an
+        orbit in a plane, in that plane; without friction, neutrally), multipliers, and `branch`, the family of each. A
+        bifurcation is a point of its family, at which it is not called stable. Over `branch_index`: name, length in
+        periods, ends. Over `bifurcation`: kind, frequency, branch, mean tilt, coefficient, and `bifurcation_soft` (1
+        soft, 0 hard, −1 not decided). For rolling that theory knows, its curves over `averaged_frequency`, exact for
+        circular motion.
+
+    Raises
+    ------
+    ParameterError
+        If the range is none, or `orbit` is one of another model or base motion.
+    NoOrbitError
+        If no orbit was found to begin with.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> motion = sb.Harmonic.straight(acceleration=0.04, angular_frequency=1.0)
+    >>> curves = sb.studies.exact_response(model, motion, angular_frequency=(1.0, 3.0), generations=0)
+    >>> curves["bifurcation_kind"].item(), round(curves["bifurcation_angular_frequency"].item(), 6)
+    ('pitchfork', 1.087672)
+    """
+    low, high = require_frequencies(angular_frequency)
+    generations = require_whole("generations", generations, least=0)
+    require_subject(model, motion)
+    if orbit is None:
+        orbit = first_orbit(model, motion, (low, high), sense)
+    else:
+        _require_of(orbit, model, motion, (low, high))
+    main = continue_branch(orbit, "angular_frequency", bounds=(low, high), control=control, progress=progress)
+    families = [Followed("rolling" if orbit.turns != 0.0 else "periodic", main)]
+    families += list(born(main, (low, high), generations, control, progress))
+    found = _joined(families)
+    if orbit.turns != 0.0:
+        found = found.assign(_by_theory(model, motion, low, high, 1 if orbit.turns > 0.0 else -1))
+    return found.assign_attrs(
+        kind="exact response",
+        sense=float(orbit.turns),
+        planar=int(orbit.planar),
+        friction=int(model.comes_to_rest),
+        provenance=json.dumps(provenance_of_run(model, orbit.motion)),
+    )
+
+
+def _require_of(orbit: PeriodicOrbit, model: Model, motion: BaseMotion, bounds: tuple[float, float]) -> None:
+    """Raise ParameterError unless it is an orbit of this model under this motion, but for a frequency in the bounds."""
+    require_orbit(orbit)
+    numbers, own = ((*one.parameters, one.column.slenderness, one.time_scale) for one in (model, orbit.model))
+    if type(orbit.model) is not type(model) or not np.allclose(own, numbers, rtol=_SAME, atol=0.0):
+        message = f"orbit must be one of the model {model!r}, got one of {orbit.model!r}"
+        raise ParameterError(message)
+    frequency = present_value(orbit.model, orbit.motion, "angular_frequency")
+    if not bounds[0] <= frequency <= bounds[1]:
+        message = f"angular_frequency must enclose that of the orbit, {frequency!r} rad/s, got {bounds!r}"
+        raise ParameterError(message)
+    _, at = with_parameters(model, motion, angular_frequency=frequency)
+    times = np.arange(_PHASES) / _PHASES * float(orbit.motion.period or 1.0)
+    wanted, given = (one.acceleration(times) for one in (at, orbit.motion))
+    if np.abs(wanted - given).max() > _SAME * np.abs(wanted).max():
+        message = f"orbit must be one under {motion!r} at whatever frequency, got one under {orbit.motion!r}"
+        raise ParameterError(message)
+
+
+def _joined(families: Sequence[Followed]) -> xr.Dataset:
+    points, tables = [], []
+    places = [one.parameter for family in families for one in family.branch.bifurcations]
+    for index, family in enumerate(families):
+        branch = told_between_bifurcations(family.branch)
+        data = branch.points
+        # What is on a bifurcation is told by rounding alone.
+        located = np.isin([point.value for point in branch.path], places)
+        data["stable"] = data["stable"] & ~xr.DataArray(located, dims="point")
+        table = data[[name for name in data.data_vars if str(name).startswith("bifurcation_")]]
+        table = table.rename(bifurcation_parameter="bifurcation_angular_frequency")
+        tables.append(table.assign(bifurcation_branch=("bifurcation", [index] * table.sizes["bifurcation"])))
+        own = data.drop_vars([name for name in data.data_vars if str(name).startswith("bifurcation_")])
+        points.append(own.assign(branch=("point", [index] * own.sizes["point"])))
+    joined = xr.concat(
+        points, dim="point", combine_attrs="drop", data_vars="minimal", coords="minimal", compat="equals"
+    )
+    bifurcations = xr.concat(
+        tables, dim="bifurcation", combine_attrs="drop", data_vars="minimal", coords="minimal", compat="override"
+    )
+    for name, column in bifurcations.data_vars.items():
+        joined[name] = ("bifurcation", column.to_numpy(), column.attrs)
+    for name, variable in points[0].data_vars.items():
+        joined[name].attrs.update(variable.attrs)
+    for name, units in _BIFURCATION_UNITS.items():
+        joined[f"bifurcation_{name}"].attrs["units"] = units
+    joined["angular_frequency"].attrs["units"] = "rad s-1"
+    return joined.assign(
+        branch_name=("branch_index", [one.name for one in families]),
+        branch_periods=("branch_index", [one.branch.path[0].family.periods for one in families]),
+        branch_end=("branch_index", ["; ".join(end.value for end in one.branch.ends) for one in families]),
+    )
+
+
+def _by_theory(model: Model, motion: BaseMotion, low: float, high: float, sense: int) -> dict[str, object]:
+    """Return the curves of theory for rolling in this sense, nothing where it has none."""
+    try:
+        curves = response_curves(model, motion, angular_frequency=np.linspace(low, high, _AVERAGED_POINTS))
+    except (UnsupportedError, ParameterError):
+        return {}
+    name = "anticlockwise" if sense > 0 else "clockwise"
+    if name not in curves["sense"]:
+        return {}
+    own = curves.sel(sense=name)
+    dims = ("averaged_branch", "averaged_frequency")
+    return {
+        "averaged_frequency": ("averaged_frequency", curves["angular_frequency"].to_numpy(), {"units": "rad s-1"}),
+        "averaged_branch": ("averaged_branch", curves["branch"].to_numpy()),
+        **{
+            f"averaged_{field}": (dims, own[field].to_numpy(), own[field].attrs)
+            for field in ("amplitude", "phase", "stable")
+        },
+        "averaged_critical_frequency": ((), float(own["critical_frequency"]), {"units": "rad s-1"}),
+        "averaged_is_exact": ((), not curves.attrs["averaged"]),
+    }

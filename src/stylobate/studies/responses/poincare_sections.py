@@ -1,0 +1,118 @@
+"""Poincaré sections: the states of columns once in each period of the base motion."""
+
+import json
+from collections.abc import Callable
+
+import numpy as np
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion
+from stylobate.engine import simulate_ensemble
+from stylobate.engine.ensembles.broadcasting import ArrayLike
+from stylobate.errors import ParameterError, UnsupportedError, require_whole
+from stylobate.models import Model
+from stylobate.orbits.arguments import require_subject
+
+_FOLLOWED = ("outcome", "decided_at", "uncertain")
+
+
+def poincare_section(
+    model: Model,
+    motion: BaseMotion,
+    *,
+    tilt: ArrayLike,
+    tilt_rate: ArrayLike = (0.0, 0.0),
+    periods: int = 1000,
+    skip: int = 200,
+    rtol: float = 1e-10,
+    rest_energy: float | None = None,
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> xr.Dataset:
+    """Return the states of columns once a period, where the base motion has the phase of t = 0.
+
+    A periodic orbit is as many points as it has periods, a quasi-periodic one fills closed curves, a chaotic one a set
+    of broken dimension.
+
+    Parameters
+    ----------
+    model, motion
+        The column and its base motion, periodic from t = 0.
+    tilt, tilt_rate
+        Starts [rad], [rad/s]: shape (2,), (n, 2), or DataArrays, as in `simulate_ensemble`.
+    periods
+        Periods for which the columns are followed.
+    skip
+        Periods at the beginning that are left out, for the motion to settle.
+    rtol, rest_energy, threads, progress
+        As in `simulate_ensemble`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "Poincaré section", over `run` (or the dimensions of the starts) and `period`, the number of periods
+        since t = 0, from `skip` to `periods`: `section_tilt` [rad] and `section_tilt_rate` [rad/s] along `axis`, NaN
+        after a column has come to rest for good or overturned; and of each run `outcome`, `decided_at` [s],
+        `uncertain`.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range.
+    UnsupportedError
+        If the base motion has no period, or not from t = 0 on.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
+    >>> start = sb.studies.steady_start(model, motion)
+    >>> section = sb.studies.poincare_section(model, motion, **start, periods=20, skip=10)
+    >>> bool(section["section_tilt"].std("period").max() < 1e-8)
+    True
+    """
+    require_subject(model, motion)
+    skip = require_whole("skip", skip, least=0)
+    periods = require_whole("periods", periods, least=1)
+    if skip > periods:
+        message = f"skip must be at most periods ({periods}), got {skip}"
+        raise ParameterError(message)
+    if motion.period is None or motion.breaks:
+        message = (
+            f"poincare_section needs a base motion that is periodic from t = 0, without ramp or delay; got {motion!r}"
+        )
+        raise UnsupportedError(message)
+    points = periods - skip + 1
+    # Samples at equal times, one a period, and those of the periods skipped left out: strobes would keep phase zero
+    # of the base motion, which is t = 0 only for a start phase of zero.
+    runs = simulate_ensemble(
+        model,
+        motion,
+        tilt=tilt,
+        tilt_rate=tilt_rate,
+        duration=periods * motion.period,
+        samples=periods + 1,
+        rtol=rtol,
+        rest_energy=rest_energy,
+        max_steps=_most_steps(periods),
+        threads=threads,
+        progress=progress,
+    )
+    late = runs.isel(sample=slice(periods + 1 - points, None)).rename(sample="period")
+    names = {"sampled_tilt": "section_tilt", "sampled_tilt_rate": "section_tilt_rate"}
+    section = late[[*names, *_FOLLOWED]].rename(names).assign_coords(period=np.arange(skip, periods + 1))
+    section["period"].attrs = {"long_name": "periods of the base motion since t = 0", "units": "1"}
+    section["section_tilt"].attrs["long_name"] = "tilt vector once a period"
+    section["section_tilt_rate"].attrs["long_name"] = "rate of the tilt vector once a period"
+    given = json.loads(runs.attrs["provenance"])
+    provenance = {**given, "periods": periods, "skip": skip}
+    return section.assign_attrs(kind="Poincaré section", provenance=json.dumps(provenance))
+
+
+# Steps that a run may take in a period; a column that swings near rest takes many.
+_STEPS_A_PERIOD, _LEAST_STEPS = 1000, 200_000
+
+
+def _most_steps(periods: int) -> int:
+    return max(_LEAST_STEPS, _STEPS_A_PERIOD * periods)

@@ -1,0 +1,298 @@
+"""A slow sweep: one column followed while a parameter goes through its values step by step."""
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion
+from stylobate.config import provenance_of_run
+from stylobate.engine import simulate_ensemble, with_parameters
+from stylobate.errors import Interrupted, Outcome, ParameterError, UnsupportedError, require_whole
+from stylobate.models import Model
+from stylobate.orbits.arguments import require_subject
+from stylobate.results import OutcomeRules
+from stylobate.results.outcomes import NOT_COMPUTED, code_of, outcome_attributes
+from stylobate.studies.sweeps.quantities import Floats, attributes_of, checked_values
+
+# Samples in a period, of which the mean tilt is made.
+_SAMPLES = 64
+# The end of a run is met to this part of its length.
+_SLACK = 1e-9
+# Several beats of a modulation, by which it is told from what has not settled.
+_PERIODS_LOOKED_AT = 25
+
+_ENDINGS = tuple(
+    code_of(one) for one in (Outcome.OVERTURNED, Outcome.LIMIT_REACHED, Outcome.LIFTED_OFF, Outcome.FAILED)
+)
+_NUMBERS = {
+    "mean_tilt": ("mean tilt", "rad"),
+    "least_tilt": ("least tilt", "rad"),
+    "largest_tilt": ("largest tilt", "rad"),
+    "turns_per_period": ("turns a period", "1"),
+}
+_VECTORS = {
+    "end_tilt": ("tilt vector at the end of the step", "rad"),
+    "end_tilt_rate": ("rate of the tilt vector at the end of the step", "rad s-1"),
+}
+_PLANE, _AXES = 2, 2
+
+
+def slow_sweep(
+    model: Model,
+    motion: BaseMotion,
+    *,
+    parameter: str = "angular_frequency",
+    values: npt.ArrayLike,
+    tilt: npt.ArrayLike,
+    tilt_rate: npt.ArrayLike = (0.0, 0.0),
+    periods_each: int = 200,
+    back: bool = False,
+    rtol: float = 1e-8,
+    rest_energy: float | None = None,
+    rules: OutcomeRules | None = None,
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> xr.Dataset:
+    """Follow columns by direct integration while a parameter steps through its values: jumps and hysteresis show.
+
+    At each value a column goes on from where it was at the value before, tilt and tilt rate in SI units. Each step
+    lasts a whole number of periods of its own, so that every step begins at the phase of t = 0: with the frequency
+    the base acceleration goes on without a jump, and only its rate changes. Nothing but `simulate_ensemble` is used:
+    the sweep is a check of branches of periodic orbits that owes them nothing.
+
+    Parameters
+    ----------
+    model, motion
+        The column and its base motion, periodic from t = 0.
+    parameter
+        What steps: a name of `simulate_ensemble`'s parameters.
+    values
+        Its values, in their order: shape (n,), or (n, m) for m sweeps that differ.
+    tilt, tilt_rate
+        Starts at the first value [rad], [rad/s]: shape (2,), or (m, 2) for m sweeps.
+    periods_each
+        Periods for which each value is held. Friction η forgets what a step disturbs as exp(−ηω0 t/2), but near a
+        bifurcation far more slowly: there a sweep lags behind. Each step is a push as well, which near the edge of a
+        basin can overturn a column that smaller steps would keep.
+    back
+        Go back through the values after the last.
+    rtol, rest_energy, threads
+        As in `simulate_ensemble`.
+    rules
+        When a motion counts as rolling, rocking or modulated, at each value. With n = `rules.periods`, 25 by default,
+        the last 2n + 1 periods are looked at.
+    progress
+        Called as `progress(steps done, steps in all)`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "slow sweep", over (step, sweep), `parameter` among the coordinates: over the last 2n + 1 periods of
+        each step `mean_tilt`, `least_tilt`, `largest_tilt` [rad], `turns_per_period`, anticlockwise positive, and the
+        `outcome`; `end_tilt` [rad] and `end_tilt_rate` [rad/s], the state at the phase of t = 0 with which the step
+        ends. A column that overturned (or lifted off, or failed) has that outcome there and NaN; after it nothing is
+        computed. One that came to rest has tilts and turns of zero; it goes on from rest, as a later value may release
+        it.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range.
+    UnsupportedError
+        If the base motion has no period, or not from t = 0 on.
+    Interrupted
+        After Ctrl-C; its `partial` is the Dataset with the steps that were done.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.5)
+    >>> start = sb.studies.steady_start(model, motion)
+    >>> sweep = sb.studies.slow_sweep(model, motion, values=[1.5, 1.44, 1.38, 1.3], **start)
+    >>> [sb.results.outcome_of(code).name for code in sweep["outcome"].values[:, 0]]
+    ['ROLLING', 'ROLLING', 'MODULATED', 'OVERTURNED']
+    """
+    require_subject(model, motion)
+    held = rules or OutcomeRules(periods=_PERIODS_LOOKED_AT)
+    watched = 2 * held.periods + 1
+    steps, starts = _together(parameter, values, tilt, tilt_rate)
+    if back:
+        steps = np.concatenate([steps, steps[-2::-1]])
+    hold = _Hold(
+        model,
+        motion,
+        parameter,
+        settling=require_whole("periods_each", periods_each, least=watched) - watched,
+        watched=watched,
+        options={"rtol": rtol, "rest_energy": rest_energy, "rules": held, "threads": threads},
+    )
+    periods = _periods(hold, steps)
+    table = _empty(steps.shape)
+
+    def result() -> xr.Dataset:
+        kept = {"tilt": starts[0].tolist(), "tilt_rate": starts[1].tolist(), "periods_each": periods_each, "rtol": rtol}
+        provenance = provenance_of_run(model, motion, **kept, rest_energy=rest_energy, rules=asdict(held))
+        return _dataset(table, steps, parameter, watched, provenance)
+
+    state, moving = starts, np.ones(steps.shape[1], dtype=bool)
+    for step, at in enumerate(steps):
+        if not moving.any():
+            break
+        try:
+            found = hold.followed(at[moving], periods[step][moving], state[0][moving], state[1][moving])
+        except Interrupted:
+            message = "interrupted; `partial` has the steps that were done"
+            raise Interrupted(message, result()) from None
+        for name, column in found.items():
+            table[name][step, moving] = column
+        state = table["end_tilt"][step], table["end_tilt_rate"][step]
+        moving &= ~np.isin(table["outcome"][step], _ENDINGS)
+        if progress is not None:
+            progress(step + 1, len(steps))
+    return result()
+
+
+@dataclass(frozen=True, slots=True)
+class _Hold:
+    """How columns are followed at one value of the parameter each: for `settling`, then for `watched` periods."""
+
+    model: Model
+    motion: BaseMotion
+    parameter: str
+    settling: int
+    watched: int
+    options: Mapping[str, Any]
+
+    def followed(self, at: Floats, period: Floats, tilt: Floats, tilt_rate: Floats) -> dict[str, npt.NDArray[Any]]:
+        """Return what the columns do at these values from these states, each of m rows; NaN for one that ended."""
+        ended = np.zeros(at.size, dtype=bool)
+        outcome = np.zeros(at.size, dtype=np.int8)
+        if self.settling:
+            runs = self._runs(at, self.settling * period, tilt, tilt_rate)
+            outcome = runs["outcome"].to_numpy()
+            ended = np.isin(outcome, _ENDINGS)
+            tilt, tilt_rate = runs["end_tilt"].to_numpy(), runs["end_tilt_rate"].to_numpy()
+        found = _empty(at.shape)
+        found["outcome"][ended] = outcome[ended]
+        if not ended.all():
+            going = ~ended
+            for name, column in self._watched(at[going], period[going], tilt[going], tilt_rate[going]).items():
+                found[name][going] = column
+        return found
+
+    def _watched(self, at: Floats, period: Floats, tilt: Floats, tilt_rate: Floats) -> dict[str, npt.NDArray[Any]]:
+        samples = _SAMPLES * self.watched + 1
+        runs = self._runs(at, self.watched * period, tilt, tilt_rate, samples=samples)
+        sampled = np.hypot(*np.moveaxis(runs["sampled_tilt"].to_numpy(), -1, 0))
+        found = {
+            "mean_tilt": np.trapezoid(sampled, axis=1) / (samples - 1),
+            "least_tilt": runs["least_tilt"].to_numpy(),
+            "largest_tilt": runs["largest_tilt"].to_numpy(),
+            "turns_per_period": runs["turns"].to_numpy() / self.watched,
+        }
+        # What came to rest for good ended early: it stands, whatever it did before.
+        outcome = runs["outcome"].to_numpy()
+        early = runs["end_time"].to_numpy() < (1.0 - _SLACK) * self.watched * period
+        for column in found.values():
+            column[early & (outcome == code_of(Outcome.AT_REST))] = 0.0
+        found |= {name: runs[name].to_numpy() for name in _VECTORS}
+        for column in found.values():
+            column[np.isin(outcome, _ENDINGS)] = np.nan
+        return {"outcome": outcome, **found}
+
+    def _runs(
+        self, at: Floats, duration: Floats, tilt: Floats, tilt_rate: Floats, samples: int | None = None
+    ) -> xr.Dataset:
+        return simulate_ensemble(
+            self.model,
+            self.motion,
+            tilt=tilt,
+            tilt_rate=tilt_rate,
+            duration=duration,
+            parameters={self.parameter: at},
+            samples=samples,
+            **self.options,
+        )
+
+
+def _together(
+    parameter: str, values: npt.ArrayLike, tilt: npt.ArrayLike, tilt_rate: npt.ArrayLike
+) -> tuple[Floats, tuple[Floats, Floats]]:
+    """Return values, shape (n, m), and tilt and rate, shape (m, 2), of the sweeps."""
+    steps = _array("values", values)
+    if steps.ndim not in (1, _PLANE) or not steps.size:
+        message = f"values must have the shape (n,), or (n, m) for m sweeps, and not be empty; got {steps.shape}"
+        raise ParameterError(message)
+    steps = checked_values("values", parameter, steps.ravel()).reshape(len(steps), -1)
+    vectors = [_array("tilt", tilt), _array("tilt_rate", tilt_rate)]
+    for name, vector in zip(("tilt", "tilt_rate"), vectors, strict=True):
+        if vector.ndim not in (1, _PLANE) or vector.shape[-1] != _AXES:
+            message = f"{name} must have the shape (2,), or (m, 2) for m sweeps; got {vector.shape}"
+            raise ParameterError(message)
+    counts = {steps.shape[1], *(np.atleast_2d(vector).shape[0] for vector in vectors)}
+    if len(counts - {1}) > 1:
+        message = f"values, tilt and tilt_rate must be of one number of sweeps, or of one each; got {sorted(counts)}"
+        raise ParameterError(message)
+    many = max(counts)
+    first, second = (np.broadcast_to(vector, (many, _AXES)).copy() for vector in vectors)
+    return np.broadcast_to(steps, (len(steps), many)).copy(), (first, second)
+
+
+def _array(name: str, values: npt.ArrayLike) -> Floats:
+    try:
+        return np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        message = f"{name} must be an array of numbers, got {values!r}"
+        raise ParameterError(message) from None
+
+
+def _periods(hold: _Hold, steps: Floats) -> Floats:
+    """Return the period of the base motion at each value [s]."""
+    periods: Floats = np.empty_like(steps)
+    for value in np.unique(steps):
+        _, changed = with_parameters(hold.model, hold.motion, **{hold.parameter: float(value)})
+        if changed.period is None or changed.breaks:
+            message = (
+                f"slow_sweep needs a base motion that is periodic from t = 0, without ramp or delay; got {changed!r}"
+            )
+            raise UnsupportedError(message)
+        periods[steps == value] = changed.period
+    return periods
+
+
+def _empty(shape: tuple[int, ...]) -> dict[str, npt.NDArray[Any]]:
+    return {
+        "outcome": np.full(shape, NOT_COMPUTED, dtype=np.int8),
+        **{name: np.full(shape, np.nan) for name in _NUMBERS},
+        **{name: np.full((*shape, _AXES), np.nan) for name in _VECTORS},
+    }
+
+
+def _dataset(
+    table: Mapping[str, npt.NDArray[Any]],
+    steps: Floats,
+    parameter: str,
+    watched: int,
+    provenance: Mapping[str, Any],
+) -> xr.Dataset:
+    dims = ("step", "sweep")
+    variables: dict[str, Any] = {"outcome": (dims, table["outcome"], outcome_attributes())}
+    for names, more in ((_NUMBERS, ()), (_VECTORS, ("axis",))):
+        for name, (long_name, units) in names.items():
+            variables[name] = ((*dims, *more), table[name].copy(), {"long_name": long_name, "units": units})
+    return xr.Dataset(
+        variables,
+        coords={parameter: (dims, steps, attributes_of(parameter)), "axis": ["x", "y"]},
+        attrs={
+            "kind": "slow sweep",
+            "parameter": parameter,
+            "watched_periods": watched,
+            "provenance": json.dumps({**provenance, "parameter": parameter}),
+        },
+    )

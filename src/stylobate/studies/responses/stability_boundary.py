@@ -1,0 +1,232 @@
+"""Where rolling loses its stability, over the frequency of the base motion and a second parameter."""
+
+import json
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from stylobate.base_motions import BaseMotion
+from stylobate.config import provenance_of_run
+from stylobate.engine import with_parameters
+from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError, require_positive
+from stylobate.models import Model
+from stylobate.orbits import (
+    Bifurcation,
+    BifurcationCurve,
+    Branch,
+    Kind,
+    StepControl,
+    bifurcation_curve,
+    continue_branch,
+)
+from stylobate.orbits.arguments import require_subject
+from stylobate.orbits.multipliers import is_stable
+from stylobate.studies.ranges import require_bounds, require_frequencies
+from stylobate.studies.responses.first_orbit import first_orbit
+from stylobate.studies.responses.orbit_families import told_between_bifurcations
+from stylobate.studies.responses.response_curves import response_curves
+from stylobate.studies.sweeps.quantities import attributes_of
+
+_THEORY_POINTS = 201
+# A bifurcation this near to a curve, in parts of the widths of the bounds, lies on it.
+_ON_CURVE = 2e-3
+# A curve bends off the chord of two of its points by less than this part of the chord.
+_BENT = 0.05
+_FOLLOWED = (Kind.FOLD, Kind.PITCHFORK, Kind.PERIOD_DOUBLING, Kind.NEIMARK_SACKER)
+
+
+def stability_boundary(
+    model: Model,
+    motion: BaseMotion,
+    *,
+    parameter: str = "acceleration",
+    bounds: tuple[float, float],
+    angular_frequency: tuple[float, float],
+    values: Sequence[float] | None = None,
+    sense: int | None = None,
+    control: StepControl | None = None,
+) -> xr.Dataset:
+    """Return the curves on which exact rolling loses its stability, beside the critical frequency of theory.
+
+    At a few values of the parameter rolling is followed over the frequency; from each bifurcation at which it loses
+    its stability a curve is followed in both.
+
+    Parameters
+    ----------
+    model, motion
+        The column and a harmonic base motion.
+    parameter, bounds
+        Name of the second parameter, see `with_parameters`, and its lowest and highest value.
+    angular_frequency
+        Lowest and highest frequency [rad/s].
+    values
+        Values of the parameter at which rolling is followed over the frequency; by default five across the bounds.
+    sense
+        Of rolling, +1 or −1; by default that of the larger circle of the base motion.
+    control
+        Length of steps along the curves.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `point`: `angular_frequency` [rad/s], the parameter, `curve`, `soft` (1 soft, 0 hard, −1 not decided),
+        `coefficient`; over `curve_index`: `curve_kind`, `curve_end`. Over `theory_parameter`: `theory_frequency`
+        [rad/s], the critical frequency (exact for circular motion, averaged else), NaN where there is none.
+        `attrs["rolling"]` tells how rolling was wherever it was looked at: "stable", "unstable", "stable or unstable".
+
+    Raises
+    ------
+    ParameterError
+        If bounds or values are none, or there is no friction, without which nothing decays.
+    NoOrbitError
+        If rolling was found at none of the values.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=2.0)
+    >>> boundary = sb.studies.stability_boundary(
+    ...     model, motion, bounds=(0.05, 0.08), angular_frequency=(1.0, 3.0), values=[0.065]
+    ... )
+    >>> boundary["curve_kind"].values.tolist()
+    ['Neimark-Sacker']
+    """
+    require_subject(model, motion)
+    low, high = require_bounds(bounds, parameter)
+    frequencies = require_frequencies(angular_frequency)
+    _require_friction(model, parameter, low)
+    chosen = np.linspace(low, high, 5) if values is None else np.asarray(values, dtype=float)
+    if chosen.size == 0 or not np.all((chosen >= low) & (chosen <= high)):
+        message = f"values must lie between the bounds {(low, high)!r}, got {values!r}"
+        raise ParameterError(message)
+    curves: list[BifurcationCurve] = []
+    looked_at: set[bool] = set()
+    reason: Exception | None = None
+    for value in chosen:
+        try:
+            orbit = first_orbit(*with_parameters(model, motion, **{parameter: float(value)}), frequencies, sense)
+        except NoOrbitError as error:
+            reason = error
+            continue
+        branch = told_between_bifurcations(continue_branch(orbit, "angular_frequency", bounds=frequencies))
+        looked_at |= {is_stable(point.multipliers) for point in branch.path}
+        for one in losses(branch):
+            if not any(_on(curve, one, float(value), frequencies, (low, high)) for curve in curves):
+                curves.append(bifurcation_curve(one, parameter, bounds=(frequencies, (low, high)), control=control))
+    if not looked_at and reason is not None:
+        raise NoOrbitError(str(reason))
+    return (
+        _joined(curves, parameter)
+        .assign(_of_theory(model, motion, parameter, (low, high), sense))
+        .assign_attrs(
+            kind="stability boundary",
+            parameter=parameter,
+            bounds=[low, high],
+            angular_frequency_range=list(frequencies),
+            rolling=_everywhere(looked_at),
+            provenance=json.dumps(provenance_of_run(model, motion)),
+        )
+    )
+
+
+def losses(branch: Branch) -> list[Bifurcation]:
+    """Return the bifurcations of a branch at which stability is lost or won."""
+    found = []
+    for one in branch.bifurcations:
+        place = next(index for index, point in enumerate(branch.path) if point is one.point)
+        around = [branch.path[k] for k in (place - 1, place + 1) if 0 <= k < len(branch.path)]
+        stable = [is_stable(point.multipliers) for point in around]
+        if one.kind in _FOLLOWED and len(set(stable)) > 1:
+            found.append(one)
+    return found
+
+
+def _require_friction(model: Model, parameter: str, least: float) -> None:
+    """Raise ParameterError without friction: orbits are neutrally stable then at best, and nothing is decided."""
+    if parameter == "damping":
+        require_positive("bounds: damping", least)
+    elif not model.comes_to_rest:
+        message = (
+            "damping must be above zero, got 0.0: without friction no motion decays, rolling is neutrally stable at "
+            "best, and where it is lost is not decided"
+        )
+        raise ParameterError(message)
+
+
+def _everywhere(stable: set[bool]) -> str:
+    """Return how rolling was wherever it was looked at."""
+    return " or ".join(name for name, seen in (("stable", True), ("unstable", False)) if seen in stable)
+
+
+def _on(
+    curve: BifurcationCurve,
+    one: Bifurcation,
+    value: float,
+    frequencies: tuple[float, float],
+    bounds: tuple[float, float],
+) -> bool:
+    """Return whether a bifurcation lies on a curve known already."""
+    if curve.kind is not one.kind:
+        return False
+    widths = np.array([frequencies[1] - frequencies[0], bounds[1] - bounds[0]])
+    path = np.array([point.values for point in curve.path]) / widths
+    here = np.array([one.parameter, value]) / widths
+    if len(path) == 1:
+        return bool(np.linalg.norm(path[0] - here) < _ON_CURVE)
+    along = np.diff(path, axis=0)
+    squares = np.sum(along**2, axis=1)
+    # A curve begun on the bound of a parameter may have a point twice: a chord of no length.
+    share = np.sum((here - path[:-1]) * along, axis=1) / np.where(squares > 0.0, squares, 1.0)
+    gaps = np.linalg.norm(path[:-1] + np.clip(share, 0.0, 1.0)[:, np.newaxis] * along - here, axis=1)
+    return bool(np.any(gaps < _ON_CURVE + _BENT * np.sqrt(squares)))
+
+
+def _joined(curves: list[BifurcationCurve], parameter: str) -> xr.Dataset:
+    tables = [curve.points for curve in curves]
+
+    def column(name: str) -> np.ndarray:
+        return np.concatenate([table[name].to_numpy() for table in tables]) if tables else np.empty(0)
+
+    lengths = [table.sizes["point"] for table in tables]
+    return xr.Dataset(
+        {
+            "curve": ("point", np.repeat(np.arange(len(tables)), lengths)),
+            "soft": ("point", column("soft"), {"long_name": "1 where the loss is soft, 0 hard, -1 not decided"}),
+            "coefficient": ("point", column("coefficient"), {"long_name": "coefficient of the normal form"}),
+            "least_tilt": ("point", column("least_tilt"), {"units": "rad"}),
+            "largest_tilt": ("point", column("largest_tilt"), {"units": "rad"}),
+            "curve_kind": ("curve_index", [curve.kind.value for curve in curves]),
+            "curve_end": ("curve_index", ["; ".join(end.value for end in curve.ends) for curve in curves]),
+        },
+        coords={
+            "angular_frequency": ("point", column("angular_frequency"), {"units": "rad s-1"}),
+            parameter: ("point", column(parameter), attributes_of(parameter)),
+        },
+    )
+
+
+def _of_theory(
+    model: Model, motion: BaseMotion, parameter: str, bounds: tuple[float, float], sense: int | None
+) -> dict[str, object]:
+    """Return theory's critical frequency over the parameter; nothing where it has none."""
+    values = np.linspace(*bounds, _THEORY_POINTS)
+    critical = np.full(values.size, np.nan)
+    averaged = False
+    for index, value in enumerate(values):
+        try:
+            curves = response_curves(
+                *with_parameters(model, motion, **{parameter: float(value)}), angular_frequency=[1.0]
+            )
+        except (UnsupportedError, ParameterError):
+            continue
+        averaged = averaged or bool(curves.attrs["averaged"])
+        wanted = "clockwise" if sense == -1 else "anticlockwise"
+        name = wanted if wanted in curves["sense"] and sense is not None else str(curves["sense"][0].item())
+        critical[index] = float(curves["critical_frequency"].sel(sense=name))
+    return {
+        "theory_parameter": ("theory_parameter", values),
+        "theory_frequency": ("theory_parameter", critical, {"units": "rad s-1", "long_name": "critical frequency"}),
+        "theory_is_exact": ((), not averaged),
+    }

@@ -1,0 +1,466 @@
+"""The assessment of columns: its answers are those of single runs, whatever the order, interrupted or not."""
+
+import logging
+from functools import partial
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import stylobate as sb
+from stylobate.base_motions.records.listing import drifts
+from stylobate.earthquakes import assess, robustness
+from stylobate.earthquakes.assessment import robust
+from stylobate.earthquakes.assessment.governing import governing_record
+from stylobate.earthquakes.assessment.inputs import Inputs
+from stylobate.earthquakes.assessment.properties import record_properties
+from stylobate.earthquakes.assessment.sliding import sliding_model
+from stylobate.earthquakes.figures.assessment.column_verdict import VerdictClass, column_verdict
+from stylobate.earthquakes.perturbations import Resampled, ScaledRecord, SlendernessScaled
+from stylobate.earthquakes.remarks import remark_on
+from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning
+from stylobate.results import Assessment
+from stylobate.results.outcomes import code_of, outcome_of
+
+DISSIPATION = {"low": {"damping": 0.01}, "central": {"damping": 0.05}, "high": {"damping": 0.1}}
+CHANGES = (ScaledRecord(0.95), ScaledRecord(1.05), SlendernessScaled(0.99))
+
+
+def model(radius):
+    return sb.Slender(sb.Column.solid(radius=radius, height=2.0, density=2700.0))
+
+
+def record(name, peak, frequency):
+    """Two seconds of a wave along x, a weaker one along y."""
+    time = 0.02 * np.arange(101)
+    wave = np.sin(np.pi * time / 2.0) * np.sin(2.0 * np.pi * frequency * time)
+    return sb.Record(samples=peak * np.stack([wave, 0.4 * wave**2], axis=-1), step=0.02, name=name)
+
+
+RECORDS = [record("strong", 8.0, 1.0), record("middle", 3.0, 1.5), record("weak", 0.3, 1.0)]
+
+
+def assessed(columns=("slim", "stout"), records=RECORDS, **more):
+    radii = {"slim": 0.2, "stout": 0.45}
+    options = {"changes": CHANGES, "planar": False, "contact": False, "scales": [0.5, 1.0], "tail": 2.0} | more
+    return assess(
+        {name: model(radii[name]) for name in columns},
+        records,
+        dissipation=DISSIPATION,
+        margin_scales=np.geomspace(0.5, 3.0, 9),
+        **{"friction_coefficient": 0.6, **options},
+    )
+
+
+@pytest.fixture(scope="module")
+def found():
+    return assessed()
+
+
+def test_verdicts_are_those_of_single_runs(found):
+    verdicts = found.data["verdicts"]
+    for name, one in (("strong", RECORDS[0]), ("weak", RECORDS[2])):
+        for level, numbers in DISSIPATION.items():
+            column = sb.Slender(model(0.2).column, **numbers)
+            run = sb.simulate(column, one, duration=one.duration + 2.0)
+            told = verdicts.sel(column="slim", record=name, dissipation=level, vertical="with", scale=1.0)
+            assert int(told["overturned"]) == (run.outcome is sb.Outcome.OVERTURNED)
+            if run.outcome is not sb.Outcome.OVERTURNED:
+                ratio = run.measures["largest_tilt"] / column.column.tipping_angle
+                assert float(told["tilt_ratio"]) == pytest.approx(ratio, rel=1e-5, abs=1e-9)
+
+
+def test_what_always_overturns_and_what_never_moves_are_told_so(found):
+    alone = assessed(columns=("slim",), records=RECORDS[:1], scales=[1.0])
+    summary = alone.data["summary"].sel(column="slim", scale=1.0)
+    assert (int(summary["overturned"]), int(summary["stood"])) == (1, 0)
+    assert float(summary["least_overturning"]) <= 1.0
+    quiet = found.data["verdicts"].sel(record="weak")
+    assert (quiet["overturned"] == 0).all()
+    assert (quiet["tilt_ratio"] == 0.0).all()
+    margins = found.data["margins"].sel(record="weak")
+    assert (margins["bands"] == 0).all()
+    assert np.isnan(margins["least_overturning"]).all()
+    assert (found.data["summary"]["never_overturned"] >= 1).all()
+
+
+def test_the_margin_parts_scales_that_overturn_from_those_that_do_not(found):
+    own = found.data["margins"].sel(column="slim", case="central", record="strong")
+    column = sb.Slender(model(0.2).column, damping=0.05)
+    for name, outcome in (("least_overturning", True), ("largest_below", False)):
+        scale = float(own[name])
+        if np.isfinite(scale):
+            run = sb.simulate(column, RECORDS[0].scaled(scale), duration=RECORDS[0].duration + 2.0)
+            assert (run.outcome is sb.Outcome.OVERTURNED) is outcome
+    assert found.data["summary"]["governing"].sel(column="slim").item() == "strong"
+
+
+def test_the_order_of_records_and_columns_changes_no_number(found):
+    other = assessed(columns=("stout", "slim"), records=RECORDS[::-1])
+    for name, data in found.data.items():
+        xr.testing.assert_identical(
+            other.data[name].sel(column=["slim", "stout"]) if "column" in data.dims else data, data
+        )
+
+
+def test_an_assessment_is_saved_and_shown_again(found, tmp_path):
+    again = Assessment.load(found.save(tmp_path / "a.nc"))
+    assert again.setting == found.setting
+    for name, data in found.data.items():
+        xr.testing.assert_equal(again.data[name], data)
+    sb.simulate(model(0.2), None, duration=1.0).save(tmp_path / "run.nc")
+    with pytest.raises(FileError, match="holds no assessment"):
+        Assessment.load(tmp_path / "run.nc")
+
+
+def test_interrupted_work_goes_on_where_it_was(found, tmp_path, caplog):
+    seen = []
+
+    def stop(what, done, total):
+        del done, total
+        seen.append(what)
+        if "small changes" in what:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        assessed(columns=("slim",), store=tmp_path / "store", progress=stop)
+    kept = {path.name: path.stat().st_mtime_ns for path in (tmp_path / "store").glob("*.nc")}
+    assert len(kept) == 5  # spectra, verdicts, and margins at three levels
+    whole = assessed(columns=("slim",), store=tmp_path / "store")
+    assert {name: (tmp_path / "store" / name).stat().st_mtime_ns for name in kept} == kept
+    for name in ("verdicts", "margins", "robustness", "summary"):
+        xr.testing.assert_equal(whole.data[name], found.data[name].sel(column=["slim"]))
+    assert not caplog.messages
+    with caplog.at_level(logging.INFO, logger="stylobate"):
+        assessed(columns=("slim",), store=tmp_path / "store")
+    assert caplog.messages == [f"12 of 12 parts were kept in {tmp_path / 'store'} and not computed again"]
+    # Another record is another part.
+    assessed(columns=("slim",), records=[*RECORDS[:2], RECORDS[2].scaled(1.1)], store=tmp_path / "store", changes=())
+    assert len(list((tmp_path / "store").glob("*.nc"))) > len(kept) + 4
+
+
+def test_records_are_computed_some_at_a_time_and_the_whole_is_that_of_all_at_once(monkeypatch):
+    one_by_one = partial(assessed, columns=("slim",), records=RECORDS[:2], planar=True, changes=CHANGES[:1])
+    whole = one_by_one()
+    monkeypatch.setattr(robust, "_TOGETHER", 1)
+    parts = one_by_one()
+    for name in ("robustness", "planar", "summary"):
+        xr.testing.assert_equal(parts.data[name], whole.data[name])
+        for one, told in whole.data[name].items():
+            assert parts.data[name][one].attrs.get("long_name") == told.attrs.get("long_name")
+
+
+def test_what_is_perhaps_in_another_unit_or_one_event_is_remarked():
+    tower, column = (sb.Column.solid(radius=0.1 * height, height=height, density=2700.0) for height in (61.0, 6.0))
+    with pytest.warns(UnlikelyInputWarning) as told:
+        remark_on({"tower": tower, "column": column}, ["Aigio", "aigio", "Kobe"])
+    assert [str(one.message).partition(";")[0] for one in told] == [
+        "tower: a height of 61 m",
+        "records: 'Aigio' and 'aigio' differ by case only and are taken as different ones",
+    ]
+
+
+def test_small_changes_flip_what_lies_at_the_margin_and_nothing_far_from_it(found):
+    least = float(found.data["margins"].sel(column="slim", case="central", record="middle")["least_overturning"])
+    close = assessed(columns=("slim",), records=RECORDS[1:2], scales=[0.5, 1.01 * least])
+    flips = close.data["robustness"]["flips"].sel(column="slim", record="middle", dissipation="central")
+    assert flips.sel(scale=1.01 * least, change="scale -5 %").item() == 1
+    assert (flips.sel(scale=0.5) == 0).all()
+    assert int(close.data["summary"]["not_robust"].sel(column="slim", scale=1.01 * least)) == 1
+
+
+def test_verdicts_are_repeated_at_every_stated_dissipation_or_at_those_named(found):
+    robust = found.data["robustness"]
+    assert list(robust["dissipation"].values) == list(DISSIPATION)
+    for level, numbers in DISSIPATION.items():
+        column = sb.Slender(model(0.2).column, **numbers)
+        own = robustness(column, {"middle": RECORDS[1]}, scale=1.0, changes=CHANGES, tail=2.0)
+        flips = own["flips"].sel(limit_state="overturning", record="middle")
+        own_flips = robust["flips"].sel(column="slim", record="middle", scale=1.0, dissipation=level)
+        assert own_flips.values.tolist() == flips.values.astype(int).tolist()
+    counted = (robust["flipped"] > 0).any("dissipation").sum("record")
+    assert found.data["summary"]["not_robust"].transpose(*counted.dims).values.tolist() == counted.values.tolist()
+    one = assessed(columns=("slim",), records=RECORDS[1:2], changes_at=["central"])
+    assert one.data["robustness"].sizes["dissipation"] == 1
+    xr.testing.assert_equal(
+        one.data["robustness"]["flips"].isel(record=0),
+        robust["flips"].sel(column=["slim"], dissipation=["central"], record="middle"),
+    )
+    assert one.setting["changes_at"] == ["central"]
+
+
+def test_the_rest_threshold_is_an_option_of_all_runs():
+    # Two bursts: what is left of the first when the second comes is forgotten, or not, by the threshold.
+    time = 0.02 * np.arange(401)
+    burst = np.where(time < 1.0, np.sin(np.pi * time) ** 2 * np.sin(3.0 * np.pi * time), 0.0)
+    push = 2.8 * (burst + 0.8 * np.roll(burst, 150))
+    twice = sb.Record(samples=np.stack([push, 0.4 * np.abs(push)], axis=-1), step=0.02, name="twice")
+    column = sb.Slender(sb.Column.solid(radius=0.4, height=4.0, density=2700.0))
+    tilts = {}
+    for value in (1e-2, 1e-7):
+        found = assess(
+            {"column": column},
+            [twice],
+            dissipation={level: {"damping": eta} for level, eta in (("low", 0.5), ("central", 0.6), ("high", 0.7))},
+            friction_coefficient=0.6,
+            margin_scales=[0.8, 1.0],
+            changes=(),
+            planar=False,
+            contact=False,
+            tail=2.0,
+            rest_energy=value,
+        )
+        assert found.setting["options"] == {"rest_energy": repr(value)}
+        own = found.data["verdicts"]["tilt_ratio"].sel(dissipation="central", vertical="with", scale=1.0).item()
+        shown = found.data["histories"]["largest_tilt_ratio"].sel(run="stated").item()
+        scanned = found.data["margins"]["tilt_ratio"].sel(case="central", margin_scale=1.0).item()
+        assert own == pytest.approx(shown, rel=1e-7)
+        assert own == pytest.approx(scanned, rel=1e-7)
+        tilts[value] = own
+        run = sb.simulate(sb.Slender(column.column, damping=0.6), twice, duration=10.0, rest_energy=value)
+        assert own == pytest.approx(run.measures["largest_tilt"] / column.column.tipping_angle, rel=1e-5)
+    assert abs(tilts[1e-2] - tilts[1e-7]) > 1e-3
+
+
+LIFTING = sb.Record(
+    samples=np.stack([RECORDS[1].samples[:, 0], RECORDS[1].samples[:, 1], 4.0 * np.hanning(101) * -1.0], axis=-1),
+    step=0.02,
+    name="lifting",
+)
+
+
+def test_runs_that_lift_off_are_undecided_and_end_what_is_known():
+    assessment = assessed(columns=("slim", "stout"), records=[LIFTING], changes=(), scales=[0.5, 2.9])
+    # The base falls faster than g from the scale g / sup(−a_z) on.
+    limit = 9.80665 / 4.0
+    margins = assessment.data["margins"].sel(case="central", record="lifting")
+    for column in ("slim", "stout"):
+        own = margins.sel(column=column)
+        decided = (own["outcome"] != code_of(sb.Outcome.LIFTED_OFF)).values
+        assert int(own["unknown"]) == np.count_nonzero(~decided) > 0
+        last = float(own["decided_to"])
+        assert limit <= float(own["undecided_to"][0]) == own["margin_scale"].values[-1]
+        assert last == float(own["undecided_from"][0])
+        # Edges are halved to 0.5 %; a column that overturned before the base falls is decided beyond the limit.
+        assert last >= limit / 1.005
+        assert np.isnan(float(own["safe_above"].max())) or float(own["safe_above"].max()) <= last
+        assert (own["band_to"].fillna(0.0) <= last).all()
+    verdicts = assessment.data["verdicts"].sel(column="stout", dissipation="central", vertical="with", record="lifting")
+    assert int(verdicts["overturned"].sel(scale=2.9)) == -1
+    assert outcome_of(int(verdicts["outcome"].sel(scale=2.9))) is sb.Outcome.LIFTED_OFF
+    summary = assessment.data["summary"].sel(column="stout")
+    assert (int(summary["undecided"].sel(scale=2.9)), int(summary["stood"].sel(scale=2.9))) == (1, 0)
+    assert int(summary["scan_undecided"]) == 1
+    assert float(summary["decided_to"]) == float(margins["decided_to"].sel(column="stout"))
+
+
+def test_a_change_that_is_not_decided_is_told_apart_from_one_that_does_not_apply():
+    # 2.4 stays below the limit 2.45 from which on the base falls faster than g, 5 % more does not.
+    changes = (ScaledRecord(1.05), Resampled(0.5))
+    pulse = sb.Pulse.one_sine(acceleration=0.5, angular_frequency=6.0)
+    calm = sb.Record(samples=LIFTING.samples * (0.05, 0.05, 1.0), step=LIFTING.step)
+    assessment = assessed(columns=("stout",), records={"lifting": calm, "pulse": pulse}, changes=changes, scales=[2.4])
+    robust = assessment.data["robustness"].isel(column=0, scale=0).sel(dissipation="central")
+    lifting, pulse = (robust.sel(record=name) for name in ("lifting", "pulse"))
+    assert lifting["applies"].values.tolist() == [1, 1]
+    assert pulse["applies"].values.tolist() == [1, 0]
+    assert (int(lifting["undecided"]), int(pulse["undecided"])) == (1, 0)
+    assert lifting["flips"].values.tolist() == [-1, 0]
+    assert pulse["flips"].values.tolist() == [0, -1]
+    assert int(assessment.data["summary"]["changes_undecided"].item()) == 1
+    found = column_verdict(assessment, "stout", 2.4)
+    assert found.verdict is VerdictClass.OPEN
+    assert "a small change was not decided under lifting" in found.sentence
+
+
+def test_the_margin_is_drawn_by_its_two_runs_and_the_stated_one(found):
+    runs, margins = found.data["histories"].sel(column="slim"), found.data["margins"].sel(column="slim", case="central")
+    own = margins.sel(record=found.data["summary"]["governing"].sel(column="slim").item())
+    stands, overturns = runs.sel(run="stands"), runs.sel(run="overturns")
+    assert float(overturns["scale"]) == float(own["least_overturning"])
+    assert (int(overturns["overturned"]), float(overturns["largest_tilt_ratio"])) == (1, np.inf)
+    if np.isfinite(float(own["largest_below"])):
+        assert float(stands["scale"]) == float(own["largest_below"])
+        assert int(stands["overturned"]) == 0
+    assert float(runs["scale"].sel(run="stated")) == 1.0
+    never = found.data["histories"].sel(column="stout")
+    if (found.data["margins"]["bands"].sel(column="stout") == 0).all():
+        assert np.isnan(never["scale"].sel(run="overturns"))
+        assert float(never["scale"].sel(run="stands")) == found.data["margins"]["margin_scale"].values[-1]
+        assert float(never["largest_tilt_ratio"].sel(run="stands")) > 0.0
+
+
+def judged(states, least, tilt):
+    """Return verdicts and margins of the records a, b, c, in a case at low and one at central dissipation."""
+    records = ["a", "b", "c"]
+    levels = {"record": records, "dissipation": ["low", "central"], "vertical": ["with"], "scale": [1.0]}
+    dims = tuple(levels)
+    verdicts = xr.Dataset(
+        {
+            "overturned": (dims, np.array(states).reshape(3, 2, 1, 1)),
+            "tilt_ratio": (dims, np.repeat(tilt, 2).reshape(3, 2, 1, 1).astype(float)),
+        },
+        levels,
+    )
+    margins = xr.Dataset(
+        {
+            "least_overturning": (("record", "case"), np.array(least, dtype=float)),
+            "tilt_ratio": (("case", "record", "margin_scale"), np.zeros((2, 3, 1))),
+        },
+        {"record": records, "case": ["low", "central"]},
+    )
+    return verdicts, margins
+
+
+@pytest.mark.parametrize(
+    ("states", "least", "governs"),
+    [
+        # b overturned as recorded; a has a lower least scale in a narrow band.
+        ([[0, 0], [1, 1], [0, 0]], [[0.7, 0.7], [0.9, 0.9], [1.2, 1.2]], "b"),
+        # b overturned as recorded at low dissipation only; a not as recorded.
+        ([[0, 0], [1, 0], [0, 0]], [[0.7, 0.7], [0.9, 1.4], [1.2, 1.2]], "b"),
+        # c overturned as recorded in the central case, b at low dissipation.
+        ([[0, 0], [1, 0], [1, 1]], [[0.7, 0.7], [0.5, 1.4], [0.9, 0.95]], "c"),
+        # None as recorded: the least scale.
+        ([[0, 0], [0, 0], [0, 0]], [[np.nan, np.nan], [2.0, 2.5], [1.9, 2.6]], "b"),
+        # None at all: the largest tilt.
+        ([[0, 0], [0, 0], [0, -1]], [[np.nan, np.nan]] * 3, "b"),
+    ],
+)
+def test_a_record_that_overturned_as_recorded_governs_before_one_that_did_not(states, least, governs):
+    verdicts, margins = judged(states, least, [0.1, 0.2, np.nan])
+    assert governing_record(verdicts, margins, 0) == governs
+
+
+def test_a_column_whose_friction_is_below_its_slenderness_slides_before_it_rocks():
+    # c is 0.2 and 0.45, the friction 0.3: the stout one slides.
+    assessment = assessed(changes=(), friction_coefficient=0.3, records=RECORDS[:2], scales=[1.0])
+    assert assessment.data["summary"]["slides_first"].sel(column=["slim", "stout"]).values.tolist() == [0, 1]
+    margins = assessment.data["margins"]
+    assert margins["standing_slip"].sel(column="slim").isnull().all()
+    for record in RECORDS[:2]:
+        own = margins.sel(column="stout", record=record.name, case="central")
+        push = np.hypot(*record.samples[:, :2].T).max()
+        assert float(own["standing_slip"]) == pytest.approx(0.3 * 9.80665 / push, rel=1e-12)
+        inside = float(own["standing_slip"]) <= margins["margin_scale"].values[-1]
+        assert float(own["least_slipping"]) == float(own["standing_slip"]) if inside else True
+
+
+def test_what_slides_first_is_followed_by_the_model_that_slides():
+    # 0.3 g needs 2.94 m/s²: the weak record never gets there.
+    assessment = assessed(
+        changes=(), friction_coefficient=0.3, records=[RECORDS[0], RECORDS[2]], scales=[1.0], sliding=True
+    )
+    sliding = assessment.data["sliding"].isel(scale=0)
+    assert (sliding["overturned"].sel(column="slim") == -1).all()
+    strong, weak = (sliding.sel(column="stout", record=name) for name in ("strong", "weak"))
+    assert float(weak["slip_path"]) == float(weak["largest_slip"]) == float(weak["time_sliding"]) == 0.0
+    assert float(strong["slip_path"]) >= float(strong["largest_slip"]) >= float(strong["residual_slip"]) > 0.0
+    assert 0.0 < float(strong["time_sliding"]) < 4.0
+    assert int(strong["overturned"]) in (0, 1)
+    assert assessment.setting["sliding"] is True
+
+
+def test_the_model_that_slides_has_the_dissipation_of_the_column_stated_or_not():
+    column = model(0.45).column
+    slid = sliding_model(sb.Wobbling(column, damping=0.05, rolling_resistance=0.01, restitution=0.9), 0.3)
+    assert (slid.damping, slid.rolling_resistance, slid.friction_coefficient) == (0.05, 0.01, 0.3)
+    assert sliding_model(sb.Slender(column, damping=0.02), 0.3).damping == 0.02
+
+
+def test_a_record_drifts_where_one_of_its_components_does():
+    # 0.00056 m/s² over ten seconds leave 7 % of the PGV along y, 0.5/2π, and 3 % of that of the vector.
+    wave = np.cos(0.02 * np.pi * np.arange(1001))
+    straight, leaning = (
+        sb.Record(samples=np.stack([wave, 0.5 * wave + offset], axis=-1), step=0.01) for offset in (0.0, 5.6e-4)
+    )
+    inputs = Inputs.of(
+        {"slim": model(0.2)},
+        {"leaning": leaning, "straight": straight},
+        DISSIPATION,
+        0.6,
+        [1.0],
+        [0.5, 1.0],
+        (),
+        None,
+        width=1e-2,
+        tail=2.0,
+        least_records=20,
+        options={},
+    )
+    found = record_properties(inputs)
+    assert found["drifts"].sel(record=["leaning", "straight"]).values.tolist() == [1, 0]
+    assert float((found["residual_velocity"] / found["peak_velocity"]).max()) < 0.05
+    assert [bool(drifts(one)) for one in (leaning, straight)] == [True, False]
+
+
+def test_many_records_give_a_fragility_and_few_give_none(found):
+    assert "fragility" not in found.data
+    many = [record(f"record {place}", 2.0 + 0.6 * place, 1.0 + 0.1 * place) for place in range(4)]
+    fitted = assessed(columns=("slim",), records=many, changes=(), least_records=4).data["fragility"]
+    states = fitted.sel(column="slim")
+    assert states["curve_intensity"].attrs["component"] == states["median"].attrs["component"] == "RotD50"
+    assert int(states.sel(limit_state="overturning")["runs"]) == 40  # the scan, and scale 1
+    assert int(states.sel(limit_state="tilt 0.001 α")["runs_reached"]) >= int(
+        states.sel(limit_state="overturning")["runs_reached"]
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"dissipation": {}}, "dissipation is missing"),
+        ({"dissipation": None}, "dissipation is missing"),
+        ({"friction_coefficient": None}, "friction_coefficient is missing"),
+        ({"dissipation": {"low": {"damping": 0.1}}}, "central and high must be stated too"),
+        ({"dissipation": {**DISSIPATION, "high": {"restitution": 0.5}}}, "the same numbers at each level"),
+        (
+            {"dissipation": {level: {"restitution": 0.5} for level in DISSIPATION}},
+            "the model slender has no restitution",
+        ),
+        ({"dissipation": {level: {"radius": 0.5} for level in DISSIPATION}}, "radius is none"),
+        ({"friction_coefficient": 0.0}, "friction_coefficient must be positive"),
+        ({"friction_coefficient": {"other": 0.5}}, "'other' is no column"),
+        ({"scales": []}, "scales must be positive numbers"),
+        (
+            {"changes_at": ["middle"]},
+            "changes_at: must name levels of dissipation \\(got 'middle'\\). Use some of low,",
+        ),
+        ({"changes_at": []}, "changes_at: must name levels of dissipation"),
+        ({"margin_scales": [1.0]}, "margin_scales must be positive numbers, 2 or more"),
+        (
+            {"columns": {"planar": sb.PlanarRocking(sb.Column.dimensionless(0.1))}},
+            "must be a model of a column in space",
+        ),
+    ],
+)
+def test_what_cannot_be_assessed_is_one_line(change, told):
+    arguments = {
+        "columns": {"slim": model(0.2)},
+        "records": RECORDS,
+        "dissipation": DISSIPATION,
+        "friction_coefficient": 0.6,
+    } | change
+    with pytest.raises(ParameterError, match=told) as caught:
+        assess(arguments.pop("columns"), arguments.pop("records"), **arguments)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.slow
+def test_what_the_contact_must_bear_and_the_planar_answer_are_told():
+    whole = assessed(columns=("slim",), contact=True, planar=True)
+    verdicts = whole.data["verdicts"].sel(column="slim", dissipation="central", vertical="with", scale=0.5)
+    run = sb.simulate(sb.Slender(model(0.2).column, damping=0.05), RECORDS[1].scaled(0.5), duration=4.0)
+    if "largest_friction_demand" in run.measures:
+        told = float(verdicts["friction_demand"].sel(record="middle"))
+        assert told == pytest.approx(run.measures["largest_friction_demand"], rel=0.02)
+    margins = whole.data["margins"].sel(column="slim", case="central")
+    assert np.isfinite(margins["friction_demand"].sel(record="middle")).all()
+    need, least = (margins[name].sel(record="middle") for name in ("friction_demand", "least_overturning"))
+    below = need.where(need["margin_scale"] < least)
+    assert float(margins["friction_to_margin"].sel(record="middle")) == pytest.approx(float(below.max()))
+    slipping = need["margin_scale"].to_numpy()[need.to_numpy() > 0.6]
+    told = float(margins["least_slipping"].sel(record="middle"))
+    assert told == slipping[0] if slipping.size else np.isnan(told)
+    assert set(whole.data["planar"].dims) == {"column", "record", "scale"}
+    assert np.isfinite(float(whole.data["summary"]["friction_demand"].max()))

@@ -1,0 +1,448 @@
+"""The report of an assessment: it holds every number of its tables, names every record, and needs nothing else."""
+
+import csv
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.colors import to_rgb
+
+import stylobate as sb
+from stylobate.earthquakes import assess, assessment_report, assessment_tables
+from stylobate.earthquakes.assessment.margins import demands_to_margin
+from stylobate.earthquakes.assessment.summary import summary_of
+from stylobate.earthquakes.figures.assessment.figures import history_figure, margins_figure, tilts_figure
+from stylobate.earthquakes.figures.assessment.pictures import report_pictures
+from stylobate.earthquakes.figures.assessment.record_tables import drifting
+from stylobate.earthquakes.figures.assessment.sections import document_table, not_covered
+from stylobate.earthquakes.figures.assessment.summary import column_findings, summary_text, verdict_table
+from stylobate.earthquakes.figures.assessment.wording import bands, least_scale
+from stylobate.earthquakes.figures.band_regions import UNDECIDED
+from stylobate.earthquakes.perturbations import ScaledRecord
+from stylobate.results import DesignSpectrum, ReportDetails
+from stylobate.results.outcomes import code_of
+
+DETAILS = ReportDetails(
+    author="N. Author",
+    project="site 7",
+    date="2026-05-14",
+    study_file="two.toml",
+    study_sha256="ab12" * 16,
+    about_records={"strong": "made earthquake, station 3"},
+    design_spectrum=DesignSpectrum(period=(0.0, 0.5, 2.0), acceleration=(2.0, 5.0, 1.0), name="spectrum of the site"),
+    spectral_period=0.8,
+)
+DISSIPATION = {"low": {"damping": 0.01}, "central": {"damping": 0.05}, "high": {"damping": 0.1}}
+
+
+def record(name, peak):
+    time = 0.02 * np.arange(101)
+    wave = np.sin(np.pi * time / 2.0) * np.sin(2.0 * np.pi * time)
+    return sb.Record(
+        samples=peak * np.stack([wave, 0.4 * wave**2], axis=-1), step=0.02, name=name, provenance=(f"made for {name}",)
+    )
+
+
+@pytest.fixture(scope="module")
+def found():
+    slim, stout = (sb.Slender(sb.Column.solid(radius=radius, height=2.0, density=2700.0)) for radius in (0.2, 0.45))
+    bare = assess(
+        {"slim <1>": slim, "stout": stout},
+        [record("strong", 9.0), record("weak & quiet", 0.2)],
+        dissipation=DISSIPATION,
+        friction_coefficient=0.6,
+        scales=[0.5, 1.0],
+        margin_scales=np.geomspace(0.5, 3.0, 9),
+        changes=(ScaledRecord(0.95), ScaledRecord(1.05)),
+        planar=False,
+        contact=False,
+        tail=2.0,
+        title="Two columns",
+        notes=["the floor is dry"],
+        details=DETAILS,
+    )
+    return with_contact(bare)
+
+
+def with_contact(bare):
+    """Return the assessment with demands on the contact and planar answers put in, as if they had been computed."""
+    verdicts = bare.data["verdicts"]
+    demands = xr_like(verdicts, 0.31)
+    demands[{"column": 0, "scale": 1}] = 0.7123
+    planar = verdicts["tilt_ratio"].sel(dissipation="central", vertical="with", drop=True) * 0.5
+    told = planar.rename("planar_tilt_ratio").to_dataset()
+    few = planar.isel(record=0, drop=True)
+    told = told.assign(log_ratio=planar * 0.1, bias=few * 0.0 + 0.123, standard_error=few * 0.0 + 0.0456)
+    told = told.assign(
+        {name: (few.dims, np.ones(few.shape, int)) for name in ("compared", "only_space", "only_planar")}
+    )
+    by_record = demands.max(("dissipation", "vertical"))
+    summary = bare.data["summary"].assign(friction_by_record=by_record, friction_demand=by_record.max("record"))
+    more = {
+        "verdicts": verdicts.assign(friction_demand=demands, pivoting_demand=demands / 3.0, least_normal_force=demands),
+        "planar": told,
+        "summary": summary,
+    }
+    return replace(bare, data={**bare.data, **more}, setting={**bare.setting, "contact": True})
+
+
+def xr_like(verdicts, value):
+    return (verdicts["tilt_ratio"] * 0.0).fillna(0.0) + value
+
+
+class Page(HTMLParser):
+    def __init__(self, text):
+        super().__init__()
+        self.cells, self.sources, self.headings, self.text, self.links = [], [], [], [], []
+        self.where = None
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        given = dict(attrs)
+        self.where = tag
+        if tag in ("td", "th"):
+            self.cells.append("")
+        self.sources += [given[name] for name in ("src", "srcset", "data") if name in given]
+        self.links += [given["href"]] if "href" in given else []
+
+    def handle_data(self, data):
+        if self.where in ("td", "th"):
+            self.cells[-1] += data
+        if self.where == "h2":
+            self.headings.append(data)
+        self.text.append(data)
+
+    def handle_endtag(self, tag):
+        self.where = None
+
+
+def plain(cell):
+    return cell.replace("−", "-").replace("‑", "-")
+
+
+@pytest.fixture(scope="module")
+def folder(found, tmp_path_factory):
+    target = tmp_path_factory.mktemp("report") / "assessment"
+    assert assessment_report(found, target) == target / "report.html"
+    return target
+
+
+@pytest.fixture(scope="module")
+def page(folder):
+    return Page((folder / "report.html").read_text(encoding="utf-8"))
+
+
+def test_the_report_holds_every_cell_of_every_table_and_so_do_the_files(found, folder, page):
+    cells = {plain(cell) for cell in page.cells}
+    tables = assessment_tables(found)
+    for name, table in tables.items():
+        with (folder / "tables" / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+            header, *rows = csv.reader(file)
+        assert header == list(table.header)
+        assert rows == [list(row) for row in table.rows]
+        assert {plain(cell) for row in table.rows for cell in row} <= cells
+    assert {"verdicts", "margins", "runs", "tilts", "robustness", "planar", "governing", "records"} <= set(tables)
+
+
+def test_the_tables_hold_the_numbers_of_the_assessment(found):
+    runs = assessment_tables(found)["runs"]
+    data = found.data["verdicts"]
+    assert len(runs.rows) == data["tilt_ratio"].size
+    assert [row[5] for row in runs.rows].count("overturned") == int((data["overturned"] == 1).sum())
+    needed = {row[9]: row[10] for row in runs.rows}
+    assert needed == {"0.31": "yes", "0.712": "no"}
+
+
+def test_the_page_loads_nothing_from_elsewhere(folder, page):
+    assert page.sources
+    assert all(source.startswith("data:image/png;base64,") for source in page.sources)
+    assert all(link.startswith("#") for link in page.links)
+    text = (folder / "report.html").read_text(encoding="utf-8")
+    assert not re.search(r"<(script|link|iframe|object)\b|@import|url\(", text)
+    assert "@media print" in text
+
+
+def test_the_page_names_every_record_column_and_what_it_rests_on(found, page):
+    text = "".join(page.text)
+    wanted = ["slim <1>", "stout", "strong", "weak & quiet", "made for strong", "the floor is dry", sb.__version__]
+    wanted += ["N. Author", "site 7", "2026-05-14", "two.toml", "ab12" * 16, "made earthquake, station 3"]
+    wanted += ["spectrum of the site", "Housner", "Boore", "Vassiliou", "numpy", "llvmlite"]
+    wanted += ["several drums", "sloshing", "anchors", "flexible soil", "not circular"]
+    wanted += [record["digest"] for record in found.setting["records"].values()]
+    for words in wanted:
+        assert words in text, words
+    for heading in ("Assumptions", "What is not covered", "What the contact must bear", "Software", "References"):
+        assert heading in page.headings
+
+
+def test_verdicts_promise_nothing(found, folder):
+    summary = (folder / "summary.txt").read_text(encoding="utf-8")
+    assert summary == summary_text(found, [document_table(found), verdict_table(found)])
+    assert "did not overturn" in summary
+    words = summary + " ".join(
+        cell for table in assessment_tables(found).values() for row in table.rows for cell in row
+    )
+    assert not re.search(r"\b(?<!NOT shown )(safe|secure|certain|guarante\w+)\b", words)
+    assert summary.startswith("Two columns\n")
+
+
+def test_a_column_that_always_overturns_and_one_that_never_moves_are_described_so(found):
+    always, never = _only(found, "slim <1>", "strong"), _only(found, "stout", "weak & quiet")
+    (row,) = verdict_table(always).rows
+    assert row[1] == "NOT shown safe"
+    assert row[2].startswith("Overturned at the recorded level under the one record (strong). Least overturning scale")
+    findings = dict(column_findings(never, "stout").rows)
+    assert findings["tilt, at the recorded level"] == "It did not rock."
+    assert "No scale factor from 0.475 to 3 overturned it" in findings["margin"]
+
+
+def test_intensities_at_the_margin_are_those_of_the_record_times_the_least_scale(found):
+    table = assessment_tables(found)["margin-intensities"]
+    records, least = found.data["records"], found.data["margins"]["least_overturning"]
+    spectral = found.data["spectra"]["spectral_acceleration"].sel(period=0.8)
+    assert "Sa(0.8 s) [g]" in table.header
+    seen = 0
+    for row in table.rows:
+        cells = dict(zip(table.header, row, strict=True))
+        scale = float(least.sel(column=cells["column"], record=cells["record"], case=cells["case"]))
+        if np.isnan(scale):
+            assert cells["PGA [g]"].startswith("> ")
+            continue
+        seen += 1
+        own = records.sel(record=cells["record"])
+        assert cells["definition"] == own["definition"].item() == "RotD50"
+        peak = scale * float(own["median_peak_acceleration"])
+        assert cells["PGA [m/s²]"] == f"{peak:.3g}"
+        assert cells["PGA [g]"] == f"{peak / 9.80665:.3g}"
+        assert cells["PGV [m/s]"] == f"{scale * float(own['median_peak_velocity']):.3g}"
+        assert cells["Sa(0.8 s) [g]"] == f"{scale * float(spectral.sel(record=cells['record'])) / 9.80665:.3g}"
+    assert seen >= 2
+
+
+def test_mean_and_design_spectrum_are_compared_where_both_are_known(found):
+    table = assessment_tables(found)["spectra"]
+    rows = {row[0]: dict(zip(table.header, row, strict=True)) for row in table.rows}
+    mean = float(found.data["spectra"]["spectral_acceleration"].sel(period=0.5).mean())
+    assert rows["0.5"]["spectrum of the site [g]"] == f"{5.0 / 9.80665:.3g}"
+    assert rows["0.5"]["mean / design"] == f"{mean / 5.0:.3g}"
+    assert rows["3"]["mean / design"] == "–"
+
+
+def test_a_mean_of_five_percent_is_not_divided_by_a_design_spectrum_of_another_damping(found):
+    design = {**found.setting["details"]["design_spectrum"], "damping": 0.02}
+    other = replace(
+        found, setting={**found.setting, "details": {**found.setting["details"], "design_spectrum": design}}
+    )
+    table = assessment_tables(other)["spectra"]
+    rows = [dict(zip(table.header, row, strict=True)) for row in table.rows]
+    assert {row["mean / design"] for row in rows} == {"–"}
+    assert any(row["spectrum of the site [g]"] != "–" for row in rows)
+
+
+@pytest.mark.parametrize(("asked", "words"), [(False, "was not run"), (True, "was run only for columns that slide")])
+def test_what_is_not_covered_depends_on_whether_sliding_was_asked_for(found, asked, words):
+    (row,) = [
+        row
+        for row in not_covered(replace(found, setting={**found.setting, "sliding": asked})).rows
+        if row[0] == "slip and flight"
+    ]
+    assert words in row[1]
+
+
+def test_a_planar_run_that_is_not_decided_does_not_differ(found):
+    verdicts = found.data["verdicts"]
+    stood = verdicts["overturned"].sel(dissipation="central", vertical="with") == 1
+    tilts = found.data["planar"]["planar_tilt_ratio"]
+    for value, count in ((np.nan, 0), (0.5, int(stood.sum()))):
+        planar = found.data["planar"].assign(planar_tilt_ratio=xr.full_like(tilts, value))
+        counts = summary_of({**found.data, "planar": planar}, ["strong", "strong"])
+        assert int(counts["planar_differs"].sum()) == count
+
+
+def test_figures_that_would_show_nothing_are_left_out(found, folder):
+    names = {path.stem for path in (folder / "figures").glob("*.png")}
+    assert {"records-1", "spectra-1", "margins-1", "history-1"} <= names
+    still = _only(found, "stout", "weak & quiet")
+    quiet = still.data["histories"].assign(largest_tilt_ratio=("column", [0.0]))
+    names = report_pictures(replace(still, data={**still.data, "histories": quiet}))
+    assert not any(name.startswith(("margins", "tilts", "history", "robustness")) for name in names)
+
+
+def test_a_record_that_drifts_is_named(found):
+    records = found.data["records"]
+    for drifts, names, words in ((0, [], "no"), (1, ["strong", "weak & quiet"], "yes")):
+        moved = records.assign(drifts=xr.full_like(records["drifts"], drifts))
+        changed = replace(found, data={**found.data, "records": moved})
+        assert drifting(changed) == names
+        assert {row[-1] for row in assessment_tables(changed)["records"].rows} == {words}
+
+
+def test_an_assessment_saved_without_spectra_and_details_has_a_report(found, tmp_path):
+    later = {"spectra", "ground_motions"}
+    older = {name: value for name, value in found.setting.items() if name not in ("details", "software")}
+    bare = replace(found, data={name: one for name, one in found.data.items() if name not in later}, setting=older)
+    assert assessment_report(bare, tmp_path).is_file()
+
+
+def _only(found, column, record):
+    """Return the part of an assessment that is of one column and record, its counts made anew."""
+    data = {
+        name: one.sel({dim: [name_of] for dim, name_of in (("column", column), ("record", record)) if dim in one.dims})
+        for name, one in found.data.items()
+        if name not in ("summary", "planar")
+    }
+    return replace(found, data={**data, "summary": summary_of(data, [record])})
+
+
+def test_friction_beyond_the_stated_one_is_reported(found):
+    slim, stout = (dict(column_findings(found, name).rows)["contact"] for name in ("slim <1>", "stout"))
+    assert "needed a friction of 0.712, above the stated coefficient 0.6" in slim
+    assert "0.31; the stated coefficient is 0.6" in stout
+
+
+def undecided(found):
+    """Return the assessment, with the upper half of every scan lifted off where nothing overturned below."""
+    margins = found.data["margins"]
+    scale = margins["margin_scale"].to_numpy()
+    lifted, begin = scale > 1.5, float(scale[scale <= 1.5][-1])
+    one = margins.assign(
+        outcome=margins["outcome"].where(~xr.DataArray(lifted, dims="margin_scale"), code_of(sb.Outcome.LIFTED_OFF)),
+        undecided_from=margins["undecided_from"] * 0.0,
+        unknown=margins["unknown"] * 0.0 + int(lifted.sum()),
+    )
+    one["undecided_from"] = one["undecided_from"].fillna(begin)
+    one["undecided_to"] = one["undecided_from"] * 0.0 + scale[-1]
+    return replace(found, data={**found.data, "margins": one}), begin, float(scale[-1])
+
+
+def test_undecided_scales_are_drawn_named_and_written_as_such(found):
+    hidden, begin, end = undecided(found)
+    figure = margins_figure(hidden, "stout")
+    labels = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    assert "not decided: lifted off" in labels
+    grey = [bar for bar in figure.axes[0].patches if bar.get_facecolor()[:3] == to_rgb(UNDECIDED.colour)]
+    margins = hidden.data["margins"].sel(column="stout")
+    assert len(grey) == margins.sizes["record"] * margins.sizes["case"]
+    for bar in grey:
+        assert bar.get_x() == pytest.approx(begin)
+        assert bar.get_x() + bar.get_width() == pytest.approx(end)
+    one = margins.sel(record="weak & quiet", case="central")
+    where = f"not decided from {begin:.4g} to {end:.4g} (lifted off)"
+    assert least_scale(one) == bands(one) == f"none found; {where}"
+    labels = [text.get_text() for legend in margins_figure(found, "stout").legends for text in legend.get_texts()]
+    assert not any("not decided" in label for label in labels)
+
+
+@pytest.mark.parametrize(
+    ("band", "stretch", "words"),
+    [
+        ((4.735, 4.735, 0, 1, 0, 1), (4.735, 5.0), "4.735; not decided from 4.735 to 5 (lifted off)"),
+        ((1.582, 4.735, 0, 1, 0, 1), (4.735, 5.0), "1.582 to 4.735; not decided from 4.735 to 5 (lifted off)"),
+        ((0.2, 0.5, 1, 0, 0, 0), (np.nan, np.nan), "0.2 to 0.5 and below"),
+        ((3.0, 5.0, 0, 1, 0, 0), (np.nan, np.nan), "3 to 5 and beyond"),
+        ((5.0, 5.0, 0, 1, 0, 0), (np.nan, np.nan), "5 and beyond"),
+        ((np.nan, np.nan, 0, 0, 0, 0), (np.nan, np.nan), "none"),
+    ],
+)
+def test_a_band_is_written_as_far_as_runs_are_decided(band, stretch, words):
+    names = ("band_from", "band_to", "open_below", "open_above", "undecided_below", "undecided_above")
+    lifted = [code_of(sb.Outcome.AT_REST), code_of(sb.Outcome.LIFTED_OFF)]
+    one = xr.Dataset({name: ("band", [value]) for name, value in zip(names, band, strict=True)})
+    one = one.assign(undecided_from=("stretch", [stretch[0]]), undecided_to=("stretch", [stretch[1]]))
+    assert bands(one.assign(outcome=("margin_scale", lifted))) == words
+
+
+def test_an_undecided_run_has_a_place_of_its_own_among_the_tilts(found):
+    verdicts = found.data["verdicts"]
+    lost = verdicts.assign(tilt_ratio=verdicts["tilt_ratio"].where(verdicts["record"] != "weak & quiet"))
+    figure = tilts_figure(replace(found, data={**found.data, "verdicts": lost}), "stout", 1.0)
+    crosses = [line for line in figure.axes[0].lines if line.get_marker() == "x" and len(line.get_xdata())]
+    assert len(crosses) == 3  # a level each
+    ticks = dict(zip(figure.axes[0].get_xticks(), figure.axes[0].get_xticklabels(), strict=True))
+    assert ticks[crosses[0].get_xdata()[0]].get_text() == "not\ndecided"
+
+
+def test_the_history_shows_the_last_run_that_stands_and_the_first_that_overturns(found):
+    figure = history_figure(found, "slim <1>")
+    labels = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    runs = found.data["histories"].sel(column="slim <1>")
+    scale = float(runs["scale"].sel(run="overturns"))
+    assert f"scale {scale:.4g}, central dissipation: overturned" in labels
+    assert any(label.startswith("scale 1, central dissipation: ") for label in labels)
+    below = float(runs["scale"].sel(run="stands"))
+    assert np.isnan(below) or any(label.startswith(f"scale {below:.4g}, central") for label in labels)
+
+
+@pytest.mark.parametrize(
+    ("need", "slipping", "first", "told"),
+    [
+        (0.4, np.nan, 0, "No scale factor that was run for the margin needed more than the stated friction."),
+        (0.5, 2.5, 0, "needs more friction than stated is 2.5, above the least scale that overturned it: beyond"),
+        (0.9, 0.8, 1, "is 0.8, in some case below the least scale that overturned it: the base would slip first"),
+        (np.nan, np.nan, 0, "The friction needed at other scales was not computed."),
+    ],
+)
+def test_friction_up_to_the_margin_is_told(found, need, slipping, first, told):
+    at = {"friction_to_margin": need, "least_slipping": slipping, "slips_first": first}
+    summary = found.data["summary"]
+    counted = summary.assign({name: ("column", np.full(2, value)) for name, value in at.items()})
+    changed = replace(found, data={**found.data, "summary": counted})
+    assert told in dict(column_findings(changed, "stout").rows)["contact"]
+
+
+def test_the_table_of_friction_up_to_the_margin_is_that_of_its_runs(found):
+    margins = found.data["margins"]
+    need = margins["friction_demand"].fillna(0.0) + 0.5 * margins["margin_scale"]
+    told = margins.assign(friction_demand=need, **demands_to_margin(margins.assign(friction_demand=need), 0.6))
+    table = assessment_tables(replace(found, data={**found.data, "margins": told}))["contact-to-margin"]
+    scales = margins["margin_scale"].to_numpy()
+    assert {row[6] for row in table.rows} == {f"{scales[scales > 1.2][0]:.4g}"}
+    for column, record, case, _, need_below, *_ in table.rows:
+        least = float(margins["least_overturning"].sel(column=column, record=record, case=case))
+        below = 0.5 * scales[~(scales >= least)]
+        assert need_below == (f"{below.max():.3g}" if below.size else "–")
+    assert len({row[4] for row in table.rows}) > 1
+
+
+def test_a_bias_of_one_record_is_told_to_be_of_too_few(found):
+    nothing = found.data["planar"].assign(bias=found.data["planar"]["bias"] * np.nan)
+    rows = assessment_tables(replace(found, data={**found.data, "planar": nothing}))["planar-bias"].rows
+    assert {row[2] for row in rows} == {"too few records"}
+
+
+def test_few_records_are_told_in_the_words_of_the_fragility(page):
+    assert "2 records: with fewer than 20 the interval of the dispersion is too narrow" in "".join(page.text)
+
+
+def test_a_least_scale_that_stands_alone_is_marked(found):
+    margins = found.data["margins"]
+    assert float(margins["least_lasting"].min()) >= float(margins["least_overturning"].min())
+    assert "in an interval so narrow" not in dict(column_findings(found, "slim <1>").rows)["margin"]
+    alone = margins.assign(least_lasting=1.25 * margins["least_overturning"])
+    changed = replace(found, data={**found.data, "margins": alone})
+    wider = float(alone["least_lasting"].sel(column="slim <1>", record="strong", case="central"))
+    words = dict(column_findings(changed, "slim <1>").rows)["margin"]
+    assert f"in an interval so narrow that another scan might miss it; a wider interval begins at {wider:.4g}" in words
+
+
+def test_figures_of_an_earlier_report_do_not_stay(found, tmp_path):
+    assessment_report(found, tmp_path)
+    old = [tmp_path / "figures" / "margins-99.png", tmp_path / "tables" / "contact.csv"]
+    for path in old:
+        path.write_bytes(b"old")
+    assessment_report(found, tmp_path)
+    assert not any(path.exists() for path in old)
+
+
+def test_an_assessment_is_no_single_figure(found):
+    with pytest.raises(sb.errors.ParameterError, match=r"write its report by plots\.assessment_report"):
+        sb.plot(found)
+
+
+def test_a_saved_assessment_tells_the_same(found, folder):
+    again = sb.results.Assessment.load(folder / "assessment.nc")
+    assert assessment_tables(again) == assessment_tables(found)
+    assert summary_text(again, [verdict_table(again)]) == summary_text(found, [verdict_table(found)])

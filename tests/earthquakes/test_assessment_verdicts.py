@@ -1,0 +1,308 @@
+"""One-line verdicts of an assessment: their classes, the records they name, and the displacements beside tilts."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from stylobate.earthquakes.assessment import robust
+from stylobate.earthquakes.figures.assessment.cases import cases_of
+from stylobate.earthquakes.figures.assessment.column_verdict import (
+    VerdictClass,
+    column_verdict,
+    least_overturning_scale,
+)
+from stylobate.earthquakes.figures.assessment.displacements import displacement, tilt_cells, tilt_words
+from stylobate.results import Assessment
+
+LEVELS, ACTS, RECORDS = ("low", "central", "high"), ("with", "without"), ("A", "B", "C")
+CASES = (*LEVELS, "central, no vertical")
+
+
+def made(
+    runs=(),
+    *,
+    changed=(),
+    uncertain=(),
+    need=(),
+    friction=0.6,
+    contact=True,
+    changes=LEVELS,
+    least=None,
+    decided=None,
+    slips=None,
+    slid=None,
+):
+    """Return an assessment in which no record overturned the column "k" but in the runs that are named.
+
+    Parameters
+    ----------
+    runs
+        Record, dissipation, vertical and state of runs that did not stand.
+    changed
+        Record, dissipation, and state of the run with the small change: 1 overturned, −1 not decided, None where the
+        change does not apply.
+    uncertain
+        Records.
+    need
+        Record and friction needed.
+    changes
+        Levels at which small changes were tried.
+    least, decided
+        Least overturning scale, and the largest up to which every run was decided, by record and case.
+    slips
+        Scale from which on a record makes the standing column slide, by record.
+    slid
+        Verdicts by the model that slides: state and whether rounding could change it, by record.
+    """
+    dims = ("column", "record", "dissipation", "vertical", "scale")
+    coords = {"column": ["k"], "record": list(RECORDS), "dissipation": list(LEVELS), "vertical": list(ACTS)}
+    states = xr.DataArray(np.zeros((1, 3, 3, 2, 1), np.int8), dims=dims, coords={**coords, "scale": [1.0]})
+    unsure, needed = states.copy(), states.astype(float) + 0.3
+    for record, level, acts, state in runs:
+        states.loc[{"record": record, "dissipation": level, "vertical": acts}] = state
+    for record in uncertain:
+        unsure.loc[{"record": record}] = 1
+    for record, value in need:
+        needed.loc[{"record": record, "dissipation": "high"}] = value
+    by_case = {"column": ["k"], "case": list(CASES), "record": list(RECORDS)}
+    empty = xr.DataArray(np.full((1, 4, 3), np.nan), dims=tuple(by_case), coords=by_case)
+    margins = {"least_overturning": empty, "decided_to": empty.fillna(5.0), "standing_slip": empty.copy()}
+    for name, given in (("least_overturning", least), ("decided_to", decided)):
+        for (record, case), scale in (given or {}).items():
+            margins[name].loc[{"record": record, "case": case}] = scale
+    for record, scale in (slips or {}).items():
+        margins["standing_slip"].loc[{"record": record}] = scale
+    peaks = {"peak_acceleration": ("record", [3.0, 1.0, 0.5]), "peak_acceleration_z": ("record", [1.0, 0.5, 0.0])}
+    data = {
+        "verdicts": xr.Dataset({"overturned": states, "uncertain": unsure, "friction_demand": needed}),
+        "margins": xr.Dataset(margins),
+        "records": xr.Dataset(peaks, coords={"record": list(RECORDS)}),
+        "columns": xr.Dataset(
+            {
+                "friction_coefficient": ("column", [friction]),
+                "slenderness": ("column", [0.25]),
+                "uplift_acceleration": ("column", [0.25 * 9.80665]),
+            },
+            coords={"column": ["k"]},
+        ),
+    }
+    if changes:
+        central = states.sel(vertical="with", dissipation=list(changes), drop=True)
+        data["robustness"] = repeated(central, [one for one in changed if one[1] in changes])
+    if slid is not None:
+        known = {"column": ["k"], "record": list(RECORDS), "scale": [1.0]}
+        values = np.array([[[slid.get(name, (0, 0))] for name in RECORDS]], dtype=np.int8)
+        arrays = {name: (tuple(known), values[..., place]) for place, name in enumerate(("overturned", "uncertain"))}
+        still = np.where(values[..., 0] == 0, 0.012, np.nan)
+        data["sliding"] = xr.Dataset({**arrays, "largest_slip": (tuple(known), still)}, coords=known)
+    setting = {
+        "friction_coefficient": {"k": friction},
+        "contact": contact,
+        "margin_scales": [0.2, 5.0, 60],
+        "scales": [1.0],
+    }
+    return Assessment(data=data, setting=setting)
+
+
+def repeated(states, changed):
+    """Return the robustness of verdicts under one small change, by the study's own counts."""
+    dims = ("dissipation", "record", "change")
+    given = (
+        states.isel(column=0, scale=0, drop=True).transpose("dissipation", "record").expand_dims(change=["scale +5 %"])
+    )
+    given = given.transpose(*dims)
+    after, applies = given.copy(), xr.ones_like(given, bool)
+    for record, level, state in changed:
+        place = {"record": record, "dissipation": level}
+        after.loc[place] = -1 if state is None else state
+        applies.loc[place] = state is not None
+    zero = xr.zeros_like(given, float)
+    found = xr.Dataset(
+        {
+            "reached": after.expand_dims(limit_state=["overturning"]),
+            "reached_as_given": given.isel(change=0, drop=True).expand_dims(limit_state=["overturning"]),
+            "applies": applies,
+            "tilt_ratio": zero,
+            "tilt_ratio_low": zero.isel(change=0, drop=True),
+            "tilt_ratio_high": zero.isel(change=0, drop=True),
+            "change_of": ("change", ["record"]),
+        }
+    )
+    levels = [robust._told(found.sel(dissipation=level, drop=True)) for level in given["dissipation"].to_numpy()]
+    joined = xr.concat(levels, dim=given["dissipation"], data_vars="all", join="override")
+    return joined.expand_dims(column=["k"], scale=[1.0])
+
+
+FALLEN = [("A", level, acts, 1) for level in LEVELS for acts in ACTS]
+
+
+def test_a_column_overturned_as_recorded_is_not_shown_safe_and_the_records_are_named():
+    least = {("A", "central"): 0.9, ("B", "low"): 0.7}
+    assessment = made([*FALLEN, ("B", "central", "with", 1)], least=least)
+    found = column_verdict(assessment, "k", 1.0)
+    assert found.line == "NOT shown safe: overturned at the recorded level under 2 of 3 records (A, B)."
+    more = column_verdict(made([*FALLEN, ("B", "low", "with", 1)]), "k", 1.0)
+    assert more.sentence == (
+        "overturned at the recorded level under 1 of 3 records (A) and under 1 more only at another dissipation than "
+        "central (B at low)."
+    )
+    assert least_overturning_scale(assessment, "k") == "Least overturning scale of all cases: 0.7 (B, low dissipation)."
+
+
+def test_a_column_overturned_at_one_stated_dissipation_only_is_not_shown_safe():
+    found = column_verdict(made([("B", "low", "with", 1), ("B", "high", "with", 1)]), "k", 1.0)
+    assert found.verdict is VerdictClass.OVERTURNED
+    assert found.sentence == (
+        "overturned at the recorded level under 1 of 3 records only at another dissipation than central (B at low and "
+        "high)."
+    )
+
+
+def test_a_column_that_stood_in_every_run_survived_every_run():
+    found = column_verdict(made(), "k", 1.0)
+    assert found.verdict is VerdictClass.SURVIVED
+    assert "under all 3 records, at every stated dissipation" in found.sentence
+    assert found.sentence.endswith("at every stated dissipation and under every small change tried.")
+    few = column_verdict(made(changes=("central",)), "k", 1.0)
+    assert few.sentence.endswith("under every small change tried at central dissipation.")
+    assert least_overturning_scale(made(), "k") == "No scale up to 5 overturned it in any case."
+
+
+@pytest.mark.parametrize(
+    ("changed", "reservation"),
+    [
+        ({"runs": [("B", "central", "without", 1)]}, "overturned under B without the vertical component"),
+        ({"runs": [("B", "central", "with", -1)]}, "not decided under B"),
+        ({"runs": [("C", "high", "with", -1)]}, "some run was not decided under C"),
+        ({"least": {("B", "high"): 0.8}}, "a smaller scale overturned it: 0.8 (B, high dissipation)"),
+        ({"changed": [("C", "low", 1)]}, "a small change flips the verdict under C"),
+        ({"changed": [("C", "high", -1)]}, "a small change was not decided under C"),
+        (
+            {"changed": [(name, level, -1) for name in RECORDS for level in LEVELS]},
+            "a small change was not decided under A, B, C",
+        ),
+        ({"decided": {("B", "high"): 0.4}}, "not every scale up to this one was decided (from 0.4 on)"),
+        ({"decided": {("B", "high"): np.nan}}, "not every scale up to this one was decided"),
+        ({"uncertain": ["A"]}, "rounding could change the outcome under A"),
+        ({"need": [("A", 0.72)]}, "the base would slip under A (friction 0.72 needed)"),
+        ({"changes": ()}, "small changes were not tried"),
+        ({"contact": False}, "the friction needed was not computed"),
+    ],
+)
+def test_whatever_leaves_a_survival_open_takes_it_out_of_the_class_of_survivals(changed, reservation):
+    found = column_verdict(made(**changed), "k", 1.0)
+    assert found.verdict is VerdictClass.OPEN
+    assert f"Reservations: {reservation}." in found.sentence
+
+
+def test_a_column_that_slides_before_it_rocks_is_not_described_where_a_record_can_make_it_slide():
+    found = column_verdict(made(FALLEN, friction=0.2, slips={"A": 0.6, "B": 1.2, "C": 3.0}), "k", 1.0)
+    assert found.verdict is VerdictClass.NOT_DESCRIBED
+    assert "friction 0.2 is less than r/h = 0.25" in found.sentence
+    assert "under 1 of 3 records (A)" in found.sentence
+    assert column_verdict(made(friction=0.2, slips={"A": 1.1, "B": 1.2, "C": 3.0}), "k", 1.0).describes
+
+
+@pytest.mark.parametrize(
+    ("least", "decided", "words"),
+    [
+        (2.0, 5.0, "Least overturning scale of all cases: 2 (B, low dissipation)."),
+        (2.0, 3.0, "Least overturning scale of all cases: 2 (B, low dissipation)."),
+        (
+            2.0,
+            0.4,
+            "Least overturning scale of all cases: 2 (B, low dissipation); not every scale from 0.4 on was decided.",
+        ),
+        (
+            2.0,
+            np.nan,
+            "Overturned at scale 2 (B, low dissipation); already at the smallest scale some run was not decided.",
+        ),
+        (np.nan, 3.0, "No scale up to 3 overturned it in any case; not every scale from 3 on was decided."),
+        (
+            np.nan,
+            np.nan,
+            "No run that was decided overturned it; already at the smallest scale some run was not decided.",
+        ),
+    ],
+)
+def test_the_least_scale_is_stated_with_the_scales_that_were_not_decided(least, decided, words):
+    found = made(least={("B", "low"): least}, decided={("C", "central"): decided})
+    assert least_overturning_scale(found, "k") == words
+
+
+@pytest.mark.parametrize(
+    ("slid", "words"),
+    [
+        ({}, "By the model that slides it did not overturn, and slid by up to 12 mm."),
+        (
+            {"A": (-1, 0)},
+            "By the model that slides it was not decided under A, did not overturn under B, C, and slid by up to 12 "
+            "mm.",
+        ),
+        (
+            {"A": (1, 0), "B": (-1, 0)},
+            "By the model that slides it overturned under A, was not decided under B, did not overturn under C, and "
+            "slid by up to 12 mm.",
+        ),
+        (dict.fromkeys(RECORDS, (-1, 0)), "By the model that slides it was not decided under A, B, C."),
+        (
+            {"C": (0, 1)},
+            "By the model that slides it did not overturn, and slid by up to 12 mm. Rounding could change the outcome "
+            "under C.",
+        ),
+    ],
+)
+def test_a_run_of_the_model_that_slides_counts_as_survival_only_if_it_is_decided(slid, words):
+    found = column_verdict(made(friction=0.2, slips={"A": 0.6}, slid=slid), "k", 1.0)
+    assert found.sentence.endswith(words)
+
+
+def test_a_column_of_which_no_run_was_decided_is_not_described():
+    everything = [(name, level, acts, -1) for name in RECORDS for level in LEVELS for acts in ACTS]
+    assert column_verdict(made(everything), "k", 1.0).verdict is VerdictClass.NOT_DESCRIBED
+    assert column_verdict(made(everything[1:]), "k", 1.0).verdict is VerdictClass.OPEN
+
+
+def test_one_overturning_outweighs_all_undecided_runs():
+    undecided = [(name, level, acts, -1) for name in RECORDS for level in LEVELS for acts in ACTS]
+    found = column_verdict(made([*undecided, ("B", "low", "with", 1)]), "k", 1.0)
+    assert found.verdict is VerdictClass.OVERTURNED
+    assert "(B at low)" in found.sentence
+    assert "Not decided: A, B, C." in found.sentence
+
+
+def test_flips_at_any_dissipation_count_and_changes_that_do_not_apply_do_not():
+    assert cases_of(made(changed=[("B", "low", 1)]), "k", 1.0).flipped == ("B",)
+    none = made(changed=[(name, level, None) for name in RECORDS for level in LEVELS])
+    assert cases_of(none, "k", 1.0).changes_undecided == ()
+    assert column_verdict(none, "k", 1.0).verdict is VerdictClass.SURVIVED
+
+
+def test_a_record_is_named_once_where_it_overturns_with_and_without_its_vertical_component():
+    runs = [*[("C", "low", acts, 1) for acts in ACTS], ("B", "high", "without", 1)]
+    cases = cases_of(made(runs), "k", 1.0)
+    assert cases.at_other_dissipation == {"C": ("low",)}
+    assert cases.without_vertical == {"B": ("high",)}
+
+
+def test_the_displacement_of_a_point_is_that_of_a_turn_about_the_rim():
+    radius, height = 0.45, 6.0
+    for angle in (0.0, 0.05, 0.15, 1.2):
+        turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+        rim, point = np.array([radius, 0.0]), np.array([0.0, height])
+        moved = rim + turn @ (point - rim)
+        # Products of sin and cos with lengths up to 6 m: a few ulp of 6.
+        np.testing.assert_allclose(displacement(angle, radius=radius, height=height), moved[0], atol=4e-15)
+
+
+def test_tilts_are_shown_in_degrees_and_millimetres_of_the_top_or_of_the_centre_of_mass():
+    body = xr.Dataset({"radius": 0.06, "height": np.nan, "mass_height": 0.28, "tipping_angle": np.arctan2(0.06, 0.28)})
+    angle = 0.5 * float(body["tipping_angle"])
+    moved = 1000.0 * displacement(angle, radius=0.06, height=0.28)
+    assert tilt_cells(0.5, body) == ("0.5", f"{np.degrees(angle):.3g}", f"{moved:.3g}")
+    assert "displaces its centre of mass by" in tilt_words(0.5, body)
+    assert "displaces its top by" in tilt_words(0.5, body.assign(height=0.6))
+    assert tilt_cells(np.inf, body) == ("overturned", "–", "–")
+    assert tilt_cells(1e-6, body) == ("< 0.001", "< 0.01", "< 0.1")
+    assert tilt_cells(0.0, body) == ("0", "0", "0")
