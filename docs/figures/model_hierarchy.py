@@ -1,6 +1,6 @@
 """Draws the figures of the page "The ladder of models" into docs/_static/ladder.
 
-Run it with `python docs/figures/ladder.py`; it takes some minutes on one core. Dimensionless columns, η = ζ = 0.1.
+Run it with `python docs/figures/model_hierarchy.py`; it takes some minutes on one core. Dimensionless columns, η = ζ = 0.1.
 """
 
 from collections.abc import Callable
