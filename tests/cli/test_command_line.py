@@ -132,7 +132,7 @@ def test_response_as_json_has_every_curve(capsys):
         ),
         (
             ["response", "--exact", *COLUMN, *WEAK, "--angular-frequency-range", "1", "2"],
-            ["no orbit was found between 1.0 and 2.0 rad/s to begin with: theory has no steady rolling"],
+            ["no orbit was found between 1.0 and 2.0 rad/s: theory has no steady rolling"],
         ),
         (["nonsense"], ["No such command"]),
         (["simulate", "--nonsense"], ["No such option"]),

@@ -86,7 +86,7 @@ def test_a_rate_mostly_from_beyond_the_hazard_is_not_drawn_as_a_fact():
     found = annual_rate(lognormal_fragility(60.0, 0.3), hazard)
     (told,) = legend_of(sb.plot(found))
     plain = " ".join(told.split())
-    assert "not told: the hazard curve ends at 10, and all of the rate lies beyond bounds" in plain
+    assert "withheld: the hazard curve ends at 10, and all of the rate lies beyond bounds" in plain
     assert f"{found['annual_rate'].item():.2e} /a" not in plain
 
 

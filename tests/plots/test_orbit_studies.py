@@ -96,7 +96,7 @@ def test_exponents_of_a_motion_that_ended_are_not_told():
     found = sb.studies.lyapunov_exponents(MODEL, slow, tilt=(0.08, 0.0), periods=50, skip=0)
     figure = sb.plot(found)
     assert figure.axes[0].get_title(loc="left").startswith("overturned after")
-    assert all(name.endswith("not told") for name in texts(figure.legends[0]))
+    assert all(name.endswith("undecided") for name in texts(figure.legends[0]))
     figure.canvas.draw()
 
 

@@ -10,7 +10,7 @@ from stylobate.config.simulation import Setup
 
 
 class Varied(Config):
-    """The quantity `x` that varies, perhaps another `y`; `late` tells over how many last periods means are taken."""
+    """The quantity `x` that varies, perhaps another `y`; `late`: last periods over which means are taken."""
 
     x: Axis
     y: Axis | None = None
@@ -70,7 +70,9 @@ class DriftConfig(ManyRuns):
         if self.duration is not None or self.periods is None:
             problems.append("duration is not known of a drift: give periods, of its base motion")
         if self.rules:
-            problems.append("rules are not known of a drift: late tells over how many last periods means are taken")
+            problems.append(
+                "rules: a drift has none. Set `late`, the number of last periods over which means are taken."
+            )
         model, motion, options = self.common(problems)
         for name in ("duration", "rules"):
             del options[name]

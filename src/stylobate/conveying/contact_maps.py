@@ -72,7 +72,7 @@ def contact_map(
     -------
     xarray.Dataset
         Of kind "contact map": the runs over the two names, with `contact_class` (see its `flag_meanings`) and all that
-        ensembles tell; over `class_name`, `count` and `share` of the runs computed; and `computed`.
+        ensembles hold; over `class_name`, `count` and `share` of the runs computed; and `computed`.
 
     Raises
     ------

@@ -42,12 +42,12 @@ def start_boundary(
     """Return the least acceleration of the base that moves a standing column, and what it then does first.
 
     The base moves along a line and along the normal of the plane, harmonically, at any frequency: what begins to move
-    is told by forces alone. On an incline the line is that of the steepest way.
+    follows from forces alone. On an incline the line is that of the steepest way.
 
     Parameters
     ----------
     model
-        `Sliding`: its gravity counts, and what is not told below.
+        `Sliding`: its gravity counts, and what is not listed below.
     slenderness
         Values of c.
     friction_coefficient
@@ -82,7 +82,7 @@ def start_boundary(
 
     Notes
     -----
-    What begins is told by the smaller of μ and c alone. What comes after it is not symmetrical. A column that slides
+    The smaller of μ and c alone decides what begins. What comes after it is not symmetrical. A column that slides
     from rest, μ < c, bears |T| ≤ μN < cN whatever the base does: it never tips as long as it stays on the plane. One
     that rocks, c < μ, bears more as it falls and turns, and may slip on its rim.
 

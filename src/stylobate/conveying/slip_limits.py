@@ -123,16 +123,16 @@ def slipping_boundary(
     return xr.Dataset(
         {
             **_without_slip(held),
-            "slips": ((*_PLANE, "branch"), slips, _told("1", "needs more friction than there is")),
+            "slips": ((*_PLANE, "branch"), slips, _attributes("1", "needs more friction than there is")),
             **_with_slip(slipping, model),
             "steady_rolling": (_PLANE, _classes(exists, rolls, slides), _flags()),
             **{
-                name: ("friction_coefficient", edge / model.time_scale, _told("rad s-1", name.replace("_", " ")))
+                name: ("friction_coefficient", edge / model.time_scale, _attributes("rad s-1", name.replace("_", " ")))
                 for name, edge in ends.items()
             },
         },
         coords={
-            "friction_coefficient": ("friction_coefficient", friction, _told("1", "friction coefficient")),
+            "friction_coefficient": ("friction_coefficient", friction, _attributes("1", "friction coefficient")),
             "angular_frequency": ("angular_frequency", frequency, attributes_of("angular_frequency")),
             "class_name": np.array(STEADY_ROLLING),
         },
@@ -148,9 +148,9 @@ def slipping_boundary(
 def _without_slip(held: theory.FiniteTiltRolling) -> Variables:
     over = ("angular_frequency", "branch")
     return {
-        "rolling_amplitude": (over, held.amplitude, _told("rad", "tilt of rolling without slip")),
-        "rolling_stable": (over, held.stable, _told("1", "rolling without slip is stable")),
-        "required_friction": (over, held.friction_demand, _told("1", "friction that rolling without slip needs")),
+        "rolling_amplitude": (over, held.amplitude, _attributes("rad", "tilt of rolling without slip")),
+        "rolling_stable": (over, held.stable, _attributes("1", "rolling without slip is stable")),
+        "required_friction": (over, held.friction_demand, _attributes("1", "friction that rolling without slip needs")),
     }
 
 
@@ -160,10 +160,10 @@ def _with_slip(slipping: theory.SlippingRolling, model: Model) -> Variables:
     speed = unit * np.hypot(slipping.slip_along, slipping.slip_across)
     power = unit * column.mass * column.gravity * slipping.slip_power
     return {
-        "slipping_amplitude": (over, slipping.amplitude, _told("rad", "tilt of rolling with slip")),
-        "slip_speed": (over, speed, _told("m s-1", "speed of slip")),
-        "slip_power": (over, power, _told("W", "power that slip takes")),
-        "slipping_stable": (over, slipping.stable, _told("1", "rolling with slip is stable")),
+        "slipping_amplitude": (over, slipping.amplitude, _attributes("rad", "tilt of rolling with slip")),
+        "slip_speed": (over, speed, _attributes("m s-1", "speed of slip")),
+        "slip_power": (over, power, _attributes("W", "power that slip takes")),
+        "slipping_stable": (over, slipping.stable, _attributes("1", "rolling with slip is stable")),
     }
 
 
@@ -281,7 +281,7 @@ def _any(branches: Flags) -> Flags:
     return np.asarray(branches.any(axis=-1))
 
 
-def _told(units: str, long_name: str) -> dict[str, str]:
+def _attributes(units: str, long_name: str) -> dict[str, str]:
     return {"units": units, "long_name": long_name}
 
 

@@ -55,15 +55,15 @@ def drift(
     late
         Over how many of the last ones the means are taken.
     store, executor, resume, progress, **options
-        As for `overturning_map`; `rules` are told by `late`.
+        As for `overturning_map`; `late` sets the `rules`.
 
     Returns
     -------
     xarray.Dataset
         Of kind "drift": the runs over the names, with `mean_velocity` (axis) and `transport_speed` [m/s],
-        `mean_twist_rate` [rad/s], `contact_class`, `throw_number` and all that ensembles tell; NaN where a column did
-        not move on to the end, as one that overturns; 0 where it came to rest for good. A column that runs away down a
-        slope has the mean velocity of these periods, which grows with them.
+        `mean_twist_rate` [rad/s], `contact_class`, `throw_number` and all variables of ensembles; NaN where a column
+        did not move on to the end, as one that overturns; 0 where it came to rest for good. A column that runs away
+        down a slope has the mean velocity of these periods, which grows with them.
 
     Raises
     ------

@@ -54,7 +54,7 @@ class FragilityStudy:
     hazard
         The hazard curve, in `intensity` and `component`.
     years
-        For which probabilities are told.
+        For which probabilities are stated.
     options
         Of all runs.
     """
@@ -153,9 +153,9 @@ class FragilityStudy:
         )
 
     def parts(self, runs: xr.Dataset, limit_state: str = _OVERTURNING) -> xr.Dataset | None:
-        """Return how much of the dispersion is of records and how much of properties; None where that is not told.
+        """Split the dispersion into records and properties; None where the data do not suffice.
 
-        It is told of one rotation and one choice of the vertical component, two records and two samples or more.
+        It needs one rotation, one choice of the vertical component, and at least two records and two samples.
         """
         sizes = [runs.sizes.get(name, 1) for name in ("record", "property_sample", "scale")]
         if min(sizes) < _LEAST or any(name in runs.dims for name in ("rotation", "vertical")):

@@ -43,5 +43,5 @@ def in_one_direction(motion: BaseMotion, direction: float) -> BaseMotion:
     if not isinstance(motion, Record):
         return InOneDirection(motion=motion.rotated(-direction) if direction else motion, direction=0.0)
     turned = motion.rotated(-direction) if direction else motion
-    told = f"component along {direction!r} rad only"
-    return turned.changed(told, samples=turned.samples * [1.0, 0.0, 1.0])
+    note = f"component along {direction!r} rad only"
+    return turned.changed(note, samples=turned.samples * [1.0, 0.0, 1.0])

@@ -28,7 +28,7 @@ from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.quantities import Floats, attributes_of, checked_values
 from stylobate.studies.sweeps.recipe import RunOptions
 
-_TOLD_OTHERWISE = {
+_SET_BY_ARGUMENTS = {
     "motion": "records",
     "scale": "scales",
     "acceleration": "scales",
@@ -89,8 +89,8 @@ def incremental_dynamic_analysis(
     -------
     xarray.Dataset
         Of kind "incremental dynamic analysis". Over `record`, `rotation` [rad], `vertical`, `property_sample` and
-        `scale`: all that ensembles tell; `tilt_ratio`, the largest tilt over α = atan c, infinite where the column
-        overturned and NaN where a run does not tell; `intensity` (over what it depends on); `followed`, the duration
+        `scale`: all variables of ensembles; `tilt_ratio`, the largest tilt over α = atan c, infinite where the column
+        overturned and NaN where a run is undecided; `intensity` (over what it depends on); `followed`, the duration
         [s]; and over `limit_state` too `reached`, from `limit_states`. A dimension of one record given alone, or of
         one rotation, or one answer to `vertical`, is left out but for its coordinate; `property_sample` is there
         where samples are given. `computed` is the number of runs computed.
@@ -267,7 +267,7 @@ class Plan:
     def labelled(self, runs: xr.Dataset) -> xr.Dataset:
         """Return `runs`, over all dimensions, as an incremental dynamic analysis."""
         slenderness = xr.DataArray([model.column.slenderness for model in self.sampled], dims="property_sample")
-        told = runs.assign(
+        labelled = runs.assign(
             tilt_ratio=tilt_ratios(runs, slenderness),
             reached=limit_states(runs, slenderness=slenderness),
             intensity=self.levels,
@@ -275,7 +275,7 @@ class Plan:
             computed=((), int((runs["outcome"] != NOT_COMPUTED).sum()), {"units": "1", "long_name": "runs computed"}),
         ).assign_coords(self._coordinates())
         lone = dict.fromkeys(self.left_out, 0)
-        found = told.isel(lone).drop_vars("property_sample" if "property_sample" in self.left_out else [])
+        found = labelled.isel(lone).drop_vars("property_sample" if "property_sample" in self.left_out else [])
         return found.assign_attrs(kind="incremental dynamic analysis", intensity=self.intensity.name)
 
     def _coordinates(self) -> dict[str, Any]:
@@ -291,10 +291,10 @@ class Plan:
 
 
 def tilt_ratios(runs: xr.Dataset, slenderness: float | xr.DataArray) -> xr.DataArray:
-    """Return the largest tilt over α = atan c: infinite where overturned, NaN where a run does not tell."""
+    """Return the largest tilt over α = atan c: infinite where overturned, NaN where a run is undecided."""
     codes = runs["outcome"]
-    told = ~codes.isin([NOT_COMPUTED, *(code_of(one) for one in UNRESOLVED)])
-    ratio = (runs["largest_tilt"] / np.arctan(slenderness)).where(told)
+    decided = ~codes.isin([NOT_COMPUTED, *(code_of(one) for one in UNRESOLVED)])
+    ratio = (runs["largest_tilt"] / np.arctan(slenderness)).where(decided)
     ratio = ratio.where(codes != code_of(Outcome.OVERTURNED), np.inf)
     return ratio.assign_attrs(units="1", long_name="largest tilt over α")
 
@@ -330,8 +330,8 @@ def _samples(parameters: Mapping[str, npt.ArrayLike] | None) -> dict[str, Floats
         raise ParameterError(message)
     given = dict(parameters or {})
     for name in given:
-        if name in _TOLD_OTHERWISE:
-            message = f"parameters cannot name {name}: it is told by {_TOLD_OTHERWISE[name]}"
+        if name in _SET_BY_ARGUMENTS:
+            message = f"parameters cannot name {name}: use the argument {_SET_BY_ARGUMENTS[name]}"
             raise ParameterError(message)
     remark_on_lengths("parameters", given)
     several = {name: checked_values("parameters", name, values) for name, values in given.items() if np.ndim(values)}

@@ -1,4 +1,4 @@
-"""The base motions of a study, each with the name by which its results are told."""
+"""The base motions of a study, each with the name that labels its results."""
 
 import math
 from collections.abc import Mapping, Sequence

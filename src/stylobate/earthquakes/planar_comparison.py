@@ -23,7 +23,7 @@ from stylobate.studies.sweeps.recipe import RunOptions
 AXES = (0.0, 0.5 * math.pi)
 """The directions of the two horizontal components [rad]."""
 
-# One record tells no bias: nothing tells how far the next would lie from it.
+# A bias needs two records: one gives no scatter.
 _LEAST = 2
 
 
@@ -58,7 +58,7 @@ def planar_bias(
         The planar column; by default that of the same body with the same `damping` and `rolling_resistance`, and
         with Housner's restitution at impacts, which keeps the angular momentum about the edge on which it lands.
     least_ratio
-        Peak tilts below this part of α are no rocking, and their ratio is not told.
+        Peak tilts below this fraction of α are no rocking; their ratio is left out (NaN).
     executor, progress, **options
         As for `incremental_dynamic_analysis`.
 
@@ -224,6 +224,6 @@ def _moments(values: xr.DataArray, names: tuple[str, str, str, str]) -> dict[str
     mean = values.mean("record").where(enough)
     scatter = (((values - mean) ** 2).sum("record") / (number - 1).where(enough)) ** 0.5
     error = scatter / number.where(enough) ** 0.5
-    told = ("mean over the records", "standard deviation over the records", "standard error of the mean")
-    parts = zip((mean, scatter, error, number), (*told, "records compared"), strict=True)
+    labels = ("mean over the records", "standard deviation over the records", "standard error of the mean")
+    parts = zip((mean, scatter, error, number), (*labels, "records compared"), strict=True)
     return dict(zip(names, (_named(one, long_name) for one, long_name in parts), strict=True))

@@ -16,7 +16,7 @@ def remark_on(columns: Mapping[str, Column], records: Iterable[str]) -> None:
     Parameters
     ----------
     columns
-        By the name under which they are told.
+        By the name that labels their results.
     records
         Names of records.
     """
@@ -38,8 +38,8 @@ def _of_names(records: Iterable[str]) -> Iterator[str]:
         alike.setdefault(name.casefold(), []).append(name)
     for names in alike.values():
         if len(names) > 1:
-            told = " and ".join(map(repr, names))
+            quoted = " and ".join(map(repr, names))
             yield (
-                f"records: {told} differ by case only and are taken as different ones; if they are components of one "
+                f"records: {quoted} differ by case only and are taken as different ones; if they are components of one "
                 "event, list their files as one event"
             )

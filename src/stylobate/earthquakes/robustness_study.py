@@ -67,11 +67,11 @@ def robustness(
         the change does not apply, such as another step for a pulse), `tilt_ratio` (infinite where overturned),
         `applies`; over `limit_state` too `reached` and `flips`, whether the limit state is reached with the change and
         not without, or the other way round. Without `change`: `outcome_as_given`, `tilt_ratio_as_given`,
-        `reached_as_given` of the run without changes; `changes_compared`, how many changes apply and tell;
+        `reached_as_given` of the run without changes; `changes_compared`, how many perturbations apply and are decided;
         `share_flipped` of them; `repeatable`, True where none flips overturning; `tilt_ratio_low` and
         `tilt_ratio_high`, the ends of the peak tilts over all changes, infinite where one overturns; `tilt_dispersion`,
         the standard deviation of ln(peak tilt) of those that do not overturn. Along `change` its name and `change_of`:
-        record, dissipation, geometry or integration. Its `provenance` tells model, records, options and changes.
+        record, dissipation, geometry or integration. Its `provenance` holds model, records, options and changes.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def robustness(
         done += len(group) * angles.size
         if progress is not None:
             progress(done, total)
-    found = _told(arrays, list(named), angles, chosen, factor)
+    found = _as_dataset(arrays, list(named), angles, chosen, factor)
     sweep = Sweep.points(model, OneOf(motions=tuple(named.values())), at={"scale": [factor]}, duration=1.0, **options)
     return found.assign_attrs(
         provenance=_provenance(
@@ -241,7 +241,7 @@ def _run(
     return run_sweep(sweep, executor=executor)
 
 
-def _told(
+def _as_dataset(
     arrays: _Arrays, names: list[str], angles: Floats, changes: Sequence[Perturbation], scale: float
 ) -> xr.Dataset:
     dims = ("record", "rotation", "change")
@@ -258,9 +258,9 @@ def _told(
     if angles.size == 1:
         runs = runs.isel(rotation=0)
     given, changed = runs.isel(change=_AS_GIVEN, drop=True), runs.isel(change=slice(1, None))
-    told = (changed["reached"] >= 0) & (given["reached"] >= 0)
-    flips = told & (changed["reached"] != given["reached"])
-    compared = told.sum("change")
+    decided = (changed["reached"] >= 0) & (given["reached"] >= 0)
+    flips = decided & (changed["reached"] != given["reached"])
+    compared = decided.sum("change")
     overturning = flips.sel({LIMIT_STATE: "overturning"}, drop=True)
     peaks = runs["tilt_ratio"]
     rocking = peaks.where(np.isfinite(peaks) & (peaks > 0.0))
@@ -272,7 +272,7 @@ def _told(
         outcome_as_given=given["outcome"],
         tilt_ratio_as_given=given["tilt_ratio"],
         reached_as_given=given["reached"],
-        changes_compared=compared.assign_attrs(**one, long_name="changes that apply and tell"),
+        changes_compared=compared.assign_attrs(**one, long_name="changes that apply and are decided"),
         share_flipped=(flips.sum("change") / compared.where(compared > 0)).assign_attrs(
             **one, long_name="share of the changes that flip the verdict"
         ),

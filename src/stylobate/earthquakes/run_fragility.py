@@ -1,4 +1,4 @@
-"""Fragility from an incremental dynamic analysis: `fit_fragility` with its records and property samples told."""
+"""Fragility from an incremental dynamic analysis: `fit_fragility` with the record and sample of each run."""
 
 from typing import Any
 
@@ -34,7 +34,7 @@ def fragility_of_runs(
     Returns
     -------
     xarray.Dataset
-        As from `fit_fragility`, whose arguments `record` and `property_sample` are told: rotations, choices of the
+        As from `fit_fragility`, with `record` and `property_sample` set from the runs: rotations, choices of the
         vertical component and property samples are series of their own within a record.
 
     Raises

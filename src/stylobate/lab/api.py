@@ -75,11 +75,11 @@ class Api:
         """The description as TOML and as Python, and what follows for the column, without a run."""
         given = await self._described(request)
 
-        def told() -> dict[str, Any]:
+        def about() -> dict[str, Any]:
             model = config.SimulationConfig.parse(given.values).build().model
             return {**snippets(given), "column": plain_column(model)}
 
-        return JSONResponse(await to_thread.run_sync(told))
+        return JSONResponse(await to_thread.run_sync(about))
 
     async def simulate(self, request: Request) -> Response:
         """One run."""
@@ -98,7 +98,7 @@ class Api:
         return JSONResponse(await self._run("start", given.values, request))
 
     async def upload(self, request: Request) -> Response:
-        """Keep the files of a record and tell what they hold."""
+        """Keep the files of a record and report what they hold."""
         body = await json_body(request, self.limits.records)
         problems = beyond_size({name: value for name, value in body.items() if name != "files"})
         if problems:

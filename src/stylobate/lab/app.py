@@ -85,7 +85,7 @@ async def _refusal(request: Request, error: Exception) -> Response:
 
 
 async def _mistake(request: Request, error: Exception) -> Response:
-    """Tell what the library says of the values."""
+    """Answer with what the library says of the values."""
     del request
     problems = error.problems if isinstance(error, ConfigError) else str(error).splitlines()
     return JSONResponse({"problems": list(problems)}, status_code=422)

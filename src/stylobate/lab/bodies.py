@@ -29,8 +29,8 @@ async def json_body(request: Request, limit: int) -> dict[str, Any]:
 
 
 async def _bytes(request: Request, limit: int) -> bytes:
-    told = request.headers.get("content-length", "")
-    if told.isdigit() and int(told) > limit:
+    length = request.headers.get("content-length", "")
+    if length.isdigit() and int(length) > limit:
         _too_large(limit)
     body = bytearray()
     try:

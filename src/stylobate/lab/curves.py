@@ -52,7 +52,7 @@ def plain_curves(curves: xr.Dataset) -> dict[str, Any]:
 
 
 def exact_curves(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
-    """Return the exact orbits that `values` describe; how far they were followed is told on the way."""
+    """Return the exact orbits that `values` describe; progress reports how far they were followed."""
     setup = config.ResponseConfig.parse(values).build()
 
     number = count(1)

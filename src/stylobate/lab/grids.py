@@ -39,9 +39,9 @@ def basin_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
         raise ParameterError(message)
     study = partial(studies.basins, setup.model, setup.motion)
     found = _watched(study, setup, emit, keywords=setup.options)
-    told = _finer(found, "attractor", found["attractor_name"].to_numpy(), setup)
-    told["attractors"] = [_attractor(found.isel(attractor_index=i)) for i in range(found.sizes["attractor_index"])]
-    return told
+    answer = _finer(found, "attractor", found["attractor_name"].to_numpy(), setup)
+    answer["attractors"] = [_attractor(found.isel(attractor_index=i)) for i in range(found.sizes["attractor_index"])]
+    return answer
 
 
 def _attractor(one: xr.Dataset) -> dict[str, Any]:
@@ -93,7 +93,7 @@ def _finer(found: xr.Dataset, variable: str, names: Any, setup: config.Setup) ->
 
 
 def _counts(found: xr.Dataset, names: list[str] | None) -> dict[str, Any]:
-    told: dict[str, Any] = {"uncertain": int(found["uncertain"].sum()), "runs": int(found["outcome"].size)}
+    answer: dict[str, Any] = {"uncertain": int(found["uncertain"].sum()), "runs": int(found["outcome"].size)}
     if names is not None:
-        told["shares"] = dict(zip(names, numbers(found["share"]), strict=True))
-    return told
+        answer["shares"] = dict(zip(names, numbers(found["share"]), strict=True))
+    return answer

@@ -16,7 +16,7 @@ from anyio.abc import TaskGroup
 from stylobate.lab.limits import Limits
 from stylobate.lab.messages import Broken, Finished, Found, Lost, Note, Progress, Refused
 from stylobate.lab.refusals import RefusedError
-from stylobate.lab.worker_pool import Answer, Crew, Told
+from stylobate.lab.worker_pool import Answer, Crew, Message
 from stylobate.text import plural
 
 _log = logging.getLogger("stylobate.lab")
@@ -51,8 +51,8 @@ class Job:
     asked_at: float = field(default_factory=time.monotonic)
     scope: anyio.CancelScope = field(default_factory=anyio.CancelScope)
 
-    def heard(self, message: Told) -> None:
-        """Take what is told on the way."""
+    def heard(self, message: Message) -> None:
+        """Take a message on the way."""
         self.state = State.RUNNING
         match message:
             case Found(value):
@@ -157,6 +157,6 @@ class Jobs:
 
 
 def broken(trace: str) -> str:
-    """Return the line that tells of a mistake in the program."""
+    """Return the line that reports a mistake in the program."""
     last = trace.strip().splitlines()[-1]
     return f"the laboratory made a mistake of its own: {last}; please report it with the link of this page"

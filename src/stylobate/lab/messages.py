@@ -1,4 +1,4 @@
-"""What the processes of the laboratory tell the server while they compute, and at the end."""
+"""Messages of the laboratory's processes to the server, during a computation and at its end."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -59,11 +59,11 @@ def _members(union: Any) -> tuple[type[Config], ...]:
 
 def _kinds(descriptions: Iterable[type[Config]], tag: str) -> Iterable[dict[str, Any]]:
     for description in descriptions:
-        told = (description.__doc__ or "").partition("\n")[0]
+        summary = (description.__doc__ or "").partition("\n")[0]
         fields = sorted(description.model_fields.items(), key=lambda item: not item[1].is_required())
         numbers = [_parameter(name, field) for name, field in fields if name != tag]
         for kind in get_args(description.model_fields[tag].annotation):
-            yield {"kind": kind, "name": kind.replace("_", " "), "about": told, "parameters": numbers}
+            yield {"kind": kind, "name": kind.replace("_", " "), "about": summary, "parameters": numbers}
 
 
 def _parameter(name: str, field: Any) -> dict[str, Any]:

@@ -37,7 +37,7 @@ def page_is_built() -> bool:
 
 
 def page_routes() -> list[Route]:
-    """Return a route for each file of the page, none for anything else; without a page one that tells of it."""
+    """Return a route for each file of the page, none for anything else; without a page one that says so."""
     if not page_is_built():
         return [Route("/", _no_page, methods=["GET"])]
     found = {f"/{path.name}": path for path in sorted(page_folder().iterdir()) if path.suffix in _TYPES}

@@ -25,7 +25,7 @@ class Refining:
     Parameters
     ----------
     show
-        Told the stride, the places of runs in the plane, shape (n, 2), and their outcomes, shape (n,).
+        Called with the stride, the places of runs in the plane, shape (n, 2), and their outcomes, shape (n,).
     threads
         How many; None for all cores.
     shape

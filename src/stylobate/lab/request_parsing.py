@@ -16,10 +16,10 @@ _DEEPEST = 24
 
 @dataclass(frozen=True, slots=True)
 class Described:
-    """Plain values of a description: `values` to compute with, `told` to show, in which uploads go by file name."""
+    """Plain values of a description: `values` to compute with, `shown` to show, in which uploads go by file name."""
 
     values: dict[str, Any]
-    told: dict[str, Any]
+    shown: dict[str, Any]
 
 
 def described(body: Mapping[str, Any], uploads: Uploads, limits: Limits) -> Described:
@@ -32,7 +32,7 @@ def described(body: Mapping[str, Any], uploads: Uploads, limits: Limits) -> Desc
     """
     found = Described(
         dict(_with_uploads(body, lambda digest: uploads[digest], Upload.motion)),
-        dict(_with_uploads(body, lambda digest: uploads[digest], Upload.told)),
+        dict(_with_uploads(body, lambda digest: uploads[digest], Upload.as_json)),
     )
     problems = [*_beyond(body, limits), *problems_of_size(body, uploads, limits)]
     if problems:
@@ -43,7 +43,7 @@ def described(body: Mapping[str, Any], uploads: Uploads, limits: Limits) -> Desc
 def _with_uploads(
     values: Mapping[str, Any],
     find: Callable[[object], Upload],
-    tell: Callable[[Upload], dict[str, Any]],
+    describe: Callable[[Upload], dict[str, Any]],
     depth: int = 0,
 ) -> dict[str, Any]:
     """Return `values` with the motion `upload` replaced by its record, wherever it stands."""
@@ -51,13 +51,13 @@ def _with_uploads(
         _refuse_files(values)
         if "upload" in values:
             rest = {name: value for name, value in values.items() if name not in ("kind", "upload")}
-            values = {**tell(find(values["upload"])), **rest}
+            values = {**describe(find(values["upload"])), **rest}
 
     def inside(value: object, depth: int) -> object:
         if depth > _DEEPEST:
             raise RefusedError(422, [f"values may hold values to a depth of {_DEEPEST}; these go deeper"])
         if isinstance(value, Mapping):
-            return _with_uploads(value, find, tell, depth)
+            return _with_uploads(value, find, describe, depth)
         return [inside(one, depth + 1) for one in value] if isinstance(value, list) else value
 
     return {name: inside(value, depth + 1) for name, value in values.items()}

@@ -18,7 +18,7 @@ def plain_run(run: Response, model: Model) -> dict[str, Any]:
     """Return what a page shows of `run`: what became of it, its history, and how it is drawn."""
     return {
         "outcome": run.outcome.name,
-        "told": run.outcome.value,
+        "label": run.outcome.value,
         "reason": run.reason,
         "decided_at": run.decided_at,
         "uncertain": run.uncertain,
@@ -36,17 +36,17 @@ def plain_run(run: Response, model: Model) -> dict[str, Any]:
 
 def snippets(given: Described) -> dict[str, str]:
     """Return what is described as a TOML file and as a Python program."""
-    description = config.SimulationConfig.parse(given.told)
-    return {"toml": config.as_toml(given.told), "python": config.as_python(description)}
+    description = config.SimulationConfig.parse(given.shown)
+    return {"toml": config.as_toml(given.shown), "python": config.as_python(description)}
 
 
 def plain_column(model: Model) -> dict[str, float]:
     """Return the numbers of the column that decide."""
     column = model.column
     names = ("radius", "mass_height", "mass", "slenderness", "inertia_ratio", "axial_ratio", "frequency_scale")
-    told = {name: float(getattr(column, name)) for name in names}
+    properties = {name: float(getattr(column, name)) for name in names}
     return {
-        **told,
+        **properties,
         "frequency_parameter": column.frequency_parameter,
         "gravity": column.gravity,
         "releasing_acceleration": column.slenderness * column.gravity,
@@ -56,14 +56,14 @@ def plain_column(model: Model) -> dict[str, float]:
 def _series(run: Response, model: Model) -> dict[str, Any]:
     """Return the histories that a page draws: numbers over time, lengths along the plane from where they began."""
     data = run.data
-    told = {name: numbers(data[name]) for name in _HISTORIES if name in data}
+    histories = {name: numbers(data[name]) for name in _HISTORIES if name in data}
     if "normal_force" in data:
-        told["normal_force"] = numbers(data["normal_force"] / (model.column.mass * model.column.gravity))
+        histories["normal_force"] = numbers(data["normal_force"] / (model.column.mass * model.column.gravity))
     if "footprint" in data:
-        told["displacement"] = numbers(data["footprint"] - data["footprint"][0])
+        histories["displacement"] = numbers(data["footprint"] - data["footprint"][0])
     if "slip_velocity" in data:
-        told["slip_speed"] = numbers(np.hypot(*data["slip_velocity"].transpose("axis", "time").to_numpy()))
-    return told
+        histories["slip_speed"] = numbers(np.hypot(*data["slip_velocity"].transpose("axis", "time").to_numpy()))
+    return histories
 
 
 _HISTORIES = (
@@ -73,7 +73,7 @@ _HISTORIES = (
 
 
 def plain_record(record: Record) -> dict[str, Any]:
-    """Return what is told of an uploaded record."""
+    """Describe an uploaded record."""
     peaks = {axis: float(abs(record.samples[:, index]).max()) for index, axis in enumerate("xyz")}
     return {
         "name": record.name,

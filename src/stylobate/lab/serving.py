@@ -93,7 +93,7 @@ def server_of(app: "ASGIApp", limits: Limits | None = None) -> "uvicorn.Server":
 def listening(host: str, port: int) -> socket.socket:
     """Return a socket that listens, or raise FileError."""
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    # With the protocol told, asyncio sends answers at once; else each would wait for an acknowledgement of its head.
+    # With the protocol named, asyncio sends answers at once; else each would wait for an acknowledgement of its head.
     place = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     try:
         place.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

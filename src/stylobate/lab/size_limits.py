@@ -1,4 +1,4 @@
-"""How large what a request describes would be when it is built: told beforehand, since building takes what it takes."""
+"""How large the objects of a request would be: estimated before they are built."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -47,8 +47,8 @@ def problems_of_size(body: Mapping[str, Any], uploads: Uploads, limits: Limits) 
         return problems
     samples = sum(_samples(motion, uploads) for motion in motions)
     if samples > limits.record_samples:
-        told = f"got {samples:.3g}; shorten tail and padding, or take a larger step"
-        problems.append(f"motion: records may have {limits.record_samples} samples in all here, {told}")
+        remedy = f"got {samples:.3g}; shorten tail and padding, or take a larger step"
+        problems.append(f"motion: records may have {limits.record_samples} samples in all here, {remedy}")
     return problems
 
 

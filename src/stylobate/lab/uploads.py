@@ -50,7 +50,7 @@ class Upload:
         """Return the plain values with which the files are read for the first time, with all remarks."""
         return self._motion([str(path) for path in self.paths])
 
-    def told(self) -> dict[str, Any]:
+    def as_json(self) -> dict[str, Any]:
         """Return the plain values of the record, files by their name."""
         return {**self._motion(list(self.names)), "single": True}
 

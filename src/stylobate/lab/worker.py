@@ -1,4 +1,4 @@
-"""A process that computes for the laboratory: one task after the other, told to it and answered through a pipe."""
+"""A process that computes for the laboratory: one task after the other, received and answered through a pipe."""
 
 import logging
 import multiprocessing
@@ -22,7 +22,7 @@ def work(connection: Connection) -> None:
         end_when_closed(server.sentinel)
     from stylobate.lab import tasks  # noqa: PLC0415  heavy imports happen in the new process
 
-    logging.getLogger("stylobate").addHandler(_Telling(connection))
+    logging.getLogger("stylobate").addHandler(_LogSender(connection))
     tasks.warm_up()
     try:
         connection.send(Ready())
@@ -50,8 +50,8 @@ def _done(task: Callable[[Any, Emit], Any], values: Any, emit: Emit) -> Finished
         return Broken(traceback.format_exc())
 
 
-class _Telling(logging.Handler):
-    """Tells the server what the library logs."""
+class _LogSender(logging.Handler):
+    """Sends the server what the library logs."""
 
     def __init__(self, connection: Connection) -> None:
         super().__init__()

@@ -16,7 +16,7 @@ from anyio.streams.memory import MemoryObjectReceiveStream, MemoryObjectSendStre
 from stylobate.lab.messages import Broken, Finished, Found, Lost, Note, Progress, Ready, Refused
 from stylobate.lab.worker import work
 
-Told = Found | Progress | Note
+Message = Found | Progress | Note
 Answer = Finished | Refused | Broken | Lost
 
 GRACE = 1.5
@@ -114,12 +114,12 @@ class Crew:
         self,
         kind: str,
         values: Any,
-        told: Callable[[Told], None],
+        report: Callable[[Message], None],
         *,
         wait: float | None = None,
         limit: float | None = None,
     ) -> Answer:
-        """Return how the task of this `kind` ended; what is found on the way is `told`.
+        """Return how the task of this `kind` ended; messages on the way go to `report`.
 
         If the caller is cancelled, the task is ended unless it ends within the grace.
 
@@ -131,7 +131,7 @@ class Crew:
             If the task took longer than `limit` [s].
         """
         if self._idle or len(self._all) < self.limit:
-            told(Note("a process starts, which takes long the first time"))  # it will not have to wait for others
+            report(Note("a process starts, which takes long the first time"))  # it will not have to wait for others
         try:
             with anyio.fail_after(wait):
                 worker = await self._ready()
@@ -139,11 +139,11 @@ class Crew:
             raise BusyError from None
         except LostError as error:
             return Lost(error.exit_code)
-        told(Note(""))
+        report(Note(""))
         try:
             worker.connection.send((kind, values))
             with anyio.fail_after(limit):
-                answer = await _answer(worker, told)
+                answer = await _answer(worker, report)
         except (LostError, OSError) as error:
             if isinstance(error, TimeoutError):  # an OSError too
                 self.group.start_soon(self._settle, worker)
@@ -211,22 +211,22 @@ class Crew:
     def _release(self, worker: Worker) -> None:
         if worker in self._all:
             self._idle.append(worker)
-        self._tell()
+        self._notify()
 
     def _discard(self, worker: Worker) -> None:
         if worker in self._all:
             self._all.remove(worker)
             worker.end()
-        self._tell()
+        self._notify()
 
-    def _tell(self) -> None:
+    def _notify(self) -> None:
         self._changed.set()
         self._changed = Event()
 
 
-async def _answer(worker: Worker, told: Callable[[Told], None]) -> Answer:
+async def _answer(worker: Worker, report: Callable[[Message], None]) -> Answer:
     while True:
         message = await worker.next()
         if isinstance(message, (Finished, Refused, Broken)):
             return message
-        told(message)
+        report(message)

@@ -9,7 +9,7 @@ LEAST_FORCE = 1e-8
 """The part of the weight below which a force is none.
 
 A normal force is what weight and inertia leave over, each about as large as the weight and known to the usual tolerance
-of a run, `rtol`: below it nothing is told from lift-off, and a ratio to it is made of rounding.
+of a run, `rtol`: below it nothing is distinguished from lift-off, and a ratio to it is made of rounding.
 """
 
 

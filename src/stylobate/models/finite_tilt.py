@@ -22,7 +22,7 @@ TINY = 1e-300
 # Angular rate below which rolling resistance fades out [ω0]: it is no friction that holds a column.
 FADING = 1e-3
 
-# A least tilt counts as a passage of the upright below this, where the user tells no other [c].
+# A least tilt counts as a passage of the upright below this, unless the user sets another [c].
 _PASSAGE = 0.01
 
 

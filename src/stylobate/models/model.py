@@ -80,7 +80,7 @@ class Model(ABC):
     -----
     For developers: a model has a `column` and gives `state_names`, `parameters`, `rates`, `lean` and `start`;
     everything below them in this class has a default. Without `rest_energy` a column never comes to rest, without
-    `planar_rates` coplanar motion is integrated in space, without `no_return_tilt` a stated limit tells overturning.
+    `planar_rates` coplanar motion is integrated in space, without `no_return_tilt` a stated limit decides overturning.
 
     What ensembles compile must be what Numba can compile: arithmetic, `math`, calls of functions that keep to the
     same. `rates` and `planar_rates` run several columns at a time where they are free of branches and of `math`'s
@@ -140,14 +140,14 @@ class Model(ABC):
     """(state…, number of the margin, ax, ay, az, bx, by, bz, ahead, ε, parameters…) → elapsed time, and state.
 
     How the motion goes on; the base accelerates with (ax, ay, az) now and (bx, by, bz) a short time `ahead`, from which
-    a release goes. With the number −1 it tells how a motion goes on that begins.
+    a release goes. With the number −1 it gives the state with which a motion begins.
     """
 
     project: ClassVar[Callable[..., tuple[float, ...]] | None] = None
     """(state…, parameters…) → the state with what it keeps from step to step brought up to date, after each step."""
 
     slip_states: ClassVar[tuple[int, ...]] = ()
-    """Which states are the velocity of slip, which is told more finely while a contact slips: its direction matters."""
+    """Which states are the velocity of slip, integrated more finely while a contact slips: its direction matters."""
 
     contact_kinds: ClassVar[type[IntEnum] | None] = None
     """The kinds of contact, of which the last state is one; the first is standing at rest, RESTING."""
@@ -307,7 +307,7 @@ class Model(ABC):
         return self.no_return_tilt(largest_horizontal, least_vertical, *self.parameters)
 
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
-        """Return what the model tells besides the tilt, by name.
+        """Return the outputs of the model besides the tilt, by name.
 
         Parameters
         ----------

@@ -227,7 +227,7 @@ class Rolling(Model):
         the angular velocity, fading out below the rate 1e-3 ω0.
     restitution
         e, the part of the tilt rate that is left after a passage of the upright; 1 for no loss, the limit of grazing
-        rolling. `theory.housner_restitution` tells Housner's value for planar impacts.
+        rolling. `theory.housner_restitution` computes Housner's value for planar impacts.
     passage_tilt
         A least tilt counts as a passage of the upright below this [rad]; by default 0.01 c.
 
@@ -238,7 +238,7 @@ class Rolling(Model):
 
     Notes
     -----
-    Overturning is told at a tilt of π/2: spin holds no column up for certain, nor lets it fall. With κ = m h²/J0,
+    Overturning is judged at a tilt of π/2: spin holds no column up for certain, nor lets it fall. With κ = m h²/J0,
     i_a = I_a/(m r²), D = 1 + i_a − κ, in units of 1/ω0, h and g, w = c w3 + w1, d and n horizontal along the lean and
     across it, the equations are those of Newton and Euler with the force N, T_d, T_n at the contact, and
 

@@ -171,7 +171,7 @@ class SlenderRolling(Model):
 
     Notes
     -----
-    Overturning is told at a tilt of π/2: spin holds no column up for certain, nor lets it fall.
+    Overturning is judged at a tilt of π/2: spin holds no column up for certain, nor lets it fall.
     """
 
     column: Column

@@ -67,7 +67,7 @@ class Point:
 
     @cached_property
     def tangent(self) -> Floats:
-        """Unit vector along the family; `along` tells its sense."""
+        """Unit vector along the family; `along` gives its sense."""
         return np.asarray(np.linalg.svd(self.jacobian)[2][-1])
 
     def along(self, direction: Floats) -> Floats:

@@ -1,4 +1,4 @@
-"""Bifurcations of a family: seen between two points, located on it, told apart."""
+"""Bifurcations of a family: detected between two points, located on the family, classified."""
 
 import math
 from dataclasses import dataclass
@@ -82,7 +82,7 @@ class Bifurcation:
         return self.orbit.state
 
     def __repr__(self) -> str:
-        """Tell it in one line."""
+        """Describe it in one line."""
         how = {True: ", soft", False: ", hard", None: ""}[self.soft]
         return f"Bifurcation({self.kind.value} at {self.point.family.name} = {self.parameter:.10g}{how})"
 
@@ -95,7 +95,7 @@ def between(first: Point, second: Point, sense: Floats) -> tuple[Bifurcation, ..
             continue
         located = _located(first, second, sense, condition)
         if located is not None:
-            bifurcation = _told(located, sense, name)
+            bifurcation = _classified(located, sense, name)
             if bifurcation is not None:
                 found.append(bifurcation)
     return tuple(sorted(found, key=lambda one: float((one.point.u - first.u) @ sense)))
@@ -133,7 +133,7 @@ def orbit_at(point: Point) -> PeriodicOrbit:
     return PeriodicOrbit(system.model, system.motion, family.periods, chain, system.line, system.rtol)
 
 
-def _told(point: Point, sense: Floats, name: str) -> Bifurcation | None:
+def _classified(point: Point, sense: Floats, name: str) -> Bifurcation | None:
     """Return the bifurcation at a zero of this condition; None if it is none."""
     orbit, family = orbit_at(point), point.family
     values = point.map_multipliers

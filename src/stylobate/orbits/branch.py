@@ -131,7 +131,7 @@ class Branch:
         return save(self, path)
 
     def __repr__(self) -> str:
-        """Tell it in one line."""
+        """Describe it in one line."""
         values = [point.value for point in self.path]
         kinds = ", ".join(f"{one.kind.value} at {one.parameter:.8g}" for one in self.bifurcations)
         return f"Branch({len(values)} orbits, {self.parameter} {min(values):.6g}…{max(values):.6g}; {kinds})"

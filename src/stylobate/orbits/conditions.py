@@ -62,7 +62,7 @@ CONDITIONS: dict[str, Condition] = {
 
 
 def conditions_between(first: Point, second: Point) -> dict[str, Condition]:
-    """Return the conditions whose signs tell of bifurcations between two points that follow each other."""
+    """Return the conditions whose signs reveal bifurcations between two points that follow each other."""
     found = dict(CONDITIONS)
     ends = (first, second)
     if any(without_friction(point.multipliers) for point in ends):

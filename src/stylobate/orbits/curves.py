@@ -27,7 +27,7 @@ _log = logging.getLogger("stylobate")
 Floats = npt.NDArray[np.float64]
 
 _CLOSE, _MOST_STEPS = 1e-10, 12
-# Step of the differences that tell Newton's method how the condition changes; it moves no solution.
+# Step of the differences from which Newton's method takes the derivative of the condition; it moves no solution.
 _STEP = 1e-6
 _LONGER, _SHORTER, _EASY, _HARD, _STRAIGHT = 1.5, 0.5, 4, 7, 0.95
 # A pair of multipliers this near to the real axis is about to leave the circle.
@@ -126,7 +126,7 @@ class BifurcationCurve:
         return save(self, path)
 
     def __repr__(self) -> str:
-        """Tell it in one line."""
+        """Describe it in one line."""
         return f"BifurcationCurve({self.kind.value} over {' and '.join(self.parameters)}, {len(self.path)} points)"
 
 

@@ -57,7 +57,7 @@ def periodic_orbit(
         rolling by theory (horizontal Harmonic motion): known in closed form for one of the two circles of which the
         motion is made, and followed while the other is added.
     periods
-        Length of the orbit in periods of the base motion; a shorter one to which it leads is told with its own.
+        Length of the orbit in periods of the base motion; a shorter one to which it leads keeps its own.
     arcs
         Shots in which it is closed, one a period by default; more for orbits that are very unstable.
     sense
@@ -154,7 +154,7 @@ def periodic_orbits(
     count, seed
         Number of starts and the seed they are drawn with.
     periods
-        Length of the orbits in periods of the base motion; shorter ones that are found are told with their own.
+        Length of the orbits in periods of the base motion; shorter ones that are found keep their own.
     rtol
         Relative tolerance of the flow.
 

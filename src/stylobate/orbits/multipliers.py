@@ -1,29 +1,29 @@
-"""What Floquet multipliers tell, as far as they are known: stability, friction, and where rounding begins."""
+"""Floquet multipliers within rounding: stability, damping, and where rounding dominates."""
 
 import numpy as np
 import numpy.typing as npt
 
 Complexes = npt.NDArray[np.complex128]
 
-# A multiplier this near to the unit circle cannot be told from one on it.
+# A multiplier this near to the unit circle cannot be distinguished from one on it.
 _NEUTRAL = 1e-9
 # Rounding of the product of all multipliers, as measured without friction, is this times the square of the largest;
-# beyond the last number it tells nothing about friction.
-_ROUNDING, _UNTOLD = 1e-14, 0.1
+# beyond the last number it says nothing about damping.
+_ROUNDING, _UNKNOWN = 1e-14, 0.1
 
 
 def without_friction(multipliers: Complexes) -> bool:
     """Return whether volumes of states keep their size: the product of all multipliers is 1.
 
-    Each of them is told to 1e-9, and a large one leaves its rounding in the least.
+    Each of them is known to 1e-9, and a large one leaves its rounding in the least.
     """
-    allowed = len(multipliers) * _NEUTRAL + min(_rounding_of_product(multipliers), _UNTOLD)
+    allowed = len(multipliers) * _NEUTRAL + min(_rounding_of_product(multipliers), _UNKNOWN)
     return bool(abs(np.prod(multipliers) - 1.0) <= allowed)
 
 
 def least_are_rounding(multipliers: Complexes) -> bool:
     """Return whether the least multiplier is no more than the rounding of the largest, and their product too."""
-    return _rounding_of_product(multipliers) > _UNTOLD
+    return _rounding_of_product(multipliers) > _UNKNOWN
 
 
 def _rounding_of_product(multipliers: Complexes) -> float:

@@ -191,7 +191,7 @@ class PeriodicOrbit:
         return save(self, path)
 
     def __repr__(self) -> str:
-        """Tell what it is in one line."""
+        """Describe it in one line."""
         stability = "stable" if self.stable else "unstable"
         kind = f"period {self.periods}, {self.turns:+.3g} turns a period"
         return f"PeriodicOrbit({stability}, {kind}, tilt {self.least_tilt:.6g}…{self.largest_tilt:.6g} rad)"

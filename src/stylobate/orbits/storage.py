@@ -182,7 +182,7 @@ def _read_branch(data: xr.Dataset) -> Branch:
         _shot(family, states, float(value))
         for states, value in zip(data["states"].to_numpy(), data["value"].to_numpy(), strict=True)
     )
-    soft = {code: told for told, code in _SOFT.items()}
+    soft = {code: label for label, code in _SOFT.items()}
     found = []
     for index in range(data.sizes["bifurcation"]):
         one = {str(key): data[key][index].to_numpy() for key in data.data_vars if str(key).startswith("bifurcation_")}

@@ -25,7 +25,7 @@ _COMPONENTS = {"tilt_x": ("attractor_tilt", "x"), "tilt_y": ("attractor_tilt", "
     "tilt_rate_y": ("attractor_tilt_rate", "y"),
 }
 _AT_REST = "at rest"
-# Dashes through whose gaps other lines are seen, and the part of the brightness that tells two of a kind apart.
+# Dashes through whose gaps other lines are seen, and the fraction of brightness by which two of a kind differ.
 _GAPS = (0.0, (3.0, 2.2))
 _DARKER = 0.4
 # Sizes of circles at the strobe [points].
@@ -112,8 +112,8 @@ def _draw_fractions(axes: Axes, found: xr.Dataset) -> None:
 
 def _runs(found: xr.Dataset) -> str:
     unsettled = int(found["unsettled"])
-    told = plural(int(found["computed"]), "start")
-    return f"{told}, {unsettled} of them not settled" if unsettled else told
+    title = plural(int(found["computed"]), "start")
+    return f"{title}, {unsettled} of them not settled" if unsettled else title
 
 
 def _draw_orbits(axes: Axes, found: xr.Dataset) -> None:

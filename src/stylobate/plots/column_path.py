@@ -46,7 +46,7 @@ def plot_column_path(
     Parameters
     ----------
     run
-        A run of a model that tells where its contact lies.
+        A run of a model that has a contact point.
     times
         When the column is drawn [s]: within the run, rising. By default five times along what is shown.
     until
@@ -57,10 +57,10 @@ def plot_column_path(
     Raises
     ------
     ParameterError
-        If the model does not tell the contact point, or a time lies outside the run.
+        If the model has no contact point, or a time lies outside the run.
     """
     if "contact_point" not in run.data:
-        message = f"run must be of a model that tells its contact_point, got {sorted(map(str, run.data.data_vars))}"
+        message = f"run must be of a model with a `contact_point`, got {sorted(map(str, run.data.data_vars))}"
         raise ParameterError(message)
     data, drawn = _shown(run, times, until)
     shape = Shape.of(run)

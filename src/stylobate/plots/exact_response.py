@@ -87,13 +87,13 @@ def _draw_theory(axes: Axes, curves: xr.Dataset, name: str) -> None:
     if name not in curves:
         return
     x = curves["averaged_frequency"].to_numpy()
-    told = "theory" if bool(curves["averaged_is_exact"]) else "averaged"
+    label = "theory" if bool(curves["averaged_is_exact"]) else "averaged"
     for index in range(curves.sizes["averaged_branch"]):
         y = curves[name][index].to_numpy()
         stable = curves["averaged_stable"][index].to_numpy().astype(bool)
         axes.plot(x, y, color=GREY, linewidth=UNSTABLE_WIDTH, linestyle=_DASHED)
         axes.plot(x, np.where(stable, y, np.nan), color=GREY, linewidth=STABLE_WIDTH, linestyle=_DASHED)
-    axes.plot([], [], color=GREY, linewidth=STABLE_WIDTH, linestyle=_DASHED, label=told)
+    axes.plot([], [], color=GREY, linewidth=STABLE_WIDTH, linestyle=_DASHED, label=label)
 
 
 def _mark(axes: Axes, curves: xr.Dataset) -> None:

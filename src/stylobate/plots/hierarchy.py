@@ -83,7 +83,7 @@ def plot_hierarchy(found: xr.Dataset) -> Figure:
 
 def _draw_histories(axes: Axes, shown: xr.Dataset, c: float) -> None:
     for level in shown["level"].to_numpy():
-        axes.plot(shown["time"], shown["amplitude"].sel(level=level), label=_told(shown, level), **_LINES[str(level)])
+        axes.plot(shown["time"], shown["amplitude"].sel(level=level), label=_label(shown, level), **_LINES[str(level)])
     axes.axhline(c, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)))
     axes.set_ylim(0.0, 1.05 * max(c, min(float(shown["amplitude"].max()), 3.0 * c)))
     axes.annotate(
@@ -97,7 +97,7 @@ def _draw_histories(axes: Axes, shown: xr.Dataset, c: float) -> None:
     axes.figure.legend(*axes.get_legend_handles_labels(), loc="outside upper center", ncols=2)
 
 
-def _told(shown: xr.Dataset, level: str) -> str:
+def _label(shown: xr.Dataset, level: str) -> str:
     outcome = outcome_of(int(shown["outcome"].sel(level=level)))
     return f"{level}: {outcome.value if outcome else 'not computed'}"
 

@@ -16,7 +16,7 @@ _LARGEST_PLACE = 9
 @figure_of("Lyapunov exponents")
 @styled
 def plot_lyapunov(found: xr.Dataset) -> Figure:
-    """Return a figure of the Lyapunov exponents against the periods from which they are told, with their errors."""
+    """Draw Lyapunov exponents against the periods over which they were computed, with their errors."""
     figure = new_figure(_HEIGHT)
     axes = figure.subplots()
     axes.axhline(0.0, color=GREY, linewidth=0.9)
@@ -25,7 +25,7 @@ def plot_lyapunov(found: xr.Dataset) -> Figure:
         one, colour = found.sel(exponent=number), PALETTE[place % len(PALETTE)]
         value, error = float(one["lyapunov_exponent"]), float(one["error"])
         dashes = DASHES[place % len(DASHES)]
-        name = f"λ{_lowered(int(number))} {_told(value, error)}"
+        name = f"λ{_lowered(int(number))} {_value_and_error(value, error)}"
         axes.plot(period, one["running"], color=colour, linestyle=dashes, linewidth=1.6, label=name)
         if np.isfinite(value):
             axes.axhspan(value - error, value + error, color=colour, alpha=0.15, linewidth=0.0)
@@ -50,9 +50,9 @@ def _lowered(number: int) -> str:
     return str(number).translate(_DIGITS)
 
 
-def _told(value: float, error: float) -> str:
+def _value_and_error(value: float, error: float) -> str:
     """Return the value with as many places as its error has, and that with two digits."""
     if not np.isfinite(value):
-        return "not told"
+        return "undecided"
     place = _LARGEST_PLACE if error == 0.0 else int(np.clip(1 - np.floor(np.log10(error)), 0, _LARGEST_PLACE))
     return f"= {value:.{place}f} ± {error:.{place}f} /s".replace("-", "−")

@@ -82,10 +82,10 @@ def _mark_uncertain(axes: Axes, runs: xr.Dataset, x: str, y: str) -> list[Artist
         return []
     known = runs["uncertain"] & (runs["outcome"] != NOT_COMPUTED)
     rows, columns = np.nonzero(known.transpose(y, x).to_numpy())
-    told = f"uncertain  {plural(rows.size, 'run')}"
+    label = f"uncertain  {plural(rows.size, 'run')}"
     if rows.size > _MOST_MARKED * known.size:
-        return [Line2D([], [], label=f"{told}, not marked", linestyle="none")]
+        return [Line2D([], [], label=f"{label}, not marked", linestyle="none")]
     size = float(np.clip(_MAP_WIDTH / max(runs.sizes[x], runs.sizes[y]) / 2.0, *_DOTS))
     look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": BLACK, "mew": 0.4, "linestyle": "none"}
     axes.plot(runs[x].to_numpy()[columns], runs[y].to_numpy()[rows], markersize=size, rasterized=True, **look)
-    return [Line2D([], [], label=told, markersize=_DOTS[1], **look)]
+    return [Line2D([], [], label=label, markersize=_DOTS[1], **look)]

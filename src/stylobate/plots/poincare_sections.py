@@ -46,7 +46,7 @@ def plot_section(found: xr.Dataset) -> Figure:
         for each in range(count):
             outcome = outcome_of(int(runs["outcome"].isel(each=each)))
             which = f"run {each + 1}: " if count > 1 else ""
-            told = "not computed" if outcome is None else outcome.value
-            panels[0].plot([], [], "o", color=PALETTE[each], markersize=_LARGEST, label=f"{which}{told}")
+            ending = "not computed" if outcome is None else outcome.value
+            panels[0].plot([], [], "o", color=PALETTE[each], markersize=_LARGEST, label=f"{which}{ending}")
         figure.legend(loc="outside upper left", ncols=count)
     return figure

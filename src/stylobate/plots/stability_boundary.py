@@ -30,12 +30,12 @@ def plot_stability_boundary(boundary: xr.Dataset) -> Figure:
     """Return a figure of curves of the kind "stability boundary".
 
     Bold where stability is lost softly, half as bold where it is lost hard, thin where the orbit is unstable on both
-    sides of the curve. Where there is no curve a note tells how rolling is.
+    sides of the curve. Where there is no curve a note states the stability of rolling.
     """
     figure = new_figure(4.4)
     axes = figure.subplots()
     parameter = boundary[str(boundary.attrs["parameter"])]
-    told: set[str] = set()
+    labelled: set[str] = set()
     for index, name in enumerate(boundary["curve_kind"].to_numpy()):
         part = boundary.isel(point=np.nonzero(boundary["curve"].to_numpy() == index)[0])
         x, y, soft = (part[key].to_numpy() for key in ("angular_frequency", str(parameter.name), "soft"))
@@ -50,9 +50,9 @@ def plot_stability_boundary(boundary: xr.Dataset) -> Figure:
                     color=colour,
                     linestyle=line,
                     linewidth=width,
-                    label=None if label in told else label,
+                    label=None if label in labelled else label,
                 )
-                told.add(label)
+                labelled.add(label)
     if "theory_frequency" in boundary:
         name = "theory" if bool(boundary["theory_is_exact"]) else "averaged"
         look: dict[str, Any] = {"color": GREY, "linestyle": _DASHED, "linewidth": STABLE_WIDTH, "label": name}

@@ -9,7 +9,7 @@ from stylobate.plots.labels import axis_label
 from stylobate.plots.style import BLUE, GREY, VERMILION, new_figure, styled
 
 _HEIGHT = 3.8
-# A share of dropped starts above which the figure tells of them.
+# A share of dropped starts above which the figure states it.
 _MANY_DROPPED = 0.1
 # The axis reaches this far below the lowest mark, as a factor: room for the arrow that hangs there.
 _ROOM = 2.5
@@ -21,7 +21,7 @@ def plot_exponent(found: xr.Dataset) -> Figure:
     """Return a figure of the share of uncertain starts against the shift ε, on logarithmic axes, with the fit.
 
     Hollow circles are too near saturation for the fit; an arrow hangs from the upper end of the interval where no
-    start was uncertain. Where more than a tenth of the starts is dropped, because of them it cannot be told, the title
+    start was uncertain. Where more than a tenth of the starts is dropped, because they are undecided, the title
     says so.
     """
     figure = new_figure(_HEIGHT, width=5.4)
@@ -73,7 +73,7 @@ def _dropped(found: xr.Dataset) -> list[str]:
     total = dropped + int(found["pairs"].sum())
     if dropped <= _MANY_DROPPED * total:
         return []
-    return [f"dropped: {100.0 * dropped / total:.0f} % of {total} starts, not told by the end of their runs"]
+    return [f"dropped: {100.0 * dropped / total:.0f} % of {total} starts, undecided at the end of their runs"]
 
 
 def _lowest(found: xr.Dataset) -> float:

@@ -57,5 +57,5 @@ class PaperCheck:
     def summary(self) -> str:
         """One line that counts the verdicts."""
         counts = Counter(finding.verdict for finding in self.findings)
-        told = "; ".join(f"{verdict.value}: {counts[verdict]}" for verdict in Verdict if counts[verdict])
-        return f"{counts.total()} checks of the paper's statements. {told}."
+        counted = "; ".join(f"{verdict.value}: {counts[verdict]}" for verdict in Verdict if counts[verdict])
+        return f"{counts.total()} checks of the paper's statements. {counted}."

@@ -26,9 +26,9 @@ def plain_numbers(values: npt.ArrayLike, digits: int) -> list[Any]:
     rounded = np.where(array == 0.0, 0.0, np.rint(known * scale) / scale)
     if finite.all():
         return list(rounded.tolist())
-    told = rounded.astype(object)
-    told[~finite] = None
-    return list(told.tolist())
+    values = rounded.astype(object)
+    values[~finite] = None
+    return list(values.tolist())
 
 
 def plain_value(value: Any) -> Any:

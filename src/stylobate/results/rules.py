@@ -7,7 +7,7 @@ from stylobate.errors import require_positive, require_whole
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OutcomeRules:
-    """Thresholds of the outcomes that are told from the last periods of a run.
+    """Thresholds of the outcomes that are judged over the last periods of a run.
 
     Parameters
     ----------
@@ -15,7 +15,7 @@ class OutcomeRules:
         Number n of forcing periods at the end of the run that are looked at.
     frequency_tolerance
         Rolling and modulated: the mean of β̇ differs from the forcing frequency by less than this part of it. For a
-        modulated motion the mean is told from the average lag behind the forcing over the last n periods and over
+        modulated motion the mean follows from the average lag behind the forcing over the last n periods and over
         the n before.
     repeat_tolerance
         The motion repeats if states one period apart differ by less than this part of the largest tilt and rate.

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from stylobate.results.response import Response
 
 Rows = list[tuple[str, str]]
-"""Labels, and what is told of each."""
+"""Labels and their values."""
 
 
 def column_rows(column: "Column") -> Rows:
@@ -46,10 +46,10 @@ def _motion_rows(run: "Response") -> Rows:
 
 def _events(run: "Response") -> str:
     events = [event for event in run.events if not event.repeats]
-    told = [f"{event.kind} at {event.time:.4f} s" for event in events[:_SHOWN]]
+    listed = [f"{event.kind} at {event.time:.4f} s" for event in events[:_SHOWN]]
     if len(events) > _SHOWN:
-        told.append(f"and {len(events) - _SHOWN} more")
-    return ", ".join(told) or "none"
+        listed.append(f"and {len(events) - _SHOWN} more")
+    return ", ".join(listed) or "none"
 
 
 def _contact_rows(run: "Response") -> Rows:
@@ -84,4 +84,4 @@ def _bounded(value: float, unit: str) -> str:
 
 
 _SHOWN = 4
-"""Events that are told one by one."""
+"""Events that are listed one by one."""

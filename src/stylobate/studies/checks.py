@@ -25,7 +25,7 @@ def require_starts(where: str, over: Mapping[str, object]) -> None:
 
 
 def require_values(where: str, over: Mapping[str, npt.ArrayLike]) -> None:
-    """Raise ParameterError if a name in `over` has no values: a study of nothing tells nothing."""
+    """Raise ParameterError if a name in `over` has no values: a study needs at least one run."""
     for name, values in over.items():
         _require_some(where, name, checked_values(where, name, values))
 

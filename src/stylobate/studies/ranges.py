@@ -86,7 +86,7 @@ def _two(name: str, ends: Sequence[float], of: str) -> tuple[float, float]:
     try:
         low, high = (float(end) for end in ends)
     except (TypeError, ValueError):
-        told = f"{len(ends)} values" if isinstance(ends, np.ndarray) else repr(ends)
-        message = f"{name} must be two numbers, the lowest and the highest ({of}), got {told}"
+        shown = f"{len(ends)} values" if isinstance(ends, np.ndarray) else repr(ends)
+        message = f"{name} must be two numbers, the lowest and the highest ({of}), got {shown}"
         raise ParameterError(message) from None
     return low, high

@@ -173,7 +173,7 @@ def first_motion(
     Notes
     -----
     NONE while abs(T) ≤ min(μ, c) N; LIFT_OFF where N < 0, or N = 0 and T is not: there is no contact to slide or rock
-    on. Between them it is told by which limit is met first if the acceleration grows to its value. An acceleration put
+    on. Between them it depends on which limit is met first if the acceleration grows to its value. An acceleration put
     on at once, well above both limits, may make the column slide and rock together.
 
     Examples

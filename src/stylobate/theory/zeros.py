@@ -12,7 +12,7 @@ Rows: TypeAlias = npt.NDArray[np.intp]
 Function: TypeAlias = Callable[[FloatArray, Rows], FloatArray]
 
 # Halvings that bring a cell of a scan down to neighbouring floats, and thirds cut off it that find a minimum as well
-# as its values tell it.
+# as its values show.
 _HALVINGS = 64
 _CUTS = 60
 

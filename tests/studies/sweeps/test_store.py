@@ -273,7 +273,7 @@ def force(tilt):
     return {force}
 def rates(x, y, vx, vy, ax, ay, az, c, eta):
     return vx, vy, force(x) - eta * vx - ax, force(y) - eta * vy - ay
-def lean(x, y, vx, vy, *_):
+def tilt_of(x, y, vx, vy, *_):
     return x, y, vx, vy
 @dataclass(frozen=True)
 class Spring(Model):

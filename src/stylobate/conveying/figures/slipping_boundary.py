@@ -27,7 +27,7 @@ from stylobate.plots.style import (
 )
 
 _HEIGHT, _WIDTH = 7.0, 8.4
-# What is told by colour is told by the marker too.
+# Markers repeat what colours show.
 _MARKED = ((BLUE, "o"), (VERMILION, "s"), (GREEN, "^"), (PURPLE, "D"))
 _DASHED = (0, (4, 2))
 # None, none stable, stable without slip, with it, both.

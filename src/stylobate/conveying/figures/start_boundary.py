@@ -111,13 +111,13 @@ def _top(found: xr.Dataset) -> float:
 
 
 def _name(case: xr.Dataset, found: xr.Dataset) -> str:
-    told = []
+    lines = []
     ratio, incline = float(case["vertical_ratio"]), float(case["incline"])
     if found.sizes["vertical_ratio"] > 1 or ratio != 0.0:
-        told.append(f"vertical / horizontal {ratio:.3g}")
+        lines.append(f"vertical / horizontal {ratio:.3g}")
     if found.sizes["incline"] > 1 or incline != 0.0:
-        told.append(f"incline {incline:.3g} rad")
-    return "\n".join(told)
+        lines.append(f"incline {incline:.3g} rad")
+    return "\n".join(lines)
 
 
 def _legend(found: xr.Dataset) -> list[Line2D | Patch]:

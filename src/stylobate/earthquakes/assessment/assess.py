@@ -72,7 +72,7 @@ def assess(
     columns
         Models of columns in space, by name; the numbers in `dissipation` replace theirs.
     records
-        Base motions that end: a sequence, or a mapping from names. They are told in the order of their names.
+        Base motions that end: a sequence, or a mapping from names. Results list them in the order of their names.
     dissipation
         By level, of which there are "low", "central" and "high" at least, the numbers of the model that dissipate:
         damping, spin_damping, rolling_resistance, restitution; the same ones at each level. There is no default: it
@@ -100,7 +100,7 @@ def assess(
     planar
         Whether Housner's planar column answers too.
     contact
-        Whether runs tell what the contact must bear.
+        Whether runs compute contact demands.
     least_records
         Fewer records give no fragility: by default what its intervals need to be as wide as they claim.
     title, notes
@@ -113,7 +113,7 @@ def assess(
     executor
         As in `run_sweep`.
     progress
-        Told what is computed, the runs done and the runs in all, about.
+        Called with what is computed, the runs done and about how many there are.
     **options
         Of all runs, as in `simulate_ensemble`, such as `rest_energy`, the energy below which a column comes to rest.
 
@@ -211,7 +211,7 @@ def assess(
     ]
     data["histories"] = _over_columns(runs, names)
     data["summary"] = summary_of(data, governing)
-    parts.tell()
+    parts.report()
     more = {
         "title": title,
         "notes": list(notes),

@@ -140,10 +140,10 @@ def _history(inputs: Inputs, column: str, record: str, shown: _Shown, *, contact
     options: dict[str, Any] = {name: value for name, value in inputs.options.items() if name not in _OF_RUNS}
     duration = motion.duration + tail_of(model.column, inputs.tail)
     runs = simulate_ensemble(model, motion, duration=[duration], samples=_SAMPLES, demands=contact, **options)
-    return _told(runs.isel(run=0), motion, model.column.tipping_angle)
+    return _as_dataset(runs.isel(run=0), motion, model.column.tipping_angle)
 
 
-def _told(run: xr.Dataset, motion: BaseMotion, alpha: float) -> xr.Dataset:
+def _as_dataset(run: xr.Dataset, motion: BaseMotion, alpha: float) -> xr.Dataset:
     times, tilt = run["sample_time"].to_numpy(), run["sampled_tilt"].to_numpy() / alpha
     size = np.hypot(tilt[:, 0], tilt[:, 1])
     largest = int(np.nanargmax(size))

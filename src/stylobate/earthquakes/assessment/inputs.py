@@ -33,7 +33,7 @@ _SAME_SCALE = 1e-9
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Inputs:
-    """Everything an assessment is told, checked.
+    """The checked arguments of an assessment.
 
     Parameters
     ----------
@@ -129,13 +129,13 @@ class Inputs:
         return replace(self, records={name: self.records[name] for name in names})
 
     def identity(self, column: str, level: str | None = None) -> dict[str, Any]:
-        """Return what tells the runs of a column, at one level or at all, from others."""
+        """Return the identity of the runs of a column, at one level or at all."""
         models = self.columns[column]
         chosen = models if level is None else {level: models[level]}
         return {
             "version": version("stylobate"),
             "layout": _LAYOUT,
-            "models": {name: _told(model) for name, model in chosen.items()},
+            "models": {name: _as_values(model) for name, model in chosen.items()},
             "records": identities(self.records),
             "tail": self.tail,
             "options": repr(dict(self.options)),
@@ -160,14 +160,14 @@ def checked_dissipation(dissipation: Mapping[str, Mapping[str, float]] | None) -
         raise ParameterError(message)
     names = set(dissipation[CENTRAL])
     if not names or any(set(level) != names for level in dissipation.values()):
-        told = ", ".join(
+        given = ", ".join(
             f"{level} {' and '.join(sorted(numbers)) or 'nothing'}" for level, numbers in dissipation.items()
         )
-        message = f"dissipation must name the same numbers at each level, got {told}; {remedy}"
+        message = f"dissipation must name the same numbers at each level, got {given}; {remedy}"
         raise ParameterError(message)
     unknown = sorted(names.difference(OF_DISSIPATION))
     if unknown:
-        message = f"dissipation: {unknown[0]} is none; it is told by {', '.join(OF_DISSIPATION)}"
+        message = f"dissipation: {unknown[0]} is no parameter of dissipation. Use one of {', '.join(OF_DISSIPATION)}"
         raise ParameterError(message)
     return {
         level: {name: require_not_negative(f"dissipation.{level}.{name}", value) for name, value in numbers.items()}
@@ -236,7 +236,7 @@ def _joined(scanned: Floats, stated: Floats, changes: Sequence[Perturbation]) ->
     return np.asarray(rising[apart])
 
 
-def _told(model: Model) -> dict[str, Any]:
+def _as_values(model: Model) -> dict[str, Any]:
     provenance = provenance_of_run(model, BASE_AT_REST)
     described = provenance["model"] if provenance["model"].get("kind") != "other" else identity_of(model)
     return {"column": provenance["column"], "model": described}

@@ -102,7 +102,7 @@ def _bands(
 
     def compute(progress: Progress) -> xr.Dataset:
         found = _found(inputs, model, motions, contact, executor, progress)
-        return _told(found, list(inputs.records), inputs.width)
+        return _as_dataset(found, list(inputs.records), inputs.width)
 
     identity = {
         **inputs.identity(column, level),
@@ -138,7 +138,7 @@ def _found(
     )
 
 
-def _told(found: xr.Dataset, names: list[str], width: float) -> xr.Dataset:
+def _as_dataset(found: xr.Dataset, names: list[str], width: float) -> xr.Dataset:
     plain = found.rename(motion="record", scale="margin_scale")
     plain = plain.drop_vars([name for name in plain.coords if name != "margin_scale"]).assign_coords(record=names)
     demand = plain.get("largest_friction_demand", xr.full_like(plain["largest_tilt"], np.nan))

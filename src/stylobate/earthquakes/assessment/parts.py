@@ -19,7 +19,7 @@ from stylobate.studies.sweeps.fingerprint import identity_of
 _log = logging.getLogger("stylobate")
 
 Announce: TypeAlias = Callable[[str, int, int], None]
-"""Told what is computed, how much of everything is done and how much there is, in runs."""
+"""Called with what is computed, the runs done and the runs in all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ class Parts:
         if found is not None:
             self._known.append(name)
         else:
-            self._tell_where_it_goes_on()
+            self._report_what_is_reused()
             self.announce(name, before, self.total)
             found = compute(
                 lambda done, total: self.announce(name, before + round(runs * done / max(total, 1)), self.total)
@@ -69,21 +69,21 @@ class Parts:
         self._done.append(runs)
         return found
 
-    def tell(self) -> None:
+    def report(self) -> None:
         """Log in one line how many parts were known, if any were."""
         if self._known:
             _log.info(
                 "%d of %d parts were kept in %s and not computed again", len(self._known), len(self._done), self.store
             )
 
-    def _tell_where_it_goes_on(self) -> None:
+    def _report_what_is_reused(self) -> None:
         """Log, before the first part that is computed, how many parts are known."""
         if self._known and len(self._known) == len(self._done):
             _log.info("%d parts are kept in %s; the work goes on from there", len(self._known), self.store)
 
 
 def identities(motions: Mapping[str, BaseMotion]) -> dict[str, Any]:
-    """Return what tells these motions from others, by name."""
+    """Return the identities of these motions, by name."""
     return {
         name: motion.digest if isinstance(motion, Record) else identity_of(motion) for name, motion in motions.items()
     }

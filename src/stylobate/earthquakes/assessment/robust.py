@@ -63,7 +63,7 @@ def _robustness_at(
     inputs: Inputs, column: str, level: str, scale: float, parts: Parts, executor: Executor | None
 ) -> xr.Dataset:
     def compute(progress: Progress) -> xr.Dataset:
-        return _told(
+        return _as_dataset(
             robustness(
                 inputs.columns[column][level],
                 dict(inputs.records),
@@ -91,19 +91,19 @@ def robustness_runs(inputs: Inputs) -> int:
     return len(inputs.records) * (1 + len(inputs.changes)) * inputs.scales.size * len(inputs.changes_at)
 
 
-def _told(found: xr.Dataset) -> xr.Dataset:
+def _as_dataset(found: xr.Dataset) -> xr.Dataset:
     overturning = found["reached"].sel({LIMIT_STATE: "overturning"}, drop=True)
     given = found["reached_as_given"].sel({LIMIT_STATE: "overturning"}, drop=True)
-    told = (overturning >= 0) & (given >= 0)
-    flips = (overturning != given).astype(np.int8).where(told, np.int8(-1)).astype(np.int8)
-    undecided = (found["applies"] & ~told).sum("change")
+    decided = (overturning >= 0) & (given >= 0)
+    flips = (overturning != given).astype(np.int8).where(decided, np.int8(-1)).astype(np.int8)
+    undecided = (found["applies"] & ~decided).sum("change")
     plain = xr.Dataset(
         {
             "applies": found["applies"].astype(np.int8).assign_attrs(long_name="the change applies"),
             "flips": flips.assign_attrs(long_name="another verdict than as given"),
             "changed_tilt_ratio": found["tilt_ratio"],
             "flipped": (flips == 1).sum("change").assign_attrs(units="1", long_name="changes that flip the verdict"),
-            "compared": told.sum("change").assign_attrs(units="1", long_name="changes that apply and are decided"),
+            "compared": decided.sum("change").assign_attrs(units="1", long_name="changes that apply and are decided"),
             "undecided": undecided.assign_attrs(units="1", long_name="changes that apply and are not decided"),
             "tilt_ratio_low": found["tilt_ratio_low"],
             "tilt_ratio_high": found["tilt_ratio_high"],

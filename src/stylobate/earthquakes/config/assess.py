@@ -209,8 +209,8 @@ class AssessConfig(Config):
     def _problems_of_the_model(self) -> list[str]:
         if self.model.kind == "sliding":
             return ["model.kind must be one that holds the contact, such as wobbling, got 'sliding'"]
-        told = [name for name in self.dissipation["central"] if name in self.model.model_fields_set]
-        return [f"model.{name} is told by dissipation; leave it out" for name in told]
+        repeated = [name for name in self.dissipation["central"] if name in self.model.model_fields_set]
+        return [f"model.{name}: `dissipation` sets it. Remove it from the model." for name in repeated]
 
     def _problems_of_the_numbers(self) -> list[str]:
         """Return a line for each number that no assessment can have."""

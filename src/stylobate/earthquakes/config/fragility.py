@@ -56,7 +56,7 @@ _SPREADS: dict[str, type[Lognormal | Normal | Uniform]] = {"lognormal": Lognorma
 
 
 def _as_spread(values: Any) -> Any:
-    """Return the spread of this kind; its mistakes are told by the names in the file, without those of classes."""
+    """Return the spread of this kind; mistakes name the keys of the file, without class names."""
     if isinstance(values, Config):
         return values
     kind = values.get("kind") if isinstance(values, Mapping) else None

@@ -83,37 +83,37 @@ class SpectrumConfig(ManyRuns):
         ConfigError
             With one line for each part that cannot be.
         """
-        told, problems = self.spectrum, self._problems()
-        axes = {place: axis for place, axis in (("x", told.x), ("y", told.y)) if axis is not None}
+        table, problems = self.spectrum, self._problems()
+        axes = {place: axis for place, axis in (("x", table.x), ("y", table.y)) if axis is not None}
         over = {axis.name: built(f"spectrum.{place}", axis.build, problems) for place, axis in axes.items()}
         chosen: dict[str, Any] = {"over": over}
-        if told.scales is not None:
-            chosen["scales"] = built("spectrum.scales", told.scales.build, problems)
-        chosen |= {name: getattr(told, name) for name in ("width", "tail") if getattr(told, name) is not None}
+        if table.scales is not None:
+            chosen["scales"] = built("spectrum.scales", table.scales.build, problems)
+        chosen |= {name: getattr(table, name) for name in ("width", "tail") if getattr(table, name) is not None}
         model, motion, options = self.common(problems, ("duration",))
         del options["periods"]
         return Setup(model, motion, {**options, **chosen})
 
     def _problems(self) -> list[str]:
-        told = self.spectrum
+        table = self.spectrum
         problems: list[str] = []
-        if told.tail is not None and self.duration is not None:
+        if table.tail is not None and self.duration is not None:
             problems.append(
                 f"spectrum.tail: duration says how long to follow a column (got {self.duration!r} s and a tail of "
-                f"{told.tail!r}). Remove one of them."
+                f"{table.tail!r}). Remove one of them."
             )
-        if told.rocking:
+        if table.rocking:
             problems += [
                 f"spectrum.{name} is not known of a rocking spectrum: leave it out"
                 for name in ("scales", "width")
-                if getattr(told, name) is not None
+                if getattr(table, name) is not None
             ]
-            if told.x is None:
+            if table.x is None:
                 problems.append("spectrum.x is missing: what varies, such as size")
-        elif told.scales is None:
+        elif table.scales is None:
             problems.append("spectrum.scales are missing: factors of the base motion, such as from 0.2 to 5, number 40")
-        if told.x is not None and told.y is not None and told.x.name == told.y.name:
-            problems.append(f"spectrum.x and spectrum.y must differ, got {told.x.name!r} in both")
+        if table.x is not None and table.y is not None and table.x.name == table.y.name:
+            problems.append(f"spectrum.x and spectrum.y must differ, got {table.x.name!r} in both")
         return problems
 
 

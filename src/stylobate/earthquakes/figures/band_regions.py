@@ -36,7 +36,7 @@ _SAFE, _AGAIN, _FALLEN = Look("#ffffff"), Look("#DCEBF5", "////", BLUE), OUTCOME
 _EDGE = Look(GREY)
 UNDECIDED = Look("#e6e6e6", "xxx", GREY)
 """Where runs ended before they showed whether the column overturns."""
-# An edge wider than this part is told in the legend.
+# An edge wider than this fraction appears in the legend.
 _WIDE_EDGE = 0.01
 # What takes less than this part of the axis would be thinner than a line of this width [points], and is drawn as one.
 _HAIRLINE, _THINNEST = 0.007, 2.0
@@ -78,7 +78,7 @@ class Regions:
 
     @property
     def has_wide_edges(self) -> bool:
-        """Whether there is an edge wide enough to be told in the legend."""
+        """Whether there is an edge wide enough for the legend."""
         return any(high > (1.0 + _WIDE_EDGE) * low for _, _, low, high in self.boxes[_EDGE])
 
     def draw(self, axes: Axes, *, along_x: bool = False) -> None:
@@ -162,7 +162,7 @@ def band_legend(found: xr.Dataset, *, hairlines: int, wide_edges: bool) -> list[
     if np.unique(found["acceleration_ratio"]).size > 1 and is_normalized(found):
         entries.append(Patch(label="not computed", **fill_options(UNFINISHED)))
     if wide_edges:
-        entries.append(Patch(label="edge, not told", **fill_options(_EDGE)))
+        entries.append(Patch(label="edge, undecided", **fill_options(_EDGE)))
     if not is_normalized(found) and bool((found["acceleration_ratio"] > 0.0).all()):
         entries.append(Line2D([], [], **WEAKEST, label="peak acceleration g tan α"))
     return entries

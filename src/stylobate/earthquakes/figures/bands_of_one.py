@@ -78,6 +78,6 @@ def _draw_runs(axes: Axes, found: xr.Dataset, amplitude: Floats) -> tuple[int, i
 
 def _title(found: xr.Dataset) -> str:
     size, tangent = 2.0 * float(found["rim_distance"]), float(np.tan(found["tipping_angle"]))
-    told = [f"one column: size 2R = {size:.3g} m, tan α = {tangent:.3g}"]
-    told += [f"ω / p = {float(found['frequency_ratio']):.3g}"] if is_normalized(found) else []
-    return ", ".join(told)
+    parts = [f"one column: size 2R = {size:.3g} m, tan α = {tangent:.3g}"]
+    parts += [f"ω / p = {float(found['frequency_ratio']):.3g}"] if is_normalized(found) else []
+    return ", ".join(parts)

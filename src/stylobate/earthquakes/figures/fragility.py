@@ -36,7 +36,7 @@ def plot_fragility(found: xr.Dataset) -> Figure:
 
     Curves end where the data end. Points are shares of the runs at an intensity, or near it, with intervals of Wilson;
     the points of several limit states stand a little apart. A limit state without a fit has its points, and the legend
-    says why. The title tells of records that are safe again above an intensity that reached the limit state, and how
+    says why. The title states the records that are safe again above an intensity that reached the limit state, and how
     runs of them are counted.
     """
     figure = new_figure(_HEIGHT)
@@ -47,7 +47,7 @@ def plot_fragility(found: xr.Dataset) -> Figure:
     axes.set(xscale="log", ylim=(-0.02, 1.02), ylabel="probability of reaching the limit state")
     axes.set_xlabel(axis_label(found["curve_intensity"]))
     _plain_ticks(axes)
-    axes.set_title("\n".join(_told(found)))
+    axes.set_title("\n".join(_title_lines(found)))
     figure.legend(handles=handles, loc="outside right upper")
     return figure
 
@@ -118,7 +118,7 @@ def _interval_mark(found: xr.Dataset) -> Line2D:
     return Line2D([], [], color=GREY, marker="|", markersize=9, linestyle="none", label=f"{percent:g} % intervals")
 
 
-def _told(found: xr.Dataset) -> list[str]:
+def _title_lines(found: xr.Dataset) -> list[str]:
     """Return the lines of the title: where intervals come from, and records that are not monotone."""
     lines = []
     if "confidence" in found.attrs and np.isfinite(found["median"]).any():
@@ -145,7 +145,7 @@ def plot_annual_rate(found: xr.Dataset) -> Figure:
     """Return a figure of the hazard curve, and below it what each intensity contributes to the annual rate.
 
     Contributions are shares of the rate of their limit state, over the logarithm of the intensity: areas are shares.
-    Vertical lines are the medians of the fragilities. What lies beyond the hazard curve is told in the legend.
+    Vertical lines are the medians of the fragilities. What lies beyond the hazard curve is stated in the legend.
     """
     figure = new_figure(_RATE_HEIGHT)
     above, below = figure.subplots(2, 1, sharex=True)
@@ -177,7 +177,7 @@ def _rate_of(state: xr.Dataset, years: float) -> str:
         return f"{name}\nno fit"
     bounds = f"bounds {low:.2e} to {high:.2e}"
     if why := str(state["withheld_reason"].item()):
-        reason = textwrap.fill(f"not told: {why}", _LEGEND)
+        reason = textwrap.fill(f"withheld: {why}", _LEGEND)
         return f"{name}\n{reason}\n{bounds}"
     return (
         f"{name}\n{rate:.2e} /a, {100.0 * state['probability'].item():.2g} % in {years:g} a\n"

@@ -33,7 +33,7 @@ _NUMBERS_TO_SPAN = 20.0
 def plot_incremental(found: xr.Dataset) -> Figure:
     """Return a figure of peak tilts over α against the intensity, a line for each record, and who overturned above.
 
-    Lines end where the column overturns and begin again where it is safe again. The strip above tells at which
+    Lines end where the column overturns and begin again where it is safe again. The strip above shows at which
     intensities each record overturned it. Where the runs of all records have the same intensities the median is drawn,
     and the 16 and 84 % quantiles dashed, overturned runs counted as above all tilts: the lines end where they overturn.
 
@@ -122,7 +122,7 @@ def _draw_quantiles(axes: Axes, level: Floats, tilt: Floats) -> list[Line2D]:
 
 
 def _quantiles(tilt: Floats) -> Floats:
-    """Return quantiles over the first axis, overturned ones above all; NaN where a run does not tell."""
+    """Return quantiles over the first axis, overturned ones above all; NaN where a run is undecided."""
     known = ~np.isnan(tilt).any(axis=0)
     found = np.quantile(np.where(known, tilt, 0.0), _QUANTILES, axis=0, method="inverted_cdf")
     return np.where(known, found, np.nan)
@@ -150,5 +150,5 @@ def _legend(names: list[str]) -> list[Line2D]:
 
 def _title(found: xr.Dataset, *, quantiles: bool) -> str:
     others = [plural(found.sizes[dim], str(dim).replace("_", " ")) for dim in found["tilt_ratio"].dims]
-    told = f"runs: {', '.join(others)}"
-    return told if quantiles else f"{told}; no quantiles, for intensities differ between them"
+    note = f"runs: {', '.join(others)}"
+    return note if quantiles else f"{note}; no quantiles, for intensities differ between them"

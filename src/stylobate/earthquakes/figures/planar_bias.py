@@ -36,9 +36,9 @@ def plot_planar_bias(found: xr.Dataset) -> Figure:
     finite = np.concatenate([flat[np.isfinite(flat)], space[np.isfinite(space)], [0.5]])
     end = 1.04 * float(finite.max())
     beyond = end * (1.0 + _MARGIN)
-    told = ~(np.isnan(flat) | np.isnan(space))
+    known = ~(np.isnan(flat) | np.isnan(space))
     x, y = (np.where(np.isinf(values), beyond, values) for values in (flat, space))
-    points = axes.scatter(x[told], y[told], c=scale[told], s=16.0, cmap="cividis", zorder=3, linewidths=0.0)
+    points = axes.scatter(x[known], y[known], c=scale[known], s=16.0, cmap="cividis", zorder=3, linewidths=0.0)
     if np.ptp(scale) > 0.0:
         figure.colorbar(points, ax=axes, label="scale of the record", shrink=0.8)
     axes.plot([0.0, end], [0.0, end], color=BLACK, linewidth=1.0)

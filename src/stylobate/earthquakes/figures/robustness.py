@@ -32,7 +32,7 @@ _NAMED = 24
 def plot_robustness(found: xr.Dataset) -> Figure:
     """Return a figure of the verdicts on overturning: a row for each change, a column for each record.
 
-    The bars on the right tell how many of the records a change flips; a star marks records that no change flips.
+    The bars on the right show how many of the records a change flips; a star marks records that no change flips.
     """
     cells = _cells(found)
     changes, records = cells.shape

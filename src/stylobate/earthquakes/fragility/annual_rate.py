@@ -25,7 +25,7 @@ _log = logging.getLogger("stylobate")
 
 # A share of the rate from beyond the hazard curve above which a warning is due.
 _MUCH_BEYOND = 0.1
-# A share above which the rate is that of a continuation that nobody vouches for: it is not told.
+# A share above which the rate is an unsupported extrapolation and is withheld.
 _MOSTLY_BEYOND = 0.5
 _NEARLY_ALL = 0.995
 _UNITS = {"m s-2": " m/s²", "m s-1": " m/s"}
@@ -41,7 +41,7 @@ def annual_rate(fragility: xr.Dataset, hazard: HazardCurve, *, years: float = 50
     hazard
         Annual rates of exceedance, for the same definition of the horizontal component.
     years
-        Time for which the probability of one or more is told, of a Poisson process.
+        Time for which the probability of one or more failures is stated, for a Poisson process.
     bins
         Number of intervals of the intensity, of one ratio, in which contributions are summed.
 
@@ -105,7 +105,7 @@ def annual_rate(fragility: xr.Dataset, hazard: HazardCurve, *, years: float = 50
             "rate_low": (LIMIT_STATE, low, {**per_year, "long_name": "lower bound of the annual rate"}),
             "rate_high": (LIMIT_STATE, high, {**per_year, "long_name": "upper bound of the annual rate"}),
             "share_beyond": (LIMIT_STATE, share, {"units": "1", "long_name": "share from beyond the hazard curve"}),
-            "withheld_reason": (LIMIT_STATE, withheld_reason, {"long_name": "why the annual rate is not told"}),
+            "withheld_reason": (LIMIT_STATE, withheld_reason, {"long_name": "why the annual rate is withheld"}),
             "probability": (
                 LIMIT_STATE,
                 -np.expm1(-rate * time),
@@ -132,7 +132,7 @@ def annual_rate(fragility: xr.Dataset, hazard: HazardCurve, *, years: float = 50
 
 
 def _withheld_reason(share: float, below: float, above: float, hazard: HazardCurve) -> str:
-    """Return in words why a rate is not told, nothing where it is told or has no fit."""
+    """Return why a rate is withheld; an empty text where it is stated or has no fit."""
     if not share > _MOSTLY_BEYOND:
         return ""
     ends = np.exp(hazard.log_intensity)

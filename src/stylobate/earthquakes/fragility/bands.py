@@ -54,8 +54,10 @@ def reached_bands(scale: Data, reached: Data, *, record: Data | None = None) -> 
     groups = np.zeros(seen.intensity.size, dtype=np.int64) if seen.record is None else seen.record
     state = seen.reached[0]
     names = seen.records or ("all",)
-    told = [(groups == place) & (state >= 0) for place in range(len(names))]
-    parts = [_bands_of(seen.intensity[runs], state[runs], name) for runs, name in zip(told, names, strict=True)]
+    groups_of_runs = [(groups == place) & (state >= 0) for place in range(len(names))]
+    parts = [
+        _bands_of(seen.intensity[runs], state[runs], name) for runs, name in zip(groups_of_runs, names, strict=True)
+    ]
     flat = [(place, *band) for place, part in enumerate(parts) for band in part]
     return _dataset(seen, names, parts, flat)
 
@@ -72,7 +74,7 @@ def _bands_of(scale: Floats, state: Integers, name: str) -> list[Band]:
     if torn.size:
         message = (
             f"reached must agree between runs of one record at one scale, got both at {float(x[torn[0]])!r} "
-            f"of record {name}; tell bands for each property sample by itself"
+            f"of record {name}; compute bands for each property sample by itself"
         )
         raise ParameterError(message)
     if not x.size:

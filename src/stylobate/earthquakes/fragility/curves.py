@@ -18,7 +18,7 @@ _REACH = 3.5
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Curve:
-    """What is told of one limit state.
+    """The fragility of one limit state.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def _status_attributes() -> dict[str, object]:
 
 
 def curves_table(seen: Observations, x: Floats, curves: list[Curve]) -> xr.Dataset:
-    """Return what is told of each limit state, and its curve at intensities `x`."""
+    """Collect the fits of all limit states, and their curves at intensities `x`."""
     about: dict[str, object] = {
         name: seen.attributes[name] for name in ("units", "component") if name in seen.attributes
     }
@@ -112,9 +112,9 @@ def curves_table(seen: Observations, x: Floats, curves: list[Curve]) -> xr.Datas
         "dispersion_high": {"units": "1", "long_name": "upper end of the interval of the dispersion"},
         "status": _status_attributes(),
         "log_likelihood": {"units": "1", "long_name": "log-likelihood"},
-        "runs": {"units": "1", "long_name": "runs that tell whether they reached the limit state"},
+        "runs": {"units": "1", "long_name": "runs decided for the limit state"},
         "runs_reached": {"units": "1", "long_name": "runs that reached it"},
-        "runs_not_known": {"units": "1", "long_name": "runs that do not tell"},
+        "runs_not_known": {"units": "1", "long_name": "undecided runs"},
         "largest_safe": {**about, "long_name": "largest intensity that did not reach it"},
         "least_reached": {**about, "long_name": "least intensity that reached it"},
         "resamples_without_fit": {"units": "1", "long_name": "resamples without a fit"},

@@ -172,12 +172,16 @@ def _with_total(variances: Floats) -> Floats:
 
 
 def _with_ends(values: Floats, ends: Floats) -> dict[str, tuple[tuple[()], float, dict[str, str]]]:
-    told: dict[str, tuple[tuple[()], float, dict[str, str]]] = {}
+    variables: dict[str, tuple[tuple[()], float, dict[str, str]]] = {}
     for place, (name, about) in enumerate(_NAMES.items()):
-        told[name] = ((), float(values[place]), {"units": "1", "long_name": about})
+        variables[name] = ((), float(values[place]), {"units": "1", "long_name": about})
         for end, side in zip(ends, ("low", "high"), strict=True):
-            told[f"{name}_{side}"] = ((), float(end[place]), {"units": "1", "long_name": f"its interval, {side} end"})
-    return told
+            variables[f"{name}_{side}"] = (
+                (),
+                float(end[place]),
+                {"units": "1", "long_name": f"its interval, {side} end"},
+            )
+    return variables
 
 
 def _series(reached: xr.DataArray, scale: npt.ArrayLike | xr.DataArray) -> tuple[npt.NDArray[np.int64], Floats]:

@@ -124,10 +124,11 @@ def _replicates(seen: Observations, draws: int, rng: np.random.Generator | None)
 
 
 def _curve(seen: Observations, place: int, x: Floats, confidence: float, replicates: Replicates | None) -> Curve:
-    told = seen.reached[place] >= 0
-    u, where = np.unique(np.log(seen.intensity[told]), return_inverse=True)
+    decided = seen.reached[place] >= 0
+    u, where = np.unique(np.log(seen.intensity[decided]), return_inverse=True)
     hits, misses = (
-        np.bincount(where, weights=seen.reached[place][told] == one, minlength=u.size).astype(float) for one in (1, 0)
+        np.bincount(where, weights=seen.reached[place][decided] == one, minlength=u.size).astype(float)
+        for one in (1, 0)
     )
     if not u.size:
         u, hits, misses = np.log(seen.intensity[:1]), np.zeros(1), np.zeros(1)
@@ -153,9 +154,9 @@ def _curve(seen: Observations, place: int, x: Floats, confidence: float, replica
             "dispersion_high": ends[3],
             "status": int(status),
             "log_likelihood": float(fits.log_likelihood[0]) if fitted else np.nan,
-            "runs": int(np.count_nonzero(told)),
+            "runs": int(np.count_nonzero(decided)),
             "runs_reached": int(hits.sum()),
-            "runs_not_known": int(np.count_nonzero(~told)),
+            "runs_not_known": int(np.count_nonzero(~decided)),
             "largest_safe": float(np.max(seen.intensity, where=seen.reached[place] == 0, initial=0.0)),
             "least_reached": float(np.min(seen.intensity, where=seen.reached[place] == 1, initial=np.inf)),
             "resamples_without_fit": replicates.without_fit() if replicates else 0,

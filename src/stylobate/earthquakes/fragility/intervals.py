@@ -21,7 +21,7 @@ _TOLERANCE = 1e-9
 # Beyond this slope, times the range of the logarithms, a curve is a step.
 _STEP = 1e5
 _DOUBLINGS = 60
-# Where one intensity parts the data, and has both, a median this part of the range away tells its share.
+# Where one intensity parts the data, and has both, a median this part of the range away determines its share.
 _ASIDE = 1e-3
 
 

@@ -38,7 +38,7 @@ def limit_states(
     xarray.DataArray
         Over `limit_state` and the dimensions of `runs`: 1 reached, 0 not, −1 not known. A run that overturned has
         reached them all. One that failed, lifted off or was stopped at a tilt limit has reached what its tilt had
-        exceeded; of the rest it does not tell. Nor does one that was not computed.
+        exceeded; the rest is undecided, as is a run that was not computed.
 
     Raises
     ------
@@ -63,13 +63,13 @@ def limit_states(
     critical = np.arctan(_slenderness(runs, slenderness))
     codes, tilt = runs["outcome"], runs["largest_tilt"]
     fallen = codes == code_of(Outcome.OVERTURNED)
-    told = ~codes.isin([NOT_COMPUTED, *(code_of(one) for one in UNRESOLVED)])
+    decided = ~codes.isin([NOT_COMPUTED, *(code_of(one) for one in UNRESOLVED)])
     limits = {
         f"tilt {require_positive(f'tilt_ratios[{place}]', ratio):g} α": ratio for place, ratio in enumerate(tilt_ratios)
     }
     exceeded = [fallen | (tilt > ratio * critical) for ratio in limits.values()]
     computed = codes != NOT_COMPUTED
-    unreached = xr.zeros_like(codes, dtype=np.int8).where(told, np.int8(NOT_KNOWN))
+    unreached = xr.zeros_like(codes, dtype=np.int8).where(decided, np.int8(NOT_KNOWN))
     states = [unreached.where(~(reached & computed), np.int8(1)) for reached in [*exceeded, fallen]]
     names = xr.DataArray([*limits, "overturning"], dims=LIMIT_STATE, name=LIMIT_STATE)
     joined: xr.DataArray = xr.concat(states, dim=names).rename("reached")

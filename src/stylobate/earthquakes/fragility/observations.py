@@ -15,7 +15,7 @@ Integers: TypeAlias = npt.NDArray[np.int64]
 Data: TypeAlias = npt.ArrayLike | xr.DataArray
 
 NOT_KNOWN = -1
-"""The code of a run that does not tell whether it reached a limit state."""
+"""The code of a run for which it is undecided whether it reached a limit state."""
 
 LIMIT_STATE = "limit_state"
 
@@ -68,18 +68,18 @@ class Observations:
         ParameterError
             If shapes differ, an intensity is not positive, or `reached` holds other than truth values, 0, 1 and −1.
         """
-        told = _labelled("reached", reached, ())
-        if LIMIT_STATE not in told.dims:
-            name = str(told[LIMIT_STATE].item()) if LIMIT_STATE in told.coords else "reached"
-            told = told.drop_vars(LIMIT_STATE, errors="ignore").expand_dims({LIMIT_STATE: [name]})
-        dims = tuple(str(dim) for dim in told.dims if dim != LIMIT_STATE)
-        shaped = told.isel({LIMIT_STATE: 0}, drop=True)
+        states = _labelled("reached", reached, ())
+        if LIMIT_STATE not in states.dims:
+            name = str(states[LIMIT_STATE].item()) if LIMIT_STATE in states.coords else "reached"
+            states = states.drop_vars(LIMIT_STATE, errors="ignore").expand_dims({LIMIT_STATE: [name]})
+        dims = tuple(str(dim) for dim in states.dims if dim != LIMIT_STATE)
+        shaped = states.isel({LIMIT_STATE: 0}, drop=True)
         levels = _labelled("intensity", intensity, dims, shaped.shape)
-        given = [_named(told, "record", record), _named(told, "property_sample", property_sample)]
+        given = [_named(states, "record", record), _named(states, "property_sample", property_sample)]
         named = [None if one is None else _labelled(*one, dims, shaped.shape) for one in given]
         try:
             parts = xr.broadcast(shaped, levels, *(one for one in named if one is not None))
-            told = told.broadcast_like(parts[0]).transpose(LIMIT_STATE, *parts[0].dims)
+            states = states.broadcast_like(parts[0]).transpose(LIMIT_STATE, *parts[0].dims)
         except ValueError as error:
             message = f"intensity, reached and record must have one shape or share named dimensions: {error}"
             raise ParameterError(message) from None
@@ -91,11 +91,11 @@ class Observations:
             series = number * samples.size + sample
         return cls(
             intensity=_positive(values),
-            reached=_codes(told.to_numpy().reshape(told.sizes[LIMIT_STATE], -1)),
+            reached=_codes(states.to_numpy().reshape(states.sizes[LIMIT_STATE], -1)),
             record=number,
             series=None if series is None else np.unique(series, return_inverse=True)[1],
             records=() if known is None else tuple(str(one) for one in known),
-            names=tuple(str(name) for name in told[LIMIT_STATE].to_numpy()),
+            names=tuple(str(name) for name in states[LIMIT_STATE].to_numpy()),
             attributes={"long_name": "intensity", "units": "1", **levels.attrs},
         )
 

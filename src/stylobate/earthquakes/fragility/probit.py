@@ -31,7 +31,7 @@ class FitStatus(IntEnum):
     FITTED = 0
     """Median and dispersion are the most likely ones."""
     NO_RUNS = 1
-    """No run tells whether it reached the limit state."""
+    """For no run it is decided whether it reached the limit state."""
     NONE_REACHED = 2
     """No run reached it: the median lies above, the dispersion is open."""
     ALL_REACHED = 3

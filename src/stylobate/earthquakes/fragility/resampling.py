@@ -97,8 +97,8 @@ def resampled(seen: Observations, count: int, rng: np.random.Generator) -> list[
     found = []
     for state in seen.reached:
         counts = np.zeros((2, records, u.size))
-        told = state >= 0
-        np.add.at(counts, (state[told], record[told], place[told]), 1.0)
+        decided = state >= 0
+        np.add.at(counts, (state[decided], record[decided], place[decided]), 1.0)
         weights = np.concatenate([np.ones((1, records)), drawn])
         found.append(_fitted(u, weights @ counts[1], weights @ counts[0], records))
     return found

@@ -21,16 +21,16 @@ def observed_shares(seen: Observations, confidence: float) -> xr.Dataset:
     logs = np.log(seen.intensity)
     mean = np.exp(np.bincount(bins, weights=logs) / np.bincount(bins))
     ends = np.array([[part.min(), part.max()] for part in (seen.intensity[bins == one] for one in range(count))])
-    hits, told = (
+    hits, decided = (
         np.array([np.bincount(bins, weights=state, minlength=count) for state in chosen])
         for chosen in (seen.reached == 1, seen.reached >= 0)
     )
-    low, high = wilson_interval(hits, told, confidence=confidence)
+    low, high = wilson_interval(hits, decided, confidence=confidence)
     dims = (LIMIT_STATE, "stripe")
-    share = np.where(told > 0.0, hits / np.maximum(told, 1.0), np.nan)
+    share = np.where(decided > 0.0, hits / np.maximum(decided, 1.0), np.nan)
     return xr.Dataset(
         {
-            "stripe_runs": (dims, told.astype(np.int64), {"units": "1", "long_name": "runs"}),
+            "stripe_runs": (dims, decided.astype(np.int64), {"units": "1", "long_name": "runs"}),
             "stripe_reached": (dims, hits.astype(np.int64), {"units": "1", "long_name": "runs that reached it"}),
             "stripe_share": (dims, share, {"units": "1", "long_name": "share of runs that reached it"}),
             "stripe_share_low": (dims, low, {"units": "1", "long_name": "lower end of its interval"}),

@@ -1,4 +1,4 @@
-"""Bands of overturning scales, told from their edges."""
+"""Overturning intervals of the scale, from their edges."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -23,7 +23,7 @@ from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.quantities import Floats, attributes_of, checked_values
 from stylobate.studies.sweeps.recipe import RunOptions
 
-# Nearer than this the ends of an edge are told apart by rounding only.
+# Nearer than this the ends of an edge differ by rounding only.
 _NARROWEST = 1e-9
 
 
@@ -75,7 +75,7 @@ def overturning_bands(
     -------
     xarray.Dataset
         Of kind "overturning bands": the runs over the names and `scale`, with `outcome`, `uncertain` and all that
-        ensembles tell; and over the names and `band`, from the weakest on, NaN beyond the last:
+        ensembles hold; and over the names and `band`, from the weakest on, NaN beyond the last:
 
         * `band_from`, `band_to`: the least and the largest scale that was seen to overturn;
         * `safe_below`, `safe_above`: the nearest scales outside that were seen not to; NaN where the band is
@@ -168,7 +168,7 @@ class _Search:
             runs = self._runs(case.ravel(), scale.ravel(), self.store, case.size)
         except Interrupted as stop:
             scan = Ends.of(stop.partial, scale)
-            raise Interrupted(str(stop), self._told(stop.partial, scan, Edges.between(scan))) from None
+            raise Interrupted(str(stop), self._as_dataset(stop.partial, scan, Edges.between(scan))) from None
         scan = Ends.of(runs, scale)
         edges = Edges.between(scan)
         total, number = case.size + edges.halvings(self.width), 0
@@ -180,8 +180,8 @@ class _Search:
                 cut = self._runs(edges.case[wide], middle, store, total)
                 edges = edges.halved(wide, Ends.of(cut, middle))
         except Interrupted as stop:
-            raise Interrupted(str(stop), self._told(runs, scan, edges)) from None
-        return self._told(runs, scan, edges)
+            raise Interrupted(str(stop), self._as_dataset(runs, scan, edges)) from None
+        return self._as_dataset(runs, scan, edges)
 
     def _runs(self, case: Integers, scale: Floats, store: Path | None, total: int) -> xr.Dataset:
         before = sum(self.done)
@@ -194,7 +194,7 @@ class _Search:
         self.done.append(case.size)
         return runs.load()
 
-    def _told(self, runs: xr.Dataset, scan: Ends, edges: Edges) -> xr.Dataset:
+    def _as_dataset(self, runs: xr.Dataset, scan: Ends, edges: Edges) -> xr.Dataset:
         dims, shape = (*self.cases.axes, "scale"), (*self.cases.shape, self.scales.size)
         kept = {
             name: xr.Variable((*dims, *value.dims[1:]), value.to_numpy().reshape(*shape, *value.shape[1:]), value.attrs)

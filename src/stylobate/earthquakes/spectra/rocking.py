@@ -57,15 +57,15 @@ def rocking_spectrum(
     tail, duration
         As for `overturning_bands`.
     store, executor, resume, progress, **options
-        As for `overturning_bands`; of `samples`, 2001 by default, at equal times of each run the peak rate is told. Its
-        error is of the second order of the time between two. Peak tilts do not depend on it.
+        As for `overturning_bands`; the peak rate is taken over `samples` (2001 by default) at equal times of each run.
+        Its error is of the second order of the time between two. Peak tilts do not depend on it.
 
     Returns
     -------
     xarray.Dataset
         Of kind "rocking spectrum", over the names: `peak_tilt_ratio`, peak tilt over α; `peak_rate_ratio`, peak rate
         of the tilt vector over p [rad]; both NaN where the column overturned or its end is not known, see `outcome`;
-        and all that ensembles tell. Coordinates as for `overturning_bands`, and `rocking_period` 2π/p [s].
+        and all variables of ensembles. Coordinates as for `overturning_bands`, and `rocking_period` 2π/p [s].
 
     Raises
     ------

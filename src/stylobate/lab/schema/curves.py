@@ -6,8 +6,8 @@ _SENSE = word("which way it rolls, seen from above", ["anticlockwise", "clockwis
 _FREQUENCIES = listed("[rad/s]", {"type": "number"})
 
 
-def _over_frequency(told: str) -> Schema:
-    return listed(f"{told}, null where there is no such rolling", {"type": ["number", "null"]})
+def _over_frequency(about: str) -> Schema:
+    return listed(f"{about}, null where there is no such rolling", {"type": ["number", "null"]})
 
 
 _CURVES = table(

@@ -101,7 +101,7 @@ def paths() -> dict[str, Any]:
 
 def _endpoint(
     name: str,
-    told: str,
+    about: str,
     answer: Schema | None,
     refusals: tuple[int, ...] = _OF_ALL,
     *,
@@ -113,9 +113,9 @@ def _endpoint(
     problems = {"application/json": {"schema": ref("Problems")}}
     found: dict[str, Any] = {
         "operationId": name,
-        "summary": told,
+        "summary": about,
         "responses": {
-            str(status): {"description": told, "content": content},
+            str(status): {"description": about, "content": content},
             **{str(code): {"description": _REFUSALS[code], "content": problems} for code in sorted(refusals)},
         },
     }

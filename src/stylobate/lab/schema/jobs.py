@@ -26,8 +26,8 @@ _SIZE = {
 }
 
 
-def _share(told: str) -> Schema:
-    return or_none(number(told, minimum=0.0, maximum=1.0))
+def _share(about: str) -> Schema:
+    return or_none(number(about, minimum=0.0, maximum=1.0))
 
 
 _AXIS = table(

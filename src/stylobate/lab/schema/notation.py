@@ -6,29 +6,29 @@ from typing import Any
 Schema = dict[str, Any]
 
 
-def text(told: str = "", **more: Any) -> Schema:
+def text(about: str = "", **more: Any) -> Schema:
     """Return a text."""
-    return {"type": "string", **_described(told), **more}
+    return {"type": "string", **_with_description(about), **more}
 
 
-def word(told: str, words: Sequence[str]) -> Schema:
+def word(about: str, words: Sequence[str]) -> Schema:
     """Return one of some `words`."""
-    return text(told, enum=list(words))
+    return text(about, enum=list(words))
 
 
-def number(told: str = "", **more: Any) -> Schema:
+def number(about: str = "", **more: Any) -> Schema:
     """Return a number."""
-    return {"type": "number", **_described(told), **more}
+    return {"type": "number", **_with_description(about), **more}
 
 
-def whole(told: str = "", **more: Any) -> Schema:
+def whole(about: str = "", **more: Any) -> Schema:
     """Return a whole number, zero or above."""
-    return {"type": "integer", "minimum": 0, **_described(told), **more}
+    return {"type": "integer", "minimum": 0, **_with_description(about), **more}
 
 
-def flag(told: str) -> Schema:
+def flag(about: str) -> Schema:
     """Return true or false."""
-    return {"type": "boolean", **_described(told)}
+    return {"type": "boolean", **_with_description(about)}
 
 
 def or_none(schema: Schema) -> Schema:
@@ -36,29 +36,35 @@ def or_none(schema: Schema) -> Schema:
     return {**schema, "type": [schema["type"], "null"]}
 
 
-def listed(told: str, item: Schema, *, most: int | None = None, **more: Any) -> Schema:
+def listed(about: str, item: Schema, *, most: int | None = None, **more: Any) -> Schema:
     """Return a list of any length, or of `most` at most."""
     bound = {} if most is None else {"maxItems": most}
-    return {"type": "array", "items": item, **_described(told), **bound, **more}
+    return {"type": "array", "items": item, **_with_description(about), **bound, **more}
 
 
-def exactly(told: str, *items: Schema) -> Schema:
+def exactly(about: str, *items: Schema) -> Schema:
     """Return a list of just these `items`."""
-    return {"type": "array", "prefixItems": list(items), "items": False, "minItems": len(items), **_described(told)}
+    return {
+        "type": "array",
+        "prefixItems": list(items),
+        "items": False,
+        "minItems": len(items),
+        **_with_description(about),
+    }
 
 
-def row(told: str, length: int) -> Schema:
+def row(about: str, length: int) -> Schema:
     """Return a list of so many numbers."""
-    return listed(told, {"type": "number"}, minItems=length, most=length)
+    return listed(about, {"type": "number"}, minItems=length, most=length)
 
 
 def table(
-    told: str, needed: Mapping[str, Schema], optional: Mapping[str, Schema] | None = None, others: Schema | None = None
+    about: str, needed: Mapping[str, Schema], optional: Mapping[str, Schema] | None = None, others: Schema | None = None
 ) -> Schema:
     """Return an object that has the names `needed`, may have those that are `optional`, and `others` of one kind."""
     return {
         "type": "object",
-        **_described(told),
+        **_with_description(about),
         "properties": {**needed, **(optional or {})},
         "required": list(needed),
         "additionalProperties": False if others is None else others,
@@ -75,5 +81,5 @@ def unless_none(schema: Schema) -> Schema:
     return {"anyOf": [schema, {"type": "null"}]}
 
 
-def _described(told: str) -> dict[str, str]:
-    return {"description": told} if told else {}
+def _with_description(about: str) -> dict[str, str]:
+    return {"description": about} if about else {}

@@ -33,8 +33,8 @@ _KIND = table(
 )
 
 
-def _kinds(told: str) -> Schema:
-    return listed(told, ref("Kind"))
+def _kinds(about: str) -> Schema:
+    return listed(about, ref("Kind"))
 
 
 _ABOUT = table(

@@ -30,7 +30,7 @@ _DESCRIPTIONS: dict[str, type[Config]] = {
 
 _OF_JOBS = {"exact": "Response", "map": "Map", "basin": "Basin", "animation": "Simulation"}
 
-_TOLD = {
+_TEXTS = {
     "tilt": "at the start, along x and y [rad]",
     "tilt_rate": "at the start [rad/s]",
     "spin": "angular velocity about the axis at the start [rad/s]",
@@ -47,8 +47,8 @@ _TOLD = {
     "rest_energy": "below which the column comes to rest, over m g h c²",
     "max_steps": "of the integration",
     "samples": "of the history; enough to draw it by default",
-    "rules": "numbers of the rules by which outcomes are told",
-    "demands": "whether to tell what the contact must bear",
+    "rules": "numbers of the rules that decide outcomes",
+    "demands": "whether to compute contact demands",
     "method": "of the integration",
     "strobes": "states once a period that are compared",
     "confidence": "of the intervals",
@@ -92,16 +92,16 @@ _BOUNDS: dict[str, Schema] = {
     **{name: {"minimum": 2} for name in ("samples", "strobes", "points")},
     **{name: {"minimum": 1, "maximum": HIGHEST_DEGREE} for name in ("order", "degree")},
 }
-"""What numbers can be; of some more is asked, which the refusal tells."""
+"""What numbers can be; some have further conditions, which the refusal states."""
 
 
 def components(limits: Limits) -> dict[str, Schema]:
     """Return the components of all that can be sent."""
     found: dict[str, Schema] = {}
     for name, description in _DESCRIPTIONS.items():
-        told = description.model_json_schema(ref_template="#/components/schemas/{model}")
-        found |= {part: _part(schema) for part, schema in told.pop("$defs", {}).items()}
-        found[name] = _within(told, limits)
+        body = description.model_json_schema(ref_template="#/components/schemas/{model}")
+        found |= {part: _part(schema) for part, schema in body.pop("$defs", {}).items()}
+        found[name] = _within(body, limits)
     found["RecordMotion"] = _uploaded(found["RecordMotion"])
     return {**{name: _finite(schema) for name, schema in found.items()}, "Record": _RECORD, "JobConfig": _job()}
 
@@ -116,7 +116,7 @@ def _finite(schema: Any) -> Any:
     return {**bounds, **{name: _finite(part) for name, part in schema.items()}}
 
 
-def _within(told: Schema, limits: Limits) -> Schema:
+def _within(body: Schema, limits: Limits) -> Schema:
     """Return the schema of a description with what its numbers are, and the limits."""
     most = {
         "duration": limits.duration,
@@ -125,30 +125,30 @@ def _within(told: Schema, limits: Limits) -> Schema:
         "points": limits.points,
         "strobes": limits.points,
     }
-    properties: dict[str, Schema] = told["properties"]
+    properties: dict[str, Schema] = body["properties"]
     for name, schema in properties.items():
-        if name in _TOLD:
-            schema["description"] = _TOLD[name]
+        if name in _TEXTS:
+            schema["description"] = _TEXTS[name]
         _bound(name, schema)
         if name in most:
             _of_numbers(schema)["maximum"] = most[name]
     if "rules" in properties:
-        properties["rules"] = table(_TOLD["rules"], {}, {field.name: _RULE for field in fields(OutcomeRules)})
+        properties["rules"] = table(_TEXTS["rules"], {}, {field.name: _RULE for field in fields(OutcomeRules)})
     if "angular_frequency_range" in properties or "branch" in properties:
         properties["motion"] = _only(properties["motion"], _HAS_RESPONSE)
-    if "duration" in told["required"]:
-        return _until_the_end(told)
-    return told
+    if "duration" in body["required"]:
+        return _until_the_end(body)
+    return body
 
 
-def _until_the_end(told: Schema) -> Schema:
+def _until_the_end(body: Schema) -> Schema:
     """Return the schema of a run, which needs a duration unless its motion is one that ends, or of such."""
     ending = {"type": "object", "properties": {"kind": {"enum": [*ENDING, *_OF_MOTIONS]}}}
     lasting = [
         {"required": ["duration"], "properties": {"duration": {"type": "number"}}},
         {"required": ["motion"], "properties": {"motion": ending}},
     ]
-    return {**told, "required": [name for name in told["required"] if name != "duration"], "anyOf": lasting}
+    return {**body, "required": [name for name in body["required"] if name != "duration"], "anyOf": lasting}
 
 
 def _only(union: Schema, kinds: Collection[str]) -> Schema:
@@ -161,12 +161,12 @@ def _only(union: Schema, kinds: Collection[str]) -> Schema:
 def _part(schema: Schema) -> Schema:
     """Return the schema of a column, a model, a motion or a step with what its numbers are and can be."""
     properties = schema.get("properties", {})
-    own = not {"motion", "motions", "method"} & set(properties)  # motions of motions and steps tell it themselves
-    for name, told in properties.items():
+    own = not {"motion", "motions", "method"} & set(properties)  # motions of motions and steps state it themselves
+    for name, body in properties.items():
         if own:
-            told |= {**_described(name), **told}
+            body |= {**_described(name), **body}
         if own or name in ("order", "degree"):
-            _bound(name, told)
+            _bound(name, body)
     tags = [tag for tag in _TAGS if tag in properties]
     required = [*tags, *(name for name in schema.get("required", []) if name not in tags)]
     return {**schema, **({"required": required} if required else {})}
@@ -194,7 +194,7 @@ def _uploaded(record: Schema) -> Schema:
     """Return the schema of a record that is uploaded rather than read from a path."""
     digest = or_none(text("digest of an uploaded record"))
     kept: Mapping[str, Any] = {
-        name: told for name, told in record["properties"].items() if name not in ("path", "file_sha256")
+        name: body for name, body in record["properties"].items() if name not in ("path", "file_sha256")
     }
     about = "A record: one that was uploaded (`upload`), or the `sample` that comes with the package; one of them."
     return {**record, "description": about, "properties": {**kept, "upload": digest}}
@@ -227,7 +227,7 @@ _RECORD = table(
         )
     },
     {
-        "units": or_none(text("of the acceleration, such as g or cm/s²; null where the file tells it")),
-        "step": {"type": ["number", "null"], "description": "between samples [s]; null where the file tells it"},
+        "units": or_none(text("of the acceleration, such as g or cm/s²; null where the file states it")),
+        "step": {"type": ["number", "null"], "description": "between samples [s]; null where the file states it"},
     },
 )

@@ -40,7 +40,7 @@ _COLUMN = table(
 )
 
 _MEASURES = table(
-    "Numbers of the run as a whole, null where one is not finite. Models may tell further ones.",
+    "Numbers of the run as a whole, null where one is not finite. Models may add further ones.",
     {
         "largest_tilt": or_none(number("[rad]")),
         "largest_tilt_over_c": or_none(number("the same over the slenderness")),
@@ -76,12 +76,12 @@ _MEASURES = table(
 )
 
 
-def _history(told: str) -> Schema:
-    return listed(told, _ANY_NUMBER)
+def _history(about: str) -> Schema:
+    return listed(about, _ANY_NUMBER)
 
 
 _SERIES = table(
-    "Histories, all as long as `time`; null where a number is not finite. Models may tell further ones.",
+    "Histories, all as long as `time`; null where a number is not finite. Models may add further ones.",
     {
         "time": listed("[s]", {"type": "number"}),
         "base_acceleration": listed("along x, y, z [m/s²]", row("", 3)),
@@ -104,7 +104,7 @@ _SERIES = table(
 
 _DRAWN = table(
     "The motion at equal steps in time, to be drawn: lengths in m in the frame of the base, z upwards. "
-    "Null for what the model does not tell.",
+    "Null for what the model does not provide.",
     {
         "column": table(
             "The body.",
@@ -148,7 +148,7 @@ _RUN = table(
     "One run.",
     {
         "outcome": _OUTCOME,
-        "told": word("the outcome in words", [one.value for one in Outcome]),
+        "label": word("the outcome in words", [one.value for one in Outcome]),
         "reason": text("why it is that outcome"),
         "decided_at": number("when that was decided [s]"),
         "uncertain": flag("whether the outcome hangs on rounding"),
@@ -158,7 +158,7 @@ _RUN = table(
             "releases, impacts and the like", table("", {"kind": text("what happened"), "time": number("when [s]")})
         ),
         "measures": ref("Measures"),
-        "summary": listed("labels and what is told of each", exactly("", text("label"), text("what is told"))),
+        "summary": listed("labels and values", exactly("", text("label"), text("value"))),
         "thresholds": table("The numbers by which the outcome was decided.", {}, others=_ANY_NUMBER),
         "column": ref("ColumnNumbers"),
         "drawn": ref("DrawnMotion"),

@@ -24,7 +24,7 @@ JAM = 1e-3
 """Painlevé's denominator at which slip jams."""
 
 # Closer to the upright than this [of the smaller of c and the speed], on a path that leads past it at less than the
-# second number [c], the rest of the way is told in closed form.
+# second number [c], the rest of the way is computed in closed form.
 _CLOSE, _STRAIGHT = 1e-6, 1e-9
 
 

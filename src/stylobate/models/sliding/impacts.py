@@ -11,7 +11,7 @@ import math
 REST_SPEED = 1e-5
 """A rebound slower than this is none [h ω0], so that impacts which pile up come to their end.
 
-It rises to 5e-11 κ h, far above the height to which a landing is told.
+It rises to 5e-11 κ h, far above the height to which a landing is located.
 """
 
 

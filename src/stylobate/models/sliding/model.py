@@ -30,10 +30,10 @@ from stylobate.models.sliding.posture import forces
 from stylobate.models.sliding.reactions import project, reset_map
 from stylobate.quantities import Quantity
 
-# A least tilt counts as a stroke of the base below this, where the user tells no other [c].
+# A least tilt counts as a stroke of the base below this, unless the user sets another [c].
 _PASSAGE = 0.01
 
-# So many numbers `forces` tells of a state.
+# How many numbers `forces` returns for a state.
 _FORCES = 16
 
 
@@ -63,7 +63,7 @@ class Sliding(Model):
     passage_tilt
         Where a tilt below this stops falling [rad], the base strikes the plane; by default 0.01 c.
     incline, incline_direction
-        Angle of the plane to the horizontal [rad], and azimuth of the way down. Base motions are told along the plane
+        Angle of the plane to the horizontal [rad], and azimuth of the way down. Base motions are given along the plane
         and along its normal.
 
     Raises
@@ -188,7 +188,7 @@ class Sliding(Model):
         velocity: tuple[float, float, float],
         clearance: float,
     ) -> tuple[float, ...]:
-        """Return the state of a start, from which `reset_map` tells how it touches.
+        """Return the state of a start, from which `reset_map` determines the contact.
 
         Parameters
         ----------

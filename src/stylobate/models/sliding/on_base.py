@@ -60,7 +60,7 @@ def upright(state: State, n: Numbers) -> State:
 
 
 def rests(state: State, now: Triple, rest: float, n: Numbers) -> bool:
-    """Return whether a column on its rim comes to rest there, as the margin "rest" tells."""
+    """Return whether a column on its rim comes to rest there, as the guard "rest" decides."""
     return margins_of(state, now, rest, n)[_REST] < 0.0
 
 

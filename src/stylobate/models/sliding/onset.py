@@ -137,7 +137,7 @@ def across(heading: Triple) -> tuple[Triple, Triple]:
 
 
 def tilted(heading: Triple, way: Triple, angle: float) -> Triple:
-    """Return a heading turned towards a `way` across it by an angle whose tangent is told."""
+    """Return a heading turned towards a `way` across it by an angle whose tangent is given."""
     x, y, z = heading[0] + angle * way[0], heading[1] + angle * way[1], heading[2] + angle * way[2]
     size = math.sqrt(x * x + y * y + z * z)
     return x / size, y / size, z / size

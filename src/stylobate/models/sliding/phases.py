@@ -1,4 +1,4 @@
-"""How a column can meet the plane under it, the state in which all of that is told, and the numbers of the model."""
+"""Kinds of contact with the plane, the state vector, and the numbers of the model."""
 
 from enum import IntEnum
 from typing import NamedTuple

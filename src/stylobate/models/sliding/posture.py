@@ -18,7 +18,7 @@ Forces = tuple[
 
 
 def forces(state: State, now: Triple, n: Numbers) -> Forces:
-    """Return what `balance` tells of a state."""
+    """Return the `balance` of a state."""
     return balance(
         state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y, state.spin, state.velocity_x,
         state.velocity_y, state.heading_x, state.heading_y, state.heading_z, state.contact, now[0], now[1], now[2],

@@ -86,16 +86,16 @@ def _boundaries(straight: dict[float, Branch]) -> Finding:
     ellipse = Harmonic.elliptic(amplitude=_ELLIPSE, phase=-math.pi / 2.0, angular_frequency=3.0)
     p, _ = theory.circular_components(*_ELLIPSE, -math.pi / 2.0)
     lost[f"ellipse {_ELLIPSE[0]:g} × {_ELLIPSE[1]:g}"] = (_lost(_branch(ellipse)), float(abs(p)))
-    told, higher = [], []
+    lines, higher = [], []
     for name, (one, part) in lost.items():
         averaged = float(theory.critical_frequency(part, c=_C, eta=DAMPING))
-        told.append(f"{name}: {one.parameter:.6f} (averaged {averaged:.4f})")
+        lines.append(f"{name}: {one.parameter:.6f} (averaged {averaged:.4f})")
         higher.append(one.parameter > averaged)
     pitchforks = all(one.kind is Kind.PITCHFORK and one.soft for one, _ in lost.values())
     return Finding(
         "conclusion 4",
         "Averaging gives the frequency above which rolling is stable under straight-line motion.",
-        f"The exact orbit is stable above another θ*: {'; '.join(told)}. It is lost not by an oscillation but in a "
+        f"The exact orbit is stable above another θ*: {'; '.join(lines)}. It is lost not by an oscillation but in a "
         "pitchfork: a real multiplier leaves through +1, and the orbit loses its symmetry of leaning the other way "
         "half a period later.",
         judged(pitchforks and all(higher), Verdict.LIMITED),
@@ -103,18 +103,18 @@ def _boundaries(straight: dict[float, Branch]) -> Finding:
 
 
 def _born(straight: dict[float, Branch]) -> Finding:
-    told, soft = [], []
+    lines, soft = [], []
     for a1, branch in straight.items():
         one = _lost(branch)
         family = switch_branch(one, bounds=_BOUNDS)
         first = family.bifurcations[0]
-        told.append(f"a1 = {a1:g}: from {one.parameter:.4f} down to {first.parameter:.6f}, {first.kind.value}")
+        lines.append(f"a1 = {a1:g}: from {one.parameter:.4f} down to {first.parameter:.6f}, {first.kind.value}")
         soft.append(bool(np.abs(family.path[1].multipliers[0]) < 1.0))
     return Finding(
         "conclusion 3",
         "Below the critical frequency the column only stands or overturns.",
         "Under straight-line motion the loss is soft: two mirror-image rolling motions without the symmetry are stable "
-        f"below θ*. {'; '.join(told)}. They end in doublings or modulated motion, and soon after in overturning.",
+        f"below θ*. {'; '.join(lines)}. They end in doublings or modulated motion, and soon after in overturning.",
         judged(all(soft), Verdict.FAILS),
     )
 

@@ -135,11 +135,12 @@ def _survivors() -> Finding:
                 rest_energy=1e-3,
             )
             outcomes[run.outcome.value] = outcomes.get(run.outcome.value, 0) + 1
-    told = ", ".join(f"{count} {name}" for name, count in sorted(outcomes.items(), key=lambda item: -item[1]))
+    counts_text = ", ".join(f"{count} {name}" for name, count in sorted(outcomes.items(), key=lambda item: -item[1]))
     return Finding(
         "conclusion 3",
         "Whether anything else survives lower.",
-        f"32 random starts at (a0, θ) = (0.02, 0.5), (0.02, 0.8), (0.065, 0.9), (0.065, 1.25), c = η = 0.1: {told}. "
+        f"32 random starts at (a0, θ) = (0.02, 0.5), (0.02, 0.8), (0.065, 0.9), (0.065, 1.25), c = η = 0.1: "
+        f"{counts_text}. "
         "A sample, no proof.",
         judged(set(outcomes) <= {"overturned", "at rest"}),
     )

@@ -126,14 +126,14 @@ def _averaged_curves(response: xr.Dataset) -> Finding:
 
 def _stable_motion() -> Finding:
     fates = {theta: _from_averaged(theta, AMPLITUDES[1], _PERIODS) for theta in (1.5, 2.0, 3.0)}
-    told = ", ".join(f"θ = {theta:g}: {run.outcome.value}" for theta, run in fates.items())
+    lines = ", ".join(f"θ = {theta:g}: {run.outcome.value}" for theta, run in fates.items())
     critical = float(theory.critical_frequency(AMPLITUDES[1] / 2.0, c=_C, eta=DAMPING))
     low, high = (fates[3.0].data["amplitude"].quantile(q).item() for q in (0.0, 1.0))
     fell = [fates[theta].outcome is Outcome.OVERTURNED for theta in (1.5, 2.0)]
     return Finding(
         "conclusion 4",
         "Above the critical frequency a stable rolling exists for straight-line motion as for circular motion.",
-        f"a1 = 0.13, averaged stable above θ = {critical:.3f}; started on the averaged solution: {told} (tilt between "
+        f"a1 = 0.13, averaged stable above θ = {critical:.3f}; started on the averaged solution: {lines} (tilt between "
         f"{low:.4f} and {high:.4f}). The boundary of the full motion lies higher than the averaged one, and near it "
         "the surviving starts are few.",
         judged(all(fell) and fates[3.0].outcome is not Outcome.OVERTURNED, Verdict.LIMITED),
@@ -141,7 +141,7 @@ def _stable_motion() -> Finding:
 
 
 def _small_parameters() -> Finding:
-    told, swings = [], {}
+    lines, swings = [], {}
     for a1 in AMPLITUDES:
         for theta in (3.0, 12.0):
             # Friction damps the start within a time of a few 1/η: so many periods more at a higher frequency.
@@ -151,7 +151,7 @@ def _small_parameters() -> Finding:
             tilt = run.data["amplitude"].to_numpy() / mean
             late = tilt[-tilt.size // 10 :]
             swings[a1, theta] = float(np.ptp(late))
-            told.append(
+            lines.append(
                 f"a1 = {a1:g}, θ = {theta:g}: {tilt.min():.2f} to {tilt.max():.2f} at first, "
                 f"{late.min():.2f} to {late.max():.2f} settled"
             )
@@ -160,7 +160,7 @@ def _small_parameters() -> Finding:
     return Finding(
         "after (9)",
         "Averaging is good while η/2θ, a1/4θ and the detuning are small, that is at high frequency.",
-        f"Tilt over averaged tilt, started on the averaged solution: {'; '.join(told)}. It does not improve with θ: "
+        f"Tilt over averaged tilt, started on the averaged solution: {'; '.join(lines)}. It does not improve with θ: "
         "with α = c y/θ² the limit θ → ∞ is y″ = −ŷ − (a1/c) cos s, whose one parameter is a1/c; integrated at a1/c = "
         f"0.4 from the averaged start it swings from {limit[0]:.2f} to {limit[1]:.2f}.",
         judged(max(same) < 0.1, Verdict.LIMITED),  # noqa: PLR2004  the same swing within a tenth

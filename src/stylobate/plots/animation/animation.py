@@ -47,7 +47,7 @@ class Animation:
     motion
         The instants of which there are pictures.
     history
-        The same motion told finer, for paths and curves.
+        The same motion sampled finer, for paths and curves.
     look
         Size, view, title.
     frames_per_second
@@ -64,7 +64,7 @@ class Animation:
         return int(self.motion.time.size)
 
     def pictures(self, progress: Progress | None = None) -> Iterator[Image.Image]:
-        """Yield the pictures in order; after each `progress` is told how many there were, and of how many."""
+        """Yield the pictures in order; after each, `progress` is called with the number done and the total."""
         painter = Painter.of(self.motion, self.history, self.look)
         for index in range(len(self)):
             yield painter.picture(index)
@@ -72,7 +72,7 @@ class Animation:
                 progress(index + 1, len(self))
 
     def gif(self, progress: Progress | None = None) -> bytes:
-        """Return the bytes of a GIF; after each picture `progress` is told how many there were, and of how many."""
+        """Return the bytes of a GIF; after each picture, `progress` is called with the number done and the total."""
         painter = Painter.of(self.motion, self.history, self.look)
         return gif_of(painter.picture, len(self), self.frames_per_second, progress)
 

@@ -42,9 +42,9 @@ def write_lines(
     state = _write_state(draw, motion, index, left)
     below = left
     if title:
-        told = _shortened(draw, title, _NOTE, right - left)
-        draw.text((left, _BELOW), told, fill=PALE, font=letters(_NOTE), anchor="ls")
-        below = left + round(draw.textlength(told, font=letters(_NOTE)))
+        text = _shortened(draw, title, _NOTE, right - left)
+        draw.text((left, _BELOW), text, fill=PALE, font=letters(_NOTE), anchor="ls")
+        below = left + round(draw.textlength(text, font=letters(_NOTE)))
     if index == motion.time.size - 1:
         _write_outcome(draw, motion.outcome, state, below, right)
     elif not math.isclose(pace, 1.0):
@@ -56,9 +56,9 @@ def _write_state(draw: ImageDraw.ImageDraw, motion: DrawnMotion, index: int, lef
     tilt = math.hypot(*motion.tilt[index])
     # Three digits of the time at the end, and no less than seconds.
     digits = max(0, 2 - math.floor(math.log10(motion.time[-1])))
-    told = f"{motion.time[index]:.{digits}f} s    tilt {tilt / motion.shape.slenderness:.2f} c"
-    draw.text((left, _LINE), told, fill=INK, font=letters(_TEXT), anchor="ls")
-    at = left + draw.textlength(f"{told}   ", font=letters(_TEXT))
+    text = f"{motion.time[index]:.{digits}f} s    tilt {tilt / motion.shape.slenderness:.2f} c"
+    draw.text((left, _LINE), text, fill=INK, font=letters(_TEXT), anchor="ls")
+    at = left + draw.textlength(f"{text}   ", font=letters(_TEXT))
     degrees = f"{math.degrees(tilt):.1f}°"
     draw.text((at, _LINE), degrees, fill=PALE, font=letters(_NOTE), anchor="ls")
     return at + draw.textlength(degrees, font=letters(_NOTE))
@@ -66,11 +66,11 @@ def _write_state(draw: ImageDraw.ImageDraw, motion: DrawnMotion, index: int, lef
 
 def _write_outcome(draw: ImageDraw.ImageDraw, outcome: Outcome, state: float, title: float, right: int) -> None:
     """Write what became of the column in the first line that has room for it, behind state or title, or else below."""
-    told, font = verdict_of(outcome), letters(_TEXT, bold=True)
-    needed = right - draw.textlength(told, font=font) - _GAP
+    text, font = verdict_of(outcome), letters(_TEXT, bold=True)
+    needed = right - draw.textlength(text, font=font) - _GAP
     line = _LINE if needed > state else _BELOW if needed > title else 2 * _BELOW - _LINE
     colour = rgb(VERMILION) if outcome in _FALLS else INK
-    draw.text((right, line), told, fill=colour, font=font, anchor="rs")
+    draw.text((right, line), text, fill=colour, font=font, anchor="rs")
 
 
 def _shortened(draw: ImageDraw.ImageDraw, text: str, size: int, room: float) -> str:

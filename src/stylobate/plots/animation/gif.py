@@ -19,7 +19,7 @@ _UNCHANGED = _COLOURS
 _MESH = 4
 # Colours that a dot or a line has, and the parts of them where its edge is smoothed.
 _STRONG, _PARTS = (MARK, CONTACT, CONTACT_POINT), (1.0, 0.7, 0.4)
-# The format: bytes of the header, before the shared colours, and in it the flags that tell their number; behind them a
+# The format: bytes of the header, before the shared colours, and in it the flags that hold their number; behind them a
 # control block and a comma, after which the place of the picture stands; and what ends a file.
 _HEADER, _FLAGS, _PLACE, _COMMA, _TRAILER = 13, 10, 9, 0x2C, b";"
 # Pictures from which the colours are taken.
@@ -42,7 +42,7 @@ def gif_of(
     frames_per_second
         How fast; a GIF counts in hundredths of a second, which are shared out so that the whole takes its time.
     progress
-        Told after each picture how many there were, and of how many.
+        Called after each picture with the number done and the total.
     """
     palette = _palette([picture(number) for number in _spread(count)])
     parts, before = [], None

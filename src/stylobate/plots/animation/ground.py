@@ -18,7 +18,7 @@ _FADE = 0.55
 
 
 def backdrop(size: tuple[int, int], scene: Scene, lens: Lens, above: int, below: int) -> Image.Image:
-    """Return a picture of the ground, twice as fine as `size`, with marks that tell how the base moves over it.
+    """Return a picture of the ground, twice as fine as `size`, with marks that show how the base moves over it.
 
     Parameters
     ----------

@@ -41,7 +41,7 @@ class DrawnMotion:
         Shape (n, 2) [rad], [rad/s].
     twist, spin
         Angle of turn about the axis and angular velocity about it, shape (n,) [rad], [rad/s]; no spin of models that
-        do not tell it.
+        do not provide it.
     footprint, contact_point
         Centre of the circle on the base about which the contact point lies, and that point, shape (n, 2) [m]. Where
         the column stands upright the contact point is where it was last, or first will be.
@@ -52,7 +52,7 @@ class DrawnMotion:
     base
         Displacement of the base, shape (n, 3) [m].
     friction_demand
-        Shape (n,), of models that tell it.
+        Shape (n,), of models that provide it.
     friction_coefficient
         Of the contact, where it is known.
     outcome, decided_at, title
@@ -165,7 +165,7 @@ class DrawnMotion:
 def drawn_motion(run: Response, *, frames_per_second: float | None = None, title: str | None = None) -> dict[str, Any]:
     """Return the motion of a run as plain numbers that a page, or any other program, can draw.
 
-    Lengths in m, angles in rad, times in s; z upwards. Positions are told in the frame of the base, whose own
+    Lengths in m, angles in rad, times in s; z upwards. Positions are given in the frame of the base, whose own
     displacement is `base`. The column is turned by the unit quaternion `rotation` (w, x, y, z), Rz(β) Ry(θ) Rz(χ − β),
     and the centre of its bottom circle is `centre`. Nothing is drawn that was not computed: of a column that overturned
     the motion ends where it was decided that it cannot come back.
@@ -184,7 +184,7 @@ def drawn_motion(run: Response, *, frames_per_second: float | None = None, title
     dict
         Lists of equal length by name: "time", "tilt", "tilt_rate", "twist", "spin", "footprint", "contact_point",
         "resting", "clearance", "base", "rotation", "centre", "friction_demand", seven digits each; None for what the
-        model does not tell, and in place of a demand that is not finite. Beside them "column", "plane",
+        model does not provide, and in place of a demand that is not finite. Beside them "column", "plane",
         "friction_coefficient", "outcome", "decided_at" and "title".
 
     Raises

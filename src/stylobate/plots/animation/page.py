@@ -25,7 +25,7 @@ stylobateViewer.mount(document.getElementById("viewer"), JSON.parse(document.get
 def page_of(motion: Mapping[str, Any]) -> str:
     """Return the HTML of a page that shows a drawn motion, in space, to be turned about and stopped.
 
-    The page may run its own two scripts, told by their hashes, and load nothing.
+    The page may run its own two scripts, identified by their hashes, and load nothing.
 
     Raises
     ------

@@ -71,7 +71,7 @@ class Painter:
 
     @classmethod
     def of(cls, motion: DrawnMotion, history: DrawnMotion, look: Look) -> Self:
-        """Return what draws the instants of `motion`; paths and curves are those of `history`, told finer."""
+        """Return what draws the instants of `motion`; paths and curves are those of `history`, sampled finer."""
         scene, (width, height) = Scene.of(motion), look.size
         everything = scene.everything(motion)
         right = width - _EDGE

@@ -48,7 +48,7 @@ class Plan:
         Parameters
         ----------
         history
-            The motion, told finely.
+            The motion, finely sampled.
         azimuth
             Of the eye.
         corner

@@ -20,7 +20,7 @@ _SEEN = 240
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scene:
-    """A slab on the ground, and the plane on it in which positions of a motion are told.
+    """A slab on the ground, and the plane on it in which positions of a motion are given.
 
     Attributes
     ----------

@@ -80,8 +80,8 @@ class Strip:
     def write(self, draw: ImageDraw.ImageDraw) -> None:
         """Write what the curve is, beside it; `draw` is of the picture as it is shown."""
         font, right = letters(_FONT), self.right / FINE + 6
-        level, told = (self.top, f"{self.highest:.2g} c") if self.level is None else (self.level, "c")
-        draw.text((right, level / FINE), told, fill=PALE, font=font, anchor="lm")
+        level, label = (self.top, f"{self.highest:.2g} c") if self.level is None else (self.level, "c")
+        draw.text((right, level / FINE), label, fill=PALE, font=font, anchor="lm")
         if self.floor - (self.top if self.level is None else self.level) >= _APART * FINE:
             draw.text((right, self.floor / FINE), "0", fill=PALE, font=font, anchor="lm")
         draw.text((self.left / FINE - 6, (self.top + self.floor) / 2 / FINE), "tilt", fill=PALE, font=font, anchor="rm")

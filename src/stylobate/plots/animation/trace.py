@@ -46,7 +46,7 @@ class Trace:
         Parameters
         ----------
         motion
-            The motion, told finely.
+            The motion, finely sampled.
         turned
             Matrix from the frame of the plane to space, shape (3, 3).
         lens

@@ -1,4 +1,4 @@
-"""Where two models of a column tell different outcomes, over two parameters."""
+"""Where two models of a column disagree on the outcome, over two parameters."""
 
 import json
 from collections.abc import Mapping
@@ -20,7 +20,7 @@ from stylobate.studies.sweeps.recipe import RunOptions
 
 
 class Comparison(Enum):
-    """What two models tell of the same run, in the order of the codes."""
+    """How the outcomes of two models compare, in the order of the codes."""
 
     BOTH_STAY = "overturns in neither"
     ONLY_FIRST = "overturns in the first only"
@@ -42,7 +42,7 @@ def outcome_differences(
     progress: Progress | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
-    """Tell over two parameters where two models of a column disagree whether it overturns.
+    """Map over two parameters where two models of a column disagree whether it overturns.
 
     With models that differ in one assumption, such as `Slender` and `SlenderRolling`, this is where that assumption
     decides the outcome.
@@ -99,22 +99,22 @@ def outcome_differences(
 def _compared(first: npt.NDArray[np.int8], second: npt.NDArray[np.int8]) -> npt.NDArray[np.int8]:
     fallen = code_of(Outcome.OVERTURNED)
     places = {one: code for code, one in enumerate(Comparison)}
-    told = np.where(first == fallen, places[Comparison.ONLY_FIRST], places[Comparison.BOTH_STAY])
-    told = np.where(second == fallen, told + places[Comparison.ONLY_SECOND], told)
+    codes = np.where(first == fallen, places[Comparison.ONLY_FIRST], places[Comparison.BOTH_STAY])
+    codes = np.where(second == fallen, codes + places[Comparison.ONLY_SECOND], codes)
     unclear = [code_of(one) for one in (Outcome.FAILED, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED)]
-    told = np.where(np.isin(first, unclear) | np.isin(second, unclear), places[Comparison.UNDECIDED], told)
-    return np.where((first == NOT_COMPUTED) | (second == NOT_COMPUTED), NOT_COMPUTED, told).astype(np.int8)
+    codes = np.where(np.isin(first, unclear) | np.isin(second, unclear), places[Comparison.UNDECIDED], codes)
+    return np.where((first == NOT_COMPUTED) | (second == NOT_COMPUTED), NOT_COMPUTED, codes).astype(np.int8)
 
 
 # What is kept of each model's runs; the demands where they were asked for.
-_TOLD = ("outcome", "largest_tilt", "largest_friction_demand", "largest_pivoting_demand", "least_normal_force")
+_COMPARED = ("outcome", "largest_tilt", "largest_friction_demand", "largest_pivoting_demand", "least_normal_force")
 
 
 def _dataset(maps: list[xr.Dataset], codes: npt.NDArray[np.int8], models: tuple[Model, Model]) -> xr.Dataset:
     dims = maps[0]["outcome"].dims
     names = [one.value for one in Comparison]
     about: dict[str, Any] = {
-        "long_name": "what the two models tell",
+        "long_name": "comparison of the two models",
         "flag_values": np.arange(NOT_COMPUTED, len(names), dtype=np.int8),
         "flag_meanings": " ".join(["NOT_COMPUTED", *(one.name for one in Comparison)]),
     }
@@ -125,8 +125,8 @@ def _dataset(maps: list[xr.Dataset], codes: npt.NDArray[np.int8], models: tuple[
         "share": ("comparison_name", count / max(codes.size, 1), {"units": "1", "long_name": "share of the runs"}),
     }
     for place, found in zip(("first", "second"), maps, strict=True):
-        told = [name for name in _TOLD if name in found]
-        variables |= {f"{place}_{name}": found[name].variable for name in told}
+        shared = [name for name in _COMPARED if name in found]
+        variables |= {f"{place}_{name}": found[name].variable for name in shared}
     provenance = {
         place: json.loads(found.attrs["provenance"]) for place, found in zip(("first", "second"), maps, strict=True)
     }

@@ -1,4 +1,4 @@
-"""What is told of one run on the ladder of models: its history at given times, and what it has come to."""
+"""One run of the model hierarchy: its history at given times and its final state."""
 
 import math
 from dataclasses import dataclass

@@ -43,7 +43,7 @@ def model_hierarchy(
     samples: int | None = None,
     **arguments: Unpack[RunArguments],
 ) -> xr.Dataset:
-    """Run one case through the levels of the ladder of models, and compare what they tell.
+    """Run one case with every model of the hierarchy and compare the results.
 
     The levels are slender, slender rolling, wobbling and rolling; where start and base motion lie in a vertical plane
     also planar rocking.
@@ -218,16 +218,16 @@ _DIFFERENT = ("largest_tilt", "mean_late_tilt", "largest_friction_demand", "larg
 
 
 def _compared(case: Case, runs: Sequence[Response], time: Floats, duration: float) -> xr.Dataset:
-    """Return what the `runs` of all levels of a case tell."""
+    """Summarise the `runs` of all models of a case."""
     courses = [Course(run, duration) for run in runs]
-    told = [
+    rows = [
         {**run.measures, "decided_at": run.decided_at, **course.late_means(case.motion)}
         for run, course in zip(runs, courses, strict=True)
     ]
     histories = [course.history(time) for course in courses]
     tilt = xr.DataArray([tilt for tilt, _ in histories], dims=("level", "time", "axis"))
     variables: dict[str, Any] = {
-        name: ("level", [one.get(name, np.nan) for one in told], {"units": units, "long_name": long_name})
+        name: ("level", [one.get(name, np.nan) for one in rows], {"units": units, "long_name": long_name})
         for name, (units, long_name) in _MEASURES.items()
     }
     levels = [model.name for model in case.models()]

@@ -27,7 +27,7 @@ def follow_branches(along: Sequence[Sequence[Attractor]], tolerance: float) -> B
     Attractors are matched to branches of the same kind and period as these were last seen, so that the distances of
     their dimensionless strobed states have the least sum. What is farther from every branch than the `tolerance`, or
     left over, begins a branch; a branch that is lost and found again keeps its place. Attractors without a period are
-    matched by their kind alone: one strobed state of many does not tell where they are.
+    matched by their kind alone: one strobed state of many does not locate them.
 
     Parameters
     ----------

@@ -43,7 +43,7 @@ ENDINGS = {
 KINDS = (AT_REST, *ROLLING.values(), ROCKING, *MODULATED.values(), *APERIODIC.values(), *ENDINGS.values(), NOT_SETTLED)
 """All kinds, in the order in which attractors are listed."""
 
-# Mean turns of the contact point in a forcing period that are told from none, and from one: half a turn in ten.
+# Mean turns of the contact point in a forcing period that count as none, or as one: within half a turn in ten.
 _TURNING = 0.05
 # Outcomes of runs that move to their end; a column that stands at the end may rest for a part of each period only.
 _MOVING = (Outcome.ROLLING, Outcome.ROCKING, Outcome.MODULATED, Outcome.STILL_MOVING, Outcome.AT_REST)
@@ -61,7 +61,7 @@ class Attractor:
         After how many forcing periods it repeats; 0 where it does not.
     turns
         Mean turns of the contact point in a forcing period, anticlockwise positive. NaN for an orbit whose period does
-        not divide the periods over which the mean rolling rate was taken (`OutcomeRules.periods`): the mean then tells
+        not divide the periods over which the mean rolling rate was taken (`OutcomeRules.periods`): the mean then shows
         its sense, not its turns.
     mean_tilt
         Mean tilt over the last periods of its runs [rad]; 0 at rest, NaN where it ends a run.
@@ -97,11 +97,11 @@ class Found:
 def find_attractors(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules) -> Found:
     """Return the attractors that `runs` of one column under one base motion have come to, and which run came to which.
 
-    At rest, overturned and what else ends a run is told by the outcome. A run that moves to its end is on a periodic
-    orbit if its strobed states repeat; orbits are told apart by the set of their strobed states. A motion that goes on
+    The outcome shows rest, overturning and what else ends a run. A run that moves to its end is on a periodic
+    orbit if its strobed states repeat; the set of their strobed states tells orbits apart. A motion that goes on
     without repeating (`keeps_moving`) is modulated rolling if it turns with the forcing, else aperiodic (quasi-periodic
-    or chaotic), and told by its sense; all others are unsettled, whatever the outcome of the run alone. A column that
-    stands at every strobe counts as at rest.
+    or chaotic), and labelled by its sense; all others are unsettled, whatever the outcome of the run alone. A column
+    that stands at every strobe counts as at rest.
 
     Parameters
     ----------
@@ -123,7 +123,9 @@ def find_attractors(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules
         If the runs were followed without strobes, or all that move for too short to have them.
     """
     if "strobe_tilt" not in runs:
-        message = "runs must have strobed states to tell attractors from; follow them with strobes=32, say"
+        message = (
+            "runs must have strobed states, from which attractors are identified; follow them with strobes=32, say"
+        )
         raise ParameterError(message)
     shape, flat = runs["outcome"].shape, _Flat.of(runs, scales)
     labels = np.full(flat.outcome.shape, UNSETTLED)
@@ -138,7 +140,7 @@ def find_attractors(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules
 
 @dataclass(frozen=True, slots=True)
 class _Flat:
-    """What tells attractors, flat over the runs: strobed states of shape (n, strobes, 2)."""
+    """The data that identify attractors, flat over the runs: strobed states of shape (n, strobes, 2)."""
 
     outcome: npt.NDArray[np.int8]
     strobes: Complexes
@@ -242,18 +244,20 @@ def with_turns(found: Found, turns: Floats, tolerance: float) -> tuple[Found, In
 
     The order has for each place the one that its attractor had before.
     """
-    told = [
+    attractors = [
         replace(one, turns=float(value), kind=kind_of_orbit(value))
         if np.isnan(one.turns) and np.isfinite(value)
         else one
         for one, value in zip(found.attractors, turns, strict=True)
     ]
-    order = np.array(sorted(range(len(told)), key=lambda place: rank(told[place], tolerance)), dtype=np.int64)
+    order = np.array(
+        sorted(range(len(attractors)), key=lambda place: rank(attractors[place], tolerance)), dtype=np.int64
+    )
     place = np.empty_like(order)
     place[order] = np.arange(order.size)
-    labels, told_runs = found.labels.copy(), found.labels >= 0
-    labels[told_runs] = place[found.labels[told_runs]]
-    return Found(tuple(told[old] for old in order), labels), order
+    labels, settled = found.labels.copy(), found.labels >= 0
+    labels[settled] = place[found.labels[settled]]
+    return Found(tuple(attractors[old] for old in order), labels), order
 
 
 def _ordered(cycle: Complexes) -> Complexes:

@@ -54,7 +54,7 @@ def attractors(
     """Return what a column can come to under one base motion, and how often it does so from random starts.
 
     Nothing is listed in advance: at rest, rolling in either sense, rocking and other periodic motions, modulated
-    rolling, aperiodic motions and overturning are told from the runs by the rules of `label_attractors`.
+    rolling, aperiodic motions and overturning are classified from the runs by the rules of `label_attractors`.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def attractors(
         Number of starts, drawn uniformly, and the seed they are drawn with.
     duration, periods
         How long to follow each [s], or for how many periods of the base motion: long enough to settle, before the
-        strobed states that tell it. Friction η forgets a start as exp(−ηω0 t/2): to a thousandth in 14/(ηω0).
+        strobed states that identify it. Damping η forgets a start as exp(−ηω0 t/2): to a thousandth in 14/(ηω0).
     attractor_rules
         When states repeat, and when two orbits are one.
     confidence
@@ -117,11 +117,11 @@ def label_attractors(
     A run that moves to its end is on a periodic orbit if its strobed states repeat, after up to half as many periods
     as there are strobes. Orbits are one if their strobed states agree wherever they begin. A motion that goes on
     without repeating is modulated rolling if it turns once round with each period of the forcing, else aperiodic:
-    quasi-periodic or chaotic. Those are told apart by their sense only. A run of none of these has "not settled": it
-    still creeps, or there are too few strobes to tell; more periods and more strobes will.
+    quasi-periodic or chaotic. Only their sense tells those apart. A run of none of these has "not settled": it
+    still creeps, or there are too few strobes; more periods and more strobes will.
 
     The strobes alone decide, not the outcome of a run, which rests on its last periods: those may hold too little of a
-    slow modulation to tell it, and the run is STILL_MOVING by itself.
+    slow modulation to identify it, and the run is STILL_MOVING by itself.
 
     Parameters
     ----------
@@ -227,7 +227,7 @@ def shares(found: Found, confidence: float) -> xr.Dataset:
 
 
 def rule_attributes(rules: AttractorRules, confidence: float) -> dict[str, Any]:
-    """Return the attributes that say by what rules attractors were told."""
+    """Return the attributes that state the rules by which attractors were identified."""
     return {
         "repeat_tolerance": rules.repeat_tolerance,
         "match_tolerance": rules.match_tolerance,

@@ -85,7 +85,7 @@ def basins(
     """
     require_starts("over", over)
     if count is not None:
-        ranges: Mapping[str, Sequence[float]] = over  # type: ignore[assignment]  # the sweep tells what is no range
+        ranges: Mapping[str, Sequence[float]] = over  # type: ignore[assignment]  # the sweep refuses what is no range
         sweep = Sweep.random(
             model,
             motion,

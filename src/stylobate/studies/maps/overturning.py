@@ -55,7 +55,7 @@ def overturning_map(
     -------
     xarray.Dataset
         Of kind "overturning map": the runs over the two names, with `outcome`, the time it was decided at, `uncertain`
-        and all that ensembles tell; over `outcome_name`, `count` and `share` of the runs computed; and `computed`.
+        and all variables of ensembles; over `outcome_name`, `count` and `share` of the runs computed; and `computed`.
 
     Raises
     ------

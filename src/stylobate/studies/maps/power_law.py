@@ -23,7 +23,7 @@ class PowerLaw:
     Attributes
     ----------
     exponent, prefactor
-        Of the law; NaN where there are not two points that tell it.
+        Of the law; NaN with fewer than two points.
     standard_error
         Of the exponent, from the Fisher information of the binomial counts, times the root of `misfit` where that is
         above 1.
@@ -47,7 +47,7 @@ class PowerLaw:
 def fit_power_law(x: Floats, count: npt.ArrayLike, total: npt.ArrayLike) -> PowerLaw:
     """Return the power law that makes the shares `count`/`total` at `x` most likely.
 
-    Counts are binomial, so that points where nothing was counted pull as much as they tell. Points where more than
+    Counts are binomial, so that points where nothing was counted weigh as much as they inform. Points where more than
     half were counted are left out: there the share is near saturation.
 
     Parameters

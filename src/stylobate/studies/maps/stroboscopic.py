@@ -48,7 +48,7 @@ class AttractorRules:
         where they are small beside the former, do not shrink by more: else it nears an orbit of k periods …
     sampling_errors
         … or to so many standard errors of the two means: the few differences of a chaotic run scatter, and their
-        means with them, while those of a run that creeps shrink one after the other. Told from 32 strobes or more.
+        means with them, while those of a run that creeps shrink one after the other. Needs 32 strobes or more.
     branch_tolerance
         Along a parameter, a periodic orbit is the continuation of one at an earlier value if their strobed states
         differ by less than this; else it begins a branch. To be widened where the values are far apart.
@@ -139,11 +139,11 @@ def repeating_periods(strobes: Complexes, rules: AttractorRules) -> tuple[Intege
 def keeps_moving(strobes: Complexes, rules: AttractorRules) -> npt.NDArray[np.bool_]:
     """Return which motions go on as they are, without repeating: they neither die down, grow nor near an orbit.
 
-    Told from the differences of successive strobed states (`strobes` of shape (n, m, 2)): those of a run that creeps
+    Judged by the differences of successive strobed states (`strobes` of shape (n, m, 2)): those of a run that creeps
     towards an orbit shrink from the first half of the strobes to the second. In the logarithm a constant rate of decay
     ρ is a straight line: over h differences in each half the means differ by ρh, √(6h) of their standard errors (10
     for h = 16) whatever the rate, while those of a stationary run differ by about one. Fewer than 15 differences in
-    each half (32 strobes) tell too little: no run of them counts as going on. Nor does one that moves from strobe to
+    each half (32 strobes) do not suffice: no run of them counts as going on. Nor does one that moves from strobe to
     strobe by no more than what counts as repeating.
 
     Returns
@@ -164,7 +164,7 @@ def _nears_an_orbit(strobes: Complexes, rules: AttractorRules) -> npt.NDArray[np
     """Return which runs near an orbit of several periods, shape (n,).
 
     From strobe to strobe they move as the orbit does, by as much from first to last. But after its k periods they come
-    back closely, and ever more so. Told of the k after which a run comes back most closely.
+    back closely, and ever more so. Judged at the k after which a run comes back most closely.
     """
     periods = range(1, max(strobes.shape[1] // _RETURNS, 1) + 1)
     returns = [_differences(strobes, k) for k in periods]

@@ -1,4 +1,4 @@
-"""How many strobed states the runs of a study keep: as many as tell attractors, and no more than there are."""
+"""How many strobed states the runs of a study keep: enough to identify attractors, and no more than there are."""
 
 import math
 from dataclasses import replace
@@ -12,7 +12,7 @@ from stylobate.studies.sweeps.designs import whole
 USUAL_STROBES = 32
 """Strobed states that are kept where nobody asks for another number."""
 
-# Strobes that tell an orbit of two periods: it repeats after half as many. One is told from two strobes.
+# Strobes that identify an orbit of two periods: it repeats after half as many. Period one needs two strobes.
 _FOR_TWO_PERIODS, _FOR_ONE = 4, 2
 # Room for rounding in the number of periods, in periods.
 _ROUNDING = 1e-9
@@ -22,13 +22,13 @@ def with_strobes(sweep: Sweep, asked: int | None) -> Sweep:
     """Return `sweep` with strobes: those `asked` for, else 32, else half of those that its shortest run holds.
 
     Of a run shorter than 32 periods the first half is for settling. Without a periodic base motion there are no
-    strobes, and only rest and overturning are told.
+    strobes, and only rest and overturning are identified.
 
     Raises
     ------
     ParameterError
-        If the shortest run holds fewer strobes than are asked for, or fewer than 8, whose second half tells orbits of
-        one and two periods; or if fewer than two are asked for, which tell nothing.
+        If the shortest run holds fewer strobes than are asked for, or fewer than 8, whose second half identifies orbits
+        of one and two periods; or if fewer than two are asked for, which identify nothing.
     """
     chosen = USUAL_STROBES if asked is None else require_whole("strobes", asked, least=_FOR_ONE)
     held = _whole_periods(sweep)
@@ -37,7 +37,7 @@ def with_strobes(sweep: Sweep, asked: int | None) -> Sweep:
         if held < needed:
             remedy = "follow them longer" if asked is None else "follow them longer or ask for fewer strobes"
             message = (
-                f"runs must last at least {needed} periods of the base motion to tell attractors, got {held} "
+                f"runs must last at least {needed} periods of the base motion to identify attractors, got {held} "
                 f"(duration {_shortest(sweep):g} s); {remedy}"
             )
             raise ParameterError(message)

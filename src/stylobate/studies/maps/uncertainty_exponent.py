@@ -79,7 +79,7 @@ def uncertainty_exponent(
     count, seed
         Number of starts for each ε, three runs each, and the seed they are drawn with.
     overturning_only
-        Tell only whether the column overturns: the boundary of the safe starts.
+        Classify only whether the column overturns: the boundary of the safe starts.
     duration, periods
         How long to follow each run [s], or for how many periods of the base motion.
     attractor_rules
@@ -95,7 +95,7 @@ def uncertainty_exponent(
     -------
     xarray.Dataset
         Of kind "uncertainty exponent", over `epsilon`: `uncertain` of `pairs` starts, `fraction`, `fraction_low`,
-        `fraction_high`, `fitted` and the `fit`; `dropped`, the number of starts of which it cannot be told, because a
+        `fraction_high`, `fitted` and the `fit`; `dropped`, the number of starts that stay undecided, because a
         run is unsettled or failed and none differs for certain; and `uncertainty_exponent`, its `standard_error`,
         `boundary_dimension`, `misfit`. A warning is logged where more than a tenth of the starts is dropped.
 
@@ -119,14 +119,14 @@ def uncertainty_exponent(
         **options,
     )
 
-    tell: Callable[[xr.Dataset], Integers] = overturned_or_not
+    classify: Callable[[xr.Dataset], Integers] = overturned_or_not
     if not overturning_only:
         sweep = with_strobes(sweep, options.get("strobes"))
         rules = attractor_rules or AttractorRules()
-        tell = partial(_attractor_of_each, scales=OrbitScales.of(model, motion), rules=rules)
+        classify = partial(_attractor_of_each, scales=OrbitScales.of(model, motion), rules=rules)
     label = partial(
         _labelled,
-        tell=tell,
+        classify=classify,
         epsilon=epsilon,
         shifted=shifted,
         dimension=len(over),
@@ -138,26 +138,26 @@ def uncertainty_exponent(
 
 
 def _warn_of_dropped(found: xr.Dataset) -> None:
-    dropped, told = int(found["dropped"].sum()), int(found["pairs"].sum())
-    if dropped > _MANY_DROPPED * (dropped + told):
+    dropped, classified = int(found["dropped"].sum()), int(found["pairs"].sum())
+    if dropped > _MANY_DROPPED * (dropped + classified):
         _log.warning(
-            "uncertainty_exponent dropped %d of %d starts, which do not tell whether they are uncertain; "
+            "uncertainty_exponent dropped %d of %d starts, undecided whether uncertain; "
             "follow the runs longer to settle them",
             dropped,
-            dropped + told,
+            dropped + classified,
         )
 
 
 def _labelled(
     runs: xr.Dataset,
-    tell: Callable[[xr.Dataset], Integers],
+    classify: Callable[[xr.Dataset], Integers],
     epsilon: Floats,
     shifted: str,
     dimension: int,
     confidence: float,
 ) -> xr.Dataset:
     overturned = overturned_or_not(runs)
-    found = exponent_of(tell(runs), epsilon, overturned=overturned, dimension=dimension, confidence=confidence)
+    found = exponent_of(classify(runs), epsilon, overturned=overturned, dimension=dimension, confidence=confidence)
     found["epsilon"].attrs = attributes_of(shifted)
     return found.assign_attrs({**runs.attrs, **found.attrs, "shifted": shifted})
 
@@ -201,7 +201,7 @@ def exponent_of(
     Parameters
     ----------
     states
-        A number for each run that tells its final state, negative where that is not known: NOT_COMPUTED or UNSETTLED.
+        A number for each run that encodes its final state, negative where that is not known: NOT_COMPUTED or UNSETTLED.
     epsilon
         The shifts.
     overturned
@@ -226,8 +226,8 @@ def exponent_of(
     return xr.Dataset(
         {
             "uncertain": ("epsilon", uncertain, {"units": "1", "long_name": "uncertain starts"}),
-            "pairs": ("epsilon", pairs, {"units": "1", "long_name": "starts told to be uncertain or not"}),
-            "dropped": ("epsilon", dropped, {"units": "1", "long_name": "starts dropped, of which it cannot be told"}),
+            "pairs": ("epsilon", pairs, {"units": "1", "long_name": "starts classified as uncertain or not"}),
+            "dropped": ("epsilon", dropped, {"units": "1", "long_name": "starts dropped as undecided"}),
             "fraction": (
                 "epsilon",
                 np.where(pairs > 0, uncertain / np.maximum(pairs, 1), np.nan),

@@ -47,7 +47,7 @@ def after_bifurcation(
     Returns
     -------
     xarray.Dataset
-        `count` over the parameter and `fate`: overturned, at rest, rolling, modulated and so on, told as by
+        `count` over the parameter and `fate`: overturned, at rest, rolling, modulated and so on, classified as by
         `label_attractors`, with the length of orbits that take more than one period; and those not settled.
 
     Raises
@@ -64,7 +64,7 @@ def after_bifurcation(
     orbit, name = bifurcation.orbit, bifurcation.point.family.name
     c, scale = orbit.model.column.slenderness, orbit.model.time_scale
     off = size * c * np.random.default_rng(seed).standard_normal((2, count, 2))
-    told: list[dict[str, int]] = []
+    counted: list[dict[str, int]] = []
     for index, value in enumerate(chosen):
         system = orbit.system.changed(**{name: float(value)})
         period = system.motion.period
@@ -77,11 +77,11 @@ def after_bifurcation(
             duration=require_positive("periods", periods) * period,
             strobes=32,
         )
-        told.append(_counted(label_attractors(runs, system.model, system.motion)))
+        counted.append(_counted(label_attractors(runs, system.model, system.motion)))
         if progress is not None:
             progress(index + 1, chosen.size)
-    names = sorted({name for counts in told for name in counts})
-    table = np.array([[counts.get(name, 0) for name in names] for counts in told])
+    names = sorted({name for counts in counted for name in counts})
+    table = np.array([[counts.get(name, 0) for name in names] for counts in counted])
     return xr.Dataset(
         {"count": ((name, "fate"), table, {"units": "1", "long_name": "runs"})},
         coords={name: (name, chosen, attributes_of(name)), "fate": names},

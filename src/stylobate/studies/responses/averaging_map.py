@@ -16,7 +16,7 @@ from stylobate.orbits import Branch, continue_branch
 from stylobate.orbits.arguments import require_subject
 from stylobate.studies.ranges import require_rising_frequencies, require_values
 from stylobate.studies.responses.first_orbit import first_orbit
-from stylobate.studies.responses.orbit_families import told_between_bifurcations
+from stylobate.studies.responses.orbit_families import between_bifurcations
 from stylobate.studies.responses.response_curves import response_curves
 from stylobate.studies.sweeps.quantities import attributes_of
 
@@ -111,7 +111,7 @@ def _followed(model: Model, motion: BaseMotion, frequencies: Floats, sense: int 
         orbit = first_orbit(model, motion, bounds, sense)
     except NoOrbitError:
         return None
-    return told_between_bifurcations(continue_branch(orbit, "angular_frequency", bounds=bounds))
+    return between_bifurcations(continue_branch(orbit, "angular_frequency", bounds=bounds))
 
 
 def _at(branch: Branch, amplitude: Floats, frequencies: Floats) -> tuple[npt.NDArray[np.int8], Floats, Floats]:
@@ -124,14 +124,14 @@ def _at(branch: Branch, amplitude: Floats, frequencies: Floats) -> tuple[npt.NDA
     at, stable = points["angular_frequency"].to_numpy(), points["stable"].to_numpy()
     ratios = [points[name].to_numpy() / amplitude for name in ("mean_tilt", "largest_tilt")]
     found = [np.full(frequencies.size, np.nan) for _ in ratios]
-    told = np.full(frequencies.size, _NONE, dtype=np.int8)
+    codes = np.full(frequencies.size, _NONE, dtype=np.int8)
     for index in range(at.size - 1):
         low, high = sorted(at[index : index + 2])
-        inside = (frequencies >= low * (1.0 - _ROUNDED)) & (frequencies <= high * (1.0 + _ROUNDED)) & (told == _NONE)
+        inside = (frequencies >= low * (1.0 - _ROUNDED)) & (frequencies <= high * (1.0 + _ROUNDED)) & (codes == _NONE)
         if not inside.any() or low == high:
             continue
         share = (frequencies[inside] - at[index]) / (at[index + 1] - at[index])
         for ratio, into in zip(ratios, found, strict=True):
             into[inside] = ratio[index] + share * (ratio[index + 1] - ratio[index])
-        told[inside] = _STABLE if stable[index] or stable[index + 1] else _UNSTABLE
-    return told, found[0] - 1.0, found[1]
+        codes[inside] = _STABLE if stable[index] or stable[index + 1] else _UNSTABLE
+    return codes, found[0] - 1.0, found[1]

@@ -16,7 +16,7 @@ from stylobate.orbits import PeriodicOrbit, StepControl, continue_branch
 from stylobate.orbits.arguments import require_orbit, require_subject
 from stylobate.studies.ranges import require_frequencies
 from stylobate.studies.responses.first_orbit import first_orbit
-from stylobate.studies.responses.orbit_families import Followed, born, told_between_bifurcations
+from stylobate.studies.responses.orbit_families import Followed, between_bifurcations, born
 from stylobate.studies.responses.response_curves import response_curves
 
 _AVERAGED_POINTS = 400
@@ -127,9 +127,9 @@ def _joined(families: Sequence[Followed]) -> xr.Dataset:
     points, tables = [], []
     places = [one.parameter for family in families for one in family.branch.bifurcations]
     for index, family in enumerate(families):
-        branch = told_between_bifurcations(family.branch)
+        branch = between_bifurcations(family.branch)
         data = branch.points
-        # What is on a bifurcation is told by rounding alone.
+        # On a bifurcation, rounding alone decides.
         located = np.isin([point.value for point in branch.path], places)
         data["stable"] = data["stable"] & ~xr.DataArray(located, dims="point")
         table = data[[name for name in data.data_vars if str(name).startswith("bifurcation_")]]

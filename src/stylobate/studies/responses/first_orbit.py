@@ -39,11 +39,11 @@ def first_orbit(
         except NoOrbitError as error:
             reason = error
         except UnsupportedError as error:
-            told = _unknown(model, motion) if str(error).startswith("guess must be given") else str(error)
-            message = f"no orbit is known to begin with: {told}"
+            reason_given = _unknown(model, motion) if str(error).startswith("guess must be given") else str(error)
+            message = f"no orbit is known to begin with: {reason_given}"
             raise UnsupportedError(message) from None
     message = (
-        f"no orbit was found between {low!r} and {high!r} rad/s to begin with: {_told(reason)}; widen the range, or "
+        f"no orbit was found between {low!r} and {high!r} rad/s: {_sentence(reason)}; widen the range, or "
         "make the acceleration larger"
     )
     raise NoOrbitError(message)
@@ -62,5 +62,5 @@ def _unknown(model: Model, motion: BaseMotion) -> str:
     )
 
 
-def _told(reason: Exception | None) -> str:
+def _sentence(reason: Exception | None) -> str:
     return str(reason).removeprefix(_ASKED)

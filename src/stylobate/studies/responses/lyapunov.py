@@ -59,7 +59,7 @@ def lyapunov_exponents(
     count
         How many exponents, the largest first; all by default.
     blocks
-        Parts of the counted periods whose scatter tells the error.
+        Parts of the counted periods whose scatter gives the error.
     rtol
         Relative tolerance of the flow.
 
@@ -69,7 +69,7 @@ def lyapunov_exponents(
         Of kind "Lyapunov exponents", over `exponent`: `lyapunov_exponent` [1/s] and `per_period`, with their errors
         `error` [1/s] and `per_period_error`, see below. Over `period` (counted) and `exponent`: `running` [1/s], the
         estimate from the periods up to there. `periods_counted`, less than asked for where the motion ended; then the
-        exponents are NaN and `attrs["ending"]` tells why; `attrs["periods_skipped"]` is how many went before them.
+        exponents are NaN and `attrs["ending"]` states why; `attrs["periods_skipped"]` is how many went before them.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Families of orbits as they are drawn: each followed once, and told between its bifurcations."""
+"""Families of orbits as they are drawn: each followed once and split at its bifurcations."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -57,7 +57,7 @@ def born(
         yield from born(family, bounds, generations - 1, control, progress)
 
 
-def told_between_bifurcations(branch: Branch) -> Branch:
+def between_bifurcations(branch: Branch) -> Branch:
     """Return the branch with an orbit more between any two bifurcations that have none between them.
 
     Stability changes at bifurcations only: with an orbit between each two, it is known all along.

@@ -59,7 +59,7 @@ class RollingFrame:
             theta=motion.angular_frequency * model.time_scale,
             drive=abs(part) / model.column.gravity,
             sense=turning,
-            # The parts are told at the phase of axis 1.
+            # The parts are given at the phase of axis 1.
             offset=math.atan2(part.imag, part.real) + turning * (motion.start_phase + phi1),
             time_scale=model.time_scale,
         )

@@ -23,7 +23,7 @@ from stylobate.studies.sweeps.quantities import Floats, attributes_of, checked_v
 _SAMPLES = 64
 # The end of a run is met to this part of its length.
 _SLACK = 1e-9
-# Several beats of a modulation, by which it is told from what has not settled.
+# Several beats of a modulation, by which it is distinguished from what has not settled.
 _PERIODS_LOOKED_AT = 25
 
 _ENDINGS = tuple(

@@ -24,7 +24,7 @@ from stylobate.orbits.arguments import require_subject
 from stylobate.orbits.multipliers import is_stable
 from stylobate.studies.ranges import require_bounds, require_frequencies
 from stylobate.studies.responses.first_orbit import first_orbit
-from stylobate.studies.responses.orbit_families import told_between_bifurcations
+from stylobate.studies.responses.orbit_families import between_bifurcations
 from stylobate.studies.responses.response_curves import response_curves
 from stylobate.studies.sweeps.quantities import attributes_of
 
@@ -73,7 +73,7 @@ def stability_boundary(
         Over `point`: `angular_frequency` [rad/s], the parameter, `curve`, `soft` (1 soft, 0 hard, −1 not decided),
         `coefficient`; over `curve_index`: `curve_kind`, `curve_end`. Over `theory_parameter`: `theory_frequency`
         [rad/s], the critical frequency (exact for circular motion, averaged else), NaN where there is none.
-        `attrs["rolling"]` tells how rolling was wherever it was looked at: "stable", "unstable", "stable or unstable".
+        `attrs["rolling"]` states the stability of rolling where it was checked: "stable", "unstable" or both.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def stability_boundary(
         except NoOrbitError as error:
             reason = error
             continue
-        branch = told_between_bifurcations(continue_branch(orbit, "angular_frequency", bounds=frequencies))
+        branch = between_bifurcations(continue_branch(orbit, "angular_frequency", bounds=frequencies))
         looked_at |= {is_stable(point.multipliers) for point in branch.path}
         for one in losses(branch):
             if not any(_on(curve, one, float(value), frequencies, (low, high)) for curve in curves):

@@ -48,7 +48,7 @@ class Design(Protocol):
         """Return the coordinates of a piece of the array, each along its dimension."""
 
     def describe(self) -> dict[str, Any]:
-        """Return what tells this design from others, as plain values."""
+        """Return the identity of this design as plain values."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,7 +94,7 @@ class Grid:
         return {name: axis[part] for (name, axis), part in zip(self.axes.items(), slices, strict=True)}
 
     def describe(self) -> dict[str, Any]:
-        """Return the dimensions in order, and what tells their values from others."""
+        """Return the dimensions in order, and the identity of their values."""
         return {"kind": "grid", "dims": list(self.dims), "values": {name: digest(a) for name, a in self.axes.items()}}
 
 
@@ -219,7 +219,7 @@ class Points:
         return self.values(slices)
 
     def describe(self) -> dict[str, Any]:
-        """Return what tells the values from others."""
+        """Return the identity of the values."""
         return {"kind": "points", "values": {name: digest(column) for name, column in self.columns.items()}}
 
 

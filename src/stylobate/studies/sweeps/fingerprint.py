@@ -13,7 +13,7 @@ import numpy as np
 from stylobate.engine.compiling.model_code import fingerprint
 from stylobate.models import Model
 
-# Packages whose classes are told by their versions.
+# Packages whose classes are identified by their versions.
 _NOT_ITS_OWN = ("stylobate", "builtins", "abc", "typing", "numpy")
 # The functions of the contract `Model` that ensembles compile and single runs call.
 _STATIC_FUNCTIONS = (
@@ -31,7 +31,7 @@ _ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 
 
 def identity_of(thing: object) -> dict[str, Any]:
-    """Return what tells `thing` from others, the same in every process: repr, class, hashes of its state and source.
+    """Return an identity of `thing`, the same in every process: repr, class, hashes of its state and source.
 
     The source is that of the classes involved which are not stylobate's own; what those call is not looked at, but for
     a model's static functions: their code and that of the functions they call is its equations.

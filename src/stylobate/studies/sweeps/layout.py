@@ -59,7 +59,7 @@ class Layout:
 
 
 def layout_of(sweep: "Sweep") -> Layout:
-    """Return the layout of the results of `sweep`, from an ensemble of no run; mistakes in its options are told.
+    """Return the layout of the results of `sweep`, from an ensemble of no run; mistakes in its options raise.
 
     Raises
     ------

@@ -96,23 +96,23 @@ def checked_values(where: str, name: str, values: npt.ArrayLike) -> Floats:
     ParameterError
         If they are no list of numbers, or one of them is not what the quantity accepts.
     """
-    told = where if where in (name, f"{name}s") else f"{where}[{name!r}]"
+    argument = where if where in (name, f"{name}s") else f"{where}[{name!r}]"
     try:
         array = np.array(values, dtype=np.float64)  # a copy: what a sweep describes does not change
     except (TypeError, ValueError):
-        message = f"{told} must be a list of numbers, got {values!r}"
+        message = f"{argument} must be a list of numbers, got {values!r}"
         raise ParameterError(message) from None
     if array.ndim != 1:
-        message = f"{told} must be a list of numbers, got an array of shape {array.shape}"
+        message = f"{argument} must be a list of numbers, got an array of shape {array.shape}"
         raise ParameterError(message)
     quantity = _QUANTITIES.get(name, _ANY)
     refused = ~quantity.accepts(array)
     if refused.any():
         unit = f" {quantity.units}" if quantity.units not in ("", "1") else ""
-        message = f"{told} must {quantity.demand}, got {float(array[refused][0])!r}{unit}"
+        message = f"{argument} must {quantity.demand}, got {float(array[refused][0])!r}{unit}"
         raise ParameterError(message)
     unit = "" if quantity.units == "1" else quantity.units
     for value in (array.min(initial=1.0), array.max(initial=1.0)):
-        require_size(told, float(value), unit, zero=quantity.demand != "be positive")
+        require_size(argument, float(value), unit, zero=quantity.demand != "be positive")
     array.setflags(write=False)
     return array

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-# So many differences are told; more of them say that it is another sweep altogether.
-_TOLD = 3
+# So many differences are listed; more of them say that it is another sweep altogether.
+_LISTED = 3
 
 
 def differences(stored: Mapping[str, Any], given: Mapping[str, Any]) -> list[str]:
@@ -14,13 +14,13 @@ def differences(stored: Mapping[str, Any], given: Mapping[str, Any]) -> list[str
         return [f"it was made by stylobate {stored.get('version')}, this is {given.get('version')}"]
     before, now = dict(_leaves(_by_name(stored))), dict(_leaves(_by_name(given)))
     names = [*now, *(name for name in before if name not in now)]
-    found = [_told(name, before.get(name), now.get(name)) for name in names if before.get(name) != now.get(name)]
-    more = [f"and {len(found) - _TOLD} more differences"] if len(found) > _TOLD else []
-    return [*found[:_TOLD], *more]
+    found = [_difference(name, before.get(name), now.get(name)) for name in names if before.get(name) != now.get(name)]
+    more = [f"and {len(found) - _LISTED} more differences"] if len(found) > _LISTED else []
+    return [*found[:_LISTED], *more]
 
 
 def _by_name(values: Any) -> Any:
-    """Return `values` with files of records told by name and content: in another folder they are the same."""
+    """Return `values` with files of records identified by name and content: in another folder they are the same."""
     if isinstance(values, list):
         return [_by_name(value) for value in values]
     if not isinstance(values, Mapping):
@@ -41,11 +41,11 @@ def _leaves(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, 
             yield f"{prefix}{name}", value
 
 
-def _told(name: str, before: Any, now: Any) -> str:
+def _difference(name: str, before: Any, now: Any) -> str:
     if name.endswith("_sha256"):
         return f"{name.removesuffix('_sha256').replace('.', ' ')} changed"
-    told = _shown(before), _shown(now)
-    return f"{name} was {told[0]}, is {told[1]}" if told[0] != told[1] else f"{name} has other values than before"
+    shown = _shown(before), _shown(now)
+    return f"{name} was {shown[0]}, is {shown[1]}" if shown[0] != shown[1] else f"{name} has other values than before"
 
 
 def _shown(value: Any) -> str:

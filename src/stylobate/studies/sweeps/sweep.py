@@ -181,7 +181,7 @@ class Sweep:
         return Recipe(self.model, self.motion, self.duration, self.periods, self.options)
 
     def describe(self) -> dict[str, Any]:
-        """Return everything that tells this sweep from others, its version included, as plain values."""
+        """Return the identity of this sweep, version included, as plain values."""
         options: dict[str, Any] = {**self.options}
         options["rules"] = asdict(options["rules"] or OutcomeRules())
         provenance = provenance_of_run(self.model, self.motion, **options)

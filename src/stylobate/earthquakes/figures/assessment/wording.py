@@ -16,7 +16,7 @@ _OF_STATE = {1: OVERTURNED, 0: STOOD, -1: UNDECIDED}
 
 
 def verdict(state: float) -> str:
-    """Return the words for a run: 1 overturned, 0 did not, −1 does not tell."""
+    """Return the words for a run: 1 overturned, 0 did not, −1 is undecided."""
     return _OF_STATE[int(state)]
 
 

@@ -15,7 +15,7 @@ export function tiltOf(rotation: Rotation): Pair {
   return [ax * scale, ay * scale];
 }
 
-/** Return the twist χ [rad] that is `near` this one: a rotation tells it but for whole turns. */
+/** Return the twist χ [rad] that is `near` this one: a rotation fixes it up to whole turns. */
 export function twistOf([w, , , z]: Rotation, near: number): number {
   const twist = 2 * Math.atan2(z, w); // half the sum of the angles about z, β + (χ − β)
   return twist + 2 * Math.PI * Math.round((near - twist) / (2 * Math.PI));

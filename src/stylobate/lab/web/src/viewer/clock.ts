@@ -42,7 +42,7 @@ export class Clock {
     if (this.#time >= this.#to) this.#time = this.#from;
     this.#shown = null;
     this.#frame = requestAnimationFrame(this.#tick);
-    this.#tell();
+    this.#report();
   }
 
   /** Play at once, unless the reader asked for less motion. */
@@ -54,7 +54,7 @@ export class Clock {
     if (this.#frame === null) return;
     cancelAnimationFrame(this.#frame);
     this.#frame = null;
-    this.#tell();
+    this.#report();
   }
 
   toggle(): void {
@@ -64,7 +64,7 @@ export class Clock {
 
   seek(time: number): void {
     this.#time = Math.min(this.#to, Math.max(this.#from, time));
-    this.#tell();
+    this.#report();
   }
 
   /** Call `listener` at each frame and whenever the clock is set, started or stopped; return how to end that. */
@@ -78,10 +78,10 @@ export class Clock {
     this.#shown = now;
     this.#time = Math.min(this.#to, this.#time + this.speed * step);
     this.#frame = this.#time < this.#to ? requestAnimationFrame(this.#tick) : null;
-    this.#tell();
+    this.#report();
   };
 
-  #tell(): void {
+  #report(): void {
     for (const listener of this.#listeners) listener(this.#time);
   }
 }

@@ -1,4 +1,4 @@
-/** A motion as it is to be drawn: equal samples of the computed run, SI units, frame of the base unless told. */
+/** A motion as it is to be drawn: equal samples of the computed run, SI units, frame of the base unless stated. */
 
 export type Pair = readonly [number, number];
 export type Triple = readonly [number, number, number];

@@ -11,7 +11,7 @@ export interface Box {
 }
 
 export interface Extent {
-  /** The length that thicknesses and widths of lines are told in: of the column as one sees it [m]. */
+  /** The length that thicknesses and widths of lines are given in: of the column as one sees it [m]. */
   readonly size: number;
   /** Grid spacing of slab and ground [m]. */
   readonly spacing: number;

@@ -1,4 +1,4 @@
-/** Round lengths, and how they are told. */
+/** Round lengths, and how they are written. */
 
 /** Return the least of 1, 2, 5 times a power of ten that is not below `length`. */
 export function roundLength(length: number): number {

@@ -3,7 +3,7 @@ import { test } from "node:test";
 import { toldOfCase } from "../../src/page/case/description";
 import { VIEW } from "./case";
 
-test("a case is told in one line, with all that makes it", () => {
+test("a case is described in one line, with all that makes it", () => {
   assert.equal(
     toldOfCase(VIEW.description),
     "dimensionless, slenderness 0.1; slender, damping 0.1; circular, acceleration 0.065, angular frequency 1.8; " +

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Answer, Series } from "../../src/page/server/answers";
 import { brokenAt } from "../../src/page/frame/captioned";
-import type { HistoryName, Told } from "../../src/page/charts/history-kinds";
+import type { HistoryName, RunShown } from "../../src/page/charts/history-kinds";
 import { chosenHistories, historyOf, offeredHistories } from "../../src/page/charts/history-kinds";
 
 const STILL: Series = {
@@ -17,15 +17,15 @@ const STILL: Series = {
   ],
 };
 
-function told(series: Partial<Series>, frequency: number | null = null): Told {
+function run(series: Partial<Series>, frequency: number | null = null): RunShown {
   const rest = { column: { slenderness: 0.1 }, drawn: { friction_coefficient: 0.4 }, measures: {} };
   return { answer: { series: { ...STILL, ...series }, ...rest } as unknown as Answer, frequency };
 }
 
-const usual = (series: Partial<Series>): readonly HistoryName[] => chosenHistories(told(series), null);
+const usual = (series: Partial<Series>): readonly HistoryName[] => chosenHistories(run(series), null);
 
 test("only what a run tells is offered, and of the base only the directions in which it moves", () => {
-  assert.deepEqual(offeredHistories(told({})), ["tilt", "base_y"]);
+  assert.deepEqual(offeredHistories(run({})), ["tilt", "base_y"]);
 });
 
 test("a column that tilts shows its tilt, and what its contact must bear or else how it rolls", () => {
@@ -45,32 +45,32 @@ test("a column that slides upright shows how far it came, in the direction in wh
 });
 
 test("what is chosen is shown where the run has it, and what suits the run where not", () => {
-  assert.deepEqual(chosenHistories(told({ rolling_rate: [1, 1, 1] }), ["base_y", "slip_speed"]), [
+  assert.deepEqual(chosenHistories(run({ rolling_rate: [1, 1, 1] }), ["base_y", "slip_speed"]), [
     "base_y",
     "rolling_rate",
   ]);
 });
 
-test("short lengths are told in millimetres, from where they began to where they end", () => {
+test("short lengths are written in millimetres, from where they began to where they end", () => {
   const displacement = [
     [0, 0],
     [-0.002, 0],
     [0.016, 0],
   ] as const;
-  const x = historyOf("displacement_x", told({ displacement }));
+  const x = historyOf("displacement_x", run({ displacement }));
   assert.equal(x.label, "x [mm]");
   assert.deepEqual(x.values, [0, -2, 16]);
   assert.equal(x.note, "−2 to 16 mm, at the end 16");
 });
 
 test("the rate of rolling is held against that of the base, in its own sense", () => {
-  const clockwise = historyOf("rolling_rate", told({ rolling_rate: [-2, -1.9, -2.1] }, 2));
+  const clockwise = historyOf("rolling_rate", run({ rolling_rate: [-2, -1.9, -2.1] }, 2));
   assert.equal(clockwise.level?.value, -2);
 });
 
 test("friction at the instant of lifting off hides nothing of what it was before", () => {
   const before = Array.from({ length: 200 }, () => 0.2);
-  const demand = historyOf("friction_demand", told({ friction_demand: [...before, 2e13] }));
+  const demand = historyOf("friction_demand", run({ friction_demand: [...before, 2e13] }));
   assert.ok(demand.limits[1] <= 0.5);
 });
 
@@ -85,8 +85,8 @@ test("a line that is too long is broken between words, and no word is lost", () 
   );
 });
 
-test("a peak that lies between the samples and beyond the plot is told to be off the scale", () => {
-  const found = told({ friction_demand: [0.1, 0.11, 0.12] });
+test("a peak that lies between the samples and beyond the plot is reported off the scale", () => {
+  const found = run({ friction_demand: [0.1, 0.11, 0.12] });
   const peaked = { ...found, answer: { ...found.answer, measures: { largest_friction_demand: 0.607 } } };
   const demand = historyOf("friction_demand", peaked);
   assert.ok(demand.limits[1] < 0.607);

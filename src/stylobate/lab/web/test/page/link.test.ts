@@ -62,7 +62,7 @@ test("a link survives being written into an address", () => {
   }
 });
 
-const BROKEN: readonly (readonly [link: string, told: RegExp])[] = [
+const BROKEN: readonly (readonly [link: string, message: RegExp])[] = [
   ["#column", /column has no value/],
   ["#model=slender", /column is missing/],
   ["#column=cube", /column cube is not known/],
@@ -80,11 +80,11 @@ const BROKEN: readonly (readonly [link: string, told: RegExp])[] = [
   ["#column=solid&motion=sum,motions:~%5B", /not well formed/],
 ];
 
-for (const [link, told] of BROKEN) {
-  test(`the link ${link} is told to be broken`, () => {
+for (const [link, message] of BROKEN) {
+  test(`the link ${link} is reported as broken`, () => {
     assert.throws(
       () => viewFrom(link, ABOUT),
-      (error) => error instanceof BrokenLink && told.test(error.message),
+      (error) => error instanceof BrokenLink && message.test(error.message),
     );
   });
 }

@@ -67,7 +67,7 @@ test("a record is set by numbers only: which one it is has controls of its own",
   );
 });
 
-test("a kind is told in one sentence, its units beside its numbers", () => {
+test("a kind is described in one sentence, its units beside its numbers", () => {
   assert.equal(kind(offered(TOLD).shapes, "solid").about, "A solid cylinder.");
 });
 

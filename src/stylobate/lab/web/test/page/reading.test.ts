@@ -22,10 +22,10 @@ test("each quantity that a refusal names has the first line about it", () => {
 });
 
 test("a column is said to be overturned from the instant on at which that is decided", () => {
-  const answer = { outcome: "OVERTURNED", told: "overturned", decided_at: 11.37 } as Answer;
+  const answer = { outcome: "OVERTURNED", label: "overturned", decided_at: 11.37 } as Answer;
   assert.equal(badgeAt(answer, 0.6), "Will overturn at 11.4 s");
   assert.equal(badgeAt(answer, 11.37), "Overturned");
-  assert.equal(badgeAt({ ...answer, outcome: "ROLLING", told: "rolling" }, 0), "Rolling");
+  assert.equal(badgeAt({ ...answer, outcome: "ROLLING", label: "rolling" }, 0), "Rolling");
 });
 
 test("an interval is rounded outward: nothing that is open is shown as certain", () => {

@@ -18,7 +18,7 @@ test("the tilt vector of a rotation is the angle towards the azimuth it was made
   }
 });
 
-test("the tilt is told beyond a right angle, and is zero upright", () => {
+test("the tilt is found beyond a right angle, and is zero upright", () => {
   near(Math.hypot(...tiltOf(rotationTo({ azimuth: 1, angle: 2.5, twist: 0.3 }))), 2.5);
   assert.deepEqual(tiltOf([1, 0, 0, 0]), [0, 0]);
 });

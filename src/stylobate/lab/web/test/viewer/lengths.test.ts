@@ -14,7 +14,7 @@ test("round lengths are 1, 2, 5 of a decade, the next from below", () => {
   for (const [length, round] of pairs) assert.ok(Math.abs(roundLength(length) / round - 1) < 1e-12, `${length}`);
 });
 
-test("lengths are told in the unit that needs no zeros", () => {
+test("lengths are written in the unit that needs no zeros", () => {
   const words = [
     [0.5, "0.5 m"],
     [10, "10 m"],

@@ -1,4 +1,4 @@
-/** What the server tells of itself: the kinds of columns, models and motions, with the ranges of their numbers. */
+/** What the server offers: the kinds of columns, models and motions, with the ranges of their numbers. */
 
 import type { Description, PartName, Value } from "./description";
 

@@ -51,15 +51,15 @@ export function written(value: Value): string {
 
 /** Returns the case in one line: kinds with their numbers. */
 export function toldOfCase(description: Description): string {
-  const told = ([name, value]: [string, Value]): string => `${name.replaceAll("_", " ")} ${String(value)}`;
+  const written = ([name, value]: [string, Value]): string => `${name.replaceAll("_", " ")} ${String(value)}`;
   const parts = PARTS.map((part) => {
     const tag = tagOf(part);
     const numbers = Object.entries(description[part]).filter(([name, value]) => name !== tag && isSimple(value));
-    return [kindOf(description, part).replaceAll("_", " "), ...numbers.map(told)].join(", ");
+    return [kindOf(description, part).replaceAll("_", " "), ...numbers.map(written)].join(", ");
   });
   const start = (["tilt", "tilt_rate", "spin"] as const).flatMap((name) => {
     const value = description[name];
-    return value === undefined || value === null ? [] : [told([name, value])];
+    return value === undefined || value === null ? [] : [written([name, value])];
   });
   return `${[...parts, ...start].join("; ")}. SI units.`;
 }

@@ -31,7 +31,7 @@ export function withAngularFrequency(motion: Part, frequency: number): Part {
   return held ? { ...motion, [held[0]]: Number((frequency / held[1]).toPrecision(6)) } : motion;
 }
 
-/** Tells whether the motion is one that response curves are drawn for: harmonic, and in the horizontal. */
+/** Returns whether the motion is one that response curves are drawn for: harmonic, and in the horizontal. */
 export function isHorizontalHarmonic(motion: Part): boolean {
   const kind = String(motion["kind"]);
   if (!(kind in HELD_IN) || kind === "vertical" || kind === "oblique") return false;

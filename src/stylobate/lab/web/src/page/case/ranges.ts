@@ -34,7 +34,7 @@ export function positionOf(value: number, scale: Scale): number {
   return Math.round(Math.min(Math.max(share, 0), 1) * POSITIONS);
 }
 
-/** Returns the value at a position, in the fewest digits that tell it from its neighbours. */
+/** Returns the value at a position, in the fewest digits that distinguish it from its neighbours. */
 export function valueAt(position: number, scale: Scale): number {
   const { from, to, logarithmic } = scale;
   const share = Math.min(Math.max(position / POSITIONS, 0), 1);

@@ -17,7 +17,7 @@ export function startedFrom({ column, model, motion }: Description): Part {
   return { column, model, motion };
 }
 
-/** Tells whether two cases have the same start on a branch. */
+/** Returns whether two cases have the same start on a branch. */
 export function startAlike(one: Description, other: Description): boolean {
   return written(startedFrom(one)) === written(startedFrom(other));
 }
@@ -53,7 +53,7 @@ export function mayTurn(description: Description): boolean {
   return TURNING.includes(kindOf(description, "model"));
 }
 
-/** Tells whether the base moves so that there may be steady rolling to start on. */
+/** Returns whether the base moves so that there may be steady rolling to start on. */
 export function hasBranch({ motion }: Description): boolean {
   return isHorizontalHarmonic(motion);
 }

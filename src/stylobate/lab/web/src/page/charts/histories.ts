@@ -3,7 +3,7 @@
 import type { Answer } from "../server/answers";
 import { element } from "../frame/dom";
 import { axisLabel } from "../frame/format";
-import type { HistoryName, HistoryPair, Told } from "./history-kinds";
+import type { HistoryName, HistoryPair, RunShown } from "./history-kinds";
 import { chosenHistories, historyOf, offeredHistories } from "./history-kinds";
 import { TimeChart } from "./time-chart";
 
@@ -16,7 +16,7 @@ export class Histories {
   readonly root: HTMLElement;
   readonly #above: TimeChart;
   readonly #below: TimeChart;
-  #told: Told | null = null;
+  #run: RunShown | null = null;
   #wanted: HistoryPair | null = null;
 
   constructor({ seek, chosen }: HistoriesHearing) {
@@ -28,9 +28,9 @@ export class Histories {
     this.root = element("div", { class: "times" }, this.#above.root, this.#below.root);
   }
 
-  /** Shows what is told of a run; `frequency` is that of its base motion [rad/s], where it has one. */
+  /** Shows the histories of a run; `frequency` is that of its base motion [rad/s], where it has one. */
   show(answer: Answer, frequency: number | null): void {
-    this.#told = { answer, frequency };
+    this.#run = { answer, frequency };
     this.#draw();
   }
 
@@ -52,17 +52,17 @@ export class Histories {
   }
 
   #draw(): void {
-    const told = this.#told;
-    if (told === null) return;
-    const { time } = told.answer.series;
-    const [offered, [above, below]] = [offeredHistories(told), chosenHistories(told, this.#wanted)];
-    this.#above.show(time, historyOf(above, told), offered);
-    this.#below.show(time, historyOf(below, told), offered);
+    const run = this.#run;
+    if (run === null) return;
+    const { time } = run.answer.series;
+    const [offered, [above, below]] = [offeredHistories(run), chosenHistories(run, this.#wanted)];
+    this.#above.show(time, historyOf(above, run), offered);
+    this.#below.show(time, historyOf(below, run), offered);
   }
 
   #with(name: HistoryName, place: 0 | 1): HistoryPair {
     const [above, below] =
-      this.#told === null ? (["tilt", "tilt"] as const) : chosenHistories(this.#told, this.#wanted);
+      this.#run === null ? (["tilt", "tilt"] as const) : chosenHistories(this.#run, this.#wanted);
     return place === 0 ? [name, below] : [above, name];
   }
 }

@@ -1,13 +1,13 @@
-/** What can be drawn over the time of a run: its quantities, as far as its model tells them. */
+/** What can be drawn over the time of a run: its quantities, as far as its model provides them. */
 
 import type { Answer, Numbers, Series } from "../server/answers";
-import { told, unitWritten, withUnit } from "../frame/format";
+import { formatted, unitWritten, withUnit } from "../frame/format";
 import { isDimensionless } from "../frame/units";
 
 /** A level that a quantity is held against. */
 export interface Level {
   readonly value: number;
-  readonly told: string;
+  readonly label: string;
 }
 
 /** A quantity over time, ready to be drawn. */
@@ -56,35 +56,35 @@ const OFF = ", off the scale";
 /** A tilt that no plot shows, in units of c: the column stands. */
 const UPRIGHT = 1e-3;
 
-/** What is told of a run, of which `frequency` is that of the base motion [rad/s], where it has one. */
-export interface Told {
+/** A run with its histories; `frequency` is that of the base motion [rad/s], where it has one. */
+export interface RunShown {
   readonly answer: Answer;
   readonly frequency: number | null;
 }
 
-/** Returns the quantities that are told of a run; of the base, the directions in which it moves. */
-export function offeredHistories({ answer: { series } }: Told): readonly HistoryName[] {
+/** Returns the quantities of a run; of the base, the directions in which it moves. */
+export function offeredHistories({ answer: { series } }: RunShown): readonly HistoryName[] {
   return NAMES.filter((name) => {
     const { values, place } = SOURCES[name];
-    return series[values]?.some((one) => tells(one, place)) ?? false;
+    return series[values]?.some((one) => known(one, place)) ?? false;
   });
 }
 
-function tells(value: number | null | Numbers, place: number | null): boolean {
+function known(value: number | null | Numbers, place: number | null): boolean {
   return place === null ? value !== null : typeof value === "object" && Boolean(value?.[place]);
 }
 
-/** Returns the two quantities that tell most of a run: those of `wanted` that it has, else what suits it. */
-export function chosenHistories(told: Told, wanted: HistoryPair | null): readonly [HistoryName, HistoryName] {
-  const offered = offeredHistories(told);
+/** Returns the two most informative quantities of a run: those of `wanted` that it has, else what suits it. */
+export function chosenHistories(run: RunShown, wanted: HistoryPair | null): readonly [HistoryName, HistoryName] {
+  const offered = offeredHistories(run);
   const has = (name: HistoryName): boolean => offered.includes(name);
   const order: readonly HistoryName[] = ["friction_demand", "rolling_rate", "base_x", "base_y", "base_z"];
-  const [above, below] = [usualAbove(told.answer), order.find(has) ?? "tilt"];
+  const [above, below] = [usualAbove(run.answer), order.find(has) ?? "tilt"];
   if (wanted === null) return [above, below];
   return [has(wanted[0]) ? wanted[0] : above, has(wanted[1]) ? wanted[1] : below];
 }
 
-/** Where the column stands all the time and moves on its base its tilt tells nothing: then how far it came. */
+/** Where the column stands all the time and moves on its base its tilt is zero: then how far it came. */
 function usualAbove({ series, column }: Answer): HistoryName {
   if (!series.displacement || largestOf(series.amplitude) >= UPRIGHT * column.slenderness) return "tilt";
   const [x, y] = ([0, 1] as const).map((place) => largestOf(along(series.displacement!, place).map(magnitude)));
@@ -92,8 +92,8 @@ function usualAbove({ series, column }: Answer): HistoryName {
   return y! > x! ? "displacement_y" : "displacement_x";
 }
 
-/** Returns a quantity that is told of a run, ready to be drawn. */
-export function historyOf(name: HistoryName, { answer, frequency }: Told): History {
+/** Returns a quantity of a run, ready to be drawn. */
+export function historyOf(name: HistoryName, { answer, frequency }: RunShown): History {
   const { series, column, drawn } = answer;
   const { values: source, place } = SOURCES[name];
   const found = series[source] ?? [];
@@ -108,7 +108,7 @@ export function historyOf(name: HistoryName, { answer, frequency }: Told): Histo
     case "pivoting_demand":
       return demand(name, "M/(N r)", values, null, answer.measures["largest_pivoting_demand"]);
     case "normal_force":
-      return { ...signed(name, "green", "N/(m g)", "", values), level: { value: 1, told: "weight" } };
+      return { ...signed(name, "green", "N/(m g)", "", values), level: { value: 1, label: "weight" } };
     case "displacement_x":
       return length(name, "x", values);
     case "displacement_y":
@@ -145,8 +145,8 @@ function tilt(values: Numbers): History {
   const largest = largestOf(values);
   return {
     ...{ name: "tilt", label: "|θ|/c", colour: "blue", values },
-    note: `largest ${told(largest)} c${largest > FARTHEST ? OFF : ""}`,
-    level: largest > 0.7 ? { value: 1, told: "c" } : null,
+    note: `largest ${formatted(largest)} c${largest > FARTHEST ? OFF : ""}`,
+    level: largest > 0.7 ? { value: 1, label: "c" } : null,
     limits: [0, Math.min(largest, FARTHEST)],
   };
 }
@@ -155,7 +155,7 @@ function rollingRate(values: Numbers, frequency: number | null): History {
   const made = signed("rolling_rate", "purple", "ψ̇", "rad/s", values);
   if (frequency === null) return made;
   const backwards = quantile(values, 0.5) < 0;
-  return { ...made, level: { value: backwards ? -frequency : frequency, told: "Ω of the base" } };
+  return { ...made, level: { value: backwards ? -frequency : frequency, label: "Ω of the base" } };
 }
 
 /** Friction or pivoting over what presses: where the column hardly presses, huge for an instant, and cut off. */
@@ -171,10 +171,10 @@ function demand(
   const peak = measured === null ? Infinity : Math.max(measured ?? 0, largest);
   const usual = Math.max(quantile(values, 0.99) * 1.2, (coefficient ?? 0) * 1.25);
   const top = Math.min(peak, usual) || (coefficient ?? 1);
-  const most = Number.isFinite(peak) ? told(peak) : "without bound";
+  const most = Number.isFinite(peak) ? formatted(peak) : "without bound";
   return {
     ...{ name, label, colour: "green", values, note: `largest ${most}${peak > top ? OFF : ""}` },
-    level: coefficient === null ? null : { value: coefficient, told: `friction coefficient ${told(coefficient)}` },
+    level: coefficient === null ? null : { value: coefficient, label: `friction coefficient ${formatted(coefficient)}` },
     limits: [0, top],
   };
 }
@@ -183,7 +183,7 @@ function demand(
 function signed(name: HistoryName, colour: string, label: string, unit: string, values: Numbers): History {
   const [least, largest] = [-largestOf(scaled(values, -1)), largestOf(values)];
   const usual = 1.5 * quantile(values.map(magnitude), 0.99);
-  const note = least < 0 ? `${told(least)} to ${withUnit(largest, unit)}` : `largest ${withUnit(largest, unit)}`;
+  const note = least < 0 ? `${formatted(least)} to ${withUnit(largest, unit)}` : `largest ${withUnit(largest, unit)}`;
   return {
     ...{ name, label: unit ? `${label} [${unitWritten(unit)}]` : label, colour, values, level: null, note },
     limits: [Math.max(least, -usual), Math.min(largest, usual)],
@@ -194,7 +194,7 @@ function signed(name: HistoryName, colour: string, label: string, unit: string, 
 function length(name: HistoryName, label: string, values: Numbers): History {
   const fine = !isDimensionless() && largestOf(values.map(magnitude)) < 0.1;
   const made = signed(name, "blue", label, fine ? "mm" : "m", fine ? scaled(values, 1000) : values);
-  return { ...made, note: `${made.note}, at the end ${told(made.values.at(-1))}` };
+  return { ...made, note: `${made.note}, at the end ${formatted(made.values.at(-1))}` };
 }
 
 function along(vectors: readonly (readonly (number | null)[])[], place: number): Numbers {

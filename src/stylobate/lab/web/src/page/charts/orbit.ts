@@ -2,7 +2,7 @@
 
 import type { DrawnMotion } from "../../viewer/drawn-motion";
 import { element, onResize, themeColour } from "../frame/dom";
-import { told } from "../frame/format";
+import { formatted } from "../frame/format";
 import { ticks } from "../case/ranges";
 
 /** In units of c: what falls is seen to leave, and what came before is still seen. */
@@ -34,7 +34,7 @@ export class OrbitChart {
     const c = motion.column.slenderness;
     const farthest = motion.tilt.reduce((most, [x, y]) => Math.max(most, Math.hypot(x, y) / c), 0);
     this.#reach = Math.min(Math.max(1, farthest), FARTHEST) * 1.08;
-    this.#canvas.setAttribute("aria-label", `Path of the tilt vector; it reaches ${told(farthest)} c`);
+    this.#canvas.setAttribute("aria-label", `Path of the tilt vector; it reaches ${formatted(farthest)} c`);
     this.redraw();
   }
 
@@ -85,9 +85,9 @@ export class OrbitChart {
       pen.moveTo(left, y);
       pen.lineTo(right, y);
       pen.textAlign = "center";
-      pen.fillText(told(value), x, bottom + 13);
+      pen.fillText(formatted(value), x, bottom + 13);
       pen.textAlign = "right";
-      pen.fillText(told(value), left - 5, y + 4);
+      pen.fillText(formatted(value), left - 5, y + 4);
     }
     pen.stroke();
     pen.textAlign = "center";

@@ -2,7 +2,7 @@
 
 import type uPlot from "uplot";
 import { themeColour } from "../frame/dom";
-import { told } from "../frame/format";
+import { formatted } from "../frame/format";
 
 export const LETTERING = '11px system-ui, -apple-system, "Segoe UI", Roboto, sans-serif';
 
@@ -20,7 +20,7 @@ export function axis(label: Label, looks: uPlot.Axis = {}): uPlot.Axis {
     grid: { stroke: () => themeColour("grid"), width: 1 },
     ticks: { stroke: () => themeColour("grid"), width: 1, size: 4 },
     gap: 3,
-    values: (_, splits) => splits.map((value) => told(value, 6)),
+    values: (_, splits) => splits.map((value) => formatted(value, 6)),
     ...looks,
   };
 }

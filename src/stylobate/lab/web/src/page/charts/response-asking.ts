@@ -47,7 +47,7 @@ export class ResponseAsking {
     this.panel = new ResponsePanel({
       frequency: (value) => edited({ description: this.#at(value) }),
       orbit: (orbit) => {
-        if (mayTurn(this.#view.description)) this.panel.tell(SPINS);
+        if (mayTurn(this.#view.description)) this.panel.report(SPINS);
         else edited({ description: this.#on(orbit), start: null });
       },
       range: (range) => edited({ range }),
@@ -121,6 +121,6 @@ export class ResponseAsking {
 
   #fail(error: unknown): void {
     if (error instanceof Unreachable) return this.#lost();
-    this.panel.tell(error instanceof Error ? error.message : String(error)); // the last good curves stay
+    this.panel.report(error instanceof Error ? error.message : String(error)); // the last good curves stay
   }
 }

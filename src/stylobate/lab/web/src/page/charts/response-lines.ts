@@ -25,7 +25,7 @@ export function linesOf(curves: ResponseCurves, slenderness: number): readonly R
   });
 }
 
-/** Returns branches without those of a second sense that cannot be told from the first, as under straight motion. */
+/** Returns branches without those of a second sense that cannot be distinguished from the first, as under straight motion. */
 function distinct(branches: readonly ResponseBranch[]): readonly ResponseBranch[] {
   const senses = [...new Set(branches.map((one) => one.sense))];
   const [first = [], second = []] = senses.map((sense) => branches.filter((one) => one.sense === sense));

@@ -4,7 +4,7 @@ import type { ExactResponse, JobReport, ResponseCurves } from "../server/answers
 import { button, element, newId, onResize } from "../frame/dom";
 import { enlarging } from "../frame/enlarging";
 import { Elapsed } from "../frame/elapsed";
-import { axisLabel, capital, plain, readNumber, told, unitWritten } from "../frame/format";
+import { axisLabel, capital, plain, readNumber, formatted, unitWritten } from "../frame/format";
 import { joined } from "../frame/units";
 import type { Job } from "../server/job";
 import type { Extent } from "./frequency-marker";
@@ -45,7 +45,7 @@ export class ResponsePanel {
   #curves: ResponseCurves | null = null;
   #exact: ExactResponse | null = null;
   #job: Job | null = null;
-  readonly #elapsed = new Elapsed((told) => this.tell(told));
+  readonly #elapsed = new Elapsed((message) => this.report(message));
   #range: readonly [number, number] = [0.2, 4];
   #slenderness = 0.1;
   #frequency: number | null = null;
@@ -101,7 +101,7 @@ export class ResponsePanel {
     this.root.classList.remove("none");
     this.#slenderness = slenderness;
     this.showRange(range);
-    this.tell(this.#about);
+    this.report(this.#about);
     this.#draw();
   }
 
@@ -109,13 +109,13 @@ export class ResponsePanel {
   setOwn(own: boolean): void {
     if (own === this.#own) return;
     this.#own = own;
-    if (this.#curves !== null) this.tell(this.#about);
+    if (this.#curves !== null) this.report(this.#about);
   }
 
   /** Takes the curves away and says why there are none. */
   clear(reason: string): void {
     this.#curves = null;
-    this.tell(reason);
+    this.report(reason);
     this.root.classList.add("none");
     this.#draw();
   }
@@ -133,7 +133,7 @@ export class ResponsePanel {
     this.#marker.show(frequency);
   }
 
-  tell(text: string): void {
+  report(text: string): void {
     this.#note.textContent = text;
   }
 
@@ -145,7 +145,7 @@ export class ResponsePanel {
     this.#ask.textContent = "Exact orbits";
     if (this.#exact === null) return;
     this.#exact = null;
-    this.tell(this.#about);
+    this.report(this.#about);
     this.#draw();
   }
 
@@ -182,7 +182,7 @@ export class ResponsePanel {
   #askExact(): void {
     if (this.#job !== null) {
       this.forgetExact();
-      this.tell(this.#about);
+      this.report(this.#about);
       return;
     }
     this.#ask.textContent = "Cancel";
@@ -200,11 +200,11 @@ export class ResponsePanel {
     this.#elapsed.end();
     this.#ask.textContent = "Exact orbits";
     if (last?.state !== "done") {
-      this.tell(problems.join(" "));
+      this.report(problems.join(" "));
       return;
     }
     this.#exact = last.result as ExactResponse;
-    this.tell(this.#about);
+    this.report(this.#about);
     this.#draw();
   }
 
@@ -231,7 +231,7 @@ export class ResponsePanel {
       new Set(lines.filter((one) => one.amplitude.some((value) => value !== null)).map((one) => one.sense)),
       picture.critical.some((one) => this.#range[0] < one && one < this.#range[1]),
     );
-    const critical = picture.critical.map((one) => told(one, 4)).join(", ");
+    const critical = picture.critical.map((one) => formatted(one, 4)).join(", ");
     const summary =
       lines.length === 0
         ? "no curves"
@@ -279,8 +279,8 @@ export class ResponsePanel {
     const right = 0 < from && from < to && Number.isFinite(to);
     for (const field of [this.#from, this.#to]) field.setAttribute("aria-invalid", String(!right && !empty));
     if (right || empty) {
-      this.tell(this.#about);
+      this.report(this.#about);
       this.#hearing.range(right ? [from, to] : null);
-    } else this.tell("The range must rise from above zero; leave both fields empty for the usual one.");
+    } else this.report("The range must rise from above zero; leave both fields empty for the usual one.");
   }
 }

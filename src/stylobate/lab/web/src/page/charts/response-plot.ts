@@ -4,7 +4,7 @@ import uPlot from "uplot";
 import type { Pair } from "../../viewer/index";
 import type { ExactFamily, ExactResponse, Numbers } from "../server/answers";
 import { themeColour } from "../frame/dom";
-import { told } from "../frame/format";
+import { formatted } from "../frame/format";
 import type { Label } from "./plot-looks";
 import { across, PLAIN, upright } from "./plot-looks";
 import type { ResponseLine } from "./response-lines";
@@ -89,7 +89,7 @@ export class ResponsePlot {
 
   /** Returns the room to the right [px]: half of the last number of the axis reaches beyond the plot. */
   #roomAtEnd(): number {
-    const last = told(this.#picture?.range[1] ?? 1, 6);
+    const last = formatted(this.#picture?.range[1] ?? 1, 6);
     return Math.max(10, Math.ceil((last.length * DIGIT) / 2));
   }
 

@@ -1,7 +1,7 @@
 /** What stands below the frequency response: whose curves they are, and which exact orbits were found. */
 
 import type { ExactResponse, ResponseCurves } from "../server/answers";
-import { counted, told, words } from "../frame/format";
+import { counted, formatted, words } from "../frame/format";
 import { joined } from "../frame/units";
 
 /** Returns whose curves are shown, and how they were computed. */
@@ -20,7 +20,7 @@ export function aboutExact(exact: ExactResponse): string {
     const places = exact.bifurcations.filter((one) => one.kind === kind).map((one) => one.angular_frequency);
     return `${words(kind)} at ${places
       .sort((a, b) => a - b)
-      .map((one) => told(one, 4))
+      .map((one) => formatted(one, 4))
       .join(", ")}`;
   });
   return `${families} of exact orbits; ${found.length > 0 ? joined(found.join("; "), "rad/s") : "no bifurcation in the range"}. Click a dot to start on that orbit.`;

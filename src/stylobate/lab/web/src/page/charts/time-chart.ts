@@ -2,7 +2,7 @@
 
 import uPlot from "uplot";
 import { choice, element, onResize, themeColour } from "../frame/dom";
-import { told, withUnit } from "../frame/format";
+import { formatted, withUnit } from "../frame/format";
 import type { History, HistoryName } from "./history-kinds";
 import { HISTORIES, isHistoryName } from "./history-kinds";
 import type { Label } from "./plot-looks";
@@ -103,13 +103,13 @@ export class TimeChart {
     return [low < 0 ? low - room : low, high + room];
   }
 
-  /** Tells the value below the pointer. */
+  /** Shows the value below the pointer. */
   #read(plot: uPlot): void {
     const { idx } = plot.cursor;
     const value = idx === null || idx === undefined ? undefined : plot.data[1]?.[idx];
     const time = idx === null || idx === undefined ? undefined : plot.data[0]?.[idx];
     const found = value !== undefined && time !== undefined;
-    this.#note.textContent = found ? `${told(value)} at ${withUnit(time, "s", 4)}` : (this.#history?.note ?? "");
+    this.#note.textContent = found ? `${formatted(value)} at ${withUnit(time, "s", 4)}` : (this.#history?.note ?? "");
   }
 
   #nameLevel(plot: uPlot): void {
@@ -124,13 +124,13 @@ export class TimeChart {
     const room = place - bbox.top > 14 * uPlot.pxRatio;
     ctx.textBaseline = room ? "bottom" : "top";
     const [right, line] = [bbox.left + bbox.width - 3, place + (room ? -2 : 3)];
-    const [width, height] = [ctx.measureText(level.told).width + 4, 13 * uPlot.pxRatio];
+    const [width, height] = [ctx.measureText(level.label).width + 4, 13 * uPlot.pxRatio];
     ctx.globalAlpha = 0.8; // the curve may run below it
     ctx.fillStyle = themeColour("panel");
     ctx.fillRect(right - width + 2, room ? line - height : line, width, height);
     ctx.globalAlpha = 1;
     ctx.fillStyle = themeColour("vermilion");
-    ctx.fillText(level.told, right, line);
+    ctx.fillText(level.label, right, line);
     ctx.restore();
   }
 

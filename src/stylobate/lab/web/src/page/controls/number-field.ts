@@ -144,7 +144,7 @@ export class NumberField {
     this.#changed(empty ? null : value);
   }
 
-  /** What is no number is not kept: the field tells what is shown. */
+  /** What is no number is not kept: the field shows what counts. */
   #restore(): void {
     if (this.#unread === "") return;
     this.#setUnread("");

@@ -5,7 +5,7 @@ import type { Received } from "../server/answers";
 import { Refused, sendRecord, Unreachable } from "../server/api";
 import type { Part, Value } from "../case/description";
 import { button, choice, element, newId } from "../frame/dom";
-import { capital, sentence, told } from "../frame/format";
+import { capital, sentence, formatted } from "../frame/format";
 
 const UNITS = [
   ["", "unit: from the file"],
@@ -36,7 +36,7 @@ export function inWordsOfForm(line: string): string {
 
 /** A record that was uploaded: what the server said of it, and what was sent. */
 interface Kept {
-  readonly told: Received;
+  readonly received: Received;
   readonly body: Part;
 }
 
@@ -52,7 +52,7 @@ export class RecordForm {
     "aria-label": "Time step of the record [s], where the file states none",
     placeholder: "time step [s]: from the file",
   });
-  readonly #told = element("p", { class: "hint", "aria-live": "polite" });
+  readonly #summary = element("p", { class: "hint", "aria-live": "polite" });
   readonly #warnings = element("div", { class: "warnings", "aria-live": "polite" });
   readonly #problem = element("p", { class: "problem", role: "alert", hidden: true });
   readonly #known = new Map<string, Kept>();
@@ -74,7 +74,7 @@ export class RecordForm {
     this.#files.tabIndex = -1; // the button beside it is the one to reach
     this.#own = element("div", { class: "own-record" }, label, this.#files, again, this.#units, this.#step);
     const source = element("div", { class: "field choice" }, element("label", { for: id }, "Record"), this.#source);
-    this.root = element("div", { class: "record" }, source, this.#own, this.#told, this.#warnings, this.#problem);
+    this.root = element("div", { class: "record" }, source, this.#own, this.#summary, this.#warnings, this.#problem);
   }
 
   show(motion: Part): void {
@@ -88,11 +88,11 @@ export class RecordForm {
     this.#source.value = own ? OWN : sample;
     this.#own.hidden = !own;
     const known = typeof upload === "string" ? this.#known.get(upload) : undefined;
-    this.#told.textContent = known ? toldOfRecord(known.told) : "";
-    this.#told.hidden = !known;
-    const lines = (known?.told.warnings ?? []).map(inWordsOfForm);
+    this.#summary.textContent = known ? summaryOf(known.received) : "";
+    this.#summary.hidden = !known;
+    const lines = (known?.received.warnings ?? []).map(inWordsOfForm);
     this.#warnings.replaceChildren(...lines.map((line) => element("p", { class: "warning" }, sentence(line))));
-    if (!own) this.#tell(null);
+    if (!own) this.#report(null);
   }
 
   /** Sends an upload once more that the server does not hold any more; false where this page has not its files. */
@@ -106,7 +106,7 @@ export class RecordForm {
   askAgain(): void {
     const section = this.root.closest("details");
     if (section !== null) section.open = true;
-    this.#tell("This case needs a record that the server does not hold. Choose its files again.");
+    this.#report("This case needs a record that the server does not hold. Choose its files again.");
   }
 
   #choose(value: string): void {
@@ -120,7 +120,7 @@ export class RecordForm {
     this.#files.click();
   }
 
-  #tell(problem: string | null): void {
+  #report(problem: string | null): void {
     this.#problem.textContent = problem ?? "";
     this.#problem.hidden = problem === null;
   }
@@ -130,19 +130,19 @@ export class RecordForm {
     if (files.length === 0) return;
     this.#choosing = typeof this.#motion["upload"] !== "string";
     if (files.length > MOST_FILES) {
-      this.#tell(`A record has at most ${MOST_FILES} files, one for each direction; ${files.length} were chosen.`);
+      this.#report(`A record has at most ${MOST_FILES} files, one for each direction; ${files.length} were chosen.`);
       return;
     }
     try {
       const contents = await Promise.all(files.map(async (file) => ({ name: file.name, content: await base64(file) })));
       const body: Part = { files: contents, units: this.#units.value || null, step: stepIn(this.#step.value) };
       const received = await sendRecord(body);
-      this.#known.set(received.upload, { told: received, body });
-      this.#tell(null);
+      this.#known.set(received.upload, { received, body });
+      this.#report(null);
       this.#changed({ kind: "record", upload: received.upload, scale: this.#motion["scale"] ?? 1 });
     } catch (error) {
-      if (error instanceof Unreachable) this.#tell("The server does not answer; choose the files again when it does.");
-      else this.#tell(error instanceof Refused ? error.problems.map(inWordsOfForm).join(" ") : String(error));
+      if (error instanceof Unreachable) this.#report("The server does not answer; choose the files again when it does.");
+      else this.#report(error instanceof Refused ? error.problems.map(inWordsOfForm).join(" ") : String(error));
     }
   }
 }
@@ -153,9 +153,9 @@ function stepIn(text: string): number | string | null {
   return written === "" ? null : Number.isFinite(Number(written)) ? Number(written) : text;
 }
 
-function toldOfRecord(record: Received): string {
-  const peaks = Object.entries(record.peaks).map(([axis, peak]) => `${axis} ${told(peak)} m/s²`);
-  const length = `${record.samples} samples, ${told(record.duration)} s in steps of ${told(record.step)} s`;
+function summaryOf(record: Received): string {
+  const peaks = Object.entries(record.peaks).map(([axis, peak]) => `${axis} ${formatted(peak)} m/s²`);
+  const length = `${record.samples} samples, ${formatted(record.duration)} s in steps of ${formatted(record.step)} s`;
   return `${record.name}: ${length}; peaks ${peaks.join(", ")}.`;
 }
 

@@ -1,21 +1,21 @@
-/** Tells how long something takes, once it takes long: seldom enough to be read out. */
+/** Reports how long something takes, once it takes long: rarely enough to be read out. */
 
 const SECOND = 1000;
 const STEP = 5; // s
 const LONG = 10; // s
 
 export class Elapsed {
-  readonly #tell: (told: string) => void;
+  readonly #report: (message: string) => void;
   #text = "";
   #later = "";
   #begun = 0;
   #timer: number | null = null;
 
-  constructor(tell: (told: string) => void) {
-    this.#tell = tell;
+  constructor(report: (message: string) => void) {
+    this.#report = report;
   }
 
-  /** Tells `text`, after ten seconds `later`, now and with the time since the first one of the row. */
+  /** Reports `text`, after ten seconds `later`, now and with the time since the first one of the row. */
   begin(text: string, later = text): void {
     if (this.#timer !== null && text === this.#text) return;
     this.#text = text;
@@ -34,6 +34,6 @@ export class Elapsed {
 
   #tick(): void {
     const seconds = Math.round((performance.now() - this.#begun) / SECOND);
-    this.#tell(seconds < STEP ? this.#text : `${seconds < LONG ? this.#text : this.#later} ${seconds} s`);
+    this.#report(seconds < STEP ? this.#text : `${seconds < LONG ? this.#text : this.#later} ${seconds} s`);
   }
 }

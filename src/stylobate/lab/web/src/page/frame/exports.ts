@@ -74,7 +74,7 @@ export class ExportMenu {
       const { stage, caption } = this.#exported;
       if (stage !== null) download(await captioned(await stage.png(), caption()), "stylobate.png");
     } catch (error) {
-      this.#tell(error instanceof Error ? error.message : String(error));
+      this.#report(error instanceof Error ? error.message : String(error));
     }
   }
 
@@ -85,10 +85,10 @@ export class ExportMenu {
       return;
     }
     this.#gif.textContent = "Cancel the moving picture";
-    this.#tell("The moving picture is being made…");
+    this.#report("The moving picture is being made…");
     this.#job = new Job("animation", this.#exported.description(), {
       report: ({ done, total }) => {
-        if (total > 0) this.#tell(`Moving picture: ${Math.round((100 * done) / total)} %`);
+        if (total > 0) this.#report(`Moving picture: ${Math.round((100 * done) / total)} %`);
       },
       ended: (last, error) => {
         if (last?.state === "done") void this.#save(last.id);
@@ -109,22 +109,22 @@ export class ExportMenu {
   #finished(text: string): void {
     this.#job = null;
     this.#gif.textContent = "Moving picture (GIF)";
-    this.#tell(text);
+    this.#report(text);
   }
 
-  #tell(text: string): void {
+  #report(text: string): void {
     this.#note.textContent = text;
   }
 
   async #text(language: "python" | "toml"): Promise<void> {
     try {
       const described = await this.#exported.described();
-      this.#tell("");
+      this.#report("");
       if (language === "python") this.#dialog.show("The same run in Python", described.python, "run.py");
       else
         this.#dialog.show("The same run for the command line: stylobate simulate run.toml", described.toml, "run.toml");
     } catch (error) {
-      this.#tell(error instanceof Error ? error.message : String(error));
+      this.#report(error instanceof Error ? error.message : String(error));
     }
   }
 

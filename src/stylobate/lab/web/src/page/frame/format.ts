@@ -18,7 +18,7 @@ export function readNumber(text: string): number {
 }
 
 /** Returns the same for reading: a true minus sign, powers of ten written out. */
-export function told(value: number | null | undefined, digits = 3): string {
+export function formatted(value: number | null | undefined, digits = 3): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   const [mantissa = "", exponent] = plain(value, digits).split("e");
   const number = mantissa.replace("-", MINUS);
@@ -26,7 +26,7 @@ export function told(value: number | null | undefined, digits = 3): string {
 }
 
 export function withUnit(value: number | null | undefined, unit: string, digits = 3): string {
-  return unit === "" || unit === "1" ? told(value, digits) : joined(told(value, digits), siWritten(unit));
+  return unit === "" || unit === "1" ? formatted(value, digits) : joined(formatted(value, digits), siWritten(unit));
 }
 
 /** Returns a unit as it is shown: "m s-2" as m/s², or g for a dimensionless column. */

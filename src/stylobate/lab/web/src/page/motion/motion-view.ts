@@ -13,7 +13,7 @@ import { NumbersTable } from "./numbers-table";
 import { Transport } from "./transport";
 import { Verdict } from "./verdict";
 
-/** What is told of a run that takes long. */
+/** The message of a run that takes long. */
 const FIRST = "computing… the first run of a model and long runs take time;";
 
 export interface MotionHearing {
@@ -30,7 +30,7 @@ export interface MotionHearing {
 export class MotionView {
   readonly clock = new Clock();
   readonly #cancel: HTMLButtonElement;
-  /** Null where the browser draws no 3D; the curves tell the motion all the same. */
+  /** Null where the browser draws no 3D; the curves show the motion all the same. */
   readonly stage: Stage | null;
   readonly orbit = new OrbitChart();
   readonly root: HTMLElement;
@@ -42,7 +42,7 @@ export class MotionView {
   readonly #curves: Histories;
   readonly #old: OldNote;
   readonly #waiting = element("p", { class: "waiting-note", hidden: true });
-  readonly #elapsed = new Elapsed((told) => (this.#waiting.textContent = told));
+  readonly #elapsed = new Elapsed((message) => (this.#waiting.textContent = message));
   readonly #fall = element("p", { class: "fall-note", hidden: true }, "from here on: not computed");
   /** Where the run ended; what is drawn later is its fall [s]. */
   #computed = 0;
@@ -129,7 +129,7 @@ export class MotionView {
     return this.#old;
   }
 
-  /** Tells that what is shown is the case before, while another one is on its way. */
+  /** Marks what is shown as the case before, while another one is on its way. */
   setStale(stale: boolean): void {
     this.root.classList.toggle("stale", stale);
     this.histories.classList.toggle("stale", stale);

@@ -1,4 +1,4 @@
-/** The numbers of the column and of the run, as the command line tells them. */
+/** The numbers of the column and of the run, as the command line prints them. */
 
 import type { Answer } from "../server/answers";
 import { element } from "../frame/dom";

@@ -3,7 +3,7 @@
 import type { Clock } from "../../viewer/index";
 import type { Answer } from "../server/answers";
 import { button, choice, element, newId, onResize, themeColour } from "../frame/dom";
-import { clockTime, told, words } from "../frame/format";
+import { clockTime, formatted, words } from "../frame/format";
 import { joined } from "../frame/units";
 import { SPEEDS } from "../view/state";
 
@@ -84,7 +84,7 @@ export class Transport {
   showSpeed(speed: number): void {
     const text = String(speed);
     if (![...this.#speed.options].some((one) => one.value === text)) {
-      this.#speed.append(element("option", { value: text }, `${told(speed)}×`));
+      this.#speed.append(element("option", { value: text }, `${formatted(speed)}×`));
     }
     this.#speed.value = text;
   }
@@ -102,7 +102,7 @@ export class Transport {
     this.#play.title = `${state} (space)`;
   }
 
-  /** Tells those who do not see the line what it stands at: not at every frame. */
+  /** Announces the position of the line to screen readers: not at every frame. */
   describe(): void {
     this.#line.setAttribute(
       "aria-valuetext",
@@ -159,7 +159,7 @@ const COLOURS: Readonly<Record<string, string>> = {
 };
 
 function timesOf(events: Answer["events"], kind: string): string {
-  const times = events.filter((event) => event.kind === kind).map((event) => told(event.time, 3));
+  const times = events.filter((event) => event.kind === kind).map((event) => formatted(event.time, 3));
   const [listed, more] = times.length > 6 ? [times.slice(0, 5), ` and ${times.length - 5} more`] : [times, ""];
   return `${joined(listed.join(", "), "s")}${more}`;
 }

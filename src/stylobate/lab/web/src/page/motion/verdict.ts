@@ -4,7 +4,7 @@ import type { Answer } from "../server/answers";
 import { button, element } from "../frame/dom";
 import { capital, sentence, withUnit } from "../frame/format";
 
-/** Outcomes that tell how far a run was followed, not what became of the column. */
+/** Outcomes that state how far a run was followed, not the response of the column. */
 const UNDECIDED: readonly string[] = ["STILL_MOVING", "LIMIT_REACHED", "FAILED"];
 
 export class Verdict {
@@ -12,7 +12,7 @@ export class Verdict {
   readonly #badge = element("strong", { "aria-hidden": "true" });
   readonly #lasting: (duration: number) => void;
   #answer: Answer | null = null;
-  #told = "";
+  #announced = "";
 
   /** `lasting` hears how long the reader wants the run to be [s]. */
   constructor(lasting: (duration: number) => void) {
@@ -24,9 +24,9 @@ export class Verdict {
     this.setTime(0);
     const at = decisionOf(answer);
     const text = [answer.outcome, answer.reason, at, answer.uncertain, ...answer.warnings].join("\n");
-    if (text === this.#told) return; // what has been read out once is not read out again
-    this.#told = text;
-    const outcome = element("span", { class: "visually-hidden" }, `${capital(answer.told)}.`);
+    if (text === this.#announced) return; // what has been read out once is not read out again
+    this.#announced = text;
+    const outcome = element("span", { class: "visually-hidden" }, `${capital(answer.label)}.`);
     const reason = element("span", { class: "reason" }, `${sentence(answer.reason)}${at}`);
     const marks = answer.uncertain
       ? [element("strong", { class: "badge unsure", title: "A small change could alter the outcome" }, "Uncertain")]
@@ -61,7 +61,7 @@ export function durationWanted(reason: string): number | null {
 }
 
 /** Returns what a badge says at a time: what is to come is not said as if it had been. */
-export function badgeAt({ outcome, told: name, decided_at: at }: Answer, time: number): string {
+export function badgeAt({ outcome, label: name, decided_at: at }: Answer, time: number): string {
   const future = FUTURE[outcome];
   return future === undefined || at === null || time >= at ? capital(name) : `${future} at ${withUnit(at, "s")}`;
 }
@@ -71,7 +71,7 @@ const FUTURE: Readonly<Record<string, string>> = { OVERTURNED: "Will overturn", 
 
 /** Returns the verdict in plain text. */
 export function verdictOf(answer: Answer): string {
-  return `${capital(answer.told)}: ${answer.reason.replace(/[.]$/, "")}.${decisionOf(answer)}`;
+  return `${capital(answer.label)}: ${answer.reason.replace(/[.]$/, "")}.${decisionOf(answer)}`;
 }
 
 function decisionOf({ outcome, decided_at: at }: Answer): string {

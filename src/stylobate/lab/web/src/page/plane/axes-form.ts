@@ -1,7 +1,7 @@
 /** The axes of a map or a basin and how many cells it has, folded into one line. */
 
 import { choice, element, newId } from "../frame/dom";
-import { told, words } from "../frame/format";
+import { formatted, words } from "../frame/format";
 import { defaultAxis } from "./planes";
 import type { Quantity } from "../case/quantities";
 import type { Axis, Plane } from "../view/state";
@@ -51,7 +51,7 @@ export class AxesForm {
     this.#forms.x.show(plane.x, quantities);
     this.#forms.y.show(plane.y, quantities);
     this.#offerSize(plane.x.number);
-    const axis = ({ name, from, to }: Axis): string => `${words(name)} ${told(from)}…${told(to)}`;
+    const axis = ({ name, from, to }: Axis): string => `${words(name)} ${formatted(from)}…${formatted(to)}`;
     this.#summary.textContent = `${axis(plane.x)} × ${axis(plane.y)}`;
   }
 

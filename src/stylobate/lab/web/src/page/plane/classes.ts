@@ -1,8 +1,8 @@
-/** The classes of a plane: what its codes mean, how they look, and the legend that tells both. */
+/** The classes of a plane: what its codes mean, how they look, and the legend that shows both. */
 
 import type { Attractor } from "../server/answers";
 import { element } from "../frame/dom";
-import { told } from "../frame/format";
+import { formatted } from "../frame/format";
 import type { Cells } from "./cells";
 import { UNKNOWN } from "./cells";
 import type { Look } from "./looks";
@@ -42,8 +42,8 @@ export class Classes {
     return this.#names.find(([one]) => one === code)?.[1] ?? "";
   }
 
-  /** Tells which classes there are among the cells, and how much of the plane they have. */
-  tell(cells: Cells | null): void {
+  /** Shows which classes there are among the cells, and their share of the plane. */
+  report(cells: Cells | null): void {
     const counts = cells?.counts() ?? new Map<number, number>();
     const known = [...counts].reduce((sum, [code, count]) => sum + (code === UNKNOWN ? 0 : count), 0);
     const items = this.#names.flatMap(([code, name], i) => {
@@ -68,7 +68,7 @@ export class Classes {
 const UNSETTLED = "not settled";
 
 function percent(share: number): string {
-  return `${told(100 * share, share < 0.01 ? 1 : 2)} %`;
+  return `${formatted(100 * share, share < 0.01 ? 1 : 2)} %`;
 }
 
 /** Returns the share of starts that lead to an attractor, with its interval rounded outward. */

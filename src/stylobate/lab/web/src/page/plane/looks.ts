@@ -3,7 +3,7 @@
  * colour-blind readers, ordered in lightness from standing to falling, and a texture where colours are shared.
  */
 
-/** Tells which pixels of a plane have the ink of the texture. */
+/** Returns which pixels of a plane have the ink of the texture. */
 type Texture = (x: number, y: number) => boolean;
 
 export interface Look {

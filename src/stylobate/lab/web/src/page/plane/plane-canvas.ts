@@ -2,7 +2,7 @@
 
 import type { AxesEvent, ToldAxis } from "../server/answers";
 import { element, onResize, themeColour } from "../frame/dom";
-import { axisLabel, told } from "../frame/format";
+import { axisLabel, formatted } from "../frame/format";
 import { ticks } from "../case/ranges";
 import type { Cells } from "./cells";
 import { UNKNOWN } from "./cells";
@@ -177,14 +177,14 @@ export class PlaneCanvas {
     for (const value of ticksOf(axes.x, width / 70)) {
       const x = left + share(axes.x, value) * width;
       pen.fillRect(x - 0.5, top + height, 1, 4);
-      pen.fillText(told(value, 6), x, top + height + 15);
+      pen.fillText(formatted(value, 6), x, top + height + 15);
     }
     pen.fillText(axisLabel(axes.x.name, axes.x.units), left + width / 2, top + height + 32);
     pen.textAlign = "right";
     for (const value of ticksOf(axes.y, height / 36)) {
       const y = top + (1 - share(axes.y, value)) * height;
       pen.fillRect(left - 4, y - 0.5, 4, 1);
-      pen.fillText(told(value, 6), left - 7, y + 4);
+      pen.fillText(formatted(value, 6), left - 7, y + 4);
     }
     pen.textAlign = "center";
     pen.translate(12, top + height / 2);

@@ -2,7 +2,7 @@
 
 import type { AxesEvent, CellsEvent, JobReport, PlaneResult, ToldAxis } from "../server/answers";
 import { button, element } from "../frame/dom";
-import { capital, counted, told, withUnit, words } from "../frame/format";
+import { capital, counted, formatted, withUnit, words } from "../frame/format";
 import { Elapsed } from "../frame/elapsed";
 import type { Job } from "../server/job";
 import type { Quantity } from "../case/quantities";
@@ -38,7 +38,7 @@ export class PlanePanel {
   #job: Job | null = null;
   /** What the server refused of the last job. */
   #refused: readonly string[] = [];
-  readonly #elapsed = new Elapsed((told) => (this.#readout.textContent = told));
+  readonly #elapsed = new Elapsed((message) => (this.#readout.textContent = message));
   #complete = false;
   #key = "";
   #shownKey = "";
@@ -69,7 +69,7 @@ export class PlanePanel {
     );
   }
 
-  /** Shows the axes and the values of the case; a picture of another case is told to be one. */
+  /** Shows the axes and the values of the case; a picture of another case is marked as one. */
   show(
     plane: Plane,
     quantities: readonly Quantity[],
@@ -170,7 +170,7 @@ export class PlanePanel {
       this.#readout.textContent = `${report.done} of ${counted(report.total, "run")}`;
     } else this.#elapsed.begin(`${report.note ? capital(report.note) : "Starting"}…`);
     if (report.events.length > 0) {
-      this.#classes.tell(this.#filled);
+      this.#classes.report(this.#filled);
       this.#redraw();
     }
   }
@@ -200,7 +200,7 @@ export class PlanePanel {
     }
     const unsure = result?.uncertain ? `, ${result.uncertain} of them uncertain` : "";
     this.#readout.textContent = `${counted(result?.runs ?? 0, "run")}${this.#length}${unsure}. Click a cell to see its motion.`;
-    this.#classes.tell(this.#filled);
+    this.#classes.report(this.#filled);
   }
 
   /** Before anything is computed: the axes alone. */
@@ -273,6 +273,6 @@ const HINTS: Readonly<Record<PlaneKind, string>> = {
 };
 
 function toldOfLength({ periods, duration }: Part): string {
-  if (typeof periods === "number") return ` of ${told(periods)} periods of the base`;
+  if (typeof periods === "number") return ` of ${formatted(periods)} periods of the base`;
   return typeof duration === "number" ? ` of ${withUnit(duration, "s")}` : "";
 }

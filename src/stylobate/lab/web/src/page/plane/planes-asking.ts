@@ -85,7 +85,7 @@ export class PlanesAsking {
     });
   }
 
-  /** Returns the case of a cell, followed as long as the cell's own run was: what is seen is what the cell tells. */
+  /** Returns the case of a cell, followed as long as the cell's own run was: the view shows the run of the cell. */
   #at(kind: PlaneKind, [nameX, x]: readonly [string, number], [nameY, y]: readonly [string, number]): Description {
     const { description } = this.#view;
     const plane = this.#plane(kind);

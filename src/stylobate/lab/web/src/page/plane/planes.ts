@@ -1,4 +1,4 @@
-/** Axes of maps and basins that suit a case where none are told. */
+/** Axes of maps and basins that suit a case where none are given. */
 
 import type { About } from "../case/about";
 import type { Description, Part } from "../case/description";
@@ -35,7 +35,7 @@ export function defaultAxis(quantity: Quantity, description: Description, number
   return { name: quantity.name, ...rangeAbout(quantity, valueOf(description, quantity.name)), number };
 }
 
-/** Tells whether both quantities are numbers that this case has: an axis may be left from another one. */
+/** Returns whether both quantities are numbers that this case has: an axis may be left from another one. */
 export function belongs(plane: Plane, quantities: readonly Quantity[]): boolean {
   return [plane.x, plane.y].every((axis) => quantities.some((one) => one.name === axis.name));
 }

@@ -39,14 +39,14 @@ export interface Described {
 /** The answer to one run. */
 export interface Answer extends Described {
   readonly outcome: string;
-  readonly told: string;
+  readonly label: string;
   readonly reason: string;
   readonly decided_at: number | null;
   readonly uncertain: boolean;
   readonly planar: boolean;
   readonly warnings: readonly string[];
   readonly events: readonly { readonly kind: string; readonly time: number }[];
-  /** Numbers of the column and the run, to read: label, and what is told. */
+  /** Numbers of the column and the run, to read: label and value. */
   readonly summary: readonly (readonly [string, string])[];
   readonly measures: Readonly<Record<string, number | null>>;
   readonly thresholds: Readonly<Record<string, number | null>>;

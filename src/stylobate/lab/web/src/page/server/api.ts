@@ -48,10 +48,10 @@ export async function jobFile(id: string): Promise<Blob> {
   return (await asked("GET", `/api/jobs/${encodeURIComponent(id)}/file`)).blob();
 }
 
-async function call<Told>(method: string, path: string, body?: Value, signal?: AbortSignal): Promise<Told> {
+async function call<Answer>(method: string, path: string, body?: Value, signal?: AbortSignal): Promise<Answer> {
   const found = await asked(method, path, body, signal);
   const text = await found.text();
-  return (text === "" ? null : JSON.parse(text)) as Told;
+  return (text === "" ? null : JSON.parse(text)) as Answer;
 }
 
 /** How long to wait before asking a busy server again [ms], and how often. */
@@ -86,8 +86,8 @@ async function sent(method: string, path: string, body?: Value, signal?: AbortSi
 
 async function problemsOf(found: Response): Promise<readonly string[]> {
   try {
-    const told = (await found.json()) as { readonly problems?: readonly string[] };
-    if (told.problems && told.problems.length > 0) return told.problems;
+    const refusal = (await found.json()) as { readonly problems?: readonly string[] };
+    if (refusal.problems && refusal.problems.length > 0) return refusal.problems;
   } catch {
     // What answered is not this server; its status says all that is known.
   }

@@ -29,7 +29,7 @@ export class Connection {
     void this.#ask();
   }
 
-  /** A page at which nobody pulls asks nothing else, and should tell all the same. */
+  /** A page at which nobody pulls asks nothing else, and should be notified all the same. */
   async #watch(): Promise<void> {
     if (this.#lost || document.hidden) return;
     try {

@@ -33,9 +33,9 @@ export class ScaledResponse {
     const column = isPart(given) ? given : {};
     const wanted = written(column);
     if (wanted === this.#known.column) return this.#known.slenderness;
-    const told = await this.#describe({ column, duration: 1 });
-    if (told.column === undefined) throw new Error("the server told nothing of the column");
-    this.#known = { column: wanted, slenderness: told.column.slenderness };
-    return told.column.slenderness;
+    const answer = await this.#describe({ column, duration: 1 });
+    if (answer.column === undefined) throw new Error("the server did not describe the column");
+    this.#known = { column: wanted, slenderness: answer.column.slenderness };
+    return answer.column.slenderness;
   }
 }

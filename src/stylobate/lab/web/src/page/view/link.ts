@@ -36,7 +36,7 @@ export function linkOf(view: View): string {
   return items.join("&");
 }
 
-/** Returns the view that `link` tells, or raises BrokenLink. */
+/** Returns the view of `link`, or raises BrokenLink. */
 export function viewFrom(link: string, about: About): View {
   const given = itemsOf(link);
   const looks: Record<string, Value> = {};
@@ -128,7 +128,7 @@ function inPart(value: Value): string {
 function atom(value: Value): string {
   if (isVector(value) || isPart(value)) return `~${encodeURIComponent(JSON.stringify(value))}`;
   if (typeof value !== "string") return value === null ? "none" : String(value);
-  // A name that could be read as a number is told to be none by a mark before it.
+  // A name that could be read as a number has a mark before it.
   return `${/^[-+.\d'~]|^(none|true|false)$/.test(value) ? "'" : ""}${encodeURIComponent(value)}`;
 }
 
@@ -205,7 +205,7 @@ function planeRead(what: string, text: string): Value {
   return { x: { ...x }, y: { ...y } };
 }
 
-/** Returns the line that tells of a link that cannot be followed. */
+/** Returns the line for a link that cannot be followed. */
 export function toldOf(reason: string): string {
   return `This link cannot be followed: ${reason.replace(/\.$/, "")}. The first preset is shown instead.`;
 }

@@ -55,7 +55,7 @@ const timeIn = (value: Value | undefined): number | null => (typeof value === "n
 
 export const SPEEDS = [0.02, 0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10, 20] as const;
 
-/** Returns the view of a case with what is told of its looks; what is not told is chosen to suit. */
+/** Returns the view of a case with the looks that are given; others are chosen to suit. */
 export function viewOf(description: Description, looks: Readonly<Record<string, Value>> = {}): View {
   const tab = TABS.find((one) => one === looks["tab"]) ?? "orbit";
   const range = looks["range"] ?? looks["angular_frequency_range"];
@@ -106,7 +106,7 @@ export const DEFAULT_CELLS = 65;
 
 type Listener = (view: View, before: View) => void;
 
-/** Holds the view that is shown, and tells of every change. */
+/** Holds the view that is shown, and announces every change. */
 export class Store {
   #view: View;
   readonly #listeners: Listener[] = [];
