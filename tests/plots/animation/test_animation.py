@@ -14,7 +14,7 @@ from PIL import Image
 import stylobate as sb
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning, UnsupportedError
 from stylobate.plots.animation import Animation, drawn_motion, page
-from stylobate.plots.animation.painter import Painter
+from stylobate.plots.animation.drawing import Drawing
 
 SMALL = {"size": (320, 280), "frames_per_second": 12}
 
@@ -233,7 +233,7 @@ def test_a_failure_in_the_middle_leaves_no_file(animation, tmp_path, monkeypatch
     def broken(painter, index):
         raise RuntimeError
 
-    monkeypatch.setattr(Painter, "picture", broken)
+    monkeypatch.setattr(Drawing, "picture", broken)
     for suffix in (".gif", ".mp4"):
         with pytest.raises(RuntimeError):
             animation.save(tmp_path / f"run{suffix}")

@@ -7,18 +7,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import ImageDraw
+from matplotlib.colors import to_rgb
+from matplotlib.text import Text
 
 import stylobate as sb
 from stylobate.plots.animation import DrawnMotion, palette
-from stylobate.plots.animation.body import MARK, Body
-from stylobate.plots.animation.canvas import FINE, rgb
-from stylobate.plots.animation.lens import Lens
-from stylobate.plots.animation.painter import Look, Painter
+from stylobate.plots.animation.column import MARKED, FlutedColumn, lit
+from stylobate.plots.animation.drawing import Drawing, Look
+from stylobate.plots.animation.path import contact_path
 from stylobate.plots.animation.scene import Scene, round_length
-from stylobate.plots.animation.shading import clipped, light_for, lit, shadow
-from stylobate.plots.animation.trace import Trace
-from stylobate.plots.axonometry import View
+from stylobate.plots.axonometry import View, direction
 from stylobate.plots.pose import frames
 from stylobate.plots.shape import Shape
 
@@ -36,58 +34,58 @@ def motion():
 
 
 @pytest.fixture(scope="module")
-def painter(motion):
-    return Painter.of(motion, motion, LOOK)
+def drawing(motion):
+    return Drawing(motion, motion, LOOK)
 
 
-def test_a_lens_shows_everything_and_fills_its_room():
-    points = np.random.default_rng(0).normal(size=(50, 3))
-    pixels = Lens.fitting(LOOK.view, points, (10.0, 20.0), (400.0, 300.0)).pixels(points)
-    low, high = pixels.min(axis=0), pixels.max(axis=0)
-    assert np.all(low >= np.array([10.0, 20.0]) - 1e-9)
-    assert np.all(high <= np.array([400.0, 300.0]) + 1e-9)
-    assert np.isclose(high - low, [390.0, 280.0]).any()
+def picture_of(motion, index=0, look=LOOK):
+    return np.asarray(Drawing(motion, motion, look).picture(index)).astype(int)
 
 
-def test_a_displaced_base_is_seen_displaced_by_as_much_everywhere():
-    points, step = np.random.default_rng(1).normal(size=(9, 3)), np.array([0.3, -0.2, 0.1])
-    lens = Lens(view=LOOK.view, scale=70.0, origin=np.array([5.0, 6.0]))
-    moved = lens.pixels(points + step) - lens.pixels(points)
-    np.testing.assert_allclose(moved, np.tile(lens.shift(step), (9, 1)), atol=1e-12)
-
-
-def test_heights_are_seen_upwards_and_lengths_across_in_scale():
-    lens = Lens(view=View(-0.5 * math.pi, 0.0), scale=100.0, origin=np.zeros(2))
-    np.testing.assert_allclose(lens.pixels([[0.5, 9.0, 2.0]]), [[50.0, -200.0]], atol=1e-12)
+def bytes_of(colour):
+    return np.round(255.0 * np.array(to_rgb(colour)))
 
 
 @pytest.mark.parametrize("index", [0, 8, 19])
-def test_the_contact_point_is_painted_where_it_is(painter, motion, index):
-    at = np.append(motion.contact_point[index], 0.0) + motion.base[index]
-    x, y = painter.lens.pixels(at) / FINE
-    picture = np.asarray(painter.picture(index)).astype(int)
+def test_the_contact_point_is_drawn_where_it_is(drawing, motion, index):
+    x, y = drawing.pixels(np.append(motion.contact_point[index], 0.0) + motion.base[index])
+    picture = np.asarray(drawing.picture(index)).astype(int)
     near = picture[round(y) - 6 : round(y) + 7, round(x) - 6 : round(x) + 7]
-    strong = np.abs(near - palette.CONTACT_POINT).sum(axis=-1) < 30
-    # A dot of radius 4.5 pixels, or a ring of the same.
+    strong = np.abs(near - bytes_of(palette.CONTACT_POINT)).sum(axis=-1) < 60
+    # A dot of 6 points, or a ring of the same.
     assert strong.sum() >= 12
     assert np.argwhere(strong).mean(axis=0) == pytest.approx([6.0, 6.0], abs=1.5)
 
 
-def test_all_of_the_column_is_in_every_picture(painter, motion):
-    width, height = LOOK.size
-    around = painter.body.rims
+def test_all_of_the_column_is_in_every_picture(drawing, motion):
+    rims = np.concatenate([drawing.column.bottom, drawing.column.top])
     for rotation, centre, base in zip(frames(motion.rotation), motion.centre, motion.base, strict=True):
-        pixels = painter.lens.pixels(around @ rotation.T + centre + base) / FINE
+        pixels = drawing.pixels(rims @ rotation.T + centre + base)
         assert pixels.min() > 0.0
-        assert np.all(pixels.max(axis=0) < [width, height])
+        assert np.all(pixels.max(axis=0) < LOOK.size)
+
+
+def test_a_metre_is_as_long_upwards_as_across(motion):
+    drawing = Drawing(motion, motion, replace(LOOK, view=View(-0.5 * math.pi, 0.0)))
+    origin, across, up = drawing.pixels(np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.0, 0.1]]))
+    assert (across - origin)[0] == pytest.approx((origin - up)[1], rel=1e-12)
+    assert (across - origin)[1] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_displaced_base_is_drawn_displaced_by_as_much(motion):
+    moved = replace(motion, base=motion.base + np.array([0.0, 0.0, 0.02])[None] * np.arange(len(motion.base))[:, None])
+    drawing = Drawing(moved, moved, LOOK)
+    places = []
+    for index in (0, 20):
+        drawing.picture(index)
+        places.append(drawing._top.get_xy()[0])
+    step = moved.base[20] - moved.base[0]
+    np.testing.assert_allclose(places[1] - places[0], LOOK.view.project(step), atol=1e-12)
 
 
 def test_the_mark_turns_with_the_column(motion):
     upright = replace(motion, tilt=0.0 * motion.tilt)
-    first, turned = (
-        np.asarray(Painter.of(one, one, LOOK).picture(0)).astype(int)
-        for one in (upright, replace(upright, twist=motion.twist + 0.5 * math.pi))
-    )
+    first, turned = (picture_of(one) for one in (upright, replace(upright, twist=motion.twist + 0.5 * math.pi)))
 
     def centre_of_mark(picture):
         found = np.argwhere((picture[..., 0] > 1.6 * picture[..., 2]) & (picture[..., 0] > 60))
@@ -98,55 +96,29 @@ def test_the_mark_turns_with_the_column(motion):
     assert centre_of_mark(turned)[1] > centre_of_mark(first)[1] + 20
 
 
-def test_the_same_instant_is_always_the_same_picture(painter):
-    assert painter.picture(3).tobytes() == painter.picture(3).tobytes()
-    assert painter.picture(3).tobytes() != painter.picture(4).tobytes()
+def test_the_same_instant_is_always_the_same_picture(drawing):
+    assert drawing.picture(3).tobytes() == drawing.picture(3).tobytes()
+    assert drawing.picture(3).tobytes() != drawing.picture(4).tobytes()
 
 
 def test_facets_close_the_shaft_and_the_mark_faces_the_viewer():
-    body = Body.fluted(Shape(radius=0.5, top_radius=0.4, height=2.0, mass_height=1.0, slenderness=0.5), 100.0)
-    np.testing.assert_allclose(np.hypot(*body.bottom[:, :2].T), 0.5)
-    np.testing.assert_allclose(np.hypot(*body.top[:, :2].T), 0.4)
-    np.testing.assert_allclose(np.linalg.norm(body.normals, axis=-1), 1.0)
+    column = FlutedColumn.of(Shape(radius=0.5, top_radius=0.4, height=2.0, mass_height=1.0, slenderness=0.5))
+    np.testing.assert_allclose(np.hypot(*column.bottom[:, :2].T), 0.5)
+    np.testing.assert_allclose(np.hypot(*column.top[:, :2].T), 0.4)
+    np.testing.assert_allclose(np.linalg.norm(column.normals, axis=-1), 1.0)
     # Over a flute its hollows cancel: the mean normal is that of its middle.
-    mean = body.normals[body.marked].mean(axis=0)
-    assert math.atan2(mean[1], mean[0]) == pytest.approx(MARK)
-    ends = np.append(body.marked, body.marked[0])
-    corners = np.concatenate([body.bottom, body.bottom[:1]])[: ends.size][np.append(body.marked, False)]
-    assert np.arctan2(*corners[:, 1::-1].T).min() < MARK < np.arctan2(*corners[:, 1::-1].T).max()
-
-
-def test_a_slim_shaft_has_fewer_flutes_than_pixels():
-    shape = Shape(radius=0.5, top_radius=0.5, height=20.0, mass_height=10.0, slenderness=0.05)
-    assert [int(Body.fluted(shape, width).marked.sum()) for width in (10.0, 40.0, 90.0)] == [6, 6, 6]
-    assert [len(Body.fluted(shape, width).bottom) // 6 for width in (10.0, 40.0, 90.0)] == [8, 12, 20]
-
-
-def test_shadows_lie_on_their_plane_along_the_light():
-    light, normal = light_for(0.3), np.array([0.1, 0.2, math.sqrt(0.95)])
-    points = np.random.default_rng(2).normal(size=(7, 3))
-    cast = shadow(points, light, normal, -2.0)
-    np.testing.assert_allclose(cast @ normal, -2.0)
-    np.testing.assert_allclose(np.cross(points - cast, light), 0.0, atol=1e-12)
+    marked = np.isclose(column.colours, to_rgb(palette.MARK)).all(axis=1)
+    mean = column.normals[marked].mean(axis=0)
+    assert math.atan2(mean[1], mean[0]) == pytest.approx(MARKED)
+    ends = np.arctan2(*column.bottom[column.wedge][:, 1::-1].T)
+    assert ends.min() < MARKED < ends.max()
 
 
 def test_light_brightens_what_faces_it_and_never_beyond_white():
-    light = light_for(0.0)
-    grey = np.full((3, 3), 250.0)
-    faces = lit(grey, np.stack([light, -light, np.array([0.0, 0.0, 1.0])]), light)[:, 0]
+    light = direction(0.0, 0.8)
+    faces = lit(np.full((3, 3), 0.98), np.stack([light, -light, np.array([0.0, 0.0, 1.0])]), light)[:, 0]
     assert faces[0] > faces[2] > faces[1] > 0.0
-    assert faces.max() <= 255.0
-
-
-def test_a_shadow_is_cut_at_the_edge_of_the_slab():
-    low, high = np.array([-1.0, -1.0]), np.array([1.0, 1.0])
-    square = np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 0.5], [0.0, 0.5]])
-    found = clipped(square, low, high)
-    x, y = found.T
-    area = 0.5 * abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1)))
-    assert area == pytest.approx(0.5)
-    assert len(clipped(square + 5.0, low, high)) == 0
-    np.testing.assert_array_equal(clipped(0.1 * square, low, high), 0.1 * square)
+    assert faces.max() <= 1.0
 
 
 def test_the_slab_holds_all_footprints_and_the_ground_never_cuts_it(motion):
@@ -167,9 +139,9 @@ def test_an_inclined_plane_falls_towards_its_direction(motion):
 
 
 def test_the_path_runs_along_the_rim_between_instants(motion):
-    lens = Lens(view=View(-0.5 * math.pi, 0.5 * math.pi), scale=1.0, origin=np.zeros(2))
     still = replace(motion, footprint=0.0 * motion.footprint, contact_point=motion.contact_point - motion.footprint)
-    points = np.concatenate(Trace.of(still, np.eye(3), lens).points)
+    _, points = contact_path(still)
+    points = points[np.isfinite(points[:, 0])]
     np.testing.assert_allclose(np.hypot(*points.T), DISC.radius, rtol=1e-9)
     assert np.hypot(*np.diff(points, axis=0).T).max() < 0.11 * DISC.radius
 
@@ -177,10 +149,17 @@ def test_the_path_runs_along_the_rim_between_instants(motion):
 def test_no_path_is_drawn_where_nothing_of_the_rim_touches(motion):
     resting = motion.resting.copy()
     resting[5:12] = True
-    times = Trace.of(replace(motion, resting=resting), np.eye(3), Painter.of(motion, motion, LOOK).lens).times
-    assert len(times) == 2
-    assert times[0][-1] == motion.time[4]
-    assert times[1][0] == motion.time[12]
+    times, points = contact_path(replace(motion, resting=resting))
+    gaps = np.flatnonzero(np.isnan(points[:, 0]))
+    assert len(gaps) == 2
+    assert times[gaps[0]] == motion.time[4]
+    assert times[gaps[0] + 1] == motion.time[12]
+
+
+def test_a_column_that_stands_throughout_leaves_no_path(motion):
+    times, points = contact_path(replace(motion, resting=np.ones_like(motion.resting)))
+    assert times.shape == (0,)
+    assert points.shape == (0, 2)
 
 
 @pytest.mark.parametrize("power", [-6, 0, 4])
@@ -190,9 +169,9 @@ def test_lengths_are_rounded_down_to_1_2_and_5(power):
 
 
 @pytest.mark.parametrize("elevation", [0.5, 20.0, 90.0])
-def test_any_view_from_above_can_be_painted(motion, elevation):
+def test_any_view_from_above_can_be_drawn(motion, elevation):
     look = replace(LOOK, view=View(2.0, math.radians(elevation)))
-    assert Painter.of(motion, motion, look).picture(0).size == LOOK.size
+    assert Drawing(motion, motion, look).picture(0).size == LOOK.size
 
 
 # What the page shows and pictures do not: the rim's visits, the path of the tip, and how its lights mix.
@@ -209,10 +188,10 @@ def test_one_thing_has_one_colour_in_pictures_and_on_the_page():
     light = text.partition("const LIGHT: Palette = {")[2].partition("};")[0]
     page = dict(re.findall(r"^  (\w+): (.+),$", light, re.MULTILINE))
     assert page.keys() >= ON_THE_PAGE_ALONE | {"mark", "contact"}
-    told = {name: value for name, value in page.items() if name not in ON_THE_PAGE_ALONE}
-    own = {name: getattr(palette, re.sub("([A-Z])", r"_\1", name).upper()) for name in told}
+    shared = {name: value for name, value in page.items() if name not in ON_THE_PAGE_ALONE}
+    own = {name: getattr(palette, re.sub("([A-Z])", r"_\1", name).upper()) for name in shared}
     assert own == {
-        name: float(value) if "." in value else rgb(named.get(value, value.strip('"'))) for name, value in told.items()
+        name: float(value) if "." in value else named.get(value, value.strip('"')) for name, value in shared.items()
     }
 
 
@@ -221,7 +200,7 @@ def test_the_footprint_of_a_column_that_stands_has_the_colour_of_what_touches(mo
 
     def blue(resting):
         one = replace(upright, resting=np.full_like(motion.resting, resting))
-        painted = np.asarray(Painter.of(one, one, LOOK).picture(0)).astype(int)[: LOOK.size[1] - 92]
+        painted = picture_of(one)[: LOOK.size[1] - 92]
         return int((painted[..., 2] - painted[..., 0] > 60).sum())
 
     assert blue(True) > 20
@@ -230,21 +209,14 @@ def test_the_footprint_of_a_column_that_stands_has_the_colour_of_what_touches(mo
 
 @pytest.mark.parametrize("title", [None, "a title", "a title " * 30])
 @pytest.mark.parametrize("width", [320, 640])
-def test_no_text_runs_into_another_or_out_of_the_picture(motion, title, width, monkeypatch):
-    boxes = []
-    written = ImageDraw.ImageDraw.text
-
-    def noted(draw, at, text, **options):
-        boxes.append((text, draw.textbbox(at, text, font=options["font"], anchor=options.get("anchor"))))
-        written(draw, at, text, **options)
-
+def test_no_text_runs_into_another_or_out_of_the_picture(motion, title, width):
     fallen = replace(motion, outcome=sb.Outcome.OVERTURNED)
-    painter = Painter.of(fallen, fallen, replace(LOOK, size=(width, 300), title=title))
-    monkeypatch.setattr(ImageDraw.ImageDraw, "text", noted)
-    painter.picture(motion.time.size - 1)
-    assert any(text == "cannot come back" for text, _ in boxes)
-    for at, (_, (left, top, right, bottom)) in enumerate(boxes):
-        assert left >= 0
-        assert right <= width
-        for _, other in boxes[:at]:
-            assert right <= other[0] or other[2] <= left or bottom <= other[1] or other[3] <= top
+    drawing = Drawing(fallen, fallen, replace(LOOK, size=(width, 300), title=title))
+    drawing.picture(motion.time.size - 1)
+    texts = [one for one in drawing._figure.findobj(Text) if one.get_text() and one.get_visible()]
+    shown = [(one.get_text(), one.get_window_extent()) for one in texts if one.axes is None or one in one.axes.texts]
+    assert any(text == "cannot come back" for text, _ in shown)
+    for at, (_, box) in enumerate(shown):
+        assert box.x0 >= 0.0
+        assert box.x1 <= width
+        assert not any(box.overlaps(other) for _, other in shown[:at])

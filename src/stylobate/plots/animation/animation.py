@@ -19,10 +19,10 @@ from stylobate.errors import (
     require_whole,
 )
 from stylobate.files import written_aside
+from stylobate.plots.animation.drawing import Drawing, Look
 from stylobate.plots.animation.gif import Progress, gif_of
 from stylobate.plots.animation.motion import DrawnMotion
 from stylobate.plots.animation.page import page_of
-from stylobate.plots.animation.painter import Look, Painter
 from stylobate.plots.animation.video import write_mp4
 from stylobate.plots.axonometry import View
 from stylobate.results import Response
@@ -65,16 +65,16 @@ class Animation:
 
     def pictures(self, progress: Progress | None = None) -> Iterator[Image.Image]:
         """Yield the pictures in order; after each, `progress` is called with the number done and the total."""
-        painter = Painter.of(self.motion, self.history, self.look)
+        drawing = Drawing(self.motion, self.history, self.look)
         for index in range(len(self)):
-            yield painter.picture(index)
+            yield drawing.picture(index)
             if progress is not None:
                 progress(index + 1, len(self))
 
     def gif(self, progress: Progress | None = None) -> bytes:
         """Return the bytes of a GIF; after each picture, `progress` is called with the number done and the total."""
-        painter = Painter.of(self.motion, self.history, self.look)
-        return gif_of(painter.picture, len(self), self.frames_per_second, progress)
+        drawing = Drawing(self.motion, self.history, self.look)
+        return gif_of(drawing.picture, len(self), self.frames_per_second, progress)
 
     def html(self) -> str:
         """Return a page of its own in which the motion can be turned about, stopped and slowed down.

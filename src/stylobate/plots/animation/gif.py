@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from io import BytesIO
 
 import numpy as np
+from matplotlib.colors import to_rgb
 from PIL import Image
 
 from stylobate.plots.animation.palette import BACKGROUND, CONTACT, CONTACT_POINT, MARK, mixed
@@ -84,11 +85,12 @@ def _palette(pictures: Sequence[Image.Image]) -> Image.Image:
     sheet = Image.new("RGB", (width, height * len(pictures)))
     for row, one in enumerate(pictures):
         sheet.paste(one, (0, row * height))
-    strong = [number for colour in _STRONG for part in _PARTS for number in mixed(BACKGROUND, colour, part)]
+    strong = [round(255 * one) for colour in _STRONG for part in _PARTS for one in mixed(BACKGROUND, colour, part)]
     left = _COLOURS - len(strong) // 3
     others = np.array(sheet.quantize(left, method=Image.Quantize.MEDIANCUT).getpalette()).reshape(-1, 3)[:left]
     # Pillow looks up the nearest of them on a grid: what lies within its mesh of the background would take its place.
-    others[np.abs(others - BACKGROUND).max(axis=1) <= _MESH] = BACKGROUND
+    background = [round(255 * one) for one in to_rgb(BACKGROUND)]
+    others[np.abs(others - background).max(axis=1) <= _MESH] = background
     found = Image.new("P", (1, 1))
     found.putpalette([*strong, *others.ravel().tolist()])
     return found

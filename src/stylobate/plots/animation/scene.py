@@ -66,6 +66,18 @@ class Scene:
         """Return the corners of the slab at a `height` over its upper face, anticlockwise, in its own frame."""
         return _corners(self.low, self.high, height)
 
+    def lines(self) -> Floats:
+        """Return the ends of the lines on the slab, in its own frame, shape (n, 2, 3)."""
+        found = []
+        for along in (0, 1):
+            first, last = math.ceil(self.low[along] / self.grid), math.floor(self.high[along] / self.grid)
+            for number in range(first, last + 1):
+                ends = np.zeros((2, 3))
+                ends[:, along] = number * self.grid
+                ends[:, 1 - along] = self.low[1 - along], self.high[1 - along]
+                found.append(ends)
+        return np.stack(found)
+
     @property
     def normal(self) -> Floats:
         """Unit vector upwards from the plane, in space."""

@@ -1,0 +1,377 @@
+"""Pictures of a column on its shaking base, drawn by Matplotlib an instant at a time."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Polygon
+from matplotlib.text import Text
+from matplotlib.transforms import IdentityTransform
+from PIL import Image
+
+from stylobate.errors import Outcome
+from stylobate.plots.animation import palette
+from stylobate.plots.animation.column import MARKED, FlutedColumn, lit, ring
+from stylobate.plots.animation.motion import DrawnMotion, verdict_of
+from stylobate.plots.animation.path import contact_path
+from stylobate.plots.animation.scene import Scene, round_length
+from stylobate.plots.axonometry import View, direction, hull
+from stylobate.plots.pose import Floats, frames
+from stylobate.plots.style import BLUE, VERMILION
+
+_DPI = 100
+# Room about the scene [pixels]: at the sides, above for two lines of text, below for the history of the tilt.
+_EDGE, _ABOVE, _BELOW = 22, 46, 92
+# Of the history of the tilt: from the sides, from the lower edge, and its height [pixels].
+_INDENT, _FLOOR, _BAND = 58, 16, 34
+# A base narrower than this is shown from above as well, in a square of this side, if the picture is as wide as this.
+_NARROW, _SIDE, _WIDE = 110.0, 132, 420
+# A footprint that wanders farther than this is seen without such a square [base radii].
+_WANDERS = 3.0
+# The latest part of the path is drawn bold: this fraction of the motion.
+_LATEST = 0.08
+# Least distance between marks on the ground [pixels]; they fade over this fraction of the height of the scene.
+_MARKS_APART, _FADE = 34.0, 0.45
+# The tilt of unstable balance is drawn if the tilt comes to this fraction of it.
+_NEAR = 0.4
+# The light's azimuth beside the eye's and its elevation [rad].
+_BESIDE, _HIGH = math.radians(-62.0), math.radians(48.0)
+_LARGE, _SMALL = 9.0, 8.0
+_FALLS = (Outcome.OVERTURNED,)
+_ROUNDING = 1e-9
+_AROUND = np.linspace(0.0, 2.0 * np.pi, 73)
+
+_A = TypeVar("_A", bound=Artist)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Look:
+    """How a motion is drawn.
+
+    Parameters
+    ----------
+    size
+        Width and height of the picture [pixels].
+    view
+        Where the eye is.
+    title
+        A line above the picture.
+    pace
+        Seconds of the motion in a second of the animation.
+    """
+
+    size: tuple[int, int]
+    view: View
+    title: str | None = None
+    pace: float = 1.0
+
+
+class Drawing:
+    """The figure of a motion: static parts are drawn once, the others again for each instant.
+
+    Parameters
+    ----------
+    motion
+        The instants of which there are pictures.
+    history
+        The same motion sampled finer, for paths and curves.
+    look
+        Size, view, title.
+    """
+
+    def __init__(self, motion: DrawnMotion, history: DrawnMotion, look: Look) -> None:
+        self.motion, self.look = motion, look
+        self.scene, self.column = Scene.of(motion), FlutedColumn.of(motion.shape)
+        self._times, self._path = contact_path(history)
+        self._light = direction(look.view.azimuth + _BESIDE, _HIGH)
+        self._eye = direction(look.view.azimuth, look.view.elevation)
+        inches = (look.size[0] / _DPI, look.size[1] / _DPI)
+        self._figure = Figure(figsize=inches, dpi=_DPI, facecolor=palette.BACKGROUND)
+        canvas: Any = FigureCanvasAgg  # its methods have no types
+        self._canvas = canvas(self._figure)
+        self._moving: list[Artist] = []
+        self.space, self.plan = self._add_views()
+        self._add_ground()
+        self._add_artists()
+        self._add_tilt_history(history)
+        self._add_texts()
+        self._canvas.draw()
+        self._behind = self._canvas.copy_from_bbox(self._figure.bbox)
+
+    def picture(self, index: int) -> Image.Image:
+        """Return the picture of one instant, in RGB."""
+        base = self.scene.turned @ self.motion.base[index]
+        frame = self.scene.turned @ frames(self.motion.rotation[index])
+        centre = base + self.scene.turned @ self.motion.centre[index]
+        self._place_slab(base, frame, centre)
+        self._place_column(frame, centre)
+        self._place_contact(index, base, frame)
+        self._place_time(index)
+        self._canvas.restore_region(self._behind)
+        for artist in self._moving:
+            self._figure.draw_artist(artist)
+        return Image.frombuffer("RGBA", self.look.size, self._canvas.buffer_rgba()).convert("RGB")
+
+    def pixels(self, points: Floats) -> Floats:
+        """Return the pixels of points in space, shape (…, 3), from the upper left corner, shape (…, 2)."""
+        across = self.space.transData.transform(self.look.view.project(points).reshape(-1, 2))
+        return np.asarray(np.array([0.0, self.look.size[1]]) + across * [1.0, -1.0]).reshape(*points.shape[:-1], 2)
+
+    # Axes and what stands still.
+
+    def _axes(self, left: float, bottom: float, right: float, top: float) -> Axes:
+        """Add axes without frame between two corners [pixels from the lower left]."""
+        width, height = self.look.size
+        axes = self._figure.add_axes((left / width, bottom / height, (right - left) / width, (top - bottom) / height))
+        axes.set_axis_off()
+        axes.set_autoscale_on(False)
+        return axes
+
+    def _add_views(self) -> tuple[Axes, Axes | None]:
+        """Add the axes of the scene and, for a base too narrow to show its contact point, a view from above."""
+        motion, (width, height) = self.motion, self.look.size
+        points = self.look.view.project(self.scene.everything(motion))
+        low, high = points.min(axis=0), points.max(axis=0)
+        right, top = width - _EDGE, height - _ABOVE
+        scale = min((right - _EDGE) / (high - low)[0], (top - _BELOW) / (high - low)[1])
+        wanders = float(np.ptp(motion.footprint, axis=0).max()) > _WANDERS * motion.shape.radius
+        narrow = 2.0 * motion.shape.radius * scale < _NARROW and width >= _WIDE and not wanders
+        room = np.array([(right - _SIDE if narrow else right) - _EDGE, top - _BELOW])
+        space = self._axes(_EDGE, _BELOW, _EDGE + room[0], top)
+        half, middle = 0.5 * room * float(np.max((high - low) / room)), 0.5 * (low + high)
+        space.set(xlim=(middle[0] - half[0], middle[0] + half[0]), ylim=(middle[1] - half[1], middle[1] + half[1]))
+        return space, self._axes(right - _SIDE, top - _SIDE, right, top) if narrow else None
+
+    def _add_ground(self) -> None:
+        """Draw marks on the ground, over which the slab moves, and the square of the view from above."""
+        (left, right), (low, high) = self.space.get_xlim(), self.space.get_ylim()
+        step = 2.0 * round_length(_MARKS_APART / self._pixels_per_metre())
+        reach = math.hypot(right - left, (high - low) / math.sin(max(self.look.view.elevation, math.radians(10.0))))
+        one = step * np.arange(-math.ceil(reach / step), math.ceil(reach / step) + 1)
+        marks = np.stack(np.broadcast_arrays(one[:, None], one, self.scene.ground), axis=-1).reshape(-1, 3)
+        x, y = self.look.view.project(marks).T
+        middle = float(self.look.view.project(np.array([0.0, 0.0, self.scene.ground]))[1])
+        strength = np.clip(1.0 - (y - middle) / (_FADE * (high - low)), 0.0, 1.0)
+        self.space.scatter(x, y, s=16.0, c=palette.GROUND_LINE, marker="+", linewidths=0.9, alpha=strength, zorder=0)
+        if self.plan is not None:
+            self.plan.axis("on")
+            self.plan.set(facecolor=palette.SLAB, xticks=[], yticks=[])
+            self.plan.set_title("from above", y=-0.14, loc="center", size=_SMALL, color=palette.PALE)
+            reach = 1.25 * self.motion.shape.radius
+            ends = self._from_above(np.stack([self.motion.footprint.min(axis=0), self.motion.footprint.max(axis=0)]))
+            middle, half = ends.mean(axis=0), 0.5 * float(np.abs(np.diff(ends, axis=0)).max()) + reach
+            self.plan.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
+
+    def _pixels_per_metre(self) -> float:
+        (left, right) = self.space.get_xlim()
+        return float(self.space.bbox.width / (right - left))
+
+    def _add_tilt_history(self, history: DrawnMotion) -> None:
+        """Draw |tilt|/c against time below the scene, in full and pale; the moving curve covers it."""
+        self._history = history.time, np.hypot(*history.tilt.T) / history.shape.slenderness
+        time, size = self._history
+        highest = float(size.max())
+        strip = self._axes(_INDENT, _FLOOR, self.look.size[0] - _INDENT, _FLOOR + _BAND)
+        near = highest >= _NEAR
+        strip.set(xlim=(0.0, time[-1]), ylim=(0.0, max(highest, 1.0) if near else highest or 1.0))
+        strip.axhline(0.0, color=palette.GROUND_LINE, linewidth=1.0)
+        strip.plot(time, size, color=palette.GROUND_LINE, linewidth=1.0)
+        if near:
+            strip.axhline(1.0, color=palette.PALE, linewidth=0.8, linestyle="--")
+        level, label = (1.0, "c") if near else (highest, f"{highest:.2g} c")
+        text: dict[str, Any] = {"size": _SMALL, "color": palette.PALE, "va": "center"}
+        strip.text(1.01, level, label, transform=strip.get_yaxis_transform(), **text)
+        if not near or highest < 2.0:  # noqa: PLR2004  else the names of the two lines would touch
+            strip.text(1.01, 0.0, "0", transform=strip.get_yaxis_transform(), **text)
+        strip.text(-0.01, 0.5, "tilt", transform=strip.transAxes, ha="right", **text)
+        self._progress = self._animated(strip.plot([], [], color=BLUE, linewidth=2.0)[0])
+        self._now = self._animated(strip.plot([], [], "o", color=BLUE, markersize=5, clip_on=False)[0])
+
+    def _add_texts(self) -> None:
+        """Write the title, the scale and the grid; time, tilt and outcome are written again in each picture."""
+        width, height = self.look.size
+        self._state = self._animated(self._text(_EDGE, height - 20, "", palette.INK, size=_LARGE))
+        self._verdict = self._animated(self._text(width - _EDGE, height - 20, "", palette.INK, ha="right", size=_LARGE))
+        self._verdict.set_fontweight("bold")
+        if self.look.title:
+            self._fit(self._text(_EDGE, height - 38, self.look.title, palette.PALE), width - 2 * _EDGE)
+        scale = self._pixels_per_metre()
+        length = round_length(0.2 * (width - 2 * _EDGE) / scale)
+        left, right, floor = width - _EDGE - length * scale, width - _EDGE, _BELOW - 20
+        bar = Line2D([left, right], [floor, floor], transform=None, color=palette.INK, linewidth=1.5, marker="|")
+        self._figure.add_artist(bar)
+        self._text(0.5 * (left + right), floor + 5, _metres(length), palette.INK, ha="center", va="bottom")
+        self._text(_EDGE, floor - 4, f"grid {_metres(self.scene.grid)}", palette.PALE)
+
+    def _text(self, x: float, y: float, text: str, colour: str, **options: Any) -> Text:
+        """Write at a place [pixels from the lower left]."""
+        place: dict[str, Any] = {
+            "va": "baseline",
+            "size": _SMALL,
+            "color": colour,
+            "transform": IdentityTransform(),
+        } | options
+        return self._figure.text(x, y, text, **place)
+
+    def _fit(self, text: Text, room: float) -> None:
+        """Shorten a text to the `room` that it has [pixels]."""
+        whole = text.get_text()
+        for kept in range(len(whole), 0, -1):
+            if text.get_window_extent(self._canvas.get_renderer()).width <= room:
+                return
+            text.set_text(f"{whole[: kept - 1].rstrip()}…")
+
+    # What moves.
+
+    def _animated(self, artist: _A) -> _A:
+        artist.set_animated(True)
+        self._moving.append(artist)
+        return artist
+
+    def _add_artists(self) -> None:
+        """Add the artists of slab, column and contact in the order in which they cover each other."""
+        add, space = self._animated, self.space
+
+        def patch(colour: Any, **options: Any) -> Polygon:
+            polygon = Polygon(np.zeros((3, 2)), facecolor=colour, **{"linewidth": 0.0} | options)
+            space.add_patch(polygon)
+            return add(polygon)
+
+        def line(axes: Axes, colour: str, width: float) -> Line2D:
+            return add(axes.plot([], [], color=colour, linewidth=width, solid_capstyle="round")[0])
+
+        self._sides = add(space.add_collection(PolyCollection([], linewidths=0.0), autolim=False))
+        self._top = patch(palette.SLAB, edgecolor=palette.SLAB_SIDE, linewidth=0.8)
+        self._lines = add(
+            space.add_collection(LineCollection([], colors=palette.SLAB_LINE, linewidths=0.7), autolim=False)
+        )
+        self._shade = patch(palette.SHADOW, alpha=palette.SHADOW_STRENGTH)
+        self._shade.set_clip_path(self._top)
+        self._views = []
+        for axes, project in self._projections():
+            footprint = line(axes, palette.FOOTPRINT, 1.0)
+            self._views.append(
+                (axes, project, footprint, line(axes, palette.CONTACT_OLD, 1.0), line(axes, palette.CONTACT, 2.0))
+            )
+        self._shaft = add(space.add_collection(PolyCollection([], linewidths=0.4), autolim=False))
+        self._face, self._wedge = patch(palette.STONE, edgecolor=palette.SLAB_SIDE, linewidth=0.6), patch(palette.MARK)
+        dot: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 6.0}
+        self._dots = [add(axes.plot([], [], **dot)[0]) for axes, *_ in self._views]
+        if self.plan is not None:
+            self._mark = line(self.plan, palette.MARK, 2.5)
+
+    def _projections(self) -> list[tuple[Axes, Callable[[Floats, Floats], Floats]]]:
+        """Return for each view how points in the plane of the base, displaced with it, are projected."""
+        return [(self.space, self._on_slab), *([] if self.plan is None else [(self.plan, self._from_above)])]
+
+    def _on_slab(self, points: Floats, base: Floats) -> Floats:
+        """Project points of the plane, shape (n, 2), with the base displaced."""
+        return self.look.view.project(np.pad(points, ((0, 0), (0, 1))) @ self.scene.turned.T + base)
+
+    def _from_above(self, points: Floats, base: Floats | None = None) -> Floats:
+        """Project points of the plane, shape (n, 2), seen from above in the frame of the base."""
+        del base
+        return View(self.look.view.azimuth, 0.5 * math.pi).project(np.pad(points, ((0, 0), (0, 1))))
+
+    def _place_slab(self, base: Floats, frame: Floats, centre: Floats) -> None:
+        scene, project = self.scene, self.look.view.project
+        upper, lower = (scene.slab(height) @ scene.turned.T + base for height in (0.0, -scene.thickness))
+        sides, colours = [], []
+        for first, second in ((0, 1), (1, 2), (2, 3), (3, 0)):
+            outward = np.cross(upper[second] - upper[first], scene.normal)
+            if outward @ self._eye > 0.0:
+                sides.append(project(np.stack([upper[first], upper[second], lower[second], lower[first]])))
+                colours.append(palette.SLAB_LIT if outward @ self._light > 0.0 else palette.SLAB_SIDE)
+        self._sides.set(verts=sides, facecolor=colours)
+        self._top.set_xy(project(upper))
+        self._lines.set(segments=list(project(scene.lines() @ scene.turned.T + base)))
+        rims = np.concatenate([self.column.bottom, self.column.top]) @ frame.T + centre
+        height = (rims - base) @ scene.normal
+        cast = rims - (height / (self._light @ scene.normal))[:, None] * self._light
+        self._shade.set_xy(hull(project(cast)))
+
+    def _place_column(self, frame: Floats, centre: Floats) -> None:
+        column, project = self.column, self.look.view.project
+        bottom, top = (project(rim @ frame.T + centre) for rim in (column.bottom, column.top))
+        facets = np.stack([bottom, np.roll(bottom, -1, axis=0), np.roll(top, -1, axis=0), top], axis=1)
+        across, up = facets[:, 1] - facets[:, 0], facets[:, 3] - facets[:, 0]
+        seen = across[:, 0] * up[:, 1] - across[:, 1] * up[:, 0] > 0.0
+        colours = lit(column.colours, column.normals @ frame.T, self._light)[seen]
+        self._shaft.set(verts=list(facets[seen]), facecolor=colours, edgecolor=colours)
+        faces = [(rim, outward) for rim, outward in ((bottom, -frame[:, 2]), (top, frame[:, 2]))]
+        shown = [(rim, outward) for rim, outward in faces if outward @ self._eye > 0.0]
+        for patch in (self._face, self._wedge):
+            patch.set_visible(bool(shown))
+        for rim, outward in shown:
+            stone, mark = lit(np.array([to_rgb(palette.STONE), to_rgb(palette.MARK)]), outward[None], self._light)
+            self._face.set(xy=rim, facecolor=stone)
+            self._wedge.set(xy=np.concatenate([rim.mean(axis=0)[None], rim[column.wedge]]), facecolor=mark)
+
+    def _place_contact(self, index: int, base: Floats, frame: Floats) -> None:
+        """Place the footprint, the path and the contact point: a ring where the column stands before it."""
+        motion, time = self.motion, float(self.motion.time[index])
+        around = ring(_AROUND, motion.shape.radius, 0.0)[:, :2] + motion.footprint[index]
+        last = int(np.searchsorted(self._times, time, side="right"))
+        recent = int(np.searchsorted(self._times, time - _LATEST * float(motion.time[-1]), side="right"))
+        for (_, project, footprint, old, new), dot in zip(self._views, self._dots, strict=True):
+            footprint.set_data(*project(around, base).T)
+            footprint.set_color(palette.CONTACT if motion.resting[index] else palette.FOOTPRINT)
+            old.set_data(*project(self._path[:last], base).T)
+            new.set_data(*project(self._path[recent:last], base).T)
+            dot.set_data(*project(motion.contact_point[index][None], base).T)
+            dot.set_visible(bool(motion.on_rim[index]))
+            dot.set(markerfacecolor=palette.CONTACT_POINT, markeredgecolor=palette.BACKGROUND)
+        lean = self.scene.turned @ np.append(motion.contact_point[index] - motion.footprint[index], 0.0)
+        outward = lean - (lean @ frame[:, 2]) * frame[:, 2]
+        if frame[:, 2] @ self._eye > 0.0 > outward @ self._eye:  # both faces that meet there face away
+            self._dots[0].set(markerfacecolor="none", markeredgecolor=palette.CONTACT_POINT)
+        if self.plan is not None:
+            turn = motion.twist[index] + MARKED
+            radius = motion.shape.radius * np.array([[math.cos(turn), math.sin(turn)]])
+            self._mark.set_data(*self._from_above(motion.footprint[index] + np.array([[0.55], [1.0]]) * radius).T)
+
+    def _place_time(self, index: int) -> None:
+        """Place the instant in the history of the tilt, and write time, tilt and, at the end, the outcome."""
+        motion, (time, size) = self.motion, self._history
+        now, tilt = float(motion.time[index]), math.hypot(*motion.tilt[index])
+        last = int(np.searchsorted(time, now, side="right"))
+        height = float(np.interp(now, time, size))
+        self._progress.set_data(np.append(time[:last], now), np.append(size[:last], height))
+        self._now.set_data([now], [height])
+        # Three digits of the time at the end, and no fewer than seconds.
+        digits = max(0, 2 - math.floor(math.log10(motion.time[-1])))
+        over = tilt / motion.shape.slenderness
+        self._state.set_text(f"{now:.{digits}f} s    tilt {over:.2f} c    {math.degrees(tilt):.1f}°")
+        at_end = index == motion.time.size - 1
+        pace = "" if math.isclose(self.look.pace, 1.0) else f"speed × {self.look.pace:.3g}"
+        self._verdict.set_text(verdict_of(motion.outcome) if at_end else pace)
+        self._verdict.set_color(VERMILION if at_end and motion.outcome in _FALLS else palette.INK)
+        self._verdict.set_fontweight("bold" if at_end else "normal")
+        self._place_verdict()
+
+    def _place_verdict(self) -> None:
+        """Put the outcome beside time and tilt if there is room for it, else at the lower edge."""
+        renderer = self._canvas.get_renderer()
+        needed = sum(one.get_window_extent(renderer).width for one in (self._state, self._verdict))
+        beside = needed + _EDGE <= self.look.size[0] - 2 * _EDGE
+        self._verdict.set_y(self.look.size[1] - 20 if beside else _BELOW + 2)
+
+
+def _metres(length: float) -> str:
+    """Return a length in the unit in which it reads well.
+
+    >>> _metres(0.02), _metres(0.5), _metres(0.002)
+    ('2 cm', '0.5 m', '2 mm')
+    """
+    units = ((0.1, 1.0, "m"), (0.01, 100.0, "cm"), (0.0, 1000.0, "mm"))
+    factor, unit = next((factor, unit) for least, factor, unit in units if length * (1.0 + _ROUNDING) >= least)
+    return f"{factor * length:g} {unit}"
