@@ -1,6 +1,6 @@
 """Draws the figures of the page "The ladder of models" into docs/_static/ladder.
 
-Run it with `python docs/figures/model_hierarchy.py`; it takes some minutes on one core. Dimensionless columns, η = ζ = 0.1.
+Run it with `python docs/figures/model_hierarchy.py`; it takes minutes on one core. Dimensionless columns, η = ζ = 0.1.
 """
 
 from collections.abc import Callable
@@ -154,7 +154,7 @@ def dissipation() -> Figure:
     figure = Figure(figsize=(7.4, 3.4), layout="constrained")
     column = sb.Column.dimensionless(0.2)
     e = float(sb.theory.housner_restitution(0.2))
-    eta = float(sb.theory.equivalent_viscous_friction(0.1, c=0.2, restitution=e))
+    eta = float(sb.theory.equivalent_viscous_damping(0.1, c=0.2, restitution=e))
     print(f"e {e:.6f}, equivalent friction {eta:.5f}")
     models = {
         "Housner's loss at the upright": (sb.Rolling(column, restitution=e), SKY, 2.6),

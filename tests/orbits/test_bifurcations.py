@@ -7,6 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.orbits import Kind, continue_branch, periodic_orbit
+from stylobate.theory.rotating_frame import rotating_frame_jacobian
 
 C = 0.1
 
@@ -72,7 +73,7 @@ def _length_of_theorys_vector(a0, theta):
     """Return the length, in states over c at t = 0, of theory's critical vector of length 1."""
     upper = sb.theory.steady_rolling(theta, a0, c=C, eta=0.1).upper
     tilt, psi = float(upper.amplitude), float(upper.phase)
-    jacobian = sb.theory.rotating_frame_jacobian(np.array([0.0, theta, tilt / C, psi]), a0 / C, eta=0.1)
+    jacobian = rotating_frame_jacobian(np.array([0.0, theta, tilt / C, psi]), a0 / C, eta=0.1)
     values, vectors = np.linalg.eig(jacobian)
     crossing = float(sb.theory.crossing_frequency(a0, c=C, eta=0.1))
     mu, omega, height, phase = vectors[:, np.argmin(np.abs(values - 1j * crossing))]

@@ -14,11 +14,11 @@ from stylobate.theory import (
     crossing_frequency,
     first_lyapunov_coefficient,
     modulated_rolling,
-    rolling_gap,
-    rotating_frame_jacobian,
     steady_rolling,
 )
 from stylobate.theory.lyapunov import _Expansion
+from stylobate.theory.rolling import rolling_gap
+from stylobate.theory.rotating_frame import rotating_frame_jacobian
 
 C = 0.1
 

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from stylobate import theory
 from stylobate.errors import ParameterError
+from stylobate.theory.full_rolling_rates import full_rolling_rates
 
 
 @given(tilt=st.floats(0.01, 1.5), spin=st.floats(-30.0, 30.0), c=st.floats(0.02, 1.5), kappa=st.floats(0.1, 0.6))
@@ -18,9 +19,7 @@ def test_nothing_changes_and_the_rate_gives_back_the_spin(tilt, spin, c, kappa):
     if tilt < math.atan(c):
         assert found.rate[0] > 0.0 > found.rate[1]
     for rate in found.rate[found.exists]:
-        rates = theory.full_rolling_rates(
-            [0.0, rate, tilt, 0.0, spin], 0.0, 0.0, c=c, eta=0.0, zeta=0.0, inertia_ratio=kappa
-        )
+        rates = full_rolling_rates([0.0, rate, tilt, 0.0, spin], 0.0, 0.0, c=c, eta=0.0, zeta=0.0, inertia_ratio=kappa)
         assert np.abs(rates[[0, 1, 2, 4]]).max() <= 1e-12 * (1.0 + rate**2 + abs(rate * spin))
         if abs(rate) > 1e-3:
             back = theory.free_rolling_spin(tilt, rate, c=c, inertia_ratio=kappa)
@@ -36,7 +35,7 @@ def test_the_eigenvalues_are_those_of_the_full_equations():
             step, columns = 1e-6, []
             for j in range(5):
                 ends = [
-                    theory.full_rolling_rates(state + s * step * np.eye(5)[j], 0.0, 0.0, eta=0.0, zeta=0.0, **at)
+                    full_rolling_rates(state + s * step * np.eye(5)[j], 0.0, 0.0, eta=0.0, zeta=0.0, **at)
                     for s in (1, -1)
                 ]
                 columns.append((ends[0] - ends[1]) / (2.0 * step))

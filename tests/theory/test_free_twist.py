@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 
 from stylobate import theory
 from stylobate.errors import ParameterError
+from stylobate.theory.free_twist import free_twist_jacobian, free_twist_rates
 
 C = 0.1
 SOLID = {"inertia_ratio": 0.75, "axial_ratio": 0.5}
@@ -50,7 +51,7 @@ def test_steady_rolling_is_where_nothing_changes(theta, a, eta, zeta, body):
     if not found.exists:
         return
     state = [0.0, theta, float(found.amplitude), float(found.phase), float(found.spin)]
-    rates = theory.free_twist_rates(state, theta, a * C, c=C, eta=eta, zeta=zeta, **shape)
+    rates = free_twist_rates(state, theta, a * C, c=C, eta=eta, zeta=zeta, **shape)
     largest = (1.0 + theta**2) * (1.0 + a + abs(float(found.spin))) * (1.0 + zeta) / (shape["inertia_ratio"])
     scale = np.array([C, 1.0 / float(found.amplitude) * C, 1.0, 1.0, 1.0 / (1.0 + body[1] - body[0])])
     assert np.all(np.abs(rates) <= 1e3 * EPS * largest * np.maximum(scale, 1.0))
@@ -64,7 +65,7 @@ def test_the_moving_frame_says_what_the_fixed_frame_says(body):
     size, azimuth = math.hypot(*state[:2]), math.atan2(state[1], state[0])
     u, n = state[:2] / size, np.array([-state[1], state[0]]) / size
     moving = [C * state[2:4] @ u, state[2:4] @ n / size, C * size, azimuth, state[4]]
-    mu, omega, *_, spin = theory.free_twist_rates(moving, theta, C * a0, c=C, eta=eta, zeta=zeta, **shape)
+    mu, omega, *_, spin = free_twist_rates(moving, theta, C * a0, c=C, eta=eta, zeta=zeta, **shape)
     *_, ax, ay, spin_up = fixed_frame(0.0, state, theta, a0, eta, zeta, *body)
     along, across = np.array([ax, ay]) @ u, np.array([ax, ay]) @ n
     assert mu / C == pytest.approx(along + size * moving[1] ** 2, rel=1e-13)
@@ -143,12 +144,12 @@ def test_without_friction_it_is_the_paper_s_and_neutrally_stable():
 def test_the_jacobian_is_the_derivative_of_the_rates():
     at = {"c": C, "eta": 0.2, "zeta": 0.3, "inertia_ratio": 0.6, "axial_ratio": 0.9}
     state = np.array([0.03, 1.7, 0.06, 0.4, -0.3])
-    exact = theory.free_twist_jacobian(state, 0.07, **at)
+    exact = free_twist_jacobian(state, 0.07, **at)
     step = 1e-6
     for j in range(5):
         off = np.zeros(5)
         off[j] = step
-        ends = [theory.free_twist_rates(state + sign * off, 2.0, 0.07, **at) for sign in (1.0, -1.0)]
+        ends = [free_twist_rates(state + sign * off, 2.0, 0.07, **at) for sign in (1.0, -1.0)]
         # Second-order differences: step² times third derivatives, and rounding over the step.
         np.testing.assert_allclose((ends[0] - ends[1]) / (2.0 * step), exact[:, j], rtol=1e-6, atol=1e-7)
 

@@ -11,6 +11,8 @@ from scipy.integrate import solve_ivp
 from stylobate import theory
 from stylobate.errors import ParameterError
 from stylobate.theory import finite_tilt
+from stylobate.theory.free_twist import free_twist_rates
+from stylobate.theory.full_rolling_rates import full_rolling_rates
 
 SOLID = {"inertia_ratio": 0.75, "axial_ratio": 0.5}
 
@@ -31,7 +33,7 @@ def test_the_branches_are_where_nothing_changes_and_their_number_is_even_or_odd(
         assert found.exists.sum() % 2 == (a > 1.0)
     for branch in np.flatnonzero(found.exists):
         state = state_of(found, branch, theta)
-        rates = theory.full_rolling_rates(state, theta, a * c, **at)
+        rates = full_rolling_rates(state, theta, a * c, **at)
         # Not better than the terms cancel: those of the tilt, and of the spin, which 1/I_a amplifies.
         zeta_or_0 = 0.0 if math.isinf(zeta) else zeta
         terms = (1.0 + theta**2) * (1.0 + a + abs(state[4])) * (1.0 + zeta_or_0) * (1.0 + eta / state[2])
@@ -126,8 +128,8 @@ def test_the_rates_at_small_tilts_are_those_of_the_slender_column():
     # At 1e-3 the tilt leaves a relative error of order 1e-6, and the slopes of the spin one over c less.
     c, at = 1e-3, {"eta": 0.2, "zeta": 0.3, "inertia_ratio": 0.6, "axial_ratio": 0.9}
     state = np.array([0.4 * c, 1.7, 0.8 * c, 0.4, -0.3])
-    full = theory.full_rolling_rates(state, 2.0, 0.7 * c, c=c, **at)
-    slender = theory.free_twist_rates(state, 2.0, 0.7 * c, c=c, **at)
+    full = full_rolling_rates(state, 2.0, 0.7 * c, c=c, **at)
+    slender = free_twist_rates(state, 2.0, 0.7 * c, c=c, **at)
     np.testing.assert_allclose(full, slender, rtol=1e-5)
 
 
@@ -143,7 +145,7 @@ def test_the_energy_of_free_rolling_is_conserved():
         ) + np.cos(tilt) + c * np.sin(tilt)  # fmt: skip
 
     run = solve_ivp(
-        lambda _, x: theory.full_rolling_rates(x, 0.0, 0.0, **at), (0.0, 20.0), [0.1, 1.2, 0.2, 0.0, 0.4],
+        lambda _, x: full_rolling_rates(x, 0.0, 0.0, **at), (0.0, 20.0), [0.1, 1.2, 0.2, 0.0, 0.4],
         "DOP853", rtol=1e-11, atol=1e-13,
     )  # fmt: skip
     assert np.ptp(run.y[2]) > 0.05
@@ -164,7 +166,7 @@ def test_deviations_grow_and_decay_as_the_eigenvalues_say(theta, zeta, stable):
     settle = 0.0 if not stable else 60.0
     times = [settle + 40.0, settle + 40.0 + period]
     run = solve_ivp(
-        lambda _, x: theory.full_rolling_rates(x, theta, 0.065, **at), (0.0, times[-1]),
+        lambda _, x: full_rolling_rates(x, theta, 0.065, **at), (0.0, times[-1]),
         start + small * np.array([0.0, 0.0, 1.0, 0.0, 0.0]), "DOP853", t_eval=times, rtol=1e-12, atol=1e-15,
     )  # fmt: skip
     first, second = (run.y - start[:, None]).T
@@ -211,4 +213,4 @@ def test_bad_numbers_are_refused_by_name(change, told):
 
 def test_a_state_of_another_length_is_refused():
     with pytest.raises(ParameterError, match="five entries"):
-        theory.full_rolling_rates(np.zeros(4), 1.0, 0.0, c=0.1, eta=0.0, zeta=0.0)
+        full_rolling_rates(np.zeros(4), 1.0, 0.0, c=0.1, eta=0.0, zeta=0.0)

@@ -44,7 +44,7 @@ def test_flat_bodies_stay_down():
 @pytest.mark.parametrize("ratio", [1e-3, 0.02, 0.5, 0.97])
 def test_equivalent_friction_takes_from_a_cycle_what_two_impacts_take(ratio):
     c, e = 0.2, 0.94
-    eta = float(theory.equivalent_viscous_friction(ratio * c, c=c, restitution=e))
+    eta = float(theory.equivalent_viscous_damping(ratio * c, c=c, restitution=e))
     period = float(theory.planar_free_period(ratio * c, c))
     taken, _ = quad(lambda tau: eta * theory.planar_free_motion(tau, ratio * c, c)[1] ** 2, 0.0, period / 4.0)
     _, impact_rate = theory.planar_free_motion(period / 4.0, ratio * c, c)
@@ -53,15 +53,15 @@ def test_equivalent_friction_takes_from_a_cycle_what_two_impacts_take(ratio):
 
 def test_equivalent_friction_has_its_limits_and_no_seam():
     small = 1e-12
-    eta = float(theory.equivalent_viscous_friction(small, c=1.0, restitution=0.9))
+    eta = float(theory.equivalent_viscous_damping(small, c=1.0, restitution=0.9))
     assert eta == pytest.approx(0.75 * 0.19 / math.sqrt(2.0 * small), rel=1e-10)
-    assert float(theory.equivalent_viscous_friction(1.0 - 1e-12, c=1.0, restitution=0.9)) == pytest.approx(0.095)
+    assert float(theory.equivalent_viscous_damping(1.0 - 1e-12, c=1.0, restitution=0.9)) == pytest.approx(0.095)
     seam = 1.0 - math.sqrt(1.0 - 0.1**2)  # where S changes from its series to its closed form
-    both = theory.equivalent_viscous_friction(seam * (1.0 + np.array([-1e-9, 1e-9])), c=1.0, restitution=0.9)
+    both = theory.equivalent_viscous_damping(seam * (1.0 + np.array([-1e-9, 1e-9])), c=1.0, restitution=0.9)
     assert both[0] == pytest.approx(both[1], rel=3e-9)
-    assert np.isnan(theory.equivalent_viscous_friction(1.0, c=1.0, restitution=0.9))
+    assert np.isnan(theory.equivalent_viscous_damping(1.0, c=1.0, restitution=0.9))
 
 
 def test_an_impact_gives_no_energy():
     with pytest.raises(ParameterError, match="restitution must be at most 1"):
-        theory.equivalent_viscous_friction(0.05, c=0.1, restitution=1.01)
+        theory.equivalent_viscous_damping(0.05, c=0.1, restitution=1.01)

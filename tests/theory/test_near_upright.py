@@ -9,6 +9,8 @@ from scipy.integrate import solve_ivp
 from stylobate import theory
 from stylobate.column import Column
 from stylobate.errors import ParameterError
+from stylobate.theory.full_rolling_rates import full_rolling_rates
+from stylobate.theory.wobbling import wobbling_rates
 
 
 @pytest.mark.parametrize(("c", "degrees"), [(0.1, 180.6724805), (0.2, 182.660)])
@@ -30,7 +32,7 @@ def test_rolling_by_integration_turns_as_far(spin):
     leaves = lambda tau, state: state[2] - far if tau > 0.0 else -1.0  # noqa: E731
     leaves.terminal, leaves.direction = True, 1.0
     run = solve_ivp(
-        lambda _, x: theory.full_rolling_rates(x, 0.0, 0.0, c=c, eta=0.0, zeta=0.0, **at), (0.0, 1.0),
+        lambda _, x: full_rolling_rates(x, 0.0, 0.0, c=c, eta=0.0, zeta=0.0, **at), (0.0, 1.0),
         [-1.0, miss / far**2, 0.9999 * far, 0.0, spin], "DOP853", rtol=1e-10, atol=1e-14, events=leaves,
     )  # fmt: skip
     assert run.status == 1
@@ -39,7 +41,7 @@ def test_rolling_by_integration_turns_as_far(spin):
 
 def test_a_column_let_go_near_the_upright_needs_the_required_friction():
     c, kappa = np.array([0.1, 0.3]), 0.7
-    rates = [theory.wobbling_rates([0.0, 0.0, 1e-12, 0.0], 0.0, 0.0, c=x, eta=0.0, inertia_ratio=kappa)[0] for x in c]
+    rates = [wobbling_rates([0.0, 0.0, 1e-12, 0.0], 0.0, 0.0, c=x, eta=0.0, inertia_ratio=kappa)[0] for x in c]
     horizontal, vertical = kappa * np.array(rates), 1.0 + kappa * c * np.array(rates)
     np.testing.assert_allclose(-horizontal / vertical, theory.required_friction(c, inertia_ratio=kappa), rtol=1e-10)
 

@@ -7,6 +7,8 @@ import pytest
 
 from stylobate import theory
 from stylobate.errors import ParameterError
+from stylobate.theory.full_rolling_rates import full_rolling_rates
+from stylobate.theory.wobbling import wobbling_rates
 
 Z = np.array([0.0, 0.0, 1.0])
 STEP = 1e-6  # of the differences below: their error is STEP² times third derivatives, and rounding over STEP
@@ -55,8 +57,8 @@ class Body:
 
 def equations(kind, state, theta, a0, eta, zeta, c, shape):
     if kind != "wobbling":
-        return theory.full_rolling_rates(state, theta, a0, c=c, eta=eta, zeta=zeta, **shape)
-    rates = theory.wobbling_rates(state[:4], theta, a0, c=c, eta=eta, **shape)
+        return full_rolling_rates(state, theta, a0, c=c, eta=eta, zeta=zeta, **shape)
+    rates = wobbling_rates(state[:4], theta, a0, c=c, eta=eta, **shape)
     mu, omega, tilt = state[:3]
     return np.append(rates, -rates[1] * (1.0 - math.cos(tilt)) - omega * math.sin(tilt) * mu)
 

@@ -6,14 +6,10 @@ import sympy as sp
 from scipy.integrate import solve_ivp
 
 from stylobate.errors import ParameterError
-from stylobate.theory import (
-    hurwitz_coefficients,
-    rolling_backbone,
-    rolling_gap,
-    rotating_frame_jacobian,
-    rotating_frame_rates,
-    steady_rolling,
-)
+from stylobate.theory import rolling_backbone, steady_rolling
+from stylobate.theory.rolling import rolling_gap
+from stylobate.theory.rotating_frame import rotating_frame_jacobian, rotating_frame_rates
+from stylobate.theory.stability import hurwitz_coefficients
 
 C = 0.1
 THETA = np.linspace(0.05, 10.0, 300)[:, np.newaxis, np.newaxis]

@@ -8,13 +8,14 @@ from scipy.integrate import solve_ivp
 
 from stylobate import theory
 from stylobate.errors import ParameterError
+from stylobate.theory.wobbling import wobbling_rates
 
 
 @given(c=st.floats(0.01, 1.0), theta=st.floats(0.2, 8.0), a=st.floats(0.05, 5.0), eta=st.floats(0.0, 2.0))
 def test_the_branches_are_where_nothing_changes(c, theta, a, eta):
     found = theory.wobbling_rolling(theta, a * c, c=c, eta=eta, inertia_ratio=0.6)
     for tilt, phase in zip(found.amplitude[found.exists], found.phase[found.exists], strict=True):
-        rates = theory.wobbling_rates([0.0, theta, tilt, phase], theta, a * c, c=c, eta=eta, inertia_ratio=0.6)
+        rates = wobbling_rates([0.0, theta, tilt, phase], theta, a * c, c=c, eta=eta, inertia_ratio=0.6)
         assert np.abs(rates).max() <= 1e-12 * (1.0 + theta**2) * (1.0 + a) * (1.0 + eta) * (1.0 + c / tilt)
 
 
@@ -52,7 +53,7 @@ def test_free_wobbling_conserves_its_energy_and_its_moment_of_momentum():
     c, kappa, axial = 0.3, 0.7, 0.5
 
     def rates(_, state):
-        return theory.wobbling_rates(state, 0.0, 0.0, c=c, eta=0.0, inertia_ratio=kappa, axial_ratio=axial)
+        return wobbling_rates(state, 0.0, 0.0, c=c, eta=0.0, inertia_ratio=kappa, axial_ratio=axial)
 
     run = solve_ivp(rates, (0.0, 20.0), [0.1, 1.2, 0.2, 0.0], "DOP853", rtol=1e-11, atol=1e-13)
     mu, omega, tilt, _ = run.y
@@ -75,7 +76,7 @@ def test_it_settles_on_the_stable_branch():
     start = [0.0, theta, 1.02 * found.amplitude[1], found.phase[1]]
     span = np.log(1e-6) / slowest
     run = solve_ivp(
-        lambda _, x: theory.wobbling_rates(x, theta, a0, **at), (0.0, span), start, "DOP853", rtol=1e-10, atol=1e-12
+        lambda _, x: wobbling_rates(x, theta, a0, **at), (0.0, span), start, "DOP853", rtol=1e-10, atol=1e-12
     )
     np.testing.assert_allclose(run.y[2:, -1], [found.amplitude[1], found.phase[1]], atol=1e-6)
 
@@ -89,4 +90,4 @@ def test_without_friction_and_base_motion_it_rolls_by_itself_with_any_phase():
 
 def test_a_state_of_another_length_is_refused():
     with pytest.raises(ParameterError, match="four entries"):
-        theory.wobbling_rates(np.zeros(5), 1.0, 0.0, c=0.1, eta=0.0)
+        wobbling_rates(np.zeros(5), 1.0, 0.0, c=0.1, eta=0.0)

@@ -19,6 +19,7 @@ from stylobate.models import Model, Rolling, Sliding, Wobbling
 from stylobate.studies.ranges import require_rising_frequencies
 from stylobate.studies.responses.rolling_frame import RollingFrame
 from stylobate.studies.sweeps.quantities import attributes_of, checked_values
+from stylobate.theory.averaging import circular_components
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
@@ -233,7 +234,7 @@ def _spin_friction(model: Model) -> float:
 
 def _is_circle(motion: Harmonic) -> bool:
     (a1, a2, a3), (phi1, phi2, _) = motion.amplitude, motion.phase
-    parts = sorted(abs(complex(part)) for part in theory.circular_components(a1, a2, phi2 - phi1))
+    parts = sorted(abs(complex(part)) for part in circular_components(a1, a2, phi2 - phi1))
     return a3 == 0.0 and parts[0] <= _ROUND * parts[1]
 
 

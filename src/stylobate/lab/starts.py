@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, Literal
 
-from stylobate import orbits, studies, theory
+from stylobate import orbits, studies
 from stylobate.base_motions import Harmonic
 from stylobate.config.columns import ColumnConfig
 from stylobate.config.description import Config
@@ -13,6 +13,7 @@ from stylobate.config.simulation import built_parts
 from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError
 from stylobate.lab.json_values import numbers
 from stylobate.models import Model
+from stylobate.theory.averaging import circular_components
 
 _NO_CIRCLE = 1e-12
 """A base moves in a circle if the circle against it is smaller than this fraction of it."""
@@ -70,7 +71,7 @@ def start(values: Mapping[str, Any]) -> dict[str, Any]:
 
 def _is_circular(motion: Harmonic) -> bool:
     (first, second, _), phase = motion.amplitude, motion.phase
-    sizes = [abs(complex(circle)) for circle in theory.circular_components(first, second, phase[1] - phase[0])]
+    sizes = [abs(complex(circle)) for circle in circular_components(first, second, phase[1] - phase[0])]
     return min(sizes) <= _NO_CIRCLE * max(sizes)
 
 

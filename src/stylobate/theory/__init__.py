@@ -5,7 +5,7 @@ of ω0, accelerations in g, c the slenderness and η the friction. Arguments are
 result has the broadcast shape, with NaN (False in a truth value) where there is no solution.
 """
 
-from stylobate.theory.averaging import AveragedRolling, averaged_rolling, circular_components
+from stylobate.theory.averaging import AveragedRolling, averaged_rolling
 from stylobate.theory.backbones import planar_backbone, rolling_backbone
 from stylobate.theory.block_motion import BlockPhase, BlockSegment
 from stylobate.theory.conveying import BlockCycle, block_cycle, mean_block_speed
@@ -20,17 +20,13 @@ from stylobate.theory.free_motion import FreeMotion, free_motion
 from stylobate.theory.free_rolling import FreeRolling, free_rolling, free_rolling_spin
 from stylobate.theory.free_twist import (
     FreeTwistRolling,
-    free_twist_jacobian,
-    free_twist_rates,
     free_twist_rolling,
 )
 from stylobate.theory.free_twist_boundary import free_twist_critical_frequency, free_twist_upper_frequency
-from stylobate.theory.free_twist_stability import free_twist_hurwitz_coefficients
 from stylobate.theory.full_rolling import full_rolling
-from stylobate.theory.full_rolling_rates import full_rolling_rates
-from stylobate.theory.high_frequency import HighFrequencyRolling, high_frequency_rates, high_frequency_rolling
+from stylobate.theory.high_frequency import HighFrequencyRolling, high_frequency_rolling
 from stylobate.theory.hopping import hopping_speed
-from stylobate.theory.impact import block_restitution, equivalent_viscous_friction, housner_restitution
+from stylobate.theory.impact import block_restitution, equivalent_viscous_damping, housner_restitution
 from stylobate.theory.lyapunov import first_lyapunov_coefficient
 from stylobate.theory.modulated import ModulatedRolling, modulated_rolling
 from stylobate.theory.near_upright import angle_of_turn, required_friction
@@ -38,7 +34,6 @@ from stylobate.theory.planar_forced import (
     PlanarForcedResponse,
     PlanarOrbit,
     planar_forced_response,
-    planar_kick_slope,
 )
 from stylobate.theory.planar_free import planar_free_motion, planar_free_period
 from stylobate.theory.pulse_overturning import (
@@ -46,16 +41,13 @@ from stylobate.theory.pulse_overturning import (
     one_sine_overturning_after_impact,
     one_sine_overturning_without_impact,
 )
-from stylobate.theory.rolling import RollingBranch, SteadyRolling, rolling_gap, steady_rolling
+from stylobate.theory.rolling import RollingBranch, SteadyRolling, steady_rolling
 from stylobate.theory.rolling_friction import RollingFriction, rolling_required_friction
-from stylobate.theory.rotating_frame import rotating_frame_jacobian, rotating_frame_rates
 from stylobate.theory.sliding_block import HorizontalSliding, SlidingRegime, horizontal_sliding, sliding_amplitude
 from stylobate.theory.slipping_rolling import SlippingRolling, slipping_rolling
-from stylobate.theory.slipping_rolling_rates import slipping_rolling_rates
-from stylobate.theory.stability import hurwitz_coefficients
 from stylobate.theory.starting import FirstMotion, StartOfMotion, first_motion, start_of_motion
 from stylobate.theory.throwing import bounce_time, flight_throw_number, throw_number
-from stylobate.theory.wobbling import wobbling_rates, wobbling_rolling
+from stylobate.theory.wobbling import wobbling_rolling
 
 __all__ = [
     "AveragedRolling",
@@ -83,12 +75,11 @@ __all__ = [
     "block_cycle",
     "block_restitution",
     "bounce_time",
-    "circular_components",
     "critical_amplitude",
     "critical_frequency",
     "critical_frequency_frictionless",
     "crossing_frequency",
-    "equivalent_viscous_friction",
+    "equivalent_viscous_damping",
     "first_lyapunov_coefficient",
     "first_motion",
     "flight_throw_number",
@@ -96,20 +87,14 @@ __all__ = [
     "free_rolling",
     "free_rolling_spin",
     "free_twist_critical_frequency",
-    "free_twist_hurwitz_coefficients",
-    "free_twist_jacobian",
-    "free_twist_rates",
     "free_twist_rolling",
     "free_twist_upper_frequency",
     "full_rolling",
-    "full_rolling_rates",
     "half_sine_overturning",
-    "high_frequency_rates",
     "high_frequency_rolling",
     "hopping_speed",
     "horizontal_sliding",
     "housner_restitution",
-    "hurwitz_coefficients",
     "mean_block_speed",
     "modulated_rolling",
     "one_sine_overturning_after_impact",
@@ -118,19 +103,13 @@ __all__ = [
     "planar_forced_response",
     "planar_free_motion",
     "planar_free_period",
-    "planar_kick_slope",
     "required_friction",
     "rolling_backbone",
-    "rolling_gap",
     "rolling_required_friction",
-    "rotating_frame_jacobian",
-    "rotating_frame_rates",
     "sliding_amplitude",
     "slipping_rolling",
-    "slipping_rolling_rates",
     "start_of_motion",
     "steady_rolling",
     "throw_number",
-    "wobbling_rates",
     "wobbling_rolling",
 ]

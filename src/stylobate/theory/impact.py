@@ -86,7 +86,7 @@ def block_restitution(c: Real) -> FloatArray:
     return np.asarray(np.maximum(1.0 - 1.5 * square / (1.0 + square), 0.0))
 
 
-def equivalent_viscous_friction(amplitude: Real, *, c: Real, restitution: Real) -> FloatArray:
+def equivalent_viscous_damping(amplitude: Real, *, c: Real, restitution: Real) -> FloatArray:
     """Viscous friction that takes as much energy from planar rocking in a cycle as its impacts do.
 
     Parameters
@@ -119,7 +119,7 @@ def equivalent_viscous_friction(amplitude: Real, *, c: Real, restitution: Real) 
 
     Examples
     --------
-    >>> print(equivalent_viscous_friction([0.01, 0.05, 0.09, 0.1], c=0.1, restitution=0.985).round(5))
+    >>> print(equivalent_viscous_damping([0.01, 0.05, 0.09, 0.1], c=0.1, restitution=0.985).round(5))
     [0.04919 0.0208  0.01527     nan]
     """
     amplitude, c, e = np.broadcast_arrays(

@@ -11,6 +11,7 @@ from stylobate.engine import simulate
 from stylobate.paper.analyses.setting import CIRCULAR_AMPLITUDES, DAMPING, SLENDERNESS, judged, paper_model
 from stylobate.results import Finding, Section, Verdict
 from stylobate.studies.responses.initial_conditions import steady_start
+from stylobate.theory.rotating_frame import rotating_frame_rates
 
 _PARAMETERS = {"c": SLENDERNESS, "eta": DAMPING}
 _PERIODS = 50
@@ -73,7 +74,7 @@ def _solution() -> Finding:
     for branch in (steady.upper, steady.lower):
         tilt, phase = branch.amplitude[branch.exists], branch.phase[branch.exists]
         state = np.stack([np.zeros_like(tilt), theta[branch.exists], tilt, phase])
-        rates = theory.rotating_frame_rates(
+        rates = rotating_frame_rates(
             state, theta[branch.exists], a0[branch.exists], c=SLENDERNESS, eta=eta[branch.exists]
         )
         worst = max(worst, float(np.abs(rates[0]).max()), float(np.abs(tilt * rates[1]).max()))

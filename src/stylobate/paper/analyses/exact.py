@@ -13,6 +13,7 @@ from stylobate.paper.analyses.straight import AMPLITUDES
 from stylobate.results import Finding, Section, Verdict
 from stylobate.studies.responses.exact_response import exact_response
 from stylobate.studies.responses.stability_boundary import stability_boundary
+from stylobate.theory.averaging import circular_components
 
 _C = SLENDERNESS
 _BOUNDS = (0.8, 8.0)
@@ -84,7 +85,7 @@ def _circular() -> Finding:
 def _boundaries(straight: dict[float, Branch]) -> Finding:
     lost = {f"a1 = {a1:g}": (_lost(branch), a1 / 2.0) for a1, branch in straight.items()}
     ellipse = Harmonic.elliptic(amplitude=_ELLIPSE, phase=-math.pi / 2.0, angular_frequency=3.0)
-    p, _ = theory.circular_components(*_ELLIPSE, -math.pi / 2.0)
+    p, _ = circular_components(*_ELLIPSE, -math.pi / 2.0)
     lost[f"ellipse {_ELLIPSE[0]:g} × {_ELLIPSE[1]:g}"] = (_lost(_branch(ellipse)), float(abs(p)))
     lines, higher = [], []
     for name, (one, part) in lost.items():

@@ -10,6 +10,7 @@ from stylobate.base_motions import Harmonic
 from stylobate.engine import simulate
 from stylobate.paper.analyses.setting import DAMPING, SLENDERNESS, judged, paper_model
 from stylobate.results import Finding, Section, Verdict
+from stylobate.theory.planar_forced import planar_kick_slope
 
 _C = SLENDERNESS
 _THETA, _A1 = 3.0, 0.13
@@ -55,7 +56,7 @@ def kick_data() -> xr.Dataset:
     return xr.Dataset(
         {"kick": ("offset", kicks)},
         coords={"offset": offsets},
-        attrs={"slope": float(theory.planar_kick_slope(speed, _C)), "theta": _THETA, "a1": _A1, "c": _C},
+        attrs={"slope": float(planar_kick_slope(speed, _C)), "theta": _THETA, "a1": _A1, "c": _C},
     )
 
 

@@ -14,6 +14,7 @@ from stylobate.paper.analyses.setting import DAMPING, SLENDERNESS, judged, paper
 from stylobate.results import Finding, Response, Section, Verdict
 from stylobate.studies.responses.averaged_motion import averaged_motion
 from stylobate.studies.responses.initial_conditions import steady_start
+from stylobate.theory.high_frequency import high_frequency_rates
 
 _C = SLENDERNESS
 AMPLITUDES = (0.04, 0.13)
@@ -171,7 +172,7 @@ def _limit_range(ratio: float) -> tuple[float, float]:
     mean = float(theory.high_frequency_rolling(ratio).upper)
     span = (0.0, 2.0 * math.pi * _PERIODS)
     flow = solve_ivp(
-        lambda s, state: theory.high_frequency_rates(s, state, ratio),
+        lambda s, state: high_frequency_rates(s, state, ratio),
         span,
         [mean, 0.0, 0.0, mean],
         method="DOP853",

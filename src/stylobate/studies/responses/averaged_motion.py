@@ -4,11 +4,11 @@ import numpy as np
 import xarray as xr
 from scipy.integrate import solve_ivp
 
-from stylobate import theory
 from stylobate.base_motions import Harmonic
 from stylobate.errors import UnsupportedError, require_positive, require_vector
 from stylobate.models import Slender
 from stylobate.studies.responses.rolling_frame import RollingFrame
+from stylobate.theory.rotating_frame import rotating_frame_rates
 
 
 def averaged_motion(
@@ -74,7 +74,7 @@ def averaged_motion(
     c = model.column.slenderness
 
     def rates(_: float, state: np.ndarray) -> np.ndarray:
-        return theory.rotating_frame_rates(state, frame.theta, frame.drive, c=c, eta=model.damping)
+        return rotating_frame_rates(state, frame.theta, frame.drive, c=c, eta=model.damping)
 
     def leaves(_: float, state: np.ndarray) -> float:
         return float(min(state[2] - _SMALLEST * c, _LARGEST * c - state[2]))

@@ -12,6 +12,7 @@ from stylobate.base_motions import BaseMotion, as_harmonic
 from stylobate.config import provenance_of_run
 from stylobate.errors import ParameterError, UnsupportedError
 from stylobate.models import Model, Rolling, Slender, SlenderRolling, Wobbling
+from stylobate.theory.averaging import circular_components
 
 
 def response_curves(
@@ -58,7 +59,7 @@ def response_curves(
     a1, a2, phase = _amplitudes(motion, slender.column.gravity)
     c, eta, scale = slender.column.slenderness, slender.damping, slender.column.frequency_scale
     steady = theory.averaged_rolling(frequency / scale, a1, a2, phase, c=c, eta=eta)
-    p, q = (abs(part) for part in theory.circular_components(a1, a2, phase))
+    p, q = (abs(part) for part in circular_components(a1, a2, phase))
     largest = max(p, q)
     senses = [
         (name, branches, size)

@@ -4,10 +4,10 @@ import math
 from dataclasses import dataclass
 from typing import Self
 
-from stylobate import theory
 from stylobate.base_motions import Harmonic
 from stylobate.errors import ParameterError
 from stylobate.models import Model
+from stylobate.theory.averaging import circular_components
 
 Vector = tuple[float, float]
 
@@ -52,7 +52,7 @@ class RollingFrame:
             message = f"sense must be +1 (anticlockwise) or -1 (clockwise), got {sense!r}"
             raise ParameterError(message)
         (a1, a2, _), (phi1, phi2, _) = motion.amplitude, motion.phase
-        p, q = (complex(part) for part in theory.circular_components(a1, a2, phi2 - phi1))
+        p, q = (complex(part) for part in circular_components(a1, a2, phi2 - phi1))
         turning = (1 if abs(p) >= abs(q) else -1) if sense is None else sense
         part = p if turning == 1 else q
         return cls(
