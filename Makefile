@@ -68,11 +68,12 @@ test-lowest: $(UV)  ## the tests, with the lowest version of each dependency tha
 test-newest: $(UV)  ## the tests, with the newest version of each dependency that pyproject.toml allows
 	$(call test-with,newest,highest)
 
-lint: $(VENV)/.core $(VENV)/.test $(VENV)/.lint  ## style, types, import contracts
+lint: $(VENV)/.core $(VENV)/.test $(VENV)/.lint  ## style, types, import contracts, wording
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/python tools/wording.py
 
 docs: $(VENV)/.core $(VENV)/.docs  ## the documentation into docs/_build/html
 	$(BIN)/sphinx-build --fail-on-warning --keep-going docs docs/_build/html

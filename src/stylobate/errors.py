@@ -110,11 +110,11 @@ class Interrupted(KeyboardInterrupt):
 
 
 class UnlikelyInputWarning(UserWarning):
-    """Input that can be, but is more likely a slip; the message says what and how to mend it."""
+    """Input that is possible but unlikely; the message names it and the remedy."""
 
 
 class Outcome(Enum):
-    """What became of the column."""
+    """The outcome of a run."""
 
     AT_REST = "at rest"
     """It stands on its base and the base motion cannot release it, or it stood to the end of the run."""

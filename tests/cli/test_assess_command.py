@@ -141,7 +141,7 @@ def test_how_to_compute_is_refused_where_nothing_is_computed(tmp_path, capsys):
     [
         ("[dissipation]", "dissipation is missing: how fast a column in space loses energy"),
         ("friction_coefficient", "friction_coefficient is missing"),
-        ("units", "the file does not tell its unit"),
+        ("units", "the file names no unit"),
     ],
 )
 def test_what_must_be_stated_is_asked_for(gone, told, study, capsys):

@@ -47,7 +47,7 @@ def test_a_record_without_its_unit_is_one_line(files, capsys):
     assert run(["simulate", *COLUMN, "--record", str(files[0]), "--step", "0.01"]) == 2
     told = capsys.readouterr().err.splitlines()
     assert len(told) == 1
-    assert "does not tell its unit" in told[0]
+    assert "names no unit" in told[0]
 
 
 def test_a_map_takes_a_record_and_lasts_as_long(files, tmp_path, capsys):

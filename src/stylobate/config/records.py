@@ -94,7 +94,7 @@ class RecordMotion(Reading):
             If files and sample are contrary, the files are not those of one event, or one of them has changed since
             its SHA-256 was kept.
         FileError
-            If a file cannot be read, or does not tell its unit where `units` is not given.
+            If a file cannot be read, or names no unit where `units` is not given.
         """
         self._checked_files()
         return self.describe(self._read())
@@ -212,10 +212,10 @@ class DescribedRecord(Record):
         more = {"processing": (*self.description.processing, step)}
         return DescribedRecord.of(record, self.description.model_copy(update=more))
 
-    def changed(self, told: str, **changes: Any) -> Record:
-        """Return a record with other fields, without a description: what was done is told in words only."""
+    def changed(self, note: str, **changes: Any) -> Record:
+        """Return a record with other fields, without a description: the `note` states what was done."""
         fields = {name: getattr(self, name) for name in ("samples", "step", "start", "name")} | changes
-        return Record(**fields, provenance=(*self.provenance, told))
+        return Record(**fields, provenance=(*self.provenance, note))
 
     # Methods of slotted classes cannot say super().
 

@@ -1,4 +1,4 @@
-"""How long a column is followed after the shaking: until it is known what becomes of it."""
+"""The free-vibration time after a record, in which the outcome is decided."""
 
 from stylobate.column import Column
 from stylobate.config.simulation import FREE_TAIL

@@ -54,7 +54,7 @@ def incremental_dynamic_analysis(
     progress: Progress | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
-    """Return what becomes of a column under each record at each scale.
+    """Compute the outcome of a column under each record at each scale.
 
     All runs begin upright at rest unless `tilt` says otherwise; the column is released when the base acceleration
     exceeds c g. Each lasts to the end of its record and a `tail` of free vibration longer.

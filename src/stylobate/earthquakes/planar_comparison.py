@@ -74,7 +74,7 @@ def planar_bias(
         `log_ratio` over the records, its `scatter` (standard deviation), `standard_error` (scatter/√records) and
         `compared`, how many records; `overall_bias`, `overall_scatter`, `overall_standard_error` and
         `overall_compared`, those of the mean of `log_ratio` over the scales of each record; `only_space` and
-        `only_planar`, over `scale`, how many records overturn one of the two only. Likewise `capacity_bias`,
+        `only_planar`, over `scale`, how many records overturn one of the two only. Also `capacity_bias`,
         `capacity_scatter`, `capacity_standard_error`, `capacities_compared` of
         `log_capacity_ratio`. All these are NaN of fewer than two records. A positive bias of tilts, or a negative one
         of capacities, says that the planar column is on the unsafe side.

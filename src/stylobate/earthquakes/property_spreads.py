@@ -56,7 +56,7 @@ class NormalSpread:
     deviation
         Standard deviation before the cut, in the unit of the property.
     mean
-        Likewise; by default the value that the model has.
+        The same; by default the value that the model has.
     least, most
         Bounds.
     """

@@ -176,7 +176,7 @@ class Api:
 
 
 async def _when_gone(request: Request, act: Callable[[], None]) -> None:
-    """Act when whoever sent `request` has gone."""
+    """Act when the sender of `request` has gone."""
     while (await request.receive())["type"] != "http.disconnect":
         pass
     act()

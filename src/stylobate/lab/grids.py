@@ -19,7 +19,7 @@ from stylobate.studies.sweeps.quantities import attributes_of
 
 
 def overturning_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
-    """Return what becomes of the column over two quantities; of a model that slides, what it does."""
+    """Compute the map of outcomes over two quantities; for a sliding model, of kinds of contact."""
     setup = config.MapConfig.parse(values).build()
     study = conveying.contact_map if setup.model.switches else studies.overturning_map
     if case_numbers(values, setup.options["over"]):

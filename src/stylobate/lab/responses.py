@@ -15,7 +15,7 @@ from stylobate.results.summary import column_rows, measure_rows
 
 
 def plain_run(run: Response, model: Model) -> dict[str, Any]:
-    """Return what a page shows of `run`: what became of it, its history, and how it is drawn."""
+    """Return what a page shows of `run`: its outcome, its history, and how it is drawn."""
     return {
         "outcome": run.outcome.name,
         "label": run.outcome.value,

@@ -63,7 +63,7 @@ def exact(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
 
 
 def overturning(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
-    """Return what becomes of the column over two quantities."""
+    """Compute the map over two quantities."""
     from stylobate.lab.grids import overturning_plane  # noqa: PLC0415
 
     return overturning_plane(values, emit)

@@ -132,7 +132,7 @@ class Model(ABC):
     guards: ClassVar[Callable[..., tuple[float, ...]] | None] = None
     """(state…, ax, ay, az, ε, parameters…) → what is positive as long as a kind of contact lasts.
 
-    One that is below nought ends it; the last does so only where it was above before. The tilt of "fallen" counts as
+    One that is below zero ends it; the last does so only where it was above before. The tilt of "fallen" counts as
     overturned; all others lead to `reset_map`. ε is the energy of rest.
     """
 

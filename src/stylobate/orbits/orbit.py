@@ -136,7 +136,7 @@ class PeriodicOrbit:
         states = np.empty((self.system.order, count))
         at, state, side = 0.0, self.state, 0.0
         for index, phase in enumerate(self.periods * np.arange(count) / count):
-            # Each arc begins anew: what an unstable orbit has drifted off is left behind.
+            # Each arc starts on the orbit: the drift along an unstable one is left behind.
             arc = int(phase * arcs / self.periods + 1e-12)
             begin = arc / arcs * self.periods
             if begin > at + 1e-12:

@@ -1,4 +1,4 @@
-"""Outcome maps: what becomes of the column over two parameters."""
+"""Outcome maps over two parameters."""
 
 from collections.abc import Sequence
 from typing import Any

@@ -39,12 +39,12 @@ class Event:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Response:
-    """The motion of one column: what became of it, and its history.
+    """The motion of one column: its outcome and its history.
 
     Attributes
     ----------
     outcome
-        What became of the column.
+        The outcome.
     reason
         One line that says how the outcome was decided.
     decided_at

@@ -1,4 +1,4 @@
-"""What became of a run, in lines to read: the same on the command line and in the laboratory."""
+"""A run in lines to read: the same on the command line and in the laboratory."""
 
 import math
 from typing import TYPE_CHECKING
@@ -20,7 +20,7 @@ def column_rows(column: "Column") -> Rows:
 
 
 def verdict_rows(run: "Response") -> Rows:
-    """Return what became of the column, why, and when that was decided."""
+    """Return the outcome, its reason, and when it was decided."""
     return [
         ("outcome", run.outcome.value + (" (uncertain)" if run.uncertain else "")),
         ("because", run.reason),

@@ -139,7 +139,7 @@ def test_a_stream_without_a_compass_letter_points_nowhere(tmp_path):
         ({"SAMPLING_INTERVAL_S": "0"}, r"line 9: SAMPLING_INTERVAL_S must be positive, got 0.0"),
         ({"SAMPLING_INTERVAL_S": None}, r"line 1: incomplete header of an ASC file: SAMPLING_INTERVAL_S is missing"),
         ({"UNITS": "stone"}, r"line 12: unknown unit 'stone'"),
-        ({"UNITS": ""}, r"does not tell its unit: state units"),
+        ({"UNITS": ""}, r"names no unit: state units"),
         ({"DATA_TYPE": "VELOCITY"}, r"line 15: accelerations are wanted, this is velocity. Read the file .* with ACC"),
     ],
 )

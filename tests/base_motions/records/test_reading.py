@@ -72,7 +72,7 @@ def test_units_are_those_that_are_given(tmp_path, units, factor):
 
 def test_units_are_never_guessed(tmp_path):
     path = written(tmp_path, "a.txt", TABLE)
-    with pytest.raises(FileError, match=r'a\.txt: the file does not tell its unit: state units, "g", "m/s²"'):
+    with pytest.raises(FileError, match=r'a\.txt: the file names no unit: state units, "g", "m/s²"'):
         sb.read_record(path)
     with pytest.raises(ParameterError, match=r"units must be .* got 'furlong'"):
         sb.read_record(path, "furlong")
@@ -83,7 +83,7 @@ def test_units_are_never_guessed(tmp_path):
 def test_a_single_column_needs_its_step(tmp_path):
     path = written(tmp_path, "a.txt", "# remark\n" + "\n".join(map(str, VALUES)))
     assert sb.read_record(path, "g", step=0.01).duration == pytest.approx(0.06)
-    with pytest.raises(FileError, match=r"a\.txt, line 2: a single column tells no time step: state step, in s"):
+    with pytest.raises(FileError, match=r"a\.txt, line 2: a single column has no time step: state step, in s"):
         sb.read_record(path, "g")
 
 
@@ -300,7 +300,7 @@ def test_miniseed_and_sac_are_read_through_obspy(tmp_path):
         np.testing.assert_allclose(record.samples[:, 0], VALUES, rtol=1e-6)
         assert record.step == pytest.approx(0.01, rel=1e-6)
         assert "azimuth 90° along x" in record.provenance
-    with pytest.raises(FileError, match="does not tell its unit"):
+    with pytest.raises(FileError, match="names no unit"):
         sb.read_record(tmp_path / "a.mseed")
     with pytest.raises(FileError, match="ObsPy cannot read it"):
         sb.read_record(written(tmp_path, "b.bin", bytes(range(64))), "g")

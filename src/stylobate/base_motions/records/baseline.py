@@ -30,5 +30,5 @@ def baseline_corrected(record: Record, degree: int = 1) -> Record:
     fit, *_ = np.linalg.lstsq(time**powers, velocity, rcond=None)
     length = record.step * (len(record.samples) - 1)
     slope = (powers * time ** (powers - 1)) @ fit / length
-    told = f"baseline: derivative of a polynomial of degree {degree} fitted to the velocity taken off"
-    return record.changed(told, samples=record.samples - slope)
+    note = f"baseline: derivative of a polynomial of degree {degree} fitted to the velocity taken off"
+    return record.changed(note, samples=record.samples - slope)

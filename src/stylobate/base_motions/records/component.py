@@ -122,7 +122,7 @@ class Direction:
 class Component:
     """Accelerations of one component from a file, in the unit of the file.
 
-    `samples` has the shape (n,), or (n, 3) where a file holds x, y and z; `unit` is None where the file does not tell.
+    `samples` has the shape (n,), or (n, 3) if a file holds x, y and z; `unit` is None if the file does not state it.
     """
 
     samples: npt.NDArray[np.float64]

@@ -63,9 +63,9 @@ def filtered(
         zeros = math.ceil(_PAD * order / edges[0] / record.step)
         wide = np.pad(record.samples, ((zeros, zeros), (0, 0)))
         samples = sosfiltfilt(sections, wide, axis=0, padlen=0)[zeros : zeros + len(record.samples)]
-    told = ", ".join(f"{name} {value!r} Hz" for name, value in corners.items())
+    corners_text = ", ".join(f"{name} {value!r} Hz" for name, value in corners.items())
     way = "forwards only" if causal else "forwards and backwards"
-    return record.changed(f"Butterworth {told}, order {order}, {way}", samples=samples)
+    return record.changed(f"Butterworth {corners_text}, order {order}, {way}", samples=samples)
 
 
 def _sections(edges: list[float], order: int, *, lowest: bool, rate: float) -> Floats:

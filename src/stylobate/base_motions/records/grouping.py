@@ -22,14 +22,14 @@ _SAME_STEP = 1e-9
 
 
 class Lengths(Enum):
-    """What becomes of components that differ in length."""
+    """How components of different lengths are joined."""
 
     TRIM = "all end with the shortest"
     PAD = "the shorter ones go on with zeros"
 
 
 class Steps(Enum):
-    """What becomes of components that differ in their time step."""
+    """How components of different time steps are joined."""
 
     REFUSE = "an error"
     RESAMPLE = "all are resampled to the finest step"
@@ -220,20 +220,20 @@ def _alike(event: str, parts: list[_Part], lengths: Lengths, steps: Steps) -> tu
     finest = min(record.step for record in records)
     if any(abs(record.step / finest - 1.0) > _SAME_STEP for record in records):
         if steps is Steps.REFUSE:
-            told = ", ".join(f"{part.path.name} {part.record.step:g} s" for part in parts)
-            message = f"{event}: time steps differ ({told}); state steps to be resampled, or make them alike"
+            listed = ", ".join(f"{part.path.name} {part.record.step:g} s" for part in parts)
+            message = f"{event}: time steps differ ({listed}); state steps to be resampled, or make them alike"
             raise FileError(message)
         records = [record.resampled(finest) for record in records]
     if len({record.start for record in records}) > 1:
-        told = ", ".join(f"{part.path.name} {part.record.start:g} s" for part in parts)
-        message = f"{event}: components begin at different times ({told}); trim or pad them one by one"
+        listed = ", ".join(f"{part.path.name} {part.record.start:g} s" for part in parts)
+        message = f"{event}: components begin at different times ({listed}); trim or pad them one by one"
         raise FileError(message)
     counts = [len(record.samples) for record in records]
     if len(set(counts)) == 1:
         return records, []
     target = min(counts) if lengths is Lengths.TRIM else max(counts)
-    told = ", ".join(f"{part.path.name} {count}" for part, count in zip(parts, counts, strict=True))
-    notes = [f"{'trimmed' if lengths is Lengths.TRIM else 'padded with zeros'} to {target} samples: {told}"]
+    listed = ", ".join(f"{part.path.name} {count}" for part, count in zip(parts, counts, strict=True))
+    notes = [f"{'trimmed' if lengths is Lengths.TRIM else 'padded with zeros'} to {target} samples: {listed}"]
     if lengths is Lengths.TRIM:
         warn_of_lost_shaking(event, [part.path.name for part in parts], records, target)
     fitted = [

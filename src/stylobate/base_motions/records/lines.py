@@ -1,4 +1,4 @@
-"""Text files of records: opened, decoded, and read as numbers; what is wrong is told by file and line."""
+"""Text files of records: opened, decoded, and read as numbers; faults name file and line."""
 
 import gzip
 import math

@@ -110,8 +110,8 @@ def _chosen(text: Text, line: int, names: list[str], columns: Mapping[str, str] 
         return chosen | directed
     likely = accelerations or others
     if len(likely) != 1 or spelt_out:
-        told = ", ".join(names)
-        raise text.fault(line, f"which of {told} is the acceleration? state columns, or name it x or acceleration")
+        listed = ", ".join(names)
+        raise text.fault(line, f"which of {listed} is the acceleration? state columns, or name it x or acceleration")
     return chosen | {"x": likely[0]}
 
 
@@ -126,10 +126,10 @@ def _directed(names: list[str], places: list[int]) -> dict[str, int]:
     return {name: place for name, place in found.items() if len(name) > 1}
 
 
-def _unit(text: Text, line: int, told: Mapping[str, str | None]) -> str | None:
-    known = {unit_of(unit) for unit in told.values() if unit is not None}
+def _unit(text: Text, line: int, units: Mapping[str, str | None]) -> str | None:
+    known = {unit_of(unit) for unit in units.values() if unit is not None}
     if None in known:
-        raise text.fault(line, f"unknown unit among {', '.join(map(repr, told.values()))}")
+        raise text.fault(line, f"unknown unit among {', '.join(map(repr, units.values()))}")
     if len(known) > 1:
-        raise text.fault(line, f"columns of different units: {', '.join(map(repr, told.values()))}")
+        raise text.fault(line, f"columns of different units: {', '.join(map(repr, units.values()))}")
     return next(iter(known), None)

@@ -56,7 +56,7 @@ def read_record(
         The file; gzip is unpacked.
     units
         Unit of the accelerations: "g", "m/s²" (m/s2), "cm/s²" (cm/s2, gal) or "mm/s²". Only to be left out where the
-        file tells: it is never guessed.
+        file states: it is never guessed.
     step
         Time step [s], of a file that has none: a single column, or an AT2 file without the line of NPTS and DT.
     columns
@@ -71,7 +71,7 @@ def read_record(
     ------
     FileError
         If the file is missing, empty, cut short, holds something that is not a number or unequal steps, or does not
-        tell its unit; with the number of the line.
+        state its unit; with the number of the line.
     ParameterError
         If units are unknown or contradict the file.
     UnsupportedError
@@ -134,12 +134,12 @@ def _is_called_at2(path: Path) -> bool:
 
 def as_record(component: Component, path: Path, units: str | None, axis: str | None) -> Record:
     """Return the record of one file's content, in SI units."""
-    factor, told = _scale(component, path, units)
+    factor, unit_text = _scale(component, path, units)
     _require_possible(component, path)
     provenance: tuple[str, ...] = (
-        f"read from {path.name}, {told}" + (f": {component.title}" if component.title else ""),
+        f"read from {path.name}, {unit_text}" + (f": {component.title}" if component.title else ""),
     )
-    _remark_on_the_peak(factor * component.samples, path, told)
+    _remark_on_the_peak(factor * component.samples, path, unit_text)
     direction = component.direction
     if component.samples.ndim > 1:
         samples = factor * component.samples
@@ -171,11 +171,11 @@ def _require_possible(component: Component, path: Path) -> None:
             raise FileError(message)
 
 
-def _remark_on_the_peak(samples: Floats, path: Path, told: str) -> None:
+def _remark_on_the_peak(samples: Floats, path: Path, unit_text: str) -> None:
     peak = float(np.abs(samples).max()) / STANDARD_GRAVITY
     if peak > _LARGEST_PEAK:
         message = (
-            f"{path}: its peak is {peak:.3g} g, read {told}; hardly any earthquake shakes the ground beyond "
+            f"{path}: its peak is {peak:.3g} g, read {unit_text}; hardly any earthquake shakes the ground beyond "
             f"{_LARGEST_PEAK:g} g: if the file is in another unit, such as cm/s², name that (units)"
         )
         warnings.warn(message, UnlikelyInputWarning, stacklevel=2)
@@ -190,7 +190,7 @@ def name_of(path: Path) -> str:
 def _scale(component: Component, path: Path, units: str | None) -> tuple[float, str]:
     given = None if units is None else require_unit(units)
     if component.unit is None and given is None:
-        message = f"{path}: the file does not tell its unit: state units, {KNOWN}"
+        message = f"{path}: the file names no unit: state units, {KNOWN}"
         raise FileError(message)
     if component.unit is not None and given is not None and component.unit != given:
         message = f"{path}: units must be left out or {component.unit!r}, which the file says, got {units!r}"

@@ -108,8 +108,8 @@ class Record(BaseMotion):
             if values is not None
         }
         if not given or len({values.shape for values in given.values()}) > 1:
-            told = {name: values.shape for name, values in given.items()}
-            message = f"x, y and z must be arrays of one length, one of them at least, got the shapes {told}"
+            shapes = {name: values.shape for name, values in given.items()}
+            message = f"x, y and z must be arrays of one length, one of them at least, got the shapes {shapes}"
             raise ParameterError(message)
         shape = next(iter(given.values())).shape
         samples = np.stack([given.get(name, np.zeros(shape)) for name in AXES], axis=-1)
@@ -137,7 +137,7 @@ class Record(BaseMotion):
 
     @property
     def digest(self) -> str:
-        """What tells its numbers from those of others: SHA-256 of samples, step and start, in hexadecimal digits."""
+        """Identity of its numbers: SHA-256 of samples, step and start, in hexadecimal digits."""
         numbers = np.array([self.step, self.start]).tobytes()
         return hashlib.sha256(self.samples.tobytes() + numbers).hexdigest()
 
@@ -239,8 +239,8 @@ class Record(BaseMotion):
         """Return this record times `factor`; its vertical component times `vertical` where that is given."""
         factor = require_finite("factor", factor)
         vertical = factor if vertical is None else require_finite("vertical", vertical)
-        told = f"scaled by {factor!r}" + (f", vertical by {vertical!r}" if vertical != factor else "")
-        return self.changed(told, samples=self.samples * [factor, factor, vertical])
+        note = f"scaled by {factor!r}" + (f", vertical by {vertical!r}" if vertical != factor else "")
+        return self.changed(note, samples=self.samples * [factor, factor, vertical])
 
     def scaled_to(self, peak: float) -> "Record":
         """Return this record, all components times one factor, with sup |a_h| = `peak` [m/s²].
@@ -294,8 +294,8 @@ class Record(BaseMotion):
         """Return this record with `before` and `after` [s] of zeros, in whole steps, none shorter than asked."""
         counts = [self._steps("before", before), self._steps("after", after)]
         samples = np.pad(self.samples, (counts, (0, 0)))
-        told = f"padded with {counts[0]} zeros before and {counts[1]} after"
-        return self.changed(told, samples=samples)
+        note = f"padded with {counts[0]} zeros before and {counts[1]} after"
+        return self.changed(note, samples=samples)
 
     def with_tail(self, length: float) -> "Record":
         """Return this record with `length` [s] of rest appended, in which the column may yet overturn or come to rest.
@@ -328,9 +328,9 @@ class Record(BaseMotion):
 
         return baseline_corrected(self, degree)
 
-    def changed(self, told: str, **changes: Any) -> "Record":
-        """Return this record with other fields and one more line `told` in its provenance."""
-        return replace(self, provenance=(*self.provenance, told), **changes)
+    def changed(self, note: str, **changes: Any) -> "Record":
+        """Return this record with other fields and one more `note` in its provenance."""
+        return replace(self, provenance=(*self.provenance, note), **changes)
 
 
 def _checked(samples: npt.ArrayLike) -> Floats:

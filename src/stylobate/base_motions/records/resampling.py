@@ -33,5 +33,5 @@ def resampled(record: Record, step: float) -> Record:
     if up == down:
         return record
     samples = resample_poly(record.samples, up, down, axis=0)
-    told = f"resampled from {record.step!r} s to {step!r} s (polyphase {up}:{down}, anti-aliased)"
-    return record.changed(told, samples=samples, step=step)
+    note = f"resampled from {record.step!r} s to {step!r} s (polyphase {up}:{down}, anti-aliased)"
+    return record.changed(note, samples=samples, step=step)

@@ -73,22 +73,26 @@ def response_spectra(record: Record, periods: npt.ArrayLike, *, damping: float =
     squares = (2.0 * math.pi / natural) ** 2
     both, one = ("period", "axis"), "period"
     data: dict[str, Any] = {
-        "sd": (both, sd, _told("m", "spectral displacement")),
-        "sv": (both, sv, _told("m s-1", "spectral velocity")),
-        "psa": (both, squares[:, np.newaxis] * sd, _told("m s-2", "spectral pseudo-acceleration")),
+        "sd": (both, sd, _attributes("m", "spectral displacement")),
+        "sv": (both, sv, _attributes("m s-1", "spectral velocity")),
+        "psa": (both, squares[:, np.newaxis] * sd, _attributes("m s-2", "spectral pseudo-acceleration")),
     }
     if turns:
         for name, values in zip(_PERCENTILES, turned.T, strict=True):
-            data[name] = (one, squares * values, _told("m s-2", f"{name.replace('rotd', 'RotD')} of PSA"))
-        data["geometric_mean"] = (one, squares * np.sqrt(sd[:, 0] * sd[:, 1]), _told("m s-2", "geometric mean of PSA"))
+            data[name] = (one, squares * values, _attributes("m s-2", f"{name.replace('rotd', 'RotD')} of PSA"))
+        data["geometric_mean"] = (
+            one,
+            squares * np.sqrt(sd[:, 0] * sd[:, 1]),
+            _attributes("m s-2", "geometric mean of PSA"),
+        )
     return xr.Dataset(
         data,
-        coords={"period": (one, natural, _told("s", "natural period")), "axis": shown},
+        coords={"period": (one, natural, _attributes("s", "natural period")), "axis": shown},
         attrs={"damping": damping, "record": record.name, "digest": record.digest},
     )
 
 
-def _told(units: str, long_name: str) -> dict[str, str]:
+def _attributes(units: str, long_name: str) -> dict[str, str]:
     return {"units": units, "long_name": long_name}
 
 

@@ -37,7 +37,7 @@ def read_table(text: Text, step: float | None) -> Component:
     places = [at for at, _ in tokens]
     if width == 1:
         if step is None:
-            raise text.fault(places[0], "a single column tells no time step: state step, in s")
+            raise text.fault(places[0], "a single column has no time step: state step, in s")
         _require_two(text, places)
         return Component(samples=values[:, 0], step=step, unit=None)
     start, own = equal_steps(text, values[:, 0], places, step)

@@ -65,7 +65,7 @@ def assess(
     progress: Announce | None = None,
     **options: Unpack[RunOptions],
 ) -> Assessment:
-    """Return what becomes of each column under each record, how close it was, and how sure that is.
+    """Assess columns under records: outcomes, margins, and how robust they are.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def assess(
         Of the contact between column and base, one or one for each column by name: what the friction that a run
         needs is compared with. It must be stated.
     scales
-        Factors of the records at which verdicts are given; vertical components are scaled likewise.
+        Factors of the records at which verdicts are given; vertical components are scaled with them.
     margin_scales
         Factors looked at for the bands that overturn, by default 60 from 0.2 to 5, evenly in their logarithm; besides
         them the `scales` and what the changes make of them.

@@ -30,7 +30,7 @@ def fit_fragility(
     Maximum likelihood with binomial counts: Baker, "Efficient analytical fragility function fitting using dynamic
     structural analysis", Earthquake Spectra 31 (2015). Runs of one record go together, most of all one record at many
     scales: the likelihood takes them as independent, and its intervals are then too narrow. With `resamples` the
-    intervals come from whole records drawn anew.
+    intervals come from resampled whole records.
 
     Parameters
     ----------
@@ -43,13 +43,13 @@ def fit_fragility(
     record
         Which record each run had, numbers or names; by default the dimension or coordinate `record` of `reached`.
     property_sample
-        Which sample of the column's properties each run had, likewise. It parts the runs of a record for `counting`.
+        Which sample of the column's properties each run had. It parts the runs of a record for `counting`.
     counting
         Which runs count as reached where a record is safe again at a higher intensity.
     confidence
         Of the intervals.
     resamples
-        How many times the records are drawn anew; 0 for intervals by profile likelihood.
+        How many bootstrap samples of the records; 0 for intervals by profile likelihood.
     rng
         What draws them.
 

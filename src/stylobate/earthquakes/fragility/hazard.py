@@ -110,7 +110,7 @@ class HazardCurve:
             raise ParameterError(message)
         if self.component is not None:
             object.__setattr__(self, "component", HorizontalComponent.named(self.component).value)
-        # A value of its own, whatever becomes of the arrays that it was made from.
+        # A value of its own, however the arrays change from which it was made.
         object.__setattr__(self, "intensity", tuple(x.tolist()))
         object.__setattr__(self, "rate", tuple(rate.tolist()))
 

@@ -42,7 +42,7 @@ class Observations:
     record
         Number of the record of each run, from 0, shape (runs,); None where nobody named it.
     series
-        Number of the record and property sample of each run together, likewise.
+        Number of the record and property sample of each run together.
     records
         Names of the records, by their numbers.
     names

@@ -1,4 +1,4 @@
-"""Intervals from records drawn anew: the bootstrap over clusters, for runs of one record go together.
+"""Intervals from resampled records: the bootstrap over clusters, for runs of one record go together.
 
 Field and Welsh, "Bootstrapping clustered data", J. R. Stat. Soc. B 69 (2007). The percentiles are corrected for the
 median bias of the resamples (Efron, "Nonparametric standard errors and confidence intervals", Can. J. Stat. 9, 1981)
@@ -25,7 +25,7 @@ class Replicates:
     log_median, dispersion
         NaN where there is no fit; dispersion 0 where an intensity separates the resample.
     own
-        Logarithm of the median, and dispersion, of the data themselves, likewise.
+        Logarithm of the median, and dispersion, of the data themselves.
     records
         How many there are.
     """
@@ -89,7 +89,7 @@ def resampled(seen: Observations, count: int, rng: np.random.Generator) -> list[
     """Return fits to `count` resamples for each limit state; the records drawn are the same for all of them."""
     record = seen.record
     if record is None:
-        message = "records are needed to draw them anew"
+        message = "record: resampling needs the record of each run. Pass `record=`."
         raise AssertionError(message)
     records = int(record.max()) + 1
     u, place = np.unique(np.log(seen.intensity), return_inverse=True)

@@ -21,7 +21,7 @@ _CODE: Schema = {"type": "integer"}
 _NAMES = listed("codes and what they mean", exactly("", _CODE, text("what it means")))
 _CODES = listed("a row for each value of x", listed("a code for each value of y", _CODE))
 _SIZE = {
-    "uncertain": whole("runs whose outcome hangs on rounding"),
+    "uncertain": whole("runs whose outcome rounding error could change"),
     "runs": whole("runs in all"),
 }
 
@@ -73,7 +73,7 @@ _BASIN = table(
                 "",
                 {
                     "name": text("as in names"),
-                    "kind": text("what becomes of the column"),
+                    "kind": text("the kind of outcome"),
                     "period": whole("in periods of the base; 0 where it has none"),
                     "fraction": _share("of all starts"),
                     "fraction_low": _share("lower end of its interval"),

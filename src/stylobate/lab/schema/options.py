@@ -60,7 +60,7 @@ _ABOUT = table(
             ),
         ),
         "outcomes": listed(
-            "what can become of a column",
+            "the possible outcomes",
             table(
                 "",
                 {

@@ -21,7 +21,7 @@ _ANY_NUMBER: Schema = {"type": ["number", "null"]}
 
 _CONTACTS = {kind.value: kind.name.lower() for kind in Contact}
 
-_OUTCOME = word("what became of the column", [one.name for one in Outcome])
+_OUTCOME = word("the outcome", [one.name for one in Outcome])
 
 _COLUMN = table(
     "The numbers of the column that decide.",
@@ -134,7 +134,7 @@ _DRAWN = table(
         "friction_coefficient": or_none(number("of the contact, where it is known")),
         "outcome": _OUTCOME,
         "decided_at": number("[s]"),
-        "title": text("a line that says what became of it"),
+        "title": text("a line that states the outcome"),
     },
     others={},
 )
@@ -151,7 +151,7 @@ _RUN = table(
         "label": word("the outcome in words", [one.value for one in Outcome]),
         "reason": text("why it is that outcome"),
         "decided_at": number("when that was decided [s]"),
-        "uncertain": flag("whether the outcome hangs on rounding"),
+        "uncertain": flag("whether rounding error could change the outcome"),
         "planar": flag("whether it moved in one vertical plane"),
         "warnings": listed("one line each", {"type": "string"}),
         "events": listed(

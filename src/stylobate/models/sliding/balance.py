@@ -7,7 +7,7 @@ I_t ẇ1 = I_t β̇w2 cos θ − I_a w2w3 + T_n + M1,   I_a ẇ3 = c T_n + M3,
 I_t ẇ2 = I_t β̇² sin θ cos θ − I_a β̇w3 sin θ + M2 − N z' − T_d ρ',   N = 1 + a_z + κ(z'ẇ2 − ρ'w2²),
 κ v̇_d = T_d − a_d − κ(ρ'ẇ2 + z'w2² + β̇w),   κ v̇_n = T_n − a_n + κ(ẇ − ρ'β̇w2),   w = c w3 + w1,
 
-v being the velocity of the body at C. Without slip v̇ = 0 gives T; with it T follows N; in the air both are nought.
+v being the velocity of the body at C. Without slip v̇ = 0 gives T; with it T follows N; in the air both are zero.
 """
 
 import math

@@ -221,7 +221,7 @@ def guards(
 ) -> tuple[float, float, float, float, float, float, float]:
     """Return what is positive as long as a kind of contact lasts, in the order of GUARDS.
 
-    Where one falls below nought an event ends it; the last where it does so from above only. `rest` is ε: on its rim a
+    Where one falls below zero an event ends it; the last where it does so from above only. `rest` is ε: on its rim a
     column comes to rest below the energy ε c² where the plane would hold it.
     """
     _, _, _, ox, oy, normal, tx, ty, _, oz, kept, denominator, _, _, _, yawing = balance(

@@ -143,7 +143,7 @@ def slips(vx: float, vy: float, turning: float) -> bool:
 
 
 def pace(state: State) -> float:
-    """Return |α̇|, and not nought."""
+    """Return |α̇|, and never zero."""
     return math.hypot(state.tilt_rate_x, state.tilt_rate_y) + 1e-300
 
 

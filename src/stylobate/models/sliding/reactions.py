@@ -1,4 +1,4 @@
-"""What becomes of a column when a kind of contact ends, as the engines ask it: with plain numbers."""
+"""The state after a kind of contact ends, as the engines ask for it: in plain numbers."""
 
 import math
 

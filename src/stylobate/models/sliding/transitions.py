@@ -1,4 +1,4 @@
-"""What becomes of a column when a kind of contact ends."""
+"""Transitions of the column when a kind of contact ends."""
 
 import math
 
@@ -31,7 +31,7 @@ _WEIGHTLESS = 1e-12
 def reaction(
     state: State, event: int, now: Triple, later: Triple, ahead: float, rest: float, numbers: Numbers
 ) -> tuple[float, State]:
-    """Return how much later, and in which state, a column goes on whose margin of this number fell below nought.
+    """Return how much later, and in which state, a column goes on whose guard of this number fell below zero.
 
     Parameters
     ----------

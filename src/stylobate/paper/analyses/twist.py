@@ -48,7 +48,7 @@ _BOUNDARY, _LINEAR = 1e-6, 0.01
 
 
 def check_twist() -> Section:
-    """Check what the assumption of no rotation about the vertical needs, and what becomes of (8) without it."""
+    """Check what the assumption of no rotation about the vertical needs, and how (8) changes without it."""
     findings: tuple[Finding, ...] = (_needed(), _with_spin_friction(), _without())
     findings += (_stability(), _weak_friction(), _upper_frequency())
     findings += findings_at_finite_tilt()

@@ -1,4 +1,4 @@
-"""What becomes of rolling with a free twist, and of the paper's own rolling, where the tilt is not small."""
+"""Rolling with free axial rotation, and the paper's own rolling, at tilts that are not small."""
 
 import math
 

@@ -151,7 +151,7 @@ def animate(
     speed
         Seconds of the run in a second of the animation. There are 1500 pictures at most: long runs need more speed.
     title
-        A line in the pictures; of a page its heading, by default what became of the column.
+        A line in the pictures; of a page its heading, by default the outcome.
     azimuth, elevation
         Where one looks from [degrees].
 

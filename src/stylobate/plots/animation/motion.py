@@ -56,7 +56,7 @@ class DrawnMotion:
     friction_coefficient
         Of the contact, where it is known.
     outcome, decided_at, title
-        What became of the column, when that was decided [s], and a line that says so.
+        The outcome, when it was decided [s], and a line that states both.
     """
 
     shape: Shape
@@ -177,7 +177,7 @@ def drawn_motion(run: Response, *, frames_per_second: float | None = None, title
     frames_per_second
         Instants per second of the run's own time; by default as many as its samples. There are 2000 at most.
     title
-        A line of text; by default what became of the column.
+        A line of text; by default the outcome.
 
     Returns
     -------
@@ -201,7 +201,7 @@ def verdict_of(outcome: Outcome) -> str:
 
 
 def _without_advice(reason: str) -> str:
-    """Return what became of a run, without what to do about it: that is for who made it."""
+    """Return the reason of an outcome without the advice that follows it."""
     return reason.partition(";")[0]
 
 

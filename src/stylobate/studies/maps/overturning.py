@@ -1,4 +1,4 @@
-"""Overturning maps: what becomes of the column over any two parameters."""
+"""Overturning maps: outcomes over any two parameters."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -34,7 +34,7 @@ def overturning_map(
     progress: Progress | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
-    """Return what becomes of a column over two parameters, from rest or from a given start.
+    """Compute the outcome of a column over two parameters, from rest or a given initial state.
 
     Parameters
     ----------

@@ -165,7 +165,7 @@ def _labelled(
 def overturned_or_not(runs: xr.Dataset) -> Integers:
     """Return 1 for each run that overturned and 0 for those that did not.
 
-    UNSETTLED where that is not known: the run failed, lifted off or was stopped at a tilt limit; NOT_COMPUTED likewise.
+    UNSETTLED where that is not known: the run failed, lifted off or was stopped at a tilt limit; also NOT_COMPUTED.
     """
     codes = runs["outcome"].to_numpy().astype(np.int64)
     states: Integers = (codes == code_of(Outcome.OVERTURNED)).astype(np.int64)

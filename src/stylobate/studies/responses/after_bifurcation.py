@@ -1,4 +1,4 @@
-"""What becomes of the column beside a bifurcation, from starts on the orbit that lost its stability there."""
+"""Outcome statistics near a bifurcation, started on the orbit that lost its stability there."""
 
 import json
 from collections.abc import Callable, Sequence

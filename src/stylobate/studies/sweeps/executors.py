@@ -17,7 +17,7 @@ class Work(Protocol):
 
 
 class Executor(Protocol):
-    """Whoever computes tasks.
+    """An executor of tasks.
 
     Notes
     -----

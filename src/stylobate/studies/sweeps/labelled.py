@@ -26,7 +26,7 @@ def labelled_sweep(
     Raises
     ------
     Interrupted
-        On Ctrl-C; its `partial` is labelled likewise, unless that is what was interrupted.
+        On Ctrl-C; its `partial` is labelled too, unless that is what was interrupted.
     """
     try:
         runs = run_sweep(sweep, store=store, executor=executor, resume=resume, progress=progress)

@@ -84,7 +84,7 @@ class InMemory:
 
 @dataclass(frozen=True, slots=True)
 class OnDisk:
-    """Results in a store, written by whoever computes them."""
+    """Results in a store, written by the workers that compute them."""
 
     sweep: Sweep
     layout: Layout

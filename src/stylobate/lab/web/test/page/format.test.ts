@@ -14,7 +14,7 @@ test("units of results are written as people write them", () => {
   ]);
 });
 
-test("axes tell their unit unless there is none", () => {
+test("axes state their unit unless there is none", () => {
   assert.equal(axisLabel("angular_frequency", "rad s-1"), "angular frequency [rad/s]");
   assert.equal(axisLabel("slenderness", "1"), "slenderness");
   assert.equal(withUnit(0.0651, "m/s²"), "0.0651 m/s²");

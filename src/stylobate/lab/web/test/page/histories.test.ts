@@ -24,7 +24,7 @@ function run(series: Partial<Series>, frequency: number | null = null): RunShown
 
 const usual = (series: Partial<Series>): readonly HistoryName[] => chosenHistories(run(series), null);
 
-test("only what a run tells is offered, and of the base only the directions in which it moves", () => {
+test("only what a run has is offered, and of the base only the directions in which it moves", () => {
   assert.deepEqual(offeredHistories(run({})), ["tilt", "base_y"]);
 });
 

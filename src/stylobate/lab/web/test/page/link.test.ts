@@ -9,7 +9,7 @@ const again = (view: View): View => viewFrom(`#${linkOf(view)}`, ABOUT);
 
 const under = (motion: Part): View => viewOf({ ...VIEW.description, motion } as Description);
 
-test("a link tells its case in words that can be read", () => {
+test("a link describes its case in words that can be read", () => {
   assert.equal(
     linkOf(VIEW),
     "column=dimensionless,slenderness:0.1&model=slender,damping:0.1&motion=circular,acceleration:0.065,angular_frequency:1.8" +

@@ -53,7 +53,7 @@ test("a slider about a value holds it, away from both ends", () => {
   }
 });
 
-test("the middle of an even slider about nought is nought, and not minus nought", () => {
+test("the middle of an even slider about zero is zero, and not minus zero", () => {
   assert.ok(Object.is(valueAt(POSITIONS / 2, scaleBetween(-0.2, 0.2)), 0));
 });
 

@@ -4,12 +4,12 @@ import { inWordsOfForm } from "../../src/page/controls/record-form";
 
 test("what the server asks for is named as the form names it", () => {
   const said = {
-    'a.txt: the file does not tell its unit: state units, "g", "m/s²" or "cm/s²"':
-      "a.txt: the file does not tell its unit: choose its unit above.",
+    'a.txt: the file names no unit: state units, "g", "m/s²" or "cm/s²"':
+      "a.txt: the file names no unit: choose its unit above.",
     "a.AT2: units must be left out or 'g', which the file says, got 'm/s2'":
       "a.AT2: the file says that its unit is g; choose “unit: from the file”.",
-    "a.txt, line 2: a single column tells no time step: state step, in s":
-      "a.txt, line 2: a single column tells no time step: enter the time step above.",
+    "a.txt, line 2: a single column has no time step: state step, in s":
+      "a.txt, line 2: a single column has no time step: enter the time step above.",
     "a: one horizontal component (a.AT2). List the files of the event together, or set single if one component is meant":
       "a: one horizontal component (a.AT2). Choose all files of the event together, if it has more",
     "a: the headers name different events or stations: b, c. List the files of each event together":

@@ -55,7 +55,7 @@ test("the time shown runs with the frames, at the speed that is set", () => {
   assert.ok(Math.abs(clock.time - 0.25) < 1e-12);
 });
 
-test("at the end it stops, and playing again begins anew", () => {
+test("at the end it stops, and playing again starts over", () => {
   const clock = running(0.08);
   screen.frame(1090);
   assert.deepEqual([clock.time, clock.playing], [0.08, false]);

@@ -123,7 +123,7 @@ export function rangeAbout(quantity: Quantity, value: number | undefined): { fro
   return { from: Math.max(from, quantity.from), to: Math.max(to, niceAbove(value)) };
 }
 
-/** Returns where the range of a number ends that has none of its own and is nought. */
+/** Returns where the range of a number ends that has none of its own and is zero. */
 export function firstTop({ unit, default: usual }: Parameter): number {
   if (typeof usual === "number" && usual > 0) return niceAbove(usual * SPREAD);
   return unit === "rad" ? 0.1 : unit === "s" ? 10 : 1;

@@ -14,7 +14,7 @@ export interface NumberLooks {
   readonly unit: string;
   /** Ends of the slider; null where they are chosen about the value. */
   readonly range: readonly [number, number] | null;
-  /** How far a slider reaches whose value is nought. */
+  /** How far a slider reaches whose value is zero. */
   readonly top?: number;
   /** What stands in the empty field of a number that need not be given. */
   readonly empty?: string;

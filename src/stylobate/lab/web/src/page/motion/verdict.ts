@@ -1,4 +1,4 @@
-/** What became of the column, in a line that is read out. */
+/** The outcome, in a line that is read out. */
 
 import type { Answer } from "../server/answers";
 import { button, element } from "../frame/dom";

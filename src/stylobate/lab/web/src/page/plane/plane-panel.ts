@@ -268,7 +268,7 @@ export class PlanePanel {
 }
 
 const HINTS: Readonly<Record<PlaneKind, string>> = {
-  map: "What becomes of the column over two quantities. Compute it, then click a cell to see its motion.",
+  map: "The outcome over two quantities. Compute it, then click a cell to see its motion.",
   basin: "Where each start leads in the long run. Compute it, then click a start to see its motion.",
 };
 
