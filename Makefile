@@ -4,7 +4,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo lab page test test-all test-lowest test-newest lint docs bench clean
+.PHONY: help demo lab page test test-all test-lowest test-newest coverage lint docs bench clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -67,6 +67,9 @@ test-lowest: $(UV)  ## the tests, with the lowest version of each dependency tha
 
 test-newest: $(UV)  ## the tests, with the newest version of each dependency that pyproject.toml allows
 	$(call test-with,newest,highest)
+
+coverage: $(VENV)/.core $(VENV)/.test  ## the tests that take seconds, and the lines of source they reach
+	$(BIN)/python -m pytest -n 2 --cov=stylobate --cov-report=term:skip-covered
 
 lint: $(VENV)/.core $(VENV)/.test $(VENV)/.lint  ## style, types, import contracts, wording
 	$(BIN)/ruff check .
