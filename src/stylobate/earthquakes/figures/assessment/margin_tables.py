@@ -5,6 +5,7 @@ import math
 import xarray as xr
 
 from stylobate.earthquakes.figures.assessment.cases import acts_in
+from stylobate.earthquakes.figures.assessment.cells import cells
 from stylobate.earthquakes.figures.assessment.displacements import tilt_cells
 from stylobate.earthquakes.figures.assessment.wording import CENTRAL, bands, degrees, least_scale, number
 from stylobate.plots.page import Table
@@ -22,22 +23,12 @@ def bands_by_record(assessment: Assessment) -> Table:
         "bands found that overturned",
         "runs not decided",
     )
-    rows = []
-    for column in own["column"].to_numpy():
-        for record in own["record"].to_numpy():
-            for case in cases(assessment, record):
-                one = own.sel(column=column, record=record, case=case)
-                rows.append(
-                    (str(column), str(record), str(case), least_scale(one), bands(one), f"{int(one['unknown'])}")
-                )
-    return Table(header, rows)
-
-
-def cases(assessment: Assessment, record: str) -> list[str]:
-    """Return the cases of a record."""
-    return [
-        case for case in map(str, assessment.data["margins"]["case"].to_numpy()) if acts_in(assessment, record, case)
+    rows = [
+        (*where, least_scale(one), bands(one), f"{int(one['unknown'])}")
+        for where, one in cells(own, "column", "record", "case")
+        if acts_in(assessment, *where[1:])
     ]
+    return Table(header, rows)
 
 
 def governing(assessment: Assessment) -> Table:
@@ -73,18 +64,12 @@ def friction_to_margin(assessment: Assessment) -> Table:
         *("column", "record", "case of dissipation", "least scale that overturned", "friction needed below it"),
         *("stated", "least scale that needs more"),
     )
-    own = assessment.data["margins"]
-    rows = []
-    for column in own["column"].to_numpy() if assessment.setting["contact"] else []:
-        stated = float(assessment.setting["friction_coefficient"][str(column)])
-        for record in own["record"].to_numpy():
-            for case in cases(assessment, record):
-                one = own.sel(column=column, record=record, case=case)
-                need, slipping = (float(one[name]) for name in ("friction_to_margin", "least_slipping"))
-                if math.isnan(need) and math.isnan(slipping):
-                    continue
-                first = "none that was run" if math.isnan(slipping) else number(slipping, 4)
-                rows.append(
-                    (str(column), str(record), str(case), least_scale(one), number(need), number(stated), first)
-                )
+    margins, rows = assessment.data["margins"], []
+    for where, one in cells(margins, "column", "record", "case") if assessment.setting["contact"] else ():
+        need, slipping = (float(one[name]) for name in ("friction_to_margin", "least_slipping"))
+        if not acts_in(assessment, *where[1:]) or (math.isnan(need) and math.isnan(slipping)):
+            continue
+        stated = float(assessment.setting["friction_coefficient"][where[0]])
+        first = "none that was run" if math.isnan(slipping) else number(slipping, 4)
+        rows.append((*where, least_scale(one), number(need), number(stated), first))
     return Table(header, rows)

@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-import xarray as xr
 
 from stylobate.earthquakes.figures.assessment.cases import acts_in, case_name, cases_of
+from stylobate.earthquakes.figures.assessment.cells import cells
 from stylobate.earthquakes.figures.assessment.column_verdict import column_verdict
 from stylobate.earthquakes.figures.assessment.displacements import TILT_HEADER, shown_point, tilt_cells
 from stylobate.earthquakes.figures.assessment.wording import CENTRAL, listed, number, tilt, verdict
@@ -14,6 +14,7 @@ from stylobate.plots.page import Table
 from stylobate.results.assessment import Assessment
 
 _ACTS = "with"
+_PLACES = ("column", "record", "scale")
 
 
 def verdicts(assessment: Assessment) -> Table:
@@ -44,15 +45,11 @@ def tilts(assessment: Assessment) -> Table:
         *("column", "record", "scale", *(f"{name}, central" for name in TILT_HEADER)),
         *(*(f"{name}, largest of all cases" for name in TILT_HEADER), "displacement of the"),
     )
-    own, rows = assessment.data["verdicts"]["tilt_ratio"], []
-    for column in own["column"].to_numpy():
-        body = assessment.data["columns"].sel(column=column)
-        for record in own["record"].to_numpy():
-            for scale in own["scale"].to_numpy():
-                one = own.sel(column=column, record=record, scale=scale)
-                central = tilt_cells(float(one.sel(dissipation=CENTRAL, vertical=_ACTS)), body)
-                most = tilt_cells(float(one.max()), body)
-                rows.append((str(column), str(record), f"{scale:g}", *central, *most, shown_point(body)[1]))
+    rows = []
+    for where, one in cells(assessment.data["verdicts"], *_PLACES):
+        body = assessment.data["columns"].sel(column=where[0])
+        central = tilt_cells(float(one["tilt_ratio"].sel(dissipation=CENTRAL, vertical=_ACTS)), body)
+        rows.append((*where, *central, *tilt_cells(float(one["tilt_ratio"].max()), body), shown_point(body)[1]))
     return Table(header, rows)
 
 
@@ -61,29 +58,29 @@ def verdicts_by_record(assessment: Assessment) -> Table:
     own = assessment.data["verdicts"]
     levels, acting = (own[dim].to_numpy() for dim in ("dissipation", "vertical"))
     cases = [(level, acts) for acts in acting for level in levels if acts == _ACTS or level == CENTRAL]
-    header = ("column", "record", "scale", *(case_name(str(level), str(acts)) for level, acts in cases))
-    rows = []
-    for column in own["column"].to_numpy():
-        for record in own["record"].to_numpy():
-            for scale in own["scale"].to_numpy():
-                runs = own["overturned"].sel(column=column, record=record, scale=scale)
-                states = (verdict(float(runs.sel(dissipation=level, vertical=acts))) for level, acts in cases)
-                rows.append((str(column), str(record), f"{scale:g}", *states))
+    header = (*_PLACES, *(case_name(str(level), str(acts)) for level, acts in cases))
+    rows = [
+        (*where, *(verdict(float(runs["overturned"].sel(dissipation=level, vertical=acts))) for level, acts in cases))
+        for where, runs in cells(own, *_PLACES)
+    ]
     return Table(header, rows)
 
 
 def friction_by_record(assessment: Assessment) -> Table:
     """Return the largest friction that the runs under each record needed."""
-    header = ("column", "record", "scale", "largest friction needed", "stated", "enough")
-    own, rows = assessment.data["summary"]["friction_by_record"], []
-    for column in own["column"].to_numpy() if assessment.setting["contact"] else []:
-        stated = float(assessment.setting["friction_coefficient"][str(column)])
-        for record in own["record"].to_numpy():
-            for scale in own["scale"].to_numpy():
-                need = float(own.sel(column=column, record=record, scale=scale))
-                enough = "–" if math.isnan(need) else "yes" if need <= stated else "no"
-                rows.append((str(column), str(record), f"{scale:g}", number(need), number(stated), enough))
+    header, rows = (*_PLACES, "largest friction needed", "stated", "enough"), []
+    for where, one in cells(assessment.data["summary"], *_PLACES) if assessment.setting["contact"] else ():
+        need, stated = float(one["friction_by_record"]), _stated_friction(assessment, where[0])
+        rows.append((*where, number(need), number(stated), _enough(need, stated)))
     return Table(header, rows)
+
+
+def _stated_friction(assessment: Assessment, column: str) -> float:
+    return float(assessment.setting["friction_coefficient"][column])
+
+
+def _enough(need: float, stated: float) -> str:
+    return "–" if math.isnan(need) else "yes" if need <= stated else "no"
 
 
 def every_run(assessment: Assessment) -> Table:
@@ -93,25 +90,16 @@ def every_run(assessment: Assessment) -> Table:
         *("friction needed", "enough", "pivoting moment / (N r)", "least normal force / weight"),
     )
     rows = []
-    for where, one in _runs(assessment.data["verdicts"]):
+    for where, one in cells(assessment.data["verdicts"], *_PLACES, "dissipation", "vertical"):
         column, record, _, level, acts = where
         if not acts_in(assessment, record, case_name(level, acts)):
             continue
-        need, stated = float(one["friction_demand"]), float(assessment.setting["friction_coefficient"][column])
-        enough = "–" if math.isnan(need) else "yes" if need <= stated else "no"
+        need = float(one["friction_demand"])
+        friction = (number(need), _enough(need, _stated_friction(assessment, column)))
         more = (number(float(one[name])) for name in ("pivoting_demand", "least_normal_force"))
-        cells = tilt_cells(float(one["tilt_ratio"]), assessment.data["columns"].sel(column=column))
-        rows.append(
-            (
-                *where[:-1],
-                "yes" if acts == _ACTS else "no",
-                verdict(float(one["overturned"])),
-                *cells,
-                number(need),
-                enough,
-                *more,
-            )
-        )
+        tilted = tilt_cells(float(one["tilt_ratio"]), assessment.data["columns"].sel(column=column))
+        state = ("yes" if acts == _ACTS else "no", verdict(float(one["overturned"])))
+        rows.append((*where[:-1], *state, *tilted, *friction, *more))
     return Table(header, rows)
 
 
@@ -123,16 +111,11 @@ def sliding(assessment: Assessment) -> Table:
     )
     if "sliding" not in assessment.data:
         return Table(header, [])
-    own, rows = assessment.data["sliding"], []
-    for column in own["column"].to_numpy():
-        for record in own["record"].to_numpy():
-            for scale in own["scale"].to_numpy():
-                run = own.sel(column=column, record=record, scale=scale)
-                if math.isnan(float(run["time_sliding"])):
-                    continue
-                slips = (number(1000.0 * float(run[name])) for name in ("largest_slip", "residual_slip"))
-                where = (str(column), str(record), f"{scale:g}", verdict(float(run["overturned"])))
-                rows.append((*where, *slips, number(float(run["time_sliding"]))))
+    rows = []
+    for where, run in cells(assessment.data["sliding"], *_PLACES):
+        if not math.isnan(float(run["time_sliding"])):
+            slips = (number(1000.0 * float(run[name])) for name in ("largest_slip", "residual_slip"))
+            rows.append((*where, verdict(float(run["overturned"])), *slips, number(float(run["time_sliding"]))))
     return Table(header, rows)
 
 
@@ -145,20 +128,14 @@ def small_changes(assessment: Assessment) -> Table:
     if "robustness" not in assessment.data:
         return Table(header, [])
     own, rows = assessment.data["robustness"], []
-    states = assessment.data["verdicts"]["overturned"].sel(vertical=_ACTS)
+    own = own.assign(state=assessment.data["verdicts"]["overturned"].sel(vertical=_ACTS, drop=True))
     changes = np.array([str(name) for name in own["change"].to_numpy()])
-    for column in own["column"].to_numpy():
-        for record in own["record"].to_numpy():
-            for scale in own["scale"].to_numpy():
-                for level in own["dissipation"].to_numpy():
-                    place = {"column": column, "record": record, "scale": scale, "dissipation": level}
-                    one, state = own.sel(place), verdict(float(states.sel(place)))
-                    flips, applies = one["flips"].to_numpy(), one["applies"].to_numpy() == 1
-                    which = (", ".join(changes[some]) or "none" for some in (flips == 1, applies & (flips < 0)))
-                    counts = (f"{int(one['flipped'])}", f"{int(one['compared'])}")
-                    ends = (tilt(float(one[f"tilt_ratio_{end}"])) for end in ("low", "high"))
-                    where = (str(column), str(record), f"{scale:g}", str(level))
-                    rows.append((*where, state, *counts, *ends, *which))
+    for where, one in cells(own, *_PLACES, "dissipation"):
+        flips, applies = one["flips"].to_numpy(), one["applies"].to_numpy() == 1
+        which = (", ".join(changes[some]) or "none" for some in (flips == 1, applies & (flips < 0)))
+        counts = (f"{int(one['flipped'])}", f"{int(one['compared'])}")
+        ends = (tilt(float(one[f"tilt_ratio_{end}"])) for end in ("low", "high"))
+        rows.append((*where, verdict(float(one["state"])), *counts, *ends, *which))
     return Table(header, rows)
 
 
@@ -170,16 +147,13 @@ def planar(assessment: Assessment) -> Table:
     )
     if "planar" not in assessment.data:
         return Table(header, [])
-    own, runs = assessment.data["planar"], assessment.data["verdicts"].sel(dissipation=CENTRAL, vertical=_ACTS)
+    spatial = assessment.data["verdicts"].sel(dissipation=CENTRAL, vertical=_ACTS)
+    runs = spatial.assign(planar_tilt_ratio=assessment.data["planar"]["planar_tilt_ratio"])
     rows = []
-    for column in own["column"].to_numpy():
-        for record in own["record"].to_numpy():
-            for scale in own["scale"].to_numpy():
-                place = {"column": column, "record": record, "scale": scale}
-                spatial, flat = runs.sel(place), float(own["planar_tilt_ratio"].sel(place))
-                state = "not decided" if math.isnan(flat) else verdict(float(math.isinf(flat)))
-                first = (verdict(float(spatial["overturned"])), tilt(float(spatial["tilt_ratio"])))
-                rows.append((str(column), str(record), f"{scale:g}", *first, state, tilt(flat)))
+    for where, run in cells(runs, *_PLACES):
+        flat = float(run["planar_tilt_ratio"])
+        state = "not decided" if math.isnan(flat) else verdict(float(math.isinf(flat)))
+        rows.append((*where, verdict(float(run["overturned"])), tilt(float(run["tilt_ratio"])), state, tilt(flat)))
     return Table(header, rows)
 
 
@@ -191,14 +165,12 @@ def planar_bias(assessment: Assessment) -> Table:
     )
     if "planar" not in assessment.data:
         return Table(header, [])
-    own, rows = assessment.data["planar"], []
-    for column in own["column"].to_numpy():
-        for scale in own["scale"].to_numpy():
-            one = own.sel(column=column, scale=scale)
-            counts = (f"{int(one[name])}" for name in ("compared", "only_space", "only_planar"))
-            mean = float(one["bias"])
-            words = "too few records" if math.isnan(mean) else number(mean)
-            rows.append((str(column), f"{scale:g}", words, number(float(one["standard_error"])), *counts))
+    rows = []
+    for where, one in cells(assessment.data["planar"], "column", "scale"):
+        counts = (f"{int(one[name])}" for name in ("compared", "only_space", "only_planar"))
+        mean = float(one["bias"])
+        words = "too few records" if math.isnan(mean) else number(mean)
+        rows.append((*where, words, number(float(one["standard_error"])), *counts))
     return Table(header, rows)
 
 
@@ -206,13 +178,3 @@ def _columns_and_scales(assessment: Assessment) -> Iterator[tuple[str, float]]:
     for column in assessment.data["columns"]["column"].to_numpy():
         for scale in assessment.setting["scales"]:
             yield str(column), float(scale)
-
-
-def _runs(runs: xr.Dataset) -> Iterator[tuple[tuple[str, ...], xr.Dataset]]:
-    for column in runs["column"].to_numpy():
-        for record in runs["record"].to_numpy():
-            for scale in runs["scale"].to_numpy():
-                for level in runs["dissipation"].to_numpy():
-                    for acts in runs["vertical"].to_numpy():
-                        one = runs.sel(column=column, record=record, scale=scale, dissipation=level, vertical=acts)
-                        yield (str(column), str(record), f"{scale:g}", str(level), str(acts)), one

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 
 from stylobate.earthquakes.figures.assessment import margin_tables, record_tables, run_tables
+from stylobate.earthquakes.figures.assessment.cells import cells
 from stylobate.earthquakes.figures.assessment.displacements import TILT_HEADER, shown_point, tilt_cells
 from stylobate.earthquakes.figures.assessment.wording import number
 from stylobate.plots.page import Table
@@ -21,17 +22,15 @@ def _columns(assessment: Assessment) -> Table:
         *("column", "radius [m]", "height [m]", "centre of mass [m]", "mass [kg]", "c = r/h", "α [°]", "R [m]"),
         *("p [1/s]", "rocks above [m/s²]", "stated friction", "displacements are of the"),
     )
-    own = assessment.data["columns"]
     names = (
         *("radius", "height", "mass_height", "mass", "slenderness", "tipping_angle", "rim_distance"),
         *("frequency_parameter", "uplift_acceleration", "friction_coefficient"),
     )
     rows = []
-    for column in own["column"].to_numpy():
-        one = own.sel(column=column)
+    for where, one in cells(assessment.data["columns"], "column"):
         values = {name: float(one[name]) for name in names}
         values["tipping_angle"] = math.degrees(values["tipping_angle"])
-        rows.append((str(column), *(number(value, 4) for value in values.values()), shown_point(one)[1]))
+        rows.append((*where, *(number(value, 4) for value in values.values()), shown_point(one)[1]))
     return Table(header, rows)
 
 
@@ -51,13 +50,10 @@ def _summary(assessment: Assessment) -> Table:
         "largest friction needed",
     )
     rows = []
-    for column in own["column"].to_numpy():
-        body = assessment.data["columns"].sel(column=column)
-        for scale in own["scale"].to_numpy():
-            one = own.sel(column=column, scale=scale)
-            counts = (f"{int(one[name])}" for name in (*names, *optional))
-            cells = tilt_cells(float(one["largest_tilt_ratio"]), body)
-            rows.append((str(column), f"{scale:g}", *counts, *cells, number(float(one["friction_demand"]))))
+    for where, one in cells(own, "column", "scale"):
+        counts = (f"{int(one[name])}" for name in (*names, *optional))
+        tilted = tilt_cells(float(one["largest_tilt_ratio"]), assessment.data["columns"].sel(column=where[0]))
+        rows.append((*where, *counts, *tilted, number(float(one["friction_demand"]))))
     return Table(header, rows)
 
 
@@ -68,14 +64,11 @@ def _fragility(assessment: Assessment) -> Table:
     )
     if "fragility" not in assessment.data:
         return Table(header, [])
-    own = assessment.data["fragility"]
     numbers = ("median", "median_low", "median_high", "dispersion", "dispersion_low", "dispersion_high")
     rows = []
-    for column in own["column"].to_numpy():
-        for state in own["limit_state"].to_numpy():
-            one = own.sel(column=column, limit_state=state)
-            counts = (f"{int(one[name])}" for name in ("runs", "runs_reached", "non_monotone_records"))
-            rows.append((str(column), str(state), *(number(float(one[name])) for name in numbers), *counts))
+    for where, one in cells(assessment.data["fragility"], "column", "limit_state"):
+        counts = (f"{int(one[name])}" for name in ("runs", "runs_reached", "non_monotone_records"))
+        rows.append((*where, *(number(float(one[name])) for name in numbers), *counts))
     return Table(header, rows)
 
 
