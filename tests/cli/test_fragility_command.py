@@ -9,7 +9,6 @@ import xarray as xr
 import stylobate as sb
 from stylobate.cli.fragility_table import told_parts
 from stylobate.cli.main import run
-from stylobate.config import FragilityConfig
 from stylobate.earthquakes import (
     Counting,
     FragilityStudy,
@@ -22,6 +21,7 @@ from stylobate.earthquakes import (
     incremental_dynamic_analysis,
     property_samples,
 )
+from stylobate.earthquakes.config import FragilityConfig
 from stylobate.errors import ConfigError
 
 COLUMN = ["--radius", "0.4", "--height", "4", "--density", "2700", "--damping", "0.05"]

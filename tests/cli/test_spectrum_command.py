@@ -8,7 +8,7 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.cli.main import run
-from stylobate.config import SpectrumConfig
+from stylobate.earthquakes.config import SpectrumConfig
 from stylobate.errors import ConfigError
 
 SLENDER = ["--slenderness", "0.1", "--damping", "0.1"]

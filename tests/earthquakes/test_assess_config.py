@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.config import AssessConfig, read_config
+from stylobate.config import read_config
+from stylobate.earthquakes.config import AssessConfig
 from stylobate.earthquakes.config.design_spectrum import DesignSpectrumConfig
 from stylobate.errors import ConfigError, FileError, UnlikelyInputWarning
 
@@ -79,7 +80,7 @@ def test_what_is_missing_or_unknown_is_one_line_each(change, told):
     [
         ({"columns": {}}, "columns must hold at least one"),
         ({"columns": {"tank": {**COLUMN, "radius": -1.0}}}, "columns.tank: radius must be positive"),
-        ({"model": {"damping": 0.1}}, "model.damping is told by dissipation"),
+        ({"model": {"damping": 0.1}}, "model.damping: `dissipation` sets it"),
         ({"width": 0.0}, "width must be positive"),
         ({"rest_energy": -1.0}, "rest_energy must be zero or positive, got -1.0"),
         ({"robustness": ["middle"]}, "robustness: must name levels of dissipation (got 'middle'). Use true, false, or"),

@@ -418,7 +418,7 @@ def test_many_records_give_a_fragility_and_few_give_none(found):
             {"dissipation": {level: {"restitution": 0.5} for level in DISSIPATION}},
             "the model slender has no restitution",
         ),
-        ({"dissipation": {level: {"radius": 0.5} for level in DISSIPATION}}, "radius is none"),
+        ({"dissipation": {level: {"radius": 0.5} for level in DISSIPATION}}, "radius is no parameter of dissipation"),
         ({"friction_coefficient": 0.0}, "friction_coefficient must be positive"),
         ({"friction_coefficient": {"other": 0.5}}, "'other' is no column"),
         ({"scales": []}, "scales must be positive numbers"),

@@ -128,7 +128,7 @@ def repeated(states, changed):
             "change_of": ("change", ["record"]),
         }
     )
-    levels = [robust._told(found.sel(dissipation=level, drop=True)) for level in given["dissipation"].to_numpy()]
+    levels = [robust._as_dataset(found.sel(dissipation=level, drop=True)) for level in given["dissipation"].to_numpy()]
     joined = xr.concat(levels, dim=given["dissipation"], data_vars="all", join="override")
     return joined.expand_dims(column=["k"], scale=[1.0])
 

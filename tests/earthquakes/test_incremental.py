@@ -203,7 +203,7 @@ def test_intensities_are_proportional_and_say_what_they_are(component):
         ({"records": []}, "records must hold at least one base motion"),
         ({"records": [RECORDS[0], RECORDS[0]]}, "records must differ in name, got 'noise 0' twice"),
         ({"records": 3.0}, "records must be a base motion"),
-        ({"parameters": {"scale": [1.0]}}, "parameters cannot name scale: it is told by scales"),
+        ({"parameters": {"scale": [1.0]}}, "parameters cannot name scale: use the argument scales"),
         ({"parameters": {"damping": [0.1], "size": [1.0, 2.0]}}, "parameters must have one value for each"),
         ({"intensity": "magnitude"}, "intensity must be 'peak ground acceleration'"),
         ({"component": "GMRotI50"}, r"component: unknown definition .* \(got 'GMRotI50'\)"),
