@@ -1,7 +1,10 @@
 """The description of the laboratory for programs: what it says is so, both ways."""
 
 import copy
+import subprocess
+import sys
 import time
+from pathlib import Path
 
 import jsonschema_rs
 import pytest
@@ -218,3 +221,9 @@ def test_the_schema_excludes_nothing_that_the_laboratory_accepts(client, body):
             whole["column"] = {"shape": implied_shape(one["column"]) or "solid", **one["column"]}
         if not component("Simulation").is_valid(whole):
             assert client.post("/api/describe", json=one).status_code == 422, one
+
+
+def test_the_types_of_the_page_follow_from_the_schema():
+    script = Path(__file__).parents[2] / "tools" / "page_types.py"
+    written = subprocess.run([sys.executable, script, "--check"], capture_output=True, text=True, check=False)
+    assert written.returncode == 0, written.stdout

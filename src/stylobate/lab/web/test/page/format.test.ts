@@ -5,7 +5,10 @@ import { setUnitsOf } from "../../src/page/frame/units";
 
 test("numbers have the digits that are asked for and no idle zeros", () => {
   assert.deepEqual([plain(0.1 + 0.2), plain(2700), plain(1 / 3, 3), plain(1e-9)], ["0.3", "2700", "0.333", "1e-9"]);
-  assert.deepEqual([formatted(-0.25), formatted(1e-9), formatted(null), formatted(Number.NaN)], ["−0.25", "1·10^−9", "–", "–"]);
+  assert.deepEqual(
+    [formatted(-0.25), formatted(1e-9), formatted(null), formatted(Number.NaN)],
+    ["−0.25", "1·10^−9", "–", "–"],
+  );
 });
 
 test("units of results are written as people write them", () => {

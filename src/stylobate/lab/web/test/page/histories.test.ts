@@ -87,7 +87,10 @@ test("a line that is too long is broken between words, and no word is lost", () 
 
 test("a peak that lies between the samples and beyond the plot is reported off the scale", () => {
   const found = run({ friction_demand: [0.1, 0.11, 0.12] });
-  const peaked = { ...found, answer: { ...found.answer, measures: { largest_friction_demand: 0.607 } } };
+  const peaked = {
+    ...found,
+    answer: { ...found.answer, measures: { ...found.answer.measures, largest_friction_demand: 0.607 } },
+  };
   const demand = historyOf("friction_demand", peaked);
   assert.ok(demand.limits[1] < 0.607);
   assert.equal(demand.note, "largest 0.607, off the scale");

@@ -10,7 +10,7 @@ const needed = (name: string, from: number | null = null, to: number | null = nu
 });
 
 /** Kinds as a server sends them: numbers that are needed have no value. */
-const ABOUT: About = {
+const SERVED: About = {
   ...ABOUT,
   shapes: [
     {
@@ -45,7 +45,7 @@ const ABOUT: About = {
 const kind = (kinds: readonly Kind[], name: string): Kind => kinds.find((one) => one.kind === name)!;
 
 test("every number that a kind needs has a first value, so that choosing it gives a case that runs", () => {
-  const { shapes, models, motions } = offered(ABOUT);
+  const { shapes, models, motions } = offered(SERVED);
   for (const one of [...shapes, ...models, ...motions]) {
     for (const { name, needed: must, default: first } of one.parameters) {
       if (must) assert.notEqual(first, null, `${one.kind}.${name}`);
@@ -55,12 +55,12 @@ test("every number that a kind needs has a first value, so that choosing it give
 });
 
 test("a number that need not be given stays ungiven", () => {
-  const part = partOfKind(kind(offered(ABOUT).models, "other"), "kind", {});
+  const part = partOfKind(kind(offered(SERVED).models, "other"), "kind", {});
   assert.deepEqual(part, { kind: "other", stiffness: 1 });
 });
 
 test("a record is set by numbers only: which one it is has controls of its own", () => {
-  const record = kind(offered(ABOUT).motions, "record");
+  const record = kind(offered(SERVED).motions, "record");
   assert.deepEqual(
     record.parameters.map((one) => one.name),
     ["scale"],
@@ -68,11 +68,11 @@ test("a record is set by numbers only: which one it is has controls of its own",
 });
 
 test("a kind is described in one sentence, its units beside its numbers", () => {
-  assert.equal(kind(offered(ABOUT).shapes, "solid").about, "A solid cylinder.");
+  assert.equal(kind(offered(SERVED).shapes, "solid").about, "A solid cylinder.");
 });
 
 test("another kind keeps the numbers that both have", () => {
   const before = { shape: "hollow", radius: 0.3, inner_radius: 0.2, height: 2 };
-  const solid = partOfKind(kind(offered(ABOUT).shapes, "solid"), "shape", before);
+  const solid = partOfKind(kind(offered(SERVED).shapes, "solid"), "shape", before);
   assert.deepEqual(solid, { shape: "solid", radius: 0.3, height: 2, density: 2700, gravity: 9.80665 });
 });

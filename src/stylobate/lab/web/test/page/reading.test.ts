@@ -6,7 +6,7 @@ import { badgeAt, durationWanted } from "../../src/page/motion/verdict";
 import { nextEvent } from "../../src/page/motion/transport";
 import { shareOf } from "../../src/page/plane/classes";
 import { roomFor } from "../../src/page/plane/plane-canvas";
-import type { Answer, Attractor, ToldAxis } from "../../src/page/server/answers";
+import type { Answer, Attractor, ComputedAxis } from "../../src/page/server/answers";
 
 test("numbers are read as they are written in most countries", () => {
   for (const text of ["0.02", "0,02", " 2e-2 "]) assert.equal(readNumber(text), 0.02, text);
@@ -36,7 +36,7 @@ test("an interval is rounded outward: nothing that is open is shown as certain",
 });
 
 test("starts along x and y are drawn to one scale, and other axes fill their room", () => {
-  const axis = (name: string, units: string, reach: number): ToldAxis => ({
+  const axis = (name: string, units: string, reach: number): ComputedAxis => ({
     ...{ name, units },
     values: Array.from({ length: 5 }, (_, i) => reach * (i / 2 - 1)),
   });

@@ -16,7 +16,7 @@ function server() {
     return Promise.resolve({
       toml: "",
       python: "",
-      column: { slenderness, frequency_scale: 1, frequency_parameter: 1 },
+      column: { slenderness, frequency_scale: 1, frequency_parameter: 1 } as Described["column"],
     });
   };
   return { asked, scaled: new ScaledResponse(() => Promise.resolve(CURVES), describe) };

@@ -61,8 +61,7 @@ export class Histories {
   }
 
   #with(name: HistoryName, place: 0 | 1): HistoryPair {
-    const [above, below] =
-      this.#run === null ? (["tilt", "tilt"] as const) : chosenHistories(this.#run, this.#wanted);
+    const [above, below] = this.#run === null ? (["tilt", "tilt"] as const) : chosenHistories(this.#run, this.#wanted);
     return place === 0 ? [name, below] : [above, name];
   }
 }

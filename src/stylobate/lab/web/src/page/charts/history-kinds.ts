@@ -66,7 +66,8 @@ export interface RunShown {
 export function offeredHistories({ answer: { series } }: RunShown): readonly HistoryName[] {
   return NAMES.filter((name) => {
     const { values, place } = SOURCES[name];
-    return series[values]?.some((one) => known(one, place)) ?? false;
+    const history = series[values] as Numbers | readonly Numbers[] | undefined;
+    return history?.some((one) => known(one, place)) ?? false;
   });
 }
 
@@ -174,7 +175,8 @@ function demand(
   const most = Number.isFinite(peak) ? formatted(peak) : "without bound";
   return {
     ...{ name, label, colour: "green", values, note: `largest ${most}${peak > top ? OFF : ""}` },
-    level: coefficient === null ? null : { value: coefficient, label: `friction coefficient ${formatted(coefficient)}` },
+    level:
+      coefficient === null ? null : { value: coefficient, label: `friction coefficient ${formatted(coefficient)}` },
     limits: [0, top],
   };
 }

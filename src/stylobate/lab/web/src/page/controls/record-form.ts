@@ -141,7 +141,8 @@ export class RecordForm {
       this.#report(null);
       this.#changed({ kind: "record", upload: received.upload, scale: this.#motion["scale"] ?? 1 });
     } catch (error) {
-      if (error instanceof Unreachable) this.#report("The server does not answer; choose the files again when it does.");
+      if (error instanceof Unreachable)
+        this.#report("The server does not answer; choose the files again when it does.");
       else this.#report(error instanceof Refused ? error.problems.map(inWordsOfForm).join(" ") : String(error));
     }
   }

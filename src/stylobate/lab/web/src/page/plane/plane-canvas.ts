@@ -1,6 +1,6 @@
 /** A map or basin on a canvas: cells in the looks of their classes, axes with units, the motion that is shown. */
 
-import type { AxesEvent, ToldAxis } from "../server/answers";
+import type { AxesEvent, ComputedAxis } from "../server/answers";
 import { element, onResize, themeColour } from "../frame/dom";
 import { axisLabel, formatted } from "../frame/format";
 import { ticks } from "../case/ranges";
@@ -179,7 +179,7 @@ export class PlaneCanvas {
       pen.fillRect(x - 0.5, top + height, 1, 4);
       pen.fillText(formatted(value, 6), x, top + height + 15);
     }
-    pen.fillText(axisLabel(axes.x.name, axes.x.units), left + width / 2, top + height + 32);
+    pen.fillText(axisLabel(axes.x.name, axes.x.units ?? ""), left + width / 2, top + height + 32);
     pen.textAlign = "right";
     for (const value of ticksOf(axes.y, height / 36)) {
       const y = top + (1 - share(axes.y, value)) * height;
@@ -189,7 +189,7 @@ export class PlaneCanvas {
     pen.textAlign = "center";
     pen.translate(12, top + height / 2);
     pen.rotate(-Math.PI / 2);
-    pen.fillText(axisLabel(axes.y.name, axes.y.units), 0, 0);
+    pen.fillText(axisLabel(axes.y.name, axes.y.units ?? ""), 0, 0);
     pen.rotate(Math.PI / 2);
     pen.translate(-12, -top - height / 2);
   }
@@ -260,18 +260,18 @@ export function roomFor({ x, y }: AxesEvent["axes"], { width, height }: Room): R
 }
 
 /** Returns the length of an axis, to the edges of its cells. */
-function span({ values }: ToldAxis): number {
+function span({ values }: ComputedAxis): number {
   const [first, last] = [values[0] ?? 0, values.at(-1) ?? 1];
   return ((last - first) * values.length) / Math.max(values.length - 1, 1) || 1;
 }
 
 /** Returns where a value stands along an axis, 0 to 1; cells reach half a step beyond their values. */
-export function share({ values }: ToldAxis, value: number): number {
+export function share({ values }: ComputedAxis, value: number): number {
   const [first, last] = [values[0] ?? 0, values.at(-1) ?? 1];
   const half = (last - first) / Math.max(values.length - 1, 1) / 2;
   return (value - first + half) / (last - first + 2 * half);
 }
 
-function ticksOf({ values }: ToldAxis, number: number): readonly number[] {
+function ticksOf({ values }: ComputedAxis, number: number): readonly number[] {
   return ticks(values[0] ?? 0, values.at(-1) ?? 1, Math.max(number, 2));
 }

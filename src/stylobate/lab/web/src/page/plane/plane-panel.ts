@@ -1,6 +1,6 @@
 /** An overturning map or a basin: its axes, its picture while it fills in, what its colours mean. */
 
-import type { AxesEvent, CellsEvent, JobReport, PlaneResult, ToldAxis } from "../server/answers";
+import type { AxesEvent, CellsEvent, JobReport, PlaneResult, ComputedAxis } from "../server/answers";
 import { button, element } from "../frame/dom";
 import { capital, counted, formatted, withUnit, words } from "../frame/format";
 import { Elapsed } from "../frame/elapsed";
@@ -205,7 +205,7 @@ export class PlanePanel {
 
   /** Before anything is computed: the axes alone. */
   #rest(plane: Plane, quantities: readonly Quantity[]): void {
-    const toldAxis = (axis: Axis): ToldAxis => ({
+    const toldAxis = (axis: Axis): ComputedAxis => ({
       name: axis.name,
       values: Array.from(
         { length: axis.number },
@@ -240,8 +240,8 @@ export class PlanePanel {
     if (cell === null || this.#axes === null || this.#filled === null) return;
     const { x, y } = this.#axes;
     const name = this.#classes.nameOf(this.#filled.at(...cell));
-    const value = (axis: ToldAxis, index: number): string =>
-      `${words(axis.name)} ${withUnit(axis.values[index], axis.units)}`;
+    const value = (axis: ComputedAxis, index: number): string =>
+      `${words(axis.name)} ${withUnit(axis.values[index], axis.units ?? "")}`;
     this.#readout.textContent = `${value(x, cell[0])}, ${value(y, cell[1])}: ${name}`;
   }
 
@@ -249,7 +249,8 @@ export class PlanePanel {
     if (this.#axes === null || this.#filled === null || this.#shownKey !== this.#key) return;
     const { x, y } = this.#axes;
     const [valueX, valueY] = [x.values[ix], y.values[iy]];
-    if (valueX !== undefined && valueY !== undefined) this.#hearing.chosen([x.name, valueX], [y.name, valueY]);
+    if (typeof valueX === "number" && typeof valueY === "number")
+      this.#hearing.chosen([x.name, valueX], [y.name, valueY]);
   }
 
   #refuse(problems: readonly string[]): void {
