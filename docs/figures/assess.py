@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 import stylobate as sb
-from stylobate.earthquakes.figures.assessment.figures import margins_figure, robustness_figure
-from stylobate.earthquakes.figures.assessment.record_figures import spectra_figure
-from stylobate.earthquakes.figures.assessment.summary import summary_text, verdict_table
+from stylobate.earthquakes.assessment.report.figures import margins_figure, robustness_figure
+from stylobate.earthquakes.assessment.report.record_figures import spectra_figure
+from stylobate.earthquakes.assessment.report.summary import summary_text, verdict_table
 from stylobate.results import Assessment
 
 ROOT = Path(__file__).parents[2]

@@ -14,8 +14,8 @@ from stylobate.earthquakes.assessment import robust
 from stylobate.earthquakes.assessment.governing import governing_record
 from stylobate.earthquakes.assessment.inputs import Inputs
 from stylobate.earthquakes.assessment.properties import record_properties
+from stylobate.earthquakes.assessment.report.column_verdict import VerdictClass, column_verdict
 from stylobate.earthquakes.assessment.sliding import sliding_model
-from stylobate.earthquakes.figures.assessment.column_verdict import VerdictClass, column_verdict
 from stylobate.earthquakes.perturbations import Resampled, ScaledRecord, SlendernessScaled
 from stylobate.earthquakes.remarks import remark_on
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning

@@ -13,13 +13,13 @@ from matplotlib.colors import to_rgb
 import stylobate as sb
 from stylobate.earthquakes import assess, assessment_report, assessment_tables
 from stylobate.earthquakes.assessment.margins import demands_to_margin
+from stylobate.earthquakes.assessment.report.figures import history_figure, margins_figure, tilts_figure
+from stylobate.earthquakes.assessment.report.pictures import report_pictures
+from stylobate.earthquakes.assessment.report.record_tables import drifting
+from stylobate.earthquakes.assessment.report.sections import document_table, not_covered
+from stylobate.earthquakes.assessment.report.summary import column_findings, summary_text, verdict_table
+from stylobate.earthquakes.assessment.report.wording import bands, least_scale
 from stylobate.earthquakes.assessment.summary import summary_of
-from stylobate.earthquakes.figures.assessment.figures import history_figure, margins_figure, tilts_figure
-from stylobate.earthquakes.figures.assessment.pictures import report_pictures
-from stylobate.earthquakes.figures.assessment.record_tables import drifting
-from stylobate.earthquakes.figures.assessment.sections import document_table, not_covered
-from stylobate.earthquakes.figures.assessment.summary import column_findings, summary_text, verdict_table
-from stylobate.earthquakes.figures.assessment.wording import bands, least_scale
 from stylobate.earthquakes.figures.band_regions import UNDECIDED
 from stylobate.earthquakes.perturbations import ScaledRecord
 from stylobate.results import DesignSpectrum, ReportDetails

@@ -5,13 +5,13 @@ import pytest
 import xarray as xr
 
 from stylobate.earthquakes.assessment import robust
-from stylobate.earthquakes.figures.assessment.cases import cases_of
-from stylobate.earthquakes.figures.assessment.column_verdict import (
+from stylobate.earthquakes.assessment.report.cases import cases_of
+from stylobate.earthquakes.assessment.report.column_verdict import (
     VerdictClass,
     column_verdict,
     least_overturning_scale,
 )
-from stylobate.earthquakes.figures.assessment.displacements import displacement, tilt_cells, tilt_words
+from stylobate.earthquakes.assessment.report.displacements import displacement, tilt_cells, tilt_words
 from stylobate.results import Assessment
 
 LEVELS, ACTS, RECORDS = ("low", "central", "high"), ("with", "without"), ("A", "B", "C")

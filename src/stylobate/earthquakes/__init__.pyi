@@ -1,6 +1,6 @@
 from . import config, perturbations
 from .assessment.assess import assess
-from .figures.assessment import assessment_report, assessment_tables
+from .assessment.report import assessment_report, assessment_tables
 from .figures.planar_bias import plot_directions
 from .figures.records import plot_records
 from .fragility.annual_rate import annual_rate

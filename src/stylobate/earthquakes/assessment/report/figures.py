@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from stylobate.earthquakes.figures.assessment.wording import number
+from stylobate.earthquakes.assessment.report.wording import number
 from stylobate.earthquakes.figures.band_regions import UNDECIDED, undecided_label, undecided_reasons
 from stylobate.plots.cells import fill_options
 from stylobate.plots.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, new_figure, styled

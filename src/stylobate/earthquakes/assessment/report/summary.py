@@ -6,16 +6,16 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from stylobate.earthquakes.figures.assessment.column_verdict import (
+from stylobate.earthquakes.assessment.report.column_verdict import (
     column_verdict,
     largest_decided,
     least_overturning_scale,
     level_words,
     recorded_scale,
 )
-from stylobate.earthquakes.figures.assessment.displacements import SMALLEST_TILT, tilt_words
-from stylobate.earthquakes.figures.assessment.record_tables import margin_intensities
-from stylobate.earthquakes.figures.assessment.wording import CENTRAL, number, records
+from stylobate.earthquakes.assessment.report.displacements import SMALLEST_TILT, tilt_words
+from stylobate.earthquakes.assessment.report.record_tables import margin_intensities
+from stylobate.earthquakes.assessment.report.wording import CENTRAL, number, records
 from stylobate.plots.page import Table
 from stylobate.results.assessment import Assessment
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from stylobate.earthquakes.figures.assessment.wording import CENTRAL
+from stylobate.earthquakes.assessment.report.wording import CENTRAL
 from stylobate.results.assessment import Assessment
 
 _ACTS = "with"

@@ -6,8 +6,8 @@ import re
 import numpy as np
 import xarray as xr
 
-from stylobate.earthquakes.figures.assessment.column_verdict import largest_decided
-from stylobate.earthquakes.figures.assessment.wording import CENTRAL, in_g, number
+from stylobate.earthquakes.assessment.report.column_verdict import largest_decided
+from stylobate.earthquakes.assessment.report.wording import CENTRAL, in_g, number
 from stylobate.plots.page import Table
 from stylobate.results.assessment import Assessment
 

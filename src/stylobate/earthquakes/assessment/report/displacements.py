@@ -4,7 +4,7 @@ import math
 
 import xarray as xr
 
-from stylobate.earthquakes.figures.assessment.wording import number, tilt
+from stylobate.earthquakes.assessment.report.wording import number, tilt
 
 _MM = 1000.0
 SMALLEST_TILT = 1e-3

@@ -5,11 +5,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from stylobate.earthquakes.figures.assessment.cases import acts_in, case_name, cases_of
-from stylobate.earthquakes.figures.assessment.cells import cells
-from stylobate.earthquakes.figures.assessment.column_verdict import column_verdict
-from stylobate.earthquakes.figures.assessment.displacements import TILT_HEADER, shown_point, tilt_cells
-from stylobate.earthquakes.figures.assessment.wording import CENTRAL, listed, number, tilt, verdict
+from stylobate.earthquakes.assessment.report.cases import acts_in, case_name, cases_of
+from stylobate.earthquakes.assessment.report.cells import cells
+from stylobate.earthquakes.assessment.report.column_verdict import column_verdict
+from stylobate.earthquakes.assessment.report.displacements import TILT_HEADER, shown_point, tilt_cells
+from stylobate.earthquakes.assessment.report.wording import CENTRAL, listed, number, tilt, verdict
 from stylobate.plots.page import Table
 from stylobate.results.assessment import Assessment
 

@@ -3,10 +3,10 @@
 import math
 from collections.abc import Callable
 
-from stylobate.earthquakes.figures.assessment import margin_tables, record_tables, run_tables
-from stylobate.earthquakes.figures.assessment.cells import cells
-from stylobate.earthquakes.figures.assessment.displacements import TILT_HEADER, shown_point, tilt_cells
-from stylobate.earthquakes.figures.assessment.wording import number
+from stylobate.earthquakes.assessment.report import margin_tables, record_tables, run_tables
+from stylobate.earthquakes.assessment.report.cells import cells
+from stylobate.earthquakes.assessment.report.displacements import TILT_HEADER, shown_point, tilt_cells
+from stylobate.earthquakes.assessment.report.wording import number
 from stylobate.plots.page import Table
 from stylobate.results.assessment import Assessment
 

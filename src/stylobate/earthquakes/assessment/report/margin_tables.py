@@ -4,10 +4,10 @@ import math
 
 import xarray as xr
 
-from stylobate.earthquakes.figures.assessment.cases import acts_in
-from stylobate.earthquakes.figures.assessment.cells import cells
-from stylobate.earthquakes.figures.assessment.displacements import tilt_cells
-from stylobate.earthquakes.figures.assessment.wording import CENTRAL, bands, degrees, least_scale, number
+from stylobate.earthquakes.assessment.report.cases import acts_in
+from stylobate.earthquakes.assessment.report.cells import cells
+from stylobate.earthquakes.assessment.report.displacements import tilt_cells
+from stylobate.earthquakes.assessment.report.wording import CENTRAL, bands, degrees, least_scale, number
 from stylobate.plots.page import Table
 from stylobate.results.assessment import Assessment
 

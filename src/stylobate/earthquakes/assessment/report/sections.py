@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from stylobate.earthquakes.figures.assessment.record_tables import drifting
-from stylobate.earthquakes.figures.assessment.summary import column_findings, columns_of, how_to_read
-from stylobate.earthquakes.figures.assessment.texts import (
+from stylobate.earthquakes.assessment.report.record_tables import drifting
+from stylobate.earthquakes.assessment.report.summary import column_findings, columns_of, how_to_read
+from stylobate.earthquakes.assessment.report.texts import (
     ASSUMPTIONS,
     NOT_COVERED,
     PLANAR,
@@ -12,7 +12,7 @@ from stylobate.earthquakes.figures.assessment.texts import (
     SLIP_AND_FLIGHT,
     VERDICT_CLASSES,
 )
-from stylobate.earthquakes.figures.assessment.wording import listed, number, scales
+from stylobate.earthquakes.assessment.report.wording import listed, number, scales
 from stylobate.plots.page import Picture, Section, Table
 from stylobate.results.assessment import Assessment
 from stylobate.results.few_records import few_records

@@ -3,15 +3,15 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from stylobate.earthquakes.figures.assessment.displacements import SMALLEST_TILT
-from stylobate.earthquakes.figures.assessment.figures import (
+from stylobate.earthquakes.assessment.report.displacements import SMALLEST_TILT
+from stylobate.earthquakes.assessment.report.figures import (
     contact_figure,
     history_figure,
     margins_figure,
     robustness_figure,
     tilts_figure,
 )
-from stylobate.earthquakes.figures.assessment.record_figures import RECORDS_A_FIGURE, records_figure, spectra_figure
+from stylobate.earthquakes.assessment.report.record_figures import RECORDS_A_FIGURE, records_figure, spectra_figure
 from stylobate.earthquakes.figures.fragility import plot_fragility
 from stylobate.plots.page import Picture
 from stylobate.results.assessment import Assessment

@@ -4,10 +4,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from stylobate.earthquakes.figures.assessment.pictures import Pictures, report_pictures
-from stylobate.earthquakes.figures.assessment.sections import document_table, report_sections
-from stylobate.earthquakes.figures.assessment.summary import summary_text, verdict_table
-from stylobate.earthquakes.figures.assessment.tables import assessment_tables
+from stylobate.earthquakes.assessment.report.pictures import Pictures, report_pictures
+from stylobate.earthquakes.assessment.report.sections import document_table, report_sections
+from stylobate.earthquakes.assessment.report.summary import summary_text, verdict_table
+from stylobate.earthquakes.assessment.report.tables import assessment_tables
 from stylobate.errors import FileError
 from stylobate.files import csv_text, write_whole
 from stylobate.plots.page import page, png_of

@@ -6,8 +6,8 @@ from enum import Enum
 
 import numpy as np
 
-from stylobate.earthquakes.figures.assessment.cases import Cases, cases_of
-from stylobate.earthquakes.figures.assessment.wording import (
+from stylobate.earthquakes.assessment.report.cases import Cases, cases_of
+from stylobate.earthquakes.assessment.report.wording import (
     CENTRAL,
     OVERTURNED,
     STOOD,
