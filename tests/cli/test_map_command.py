@@ -224,7 +224,7 @@ def test_dask_workers_compute_the_same(tmp_path):
         ),
         (
             ["map", *COLUMN, "--motion", "rest", *AXES, "--duration", "2"],
-            ["a Harmonic motion or a pulse only; got a base at rest"],
+            ["the base motion has no such number (got a base at rest). Give a base motion"],
         ),
     ],
 )

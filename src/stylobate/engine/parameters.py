@@ -5,7 +5,7 @@ from dataclasses import fields, is_dataclass, replace
 from typing import TypeVar
 
 from stylobate.base_motions import BaseMotion, Harmonic
-from stylobate.base_motions.combined import Sum, Transformed
+from stylobate.base_motions.combined import BASE_AT_REST, Sum, Transformed
 from stylobate.base_motions.declared import motion_quantities
 from stylobate.base_motions.one_of import number_of, with_choice
 from stylobate.base_motions.varying import numbers_of, value_of, with_numbers
@@ -81,7 +81,7 @@ def declared_names(motion: BaseMotion, values: Mapping[str, object]) -> dict[str
     names = {name: name.removeprefix(_OWN) for name in values if name not in changes}
     for name, own in names.items():
         if own not in numbers_of(motion):
-            message = f"{name}: the base motion has no such number; {_said(motion)}. {_having(motion)}"
+            message = f"{name}: the base motion has no such number {_having(motion)}"
             raise UnsupportedError(message)
     return names
 
@@ -296,5 +296,7 @@ def _ellipse(motion: Harmonic) -> Mapping[str, float]:
 
 
 def _having(motion: BaseMotion) -> str:
+    if motion == BASE_AT_REST:
+        return "(got a base at rest). Give a base motion, such as a circular one."
     names = ", ".join(numbers_of(motion))
-    return f"Its numbers are {names}." if names else "It has none."
+    return f"(got {motion!r}). {f'Its numbers are {names}.' if names else 'It has none.'}"

@@ -55,7 +55,7 @@ _QUANTITIES = {
     "slenderness": _positive("slenderness", "1"),
     "size": _positive("size, in that of the column given", "1"),
     **{name: _declared(quantity) for name, quantity in model_quantities().items()},
-    **{name: _declared(quantity) for name, quantity in motion_quantities().items()},
+    **{f"{part}{name}": _declared(one) for name, one in motion_quantities().items() for part in ("", "motion.")},
     "motion": _Quantity(
         "number of the base motion", "1", lambda values: (values >= 0.0) & (values % 1.0 == 0.0), "be whole, from 0 on"
     ),
