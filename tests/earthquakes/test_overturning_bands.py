@@ -11,7 +11,6 @@ import stylobate as sb
 from stylobate.earthquakes import overturning_bands
 from stylobate.earthquakes.spectra.cases import Cases
 from stylobate.errors import Interrupted, Outcome, ParameterError, UnlikelyInputWarning, UnsupportedError
-from stylobate.results.outcomes import code_of
 
 C = 0.1
 COLUMN = sb.Column.dimensionless(C)
@@ -58,7 +57,7 @@ def test_a_dense_scan_agrees_with_the_bands(spectrum):
     scales = np.geomspace(1.0, 15.0, 301)
     pulse = sb.Pulse.one_sine(acceleration=C, angular_frequency=5.0)
     dense = sb.simulate_ensemble(VISCOUS, pulse, duration=40.0, parameters={"scale": scales})
-    fallen = dense["outcome"].to_numpy() == code_of(Outcome.OVERTURNED)
+    fallen = dense["outcome"].to_numpy() == Outcome.OVERTURNED
     one = spectrum.sel(angular_frequency=5.0)
     inside, outside = np.zeros(301, dtype=bool), np.ones(301, dtype=bool)
     for band in range(2):
@@ -152,7 +151,7 @@ def test_coordinates_normalize_as_the_literature_does():
     assert here["tipping_angle"].item() == pytest.approx(math.atan(0.1))
     # Below g tan α nothing is released, and nothing overturns.
     assert int(found["bands"].sum()) == 0
-    assert (found["outcome"] == code_of(Outcome.AT_REST)).all()
+    assert (found["outcome"] == Outcome.AT_REST).all()
 
 
 def test_a_record_overturns_in_bands_too():

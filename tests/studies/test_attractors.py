@@ -8,7 +8,6 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
-from stylobate.results.outcomes import code_of
 from stylobate.studies.maps.attractor_continuation import follow_branches
 from stylobate.studies.maps.attractor_search import UNSETTLED, Attractor, Found, find_attractors, with_turns
 from stylobate.studies.maps.attractors import shares
@@ -48,7 +47,7 @@ def runs_of(outcomes, strobes, turns):
     over = ("run", "strobe", "axis")
     return xr.Dataset(
         {
-            "outcome": ("run", np.array([-1 if one is None else code_of(one) for one in outcomes], dtype=np.int8)),
+            "outcome": ("run", np.array([-1 if one is None else one for one in outcomes], dtype=np.int8)),
             "strobe_tilt": (over, tilt),
             "strobe_tilt_rate": (over, tilt_rate),
             "mean_rolling_rate": ("run", 2.0 * np.pi / SCALES.period * np.array(turns, dtype=float)),

@@ -232,14 +232,14 @@ def _bands(found: "xr.Dataset") -> list[dict[str, Any]]:
 
 
 def _peaks(found: "xr.Dataset") -> list[dict[str, Any]]:
-    from stylobate.results import outcome_of  # noqa: PLC0415
+    from stylobate.results.outcomes import outcome_label  # noqa: PLC0415
 
     names = ("rocking_period", "peak_tilt_ratio", "peak_rate_ratio")
     rows = []
     for case, one in _cases(found, "peak_tilt_ratio"):
-        outcome = outcome_of(int(one["outcome"]))
-        told = "not computed" if outcome is None else outcome.value
-        rows.append({**case, **{name: one[name].item() for name in names}, "outcome": told})
+        rows.append(
+            {**case, **{name: one[name].item() for name in names}, "outcome": outcome_label(int(one["outcome"]))}
+        )
     return rows
 
 

@@ -96,8 +96,7 @@ _FROM_STANDING_TO_FALLING = (
 
 def outcome_classes() -> tuple[MapClass, ...]:
     """Return the classes of outcomes, from standing to falling, the last for what has not been computed."""
-    codes = {outcome: code for code, outcome in enumerate(Outcome)}
-    known = (MapClass(codes[one], one.value, OUTCOME_LOOKS[one]) for one in _FROM_STANDING_TO_FALLING)
+    known = (MapClass(int(one), one.label, OUTCOME_LOOKS[one]) for one in _FROM_STANDING_TO_FALLING)
     return (*known, _UNFINISHED_CLASS)
 
 

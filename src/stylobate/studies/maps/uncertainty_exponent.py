@@ -13,7 +13,7 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.errors import MOST_RUNS, Outcome, ParameterError, require_whole
 from stylobate.models import Model
-from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.checks import require_no_tilt_limit, require_starts
 from stylobate.studies.maps.attractor_search import UNSETTLED, find_attractors
 from stylobate.studies.maps.power_law import fit_power_law
@@ -168,8 +168,8 @@ def overturned_or_not(runs: xr.Dataset) -> Integers:
     UNSETTLED where that is not known: the run failed, lifted off or was stopped at a tilt limit; also NOT_COMPUTED.
     """
     codes = runs["outcome"].to_numpy().astype(np.int64)
-    states: Integers = (codes == code_of(Outcome.OVERTURNED)).astype(np.int64)
-    states[np.isin(codes, [code_of(outcome) for outcome in UNRESOLVED])] = UNSETTLED
+    states: Integers = (codes == Outcome.OVERTURNED).astype(np.int64)
+    states[np.isin(codes, UNRESOLVED)] = UNSETTLED
     states[codes == NOT_COMPUTED] = NOT_COMPUTED
     return states
 
