@@ -134,7 +134,7 @@ class Outcome(IntEnum):
     OVERTURNED = 4
     """It cannot come back (or has passed the stated limit where no proof exists)."""
     STILL_MOVING = 5
-    """None of the others by the end of the run."""
+    """None of the others by the end of the run: it may overturn later, or its motion is free or not steady."""
     LIMIT_REACHED = 6
     """The tilt reached the limit that the user set."""
     LIFTED_OFF = 7
@@ -143,6 +143,11 @@ class Outcome(IntEnum):
     """The integration could not go on; the run's `reason` says why."""
     SLID = 9
     """It stands upright to the end, and its base slides."""
+    SURVIVED = 10
+    """It outlived a base motion that ends: it still moves, and has too little energy to overturn any more.
+
+    A column that has come to rest by the end of the run is AT_REST; one that may overturn later is STILL_MOVING.
+    """
 
     @property
     def label(self) -> str:

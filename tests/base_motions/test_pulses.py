@@ -386,7 +386,7 @@ def test_one_run_and_an_ensemble_agree_on_half_a_sine():
     assert [run.outcome for run in alone] == [sb.Outcome(runs["outcome"].values[index]) for index in range(4)]
     ends = [run.data["tilt"].to_numpy()[-1] for run in alone]
     np.testing.assert_allclose(runs["end_tilt"], ends, rtol=0.0, atol=1e-7)
-    assert {run.outcome for run in alone} == {sb.Outcome.AT_REST, sb.Outcome.STILL_MOVING, sb.Outcome.OVERTURNED}
+    assert {run.outcome for run in alone} == {sb.Outcome.AT_REST, sb.Outcome.SURVIVED, sb.Outcome.OVERTURNED}
 
 
 def test_a_pulse_too_weak_to_release_a_column_is_known_to_leave_it_at_rest():

@@ -8,9 +8,9 @@ import numpy as np
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.config import provenance_of_run
-from stylobate.engine.afterwards import duration_of, survivor_reason
 from stylobate.engine.course import Course
 from stylobate.engine.doubt import FALLEN, finer_rest, in_doubt, other_tolerance
+from stylobate.engine.end_of_motion import duration_of, survival
 from stylobate.engine.forcing import Forcing
 from stylobate.engine.history import history
 from stylobate.engine.motion_checks import check_kinds, check_motion
@@ -170,10 +170,9 @@ def simulate(
         friction_coefficient=friction_coefficient,
     )
     doubts = run.repeated_otherwise(state, course, verdict, recorded.measures["largest_tilt"]) if recheck else ()
-    freed = verdict.outcome is Outcome.STILL_MOVING and math.isfinite(moved.duration) and not model.switches
     return Response(
         outcome=verdict.outcome,
-        reason=survivor_reason(model, moved, course.trajectory) if freed else verdict.reason,
+        reason=verdict.reason,
         decided_at=_decided_at(course, verdict, duration),
         uncertain=_is_uncertain(model, forcing, course, thresholds) or bool(doubts),
         planar=course.planar,
@@ -293,7 +292,10 @@ def _verdict(model: Model, motion: BaseMotion, course: Course, rules: OutcomeRul
         told = f", {left:.4g} s before the base motion stops; {_RELEASED}" if to_come else ""
         return Verdict(Outcome.AT_REST, f"it stands at the end of the run{before}{told}", {})
     period = None if motion.period is None else motion.period / model.time_scale
-    return long_term(model, course.trajectory, period, rules, planar=course.planar)
+    verdict = long_term(model, course.trajectory, period, rules, planar=course.planar)
+    if verdict.outcome is Outcome.STILL_MOVING and math.isfinite(motion.duration):
+        return Verdict(*survival(model, motion, course.trajectory), verdict.measures)
+    return verdict
 
 
 _RACING = (

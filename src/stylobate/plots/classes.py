@@ -43,6 +43,7 @@ OUTCOME_LOOKS = {
     Outcome.ROCKING: _ROCKING,
     Outcome.ROLLING: _ROLLING,
     Outcome.MODULATED: _MODULATED,
+    Outcome.SURVIVED: Look(_CREAM, "...", _LILAC_INK),
     Outcome.STILL_MOVING: _UNSETTLED,
     Outcome.OVERTURNED: _OVERTURNED,
     Outcome.LIMIT_REACHED: replace(_OVERTURNED, texture="///"),
@@ -64,6 +65,7 @@ KIND_LOOKS = {
     "overturned": _OVERTURNED,
     "tilt limit reached": OUTCOME_LOOKS[Outcome.LIMIT_REACHED],
     "lifted off": OUTCOME_LOOKS[Outcome.LIFTED_OFF],
+    "survived": OUTCOME_LOOKS[Outcome.SURVIVED],
     "not settled": _UNSETTLED,
 }
 # Textures of the second, third … attractor of a kind; after the last they begin again.
@@ -85,6 +87,7 @@ _FROM_STANDING_TO_FALLING = (
     Outcome.ROCKING,
     Outcome.ROLLING,
     Outcome.MODULATED,
+    Outcome.SURVIVED,
     Outcome.STILL_MOVING,
     Outcome.OVERTURNED,
     Outcome.LIMIT_REACHED,

@@ -38,7 +38,8 @@ def limit_states(
     xarray.DataArray
         Over `limit_state` and the dimensions of `runs`: 1 reached, 0 not, −1 not known. A run that overturned has
         reached them all. One that failed, lifted off or was stopped at a tilt limit has reached what its tilt had
-        exceeded; the rest is undecided, as is a run that was not computed.
+        exceeded; the rest is undecided, as is a run that was not computed. One that is STILL_MOVING did not overturn by
+        its end and counts as one that SURVIVED.
 
     Raises
     ------
@@ -49,7 +50,7 @@ def limit_states(
     --------
     >>> import xarray as xr
     >>> from stylobate import Outcome
-    >>> codes = [Outcome.AT_REST, Outcome.STILL_MOVING, Outcome.OVERTURNED]
+    >>> codes = [Outcome.AT_REST, Outcome.SURVIVED, Outcome.OVERTURNED]
     >>> runs = xr.Dataset({"outcome": ("run", codes), "largest_tilt": ("run", [0.0, 0.06, 0.09])})
     >>> states = limit_states(runs, slenderness=0.1)
     >>> print(states.sel(limit_state="tilt 0.5 α").values, states.sel(limit_state="overturning").values)

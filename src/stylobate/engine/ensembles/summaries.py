@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.engine.doubt import FALLEN, in_doubt
+from stylobate.engine.end_of_motion import energy_over_balance, has_ended
 from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.ensembles.contacts import CONTACT_KINDS, contact_arrays, upright_outcomes
 from stylobate.engine.ensembles.options import Options
@@ -322,6 +323,30 @@ def _repetition(batch: Batch, first: int, mean_tilt: Floats) -> Floats:
     return np.where((tilt_size > 0.0) | (rate_size > 0.0), found, np.inf)
 
 
+def _survive(batch: Batch, moving: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """Return which of the runs that are `moving` at their end have outlived a base motion that ends: see `survival`."""
+    lasts = batch.motions.duration
+    survive = moving & (batch.log(Log.STATUS) == Status.STOPPED) & (batch.log(Log.STANDS) == 0.0)
+    survive &= (lasts > 0.0) & has_ended(batch.log(Log.TIME) * batch.models.time_scale, lasts)
+    states = _states(batch) if survive.any() else np.empty((0, 0))
+    for changed, runs in batch.models.kinds:
+        if survive[runs].any():
+            survive[runs] &= energy_over_balance(changed, states[:, runs]) < 1.0
+    return np.asarray(survive)
+
+
+def _states(batch: Batch) -> Floats:
+    """Return the states in three dimensions, shape (number of states, n)."""
+    model = batch.plan.model
+    states = batch.table[:, STATE : STATE + len(model.state_names)].T
+    if not batch.planar.any():
+        return states
+    assert model.from_plane is not None
+    line = batch.table[:, [Setup.LINE_X, Setup.LINE_Y]].T
+    lifted = np.broadcast_arrays(*model.from_plane(states[0], states[1], *line, *batch.models.parameters.T))
+    return np.where(batch.planar, np.stack(lifted), states)
+
+
 def _outcomes(batch: Batch, late: _Late) -> npt.NDArray[np.int8]:
     status = batch.log(Log.STATUS)
     evidence = Evidence(
@@ -334,6 +359,7 @@ def _outcomes(batch: Batch, late: _Late) -> npt.NDArray[np.int8]:
     ground = grounds(evidence, batch.plan.options.rules)
     ground = np.where(np.isnan(late.span), Ground.SHORT, ground)
     codes = np.array([outcome_on(kind) for kind in Ground], dtype=np.int8)[ground]
+    codes = np.where(_survive(batch, codes == Outcome.STILL_MOVING), Outcome.SURVIVED, codes)
     codes = np.where(batch.log(Log.STANDS) > 0.0, Outcome.AT_REST, codes)
     for ending, outcome in _ENDINGS.items():
         codes = np.where(status == ending, outcome, codes)

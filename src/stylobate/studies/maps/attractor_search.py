@@ -38,6 +38,7 @@ ENDINGS = {
     Outcome.OVERTURNED: OVERTURNED,
     Outcome.LIMIT_REACHED: "tilt limit reached",
     Outcome.LIFTED_OFF: "lifted off",
+    Outcome.SURVIVED: "survived",
 }
 
 KINDS = (AT_REST, *ROLLING.values(), ROCKING, *MODULATED.values(), *APERIODIC.values(), *ENDINGS.values(), NOT_SETTLED)

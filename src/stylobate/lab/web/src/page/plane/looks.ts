@@ -44,6 +44,7 @@ const LOOKS: Readonly<Record<string, Look>> = {
   rocking: look(SKY),
   rolling: look(AMBER),
   modulated: look(SEA, dotted),
+  survived: look(CREAM, dotted, "#8E7DA3"),
   "still moving": UNSETTLED,
   "not settled": UNSETTLED,
   overturned: look(NIGHT),
