@@ -91,6 +91,7 @@ def test_outcomes_have_codes_that_files_hold():
         "FAILED",
         "SLID",
         "SURVIVED",
+        "STOPPED",
     ]
     assert [Outcome[name].value for name in names] == list(range(len(names)))
     assert len(Outcome) == len(names)

@@ -148,6 +148,8 @@ class Outcome(IntEnum):
 
     A column that has come to rest by the end of the run is AT_REST; one that may overturn later is STILL_MOVING.
     """
+    STOPPED = 11
+    """A terminal event of the user's own ended the run: see `EventFunction`."""
 
     @property
     def label(self) -> str:

@@ -49,6 +49,7 @@ OUTCOME_LOOKS = {
     Outcome.LIMIT_REACHED: replace(_OVERTURNED, texture="///"),
     Outcome.LIFTED_OFF: Look(_GREY, "**"),
     Outcome.SLID: _SLIDING,
+    Outcome.STOPPED: Look("#ffffff", "oo", _GREY),
     Outcome.FAILED: Look("#ffffff", "xxx", "#D55E00"),
 }
 
@@ -93,6 +94,7 @@ _FROM_STANDING_TO_FALLING = (
     Outcome.LIMIT_REACHED,
     Outcome.LIFTED_OFF,
     Outcome.SLID,
+    Outcome.STOPPED,
     Outcome.FAILED,
 )
 

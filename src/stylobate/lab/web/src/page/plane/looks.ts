@@ -52,6 +52,7 @@ const LOOKS: Readonly<Record<string, Look>> = {
   "tilt limit reached": look(NIGHT, rising),
   "lifted off": look(GREY, sparse),
   slid: look("#E5BE8F", level, DARK),
+  stopped: look(WHITE, squared, GREY),
   failed: look(WHITE, crossed, "#D55E00"),
   "rolling anticlockwise": look(AMBER),
   "rolling clockwise": look(BLUE, falling),
