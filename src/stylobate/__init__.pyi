@@ -20,7 +20,8 @@ from .errors import Interrupted, Outcome
 from .models import Contact, Model, PlanarRocking, Rolling, Slender, SlenderRolling, Sliding, Wobbling
 from .plots import animate, plot
 from .quantities import Quantity
-from .results import Event, OutcomeRules, Response, load
+from .results import Event, OutcomeRules, Response
+from .studies import load
 
 __version__: str
 
