@@ -358,7 +358,7 @@ def test_rolling_under_circular_motion_is_the_closed_form(sense):
     }
     over = {name: tuple(sorted(pair)) for name, pair in near.items()}
     # A deviation of 0.02 shrinks as exp(-ηt/2): after 100 periods by e^-10, to 1e-6 of the tilt.
-    found = sb.studies.attractors(MODEL, motion, over=over, count=4, seed=3, periods=100)
+    found = sb.studies.attractors(MODEL, motion, over=over, count=4, rng=3, periods=100)
     steady = sb.theory.steady_rolling(3.0, 0.065, c=0.1, eta=0.1).upper.amplitude
     assert found["attractor_name"].values.tolist() == [f"rolling {'anti' if sense > 0 else ''}clockwise"]
     assert found["attractor_turns"].item() == sense
