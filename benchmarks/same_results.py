@@ -96,7 +96,8 @@ def studies() -> Iterator[tuple[str, Callable[[], xr.Dataset]]]:
         partial(sb.studies.slow_sweep, SLENDER, CIRCLE, values=np.linspace(4.0, 7.0, 7), periods_each=60, **steady),
     )
     yield "section", partial(sb.studies.poincare_section, SLENDER, CIRCLE, periods=60, skip=20, **steady)
-    yield "bands", partial(sb.earthquakes.overturning_bands, WOBBLING, record, scales=scales, tail=5.0)
+    tail = 5.0 / COLUMN.frequency_parameter
+    yield "bands", partial(sb.earthquakes.overturning_bands, WOBBLING, record, scales=scales, tail=tail)
     yield (
         "incremental analysis",
         partial(

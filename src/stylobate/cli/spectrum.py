@@ -39,7 +39,7 @@ Rocking = Annotated[
     typer.Option("--rocking", help="peak tilts and rates instead", rich_help_panel="Spectrum", show_default=False),
 ]
 Width = Annotated[float | None, _option("relative width to which edges of bands are told [default: 0.001]")]
-FreeTail = Annotated[float | None, _option("how long to follow after the base motion, in 1/p [default: 40]")]
+FreeTail = Annotated[float | None, _option("how long to follow after the base motion [s]; by default 40/p")]
 
 # Tables longer than this show the cases that overturn first, or rock most, only.
 _ROWS, _FIRST = 40, 12
