@@ -75,7 +75,7 @@ def runs() -> Iterator[tuple[str, Callable[[], xr.Dataset]]]:
 def simulated(model: sb.Model, motion: sb.BaseMotion, tilt: np.ndarray, rate: np.ndarray) -> xr.Dataset:
     """Return the samples of a run with its outcome and what was measured."""
     run = sb.simulate(model, motion, tilt=tuple(tilt), tilt_rate=tuple(rate), duration=6.0, samples=50, max_steps=20000)
-    summary = {"outcome": list(sb.Outcome).index(run.outcome), "decided_at": run.decided_at}
+    summary = {"outcome": int(run.outcome), "decided_at": run.decided_at}
     return run.data.assign(summary | {"events": ("event", [event.time for event in run.events])})
 
 
@@ -96,7 +96,8 @@ def studies() -> Iterator[tuple[str, Callable[[], xr.Dataset]]]:
         partial(sb.studies.slow_sweep, SLENDER, CIRCLE, values=np.linspace(4.0, 7.0, 7), periods_each=60, **steady),
     )
     yield "section", partial(sb.studies.poincare_section, SLENDER, CIRCLE, periods=60, skip=20, **steady)
-    yield "bands", partial(sb.earthquakes.overturning_bands, WOBBLING, record, scales=scales, tail=5.0)
+    tail = 5.0 / COLUMN.frequency_parameter
+    yield "bands", partial(sb.earthquakes.overturning_bands, WOBBLING, record, scales=scales, tail=tail)
     yield (
         "incremental analysis",
         partial(

@@ -123,7 +123,7 @@ def _row(case: Case, seconds: float, runs: xr.Dataset, of_rolling: float) -> str
     each = (time.process_time() - begun) / _SINGLE
     steps, count = float(runs["steps"].mean()), runs.sizes["run"]
     codes = runs["outcome"].to_numpy()[:_SINGLE]
-    others = sum(sb.results.outcome_of(code) is not run.outcome for code, run in zip(codes, alone, strict=True))
+    others = sum(sb.Outcome(code) is not run.outcome for code, run in zip(codes, alone, strict=True))
     return (
         f"| {case.name} | {count / seconds:,.0f} | {of_rolling / seconds:.2g} | {steps:,.0f} "
         f"| {1e6 * seconds / (count * steps):.2g} | {each * count / seconds:,.0f} | {others} of {_SINGLE} |"

@@ -6,7 +6,6 @@ from functools import partial
 import numpy as np
 
 import stylobate as sb
-from stylobate.results.outcomes import code_of
 
 from .answers import Answer
 from .workloads import ATOL, COLUMN, ETA, RTOL, Workload
@@ -49,5 +48,5 @@ def solve(
     parts = [data["end_tilt"].values, data["end_tilt_rate"].values]
     if "end_spin" in data:
         parts.append(data["end_spin"].values[:, np.newaxis])
-    overturned = data["outcome"].values == code_of(sb.Outcome.OVERTURNED)
+    overturned = data["outcome"].values == sb.Outcome.OVERTURNED
     return Answer(np.concatenate(parts, axis=1), data["end_time"].values, overturned, int(data["steps"].values.sum()))

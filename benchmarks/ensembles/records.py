@@ -72,7 +72,7 @@ def _drawn(runs: xr.Dataset, over: dict[str, xr.DataArray], count: int) -> list[
     rng = np.random.default_rng(12)
     moved = np.argwhere(runs["releases"].values > 0)
     chosen = moved[rng.choice(len(moved), min(count, len(moved)), replace=False)]
-    overturned = runs["outcome"].values == sb.results.code_of(sb.Outcome.OVERTURNED)
+    overturned = runs["outcome"].values == sb.Outcome.OVERTURNED
     pairs = []
     for column, scale in chosen.tolist():
         values = {"size": over["size"].values[column], "slenderness": over["slenderness"].values[column]}

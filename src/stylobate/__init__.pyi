@@ -15,12 +15,13 @@ from . import (
 from .base_motions import BaseMotion, Harmonic, OneOf, Pulse, Record, SineSweep, records
 from .base_motions.records import read_record, read_records, sample_record
 from .column import Column
-from .engine import simulate, simulate_ensemble, with_parameters
+from .engine import EventFunction, simulate, simulate_ensemble, with_parameters
 from .errors import Interrupted, Outcome
 from .models import Contact, Model, PlanarRocking, Rolling, Slender, SlenderRolling, Sliding, Wobbling
 from .plots import animate, plot
 from .quantities import Quantity
-from .results import Event, OutcomeRules, Response, load
+from .results import Event, OutcomeRules, Response
+from .studies import load
 
 __version__: str
 
@@ -29,6 +30,7 @@ __all__ = [
     "Column",
     "Contact",
     "Event",
+    "EventFunction",
     "Harmonic",
     "Interrupted",
     "Model",

@@ -19,7 +19,7 @@ Misuse is an exception. What the physics does, numerical failure included, is an
 
 import math
 from collections.abc import Sequence
-from enum import Enum
+from enum import IntEnum
 from typing import Any, NamedTuple
 
 SMALLEST, LARGEST = 1e-30, 1e15
@@ -113,29 +113,57 @@ class UnlikelyInputWarning(UserWarning):
     """Input that is possible but unlikely; the message names it and the remedy."""
 
 
-class Outcome(Enum):
-    """The outcome of a run."""
+class Outcome(IntEnum):
+    """The outcome of a run: a code, as arrays and files hold it, with its words.
 
-    AT_REST = "at rest"
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> print(sb.Outcome(4), sb.Outcome.OVERTURNED.name, int(sb.Outcome.OVERTURNED))
+    overturned OVERTURNED 4
+    """
+
+    AT_REST = 0
     """It stands on its base and the base motion cannot release it, or it stood to the end of the run."""
-    ROCKING = "rocking"
+    ROCKING = 1
     """A periodic motion whose contact point does not travel round the rim."""
-    ROLLING = "rolling"
+    ROLLING = 2
     """A periodic motion whose contact point goes once round the rim in each period of the base motion."""
-    MODULATED = "modulated"
+    MODULATED = 3
     """Rolling at the mean rate of the base motion that does not repeat: the tilt is modulated."""
-    OVERTURNED = "overturned"
+    OVERTURNED = 4
     """It cannot come back (or has passed the stated limit where no proof exists)."""
-    STILL_MOVING = "still moving"
-    """None of the others by the end of the run."""
-    LIMIT_REACHED = "limit reached"
+    STILL_MOVING = 5
+    """None of the others by the end of the run: it may overturn later, or its motion is free or not steady."""
+    LIMIT_REACHED = 6
     """The tilt reached the limit that the user set."""
-    LIFTED_OFF = "lifted off"
-    """The base dropped away: the contact would have to pull. A model that can fly hops on to the end."""
-    FAILED = "failed"
+    LIFTED_OFF = 7
+    """The base dropped away: the contact would have to pull. A model that can fly continues to the end."""
+    FAILED = 8
     """The integration could not go on; the run's `reason` says why."""
-    SLID = "slid"
+    SLID = 9
     """It stands upright to the end, and its base slides."""
+    SURVIVED = 10
+    """It outlived a base motion that ends: it still moves, and has too little energy to overturn any more.
+
+    A column that has come to rest by the end of the run is AT_REST; one that may overturn later is STILL_MOVING.
+    """
+    STOPPED = 11
+    """A terminal event of the user's own ended the run: see `EventFunction`."""
+
+    @property
+    def label(self) -> str:
+        """The words for people, such as "at rest"."""
+        return self.name.lower().replace("_", " ")
+
+    def __str__(self) -> str:
+        return self.label
+
+    def __repr__(self) -> str:
+        return f"<Outcome.{self.name}: {self.label!r}>"
+
+    def __format__(self, spec: str) -> str:
+        return format(self.label, spec)
 
 
 def require_finite(name: str, value: float, unit: str = "") -> float:

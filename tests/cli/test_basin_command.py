@@ -47,7 +47,7 @@ def test_a_random_sample_is_that_of_basins(tmp_path, capsys, saved):
     assert run([*BASIN, *SAMPLE, "--output", str(path), "--figure", str(drawn)]) == 0
     printed = capsys.readouterr().out
     over = {"tilt_x": (-0.08, 0.08), "tilt_rate_y": (-0.1, 0.1)}
-    found = sb.studies.basins(MODEL, CIRCLE, over=over, count=60, seed=3, periods=60.0)
+    found = sb.studies.basins(MODEL, CIRCLE, over=over, count=60, rng=3, periods=60.0)
     xr.testing.assert_equal(saved(path), found)
     assert "60 starts" in printed
     low, high = 100.0 * found["fraction_low"].values, 100.0 * found["fraction_high"].values

@@ -3,7 +3,7 @@
 import pytest
 
 from stylobate.config import HierarchyConfig, SimulationConfig
-from stylobate.engine.afterwards import duration_of
+from stylobate.engine.end_of_motion import duration_of
 from stylobate.errors import ConfigError, ParameterError
 
 EXAMPLES = [

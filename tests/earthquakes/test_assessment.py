@@ -20,7 +20,6 @@ from stylobate.earthquakes.perturbations import Resampled, ScaledRecord, Slender
 from stylobate.earthquakes.remarks import remark_on
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning
 from stylobate.results import Assessment
-from stylobate.results.outcomes import code_of, outcome_of
 
 DISSIPATION = {"low": {"damping": 0.01}, "central": {"damping": 0.05}, "high": {"damping": 0.1}}
 CHANGES = (ScaledRecord(0.95), ScaledRecord(1.05), SlendernessScaled(0.99))
@@ -236,7 +235,7 @@ def test_runs_that_lift_off_are_undecided_and_end_what_is_known():
     margins = assessment.data["margins"].sel(case="central", record="lifting")
     for column in ("slim", "stout"):
         own = margins.sel(column=column)
-        decided = (own["outcome"] != code_of(sb.Outcome.LIFTED_OFF)).values
+        decided = (own["outcome"] != sb.Outcome.LIFTED_OFF).values
         assert int(own["unknown"]) == np.count_nonzero(~decided) > 0
         last = float(own["decided_to"])
         assert limit <= float(own["undecided_to"][0]) == own["margin_scale"].values[-1]
@@ -247,7 +246,7 @@ def test_runs_that_lift_off_are_undecided_and_end_what_is_known():
         assert (own["band_to"].fillna(0.0) <= last).all()
     verdicts = assessment.data["verdicts"].sel(column="stout", dissipation="central", vertical="with", record="lifting")
     assert int(verdicts["overturned"].sel(scale=2.9)) == -1
-    assert outcome_of(int(verdicts["outcome"].sel(scale=2.9))) is sb.Outcome.LIFTED_OFF
+    assert sb.Outcome(int(verdicts["outcome"].sel(scale=2.9))) is sb.Outcome.LIFTED_OFF
     summary = assessment.data["summary"].sel(column="stout")
     assert (int(summary["undecided"].sel(scale=2.9)), int(summary["stood"].sel(scale=2.9))) == (1, 0)
     assert int(summary["scan_undecided"]) == 1

@@ -23,7 +23,6 @@ from stylobate.earthquakes.assessment.summary import summary_of
 from stylobate.earthquakes.figures.band_regions import UNDECIDED
 from stylobate.earthquakes.perturbations import ScaledRecord
 from stylobate.results import DesignSpectrum, ReportDetails
-from stylobate.results.outcomes import code_of
 
 DETAILS = ReportDetails(
     author="N. Author",
@@ -309,7 +308,7 @@ def undecided(found):
     scale = margins["margin_scale"].to_numpy()
     lifted, begin = scale > 1.5, float(scale[scale <= 1.5][-1])
     one = margins.assign(
-        outcome=margins["outcome"].where(~xr.DataArray(lifted, dims="margin_scale"), code_of(sb.Outcome.LIFTED_OFF)),
+        outcome=margins["outcome"].where(~xr.DataArray(lifted, dims="margin_scale"), sb.Outcome.LIFTED_OFF),
         undecided_from=margins["undecided_from"] * 0.0,
         unknown=margins["unknown"] * 0.0 + int(lifted.sum()),
     )
@@ -349,7 +348,7 @@ def test_undecided_scales_are_drawn_named_and_written_as_such(found):
 )
 def test_a_band_is_written_as_far_as_runs_are_decided(band, stretch, words):
     names = ("band_from", "band_to", "open_below", "open_above", "undecided_below", "undecided_above")
-    lifted = [code_of(sb.Outcome.AT_REST), code_of(sb.Outcome.LIFTED_OFF)]
+    lifted = [sb.Outcome.AT_REST, sb.Outcome.LIFTED_OFF]
     one = xr.Dataset({name: ("band", [value]) for name, value in zip(names, band, strict=True)})
     one = one.assign(undecided_from=("stretch", [stretch[0]]), undecided_to=("stretch", [stretch[1]]))
     assert bands(one.assign(outcome=("margin_scale", lifted))) == words

@@ -10,7 +10,6 @@ import stylobate as sb
 from stylobate import Outcome
 from stylobate.earthquakes import fit_fragility, limit_states, reached_bands
 from stylobate.errors import ParameterError
-from stylobate.results import code_of
 
 
 @given(st.lists(st.lists(st.booleans(), min_size=1, max_size=12), min_size=1, max_size=5), st.randoms())
@@ -58,7 +57,7 @@ def test_several_limit_states_are_refused_by_name():
 
 
 def codes(*outcomes):
-    return ("run", [code_of(one) for one in outcomes])
+    return ("run", list(outcomes))
 
 
 def test_limit_states_are_nested_and_follow_the_tilt():

@@ -132,6 +132,8 @@ def test_mistakes_are_told(change, message):
         dispersion_parts(*change(*series(rng, 3, 3)), rng=rng)
 
 
-def test_draws_need_a_generator():
-    with pytest.raises(ParameterError, match=r"rng must be a .*Generator, got 3"):
-        dispersion_parts(*series(np.random.default_rng(0), 3, 3), rng=3)
+def test_draws_need_a_seed_or_a_generator():
+    seen = series(np.random.default_rng(0), 3, 3)
+    with pytest.raises(ParameterError, match=r"rng must be a whole number of at least 0, got 0\.5"):
+        dispersion_parts(*seen, rng=0.5)
+    xr.testing.assert_equal(dispersion_parts(*seen, rng=3), dispersion_parts(*seen, rng=np.random.default_rng(3)))

@@ -11,7 +11,6 @@ import stylobate as sb
 from stylobate.earthquakes import overturning_bands
 from stylobate.earthquakes.spectra.cases import Cases
 from stylobate.errors import Interrupted, Outcome, ParameterError, UnlikelyInputWarning, UnsupportedError
-from stylobate.results.outcomes import code_of
 
 C = 0.1
 COLUMN = sb.Column.dimensionless(C)
@@ -58,7 +57,7 @@ def test_a_dense_scan_agrees_with_the_bands(spectrum):
     scales = np.geomspace(1.0, 15.0, 301)
     pulse = sb.Pulse.one_sine(acceleration=C, angular_frequency=5.0)
     dense = sb.simulate_ensemble(VISCOUS, pulse, duration=40.0, parameters={"scale": scales})
-    fallen = dense["outcome"].to_numpy() == code_of(Outcome.OVERTURNED)
+    fallen = dense["outcome"].to_numpy() == Outcome.OVERTURNED
     one = spectrum.sel(angular_frequency=5.0)
     inside, outside = np.zeros(301, dtype=bool), np.ones(301, dtype=bool)
     for band in range(2):
@@ -89,7 +88,8 @@ def test_without_loss_the_direction_turns_where_theory_says_and_no_gap_opens():
     found = overturning_bands(LINEAR, pulse, scales=[1.0, 4.0, 0.999 * least, 1.001 * least], width=1e-5)
     assert int(found["bands"]) == int(found["reversals"]) == 1
     # At the edge itself a column takes its time: followed too briefly, it would seem safe.
-    brief = overturning_bands(LINEAR, pulse, scales=[4.0, 0.999 * least, 1.001 * least], width=1e-5, tail=20.0)
+    tail = 20.0 / LINEAR.column.frequency_parameter
+    brief = overturning_bands(LINEAR, pulse, scales=[4.0, 0.999 * least, 1.001 * least], width=1e-5, tail=tail)
     assert int(brief["bands"]) == 2
     below = overturning_bands(LINEAR, pulse, scales=[1.0, 4.0, 0.999 * least], width=1e-5)
     assert int(below["reversals"]) == 0
@@ -152,7 +152,7 @@ def test_coordinates_normalize_as_the_literature_does():
     assert here["tipping_angle"].item() == pytest.approx(math.atan(0.1))
     # Below g tan α nothing is released, and nothing overturns.
     assert int(found["bands"].sum()) == 0
-    assert (found["outcome"] == code_of(Outcome.AT_REST)).all()
+    assert (found["outcome"] == Outcome.AT_REST).all()
 
 
 def test_a_record_overturns_in_bands_too():
@@ -196,7 +196,7 @@ def test_after_an_interruption_the_bands_are_those_of_the_scan():
 def test_provenance_repeats_the_question(spectrum):
     told = json.loads(spectrum.attrs["provenance"])
     assert told["motion"]["kind"] == "sinusoidal"
-    assert told["tail"] == 40.0
+    assert told["tail"] is None
     assert told["width"] == 1e-3
     assert f"{15.0 ** (1 / 15):.4g}" in spectrum.attrs["resolution"]
 
@@ -240,3 +240,13 @@ def test_a_radius_that_varies_alone_is_remarked_on_and_a_size_is_not():
             Cases.of(VISCOUS, SINE, over)
     for over in ({"size": [2.0]}, {"slenderness": [0.2]}, {"radius": [0.1], "transverse_inertia": [1.0]}):
         Cases.of(VISCOUS, SINE, over)
+
+
+def test_the_tail_is_in_seconds_and_by_default_forty_over_p():
+    pulse, scales = sb.Pulse.one_sine(acceleration=C, angular_frequency=5.0), [0.5, 1.0]
+    over = {"size": [1.0, 4.0]}
+    usual = overturning_bands(LINEAR, pulse, scales=scales, over=over)
+    p = LINEAR.column.frequency_parameter / np.array([1.0, 2.0])
+    np.testing.assert_allclose(usual["end_time"].max("scale"), pulse.duration + 40.0 / p, rtol=1e-12)
+    brief = overturning_bands(LINEAR, pulse, scales=scales, over=over, tail=3.0)
+    np.testing.assert_allclose(brief["end_time"].max("scale"), pulse.duration + 3.0, rtol=1e-12)

@@ -14,11 +14,10 @@ from stylobate.errors import Outcome, ParameterError
 from stylobate.plots.cells import cell_edges
 from stylobate.plots.classes import OUTCOME_LOOKS
 from stylobate.plots.style import VERMILION
-from stylobate.results.outcomes import code_of
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 PULSE = sb.Pulse.one_sine(acceleration=0.1, angular_frequency=5.0)
-FALLEN, SAFE, LIFTED = (code_of(one) for one in (Outcome.OVERTURNED, Outcome.AT_REST, Outcome.LIFTED_OFF))
+FALLEN, SAFE, LIFTED = (Outcome.OVERTURNED, Outcome.AT_REST, Outcome.LIFTED_OFF)
 STATES = {FALLEN: 1, SAFE: 0, LIFTED: -2}
 
 

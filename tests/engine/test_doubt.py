@@ -20,7 +20,7 @@ MANY = {
 
 
 def overturned(runs):
-    return runs["outcome"].to_numpy() == sb.results.code_of(sb.Outcome.OVERTURNED)
+    return runs["outcome"].to_numpy() == sb.Outcome.OVERTURNED
 
 
 def test_every_outcome_that_a_finer_rest_threshold_changes_is_marked_as_uncertain():

@@ -25,7 +25,7 @@ LINE = sb.Harmonic.straight(acceleration=0.15, angular_frequency=2.0, direction=
 
 
 def names(runs):
-    return [sb.results.outcome_of(code).name for code in runs["outcome"].to_numpy()]
+    return [sb.Outcome(code).name for code in runs["outcome"].to_numpy()]
 
 
 def rolling(theta):

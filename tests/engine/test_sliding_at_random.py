@@ -10,7 +10,7 @@ from stylobate.models.sliding.phases import State
 
 from .sliding_at_random import COLUMN, LASTS, MOTIONS, random_runs
 
-FAILED = sb.results.code_of(sb.Outcome.FAILED)
+FAILED = sb.Outcome.FAILED
 FEW, MANY = 50, 1667
 
 # What is told of the last periods, or of a column that overturned, is NaN of other runs.
@@ -36,7 +36,7 @@ def obey_the_laws(runs):
     np.testing.assert_allclose(lasted, told["end_time"], rtol=1e-12)
     for name in set(told.data_vars) - set(NOT_OF_ALL):
         assert np.isfinite(told[name]).all(), name
-    ended = np.isin(told["outcome"], [sb.results.code_of(kind) for kind in (sb.Outcome.OVERTURNED, sb.Outcome.FAILED)])
+    ended = np.isin(told["outcome"], [sb.Outcome.OVERTURNED, sb.Outcome.FAILED])
     full = told["end_time"].to_numpy() > 0.999999 * LASTS
     assert (full | ended).all()
     return told

@@ -10,7 +10,6 @@ from stylobate.config import SimulationConfig
 from stylobate.errors import Outcome
 from stylobate.lab.grids import overturning_plane
 from stylobate.lab.messages import Found
-from stylobate.results.outcomes import code_of
 
 BOTTLE = {
     "column": {"shape": "solid", "radius": 0.03, "height": 0.2, "density": 1000.0},
@@ -50,7 +49,7 @@ def test_a_cell_is_the_run_of_the_case_with_its_numbers(motion, part, x, y):
         numbers = {x["name"]: axes["x"]["values"][ix], y["name"]: axes["y"]["values"][iy]}
         setup = SimulationConfig.parse({**case, part: {**case[part], **numbers}}).build()
         run = sb.simulate(setup.model, setup.motion, **setup.options)
-        assert code == code_of(run.outcome), numbers
+        assert code == run.outcome, numbers
         outcomes.add(run.outcome)
     assert Outcome.OVERTURNED in outcomes
     assert len(outcomes) > 1

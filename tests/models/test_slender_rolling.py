@@ -162,7 +162,7 @@ def test_runs_and_ensembles_agree(method):
     start = {"tilt": (0.016, 0.0), "tilt_rate": (0.0, 0.048), "duration": 60.0}
     single = sb.simulate(model, circle, **start)
     together = sb.simulate_ensemble(model, circle, **start, method=method)
-    assert sb.results.outcome_of(int(together["outcome"].item())) is single.outcome
+    assert sb.Outcome(int(together["outcome"].item())) is single.outcome
     assert float(together["largest_tilt"].item()) == pytest.approx(single.measures["largest_tilt"], rel=1e-6)
     np.testing.assert_allclose(together["end_tilt"].squeeze(), single.data["tilt"][-1], atol=1e-7)
 

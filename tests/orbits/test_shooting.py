@@ -291,7 +291,7 @@ def test_under_a_motion_along_a_line_a_search_finds_the_mirror_image_of_each_orb
 
 
 def test_a_search_gives_the_same_for_the_same_seed():
-    first, second = (periodic_orbits(MODEL, STRAIGHT, count=8, seed=3) for _ in range(2))
+    first, second = (periodic_orbits(MODEL, STRAIGHT, count=8, rng=3) for _ in range(2))
     assert len(first) == len(second)
     for one, other in zip(first, second, strict=True):
         np.testing.assert_array_equal(one.state, other.state)
@@ -372,7 +372,7 @@ def test_bad_input_is_told_in_one_line(arguments, words):
         ({"over": {"tilt_x": (0.1, 0.0)}}, "tilt_x"),
         ({"over": {"tilt_x": (0.1,)}}, "tilt_x"),
         ({"over": {"tilt_x": (0.0, math.nan)}}, "tilt_x"),
-        ({"seed": -1}, "seed"),
+        ({"rng": -1}, "rng"),
     ],
 )
 def test_bad_input_of_a_search_is_told_in_one_line(arguments, words):

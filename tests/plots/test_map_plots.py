@@ -14,12 +14,11 @@ from stylobate.errors import Outcome, ParameterError
 from stylobate.plots.cells import cell_edges
 from stylobate.plots.classes import KIND_LOOKS, OUTCOME_LOOKS, UNFINISHED, attractor_classes
 from stylobate.plots.labels import axis_label
-from stylobate.results.outcomes import code_of
 from stylobate.studies.maps.attractor_search import KINDS
 from stylobate.studies.maps.uncertainty_exponent import exponent_of
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
-REST, OVERTURNED, ROLLING = (code_of(one) for one in (Outcome.AT_REST, Outcome.OVERTURNED, Outcome.ROLLING))
+REST, OVERTURNED, ROLLING = (one for one in (Outcome.AT_REST, Outcome.OVERTURNED, Outcome.ROLLING))
 
 
 def a_map(codes, uncertain=None, **axes):

@@ -7,7 +7,7 @@ from matplotlib.colors import to_hex
 import stylobate as sb
 from stylobate.errors import Outcome
 from stylobate.plots.style import BLUE, STABLE_WIDTH, VERMILION
-from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.results.outcomes import NOT_COMPUTED
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 MOTION = sb.Harmonic.circular(acceleration=0.065, angular_frequency=2.0)
@@ -41,7 +41,7 @@ def test_a_sweep_is_drawn_in_the_directions_in_which_it_went(swept):
 
 def test_a_cross_marks_where_a_column_overturned_at_its_last_tilt(swept):
     tilts = sb.plot(swept).axes[0]
-    assert swept["outcome"].values[2, 1] == code_of(Outcome.OVERTURNED)
+    assert swept["outcome"].values[2, 1] == Outcome.OVERTURNED
     np.testing.assert_array_equal(tilts.lines[-1].get_xydata(), [[1.0, swept["mean_tilt"].values[1, 1]]])
     assert texts(tilts.get_legend())[-1] == "overturned here"
 

@@ -176,18 +176,21 @@ def test_a_run_says_what_became_of_the_column(run):
 def test_the_result_of_a_study_is_told_from_a_run(tmp_path):
     path = tmp_path / "map.nc"
     xr.Dataset({"outcome": ("run", [0])}, attrs={"kind": "overturning map"}).to_netcdf(path, engine="h5netcdf")
-    with pytest.raises(FileError, match=r"of kind 'overturning map'; xarray\.open_dataset reads it$"):
-        sb.load(path)
+    with pytest.raises(FileError, match=r"of kind 'overturning map'; stylobate\.load reads it$"):
+        sb.results.load(path)
 
 
 def test_codes_are_those_of_outcomes():
     for code, outcome in enumerate(sb.Outcome):
-        assert sb.results.code_of(outcome) == code
-        assert sb.results.outcome_of(np.int8(code)) is outcome
-    assert sb.results.outcome_of(-1) is None
-    with pytest.raises(ParameterError, match=r"^outcome must be an Outcome such as Outcome\.AT_REST, got 'x'$"):
-        sb.results.code_of("x")
-    with pytest.raises(ParameterError, match="code must be -1 for not computed, or 0 to 9; got 77"):
-        sb.results.outcome_of(77)
-    with pytest.raises(ParameterError, match="code must be a whole number of at least -1, got -2"):
-        sb.results.outcome_of(-2)
+        assert outcome == code
+        assert sb.Outcome(np.int8(code)) is outcome
+        assert sb.results.outcomes.outcome_label(code) == str(outcome) == f"{outcome}" == outcome.label
+    assert sb.results.outcomes.outcome_label(-1) == "not computed"
+    with pytest.raises(ValueError, match="is not a valid Outcome"):
+        sb.Outcome(-1)
+
+
+def test_outcomes_compare_with_the_codes_of_a_dataset():
+    runs = sb.simulate_ensemble(MODEL, duration=0.5, tilt=[[0.01, 0.0], [0.3, 0.0]])
+    np.testing.assert_array_equal(runs.outcome == sb.Outcome.OVERTURNED, [False, True])
+    assert runs.outcome.dtype == np.int8

@@ -33,7 +33,7 @@ def test_runs_follow_the_branches_below_a_soft_pitchfork(pitchfork):
 
 def test_the_same_seed_gives_the_same_runs(pitchfork):
     first, second = (
-        sb.studies.after_bifurcation(pitchfork, values=[1.55], count=6, periods=300.0, seed=3) for _ in range(2)
+        sb.studies.after_bifurcation(pitchfork, values=[1.55], count=6, periods=300.0, rng=3) for _ in range(2)
     )
     assert first.identical(second)
 

@@ -8,7 +8,6 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
-from stylobate.results.outcomes import code_of
 from stylobate.studies.maps.attractor_continuation import follow_branches
 from stylobate.studies.maps.attractor_search import UNSETTLED, Attractor, Found, find_attractors, with_turns
 from stylobate.studies.maps.attractors import shares
@@ -48,7 +47,7 @@ def runs_of(outcomes, strobes, turns):
     over = ("run", "strobe", "axis")
     return xr.Dataset(
         {
-            "outcome": ("run", np.array([-1 if one is None else code_of(one) for one in outcomes], dtype=np.int8)),
+            "outcome": ("run", np.array([-1 if one is None else one for one in outcomes], dtype=np.int8)),
             "strobe_tilt": (over, tilt),
             "strobe_tilt_rate": (over, tilt_rate),
             "mean_rolling_rate": ("run", 2.0 * np.pi / SCALES.period * np.array(turns, dtype=float)),
@@ -359,7 +358,7 @@ def test_rolling_under_circular_motion_is_the_closed_form(sense):
     }
     over = {name: tuple(sorted(pair)) for name, pair in near.items()}
     # A deviation of 0.02 shrinks as exp(-ηt/2): after 100 periods by e^-10, to 1e-6 of the tilt.
-    found = sb.studies.attractors(MODEL, motion, over=over, count=4, seed=3, periods=100)
+    found = sb.studies.attractors(MODEL, motion, over=over, count=4, rng=3, periods=100)
     steady = sb.theory.steady_rolling(3.0, 0.065, c=0.1, eta=0.1).upper.amplitude
     assert found["attractor_name"].values.tolist() == [f"rolling {'anti' if sense > 0 else ''}clockwise"]
     assert found["attractor_turns"].item() == sense

@@ -52,7 +52,7 @@ def test_one_attractor_has_one_name_and_what_still_creeps_towards_it_has_not_set
     circle = sb.Harmonic.circular(acceleration=0.065, angular_frequency=frequency)
     begun = sb.studies.steady_start(MODEL, circle)
     over = {"tilt_x": (0.052, 0.06), "tilt_rate_y": (0.07, 0.078)}
-    found = sb.studies.basins(MODEL, circle, over=over, count=40, seed=2, periods=periods, **begun)
+    found = sb.studies.basins(MODEL, circle, over=over, count=40, rng=2, periods=periods, **begun)
     names = found["attractor_name"].values[found["attractor"].values]
     assert set(names.tolist()) - {"overturned"} == expected
     assert int(found["unsettled"]) == int((names == "not settled").sum())
@@ -64,7 +64,7 @@ def test_starts_that_near_an_orbit_of_three_periods_are_not_taken_for_aperiodic(
     line = sb.Harmonic.straight(acceleration=0.3, angular_frequency=6.0)
     box = dict.fromkeys(BOX, (-0.06, 0.06))
     early, late = (
-        sb.studies.basins(MODEL, line, over=box, count=200, seed=1, periods=periods, strobes=64)
+        sb.studies.basins(MODEL, line, over=box, count=200, rng=1, periods=periods, strobes=64)
         for periods in (200, 3000)
     )
     settles = late["attractor_period"].values[late["attractor"].values] > 0
@@ -74,7 +74,7 @@ def test_starts_that_near_an_orbit_of_three_periods_are_not_taken_for_aperiodic(
 
 
 def test_a_sample_is_the_same_for_the_same_seed_and_counts_every_start():
-    first, again, other = (sb.studies.basins(MODEL, over=BOX, count=12, seed=seed, duration=5.0) for seed in (1, 1, 2))
+    first, again, other = (sb.studies.basins(MODEL, over=BOX, count=12, rng=seed, duration=5.0) for seed in (1, 1, 2))
     np.testing.assert_array_equal(first["tilt_x"], again["tilt_x"])
     assert (first["tilt_x"] != other["tilt_x"]).any()
     assert int(first["computed"]) == 12 == int(first["count"].sum())
@@ -82,10 +82,10 @@ def test_a_sample_is_the_same_for_the_same_seed_and_counts_every_start():
 
 def test_fractions_at_one_value_are_those_of_the_attractors_there():
     along = {"acceleration": [0.02, 0.2]}
-    found = sb.studies.basin_fractions(MODEL, STRAIGHT, along=along, over=BOX, count=200, seed=4, periods=90)
+    found = sb.studies.basin_fractions(MODEL, STRAIGHT, along=along, over=BOX, count=200, rng=4, periods=90)
     for value in along["acceleration"]:
         motion = sb.Harmonic.straight(acceleration=value, angular_frequency=1.8)
-        alone = sb.studies.attractors(MODEL, motion, over=BOX, count=200, seed=4, periods=90)
+        alone = sb.studies.attractors(MODEL, motion, over=BOX, count=200, rng=4, periods=90)
         here = found.sel(acceleration=value)
         counts = dict(zip(found["attractor_name"].values, here["count"].values, strict=True))
         expected = dict(zip(alone["attractor_name"].values, alone["count"].values, strict=True))

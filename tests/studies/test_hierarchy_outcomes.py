@@ -29,7 +29,7 @@ def test_every_run_is_counted_once(found):
     codes = found["comparison"].to_numpy()
     np.testing.assert_array_equal(found["count"], [np.count_nonzero(codes == code) for code in range(5)])
     assert float(found["share"].sum()) == 1.0
-    fallen = sb.results.code_of(sb.Outcome.OVERTURNED)
+    fallen = sb.Outcome.OVERTURNED
     both = (found["first_outcome"] == fallen) & (found["second_outcome"] == fallen)
     np.testing.assert_array_equal(both, codes == list(sb.studies.Comparison).index(sb.studies.Comparison.BOTH_OVERTURN))
 

@@ -6,11 +6,10 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
-from stylobate.results.outcomes import code_of
 from stylobate.studies.maps.safe_distance import Metric, distance_to_overturning
 
 FREE = sb.Slender(sb.Column.dimensionless(0.1))
-OVERTURNED, SAFE = code_of(Outcome.OVERTURNED), code_of(Outcome.AT_REST)
+OVERTURNED, SAFE = Outcome.OVERTURNED, Outcome.AT_REST
 
 
 def grid(codes, **axes):
@@ -51,7 +50,7 @@ def test_a_straight_boundary_lies_between_the_ends_of_its_distance():
 def test_a_run_that_ends_before_it_is_told_is_not_safe(outcome):
     axis = 0.1 * np.linspace(-1.0, 1.0, 5)
     metric = Metric.of(FREE, {"tilt_x": axis}, None)
-    found = distance_to_overturning(grid([OVERTURNED, SAFE, SAFE, code_of(outcome), SAFE], tilt_x=axis), metric)
+    found = distance_to_overturning(grid([OVERTURNED, SAFE, SAFE, outcome, SAFE], tilt_x=axis), metric)
     assert bool(found["at_least"])
     assert float(found["distance"]) == pytest.approx(0.5, rel=1e-12)
     assert float(found["distance_high"]) == np.inf

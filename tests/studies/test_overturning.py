@@ -5,7 +5,6 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
-from stylobate.results.outcomes import code_of
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 CIRCULAR = sb.Harmonic.circular(acceleration=0.15, angular_frequency=1.0)
@@ -15,7 +14,7 @@ def test_below_the_limit_nothing_is_released_from_rest():
     over = {"angular_frequency": [0.3, 1.0, 5.0], "acceleration": [0.0, 0.05, 0.0999]}
     found = sb.studies.overturning_map(MODEL, CIRCULAR, over=over, periods=5)
     assert found["outcome"].dims == tuple(over)
-    assert (found["outcome"] == code_of(Outcome.AT_REST)).all()
+    assert (found["outcome"] == Outcome.AT_REST).all()
     assert found["share"].sel(outcome_name="at rest").item() == 1.0
     assert found["share"].sum() == 1.0
 
@@ -23,7 +22,7 @@ def test_below_the_limit_nothing_is_released_from_rest():
 def test_from_rest_the_phase_of_a_circular_motion_does_not_matter():
     over = {"start_phase": [0.0, 0.7, 2.0, 4.0], "acceleration": [0.12, 0.2]}
     found = sb.studies.overturning_map(MODEL, CIRCULAR, over=over, duration=20.0)
-    assert (found["outcome"] == code_of(Outcome.OVERTURNED)).all()
+    assert (found["outcome"] == Outcome.OVERTURNED).all()
     times = found["decided_at"].values
     # Overturning grows as e^t: an error of 1e-8 c at release has grown by e^t, and moves the time by no more than it.
     np.testing.assert_allclose(times, np.broadcast_to(times[:1], times.shape), rtol=1e-6)

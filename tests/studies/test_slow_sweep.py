@@ -8,7 +8,7 @@ import pytest
 import stylobate as sb
 from stylobate.errors import Interrupted, Outcome, ParameterError, UnsupportedError
 from stylobate.results import OutcomeRules
-from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.results.outcomes import NOT_COMPUTED
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 CIRCULAR = sb.Harmonic.circular(acceleration=0.065, angular_frequency=2.0)
@@ -23,7 +23,7 @@ def at(motion, frequency):
 
 
 def outcomes(swept):
-    return [sb.results.outcome_of(code) for code in swept["outcome"].values[:, 0]]
+    return [None if code < 0 else sb.Outcome(code) for code in swept["outcome"].values[:, 0]]
 
 
 @pytest.fixture(scope="module")
@@ -161,7 +161,7 @@ def test_sweeps_advance_together_as_they_would_alone():
         MODEL, CIRCULAR, values=values, tilt=tilt, tilt_rate=[rate, rate, 0.9 * rate], periods_each=60
     )
     assert together["outcome"].dims == ("step", "sweep")
-    assert together["outcome"].values[1, 1] == code_of(Outcome.OVERTURNED)
+    assert together["outcome"].values[1, 1] == Outcome.OVERTURNED
     for sweep, own in enumerate((rate, rate, 0.9 * rate)):
         alone = sb.studies.slow_sweep(
             MODEL, CIRCULAR, values=values[:, sweep], tilt=tilt, tilt_rate=own, periods_each=60

@@ -6,7 +6,6 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
-from stylobate.results.outcomes import code_of
 from stylobate.studies.maps.attractor_search import UNSETTLED
 from stylobate.studies.maps.power_law import fit_power_law
 from stylobate.studies.maps.uncertainty_exponent import exponent_of, overturned_or_not, shifted_starts
@@ -104,7 +103,7 @@ def test_unsettled_runs_do_not_hide_the_boundary_of_the_safe_starts(caplog):
 
 def test_only_a_run_that_overturned_or_not_is_told():
     outcomes = [Outcome.OVERTURNED, Outcome.AT_REST, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED, Outcome.FAILED]
-    codes = np.array([*(code_of(one) for one in outcomes), -1])
+    codes = np.array([*outcomes, -1])
     told = overturned_or_not(xr.Dataset({"outcome": ("run", codes)}))
     assert told.tolist() == [1, 0, UNSETTLED, UNSETTLED, UNSETTLED, -1]
 

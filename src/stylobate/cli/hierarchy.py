@@ -136,15 +136,14 @@ _HEADER = ("level", "outcome", "top tilt", "late mean", "spin rad/s", "friction"
 
 
 def _row(at: "xr.Dataset", c: float, *, several: bool) -> list[str]:
-    from stylobate.results import outcome_of  # noqa: PLC0415  heavy, as above
+    from stylobate.results.outcomes import outcome_label  # noqa: PLC0415  heavy, as above
 
-    outcome = outcome_of(int(at["outcome"]))
     name = str(at["level"].to_numpy())
     distance = float(at["deviation"].sel(other_level=at.attrs["reference"])) / c
     return [
         *([f"{c:.4g}"] if several else []),
         name,
-        (outcome.value if outcome else "") + (" (uncertain)" if bool(at["uncertain"]) else ""),
+        outcome_label(int(at["outcome"])) + (" (uncertain)" if bool(at["uncertain"]) else ""),
         _cell(float(at["largest_tilt"]) / c),
         _cell(float(at["mean_late_tilt"]) / c),
         _cell(float(at["mean_late_spin"])),

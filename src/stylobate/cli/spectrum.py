@@ -39,7 +39,7 @@ Rocking = Annotated[
     typer.Option("--rocking", help="peak tilts and rates instead", rich_help_panel="Spectrum", show_default=False),
 ]
 Width = Annotated[float | None, _option("relative width to which edges of bands are told [default: 0.001]")]
-FreeTail = Annotated[float | None, _option("how long to follow after the base motion, in 1/p [default: 40]")]
+FreeTail = Annotated[float | None, _option("how long to follow after the base motion [s]; by default 40/p")]
 
 # Tables longer than this show the cases that overturn first, or rock most, only.
 _ROWS, _FIRST = 40, 12
@@ -232,14 +232,14 @@ def _bands(found: "xr.Dataset") -> list[dict[str, Any]]:
 
 
 def _peaks(found: "xr.Dataset") -> list[dict[str, Any]]:
-    from stylobate.results import outcome_of  # noqa: PLC0415
+    from stylobate.results.outcomes import outcome_label  # noqa: PLC0415
 
     names = ("rocking_period", "peak_tilt_ratio", "peak_rate_ratio")
     rows = []
     for case, one in _cases(found, "peak_tilt_ratio"):
-        outcome = outcome_of(int(one["outcome"]))
-        told = "not computed" if outcome is None else outcome.value
-        rows.append({**case, **{name: one[name].item() for name in names}, "outcome": told})
+        rows.append(
+            {**case, **{name: one[name].item() for name in names}, "outcome": outcome_label(int(one["outcome"]))}
+        )
     return rows
 
 

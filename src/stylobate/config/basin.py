@@ -38,7 +38,7 @@ class Starts(Config):
             problems.append("basin.over is missing: the ranges of random starts, by name")
         built("basin", lambda: require_whole("random", self.random or 0, least=1, most=MOST_RUNS), problems)
         built("basin", lambda: require_whole("seed", self.seed, least=0, most=LARGEST_SEED), problems)
-        return {"over": dict(self.over), "count": self.random, "seed": self.seed}
+        return {"over": dict(self.over), "count": self.random, "rng": self.seed}
 
 
 def _problems_of_the_grid(axes: Mapping[str, Axis], over: Mapping[str, object]) -> list[str]:

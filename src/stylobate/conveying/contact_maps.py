@@ -12,7 +12,7 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.errors import Outcome, ParameterError, UnsupportedError
 from stylobate.models import Model
-from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.checks import require_values
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
@@ -122,8 +122,8 @@ def contact_classes(runs: xr.Dataset, least_share: float = 1e-3) -> xr.DataArray
 
     rocks, slides, outcome = took("rolling", "slipping"), took("sliding", "slipping"), runs["outcome"]
     known: list[tuple[Any, ContactClass]] = [
-        (outcome == code_of(Outcome.FAILED), ContactClass.FAILED),
-        (outcome == code_of(Outcome.OVERTURNED), ContactClass.OVERTURNS),
+        (outcome == Outcome.FAILED, ContactClass.FAILED),
+        (outcome == Outcome.OVERTURNED, ContactClass.OVERTURNS),
         (took("flying"), ContactClass.FLIES),
         (rocks & slides, ContactClass.SLIDES_AND_ROCKS),
         (rocks, ContactClass.ROCKS),

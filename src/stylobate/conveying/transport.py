@@ -14,7 +14,7 @@ from stylobate.engine.parameters import with_parameters
 from stylobate.errors import Outcome, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.results import OutcomeRules
-from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.checks import require_values
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
@@ -109,7 +109,7 @@ def drift(
 def walked(runs: xr.Dataset, model: Model, motion: BaseMotion) -> xr.Dataset:
     """Return `runs` of this `model` and `motion` as a drift: with speeds, classes and throw numbers."""
     # A run that stands for good ends early in its last periods' stead: it goes nowhere.
-    stands = (runs["outcome"] == code_of(Outcome.AT_REST)) & runs["mean_twist_rate"].isnull()
+    stands = (runs["outcome"] == Outcome.AT_REST) & runs["mean_twist_rate"].isnull()
     velocity = runs["mean_velocity"].where(~stands, 0.0).assign_attrs(runs["mean_velocity"].attrs)
     turning = runs["mean_twist_rate"].where(~stands, 0.0).assign_attrs(runs["mean_twist_rate"].attrs)
     speed = (velocity**2).sum("axis", skipna=False) ** 0.5

@@ -19,7 +19,7 @@ from stylobate.earthquakes.named_records import Records, named_records
 from stylobate.engine.parameters import changed_model
 from stylobate.errors import Outcome, ParameterError, require_finite
 from stylobate.models import Model
-from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.checks import remark_on_lengths, require_no_tilt_limit
 from stylobate.studies.maps.safe_distance import UNRESOLVED
 from stylobate.studies.sweeps import Executor, Sweep
@@ -293,9 +293,9 @@ class Plan:
 def tilt_ratios(runs: xr.Dataset, slenderness: float | xr.DataArray) -> xr.DataArray:
     """Return the largest tilt over α = atan c: infinite where overturned, NaN where a run is undecided."""
     codes = runs["outcome"]
-    decided = ~codes.isin([NOT_COMPUTED, *(code_of(one) for one in UNRESOLVED)])
+    decided = ~codes.isin([NOT_COMPUTED, *UNRESOLVED])
     ratio = (runs["largest_tilt"] / np.arctan(slenderness)).where(decided)
-    ratio = ratio.where(codes != code_of(Outcome.OVERTURNED), np.inf)
+    ratio = ratio.where(codes != Outcome.OVERTURNED, np.inf)
     return ratio.assign_attrs(units="1", long_name="largest tilt over α")
 
 

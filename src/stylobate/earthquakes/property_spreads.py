@@ -11,6 +11,7 @@ from stylobate.base_motions import BASE_AT_REST
 from stylobate.engine.parameters import COLUMN_NAMES, check_names, model_names, present_value
 from stylobate.errors import ParameterError, require_not_negative, require_positive, require_whole
 from stylobate.models import Model
+from stylobate.results.random_numbers import Rng, generator_of
 from stylobate.studies.sweeps.quantities import Floats
 
 
@@ -98,9 +99,7 @@ class UniformSpread:
         return np.asarray((1.0 - shares) * self.least + shares * self.most)
 
 
-def property_samples(
-    model: Model, spreads: Mapping[str, Spread], *, count: int, rng: np.random.Generator
-) -> dict[str, Floats]:
+def property_samples(model: Model, spreads: Mapping[str, Spread], *, count: int, rng: Rng) -> dict[str, Floats]:
     """Return samples of uncertain properties, independent of each other, for the argument `parameters`.
 
     Parameters
@@ -113,7 +112,8 @@ def property_samples(
     count
         The number of samples.
     rng
-        What draws them; the first samples of a longer series are those of a shorter one.
+        The seed or numpy.random.Generator that draws them; the first samples of a longer series are those of a shorter
+        one.
 
     Returns
     -------
@@ -131,7 +131,7 @@ def property_samples(
     >>> import stylobate as sb
     >>> model = sb.Slender(sb.Column.solid(radius=0.2, height=2.0, density=2700.0), damping=0.02)
     >>> spreads = {"damping": LognormalSpread(0.4), "size": NormalSpread(0.02)}
-    >>> samples = property_samples(model, spreads, count=2000, rng=np.random.default_rng(0))
+    >>> samples = property_samples(model, spreads, count=2000, rng=0)
     >>> print(f"{np.median(samples['damping']):.3f} {samples['size'].std():.3f}")
     0.020 0.020
     """
@@ -139,9 +139,6 @@ def property_samples(
         message = f'spreads must name properties, such as {{"damping": LognormalSpread(0.4)}}, got {spreads!r}'
         raise ParameterError(message)
     number = require_whole("count", count, least=1)
-    if not isinstance(rng, np.random.Generator):
-        message = f"rng must be a numpy.random.Generator, got {rng!r}; try numpy.random.default_rng(0)"
-        raise ParameterError(message)
     check_names(model, None, spreads, where="spreads")
     for name, spread in spreads.items():
         if name not in (*COLUMN_NAMES, *model_names(model)):
@@ -150,7 +147,7 @@ def property_samples(
         if not hasattr(spread, "draw"):
             message = f"spreads[{name!r}] must be a spread such as LognormalSpread(0.4), got {spread!r}"
             raise ParameterError(message)
-    shares = rng.random((number, len(spreads)))
+    shares = generator_of(rng).random((number, len(spreads)))
     return {
         name: spread.draw(present_value(model, BASE_AT_REST, name), shares[:, place])
         for place, (name, spread) in enumerate(spreads.items())

@@ -7,6 +7,7 @@ import xarray as xr
 
 from stylobate.earthquakes.fragility import Counting, fit_fragility
 from stylobate.errors import ParameterError
+from stylobate.results.random_numbers import Rng
 
 # Within one of each of these and a record the intensity grows with the scale alone.
 _SERIES = ("rotation", "vertical", "property_sample")
@@ -18,7 +19,7 @@ def fragility_of_runs(
     counting: Counting = Counting.AS_COMPUTED,
     confidence: float = 0.95,
     resamples: int = 0,
-    rng: np.random.Generator | None = None,
+    rng: Rng | None = None,
 ) -> xr.Dataset:
     """Return the fragility of each limit state from an incremental dynamic analysis.
 

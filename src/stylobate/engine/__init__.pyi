@@ -1,8 +1,10 @@
 from .ensemble import simulate_ensemble
 from .parameters import with_parameters
 from .single import simulate
+from .user_events import EventFunction
 
 __all__ = [
+    "EventFunction",
     "simulate",
     "simulate_ensemble",
     "with_parameters",

@@ -90,27 +90,37 @@ class Course:
         release, known = release_within(self.model, self.forcing, start, self.stop, most)
         if release is None and not known:
             self.ended, self.failure = Reason.FAILED, unseen(most)
-            self._add(rest_piece(held, start, self.stop))
+            self._rest(held, self.stop)
             return None
         if release is None:
             if stays_for_good(self.model, self.forcing, start):
                 self.ended = Reason.RESTED
-            self._add(rest_piece(held, start, self.stop))
+            self._rest(held, self.stop)
             return None
         if 1.0 + self.forcing.at(release)[2] <= RELEASE_MARGIN:  # nothing holds it down: not released but lifted
-            self._add(rest_piece(held, start, release))
-            self.ended = Reason.LIFTED
-            self._note("lifted", release)
+            if self._rest(held, release):
+                self.ended = Reason.LIFTED
+                self._note("lifted", release)
             return None
         later, moving = departure(self.model, self.forcing, release)
         state = *moving, *held[len(moving) :]
         if later >= self.stop:
-            self._add(rest_piece(held, start, self.stop))
+            self._rest(held, self.stop)
+            return None
+        # The departure itself lifts the column by the third power of its duration: shown as rest.
+        if not self._rest(held, later):
             return None
         self._note("release", release)
-        # The departure itself lifts the column by the third power of its duration: shown as rest.
-        self._add(rest_piece(held, start, later))
         return state
+
+    def _rest(self, held: tuple[float, ...], until: float) -> bool:
+        """Stand `until` a time; return False if an event of the user's own ended the run before."""
+        piece = rest_piece(held, self._time, until)
+        own = self.mover.recorder.search(piece.start, until, piece.states, resting=True)
+        if own is not None:
+            self.ended, until = Reason.TERMINATED, own
+        self._add(rest_piece(held, self._time, until))
+        return own is None
 
     def _move(self, state: tuple[float, ...]) -> tuple[float, ...] | None:
         column = np.array(state)[:, np.newaxis]
@@ -201,7 +211,8 @@ class Course:
             self._note("impact", self._time)
         elif leg.reason not in (Reason.CROSSED, Reason.STOP):
             self.ended, self.failure = leg.reason, leg.failure
-            self._note(leg.reason.name.lower(), self._time)
+            if leg.reason is not Reason.TERMINATED:  # its event is recorded already
+                self._note(leg.reason.name.lower(), self._time)
 
     def _add(self, piece: Piece) -> None:
         self.pieces.append(piece)

@@ -28,7 +28,7 @@ from stylobate.errors import MOST_THREADS, Interrupted, Outcome, ParameterError,
 from stylobate.models import Model
 from stylobate.models.consistency import check_once
 from stylobate.results import OutcomeRules
-from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.results.outcomes import NOT_COMPUTED
 
 
 def simulate_ensemble(
@@ -128,7 +128,7 @@ def simulate_ensemble(
     >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
     >>> motion = sb.Harmonic.circular(acceleration=0.15, angular_frequency=0.5)
     >>> runs = sb.simulate_ensemble(model, motion, duration=50.0, parameters={"acceleration": [0.05, 0.15]})
-    >>> [sb.results.outcome_of(code).name for code in runs["outcome"].values]
+    >>> [sb.Outcome(code).name for code in runs["outcome"].values]
     ['AT_REST', 'OVERTURNED']
     """
     require_nouns(model, motion, rules)
@@ -232,7 +232,7 @@ def _rechecked(plan: Plan, runs: Runs, arrays: Arrays, threads: int) -> bool:
     other = empty(plan.model, again.options, places.size)
     finished = _followed(again, runs.part(places), other, threads, None)
     changed = fallen(other["outcome"]) != fallen(arrays["outcome"][places])
-    changed |= other["outcome"] == code_of(Outcome.FAILED)
+    changed |= other["outcome"] == Outcome.FAILED
     arrays["uncertain"][places] |= changed & (other["outcome"] != NOT_COMPUTED)
     return finished
 

@@ -14,6 +14,7 @@ from stylobate.engine.pace import report, step_limit
 from stylobate.engine.steps import Steps, attempted, back_at_upright, just_before, with_finite_step
 from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET
 from stylobate.engine.trajectory import Piece, unwrapped_azimuths
+from stylobate.engine.user_events import EventRecorder
 from stylobate.engine.watch import Reason, Watch
 from stylobate.models import Model
 
@@ -63,6 +64,7 @@ class Mover:
     forcing: Forcing
     watch: Watch
     method: Method
+    recorder: EventRecorder
 
     def in_space(
         self, start: float, state: tuple[float, ...], stop: float, azimuth: float, budget: int, *, begins: bool
@@ -97,8 +99,9 @@ class Mover:
             events = [self.watch.first_event(steps.times[-2], solver.t, dense)]
             events.append((passage[0], Reason.STRUCK) if self._loses_at(passage, before) else None)
             found = [event for event in events if event is not None]
-            if found:
-                time, reason = min(found, key=lambda event: event[0])
+            event = self._with_own(steps.times[-2], solver.t, dense, min(found, key=lambda one: one[0], default=None))
+            if event is not None:
+                time, reason = event
                 steps.cut(time)
                 return self._space_leg(steps, dense(time), azimuth, reason, least)
             if atol < self.method.atol and self._has_grown(solver.y):
@@ -205,7 +208,8 @@ class Mover:
                 if back == began:
                     return leg(np.zeros(2), Reason.CROSSED)
             end = solver.t if back is None else back
-            event = self.watch.first_event(began, end, partial(plane.states, dense), rests=False)
+            states = partial(plane.states, dense)
+            event = self._with_own(began, end, states, self.watch.first_event(began, end, states, rests=False))
             if event is not None:
                 time, reason = event
                 steps.cut(time)
@@ -215,6 +219,13 @@ class Mover:
                 rests = self.watch.is_rest(back, 0.0, abs(speed))
                 return leg(np.array([0.0, speed]), Reason.RESTED if rests else Reason.CROSSED)
         return leg(solver.y, Reason.STOP)
+
+    def _with_own(
+        self, start: float, end: float, states: Callable[[Floats], Floats], event: tuple[float, Reason] | None
+    ) -> tuple[float, Reason] | None:
+        """Record the user's own events of a step before its first `event`; return that which ends the leg, if any."""
+        own = self.recorder.search(start, end if event is None else event[0], states)
+        return event if own is None else (own, Reason.TERMINATED)
 
     def _report(self, left: int, tau: float) -> None:
         method, scale = self.method, self.forcing.time_scale

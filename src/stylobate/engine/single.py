@@ -1,16 +1,17 @@
 """One run, for a user to look at: `simulate`."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.config import provenance_of_run
-from stylobate.engine.afterwards import duration_of, survivor_reason
 from stylobate.engine.course import Course
 from stylobate.engine.doubt import FALLEN, finer_rest, in_doubt, other_tolerance
+from stylobate.engine.end_of_motion import duration_of, survival
 from stylobate.engine.forcing import Forcing
 from stylobate.engine.history import history
 from stylobate.engine.motion_checks import check_kinds, check_motion
@@ -21,6 +22,7 @@ from stylobate.engine.switching.course import SwitchingCourse
 from stylobate.engine.switching.verdict import Account, switching_verdict
 from stylobate.engine.thresholds import Thresholds, is_rest, rest_is_coarse, thresholds_of, without_dust
 from stylobate.engine.tolerances import ATOL_SHARE, CLOSE_PASSAGE, RTOL_RANGE
+from stylobate.engine.user_events import EventFunction, EventRecorder, checked_events
 from stylobate.engine.verdict import Verdict, long_term
 from stylobate.engine.watch import Reason, Watch
 from stylobate.errors import (
@@ -58,6 +60,7 @@ def simulate(
     samples: int | None = None,
     rules: OutcomeRules | None = None,
     recheck: bool = True,
+    events: Sequence[EventFunction | Callable[[float, dict[str, Any]], float]] = (),
 ) -> Response:
     """Follow one column from a start to its outcome.
 
@@ -107,6 +110,10 @@ def simulate(
         again after it had come to rest and then overturned or tilted beyond half of its tipping angle, that came back
         from 0.95 of its tipping angle or more, or that overturned after 40/p or more. If the column then overturns
         instead of surviving, or the other way round, the result is `uncertain`, and a warning says so.
+    events
+        Event functions, as `EventFunction` or plain functions of time and state with the optional attributes
+        `direction` and `terminal`. Their zeros are recorded in `Response.events`; a terminal one ends the run, which
+        has the outcome STOPPED. Files keep the events, not the functions.
 
     Returns
     -------
@@ -150,6 +157,7 @@ def simulate(
     thresholds = thresholds_of(model, forcing, tilt_limit, rest_energy)
     check_motion(moved, duration)
     rules = rules or OutcomeRules()
+    functions = checked_events(events)
     if at_rest:
         start_tilt = start_rate = (0.0, 0.0)
     require_plane(model, moved, start_tilt, start_rate)
@@ -159,7 +167,7 @@ def simulate(
         state = turning.added_to(model, model.start(start_tilt, start_rate))
     end = duration / model.time_scale
     announce(expected_steps(model, forcing.highest_frequency, end), method.max_steps)
-    run = _Run(model, forcing, replace(method, end=end), thresholds, end, rules)
+    run = _Run(model, forcing, replace(method, end=end), thresholds, end, rules, functions)
     course, verdict = run.follow(state)
     recorded = history(
         model,
@@ -170,10 +178,9 @@ def simulate(
         friction_coefficient=friction_coefficient,
     )
     doubts = run.repeated_otherwise(state, course, verdict, recorded.measures["largest_tilt"]) if recheck else ()
-    freed = verdict.outcome is Outcome.STILL_MOVING and math.isfinite(moved.duration) and not model.switches
     return Response(
         outcome=verdict.outcome,
-        reason=survivor_reason(model, moved, course.trajectory) if freed else verdict.reason,
+        reason=verdict.reason,
         decided_at=_decided_at(course, verdict, duration),
         uncertain=_is_uncertain(model, forcing, course, thresholds) or bool(doubts),
         planar=course.planar,
@@ -226,18 +233,20 @@ class _Run:
     thresholds: Thresholds
     stop: float
     rules: OutcomeRules
+    events: tuple[EventFunction, ...]
 
     def follow(self, state: tuple[float, ...]) -> tuple[Course | SwitchingCourse, Verdict]:
         """Integrate from `state` to the end."""
         model, forcing, motion = self.model, self.forcing, self.forcing.motion
         if model.switches:
-            switching = SwitchingCourse(model, forcing, self.method, self.thresholds, self.stop)
+            switching = SwitchingCourse(model, forcing, self.method, self.thresholds, self.stop, self.events)
             switching.follow(state)
-            return switching, switching_verdict(model, motion, switching, self.rules)
-        mover = Mover(model, forcing, Watch(model, forcing, self.thresholds), self.method)
-        course = Course(model, forcing, mover, self.stop)
+            return switching, _stopped(switching) or switching_verdict(model, motion, switching, self.rules)
+        recorder = EventRecorder(self.events, model, forcing, [])
+        mover = Mover(model, forcing, Watch(model, forcing, self.thresholds), self.method, recorder)
+        course = Course(model, forcing, mover, self.stop, events=recorder.events)
         course.follow(state)
-        return course, _verdict(model, motion, course, self.rules)
+        return course, _stopped(course) or _verdict(model, motion, course, self.rules)
 
     def repeated_otherwise(
         self, state: tuple[float, ...], course: Course | SwitchingCourse, verdict: Verdict, largest_tilt: float
@@ -251,7 +260,7 @@ class _Run:
             released_again=course.released_from_rest,
             slenderness=self.model.column.slenderness,
         )
-        if verdict.outcome is Outcome.FAILED or not doubtful:
+        if verdict.outcome in (Outcome.FAILED, Outcome.STOPPED) or not doubtful:
             return ()
         rtol = other_tolerance(self.method.rtol)
         method = replace(self.method, rtol=rtol, atol=self.method.atol * (rtol / self.method.rtol))
@@ -271,6 +280,12 @@ _ENDINGS = {
     Reason.LIFTED: (Outcome.LIFTED_OFF, "the base accelerates downwards faster than gravity"),
     Reason.RESTED: (Outcome.AT_REST, "it stands, and the base motion to come cannot release it"),
 }
+
+
+def _stopped(course: Course | SwitchingCourse) -> Verdict | None:
+    if course.ended is not Reason.TERMINATED:
+        return None
+    return Verdict(Outcome.STOPPED, f"its event {course.events[-1].kind!r} ended the run", {})
 
 
 _RELEASED = "it may yet be released: follow it longer"
@@ -293,7 +308,10 @@ def _verdict(model: Model, motion: BaseMotion, course: Course, rules: OutcomeRul
         told = f", {left:.4g} s before the base motion stops; {_RELEASED}" if to_come else ""
         return Verdict(Outcome.AT_REST, f"it stands at the end of the run{before}{told}", {})
     period = None if motion.period is None else motion.period / model.time_scale
-    return long_term(model, course.trajectory, period, rules, planar=course.planar)
+    verdict = long_term(model, course.trajectory, period, rules, planar=course.planar)
+    if verdict.outcome is Outcome.STILL_MOVING and math.isfinite(motion.duration):
+        return Verdict(*survival(model, motion, course.trajectory), verdict.measures)
+    return verdict
 
 
 _RACING = (

@@ -34,6 +34,8 @@ class Reason(Enum):
     STRUCK = auto()
     """The upright was passed so closely, out of a plane, that the passage costs energy."""
     FAILED = auto()
+    TERMINATED = auto()
+    """A terminal event function of the user."""
     HALTED = auto()
     """Who asked for it wants it no more."""
 

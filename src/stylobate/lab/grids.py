@@ -14,7 +14,6 @@ from stylobate.lab.case_axes import case_map, case_numbers, units_of
 from stylobate.lab.json_values import number, numbers
 from stylobate.lab.messages import Emit, Found, Progress
 from stylobate.lab.progressive_executor import Cells, Refining
-from stylobate.results.outcomes import code_of
 from stylobate.studies.sweeps.quantities import attributes_of
 
 
@@ -28,7 +27,7 @@ def overturning_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
         found = _watched(partial(study, setup.model, setup.motion), setup, emit, keywords=setup.options)
     if "contact_class" in found:
         return _finer(found, "contact_class", found["class_name"].to_numpy(), setup)
-    return _counts(found, [outcome.value for outcome in Outcome])
+    return _counts(found, [outcome.label for outcome in Outcome])
 
 
 def basin_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
@@ -68,7 +67,7 @@ def _watched(
         place: {"name": name, "values": numbers(values), **(attributes_of(name) or {"units": units_of(name)})}
         for place, (name, values) in zip("xy", over.items(), strict=True)
     }
-    names = [[code_of(outcome), outcome.value] for outcome in Outcome]
+    names = [[int(outcome), outcome.label] for outcome in Outcome]
     emit(Found({"axes": axes, "names": names}))
 
     def show(stride: int, places: Cells, outcomes: Cells) -> None:

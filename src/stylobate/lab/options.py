@@ -16,7 +16,6 @@ from stylobate.errors import Outcome
 from stylobate.lab.limits import Limits
 from stylobate.lab.parameter_info import NUMBERS, Number
 from stylobate.lab.presets import presets
-from stylobate.results.outcomes import code_of
 
 # Motions made of motions, and records, have controls of their own or are for files.
 _NO_CONTROLS = frozenset({"sum", "one_of", "scaled", "rotated", "delayed"})
@@ -46,7 +45,7 @@ def about(limits: Limits) -> dict[str, Any]:
             }
             for one in presets()
         ],
-        "outcomes": [{"name": one.name, "value": one.value, "code": code_of(one)} for one in Outcome],
+        "outcomes": [{"name": one.name, "value": one.label, "code": int(one)} for one in Outcome],
     }
 
 

@@ -18,7 +18,7 @@ def plain_run(run: Response, model: Model) -> dict[str, Any]:
     """Return what a page shows of `run`: its outcome, its history, and how it is drawn."""
     return {
         "outcome": run.outcome.name,
-        "label": run.outcome.value,
+        "label": run.outcome.label,
         "reason": run.reason,
         "decided_at": run.decided_at,
         "uncertain": run.uncertain,

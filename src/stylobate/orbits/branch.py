@@ -125,7 +125,7 @@ class Branch:
         )
 
     def save(self, path: str | Path) -> Path:
-        """Write it to a netCDF file at `path`; `stylobate.orbits.load` reads it again."""
+        """Write it to a netCDF file at `path`; `stylobate.load` reads it again."""
         from stylobate.orbits.storage import save  # noqa: PLC0415  storage needs this class
 
         return save(self, path)

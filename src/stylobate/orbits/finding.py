@@ -11,13 +11,14 @@ from stylobate.base_motions import BaseMotion
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of, require_periodic
 from stylobate.engine.flow.tableau import Status
 from stylobate.engine.forcing import common_line
-from stylobate.errors import LARGEST_SEED, NoOrbitError, ParameterError, require_positive, require_whole
+from stylobate.errors import NoOrbitError, ParameterError, require_positive, require_whole
 from stylobate.models import Model
 from stylobate.orbits.arguments import require_subject
 from stylobate.orbits.opening import require_sense, rolling_by_theory
 from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.shooting import Shots, arcs_of, closed, damped, newton_step, shots
 from stylobate.results import Response
+from stylobate.results.random_numbers import Rng, seed_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -133,7 +134,7 @@ def periodic_orbits(
     *,
     over: Mapping[str, Sequence[float]] | None = None,
     count: int = 32,
-    seed: int = 0,
+    rng: Rng = 0,
     periods: int = 1,
     rtol: float = 1e-12,
 ) -> tuple[PeriodicOrbit, ...]:
@@ -151,8 +152,8 @@ def periodic_orbits(
     over
         Ranges of the starts: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s]. By default tilts within c and
         rates within c at the frequency of the base motion, or c in units of the model if that is larger.
-    count, seed
-        Number of starts and the seed they are drawn with.
+    count, rng
+        Number of starts, and the seed or numpy.random.Generator they are drawn with.
     periods
         Length of the orbits in periods of the base motion; shorter ones that are found keep their own.
     rtol
@@ -167,11 +168,9 @@ def periodic_orbits(
     periods = require_whole("periods", periods, least=1)
     count = require_whole("count", count, least=1)
     rtol = require_positive("rtol", rtol)
-    seed = require_whole("seed", seed, least=0, most=LARGEST_SEED)
     system = PeriodicSystem(model, motion, None, rtol)
-    rng = np.random.default_rng(seed)
     low, high = np.transpose(_ranges(system, over))
-    starts = rng.uniform(low, high, size=(count, _LEAN))
+    starts = np.random.default_rng(seed_of(rng)).uniform(low, high, size=(count, _LEAN))
     found: list[PeriodicOrbit] = []
     known: list[Floats] = []
     for length in (divisor for divisor in range(1, periods + 1) if periods % divisor == 0):

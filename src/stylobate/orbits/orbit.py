@@ -185,7 +185,7 @@ class PeriodicOrbit:
         return bool(np.all(np.abs(self.path - image) <= _SAME * np.where(size > 0.0, size, 1.0)))
 
     def save(self, path: str | Path) -> Path:
-        """Write it to a netCDF file at `path`; `stylobate.orbits.load` reads it again."""
+        """Write it to a netCDF file at `path`; `stylobate.load` reads it again."""
         from stylobate.orbits.storage import save  # noqa: PLC0415  storage needs this class
 
         return save(self, path)

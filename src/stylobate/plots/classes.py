@@ -43,11 +43,13 @@ OUTCOME_LOOKS = {
     Outcome.ROCKING: _ROCKING,
     Outcome.ROLLING: _ROLLING,
     Outcome.MODULATED: _MODULATED,
+    Outcome.SURVIVED: Look(_CREAM, "...", _LILAC_INK),
     Outcome.STILL_MOVING: _UNSETTLED,
     Outcome.OVERTURNED: _OVERTURNED,
     Outcome.LIMIT_REACHED: replace(_OVERTURNED, texture="///"),
     Outcome.LIFTED_OFF: Look(_GREY, "**"),
     Outcome.SLID: _SLIDING,
+    Outcome.STOPPED: Look("#ffffff", "oo", _GREY),
     Outcome.FAILED: Look("#ffffff", "xxx", "#D55E00"),
 }
 
@@ -64,6 +66,7 @@ KIND_LOOKS = {
     "overturned": _OVERTURNED,
     "tilt limit reached": OUTCOME_LOOKS[Outcome.LIMIT_REACHED],
     "lifted off": OUTCOME_LOOKS[Outcome.LIFTED_OFF],
+    "survived": OUTCOME_LOOKS[Outcome.SURVIVED],
     "not settled": _UNSETTLED,
 }
 # Textures of the second, third … attractor of a kind; after the last they begin again.
@@ -85,19 +88,20 @@ _FROM_STANDING_TO_FALLING = (
     Outcome.ROCKING,
     Outcome.ROLLING,
     Outcome.MODULATED,
+    Outcome.SURVIVED,
     Outcome.STILL_MOVING,
     Outcome.OVERTURNED,
     Outcome.LIMIT_REACHED,
     Outcome.LIFTED_OFF,
     Outcome.SLID,
+    Outcome.STOPPED,
     Outcome.FAILED,
 )
 
 
 def outcome_classes() -> tuple[MapClass, ...]:
     """Return the classes of outcomes, from standing to falling, the last for what has not been computed."""
-    codes = {outcome: code for code, outcome in enumerate(Outcome)}
-    known = (MapClass(codes[one], one.value, OUTCOME_LOOKS[one]) for one in _FROM_STANDING_TO_FALLING)
+    known = (MapClass(int(one), one.label, OUTCOME_LOOKS[one]) for one in _FROM_STANDING_TO_FALLING)
     return (*known, _UNFINISHED_CLASS)
 
 

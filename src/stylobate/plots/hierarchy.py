@@ -16,7 +16,7 @@ from stylobate.plots.classes import Look, MapClass
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.maps import draw_classes
 from stylobate.plots.style import BLACK, GREY, PALETTE, new_figure, styled
-from stylobate.results.outcomes import NOT_COMPUTED, outcome_of
+from stylobate.results.outcomes import NOT_COMPUTED, outcome_label
 
 # Levels that cannot turn are blue and black, those that may turn vermilion and orange; finite tilt is dashed, over it.
 _LINES: dict[str, dict[str, Any]] = {
@@ -98,8 +98,7 @@ def _draw_histories(axes: Axes, shown: xr.Dataset, c: float) -> None:
 
 
 def _label(shown: xr.Dataset, level: str) -> str:
-    outcome = outcome_of(int(shown["outcome"].sel(level=level)))
-    return f"{level}: {outcome.value if outcome else 'not computed'}"
+    return f"{level}: {outcome_label(int(shown['outcome'].sel(level=level)))}"
 
 
 def _draw_spin(axes: Axes, shown: xr.Dataset) -> None:

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.style import GREY, PALETTE, new_figure, styled
-from stylobate.results.outcomes import outcome_of
+from stylobate.results.outcomes import outcome_label
 
 _HEIGHT = 3.9
 _QUANTITIES = (("section_tilt", "tilt", "rad"), ("section_tilt_rate", "rate of tilt", "rad/s"))
@@ -44,9 +44,8 @@ def plot_section(found: xr.Dataset) -> Figure:
             axes.text(0.5, 0.5, _NOTHING, transform=axes.transAxes, ha="center", va="center", color=GREY)
     if count <= _MOST_NAMED:
         for each in range(count):
-            outcome = outcome_of(int(runs["outcome"].isel(each=each)))
             which = f"run {each + 1}: " if count > 1 else ""
-            ending = "not computed" if outcome is None else outcome.value
+            ending = outcome_label(int(runs["outcome"].isel(each=each)))
             panels[0].plot([], [], "o", color=PALETTE[each], markersize=_LARGEST, label=f"{which}{ending}")
         figure.legend(loc="outside upper left", ncols=count)
     return figure

@@ -45,7 +45,7 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
     labels
         A name for each; by default its outcome.
     """
-    names = labels or [run.outcome.value for run in runs]
+    names = labels or [run.outcome.label for run in runs]
     contact = ContactHistory.of(runs[0]) if len(runs) == 1 and "contact" in runs[0].data else None
     figure, axes = _panels(contact)
     tilt, azimuth, base, orbit = axes["tilt"], axes["azimuth"], axes["base"], axes["orbit"]

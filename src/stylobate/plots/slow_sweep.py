@@ -15,7 +15,6 @@ from stylobate.errors import Outcome
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import GREY, PALETTE, new_figure, styled
-from stylobate.results.outcomes import code_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -107,12 +106,12 @@ def _draw_ends(axes: Axes, found: xr.Dataset) -> list[Line2D]:
         one = found.isel(sweep=sweep)
         codes, tilt = one["outcome"].to_numpy(), one["mean_tilt"].to_numpy()
         for outcome, marker in _MARKERS.items():
-            for step in np.flatnonzero(codes == code_of(outcome)):
+            for step in np.flatnonzero(codes == outcome):
                 mark: dict[str, Any] = {"marker": marker, "linestyle": "none", "color": PALETTE[sweep % len(PALETTE)]}
                 height = float(tilt[step - 1]) if step else 0.0
                 axes.plot(float(one[name][step]), height, markersize=8, markeredgecolor="white", zorder=4, **mark)
                 named[outcome] = marker
     return [
-        Line2D([], [], marker=marker, linestyle="none", color=GREY, markersize=7, label=f"{outcome.value} here")
+        Line2D([], [], marker=marker, linestyle="none", color=GREY, markersize=7, label=f"{outcome.label} here")
         for outcome, marker in named.items()
     ]

@@ -1,6 +1,5 @@
 from .assessment import Assessment
 from .findings import Finding, PaperCheck, Section, Verdict
-from .outcomes import code_of, outcome_of
 from .report_details import DesignSpectrum, ReportDetails
 from .response import Event, Response
 from .rules import OutcomeRules
@@ -17,9 +16,7 @@ __all__ = [
     "Response",
     "Section",
     "Verdict",
-    "code_of",
     "load",
-    "outcome_of",
     "read_dataset",
     "write_netcdf",
 ]

@@ -16,6 +16,13 @@ _PLAIN = ("decided_at", "uncertain", "planar", "thresholds", "measures", "proven
 """Fields of a response that hold plain Python values, whatever computed them."""
 
 
+EVENT_KINDS = (
+    *("release", "rest", "overturned", "limit", "lifted", "failed", "impact", "passage"),
+    *("slide", "stop", "slip", "reverse", "stick", "lift", "land", "stroke", "jam"),
+)
+"""Kinds of events that runs find without being asked."""
+
+
 @dataclass(frozen=True, slots=True)
 class Event:
     """Something that happened in a run: its `kind` and `time` [s].
@@ -23,6 +30,7 @@ class Event:
     Kinds are "release", "rest", "overturned", "limit", "lifted" and "failed"; "impact", where a passage of the upright
     costs energy, and "passage" for one in a plane that costs none; of models that can slip and fly also
     "slide" and "stop" of the base, "slip", "reverse" and "stick" of the rim, "lift", "land", "stroke" and "jam".
+    An event of a user's own `EventFunction` has its name as the kind.
     """
 
     kind: str

@@ -68,21 +68,18 @@ def load(path: str | Path) -> Response:
     Raises
     ------
     FileError
-        If the file cannot be read or holds no saved run; the result of a study is read by `xarray.open_dataset`.
+        If the file cannot be read or holds no saved run; `stylobate.load` reads any result.
     """
     data = read_dataset(path)
     attributes: dict[str, Any] = dict(data.attrs)
     if "format" not in attributes and "kind" in attributes:
         message = (
-            f"{path} holds no run but the result of a study, of kind {attributes['kind']!r}; "
-            "xarray.open_dataset reads it"
+            f"{path} holds no run but the result of a study, of kind {attributes['kind']!r}; stylobate.load reads it"
         )
         raise FileError(message)
     kind = str(attributes.get("format", "")).removeprefix(_OWN_FORMATS).partition(" ")[0]
     if kind in _OF_ORBITS:
-        message = (
-            f"{path} holds no run but, of stylobate.orbits, an object of kind {kind!r}; stylobate.orbits.load reads it"
-        )
+        message = f"{path} holds no run but, of stylobate.orbits, an object of kind {kind!r}; stylobate.load reads it"
         raise FileError(message)
     if attributes.get("format") != _FORMAT:
         message = f"{path} is no run saved by stylobate: its format is {attributes.get('format')!r}, not {_FORMAT!r}"

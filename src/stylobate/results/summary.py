@@ -22,7 +22,7 @@ def column_rows(column: "Column") -> Rows:
 def verdict_rows(run: "Response") -> Rows:
     """Return the outcome, its reason, and when it was decided."""
     return [
-        ("outcome", run.outcome.value + (" (uncertain)" if run.uncertain else "")),
+        ("outcome", run.outcome.label + (" (uncertain)" if run.uncertain else "")),
         ("because", run.reason),
         ("decided at", f"{run.decided_at:.4f} s"),
     ]

@@ -1,5 +1,6 @@
 from .hierarchy.outcomes import Comparison, outcome_differences
 from .hierarchy.study import model_hierarchy
+from .loading import load
 from .maps.attractors import attractors, label_attractors
 from .maps.basin_fractions import basin_fractions
 from .maps.basins import basins
@@ -36,6 +37,7 @@ __all__ = [
     "executor_from",
     "integrity",
     "label_attractors",
+    "load",
     "lyapunov_exponents",
     "model_hierarchy",
     "open_sweep",

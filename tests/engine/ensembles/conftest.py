@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.results import outcome_of
 
 C = 0.1
 
@@ -68,7 +67,7 @@ class Runs:
 
 
 def _outcome(data, index=0):
-    return outcome_of(data["outcome"].to_numpy()[index])
+    return sb.Outcome(data["outcome"].to_numpy()[index])
 
 
 def _end_of(response):

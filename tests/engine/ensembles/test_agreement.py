@@ -124,6 +124,6 @@ def test_runs_whose_passages_fall_on_looks_do_not_stick_there():
         rtol=1e-12,
         max_steps=20_000,
     )
-    assert np.all(runs["outcome"] == sb.results.code_of(sb.Outcome.ROCKING))
+    assert np.all(runs["outcome"] == sb.Outcome.ROCKING)
     ends = np.abs(runs["end_tilt_rate"][:, 0] / rate - 1.0)
     assert ends.max() < 1e-8

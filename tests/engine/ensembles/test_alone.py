@@ -67,7 +67,7 @@ def test_they_are_told_as_lanes_tell_them(given_up):
         atol = 0.0 if name in EXACT else ROUGHLY.get(name, CLOSELY)
         np.testing.assert_allclose(alone[name], lanes[name], rtol=1e-12, atol=atol, err_msg=name)
     # All kinds of contact were met, and all that is told was told of some run.
-    told = {sb.results.outcome_of(code) for code in lanes["outcome"].values}
+    told = {sb.Outcome(code) for code in lanes["outcome"].values}
     assert told >= {sb.Outcome.OVERTURNED, sb.Outcome.SLID, sb.Outcome.AT_REST}
     assert all(np.isfinite(lanes[name]).any() for name in lanes.data_vars)
     assert all(float(lanes[f"time_{kind.name.lower()}"].max()) > 0.0 for kind in Contact if kind is not Contact.JAMMED)
@@ -100,7 +100,7 @@ def test_a_patch_that_creeps_is_followed_to_the_end(alone, given_up):
     model, motion = sb.with_parameters(Sliding(column), line, **STIFF["parameters"])
     start = {name: STIFF[name] for name in ("tilt", "tilt_rate", "duration")}
     single = sb.simulate(model, motion, **start, rtol=1e-7, recheck=False)
-    assert sb.results.outcome_of(int(run["outcome"])) is single.outcome is sb.Outcome.OVERTURNED
+    assert sb.Outcome(int(run["outcome"])) is single.outcome is sb.Outcome.OVERTURNED
     if alone:  # the same integrator made the same steps
         assert float(run["steps"]) == single.measures["steps"]
         assert float(run["decided_at"]) == single.decided_at

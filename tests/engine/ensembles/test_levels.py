@@ -7,7 +7,6 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import ParameterError, UnsupportedError
-from stylobate.results import outcome_of
 
 C = 0.1
 COLUMN = sb.Column.dimensionless(C)
@@ -54,7 +53,7 @@ def together_and_alone(model, motion, *, duration, tilt, tilt_rate, spin=None, d
 
 def require_same(runs, alone, *, close=CLOSE):
     for index, run in enumerate(alone):
-        assert outcome_of(int(runs["outcome"][index])) is run.outcome
+        assert sb.Outcome(int(runs["outcome"][index])) is run.outcome
         assert float(runs["decided_at"][index]) == pytest.approx(run.decided_at, abs=1e-5)
         np.testing.assert_allclose(runs["end_tilt"][index], run.data["tilt"][-1], rtol=0.0, atol=close)
         np.testing.assert_allclose(runs["end_tilt_rate"][index], run.data["tilt_rate"][-1], rtol=0.0, atol=10.0 * close)
@@ -216,7 +215,7 @@ def test_ensembles_settle_on_steady_rolling_at_finite_tilt():
     # The slowest deviation decays by exp(−0.0254 τ).
     start = {"tilt": (0.01, 0.0), "tilt_rate": (0.0, 0.03), "spin": -0.3}
     runs = sb.simulate_ensemble(IN_SPACE["rolling"], CIRCLE, **start, duration=900.0, rtol=1e-10, demands=True)
-    assert outcome_of(int(runs["outcome"][0])) is sb.Outcome.ROLLING
+    assert sb.Outcome(int(runs["outcome"][0])) is sb.Outcome.ROLLING
     assert float(runs["mean_tilt"][0]) == pytest.approx(amplitude, rel=1e-7)
     assert float(runs["end_spin"][0]) == pytest.approx(spin, rel=1e-7)
     assert math.hypot(*runs["end_tilt"][0].to_numpy()) == pytest.approx(amplitude, rel=1e-7)

@@ -46,7 +46,7 @@ def test_each_run_is_that_under_the_pulse_of_its_frequency(pulse):
         alone = sb.simulate(
             MODEL, with_numbers(pulse, {"angular_frequency": float(frequency)}), duration=6.0, recheck=False
         )
-        assert sb.results.outcome_of(run["outcome"]) == alone.outcome
+        assert sb.Outcome(int(run["outcome"])) == alone.outcome
         if alone.outcome is not sb.Outcome.OVERTURNED:  # else it ends with a step of the method's
             assert float(run["largest_tilt"]) == pytest.approx(alone.measures["largest_tilt"], rel=1e-6, abs=1e-9)
         moved += alone.measures["largest_tilt"] > 0.0
@@ -108,7 +108,7 @@ def test_a_map_over_the_frequency_of_a_pulse_has_its_runs():
     for row, frequency in zip(found, over["angular_frequency"], strict=True):
         for code, acceleration in zip(row, over["acceleration"], strict=True):
             one = P.one_sine(acceleration=acceleration, angular_frequency=frequency, vertical=0.3)
-            assert sb.results.outcome_of(code) == sb.simulate(MODEL, one, duration=5.0, recheck=False).outcome
+            assert sb.Outcome(code) == sb.simulate(MODEL, one, duration=5.0, recheck=False).outcome
     assert len(np.unique(found)) > 1
 
 

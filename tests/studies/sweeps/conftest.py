@@ -22,7 +22,7 @@ def grid():
 @pytest.fixture
 def random():
     over = {"tilt_x": (-0.06, 0.06), "tilt_rate_y": (-0.02, 0.02), "damping": (0.0, 0.2)}
-    return Sweep.random(MODEL, MOTION, over=over, count=13, seed=5, duration=4.0)
+    return Sweep.random(MODEL, MOTION, over=over, count=13, rng=5, duration=4.0)
 
 
 @pytest.fixture

@@ -1,7 +1,10 @@
 """Which values the runs have: grids, random points, given points."""
 
+import json
+
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -26,7 +29,7 @@ def test_a_grid_is_every_combination_in_c_order():
 @settings(max_examples=25)
 @given(st.integers(0, 10_000), st.integers(0, 10_000))
 def test_random_points_do_not_depend_on_how_they_are_cut(a, b):
-    design = Box.of(BOX, 10_000, seed=3)
+    design = Box.of(BOX, 10_000, rng=3)
     part = slice(min(a, b), max(a, b))
     all_of_them, some = design.values(whole(design)), design.values((part,))
     for name, values in all_of_them.items():
@@ -34,13 +37,13 @@ def test_random_points_do_not_depend_on_how_they_are_cut(a, b):
 
 
 def test_the_first_random_points_are_those_of_a_shorter_sweep():
-    long, short = Box.of(BOX, 9000, seed=3), Box.of(BOX, 50, seed=3)
+    long, short = Box.of(BOX, 9000, rng=3), Box.of(BOX, 50, rng=3)
     for name, values in short.values(whole(short)).items():
         np.testing.assert_array_equal(values, long.values(whole(long))[name][:50])
 
 
 def test_random_points_fill_the_box_and_no_more():
-    design = Box.of(BOX, 20_000, seed=3)
+    design = Box.of(BOX, 20_000, rng=3)
     values = design.values(whole(design))
     for name, (low, high) in BOX.items():
         shares = (values[name] - low) / (high - low)
@@ -53,7 +56,7 @@ def test_random_points_fill_the_box_and_no_more():
 
 
 def test_a_range_of_no_width_is_one_value():
-    design = Box.of({"damping": (0.3, 0.3)}, 5, seed=0)
+    design = Box.of({"damping": (0.3, 0.3)}, 5, rng=0)
     np.testing.assert_array_equal(design.values(whole(design))["damping"], 0.3)
 
 
@@ -94,15 +97,15 @@ def test_periods_follow_a_frequency_that_varies():
             r"at\['tilt_y'\] must have as many values as at\['tilt_x'\], 1, got 2",
         ),
         (
-            lambda: Sweep.random(MODEL, over={"tilt_x": (0.1, 0.0)}, count=1, seed=1, duration=1.0),
+            lambda: Sweep.random(MODEL, over={"tilt_x": (0.1, 0.0)}, count=1, rng=1, duration=1.0),
             r"over\['tilt_x'\] must be a lower and an upper bound, got \(0.1, 0.0\)",
         ),
         (
-            lambda: Sweep.random(MODEL, over={"scale": (-1e308, 1e308)}, count=1, seed=1, duration=1.0),
+            lambda: Sweep.random(MODEL, over={"scale": (-1e308, 1e308)}, count=1, rng=1, duration=1.0),
             "too large to compute with",
         ),
-        (lambda: Sweep.random(MODEL, over=BOX, count=-1, seed=1, duration=1.0), "count must be a whole number"),
-        (lambda: Sweep.random(MODEL, over=BOX, count=1, seed=None, duration=1.0), "seed must be"),
+        (lambda: Sweep.random(MODEL, over=BOX, count=-1, rng=1, duration=1.0), "count must be a whole number"),
+        (lambda: Sweep.random(MODEL, over=BOX, count=1, rng=None, duration=1.0), "rng must be"),
         (lambda: Sweep.grid(MODEL, over={"damping": [0.1]}), "one of duration .* got none of them"),
         (lambda: Sweep.grid(MODEL, MOTION, over={"damping": [0.1]}, duration=1.0, periods=1.0), "duration and periods"),
         (lambda: Sweep.grid(MODEL, over={"duration": [0.1]}, duration=1.0), "duration among what varies"),
@@ -126,3 +129,14 @@ def test_periods_follow_a_frequency_that_varies():
 def test_what_cannot_be_swept_is_named(make, line):
     with pytest.raises(ParameterError, match=line):
         make()
+
+
+def test_a_study_takes_a_seed_or_a_generator_and_keeps_the_seed():
+    found = [
+        sb.studies.basins(MODEL, over={"tilt_x": (-0.06, 0.06)}, count=3, rng=rng, duration=1.0)
+        for rng in (7, np.random.default_rng(1), np.random.default_rng(1))
+    ]
+    seeds = [json.loads(one.attrs["provenance"])["design"]["seed"] for one in found]
+    assert seeds[0] == 7
+    assert seeds[1] == seeds[2] == np.random.default_rng(1).integers(2**63)
+    xr.testing.assert_equal(found[1], found[2])

@@ -97,7 +97,7 @@ def changed(**changes):
         ),
         (Sweep.grid(MODEL, MOTION, over={"tilt_x": [0.01, 0.02]}, duration=10.0), "design.kind was 'points'"),
         (
-            Sweep.random(replace(MODEL, damping=0.0), over={"tilt_x": (0.0, 0.1)}, count=1, seed=1, duration=1.0),
+            Sweep.random(replace(MODEL, damping=0.0), over={"tilt_x": (0.0, 0.1)}, count=1, rng=1, duration=1.0),
             "and [0-9]+ more differences",
         ),
     ],

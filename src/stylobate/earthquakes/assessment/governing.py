@@ -14,7 +14,7 @@ from stylobate.earthquakes.following import tail_of
 from stylobate.earthquakes.incremental import without_vertical
 from stylobate.engine import simulate_ensemble
 from stylobate.errors import Outcome
-from stylobate.results.outcomes import code_of, outcome_attributes
+from stylobate.results.outcomes import outcome_attributes
 from stylobate.studies.sweeps.computing import Progress
 
 STATED, STANDS, OVERTURNS = "stated", "stands", "overturns"
@@ -148,7 +148,7 @@ def _as_dataset(run: xr.Dataset, motion: BaseMotion, alpha: float) -> xr.Dataset
     size = np.hypot(tilt[:, 0], tilt[:, 1])
     largest = int(np.nanargmax(size))
     base = motion.acceleration(np.nan_to_num(times)) + 0.0 * times[:, np.newaxis]
-    fallen = run["outcome"].item() == code_of(Outcome.OVERTURNED)
+    fallen = run["outcome"].item() == Outcome.OVERTURNED
     about = {"units": "1", "long_name": "tilt over α"}
     curves = {
         "time": (times, {"units": "s", "long_name": "time"}),

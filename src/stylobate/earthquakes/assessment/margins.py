@@ -4,10 +4,10 @@ import numpy as np
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion, OneOf
-from stylobate.config.simulation import FREE_TAIL
 from stylobate.earthquakes.assessment.inputs import CENTRAL, NO_VERTICAL, Inputs
 from stylobate.earthquakes.assessment.parts import Parts
 from stylobate.earthquakes.assessment.slip import standing_slip
+from stylobate.earthquakes.following import tail_of
 from stylobate.earthquakes.fragility import limit_states
 from stylobate.earthquakes.incremental import tilt_ratios, without_vertical
 from stylobate.earthquakes.spectra import overturning_bands
@@ -124,14 +124,13 @@ def _found(
 ) -> xr.Dataset:
     options = inputs.options.copy()
     options["demands"] = contact
-    tail = FREE_TAIL if inputs.tail is None else inputs.tail * model.column.frequency_parameter
     return overturning_bands(
         model,
         OneOf(motions=tuple(motions)),
         over={"motion": np.arange(len(motions))},
         scales=inputs.margin_scales,
         width=inputs.width,
-        tail=tail,
+        tail=tail_of(model.column, inputs.tail),
         executor=executor,
         progress=progress,
         **options,

@@ -12,7 +12,7 @@ from stylobate.engine import simulate
 from stylobate.engine.parameters import model_names
 from stylobate.errors import Outcome
 from stylobate.models import Model, Sliding
-from stylobate.results.outcomes import NOT_COMPUTED, code_of, outcome_attributes
+from stylobate.results.outcomes import NOT_COMPUTED, outcome_attributes
 from stylobate.studies.sweeps.computing import Progress
 
 # Of the numbers of a model that dissipate, stated or not, those that `Sliding` has too: its restitution is another one.
@@ -92,7 +92,7 @@ def _run(inputs: Inputs, column: str, record: str, scale: float, parts: Parts) -
         tilt = run.measures["largest_tilt"] / given.column.tipping_angle
         return xr.Dataset(
             {
-                "outcome": code_of(run.outcome),
+                "outcome": int(run.outcome),
                 "overturned": -1.0 if undecided else float(fallen),
                 "uncertain": float(run.uncertain),
                 "tilt_ratio": np.inf if fallen else np.nan if undecided else tilt,

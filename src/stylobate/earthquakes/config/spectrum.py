@@ -30,7 +30,7 @@ class Spectrum(Config):
 class SpectrumConfig(ManyRuns):
     """A spectrum: `column`, `model`, `motion`, the arguments of a run, and `spectrum`: what varies, and the scales.
 
-    Without a `duration` columns are followed to `spectrum.tail` over p after the end of the base motion.
+    Without a `duration` columns are followed for `spectrum.tail` [s] after the end of the base motion.
     """
 
     spectrum: Spectrum

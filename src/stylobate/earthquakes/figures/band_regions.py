@@ -18,7 +18,7 @@ from stylobate.plots.cells import fill_options
 from stylobate.plots.classes import OUTCOME_LOOKS, UNFINISHED, Look
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import BLACK, BLUE, GREY, VERMILION
-from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.text import plural
 
 Floats = npt.NDArray[np.float64]
@@ -26,7 +26,7 @@ Box = tuple[float, float, float, float]
 # Left, right, lowest and highest amplitude of each.
 Boxes = list[Box]
 
-UNRESOLVED = [code_of(outcome) for outcome in (Outcome.FAILED, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED)]
+UNRESOLVED = [Outcome.FAILED, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED]
 UNCERTAIN: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": BLACK, "mew": 0.5, "linestyle": "none"}
 UNKNOWN: dict[str, Any] = {"marker": "x", "color": VERMILION, "linestyle": "none"}
 WEAKEST: dict[str, Any] = {"color": BLUE, "linestyle": "--", "linewidth": 1.2}
@@ -195,7 +195,7 @@ def undecided_label(outcomes: xr.DataArray) -> str:
 def undecided_reasons(outcomes: xr.DataArray) -> list[str]:
     """Return why runs with these outcomes are undecided, in words, each once."""
     codes = set(np.unique(outcomes.to_numpy()).tolist())
-    reasons = [one.value for one in Outcome if code_of(one) in codes.intersection(UNRESOLVED)]
+    reasons = [one.label for one in Outcome if one in codes.intersection(UNRESOLVED)]
     return [*reasons, "not computed"] if NOT_COMPUTED in codes else reasons
 
 

@@ -22,7 +22,7 @@ from stylobate.earthquakes.figures.band_regions import (
 from stylobate.errors import Outcome
 from stylobate.plots.cells import is_geometric, set_scale
 from stylobate.plots.style import BLACK, new_figure, styled
-from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.results.outcomes import NOT_COMPUTED
 
 Floats = npt.NDArray[np.float64]
 
@@ -65,7 +65,7 @@ def _draw_runs(axes: Axes, found: xr.Dataset, amplitude: Floats) -> tuple[int, i
     codes, tilt = found["outcome"].to_numpy(), found["largest_tilt"].to_numpy() / float(found["tipping_angle"])
     unknown = np.isin(codes, UNRESOLVED)
     uncertain = found["uncertain"].to_numpy() & (codes != NOT_COMPUTED)
-    stands = ~unknown & (codes != code_of(Outcome.OVERTURNED))
+    stands = ~unknown & (codes != Outcome.OVERTURNED)
     shown = np.where(stands, tilt, np.nan)
     axes.plot(amplitude, shown, color=BLACK, marker=".", markersize=4.0, linewidth=0.9)
     # What has no peak tilt is marked at the lower edge.

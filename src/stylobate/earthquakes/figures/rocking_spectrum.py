@@ -13,7 +13,6 @@ from stylobate.errors import Outcome
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import BLACK, DASHES, GREY, PALETTE, new_figure, styled
-from stylobate.results.outcomes import code_of
 
 _HEIGHT, _MOST_CURVES = 5.4, 6
 # Above the largest peak there is room for the marks of what overturned.
@@ -21,7 +20,7 @@ _ROOM = 1.25
 _MARKS = ("o", "s", "^", "D", "v", "P")
 _FALLEN: dict[str, Any] = {"marker": 7, "linestyle": "none", "markersize": 6, "clip_on": False, "zorder": 4}
 _UNCERTAIN: dict[str, Any] = {"marker": "o", "mfc": "none", "mec": BLACK, "linestyle": "none", "markersize": 8}
-_OVERTURNED = code_of(Outcome.OVERTURNED)
+_OVERTURNED = Outcome.OVERTURNED
 
 
 @figure_of("rocking spectrum")

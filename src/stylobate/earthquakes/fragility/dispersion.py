@@ -20,6 +20,7 @@ import xarray as xr
 
 from stylobate.earthquakes.fragility.observations import NOT_KNOWN, Floats
 from stylobate.errors import ParameterError, require_whole
+from stylobate.results.random_numbers import Rng, generator_of
 from stylobate.studies.proportions import require_confidence
 
 _DIMS = ("record", "property_sample", "scale")
@@ -87,7 +88,7 @@ def dispersion_parts(
     samples: Samples = Samples.CROSSED,
     confidence: float = 0.95,
     resamples: int = 10_000,
-    rng: np.random.Generator,
+    rng: Rng,
 ) -> xr.Dataset:
     """Return the dispersion of capacities that is of records, of properties, and of both together.
 
@@ -103,7 +104,8 @@ def dispersion_parts(
     confidence
         Of the intervals.
     resamples, rng
-        How many mean squares are drawn for the intervals, and what draws them. The draws are those of normal r, p, e.
+        How many mean squares are drawn for the intervals, and the seed or numpy.random.Generator. The draws are those
+        of normal r, p, e.
 
     Returns
     -------
@@ -124,14 +126,11 @@ def dispersion_parts(
     """
     level = require_confidence(confidence)
     count = require_whole("resamples", resamples, least=1)
-    if not isinstance(rng, np.random.Generator):
-        message = f"rng must be a numpy.random.Generator, got {rng!r}; try numpy.random.default_rng(0)"
-        raise ParameterError(message)
     state, x = _series(reached, scale)
     capacity, step = _capacities(state, np.log(x))
     squares = _mean_squares(capacity, step, samples)
     estimate = squares.estimate()
-    draws = squares.drawn(count, rng)
+    draws = squares.drawn(count, generator_of(rng))
     tail = 0.5 - 0.5 * level
     ends = np.quantile(_with_total(draws), [tail, 1.0 - tail], axis=0)
     labels = {dim: reached[dim].to_numpy() if dim in reached.coords else np.arange(reached.sizes[dim]) for dim in _DIMS}

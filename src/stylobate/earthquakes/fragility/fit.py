@@ -11,6 +11,7 @@ from stylobate.earthquakes.fragility.probit import Fits, FitStatus, fit_probit
 from stylobate.earthquakes.fragility.resampling import Replicates, resampled
 from stylobate.earthquakes.fragility.stripes import observed_shares
 from stylobate.errors import ParameterError, require_whole
+from stylobate.results.random_numbers import Rng, generator_of
 from stylobate.studies.proportions import require_confidence
 
 
@@ -23,7 +24,7 @@ def fit_fragility(
     counting: Counting = Counting.AS_COMPUTED,
     confidence: float = 0.95,
     resamples: int = 0,
-    rng: np.random.Generator | None = None,
+    rng: Rng | None = None,
 ) -> xr.Dataset:
     """Return the lognormal fragility P = Φ(ln(x/median)/dispersion) that makes the runs most likely.
 
@@ -51,7 +52,7 @@ def fit_fragility(
     resamples
         How many bootstrap samples of the records; 0 for intervals by profile likelihood.
     rng
-        What draws them.
+        The seed or numpy.random.Generator that draws them.
 
     Returns
     -------
@@ -111,16 +112,16 @@ def fit_fragility(
     )
 
 
-def _replicates(seen: Observations, draws: int, rng: np.random.Generator | None) -> list[Replicates]:
+def _replicates(seen: Observations, draws: int, rng: Rng | None) -> list[Replicates]:
     if not draws:
         return []
     if seen.record is None or seen.record.max() < 1:
         message = f"resamples must be 0 unless two or more records are named, got {draws}; give record"
         raise ParameterError(message)
-    if not isinstance(rng, np.random.Generator):
-        message = f"rng must be a numpy.random.Generator where records are resampled, got {rng!r}; try default_rng(0)"
+    if rng is None:
+        message = "rng: required to resample the records (got None). Pass a seed, for example rng=0."
         raise ParameterError(message)
-    return resampled(seen, draws, rng)
+    return resampled(seen, draws, generator_of(rng))
 
 
 def _curve(seen: Observations, place: int, x: Floats, confidence: float, replicates: Replicates | None) -> Curve:

@@ -8,7 +8,7 @@ import xarray as xr
 
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE, NOT_KNOWN
 from stylobate.errors import Outcome, ParameterError, require_positive
-from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.maps.safe_distance import UNRESOLVED
 
 
@@ -38,7 +38,8 @@ def limit_states(
     xarray.DataArray
         Over `limit_state` and the dimensions of `runs`: 1 reached, 0 not, −1 not known. A run that overturned has
         reached them all. One that failed, lifted off or was stopped at a tilt limit has reached what its tilt had
-        exceeded; the rest is undecided, as is a run that was not computed.
+        exceeded; the rest is undecided, as is a run that was not computed. One that is STILL_MOVING did not overturn by
+        its end and counts as one that SURVIVED.
 
     Raises
     ------
@@ -48,9 +49,8 @@ def limit_states(
     Examples
     --------
     >>> import xarray as xr
-    >>> from stylobate.results import code_of
     >>> from stylobate import Outcome
-    >>> codes = [code_of(one) for one in (Outcome.AT_REST, Outcome.STILL_MOVING, Outcome.OVERTURNED)]
+    >>> codes = [Outcome.AT_REST, Outcome.SURVIVED, Outcome.OVERTURNED]
     >>> runs = xr.Dataset({"outcome": ("run", codes), "largest_tilt": ("run", [0.0, 0.06, 0.09])})
     >>> states = limit_states(runs, slenderness=0.1)
     >>> print(states.sel(limit_state="tilt 0.5 α").values, states.sel(limit_state="overturning").values)
@@ -62,8 +62,8 @@ def limit_states(
             raise ParameterError(message)
     critical = np.arctan(_slenderness(runs, slenderness))
     codes, tilt = runs["outcome"], runs["largest_tilt"]
-    fallen = codes == code_of(Outcome.OVERTURNED)
-    decided = ~codes.isin([NOT_COMPUTED, *(code_of(one) for one in UNRESOLVED)])
+    fallen = codes == Outcome.OVERTURNED
+    decided = ~codes.isin([NOT_COMPUTED, *UNRESOLVED])
     limits = {
         f"tilt {require_positive(f'tilt_ratios[{place}]', ratio):g} α": ratio for place, ratio in enumerate(tilt_ratios)
     }

@@ -11,7 +11,7 @@ import xarray as xr
 
 from stylobate.base_motions import BaseMotion
 from stylobate.earthquakes.spectra.band_table import band_table
-from stylobate.earthquakes.spectra.cases import TAIL, Cases
+from stylobate.earthquakes.spectra.cases import Cases
 from stylobate.earthquakes.spectra.edges import Edges, Ends, Integers
 from stylobate.earthquakes.spectra.provenance import provenance_of_spectrum
 from stylobate.errors import Interrupted, ParameterError, require_positive
@@ -34,7 +34,7 @@ def overturning_bands(
     scales: npt.ArrayLike,
     over: Mapping[str, npt.ArrayLike] | None = None,
     width: float = 1e-3,
-    tail: float = TAIL,
+    tail: float | None = None,
     duration: float | None = None,
     store: str | Path | None = None,
     executor: Executor | None = None,
@@ -62,8 +62,8 @@ def overturning_bands(
     width
         Relative width, high/low − 1, to which edges are halved.
     tail
-        How long each column is followed after the end of its base motion, over 1/p: what has not overturned by then
-        counts as safe. After 20/p that may be wrong nearer than about 10⁻⁶ to an edge, after 40/p than 10⁻¹².
+        Free-vibration time after the end of the base motion [s]; by default 40/p of each case. What has not overturned
+        by then counts as safe. After 20/p that may be wrong nearer than about 10⁻⁶ to an edge, after 40/p than 10⁻¹².
     duration
         Instead, how long to follow all [s]; needed for a motion that never ends.
     store, executor, resume, progress

@@ -95,8 +95,8 @@ class Cases:
         """Number of cases."""
         return math.prod(self.shape)
 
-    def durations(self, duration: float | None, tail: float) -> Floats:
-        """Return how long to follow each case [s]: to `tail`/p after the end of its motion, or for the `duration`.
+    def durations(self, duration: float | None, tail: float | None) -> Floats:
+        """Return how long to follow each case [s]: to `tail` [s] after the end of its motion, or for the `duration`.
 
         Raises
         ------
@@ -105,7 +105,8 @@ class Cases:
         """
         if duration is not None:
             return np.full(self.count, require_positive("duration", duration, "s"))
-        ends = self.numbers["motion_end"] + require_positive("tail", tail) / self.numbers["frequency_parameter"]
+        usual = TAIL / self.numbers["frequency_parameter"]
+        ends = self.numbers["motion_end"] + (usual if tail is None else require_positive("tail", tail, "s"))
         if not np.all(np.isfinite(ends)):
             message = f"duration must be given, in s, for a base motion that never ends; got None with {self.motion!r}"
             raise ParameterError(message)

@@ -12,10 +12,10 @@ from stylobate.studies.sweeps.recipe import DEFAULTS, RunOptions
 
 
 def provenance_of_spectrum(
-    model: Model, motion: BaseMotion, options: RunOptions, *, tail: float, duration: float | None, **own: float
+    model: Model, motion: BaseMotion, options: RunOptions, *, tail: float | None, duration: float | None, **own: float
 ) -> str:
     """Return model, motion, options and how long columns are followed, in JSON."""
     chosen: dict[str, Any] = {**DEFAULTS, **options}
     chosen["rules"] = asdict(chosen["rules"] or OutcomeRules())
-    length = {"tail": float(tail)} if duration is None else {"duration": float(duration)}
+    length = {"tail": tail if tail is None else float(tail)} if duration is None else {"duration": float(duration)}
     return json.dumps({**provenance_of_run(model, motion, **chosen), **length, **own})

@@ -10,7 +10,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.earthquakes.spectra.cases import TAIL, Cases
+from stylobate.earthquakes.spectra.cases import Cases
 from stylobate.earthquakes.spectra.peak_rate import peak_tilt_rate
 from stylobate.earthquakes.spectra.provenance import provenance_of_spectrum
 from stylobate.errors import ParameterError, require_whole
@@ -33,7 +33,7 @@ def rocking_spectrum(
     motion: BaseMotion,
     *,
     over: Mapping[str, npt.ArrayLike] | None = None,
-    tail: float = TAIL,
+    tail: float | None = None,
     duration: float | None = None,
     store: str | Path | None = None,
     executor: Executor | None = None,

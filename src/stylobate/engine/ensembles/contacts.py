@@ -10,7 +10,6 @@ import numpy.typing as npt
 from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.lanes.columns import SLACK, STATE, Change, Log, Status
 from stylobate.errors import Outcome
-from stylobate.results.outcomes import code_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -82,5 +81,5 @@ def upright_outcomes(batch: Batch, span: Floats, codes: npt.NDArray[np.int8]) ->
     flies = np.where(seen, told.late("flying"), told.kind == names.index("FLYING"))
     slides = np.where(seen, told.late("sliding"), told.kind == names.index("SLIDING"))
     hops = decided & ~rim & flies
-    codes = np.where(hops, code_of(Outcome.LIFTED_OFF), codes)
-    return np.where(decided & ~rim & ~flies & slides, code_of(Outcome.SLID), codes).astype(np.int8)
+    codes = np.where(hops, Outcome.LIFTED_OFF, codes)
+    return np.where(decided & ~rim & ~flies & slides, Outcome.SLID, codes).astype(np.int8)

@@ -29,6 +29,7 @@ class ModelColumns:
     slope: Floats
     states: Floats
     parameters: Floats
+    kinds: "Kinds"
 
     @classmethod
     def of(
@@ -47,7 +48,8 @@ class ModelColumns:
         comes_to_rest, slope = np.empty(count, dtype=bool), np.empty((count, 3))
         states = np.empty((count, len(model.state_names)))
         parameters = np.empty((count, len(model.parameters)))
-        for changed, runs in _distinct(model, own, count):
+        kinds = _distinct(model, own, count)
+        for changed, runs in kinds:
             column = changed.column
             numbers[:, runs] = np.array(
                 [
@@ -70,12 +72,13 @@ class ModelColumns:
                 states[runs, model.spin_state] = spin[runs] * changed.time_scale
         time_scale, gravity, length, slenderness, capacity, loss_tilt = numbers
         lengths = (length, slenderness)
-        return cls(time_scale, gravity, *lengths, capacity, comes_to_rest, loss_tilt, slope, states, parameters)
+        return cls(time_scale, gravity, *lengths, capacity, comes_to_rest, loss_tilt, slope, states, parameters, kinds)
 
 
-def _distinct(
-    model: Model, values: Mapping[str, Floats], count: int
-) -> list[tuple[Model, slice | npt.NDArray[np.int64]]]:
+Kinds = list[tuple[Model, slice | npt.NDArray[np.int64]]]
+
+
+def _distinct(model: Model, values: Mapping[str, Floats], count: int) -> Kinds:
     """Return the different models, each with the runs that it belongs to."""
     if not values or count == 0:
         return [(model, slice(None))]

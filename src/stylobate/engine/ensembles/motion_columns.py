@@ -119,8 +119,9 @@ class MotionPlan:
 class MotionColumns:
     """Arrays over the runs in model units: `directions` (n, vectors, 2), `breaks` (n, b), `columns` (n, m), else (n,).
 
-    `phase` is the phase of the forcing at t = 0 [turns]; `forward` and `backward` are the azimuths [rad] at t = 0 of
-    its parts that turn anticlockwise and clockwise, NaN where it has more than one frequency.
+    `duration` is the time after which the base stands still [s]. `phase` is the phase of the forcing at t = 0 [turns];
+    `forward` and `backward` are the azimuths [rad] at t = 0 of its parts that turn anticlockwise and clockwise, NaN
+    where it has more than one frequency.
     """
 
     columns: Floats
@@ -128,6 +129,7 @@ class MotionColumns:
     frequency: Floats
     mean_frequency: Floats
     least_rest_energy: Floats
+    duration: Floats
     period: Floats
     phase: Floats
     largest: Floats
@@ -164,6 +166,7 @@ class MotionColumns:
             mean_frequency = each(lambda motion: motion.mean_frequency)
             phase = np.zeros(count)
             forward = backward = np.full(count, np.nan)
+        lasts = each(lambda motion: motion.duration)
         period = each(lambda motion: motion.period or 0.0)
         if "angular_frequency" in values and plan.terms is not None:
             period = 2.0 * math.pi / values["angular_frequency"]
@@ -173,6 +176,7 @@ class MotionColumns:
             frequency=frequency * models.time_scale,
             mean_frequency=mean_frequency * models.time_scale,
             least_rest_energy=each(least_rest_energy),
+            duration=np.where(lasts > 0.0, np.maximum(0.0, lasts + values.get("delay", 0.0)), 0.0),
             period=period / models.time_scale,
             phase=phase,
             largest=np.abs(per_gravity) * each(lambda motion: motion.largest_horizontal(0.0)),

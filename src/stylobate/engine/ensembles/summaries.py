@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.engine.doubt import FALLEN, in_doubt
+from stylobate.engine.end_of_motion import energy_over_balance, has_ended
 from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.ensembles.contacts import CONTACT_KINDS, contact_arrays, upright_outcomes
 from stylobate.engine.ensembles.options import Options
@@ -20,7 +21,7 @@ from stylobate.engine.verdict import Evidence, Ground, grounds, outcome_on
 from stylobate.errors import Outcome
 from stylobate.models import Model
 from stylobate.models.contact import LEAST_FORCE
-from stylobate.results.outcomes import NOT_COMPUTED, code_of, outcome_attributes
+from stylobate.results.outcomes import NOT_COMPUTED, outcome_attributes
 
 Floats = npt.NDArray[np.float64]
 Arrays = dict[str, npt.NDArray[Any]]
@@ -147,7 +148,7 @@ def _all(batch: Batch) -> Arrays:
     tilt, rate = _leans(batch)
     late = _late(batch)
     outcome = _outcomes(batch, late)
-    overturned = outcome == code_of(Outcome.OVERTURNED)
+    overturned = outcome == Outcome.OVERTURNED
     passage = batch.log(Log.LEAST_PASSAGE)
     touched = batch.log(Log.TOUCHED_UPRIGHT) > 0.0
     start = np.hypot(*batch.plan.model.tilt_of(*batch.models.states.T, *batch.models.parameters.T)[:2])
@@ -160,7 +161,7 @@ def _all(batch: Batch) -> Arrays:
     )
     uncertain = passage < CLOSE_PASSAGE * batch.models.slenderness
     uncertain |= (batch.log(Log.RELEASED_FROM_REST) > 0.0) & is_coarse
-    uncertain |= outcome == code_of(Outcome.FAILED)
+    uncertain |= outcome == Outcome.FAILED
     arrays: Arrays = {
         "outcome": outcome,
         "decided_at": batch.log(Log.DECIDED) * scale,
@@ -205,7 +206,7 @@ def _all(batch: Batch) -> Arrays:
 
 def fallen(outcomes: npt.NDArray[np.int8]) -> npt.NDArray[np.bool_]:
     """Return which codes of outcomes are those of columns that overturned or reached the tilt limit."""
-    return np.asarray(np.isin(outcomes, [code_of(outcome) for outcome in FALLEN]))
+    return np.asarray(np.isin(outcomes, FALLEN))
 
 
 def _in_doubt(batch: Batch, outcome: npt.NDArray[np.int8]) -> npt.NDArray[np.bool_]:
@@ -216,7 +217,7 @@ def _in_doubt(batch: Batch, outcome: npt.NDArray[np.int8]) -> npt.NDArray[np.boo
         released_again=batch.log(Log.RELEASED_FROM_REST) > 0.0,
         slenderness=batch.models.slenderness,
     )
-    return np.asarray(doubtful & (outcome != code_of(Outcome.FAILED)))
+    return np.asarray(doubtful & (outcome != Outcome.FAILED))
 
 
 def _leans(batch: Batch) -> tuple[Floats, Floats]:
@@ -322,6 +323,30 @@ def _repetition(batch: Batch, first: int, mean_tilt: Floats) -> Floats:
     return np.where((tilt_size > 0.0) | (rate_size > 0.0), found, np.inf)
 
 
+def _survive(batch: Batch, moving: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """Return which of the runs that are `moving` at their end have outlived a base motion that ends: see `survival`."""
+    lasts = batch.motions.duration
+    survive = moving & (batch.log(Log.STATUS) == Status.STOPPED) & (batch.log(Log.STANDS) == 0.0)
+    survive &= (lasts > 0.0) & has_ended(batch.log(Log.TIME) * batch.models.time_scale, lasts)
+    states = _states(batch) if survive.any() else np.empty((0, 0))
+    for changed, runs in batch.models.kinds:
+        if survive[runs].any():
+            survive[runs] &= energy_over_balance(changed, states[:, runs]) < 1.0
+    return np.asarray(survive)
+
+
+def _states(batch: Batch) -> Floats:
+    """Return the states in three dimensions, shape (number of states, n)."""
+    model = batch.plan.model
+    states = batch.table[:, STATE : STATE + len(model.state_names)].T
+    if not batch.planar.any():
+        return states
+    assert model.from_plane is not None
+    line = batch.table[:, [Setup.LINE_X, Setup.LINE_Y]].T
+    lifted = np.broadcast_arrays(*model.from_plane(states[0], states[1], *line, *batch.models.parameters.T))
+    return np.where(batch.planar, np.stack(lifted), states)
+
+
 def _outcomes(batch: Batch, late: _Late) -> npt.NDArray[np.int8]:
     status = batch.log(Log.STATUS)
     evidence = Evidence(
@@ -333,9 +358,10 @@ def _outcomes(batch: Batch, late: _Late) -> npt.NDArray[np.int8]:
     )
     ground = grounds(evidence, batch.plan.options.rules)
     ground = np.where(np.isnan(late.span), Ground.SHORT, ground)
-    codes = np.array([code_of(outcome_on(kind)) for kind in Ground], dtype=np.int8)[ground]
-    codes = np.where(batch.log(Log.STANDS) > 0.0, code_of(Outcome.AT_REST), codes)
+    codes = np.array([outcome_on(kind) for kind in Ground], dtype=np.int8)[ground]
+    codes = np.where(_survive(batch, codes == Outcome.STILL_MOVING), Outcome.SURVIVED, codes)
+    codes = np.where(batch.log(Log.STANDS) > 0.0, Outcome.AT_REST, codes)
     for ending, outcome in _ENDINGS.items():
-        codes = np.where(status == ending, code_of(outcome), codes)
+        codes = np.where(status == ending, outcome, codes)
     codes = codes.astype(np.int8)
     return upright_outcomes(batch, late.span, codes) if batch.plan.model.switches else codes

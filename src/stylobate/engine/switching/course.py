@@ -21,13 +21,14 @@ from stylobate.engine.switching.solvers import Stepper
 from stylobate.engine.thresholds import Thresholds
 from stylobate.engine.tolerances import SLIP_SHORTER
 from stylobate.engine.trajectory import Piece, Trajectory, nearest_turn, unwrapped_azimuths
+from stylobate.engine.user_events import EventFunction, EventRecorder
 from stylobate.engine.watch import Reason
 from stylobate.models import Model
 from stylobate.models.model import RELEASE_MARGIN
 from stylobate.results import Event
 
-# The limit of the user is no margin of the model.
-_LIMIT = -2
+# The limit of the user and a terminal event of the user are no margins of the model.
+_LIMIT, _TERMINATED = -2, -3
 
 # Kinds of contact in which the column stands on its base: at rest, and sliding.
 _ON_BASE = (0, 1)
@@ -90,6 +91,7 @@ class SwitchingCourse:
     method: Method
     thresholds: Thresholds
     stop: float
+    functions: tuple[EventFunction, ...] = ()
     pieces: list[Piece] = field(default_factory=list)
     times: list[Floats] = field(default_factory=list)
     contacts: list[int] = field(default_factory=list)
@@ -108,9 +110,11 @@ class SwitchingCourse:
     _at_once: int = 0
     _last_event: float = -math.inf
     _stops: tuple[float, ...] = ()
+    _recorder: EventRecorder = field(init=False)
 
     def __post_init__(self) -> None:
         self._stops = self.forcing.stops(self.stop)
+        self._recorder = EventRecorder(self.functions, self.model, self.forcing, self.events)
 
     @property
     def released_from_rest(self) -> bool:
@@ -165,8 +169,8 @@ class SwitchingCourse:
         # By a rounding none of them may be broken yet.
         lift, *others = self._guard().guards(release, np.array(held))[:-1]
         broken = 0 if lift <= RELEASE_MARGIN else 1 + int(np.argmin(others))
-        if release > start:
-            self._rest(held, release)
+        if release > start and not self._rest(held, release):
+            return None
         return self._reaction(held, broken)
 
     def _move(self, state: tuple[float, ...]) -> tuple[float, ...] | None:
@@ -203,6 +207,9 @@ class SwitchingCourse:
             limit = self._limit_time(dense, steps.times[-2], time)
             if limit is not None:
                 time, number = limit, _LIMIT
+            own = self._recorder.search(steps.times[-2], time, dense, resting=contact in _ON_BASE)
+            if own is not None:
+                time, number = own, _TERMINATED
             if number != -1:
                 steps.cut(time)
                 self._take(steps, contact)
@@ -244,6 +251,9 @@ class SwitchingCourse:
         """Return the state after the margin of this number was broken; None where that ends the run."""
         model, time = self.model, self._time
         assert model.reset_map is not None
+        if number == _TERMINATED:
+            self.ended = Reason.TERMINATED
+            return None
         name = model.guard_names[number] if number >= 0 else ""
         if name == "fallen" or number == _LIMIT:
             self.ended = Reason.OVERTURNED if name == "fallen" else Reason.LIMIT
@@ -301,8 +311,14 @@ class SwitchingCourse:
         start, end = float(times[0]), float(times[-1])
         self._keep(Piece(start, end, states, on_base, nodes, azimuths, steps), times, contact)
 
-    def _rest(self, held: tuple[float, ...], until: float) -> None:
+    def _rest(self, held: tuple[float, ...], until: float) -> bool:
+        """Stand `until` a time; return False if an event of the user's own ended the run before."""
+        piece = rest_piece(held, self._time, until)
+        own = self._recorder.search(piece.start, until, piece.states, resting=True)
+        if own is not None:
+            self.ended, until = Reason.TERMINATED, own
         self._keep(rest_piece(held, self._time, until), np.array([self._time, until]), self._contact(held))
+        return own is None
 
     def _keep(self, piece: Piece, times: Floats, contact: int) -> None:
         self.pieces.append(piece)

@@ -53,7 +53,7 @@ _MAP = table(
     "The result of a map: how often which outcome came.",
     {
         **_SIZE,
-        "shares": table("Of all runs, by outcome.", {one.value: _share(f"that ended {one.value}") for one in Outcome}),
+        "shares": table("Of all runs, by outcome.", {one.label: _share(f"that ended {one.label}") for one in Outcome}),
     },
 )
 

@@ -148,7 +148,7 @@ _RUN = table(
     "One run.",
     {
         "outcome": _OUTCOME,
-        "label": word("the outcome in words", [one.value for one in Outcome]),
+        "label": word("the outcome in words", [one.label for one in Outcome]),
         "reason": text("why it is that outcome"),
         "decided_at": number("when that was decided [s]"),
         "uncertain": flag("whether rounding error could change the outcome"),

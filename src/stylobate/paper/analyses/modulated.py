@@ -134,7 +134,7 @@ def _survivors() -> Finding:
                 rtol=1e-5,
                 rest_energy=1e-3,
             )
-            outcomes[run.outcome.value] = outcomes.get(run.outcome.value, 0) + 1
+            outcomes[run.outcome.label] = outcomes.get(run.outcome.label, 0) + 1
     counts_text = ", ".join(f"{count} {name}" for name, count in sorted(outcomes.items(), key=lambda item: -item[1]))
     return Finding(
         "conclusion 3",

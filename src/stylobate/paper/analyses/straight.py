@@ -127,7 +127,7 @@ def _averaged_curves(response: xr.Dataset) -> Finding:
 
 def _stable_motion() -> Finding:
     fates = {theta: _from_averaged(theta, AMPLITUDES[1], _PERIODS) for theta in (1.5, 2.0, 3.0)}
-    lines = ", ".join(f"θ = {theta:g}: {run.outcome.value}" for theta, run in fates.items())
+    lines = ", ".join(f"θ = {theta:g}: {run.outcome.label}" for theta, run in fates.items())
     critical = float(theory.critical_frequency(AMPLITUDES[1] / 2.0, c=_C, eta=DAMPING))
     low, high = (fates[3.0].data["amplitude"].quantile(q).item() for q in (0.0, 1.0))
     fell = [fates[theta].outcome is Outcome.OVERTURNED for theta in (1.5, 2.0)]

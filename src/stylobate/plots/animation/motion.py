@@ -197,7 +197,7 @@ def drawn_motion(run: Response, *, frames_per_second: float | None = None, title
 
 def verdict_of(outcome: Outcome) -> str:
     """Return the outcome in words; the motion of a column that overturns ends before its fall."""
-    return "cannot come back" if outcome is Outcome.OVERTURNED else outcome.value
+    return "cannot come back" if outcome is Outcome.OVERTURNED else outcome.label
 
 
 def _without_advice(reason: str) -> str:

@@ -12,7 +12,7 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.errors import Outcome
 from stylobate.models import Model
-from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.maps.overturning import overturning_map
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.computing import Progress
@@ -97,11 +97,11 @@ def outcome_differences(
 
 
 def _compared(first: npt.NDArray[np.int8], second: npt.NDArray[np.int8]) -> npt.NDArray[np.int8]:
-    fallen = code_of(Outcome.OVERTURNED)
+    fallen = Outcome.OVERTURNED
     places = {one: code for code, one in enumerate(Comparison)}
     codes = np.where(first == fallen, places[Comparison.ONLY_FIRST], places[Comparison.BOTH_STAY])
     codes = np.where(second == fallen, codes + places[Comparison.ONLY_SECOND], codes)
-    unclear = [code_of(one) for one in (Outcome.FAILED, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED)]
+    unclear = [Outcome.FAILED, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED]
     codes = np.where(np.isin(first, unclear) | np.isin(second, unclear), places[Comparison.UNDECIDED], codes)
     return np.where((first == NOT_COMPUTED) | (second == NOT_COMPUTED), NOT_COMPUTED, codes).astype(np.int8)
 

@@ -16,7 +16,7 @@ from stylobate.errors import ParameterError, require_finite, require_positive, r
 from stylobate.models import Rolling
 from stylobate.models.model import require_column
 from stylobate.results import Response
-from stylobate.results.outcomes import code_of, outcome_attributes
+from stylobate.results.outcomes import outcome_attributes
 from stylobate.studies.hierarchy.models import Case, RunArguments
 from stylobate.studies.hierarchy.runs import Course, Floats, largest_distance
 
@@ -234,7 +234,7 @@ def _compared(case: Case, runs: Sequence[Response], time: Floats, duration: floa
     deviation = [[largest_distance(one, other) for other in tilt] for one in tilt]
     return xr.Dataset(
         {
-            "outcome": ("level", np.array([code_of(run.outcome) for run in runs], np.int8), outcome_attributes()),
+            "outcome": ("level", np.array([run.outcome for run in runs], np.int8), outcome_attributes()),
             "uncertain": ("level", [run.uncertain for run in runs], {"long_name": "uncertain"}),
             **variables,
             "warnings": ("level", ["; ".join(run.warnings) for run in runs], {"long_name": "warnings"}),

@@ -10,7 +10,7 @@ import xarray as xr
 
 from stylobate.errors import Outcome, ParameterError
 from stylobate.results import OutcomeRules
-from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.maps.stroboscopic import (
     AttractorRules,
     Complexes,
@@ -38,6 +38,7 @@ ENDINGS = {
     Outcome.OVERTURNED: OVERTURNED,
     Outcome.LIMIT_REACHED: "tilt limit reached",
     Outcome.LIFTED_OFF: "lifted off",
+    Outcome.SURVIVED: "survived",
 }
 
 KINDS = (AT_REST, *ROLLING.values(), ROCKING, *MODULATED.values(), *APERIODIC.values(), *ENDINGS.values(), NOT_SETTLED)
@@ -165,7 +166,7 @@ class _Flat:
 
     def require_strobes(self) -> None:
         """Raise ParameterError if there are runs that move to their end and none of them has all its strobes."""
-        outcomes = [code_of(outcome) for outcome in _MOVING if outcome is not Outcome.AT_REST]
+        outcomes = [outcome for outcome in _MOVING if outcome is not Outcome.AT_REST]
         moving = np.isin(self.outcome, outcomes)
         if moving.any() and np.isnan(self.strobes[moving]).any(axis=(1, 2)).all():
             count = self.strobes.shape[1]
@@ -188,10 +189,10 @@ _STROBED = ("strobe_tilt", "strobe_tilt_rate")
 def _groups(runs: _Flat, rules: AttractorRules) -> Iterator[tuple[Attractor, Integers]]:
     """Yield each attractor with its runs."""
     for outcome, kind in ENDINGS.items():
-        if (ended := np.flatnonzero(runs.outcome == code_of(outcome))).size:
+        if (ended := np.flatnonzero(runs.outcome == outcome)).size:
             yield Attractor(kind, 0, 0.0, np.nan, np.empty((0, 2), dtype=complex)), ended
-    moving = np.isin(runs.outcome, [code_of(outcome) for outcome in _MOVING])
-    stands = (runs.outcome == code_of(Outcome.AT_REST)) & ~(np.abs(runs.strobes) > 0.0).any(axis=(1, 2))
+    moving = np.isin(runs.outcome, _MOVING)
+    stands = (runs.outcome == Outcome.AT_REST) & ~(np.abs(runs.strobes) > 0.0).any(axis=(1, 2))
     if stands.any():
         yield Attractor(AT_REST, 0, 0.0, 0.0, np.zeros((1, 2), dtype=complex)), np.flatnonzero(stands)
     candidates = np.flatnonzero(moving & ~stands)

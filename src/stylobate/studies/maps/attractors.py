@@ -12,6 +12,7 @@ from stylobate.base_motions import BaseMotion
 from stylobate.errors import MOST_RUNS, require_whole
 from stylobate.models import Model
 from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.results.random_numbers import Rng
 from stylobate.studies.checks import require_starts
 from stylobate.studies.maps.attractor_search import (
     NOT_SETTLED,
@@ -40,7 +41,7 @@ def attractors(
     *,
     over: Mapping[str, Sequence[float]],
     count: int,
-    seed: int = 0,
+    rng: Rng = 0,
     duration: float | None = None,
     periods: float | None = None,
     attractor_rules: AttractorRules | None = None,
@@ -62,8 +63,8 @@ def attractors(
         The column and its base motion.
     over
         Range of each start that varies: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s], start_phase [rad].
-    count, seed
-        Number of starts, drawn uniformly, and the seed they are drawn with.
+    count, rng
+        Number of starts, drawn uniformly, and the seed or numpy.random.Generator they are drawn with.
     duration, periods
         How long to follow each [s], or for how many periods of the base motion: long enough to settle, before the
         strobed states that identify it. Damping η forgets a start as exp(−ηω0 t/2): to a thousandth in 14/(ηω0).
@@ -93,7 +94,7 @@ def attractors(
         motion,
         over=over,
         count=require_whole("count", count, least=1, most=MOST_RUNS),
-        seed=seed,
+        rng=rng,
         duration=duration,
         periods=periods,
         **options,

@@ -14,6 +14,7 @@ from stylobate.engine import with_parameters
 from stylobate.errors import MOST_RUNS, require_whole
 from stylobate.models import Model
 from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.results.random_numbers import Rng
 from stylobate.studies.checks import SYSTEM_STARTS, one_parameter, require_starts
 from stylobate.studies.maps.attractor_continuation import Branches, follow_branches
 from stylobate.studies.maps.attractor_search import NOT_SETTLED, REMEDY, Found, find_attractors
@@ -36,7 +37,7 @@ def basin_fractions(
     along: Mapping[str, npt.ArrayLike],
     over: Mapping[str, Sequence[float]],
     count: int,
-    seed: int = 0,
+    rng: Rng = 0,
     duration: float | None = None,
     periods: float | None = None,
     attractor_rules: AttractorRules | None = None,
@@ -61,8 +62,8 @@ def basin_fractions(
         One parameter of the column, the model or the base motion, with its values in order.
     over
         Range of each start that varies: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s], start_phase [rad].
-    count, seed
-        Number of starts, drawn uniformly, and the seed they are drawn with.
+    count, rng
+        Number of starts, drawn uniformly, and the seed or numpy.random.Generator they are drawn with.
     duration, periods
         How long to follow each run [s], or for how many periods of its base motion.
     attractor_rules
@@ -91,7 +92,7 @@ def basin_fractions(
     """
     require_starts("over", over)
     name, values = one_parameter(model, along, over)
-    starts = Box.of(over, require_whole("count", count, least=1, most=MOST_RUNS), seed)
+    starts = Box.of(over, require_whole("count", count, least=1, most=MOST_RUNS), rng)
     points = {start: np.tile(drawn, values.size) for start, drawn in starts.values(whole(starts)).items()}
     sweep = Sweep.points(
         model,

@@ -11,6 +11,7 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.errors import MOST_RUNS, ParameterError, require_whole
 from stylobate.models import Model
+from stylobate.results.random_numbers import Rng
 from stylobate.studies.checks import require_starts, require_values
 from stylobate.studies.maps.attractors import label_attractors
 from stylobate.studies.maps.stroboscopic import AttractorRules
@@ -29,7 +30,7 @@ def basins(
     *,
     over: Mapping[str, npt.ArrayLike],
     count: int | None = None,
-    seed: int = 0,
+    rng: Rng = 0,
     duration: float | None = None,
     periods: float | None = None,
     attractor_rules: AttractorRules | None = None,
@@ -49,8 +50,9 @@ def basins(
     over
         What varies, among tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s] and start_phase [rad]. Without
         `count` two names with their values, a grid; with it any number of names with their ranges (low, high).
-    count, seed
-        Number of random starts, drawn uniformly in the ranges, and the seed they are drawn with.
+    count, rng
+        Number of random starts, drawn uniformly in the ranges, and the seed or numpy.random.Generator they are drawn
+        with.
     duration, periods
         How long to follow each [s], or for how many periods of the base motion.
     attractor_rules
@@ -91,7 +93,7 @@ def basins(
             motion,
             over=ranges,
             count=require_whole("count", count, least=1, most=MOST_RUNS),
-            seed=seed,
+            rng=rng,
             duration=duration,
             periods=periods,
             **options,

@@ -11,7 +11,7 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.errors import Outcome, ParameterError
 from stylobate.models import Model
-from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.checks import require_values
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
@@ -83,11 +83,11 @@ def overturning_map(
 def outcome_shares(runs: xr.Dataset) -> xr.Dataset:
     """Return `runs` as an overturning map: with the count and share of each outcome."""
     codes = runs["outcome"].to_numpy()
-    count = np.array([np.count_nonzero(codes == code_of(outcome)) for outcome in Outcome], dtype=np.int64)
+    count = np.array([np.count_nonzero(codes == outcome) for outcome in Outcome], dtype=np.int64)
     computed = int(np.count_nonzero(codes != NOT_COMPUTED))
     return runs.assign(
         count=("outcome_name", count, {"units": "1", "long_name": "runs with this outcome"}),
         share=("outcome_name", count / max(computed, 1), {"units": "1", "long_name": "share of the runs computed"}),
         computed=((), computed, {"units": "1", "long_name": "runs computed"}),
-        outcome_name=np.array([outcome.value for outcome in Outcome]),
+        outcome_name=np.array([outcome.label for outcome in Outcome]),
     ).assign_attrs(kind="overturning map")

@@ -10,7 +10,7 @@ import xarray as xr
 
 from stylobate.errors import Outcome, ParameterError, require_finite
 from stylobate.models import Model
-from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.maps.stroboscopic import Floats
 from stylobate.studies.sweeps.quantities import STARTS, checked_values
 
@@ -105,8 +105,8 @@ def distance_to_overturning(outcome: xr.DataArray, metric: Metric) -> xr.Dataset
     dims = tuple(str(dim) for dim in outcome.dims)
     codes = outcome.to_numpy()
     distances = np.broadcast_to(metric.distances(dims), codes.shape)
-    overturned = np.where(codes == code_of(Outcome.OVERTURNED), distances, np.inf)
-    unknown = np.where(np.isin(codes, [NOT_COMPUTED, *(code_of(one) for one in UNRESOLVED)]), distances, np.inf)
+    overturned = np.where(codes == Outcome.OVERTURNED, distances, np.inf)
+    unknown = np.where(np.isin(codes, [NOT_COMPUTED, *UNRESOLVED]), distances, np.inf)
     nearest, known = float(overturned.min(initial=np.inf)), min(float(unknown.min(initial=np.inf)), metric.reach)
     at_least = not nearest <= known
     place = np.unravel_index(int(np.argmin(overturned)), codes.shape) if codes.size else ()

@@ -13,7 +13,8 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.errors import MOST_RUNS, Outcome, ParameterError, require_whole
 from stylobate.models import Model
-from stylobate.results.outcomes import NOT_COMPUTED, code_of
+from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.results.random_numbers import Rng
 from stylobate.studies.checks import require_no_tilt_limit, require_starts
 from stylobate.studies.maps.attractor_search import UNSETTLED, find_attractors
 from stylobate.studies.maps.power_law import fit_power_law
@@ -44,7 +45,7 @@ def uncertainty_exponent(
     shifted: str,
     shifts: npt.ArrayLike | None = None,
     count: int,
-    seed: int = 0,
+    rng: Rng = 0,
     overturning_only: bool = False,
     duration: float | None = None,
     periods: float | None = None,
@@ -76,8 +77,8 @@ def uncertainty_exponent(
     shifts
         ε, in its unit, increasing; by default 8 in geometric order between 1e-5 and 3e-2 of its range. Not so small
         that the integration error (rtol) decides.
-    count, seed
-        Number of starts for each ε, three runs each, and the seed they are drawn with.
+    count, rng
+        Number of starts for each ε, three runs each, and the seed or numpy.random.Generator they are drawn with.
     overturning_only
         Classify only whether the column overturns: the boundary of the safe starts.
     duration, periods
@@ -107,7 +108,7 @@ def uncertainty_exponent(
     """
     require_starts("over", over)
     epsilon = _shifts(shifts, over, shifted)
-    base = Box.of(over, epsilon.size * require_whole("count", count, least=1, most=MOST_RUNS), seed)
+    base = Box.of(over, epsilon.size * require_whole("count", count, least=1, most=MOST_RUNS), rng)
     if overturning_only:
         require_no_tilt_limit(options)
     sweep = Sweep.points(
@@ -168,8 +169,8 @@ def overturned_or_not(runs: xr.Dataset) -> Integers:
     UNSETTLED where that is not known: the run failed, lifted off or was stopped at a tilt limit; also NOT_COMPUTED.
     """
     codes = runs["outcome"].to_numpy().astype(np.int64)
-    states: Integers = (codes == code_of(Outcome.OVERTURNED)).astype(np.int64)
-    states[np.isin(codes, [code_of(outcome) for outcome in UNRESOLVED])] = UNSETTLED
+    states: Integers = (codes == Outcome.OVERTURNED).astype(np.int64)
+    states[np.isin(codes, UNRESOLVED)] = UNSETTLED
     states[codes == NOT_COMPUTED] = NOT_COMPUTED
     return states
 

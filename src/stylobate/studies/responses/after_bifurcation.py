@@ -11,6 +11,7 @@ from stylobate.engine import simulate_ensemble
 from stylobate.errors import ParameterError, require_positive, require_whole
 from stylobate.orbits import Bifurcation
 from stylobate.orbits.arguments import require_bifurcation
+from stylobate.results.random_numbers import Rng, seed_of
 from stylobate.studies.maps.attractors import label_attractors
 from stylobate.studies.sweeps.quantities import attributes_of
 
@@ -22,7 +23,7 @@ def after_bifurcation(
     count: int = 48,
     size: float = 1e-3,
     periods: float = 600.0,
-    seed: int = 0,
+    rng: Rng = 0,
     progress: Callable[[int, int], None] | None = None,
 ) -> xr.Dataset:
     """Return what runs come to that begin near the orbit of a bifurcation, at values of the parameter around it.
@@ -36,9 +37,10 @@ def after_bifurcation(
         Of a branch, see `sb.orbits.continue_branch`.
     values
         Values of the branch's parameter.
-    count, size, seed
+    count, size, rng
         Number of starts at each value: the orbit's state at the bifurcation, off by normal disturbances of tilt and
-        of tilt rate (per unit of the model's time) of this size, in units of c; and their seed.
+        of tilt rate (per unit of the model's time) of this size, in units of c; and their seed or
+        numpy.random.Generator.
     periods
         How many periods of the base motion each is followed.
     progress
@@ -63,7 +65,7 @@ def after_bifurcation(
     count, size = require_whole("count", count, least=1), require_positive("size", size)
     orbit, name = bifurcation.orbit, bifurcation.point.family.name
     c, scale = orbit.model.column.slenderness, orbit.model.time_scale
-    off = size * c * np.random.default_rng(seed).standard_normal((2, count, 2))
+    off = size * c * np.random.default_rng(seed_of(rng)).standard_normal((2, count, 2))
     counted: list[dict[str, int]] = []
     for index, value in enumerate(chosen):
         system = orbit.system.changed(**{name: float(value)})

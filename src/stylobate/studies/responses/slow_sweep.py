@@ -16,7 +16,7 @@ from stylobate.errors import Interrupted, Outcome, ParameterError, UnsupportedEr
 from stylobate.models import Model
 from stylobate.orbits.arguments import require_subject
 from stylobate.results import OutcomeRules
-from stylobate.results.outcomes import NOT_COMPUTED, code_of, outcome_attributes
+from stylobate.results.outcomes import NOT_COMPUTED, outcome_attributes
 from stylobate.studies.sweeps.quantities import Floats, attributes_of, checked_values
 
 # Samples in a period, of which the mean tilt is made.
@@ -26,9 +26,7 @@ _SLACK = 1e-9
 # Several beats of a modulation, by which it is distinguished from what has not settled.
 _PERIODS_LOOKED_AT = 25
 
-_ENDINGS = tuple(
-    code_of(one) for one in (Outcome.OVERTURNED, Outcome.LIMIT_REACHED, Outcome.LIFTED_OFF, Outcome.FAILED)
-)
+_ENDINGS = (Outcome.OVERTURNED, Outcome.LIMIT_REACHED, Outcome.LIFTED_OFF, Outcome.FAILED)
 _NUMBERS = {
     "mean_tilt": ("mean tilt", "rad"),
     "least_tilt": ("least tilt", "rad"),
@@ -115,7 +113,7 @@ def slow_sweep(
     >>> motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.5)
     >>> start = sb.studies.steady_start(model, motion)
     >>> sweep = sb.studies.slow_sweep(model, motion, values=[1.5, 1.44, 1.38, 1.3], **start)
-    >>> [sb.results.outcome_of(code).name for code in sweep["outcome"].values[:, 0]]
+    >>> [sb.Outcome(code).name for code in sweep["outcome"].values[:, 0]]
     ['ROLLING', 'ROLLING', 'MODULATED', 'OVERTURNED']
     """
     require_subject(model, motion)
@@ -200,7 +198,7 @@ class _Hold:
         outcome = runs["outcome"].to_numpy()
         early = runs["end_time"].to_numpy() < (1.0 - _SLACK) * self.watched * period
         for column in found.values():
-            column[early & (outcome == code_of(Outcome.AT_REST))] = 0.0
+            column[early & (outcome == Outcome.AT_REST)] = 0.0
         found |= {name: runs[name].to_numpy() for name in _VECTORS}
         for column in found.values():
             column[np.isin(outcome, _ENDINGS)] = np.nan

@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.engine.memory import require_memory
-from stylobate.errors import LARGEST_SEED, MOST_RUNS, ParameterError, require_whole
+from stylobate.errors import MOST_RUNS, ParameterError, require_whole
+from stylobate.results.random_numbers import Rng, seed_of
 from stylobate.studies.sweeps.quantities import Floats, checked_values
 
 # Random points are drawn in groups of this many, each from a stream of its own: they do not depend on the blocks.
@@ -108,15 +109,13 @@ class Box:
     argument: str = field(default="over", init=False)
 
     @classmethod
-    def of(cls, over: Mapping[str, Sequence[float]], count: int, seed: int | np.random.Generator) -> "Box":
-        """Return random points in the box `over` these bounds; of a generator one number is drawn, the seed."""
+    def of(cls, over: Mapping[str, Sequence[float]], count: int, rng: Rng) -> "Box":
+        """Return random points in the box `over` these bounds; of a generator one number is drawn as the seed."""
         _require_names("over", over)
         bounds = {name: _bounds(name, pair) for name, pair in over.items()}
-        if isinstance(seed, np.random.Generator):
-            seed = int(seed.integers(LARGEST_SEED.number))
         number = require_whole("count", count, least=0, most=MOST_RUNS)
         require_memory(_BYTES_OF_A_START * number, number, "Draw fewer")
-        return cls(bounds, number, require_whole("seed", seed, least=0, most=LARGEST_SEED))
+        return cls(bounds, number, seed_of(rng))
 
     @property
     def names(self) -> tuple[str, ...]:

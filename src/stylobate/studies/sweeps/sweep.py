@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any, Self, Unpack
 
-import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
@@ -15,6 +14,7 @@ from stylobate.errors import ParameterError, require_positive, require_vector
 from stylobate.kinds import names_code
 from stylobate.models import Model
 from stylobate.results import OutcomeRules
+from stylobate.results.random_numbers import Rng
 from stylobate.studies.sweeps.blocks import Blocks
 from stylobate.studies.sweeps.designs import Box, Design, Grid, Points
 from stylobate.studies.sweeps.fingerprint import identity_of
@@ -117,20 +117,21 @@ class Sweep:
         *,
         over: Mapping[str, Sequence[float]],
         count: int,
-        seed: int | np.random.Generator,
+        rng: Rng,
         duration: float | None = None,
         periods: float | None = None,
         **options: Unpack[RunOptions],
     ) -> Self:
         """Return a sweep of `count` runs drawn uniformly between these bounds.
 
-        The same seed gives the same runs however they are chunked, and the first of a longer sweep are those of a
-        shorter one. Of a generator one number is drawn and kept as the seed.
+        `rng` is a seed or a numpy.random.Generator. The same seed gives the same runs however they are chunked, and the
+        first of a longer sweep are those of a shorter one. Of a generator one number is drawn and kept as the seed, so
+        that a store can be resumed.
         """
         return cls(
             model=model,
             motion=BASE_AT_REST if motion is None else motion,
-            design=Box.of(over, count, seed),
+            design=Box.of(over, count, rng),
             duration=duration,
             periods=periods,
             options=options,

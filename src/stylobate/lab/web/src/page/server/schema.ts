@@ -49,7 +49,7 @@ export type About = {
   })[];
   /** the possible outcomes */
   readonly outcomes: readonly ({
-    readonly name: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID";
+    readonly name: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED";
     /** in words */
     readonly value: string;
     /** in maps */
@@ -184,7 +184,7 @@ export type DrawnMotion = {
   /** of the contact, where it is known */
   readonly friction_coefficient: number | null;
   /** the outcome */
-  readonly outcome: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID";
+  readonly outcome: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED";
   /** [s] */
   readonly decided_at: number;
   /** a line that states the outcome */
@@ -313,6 +313,10 @@ export type MapResult = {
     readonly failed: number | null;
     /** that ended slid */
     readonly slid: number | null;
+    /** that ended survived */
+    readonly survived: number | null;
+    /** that ended stopped */
+    readonly stopped: number | null;
   };
 };
 
@@ -459,9 +463,9 @@ export type ResponseCurves = {
 /** One run. */
 export type Run = {
   /** the outcome */
-  readonly outcome: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID";
+  readonly outcome: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED";
   /** the outcome in words */
-  readonly label: "at rest" | "rocking" | "rolling" | "modulated" | "overturned" | "still moving" | "limit reached" | "lifted off" | "failed" | "slid";
+  readonly label: "at rest" | "rocking" | "rolling" | "modulated" | "overturned" | "still moving" | "limit reached" | "lifted off" | "failed" | "slid" | "survived" | "stopped";
   /** why it is that outcome */
   readonly reason: string;
   /** when that was decided [s] */

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 import stylobate as sb
@@ -39,12 +40,13 @@ def test_what_is_told_to_be_safe_never_overturns_and_what_overturns_later_was_to
         motion = SINE.scaled(scale)
         for share in (0.5, 1.0, 1.5):
             run = sb.simulate(model, motion, duration=share * motion.duration)
-            if run.outcome is not Outcome.STILL_MOVING:
+            if run.outcome not in {Outcome.STILL_MOVING, Outcome.SURVIVED}:
                 continue
             later = sb.simulate(model, motion, duration=motion.duration + 60.0 / P).outcome
-            safe = "cannot overturn any more" in run.reason
+            safe = run.outcome is Outcome.SURVIVED
+            assert safe == ("cannot overturn any more" in run.reason)
             told.add((safe, later is Outcome.OVERTURNED))
-            assert safe != run.reason.endswith("it may yet overturn: follow it longer")
+            assert safe != run.reason.endswith("it may overturn later: simulate longer")
             assert not (share < 1.0 and safe)
     assert (True, True) not in told
     assert {(True, False), (False, True)} <= told
@@ -56,20 +58,20 @@ def test_the_energy_told_is_that_over_the_energy_of_the_balance():
     run = sb.simulate(model, tilt=(let_go, 0.0), tilt_rate=(0.0, 1e-3), duration=1.0)
     # Without friction it keeps the height R (cos(α − θ) − cos α) of its start.
     share = (math.cos(alpha - let_go) - math.cos(alpha)) / (1.0 - math.cos(alpha))
-    assert f"it has {100.0 * share:.2g} % of the energy that takes" in run.reason
+    assert f"it has {100.0 * share:.2g} % of the energy required" in run.reason
 
 
 def test_a_column_beyond_its_balance_is_not_told_to_be_safe():
     falling = sb.simulate(MODELS[1], tilt=(1.0001 * COLUMN.tipping_angle, 0.0), tilt_rate=(-1e-3, 0.0), duration=0.01)
     assert falling.outcome is Outcome.STILL_MOVING
-    assert falling.reason.endswith("it may yet overturn: follow it longer")
+    assert falling.reason.endswith("it may overturn later: simulate longer")
 
 
 def test_times_before_and_after_the_base_motion_are_told_in_seconds():
     weak = 0.6 * SINE
     before, after = (sb.simulate(MODELS[0], weak, duration=weak.duration + t).reason for t in (-0.25, 0.25))
-    assert "0.25 s before the base motion stops" in before
-    assert "0.25 s after the base motion stopped" in after
+    assert "0.25 s before the base motion ends" in before
+    assert "0.25 s after the base motion ended" in after
 
 
 def test_a_column_that_stands_before_the_end_of_its_pulse_is_not_told_to_be_safe():
@@ -131,18 +133,18 @@ def pushed_outwards(cls, share_of_bare_balance):
 
 def test_a_model_of_other_equations_does_not_inherit_the_claim_that_it_cannot_overturn_any_more():
     early, later = pushed_outwards(Leaning, 0.91)
-    assert early.reason.endswith("it may yet overturn: follow it longer")
+    assert early.reason.endswith("it may overturn later: simulate longer")
     assert later.outcome is Outcome.OVERTURNED
 
 
 def test_a_model_that_states_its_own_balance_makes_the_claim_where_it_is_true():
     sb.models.check(Balanced(COLUMN))
     early, later = pushed_outwards(Balanced, 0.91)
-    assert early.reason.endswith("it may yet overturn: follow it longer")
+    assert early.reason.endswith("it may overturn later: simulate longer")
     assert later.outcome is Outcome.OVERTURNED
     early, later = pushed_outwards(Balanced, 0.6)
     share = (0.6 * 0.5 * 0.01 - 0.5 * 0.5 * 0.02**2) / (0.5 * 0.01 / 1.5)
-    assert f"cannot overturn any more: it has {100.0 * share:.2g} % of the energy that takes" in early.reason
+    assert f"cannot overturn any more: it has {100.0 * share:.2g} % of the energy required" in early.reason
     assert later.outcome is Outcome.STILL_MOVING
 
 
@@ -156,4 +158,51 @@ def test_a_model_that_can_never_overturn_can_say_so():
 
     sb.models.check(Held(COLUMN))
     run = sb.simulate(Held(sb.Column.dimensionless(0.1)), tilt=(0.3, 0.0), tilt_rate=(0.0, 0.3), duration=1.0)
-    assert "cannot overturn any more: it has 0 % of the energy that takes" in run.reason
+    assert "cannot overturn any more: it has 0 % of the energy required" in run.reason
+
+
+ISOTROPIC = sb.SlenderRolling(COLUMN, damping=0.02, spin_damping=0.02, couples="isotropic")
+
+
+@pytest.mark.parametrize(
+    "model", [*MODELS, sb.PlanarRocking(COLUMN, restitution=1.0), ISOTROPIC], ids=lambda model: model.name
+)
+def test_ensembles_and_single_runs_agree_on_who_survived(model):
+    motion = (
+        SINE if model.planar_only else SINE + sb.Pulse.one_sine(acceleration=1.0, angular_frequency=5.0, direction=1.0)
+    )
+    scales, delays = np.linspace(0.2, 1.6, 24), np.tile([0.0, 0.5], 12)
+    durations = delays + motion.duration + np.tile([3.0, 0.5, 0.2, -0.3], 6)
+    varied = {"scale": scales, "delay": delays, "size": np.linspace(0.9, 1.1, 24)}
+    runs = sb.simulate_ensemble(model, motion, duration=durations, parameters=varied)
+    alone = []
+    for number, duration in enumerate(durations):
+        values = {name: values[number] for name, values in varied.items()}
+        alone.append(sb.simulate(*sb.with_parameters(model, motion, **values), duration=duration).outcome)
+    assert runs["outcome"].values.tolist() == alone
+    assert (Outcome.SURVIVED in alone) == (model is not ISOTROPIC)
+    assert {Outcome.STILL_MOVING, Outcome.OVERTURNED} <= set(alone)
+
+
+def test_a_run_as_long_as_its_base_motion_has_outlived_it():
+    runs = sb.simulate_ensemble(MODELS[0], 0.6 * SINE, duration=SINE.duration)
+    assert runs["outcome"] == sb.simulate(MODELS[0], 0.6 * SINE, duration=SINE.duration).outcome == Outcome.SURVIVED
+
+
+def test_a_column_that_moves_freely_has_no_base_motion_to_survive():
+    start = {"tilt": (0.1 * COLUMN.tipping_angle, 0.0), "duration": 0.2}
+    run = sb.simulate(MODELS[0], **start)
+    assert run.outcome == sb.simulate_ensemble(MODELS[0], **start)["outcome"] == Outcome.STILL_MOVING
+    assert "cannot overturn any more" in run.reason
+
+
+def test_a_column_that_came_to_rest_after_its_base_motion_is_at_rest():
+    run = sb.simulate(sb.Wobbling(COLUMN, damping=0.3), 0.6 * SINE, duration=60.0)
+    assert any(event.kind == "rest" for event in run.events)
+    assert run.outcome is Outcome.AT_REST
+
+
+def test_basins_under_a_pulse_list_the_columns_that_survived():
+    found = sb.studies.basins(MODELS[0], 0.6 * SINE, over={"tilt_x": [0.0, 0.01], "tilt_y": [0.0, 0.02]}, duration=3.0)
+    assert "survived" in found["attractor_kind"]
+    assert sb.plot(found).legends

@@ -1,0 +1,72 @@
+"""Choose the duration of a run, and decide whether a column that moves after its base motion could overturn later."""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.base_motions import BaseMotion
+from stylobate.config.simulation import duration_with_tail
+from stylobate.engine.forcing import Floats
+from stylobate.engine.lanes.columns import SLACK
+from stylobate.engine.trajectory import Trajectory
+from stylobate.errors import Outcome, ParameterError, require_positive
+from stylobate.models import Model
+from stylobate.models.inheritance import belongs_to_equations
+
+
+def duration_of(duration: float | None, model: Model, motion: BaseMotion) -> float:
+    """Return the duration of a run [s]: `duration`, or the base motion and a free-vibration tail of 20/p.
+
+    Raises
+    ------
+    ParameterError
+        If it is not positive; or if there is none, and the base stays at rest or never does.
+    """
+    if duration is not None:
+        return require_positive("duration", duration, "s")
+    if not 0.0 < motion.duration < math.inf:
+        what = "a base at rest" if motion.duration == 0.0 else "a base motion that never ends"
+        message = f"duration must be given, in s, with {what}, such as duration=60.0; got None"
+        raise ParameterError(message)
+    return duration_with_tail(model, motion)
+
+
+def survival(model: Model, motion: BaseMotion, trajectory: Trajectory) -> tuple[Outcome, str]:
+    """Return outcome and reason of a column that moves at the end of a run, under a base motion that ends or none.
+
+    After the base motion the energy of a column can only fall: see `energy_over_balance`. A column that cannot overturn
+    any more has SURVIVED the base motion. Free motion survives nothing: without a base motion it is STILL_MOVING, with
+    the same reason.
+    """
+    end = trajectory.end * model.time_scale
+    if not has_ended(end, motion.duration):
+        left = motion.duration - end
+        return Outcome.STILL_MOVING, f"still moving, {left:.4g} s before the base motion ends; {_OPEN}"
+    after = max(0.0, end - motion.duration)
+    moving = f"still moving {after:.4g} s after the base motion ended" if motion.duration > 0.0 else "still moving"
+    share = float(energy_over_balance(model, trajectory.states(np.array([trajectory.end])))[0])
+    if share >= 1.0:
+        return Outcome.STILL_MOVING, f"{moving}; {_OPEN}"
+    outcome = Outcome.SURVIVED if motion.duration > 0.0 else Outcome.STILL_MOVING
+    return outcome, f"{moving}, but it cannot overturn any more: it has {100.0 * share:.2g} % of the energy required"
+
+
+_OPEN = "it may overturn later: simulate longer"
+
+
+def has_ended(time: npt.ArrayLike, duration: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+    """Return whether base motions of these durations have ended at these times [s]."""
+    return np.asarray(np.asarray(time) * (1.0 + SLACK) >= np.asarray(duration))
+
+
+def energy_over_balance(model: Model, states: Floats) -> Floats:
+    """Return the energy over that of the balance, shape (n,), for `states` of shape (number of states, n).
+
+    A column at a smaller tilt than that of its balance, with less energy, cannot overturn on a base at rest. The result
+    is infinite beyond the balance, and for a model without a `balance` of its own, which makes no such claim.
+    """
+    balance, energy = model.balance, model.energy(states)
+    if balance is None or energy is None or not belongs_to_equations(type(model), "balance", "energy"):
+        return np.full(states.shape[1], math.inf)
+    return np.where(np.hypot(*model.tilt(states)) < balance.tilt, energy / balance.energy, math.inf)

@@ -1,0 +1,32 @@
+"""Random numbers that can be repeated: what arguments called `rng` accept."""
+
+import numpy as np
+
+from stylobate.errors import LARGEST_SEED, require_whole
+
+Rng = int | np.random.Generator
+"""A seed, or a generator."""
+
+
+def seed_of(rng: Rng) -> int:
+    """Return `rng` if it is a seed; of a generator draw one number, which is kept as the seed.
+
+    Raises
+    ------
+    ParameterError
+        If it is neither.
+    """
+    if isinstance(rng, np.random.Generator):
+        return int(rng.integers(LARGEST_SEED.number))
+    return require_whole("rng", rng, least=0, most=LARGEST_SEED)
+
+
+def generator_of(rng: Rng) -> np.random.Generator:
+    """Return `rng` if it is a generator, or a new one of this seed.
+
+    Raises
+    ------
+    ParameterError
+        If it is neither.
+    """
+    return rng if isinstance(rng, np.random.Generator) else np.random.default_rng(seed_of(rng))

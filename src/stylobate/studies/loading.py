@@ -1,0 +1,50 @@
+"""Read any result that stylobate saved: `load`."""
+
+from pathlib import Path
+
+import xarray as xr
+
+from stylobate import orbits, results
+from stylobate.errors import FileError, ParameterError
+from stylobate.studies.sweeps import open_sweep
+
+Orbits = orbits.PeriodicOrbit | orbits.Branch | orbits.BifurcationCurve
+
+
+def load(path: str | Path) -> results.Response | results.Assessment | Orbits | xr.Dataset:
+    """Read a saved result, whatever kind of result it is.
+
+    Parameters
+    ----------
+    path
+        A netCDF file, or the store of a sweep.
+
+    Returns
+    -------
+    Response, PeriodicOrbit, Branch, BifurcationCurve, Assessment or xarray.Dataset
+        What was saved; the result of a study or a sweep as a Dataset. Of a store a variable is read when it is used.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read, is damaged, or holds no result of stylobate.
+    """
+    try:
+        path = Path(path)
+    except TypeError:
+        message = f"path: no name of a file (got {path!r}). Pass the path of a saved result."
+        raise ParameterError(message) from None
+    if (path / "zarr.json").is_file():
+        return open_sweep(path)
+    data = results.read_dataset(path)
+    written = str(data.attrs.get("format", ""))
+    if written.startswith("stylobate assessment"):
+        return results.Assessment.load(path)
+    if written.startswith("stylobate response"):
+        return results.load(path)
+    if written.startswith("stylobate "):
+        return orbits.load(path)
+    if "kind" not in data.attrs:
+        message = f"{path}: not saved by stylobate (got the variables {list(data.variables)}). Read it with xarray."
+        raise FileError(message)
+    return data
