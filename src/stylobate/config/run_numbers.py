@@ -38,7 +38,7 @@ MaxSteps = Annotated[
 ]
 Samples = Annotated[int, Quantity(text="number of samples kept", ge=2)]
 Strobes = Annotated[int, Quantity(text="number of stroboscopic samples kept, one per period", ge=2)]
-Confidence = Annotated[float, Quantity(text="confidence level of intervals", gt=0.0, lt=1.0, note="0.95 is usual")]
+Confidence = Annotated[float, Quantity(text="confidence level of intervals", gt=0.0, lt=1.0)]
 
 
 class Start:
