@@ -8,14 +8,18 @@ import inspect
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache
+from enum import StrEnum
+from functools import cache, wraps
 from types import NoneType
-from typing import Annotated, Any, Literal, get_args, get_origin
+from typing import Annotated, Any, Literal, ParamSpec, TypeVar, get_args, get_origin
 
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.errors import LARGEST, ParameterError, as_float, require_size
+from stylobate.errors import LARGEST, ParameterError, as_float, require_size, require_vector, require_whole
+
+_P = ParamSpec("_P")
+_T = TypeVar("_T")
 
 _CF_POWERS = str.maketrans({"²": "2", "³": "3"})
 
@@ -40,6 +44,8 @@ class Quantity:
         The range of a control; None where the range depends on the case.
     components
         How many numbers it consists of.
+    choices
+        The only values it can have; empty for any within the bounds.
     """
 
     symbol: str = ""
@@ -51,6 +57,7 @@ class Quantity:
     note: str = ""
     slider: tuple[float, float] | None = None
     components: int = 1
+    choices: tuple[int, ...] = ()
 
     def __repr__(self) -> str:
         """Return it as signatures show it: symbol, unit and bounds."""
@@ -62,6 +69,9 @@ class Quantity:
     @property
     def demand(self) -> str:
         """The range in words, behind "must"."""
+        if self.le is not None and self.gt is not None:
+            above = "be positive" if self.gt == 0.0 else f"be above {self.gt:g}"
+            return f"{above} and at most {self.le:.6g}"
         if self.le is not None:
             return f"lie between {self.ge or 0.0:g} and {self.le:.6g}"
         if self.gt is not None:
@@ -121,8 +131,8 @@ class Parameter:
 
     @property
     def choices(self) -> tuple[Any, ...]:
-        """The words it can be; empty for a number."""
-        return get_args(self.annotation) if get_origin(self.annotation) is Literal else ()
+        """The words or whole numbers it can be; empty for any number within the bounds."""
+        return get_args(self.annotation) if get_origin(self.annotation) is Literal else self.quantity.choices
 
     @property
     def optional(self) -> bool:
@@ -130,7 +140,7 @@ class Parameter:
         return NoneType in get_args(self.annotation)
 
     def checked(self, value: Any) -> Any:
-        """Return `value` as a float, or the choice that it is.
+        """Return `value` as a float, a tuple of floats, a whole number, or the choice that it is.
 
         Raises
         ------
@@ -139,12 +149,35 @@ class Parameter:
         """
         if value is None and self.optional:
             return None
-        if not self.choices:
-            return self.quantity.checked(self.name, value)
-        if value in self.choices:
-            return value
-        message = f"{self.name} must be {' or '.join(map(repr, self.choices))}, got {value!r}"
-        raise ParameterError(message)
+        quantity = self.quantity
+        if self.choices:
+            if value in self.choices:
+                return value
+            remedy = f": {quantity.text}" if quantity.choices else ""
+            message = f"{self.name} must be {' or '.join(map(repr, self.choices))}, got {value!r}{remedy}"
+            raise ParameterError(message)
+        if quantity.components > 1:
+            numbers = require_vector(self.name, value, quantity.components, quantity.unit)
+            return tuple(quantity.checked(f"{self.name}[{i}]", number) for i, number in enumerate(numbers))
+        if self.annotation is int and quantity.ge is not None:
+            return require_whole(self.name, value, least=int(quantity.ge))
+        if isinstance(self.annotation, type) and issubclass(self.annotation, StrEnum):
+            return _member(self.annotation, self.name, value)
+        return quantity.checked(self.name, value)
+
+
+class Declared:
+    """A frozen dataclass whose declared numbers are checked where it is made."""
+
+    __slots__ = ()
+
+    def __post_init__(self) -> None:
+        """Check the numbers by their declarations, then all of them together by `validate`."""
+        check_declared(self)
+        self.validate()
+
+    def validate(self) -> None:
+        """Raise ParameterError for numbers that do not go together; each of them has been checked by itself."""
 
 
 @cache
@@ -165,6 +198,18 @@ def parameters_of(make: Callable[..., Any]) -> Mapping[str, Parameter]:
     return found
 
 
+def checked_arguments(make: Callable[_P, _T]) -> Callable[_P, _T]:
+    """Make the declared arguments of a named constructor floats, as `check_declared` does; a decorator."""
+
+    @wraps(make)
+    def checking(*arguments: _P.args, **values: _P.kwargs) -> _T:
+        declared = parameters_of(make)
+        checked: Any = {name: declared[name].checked(one) if name in declared else one for name, one in values.items()}
+        return make(*arguments, **checked)
+
+    return checking
+
+
 def check_declared(made: Any) -> None:
     """Make the declared numbers of a frozen dataclass floats.
 
@@ -175,6 +220,14 @@ def check_declared(made: Any) -> None:
     """
     for name, parameter in parameters_of(made.__class__).items():
         object.__setattr__(made, name, parameter.checked(getattr(made, name)))
+
+
+def _member(kind: type[StrEnum], name: str, value: Any) -> StrEnum:
+    try:
+        return kind(value)
+    except ValueError:
+        message = f"{name} must be one of {', '.join(kind)}, got {value!r}"
+        raise ParameterError(message) from None
 
 
 def _declared(annotation: Any) -> Quantity | None:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.quantities import Declared
+
 if TYPE_CHECKING:
     from stylobate.base_motions.combined import Delayed, Rotated, Scaled, Sum
 
@@ -16,7 +18,7 @@ DISPLACEMENT, VELOCITY, ACCELERATION = range(3)
 Components = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64]]
 
 
-class BaseMotion(ABC):
+class BaseMotion(Declared, ABC):
     """The motion of the base from t = 0 on, in SI units, along x, y (horizontal) and z (up).
 
     Motions combine: `first + second`, `2.0 * motion`, `motion.rotated(angle)`, `motion.scaled(factor, vertical=0.0)`,

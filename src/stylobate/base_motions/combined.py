@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from stylobate.base_motions.base import ACCELERATION, VELOCITY, BaseMotion, Components
 from stylobate.base_motions.harmonic import Harmonic
-from stylobate.errors import ParameterError, require_finite
+from stylobate.base_motions.numbers import Angle, Delay, Factor, VerticalFactor
+from stylobate.errors import ParameterError
 
 # Frequencies whose ratio is n/d to this relative accuracy, d up to the limit, share a period.
 _RATIO_TOLERANCE = 1e-12
@@ -24,7 +25,8 @@ class Sum(BaseMotion):
 
     motions: tuple[BaseMotion, ...] = ()
 
-    def __post_init__(self) -> None:
+    def validate(self) -> None:
+        """Raise ParameterError unless all `motions` are."""
         object.__setattr__(self, "motions", tuple(self.motions))
         for motion in self.motions:
             require_motion("motions", motion)
@@ -157,7 +159,8 @@ class Transformed(Following):
 
     motion: BaseMotion
 
-    def __post_init__(self) -> None:
+    def validate(self) -> None:
+        """Raise ParameterError unless `motion` is one."""
         require_motion("motion", self.motion)
 
     @property
@@ -170,13 +173,8 @@ class Transformed(Following):
 class Scaled(Transformed):
     """`motion` with its horizontal part times `factor` and its vertical part times `vertical`."""
 
-    factor: float
-    vertical: float
-
-    def __post_init__(self) -> None:
-        Transformed.__post_init__(self)
-        require_finite("factor", self.factor)
-        require_finite("vertical", self.vertical)
+    factor: Factor
+    vertical: VerticalFactor
 
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
         """Return the scaled displacement (`order` 0), velocity (1) or acceleration (2)."""
@@ -201,11 +199,7 @@ class Scaled(Transformed):
 class Rotated(Transformed):
     """`motion` turned by `angle` [rad] about the vertical."""
 
-    angle: float
-
-    def __post_init__(self) -> None:
-        Transformed.__post_init__(self)
-        require_finite("angle", self.angle, "rad")
+    angle: Angle
 
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
         """Return the turned displacement (`order` 0), velocity (1) or acceleration (2)."""
@@ -223,11 +217,7 @@ class Rotated(Transformed):
 class Delayed(Transformed):
     """`motion` begun `delay` [s] later, without acceleration before; a negative delay skips its first part."""
 
-    delay: float
-
-    def __post_init__(self) -> None:
-        Transformed.__post_init__(self)
-        require_finite("delay", self.delay, "s")
+    delay: Delay
 
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
         """Return the delayed displacement (`order` 0), velocity (1) or acceleration (2)."""

@@ -1,6 +1,7 @@
 """The base motions that are described by numbers alone, by their kind in files and on the command line."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cache
 
 from stylobate.base_motions.base import BaseMotion
@@ -38,6 +39,14 @@ PULSE_KINDS: Mapping[str, Callable[..., BaseMotion]] = {
 
 @cache
 def motion_quantities() -> Mapping[str, Quantity]:
-    """Return the quantity of each number by which these base motions can be described."""
-    makers = {**HARMONIC_KINDS, **PULSE_KINDS}.values()
-    return {name: one.quantity for make in makers for name, one in parameters_of(make).items()}
+    """Return the quantity of each number by which these base motions can be described.
+
+    A name that has different units in different kinds has none here.
+    """
+    found: dict[str, Quantity] = {}
+    for make in {**HARMONIC_KINDS, **PULSE_KINDS}.values():
+        for name, one in parameters_of(make).items():
+            known = found.setdefault(name, one.quantity)
+            if known.unit != one.quantity.unit:
+                found[name] = replace(known, unit="")
+    return found

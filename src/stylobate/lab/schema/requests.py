@@ -6,8 +6,6 @@ from typing import Any
 
 from stylobate import config
 from stylobate.base_motions.declared import motion_quantities
-from stylobate.base_motions.pulses.sinusoid import MOST_CYCLES
-from stylobate.base_motions.pulses.waveform import MOST_OSCILLATIONS
 from stylobate.config.description import Config
 from stylobate.config.motions import ENDING
 from stylobate.errors import LARGEST
@@ -85,8 +83,11 @@ _BOUNDS: dict[str, Schema] = {
     **{name: {"minimum": LEAST} for name in _POSITIVE},
     **{name: {"minimum": 0} for name in _NOT_NEGATIVE},
     **{name: _schema_of(quantity) for name, quantity in model_quantities().items()},
-    "cycles": {"minimum": LEAST, "maximum": MOST_CYCLES},
-    "oscillations": {"minimum": LEAST, "maximum": MOST_OSCILLATIONS},
+    **{
+        name: {"minimum": LEAST, "maximum": quantity.le}
+        for name, quantity in motion_quantities().items()
+        if quantity.le
+    },
     "sense": {"enum": [1, -1]},
     "max_steps": {"minimum": 1},
     **{name: {"minimum": 2} for name in ("samples", "strobes", "points")},
