@@ -7,7 +7,7 @@ Checks, bounds in studies, units and names in Datasets, and the controls of the 
 import inspect
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, is_dataclass
 from enum import StrEnum
 from functools import cache, wraps
 from types import NoneType
@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.errors import LARGEST, ParameterError, as_float, require_size, require_vector, require_whole
+from stylobate.kinds import new_of, place_of
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
@@ -179,6 +180,13 @@ class Declared:
     def validate(self) -> None:
         """Raise ParameterError for numbers that do not go together; each of them has been checked by itself."""
 
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        """Let a value of a class in a file of the user's be unpickled in another process, by the place of the class."""
+        place = place_of(type(self))
+        if not place.rpartition(":")[0].endswith(".py"):
+            return object.__reduce_ex__(self, protocol)
+        return new_of, (place,), self.__getstate__()
+
 
 @cache
 def parameters_of(make: Callable[..., Any]) -> Mapping[str, Parameter]:
@@ -196,6 +204,11 @@ def parameters_of(make: Callable[..., Any]) -> Mapping[str, Parameter]:
         if quantity is not None:
             found[name] = Parameter(name, quantity, _without_declaration(argument.annotation), argument.default)
     return found
+
+
+def is_declared(make: Callable[..., Any], *others: str) -> bool:
+    """Return whether a dataclass is made by declared numbers and these `others` alone."""
+    return is_dataclass(make) and set(inspect.signature(make).parameters) <= {*parameters_of(make), *others}
 
 
 def checked_arguments(make: Callable[_P, _T]) -> Callable[_P, _T]:

@@ -3,8 +3,10 @@
 import cmath
 import math
 from abc import abstractmethod
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +26,15 @@ class Sum(BaseMotion):
     """The sum of `motions`; of none, a base at rest."""
 
     motions: tuple[BaseMotion, ...] = ()
+
+    @classmethod
+    def at_rest(cls) -> Self:
+        """Return the sum of no motions, a base that does not move."""
+        return cls()
+
+    def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
+        """Return that it is the sum of its motions, or a base at rest."""
+        return (Sum, {"motions": self.motions}) if self.motions else (Sum.at_rest, {})
 
     def validate(self) -> None:
         """Raise ParameterError unless all `motions` are."""
@@ -176,6 +187,10 @@ class Scaled(Transformed):
     factor: Factor
     vertical: VerticalFactor
 
+    def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
+        """Return that it is a scaled copy of its motion."""
+        return BaseMotion.scaled, {"motion": self.motion, "factor": self.factor, "vertical": self.vertical}
+
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
         """Return the scaled displacement (`order` 0), velocity (1) or acceleration (2)."""
         x, y, z = self.motion.derivative(time, order)
@@ -201,6 +216,10 @@ class Rotated(Transformed):
 
     angle: Angle
 
+    def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
+        """Return that it is a rotated copy of its motion."""
+        return BaseMotion.rotated, {"motion": self.motion, "angle": self.angle}
+
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
         """Return the turned displacement (`order` 0), velocity (1) or acceleration (2)."""
         x, y, z = self.motion.derivative(time, order)
@@ -218,6 +237,10 @@ class Delayed(Transformed):
     """`motion` begun `delay` [s] later, without acceleration before; a negative delay skips its first part."""
 
     delay: Delay
+
+    def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
+        """Return that it is a delayed copy of its motion."""
+        return BaseMotion.delayed, {"motion": self.motion, "delay": self.delay}
 
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
         """Return the delayed displacement (`order` 0), velocity (1) or acceleration (2)."""

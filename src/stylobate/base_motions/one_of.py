@@ -1,7 +1,8 @@
 """One of several motions, chosen by its number: so that runs under different records are one ensemble."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import Any, Self
 
 from stylobate.base_motions.base import BaseMotion
 from stylobate.base_motions.combined import Following, Transformed, require_motion
@@ -47,6 +48,10 @@ class OneOf(Following):
         if not self.chosen < count:
             message = f"motion must be a whole number from 0 to {count - 1}, of {count} motions; got {self.chosen!r}"
             raise ParameterError(message)
+
+    def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
+        """Return that it is one of its motions."""
+        return OneOf, {"motions": self.motions, "chosen": self.chosen}
 
     def choose(self, number: float) -> Self:
         """Return this with the motion of another `number` chosen."""

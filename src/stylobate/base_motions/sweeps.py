@@ -1,9 +1,10 @@
 """Sine sweeps: a straight harmonic motion whose frequency changes with time."""
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Annotated, Self
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -21,7 +22,7 @@ from stylobate.base_motions.numbers import (
 )
 from stylobate.base_motions.pulses.quadrature import double_integral, integral
 from stylobate.errors import ParameterError
-from stylobate.quantities import Quantity, checked_arguments
+from stylobate.quantities import Quantity, checked_arguments, parameters_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -91,6 +92,8 @@ class SineSweep(BaseMotion):
     >>> print(sweep.frequency([0.0, 30.0, 60.0]).round(6))
     [0.5 1.  2. ]
     """
+
+    ends: ClassVar[bool] = True
 
     amplitude: Annotated[float, Quantity(text="amplitude of what is constant")]
     quantity: Annotated[SweepQuantity, Quantity(text="what is constant")] = SweepQuantity.ACCELERATION
@@ -167,6 +170,13 @@ class SineSweep(BaseMotion):
             start=start,
             vertical=vertical,
         )
+
+    def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
+        """Return the constructor of its law, and the amplitude of what it keeps constant by that name."""
+        shared = [name for name in parameters_of(SineSweep.linear) if name in parameters_of(SineSweep)]
+        numbers = {name: getattr(self, name) for name in shared}
+        make = SineSweep.linear if self.law is SweepLaw.LINEAR else SineSweep.logarithmic
+        return make, {self.quantity.value: self.amplitude, **numbers}
 
     def frequency(self, time: npt.ArrayLike) -> Floats:
         """Return the frequency at `time` [Hz], that of the ends outside."""

@@ -9,7 +9,7 @@ from pydantic import Field
 from stylobate.config.columns import ColumnConfig
 from stylobate.config.description import Config, built
 from stylobate.config.models import default_values, described_model
-from stylobate.config.motions import MotionConfig, RestMotion
+from stylobate.config.motions import AT_REST, MotionConfig
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
     Setup,
@@ -43,7 +43,7 @@ class HierarchyConfig(Config):
 
     column: ColumnConfig
     model: HierarchyFrictions = HierarchyFrictions()
-    motion: MotionConfig = RestMotion(kind="rest")
+    motion: MotionConfig = AT_REST
     tilt: tuple[float, float] = (0.0, 0.0)
     tilt_rate: tuple[float, float] = (0.0, 0.0)
     spin: float = 0.0

@@ -9,17 +9,17 @@ from stylobate.base_motions import BaseMotion
 from stylobate.config.columns import ColumnConfig
 from stylobate.config.description import Config, built
 from stylobate.config.models import ModelConfig, described_model
-from stylobate.config.motions import MotionConfig, RestMotion
+from stylobate.config.motions import AT_REST, MotionConfig, is_to_end
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
     built_parts,
     built_rules,
     duration_with_tail,
-    is_to_end,
     problems_of_the_run,
     refuse_own_classes,
 )
 from stylobate.errors import ParameterError
+from stylobate.kinds import with_places
 from stylobate.models import Model
 from stylobate.results import OutcomeRules
 
@@ -29,7 +29,7 @@ class ManyRuns(Config):
 
     column: ColumnConfig
     model: ModelConfig = described_model("slender")
-    motion: MotionConfig = RestMotion(kind="rest")
+    motion: MotionConfig = AT_REST
     tilt: tuple[float, float] = (0.0, 0.0)
     tilt_rate: tuple[float, float] = (0.0, 0.0)
     spin: float = 0.0
@@ -87,7 +87,7 @@ class ManyRuns(Config):
 
     def _lasts_as_its_motion(self, names: Sequence[str]) -> bool:
         untold = self.duration is None and self.periods is None and "duration" not in names
-        return untold and is_to_end(self.motion.model_dump())
+        return untold and is_to_end(self.motion)
 
 
 _OF_A_SINGLE_RUN = ("samples", "twist", "position", "friction_coefficient", "velocity", "clearance")
@@ -135,7 +135,7 @@ def common_values(provenance: Mapping[str, Any]) -> dict[str, Any]:
     """
     refuse_own_classes(provenance)
     known = ("column", "model", "motion", "rules", *_SHARED)
-    return {name: provenance[name] for name in known if provenance.get(name) is not None}
+    return {name: with_places(provenance[name]) for name in known if provenance.get(name) is not None}
 
 
 def name_of(axis: object) -> str:

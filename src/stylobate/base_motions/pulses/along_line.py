@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,8 @@ from stylobate.errors import ParameterError
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AlongLine(BaseMotion):
     """What a `Pulse` does, whose named constructors make the waveforms."""
+
+    ends: ClassVar[bool] = True
 
     waveform: Waveform
     direction: Direction = 0.0

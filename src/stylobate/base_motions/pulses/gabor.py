@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -38,6 +39,8 @@ class Gabor(Waveform):
     A. S. Papageorgiou (2003), see `MavroeidisPapageorgiou`. The displacement is integrated from the velocity by Gauss
     quadrature, to 1e-13 of A/f. Over all of it the base moves by √(2π) γ/(2πf) exp(−γ²/2) cos ν A.
     """
+
+    constructor: ClassVar[str] = "gabor"
 
     velocity: Velocity
     frequency: Frequency

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -36,6 +37,8 @@ class MavroeidisPapageorgiou(Waveform):
     the Seismological Society of America 93 (2003). Their velocity, acceleration and displacement, the constant of the
     last such that it begins with 0. The acceleration has no jumps; its slope jumps at both ends.
     """
+
+    constructor: ClassVar[str] = "mavroeidis_papageorgiou"
 
     velocity: Velocity
     frequency: Frequency

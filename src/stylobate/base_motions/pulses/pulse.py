@@ -1,9 +1,11 @@
 """The pulses of the literature as base motions."""
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
+from stylobate.base_motions.base import BaseMotion
 from stylobate.base_motions.numbers import (
     Acceleration,
     AngularFrequency,
@@ -24,7 +26,7 @@ from stylobate.base_motions.pulses.gabor import Gabor
 from stylobate.base_motions.pulses.mavroeidis_papageorgiou import MavroeidisPapageorgiou
 from stylobate.base_motions.pulses.ricker import AntisymmetricRicker, Ricker
 from stylobate.base_motions.pulses.sinusoid import Sinusoid
-from stylobate.quantities import checked_arguments
+from stylobate.quantities import checked_arguments, parameters_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,6 +68,13 @@ class Pulse(AlongLine):
     >>> print(pulse.velocity(7.0).round(4))  # 2 A/ω is left
     [0.     1.2732 0.    ]
     """
+
+    def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
+        """Return the constructor of its waveform, and the numbers of both; `Pulse` for a waveform without one."""
+        make = getattr(Pulse, self.waveform.constructor, Pulse)
+        line = {name: getattr(self, name) for name in parameters_of(Pulse)}
+        wave = {name: getattr(self.waveform, name) for name in parameters_of(type(self.waveform))}
+        return make, {**wave, **line}
 
     @classmethod
     @checked_arguments

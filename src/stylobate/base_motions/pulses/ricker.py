@@ -92,6 +92,7 @@ class Ricker(_BellDerivative):
     analysis", Bulletin of the Seismological Society of America 101 (2011).
     """
 
+    constructor: ClassVar[str] = "ricker"
     degree: ClassVar[int] = 2
     turns: ClassVar[tuple[float, ...]] = (-math.sqrt(3.0), 0.0, math.sqrt(3.0))
 
@@ -117,6 +118,7 @@ class AntisymmetricRicker(_BellDerivative):
     Vassiliou and Makris (2011), see `Ricker`.
     """
 
+    constructor: ClassVar[str] = "antisymmetric_ricker"
     degree: ClassVar[int] = 3
     turns: ClassVar[tuple[float, ...]] = tuple(
         side * math.sqrt(3.0 + inner * math.sqrt(6.0)) for side, inner in ((-1, 1), (-1, -1), (1, -1), (1, 1))

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -30,6 +31,8 @@ class Sinusoid(Waveform):
     ParameterError
         If a number is not finite, the frequency or `cycles` not positive, or `cycles` above 1000.
     """
+
+    constructor: ClassVar[str] = "sinusoidal"
 
     acceleration: Acceleration
     angular_frequency: AngularFrequency

@@ -3,6 +3,7 @@
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +27,9 @@ class Waveform(Declared, ABC):
     """
 
     __slots__ = ()
+
+    constructor: ClassVar[str] = ""
+    """The constructor of `Pulse` that takes its numbers; empty for a waveform of the user's own."""
 
     @property
     @abstractmethod
