@@ -40,7 +40,7 @@ class BaseMotion(Declared, ABC):
 
     def __init_subclass__(cls, **options: Any) -> None:
         """Refuse fields that would take the place of a method, or have it for a default."""
-        super(BaseMotion, cls).__init_subclass__(**options)
+        super().__init_subclass__(**options)
         for name in ("acceleration", "velocity", "displacement"):
             if name in vars(cls).get("__annotations__", {}):
                 message = f"{name}: a method of every base motion (got a field of {cls.__name__}). Call the field peak."

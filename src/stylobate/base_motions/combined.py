@@ -179,6 +179,18 @@ class Transformed(Following):
         """The motion of which it is a copy."""
         return self.motion
 
+    def changed(self, x: Any, y: Any, z: Any) -> tuple[Any, Any, Any]:
+        """Return a vector of the motion as it is in the copy: of floats, complex amplitudes or arrays."""
+        return x, y, z
+
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return the changed displacement (`order` 0), velocity (1) or acceleration (2)."""
+        return self.changed(*self.motion.derivative(time, order))
+
+    def directions(self) -> tuple[tuple[float, float], ...]:
+        """Return the changed directions of the motion [m/s²]."""
+        return tuple(self.changed(x, y, 0.0)[:2] for x, y in self.motion.directions())
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scaled(Transformed):
@@ -191,9 +203,8 @@ class Scaled(Transformed):
         """Return that it is a scaled copy of its motion."""
         return BaseMotion.scaled, {"motion": self.motion, "factor": self.factor, "vertical": self.vertical}
 
-    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
-        """Return the scaled displacement (`order` 0), velocity (1) or acceleration (2)."""
-        x, y, z = self.motion.derivative(time, order)
+    def changed(self, x: Any, y: Any, z: Any) -> tuple[Any, Any, Any]:
+        """Return the scaled vector."""
         return self.factor * x, self.factor * y, self.vertical * z
 
     def largest_horizontal(self, since: float = 0.0) -> float:
@@ -204,10 +215,6 @@ class Scaled(Transformed):
         """Return the scaled bounds, in order [m/s²]."""
         low, high = (self.vertical * bound for bound in self.motion.vertical_range(since))
         return min(low, high), max(low, high)
-
-    def directions(self) -> tuple[tuple[float, float], ...]:
-        """Return the scaled directions of the motion [m/s²]."""
-        return tuple((self.factor * x, self.factor * y) for x, y in self.motion.directions())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -220,16 +227,10 @@ class Rotated(Transformed):
         """Return that it is a rotated copy of its motion."""
         return BaseMotion.rotated, {"motion": self.motion, "angle": self.angle}
 
-    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
-        """Return the turned displacement (`order` 0), velocity (1) or acceleration (2)."""
-        x, y, z = self.motion.derivative(time, order)
+    def changed(self, x: Any, y: Any, z: Any) -> tuple[Any, Any, Any]:
+        """Return the turned vector."""
         cos, sin = math.cos(self.angle), math.sin(self.angle)
         return cos * x - sin * y, sin * x + cos * y, z
-
-    def directions(self) -> tuple[tuple[float, float], ...]:
-        """Return the turned directions of the motion [m/s²]."""
-        cos, sin = math.cos(self.angle), math.sin(self.angle)
-        return tuple((cos * x - sin * y, sin * x + cos * y) for x, y in self.motion.directions())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -294,20 +295,13 @@ def as_harmonic(motion: BaseMotion) -> Harmonic | None:
     """Return `motion` as one Harmonic if it is one that was scaled and turned, else None."""
     if type(motion) is Harmonic:
         return motion
-    if type(motion) not in (Scaled, Rotated):
+    if not isinstance(motion, (Scaled, Rotated)) or type(motion) not in (Scaled, Rotated):
         return None
-    inner = as_harmonic(motion.motion)  # type: ignore[attr-defined]
+    inner = as_harmonic(motion.motion)
     if inner is None:
         return None
-    x, y, z = (cmath.rect(a, phase) for a, phase in zip(inner.amplitude, inner.phase, strict=True))
-    if isinstance(motion, Scaled):
-        if motion.factor > 0.0 and motion.vertical > 0.0:  # without rounding of the phases
-            x_size, y_size, z_size = inner.amplitude
-            scaled = (motion.factor * x_size, motion.factor * y_size, motion.vertical * z_size)
-            return replace(inner, amplitude=scaled)
-        x, y, z = motion.factor * x, motion.factor * y, motion.vertical * z
-    elif isinstance(motion, Rotated):
-        cos, sin = math.cos(motion.angle), math.sin(motion.angle)
-        x, y = cos * x - sin * y, sin * x + cos * y
-    phases = (cmath.phase(x), cmath.phase(y), cmath.phase(z))
-    return replace(inner, amplitude=(abs(x), abs(y), abs(z)), phase=phases)
+    if isinstance(motion, Scaled) and motion.factor > 0.0 and motion.vertical > 0.0:  # without rounding of the phases
+        return replace(inner, amplitude=motion.changed(*inner.amplitude))
+    vector = motion.changed(*(cmath.rect(a, phase) for a, phase in zip(inner.amplitude, inner.phase, strict=True)))
+    (x, y, z), (first, second, third) = map(abs, vector), map(cmath.phase, vector)
+    return replace(inner, amplitude=(x, y, z), phase=(first, second, third))

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
-from stylobate.base_motions.frequency import is_pulse
+from stylobate.base_motions.varying import is_pulse
 from stylobate.config import provenance_of_run
 from stylobate.errors import ParameterError, require_positive, require_vector
 from stylobate.models import Model
@@ -76,7 +76,7 @@ class Sweep:
         if not isinstance(self.motion, BaseMotion):
             message = f"motion must be a base motion such as Harmonic.circular(...) or None, got {self.motion!r}"
             raise ParameterError(message)
-        check_quantities(self.design.argument, self.model, self.design.names)
+        check_quantities(self.design.argument, self.model, self.design.names, self.motion)
         self._check_duration()
         unknown = [name for name in self.options if name not in DEFAULTS]
         if unknown:
