@@ -44,10 +44,11 @@ class OneOf(Following):
         object.__setattr__(self, "motions", tuple(self.motions))
         for motion in self.motions:
             require_motion("motions", motion)
-        count = len(self.motions)
-        if not self.chosen < count:
-            message = f"motion must be a whole number from 0 to {count - 1}, of {count} motions; got {self.chosen!r}"
+        count, number = len(self.motions), self.chosen
+        if not (0 <= number < count and float(number).is_integer()):
+            message = f"motion must be a whole number from 0 to {count - 1}, of {count} motions; got {number!r}"
             raise ParameterError(message)
+        object.__setattr__(self, "chosen", int(number))
 
     def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
         """Return that it is one of its motions."""
