@@ -122,6 +122,13 @@ def with_places(values: Any, folder: Path | None = None) -> Any:
     }
 
 
+def names_code(values: Any) -> bool:
+    """Return whether a kind in plain values, at any depth, is the place of a class of the user's own."""
+    if isinstance(values, Mapping):
+        return ":" in str(values.get("kind", "")) or any(map(names_code, values.values()))
+    return isinstance(values, list) and any(map(names_code, values))
+
+
 def _placed(kind: str, folder: Path | None) -> str:
     where, _, name = kind.rpartition(":")
     if not where:

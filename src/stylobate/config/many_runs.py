@@ -9,7 +9,7 @@ from stylobate.base_motions import BaseMotion
 from stylobate.config.columns import ColumnConfig
 from stylobate.config.description import Config, built
 from stylobate.config.models import ModelConfig, described_model
-from stylobate.config.motions import AT_REST, MotionConfig, is_to_end
+from stylobate.config.motions import AT_REST, MotionConfig, is_to_end, made_by
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
     built_parts,
@@ -21,6 +21,7 @@ from stylobate.config.simulation import (
 from stylobate.errors import ParameterError
 from stylobate.kinds import with_places
 from stylobate.models import Model
+from stylobate.quantities import parameters_of
 from stylobate.results import OutcomeRules
 
 
@@ -102,27 +103,16 @@ _SHARED = (
 def with_numbers_that_vary(values: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
     """Return `values` with a number in the motion for each that it needs and that varies anyway, if it lacks one."""
     motion = values.get("motion")
-    if not isinstance(motion, Mapping):
+    make = made_by(motion.get("kind")) if isinstance(motion, Mapping) else None
+    if make is None:
         return dict(values)
-    needed = _NEEDED.get(str(motion.get("kind")), ())
+    declared = parameters_of(make)
+    # By a path or a velocity the acceleration depends on the frequency, which can then not stay away.
+    by_path = any(one.quantity.unit in ("m", "m/s") for one in declared.values())
+    needed = [name for name in names if name in declared and declared[name].required]
     # With an amplitude of 1 m/s² scaling to an acceleration is exact.
-    return {**values, "motion": {**{name: 1.0 for name in needed if name in names}, **motion}}
-
-
-_NEEDED = {
-    "circular": ("acceleration", "angular_frequency"),
-    "straight": ("acceleration", "angular_frequency"),
-    "oblique": ("acceleration", "angular_frequency"),
-    "elliptic": ("angular_frequency",),
-    "harmonic": ("angular_frequency",),
-    **dict.fromkeys(
-        (
-            *("half_sine", "half_cosine", "one_sine", "one_cosine", "sinusoidal"),
-            *("ricker", "antisymmetric_ricker"),
-        ),
-        ("acceleration",),
-    ),
-}
+    given = {name: 1.0 for name in needed if not (by_path and name == "angular_frequency")}
+    return {**values, "motion": {**given, **values["motion"]}}
 
 
 def common_values(provenance: Mapping[str, Any]) -> dict[str, Any]:

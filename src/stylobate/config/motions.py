@@ -4,7 +4,7 @@ import inspect
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from stylobate.base_motions import BaseMotion, Pulse, Record
+from stylobate.base_motions import BaseMotion, Record
 from stylobate.base_motions.declared import MOTIONS
 from stylobate.config.declared import config_of_kind, one_of
 from stylobate.config.description import Config
@@ -84,13 +84,6 @@ AT_REST: Any = _BY_KIND["rest"].parse({"kind": "rest"})
 COMPOSITE = tuple(kind for kind, one in _BY_KIND.items() if issubclass(one, (MotionOfMotions, ChangedMotion)))
 """Kinds of motions made of other motions."""
 
-PULSES = tuple(
-    kind
-    for kind, one in _BY_KIND.items()
-    if getattr(one.make, "__self__", None) is Pulse and "angular_frequency" in one.model_fields
-)
-"""Kinds of pulses that have an angular frequency."""
-
 
 def is_to_end(motion: object) -> bool:
     """Return whether a `motion`, described or in plain values, is one that ends.
@@ -101,11 +94,11 @@ def is_to_end(motion: object) -> bool:
     members = values.get("motions", [values["motion"]] if "motion" in values else None)
     if members is not None:
         return isinstance(members, (list, tuple)) and bool(members) and all(is_to_end(one) for one in members)
-    make = motion.make if isinstance(motion, Config) else _made_by(values.get("kind"))
+    make = motion.make if isinstance(motion, Config) else made_by(values.get("kind"))
     return bool(getattr(getattr(make, "__self__", make), "ends", False))
 
 
-def _made_by(kind: object) -> Callable[..., Any] | None:
+def made_by(kind: object) -> Callable[..., Any] | None:
     """Return what makes motions of a kind in plain values; None for one that is not known."""
     return MOTIONS[kind] if isinstance(kind, Place) or (isinstance(kind, str) and kind in MOTIONS) else None
 

@@ -12,6 +12,7 @@ from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.base_motions.varying import is_pulse
 from stylobate.config import provenance_of_run
 from stylobate.errors import ParameterError, require_positive, require_vector
+from stylobate.kinds import names_code
 from stylobate.models import Model
 from stylobate.results import OutcomeRules
 from stylobate.studies.sweeps.blocks import Blocks
@@ -188,6 +189,8 @@ class Sweep:
         for name, thing in (("model", self.model), ("motion", self.motion)):
             if provenance[name].get("kind") == "other":
                 provenance[name] = identity_of(thing)
+            elif names_code(provenance[name]):  # which can change while its place and its numbers stay
+                provenance[f"{name} code"] = identity_of(thing)
         return {**provenance, "duration": self.duration, "periods": self.periods, "design": self.design.describe()}
 
     def _check_duration(self) -> None:
