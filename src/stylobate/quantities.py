@@ -7,15 +7,20 @@ Checks, bounds in studies, units and names in Datasets, and the controls of the 
 import inspect
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import dataclass, is_dataclass
+from enum import StrEnum
+from functools import cache, wraps
 from types import NoneType
-from typing import Annotated, Any, Literal, get_args, get_origin
+from typing import Annotated, Any, Literal, ParamSpec, TypeVar, get_args, get_origin
 
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.errors import LARGEST, ParameterError, as_float, require_size
+from stylobate.errors import LARGEST, ParameterError, as_float, require_size, require_vector, require_whole
+from stylobate.kinds import new_of, place_of
+
+_P = ParamSpec("_P")
+_T = TypeVar("_T")
 
 _CF_POWERS = str.maketrans({"²": "2", "³": "3"})
 
@@ -40,6 +45,8 @@ class Quantity:
         The range of a control; None where the range depends on the case.
     components
         How many numbers it consists of.
+    choices
+        The only values it can have; empty for any within the bounds.
     """
 
     symbol: str = ""
@@ -52,6 +59,7 @@ class Quantity:
     note: str = ""
     slider: tuple[float, float] | None = None
     components: int = 1
+    choices: tuple[int, ...] = ()
 
     def __repr__(self) -> str:
         """Return it as signatures show it: symbol, unit and bounds."""
@@ -63,9 +71,13 @@ class Quantity:
     @property
     def demand(self) -> str:
         """The range in words, behind "must"."""
-        most = self.lt if self.le is None else self.le
-        if most is not None:
-            return f"lie between {self.ge or 0.0:g} and {most:.6g}"
+        if self.le is not None and self.gt is not None:
+            above = "be positive" if self.gt == 0.0 else f"be above {self.gt:g}"
+            return f"{above} and at most {self.le:.6g}"
+        if self.le is not None:
+            return f"lie between {self.ge or 0.0:g} and {self.le:.6g}"
+        if self.lt is not None:
+            return f"lie between {self.gt or 0.0:g} and {self.lt:g}"
         if self.gt is not None:
             return "be positive" if self.gt == 0.0 else f"be above {self.gt:g}"
         if self.ge is not None:
@@ -126,8 +138,8 @@ class Parameter:
 
     @property
     def choices(self) -> tuple[Any, ...]:
-        """The words it can be; empty for a number."""
-        return get_args(self.annotation) if get_origin(self.annotation) is Literal else ()
+        """The words or whole numbers it can be; empty for any number within the bounds."""
+        return get_args(self.annotation) if get_origin(self.annotation) is Literal else self.quantity.choices
 
     @property
     def whole(self) -> bool:
@@ -140,7 +152,7 @@ class Parameter:
         return NoneType in get_args(self.annotation)
 
     def checked(self, value: Any) -> Any:
-        """Return `value` as a float, or the choice that it is.
+        """Return `value` as a float, a tuple of floats, a whole number, or the choice that it is.
 
         Raises
         ------
@@ -149,12 +161,42 @@ class Parameter:
         """
         if value is None and self.optional:
             return None
-        if not self.choices:
-            return self.quantity.checked(self.name, value)
-        if value in self.choices:
-            return value
-        message = f"{self.name} must be {' or '.join(map(repr, self.choices))}, got {value!r}"
-        raise ParameterError(message)
+        quantity = self.quantity
+        if self.choices:
+            if value in self.choices:
+                return value
+            remedy = f": {quantity.text}" if quantity.choices else ""
+            message = f"{self.name} must be {' or '.join(map(repr, self.choices))}, got {value!r}{remedy}"
+            raise ParameterError(message)
+        if quantity.components > 1:
+            numbers = require_vector(self.name, value, quantity.components, quantity.unit)
+            return tuple(quantity.checked(f"{self.name}[{i}]", number) for i, number in enumerate(numbers))
+        if self.annotation is int and quantity.ge is not None:
+            return require_whole(self.name, value, least=int(quantity.ge))
+        if isinstance(self.annotation, type) and issubclass(self.annotation, StrEnum):
+            return _member(self.annotation, self.name, value)
+        return quantity.checked(self.name, value)
+
+
+class Declared:
+    """A frozen dataclass whose declared numbers are checked where it is made."""
+
+    __slots__ = ()
+
+    def __post_init__(self) -> None:
+        """Check the numbers by their declarations, then all of them together by `validate`."""
+        check_declared(self)
+        self.validate()
+
+    def validate(self) -> None:
+        """Raise ParameterError for numbers that do not go together; each of them has been checked by itself."""
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        """Let a value of a class in a file of the user's be unpickled in another process, by the place of the class."""
+        place = place_of(type(self))
+        if not place.rpartition(":")[0].endswith(".py"):
+            return object.__reduce_ex__(self, protocol)
+        return new_of, (place,), self.__getstate__()
 
 
 @cache
@@ -178,6 +220,23 @@ def parameter_of(name: str, annotation: Any, default: Any) -> Parameter | None:
     return None if quantity is None else Parameter(name, quantity, _without_declaration(annotation), default)
 
 
+def is_declared(make: Callable[..., Any], *others: str) -> bool:
+    """Return whether a dataclass is made by declared numbers and these `others` alone."""
+    return is_dataclass(make) and set(inspect.signature(make).parameters) <= {*parameters_of(make), *others}
+
+
+def checked_arguments(make: Callable[_P, _T]) -> Callable[_P, _T]:
+    """Make the declared arguments of a named constructor floats, as `check_declared` does; a decorator."""
+
+    @wraps(make)
+    def checking(*arguments: _P.args, **values: _P.kwargs) -> _T:
+        declared = parameters_of(make)
+        checked: Any = {name: declared[name].checked(one) if name in declared else one for name, one in values.items()}
+        return make(*arguments, **checked)
+
+    return checking
+
+
 def check_declared(made: Any) -> None:
     """Make the declared numbers of a frozen dataclass floats.
 
@@ -188,6 +247,14 @@ def check_declared(made: Any) -> None:
     """
     for name, parameter in parameters_of(made.__class__).items():
         object.__setattr__(made, name, parameter.checked(getattr(made, name)))
+
+
+def _member(kind: type[StrEnum], name: str, value: Any) -> StrEnum:
+    try:
+        return kind(value)
+    except ValueError:
+        message = f"{name} must be one of {', '.join(kind)}, got {value!r}"
+        raise ParameterError(message) from None
 
 
 def _declared(annotation: Any) -> Quantity | None:

@@ -349,7 +349,7 @@ def test_impossible_numbers_are_refused_by_name(make, options, name):
 def test_a_pulse_has_a_thousand_cycles_at_most():
     pulse = P.sinusoidal(acceleration=A, angular_frequency=2.0 * math.pi, cycles=1000)
     assert pulse.duration == pytest.approx(1000.0)
-    with pytest.raises(ParameterError, match=r"at most 1000, got 1000\.5: a pulse is short; use Harmonic for steady"):
+    with pytest.raises(ParameterError, match=r"at most 1000, since a pulse is short: use Harmonic .*, got 1000\.5"):
         P.sinusoidal(acceleration=A, angular_frequency=2.0 * math.pi, cycles=1000.5)
 
 

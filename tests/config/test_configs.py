@@ -224,11 +224,11 @@ def test_all_mistakes_are_told_at_once():
             ["column: radius: too large to compute with (got 1e+200 m). Give at most 1e+15 m; check the unit."],
         ),
         ({"model": {"damping": -1.0}}, ["model: damping must be zero or positive, got -1.0"]),
-        ({"motion": {**CIRCULAR, "sense": 3}}, ["motion: sense must be +1"]),
+        ({"motion": {**CIRCULAR, "sense": 3}}, ["motion: sense must be 1 or -1, got 3: +1 anticlockwise"]),
         ({"motion": {**CIRCULAR, "angular_frequency": 0.0}}, ["motion: angular_frequency must be positive, got 0.0"]),
         (
             {"motion": {"kind": "gabor", "velocity": 1.0, "frequency": 1.0, "oscillations": 0.0}},
-            ["motion: oscillations must be positive, got 0.0"],
+            ["motion: oscillations must be positive and at most 100"],
         ),
         (
             {"motion": {"kind": "linear_sweep", "frequencies": [1.0, 2.0], "length": 9.0}},

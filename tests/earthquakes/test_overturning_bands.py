@@ -228,7 +228,7 @@ def test_bad_questions_are_told_by_name(changed, line):
 
 def test_a_record_has_no_frequency_to_vary():
     record = sb.Record(samples=[0.0, 1.0, 0.0], step=0.1)
-    with pytest.raises(UnsupportedError, match="angular_frequency can be changed in a Harmonic"):
+    with pytest.raises(UnsupportedError, match="angular_frequency: the base motion has no such number"):
         overturning_bands(VISCOUS, record, scales=[1.0, 2.0], over={"angular_frequency": [1.0]})
 
 

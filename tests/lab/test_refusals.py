@@ -242,10 +242,10 @@ SWEEP = {"kind": "linear_sweep", "acceleration": 1.0, "frequencies": [1.0, 1e9],
 @pytest.mark.parametrize(
     ("motion", "told"),
     [
-        ({**PULSE, "cycles": 1e14}, "cycles must be at most 1000"),
+        ({**PULSE, "cycles": 1e14}, "cycles must be positive and at most 1000"),
         (
             {"kind": "gabor", "velocity": 1.0, "frequency": 1.0, "oscillations": 1e12},
-            "oscillations must be at most 100",
+            "oscillations must be positive and at most 100",
         ),
         ({"kind": "sum", "motions": [{"kind": "rest"}] * 101}, "made of 100 motions"),
         ({"kind": "sum", "motions": [{"kind": "sum", "motions": [{"kind": "rest"}] * 40}] * 3}, "made of 100 motions"),
@@ -374,3 +374,21 @@ def test_no_values_break_it(client, body, path):
         assert problems_of(answer)
         assert all(line and "\n" not in line and "Traceback" not in line for line in problems_of(answer))
     assert client.get("/api/about").status_code == 200
+
+
+@pytest.mark.parametrize("kind", ["os:system", "x.py:Y", "{folder}/x.py:Y", "stylobate.models.slender:Slender"])
+@pytest.mark.parametrize("part", ["model", "motion", "a motion in a motion"])
+def test_code_that_a_request_names_is_refused_and_never_loaded(client, tmp_path, part, kind):
+    loaded = tmp_path / "loaded"
+    (tmp_path / "x.py").write_text(f"open({str(loaded)!r}, 'w').close()\nclass Y: ...\n", encoding="utf-8")
+    named = {"kind": kind.replace("{folder}", str(tmp_path))}
+    inside = {"kind": "rotated", "angle": 0.1, "motion": named}
+    change = {"motion": inside} if part == "a motion in a motion" else {part: named}
+    body = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "duration": 1.0, **change}
+    for path in ("/api/simulate", "/api/describe"):
+        answer = client.post(path, json=body)
+        assert 400 <= answer.status_code < 500
+        assert "kind" in problems_of(answer)[0]
+    job = client.post("/api/jobs", json={"kind": "animation", "description": body})
+    assert 400 <= job.status_code < 500
+    assert not loaded.exists()

@@ -2,10 +2,15 @@
 
 import math
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
+
+from stylobate.base_motions.numbers import Angle, Delay, Factor, VerticalFactor
+from stylobate.errors import ParameterError
+from stylobate.quantities import Declared, parameters_of
 
 if TYPE_CHECKING:
     from stylobate.base_motions.combined import Delayed, Rotated, Scaled, Sum
@@ -16,7 +21,7 @@ DISPLACEMENT, VELOCITY, ACCELERATION = range(3)
 Components = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64]]
 
 
-class BaseMotion(ABC):
+class BaseMotion(Declared, ABC):
     """The motion of the base from t = 0 on, in SI units, along x, y (horizontal) and z (up).
 
     Motions combine: `first + second`, `2.0 * motion`, `motion.rotated(angle)`, `motion.scaled(factor, vertical=0.0)`,
@@ -29,6 +34,17 @@ class BaseMotion(ABC):
     """
 
     __slots__ = ()
+
+    ends: ClassVar[bool] = False
+    """Whether each motion of the class comes to an end, so that a run under it needs no duration."""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Refuse fields that would take the place of a method, or have it for a default."""
+        super().__init_subclass__(**options)
+        for name in ("acceleration", "velocity", "displacement"):
+            if name in vars(cls).get("__annotations__", {}):
+                message = f"{name}: a method of every base motion (got a field of {cls.__name__}). Call the field peak."
+                raise ParameterError(message)
 
     @abstractmethod
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
@@ -103,6 +119,13 @@ class BaseMotion(ABC):
         """
         return None
 
+    def made_by(self) -> tuple[Callable[..., "BaseMotion"], Mapping[str, Any]]:
+        """Return what makes this motion, and the arguments: by default its class and its declared numbers.
+
+        A class that states it by another constructor does so for itself, not for its subclasses.
+        """
+        return type(self), {name: getattr(self, name) for name in parameters_of(type(self))}
+
     def acceleration(self, time: npt.ArrayLike) -> npt.NDArray[np.float64]:
         """Return the base acceleration at `time` [s], shape (..., 3) [m/s²]."""
         return np.stack(self.derivative(time, ACCELERATION), axis=-1)
@@ -115,19 +138,19 @@ class BaseMotion(ABC):
         """Return the base displacement at `time` [s], shape (..., 3) [m]."""
         return np.stack(self.derivative(time, DISPLACEMENT), axis=-1)
 
-    def scaled(self, factor: float, *, vertical: float | None = None) -> "Scaled":
+    def scaled(self, factor: Factor, *, vertical: VerticalFactor | None = None) -> "Scaled":
         """Return this motion times `factor`; its vertical component times `vertical` where that is given."""
         from stylobate.base_motions.combined import Scaled  # noqa: PLC0415  the two modules need each other
 
         return Scaled(motion=self, factor=factor, vertical=factor if vertical is None else vertical)
 
-    def rotated(self, angle: float) -> "Rotated":
+    def rotated(self, angle: Angle) -> "Rotated":
         """Return this motion turned by `angle` [rad] about the vertical, anticlockwise seen from above."""
         from stylobate.base_motions.combined import Rotated  # noqa: PLC0415
 
         return Rotated(motion=self, angle=angle)
 
-    def delayed(self, delay: float) -> "Delayed":
+    def delayed(self, delay: Delay) -> "Delayed":
         """Return this motion begun `delay` [s] later; the base does not accelerate before."""
         from stylobate.base_motions.combined import Delayed  # noqa: PLC0415
 

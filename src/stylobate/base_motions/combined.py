@@ -3,15 +3,18 @@
 import cmath
 import math
 from abc import abstractmethod
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions.base import ACCELERATION, VELOCITY, BaseMotion, Components
 from stylobate.base_motions.harmonic import Harmonic
-from stylobate.errors import ParameterError, require_finite
+from stylobate.base_motions.numbers import Angle, Delay, Factor, VerticalFactor
+from stylobate.errors import ParameterError
 
 # Frequencies whose ratio is n/d to this relative accuracy, d up to the limit, share a period.
 _RATIO_TOLERANCE = 1e-12
@@ -24,7 +27,17 @@ class Sum(BaseMotion):
 
     motions: tuple[BaseMotion, ...] = ()
 
-    def __post_init__(self) -> None:
+    @classmethod
+    def at_rest(cls) -> Self:
+        """Return the sum of no motions, a base that does not move."""
+        return cls()
+
+    def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
+        """Return that it is the sum of its motions, or a base at rest."""
+        return (Sum, {"motions": self.motions}) if self.motions else (Sum.at_rest, {})
+
+    def validate(self) -> None:
+        """Raise ParameterError unless all `motions` are."""
         object.__setattr__(self, "motions", tuple(self.motions))
         for motion in self.motions:
             require_motion("motions", motion)
@@ -157,7 +170,8 @@ class Transformed(Following):
 
     motion: BaseMotion
 
-    def __post_init__(self) -> None:
+    def validate(self) -> None:
+        """Raise ParameterError unless `motion` is one."""
         require_motion("motion", self.motion)
 
     @property
@@ -165,22 +179,32 @@ class Transformed(Following):
         """The motion of which it is a copy."""
         return self.motion
 
+    def changed(self, x: Any, y: Any, z: Any) -> tuple[Any, Any, Any]:
+        """Return a vector of the motion as it is in the copy: of floats, complex amplitudes or arrays."""
+        return x, y, z
+
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return the changed displacement (`order` 0), velocity (1) or acceleration (2)."""
+        return self.changed(*self.motion.derivative(time, order))
+
+    def directions(self) -> tuple[tuple[float, float], ...]:
+        """Return the changed directions of the motion [m/s²]."""
+        return tuple(self.changed(x, y, 0.0)[:2] for x, y in self.motion.directions())
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scaled(Transformed):
     """`motion` with its horizontal part times `factor` and its vertical part times `vertical`."""
 
-    factor: float
-    vertical: float
+    factor: Factor
+    vertical: VerticalFactor
 
-    def __post_init__(self) -> None:
-        Transformed.__post_init__(self)
-        require_finite("factor", self.factor)
-        require_finite("vertical", self.vertical)
+    def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
+        """Return that it is a scaled copy of its motion."""
+        return BaseMotion.scaled, {"motion": self.motion, "factor": self.factor, "vertical": self.vertical}
 
-    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
-        """Return the scaled displacement (`order` 0), velocity (1) or acceleration (2)."""
-        x, y, z = self.motion.derivative(time, order)
+    def changed(self, x: Any, y: Any, z: Any) -> tuple[Any, Any, Any]:
+        """Return the scaled vector."""
         return self.factor * x, self.factor * y, self.vertical * z
 
     def largest_horizontal(self, since: float = 0.0) -> float:
@@ -192,42 +216,32 @@ class Scaled(Transformed):
         low, high = (self.vertical * bound for bound in self.motion.vertical_range(since))
         return min(low, high), max(low, high)
 
-    def directions(self) -> tuple[tuple[float, float], ...]:
-        """Return the scaled directions of the motion [m/s²]."""
-        return tuple((self.factor * x, self.factor * y) for x, y in self.motion.directions())
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rotated(Transformed):
     """`motion` turned by `angle` [rad] about the vertical."""
 
-    angle: float
+    angle: Angle
 
-    def __post_init__(self) -> None:
-        Transformed.__post_init__(self)
-        require_finite("angle", self.angle, "rad")
+    def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
+        """Return that it is a rotated copy of its motion."""
+        return BaseMotion.rotated, {"motion": self.motion, "angle": self.angle}
 
-    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
-        """Return the turned displacement (`order` 0), velocity (1) or acceleration (2)."""
-        x, y, z = self.motion.derivative(time, order)
+    def changed(self, x: Any, y: Any, z: Any) -> tuple[Any, Any, Any]:
+        """Return the turned vector."""
         cos, sin = math.cos(self.angle), math.sin(self.angle)
         return cos * x - sin * y, sin * x + cos * y, z
-
-    def directions(self) -> tuple[tuple[float, float], ...]:
-        """Return the turned directions of the motion [m/s²]."""
-        cos, sin = math.cos(self.angle), math.sin(self.angle)
-        return tuple((cos * x - sin * y, sin * x + cos * y) for x, y in self.motion.directions())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Delayed(Transformed):
     """`motion` begun `delay` [s] later, without acceleration before; a negative delay skips its first part."""
 
-    delay: float
+    delay: Delay
 
-    def __post_init__(self) -> None:
-        Transformed.__post_init__(self)
-        require_finite("delay", self.delay, "s")
+    def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
+        """Return that it is a delayed copy of its motion."""
+        return BaseMotion.delayed, {"motion": self.motion, "delay": self.delay}
 
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
         """Return the delayed displacement (`order` 0), velocity (1) or acceleration (2)."""
@@ -281,20 +295,13 @@ def as_harmonic(motion: BaseMotion) -> Harmonic | None:
     """Return `motion` as one Harmonic if it is one that was scaled and turned, else None."""
     if type(motion) is Harmonic:
         return motion
-    if type(motion) not in (Scaled, Rotated):
+    if not isinstance(motion, (Scaled, Rotated)) or type(motion) not in (Scaled, Rotated):
         return None
-    inner = as_harmonic(motion.motion)  # type: ignore[attr-defined]
+    inner = as_harmonic(motion.motion)
     if inner is None:
         return None
-    x, y, z = (cmath.rect(a, phase) for a, phase in zip(inner.amplitude, inner.phase, strict=True))
-    if isinstance(motion, Scaled):
-        if motion.factor > 0.0 and motion.vertical > 0.0:  # without rounding of the phases
-            x_size, y_size, z_size = inner.amplitude
-            scaled = (motion.factor * x_size, motion.factor * y_size, motion.vertical * z_size)
-            return replace(inner, amplitude=scaled)
-        x, y, z = motion.factor * x, motion.factor * y, motion.vertical * z
-    elif isinstance(motion, Rotated):
-        cos, sin = math.cos(motion.angle), math.sin(motion.angle)
-        x, y = cos * x - sin * y, sin * x + cos * y
-    phases = (cmath.phase(x), cmath.phase(y), cmath.phase(z))
-    return replace(inner, amplitude=(abs(x), abs(y), abs(z)), phase=phases)
+    if isinstance(motion, Scaled) and motion.factor > 0.0 and motion.vertical > 0.0:  # without rounding of the phases
+        return replace(inner, amplitude=motion.changed(*inner.amplitude))
+    vector = motion.changed(*(cmath.rect(a, phase) for a, phase in zip(inner.amplitude, inner.phase, strict=True)))
+    (x, y, z), (first, second, third) = map(abs, vector), map(cmath.phase, vector)
+    return replace(inner, amplitude=(x, y, z), phase=(first, second, third))

@@ -1,43 +1,64 @@
-"""The base motions that are described by numbers alone, by their kind in files and on the command line."""
+"""The base motions of the package, by their kind in files and on the command line."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache
 
-from stylobate.base_motions.base import BaseMotion
-from stylobate.base_motions.harmonic import Harmonic
-from stylobate.base_motions.pulses import Pulse
+from stylobate.kinds import Kinds
 from stylobate.quantities import Quantity, parameters_of
 
-HARMONIC_KINDS: Mapping[str, Callable[..., BaseMotion]] = {
-    "circular": Harmonic.circular,
-    "straight": Harmonic.straight,
-    "elliptic": Harmonic.elliptic,
-    "vertical": Harmonic.vertical,
-    "oblique": Harmonic.oblique,
-    "displacement_amplitude": Harmonic.displacement_amplitude,
-    "stroke": Harmonic.stroke,
-    "orbit": Harmonic.orbit,
-    "harmonic": Harmonic,
-}
+_HARMONIC = "stylobate.base_motions.harmonic:Harmonic"
+_PULSE = "stylobate.base_motions.pulses.pulse:Pulse"
+_SWEEP = "stylobate.base_motions.sweeps:SineSweep"
 
-PULSE_KINDS: Mapping[str, Callable[..., BaseMotion]] = {
-    "half_sine": Pulse.half_sine,
-    "half_cosine": Pulse.half_cosine,
-    "one_sine": Pulse.one_sine,
-    "one_cosine": Pulse.one_cosine,
-    "ricker": Pulse.ricker,
-    "antisymmetric_ricker": Pulse.antisymmetric_ricker,
-    "sinusoidal": Pulse.sinusoidal,
-    "type_a": Pulse.type_a,
-    "type_b": Pulse.type_b,
-    "type_c": Pulse.type_c,
-    "gabor": Pulse.gabor,
-    "mavroeidis_papageorgiou": Pulse.mavroeidis_papageorgiou,
-}
+MOTIONS = Kinds(
+    "motion",
+    "stylobate.base_motions.base:BaseMotion",
+    {
+        "rest": "stylobate.base_motions.combined:Sum.at_rest",
+        "circular": f"{_HARMONIC}.circular",
+        "straight": f"{_HARMONIC}.straight",
+        "elliptic": f"{_HARMONIC}.elliptic",
+        "vertical": f"{_HARMONIC}.vertical",
+        "oblique": f"{_HARMONIC}.oblique",
+        "displacement_amplitude": f"{_HARMONIC}.displacement_amplitude",
+        "stroke": f"{_HARMONIC}.stroke",
+        "orbit": f"{_HARMONIC}.orbit",
+        "harmonic": _HARMONIC,
+        "half_sine": f"{_PULSE}.half_sine",
+        "half_cosine": f"{_PULSE}.half_cosine",
+        "one_sine": f"{_PULSE}.one_sine",
+        "one_cosine": f"{_PULSE}.one_cosine",
+        "ricker": f"{_PULSE}.ricker",
+        "antisymmetric_ricker": f"{_PULSE}.antisymmetric_ricker",
+        "sinusoidal": f"{_PULSE}.sinusoidal",
+        "type_a": f"{_PULSE}.type_a",
+        "type_b": f"{_PULSE}.type_b",
+        "type_c": f"{_PULSE}.type_c",
+        "gabor": f"{_PULSE}.gabor",
+        "mavroeidis_papageorgiou": f"{_PULSE}.mavroeidis_papageorgiou",
+        "linear_sweep": f"{_SWEEP}.linear",
+        "logarithmic_sweep": f"{_SWEEP}.logarithmic",
+        "record": "stylobate.base_motions.records.record:Record",
+        "one_of": "stylobate.base_motions.one_of:OneOf",
+        "sum": "stylobate.base_motions.combined:Sum",
+        "scaled": "stylobate.base_motions.base:BaseMotion.scaled",
+        "rotated": "stylobate.base_motions.base:BaseMotion.rotated",
+        "delayed": "stylobate.base_motions.base:BaseMotion.delayed",
+    },
+)
 
 
 @cache
 def motion_quantities() -> Mapping[str, Quantity]:
-    """Return the quantity of each number by which these base motions can be described."""
-    makers = {**HARMONIC_KINDS, **PULSE_KINDS}.values()
-    return {name: one.quantity for make in makers for name, one in parameters_of(make).items()}
+    """Return the quantity of each number by which these base motions can be described.
+
+    A name that has different units in different kinds has none here.
+    """
+    found: dict[str, Quantity] = {}
+    for make in MOTIONS.values():
+        for name, one in parameters_of(make).items():
+            known = found.setdefault(name, one.quantity)
+            if known.unit != one.quantity.unit:
+                found[name] = replace(known, unit="")
+    return found

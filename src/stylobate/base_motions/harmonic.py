@@ -22,8 +22,8 @@ from stylobate.base_motions.numbers import (
     Sense,
     StartPhase,
 )
-from stylobate.errors import ParameterError, require_finite, require_not_negative, require_positive, require_vector
-from stylobate.quantities import Quantity
+from stylobate.errors import ParameterError
+from stylobate.quantities import Quantity, checked_arguments
 
 # Below this |z| the series of the integrals of exp is more accurate than their closed form.
 _SERIES_RADIUS = 0.5
@@ -68,7 +68,9 @@ class Harmonic(BaseMotion):
     9.869604401089358
     """
 
-    amplitude: Annotated[tuple[float, float, float], Quantity(text="amplitudes along the axes", components=3)]
+    amplitude: Annotated[
+        tuple[float, float, float], Quantity(unit="m/s²", text="amplitudes along the axes", components=3)
+    ]
     phase: Annotated[
         tuple[float, float, float], Quantity(unit="rad", text="phases of the components", components=3)
     ] = (0.0, 0.0, 0.0)
@@ -76,26 +78,19 @@ class Harmonic(BaseMotion):
     start_phase: StartPhase = 0.0
     ramp: Ramp = 0.0
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "amplitude", require_vector("amplitude", self.amplitude, 3, "m/s²"))
-        object.__setattr__(self, "phase", require_vector("phase", self.phase, 3, "rad"))
-        frequency = require_positive("angular_frequency", self.angular_frequency, "rad/s")
-        object.__setattr__(self, "angular_frequency", frequency)
-        object.__setattr__(self, "start_phase", require_finite("start_phase", self.start_phase, "rad"))
-        object.__setattr__(self, "ramp", require_not_negative("ramp", self.ramp, "s"))
-
     @classmethod
+    @checked_arguments
     def elliptic(
         cls,
         *,
-        amplitude: Annotated[Sequence[float], Quantity(text="amplitudes along the axes", components=2)],
+        amplitude: Annotated[Sequence[float], Quantity(unit="m/s²", text="amplitudes along the axes", components=2)],
         phase: Phase,
         angular_frequency: AngularFrequency,
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
         """Return a motion on an ellipse: amplitudes (a1, a2) [m/s²], `phase` φ0 of the second axis to the first."""
-        a1, a2 = require_vector("amplitude", amplitude, 2, "m/s²")
+        a1, a2 = amplitude
         return cls(
             amplitude=(a1, a2, 0.0),
             phase=(0.0, phase, 0.0),
@@ -105,6 +100,7 @@ class Harmonic(BaseMotion):
         )
 
     @classmethod
+    @checked_arguments
     def circular(
         cls,
         *,
@@ -115,16 +111,16 @@ class Harmonic(BaseMotion):
         ramp: Ramp = 0.0,
     ) -> Self:
         """Return a motion on a circle with constant `acceleration` [m/s²]; `sense` +1 anticlockwise, −1 clockwise."""
-        acceleration = require_finite("acceleration", acceleration, "m/s²")
         return cls.elliptic(
             amplitude=(acceleration, acceleration),
-            phase=-_sense(sense) * math.pi / 2.0,
+            phase=-sense * math.pi / 2.0,
             angular_frequency=angular_frequency,
             start_phase=start_phase,
             ramp=ramp,
         )
 
     @classmethod
+    @checked_arguments
     def straight(
         cls,
         *,
@@ -135,8 +131,6 @@ class Harmonic(BaseMotion):
         ramp: Ramp = 0.0,
     ) -> Self:
         """Return a motion along a horizontal line at `direction` [rad] from x, amplitude `acceleration` [m/s²]."""
-        acceleration = require_finite("acceleration", acceleration, "m/s²")
-        direction = require_finite("direction", direction, "rad")
         return cls.elliptic(
             amplitude=(acceleration * math.cos(direction), acceleration * math.sin(direction)),
             phase=0.0,
@@ -146,6 +140,7 @@ class Harmonic(BaseMotion):
         )
 
     @classmethod
+    @checked_arguments
     def vertical(
         cls,
         *,
@@ -155,7 +150,6 @@ class Harmonic(BaseMotion):
         ramp: Ramp = 0.0,
     ) -> Self:
         """Return a vertical motion of amplitude `acceleration` [m/s²]; add it to a horizontal one with `+`."""
-        acceleration = require_finite("acceleration", acceleration, "m/s²")
         return cls(
             amplitude=(0.0, 0.0, acceleration),
             angular_frequency=angular_frequency,
@@ -164,6 +158,7 @@ class Harmonic(BaseMotion):
         )
 
     @classmethod
+    @checked_arguments
     def oblique(
         cls,
         *,
@@ -178,8 +173,6 @@ class Harmonic(BaseMotion):
 
         As in all studies `acceleration` is the horizontal amplitude [m/s²]; the vertical one is tan(angle) times it.
         """
-        acceleration = require_finite("acceleration", acceleration, "m/s²")
-        direction = require_finite("direction", direction, "rad")
         if not abs(angle) < math.pi / 2.0:
             message = f"angle must lie between -pi/2 and pi/2 rad, got {angle!r}; see Harmonic.vertical"
             raise ParameterError(message)
@@ -195,6 +188,7 @@ class Harmonic(BaseMotion):
         )
 
     @classmethod
+    @checked_arguments
     def displacement_amplitude(
         cls,
         *,
@@ -205,9 +199,7 @@ class Harmonic(BaseMotion):
         ramp: Ramp = 0.0,
     ) -> Self:
         """Return the motion whose displacement is d_i cos(Ωt + start_phase + φ_i), d = `amplitude` (x, y, z) [m]."""
-        amplitude = require_vector("amplitude", amplitude, 3, "m")
-        phase = require_vector("phase", phase, 3, "rad")
-        square = require_positive("angular_frequency", angular_frequency, "rad/s") ** 2
+        square = angular_frequency**2
         x, y, z = (-square * number for number in amplitude)
         return cls(
             amplitude=(x, y, z),
@@ -218,6 +210,7 @@ class Harmonic(BaseMotion):
         )
 
     @classmethod
+    @checked_arguments
     def stroke(
         cls,
         *,
@@ -228,16 +221,16 @@ class Harmonic(BaseMotion):
         ramp: Ramp = 0.0,
     ) -> Self:
         """Return a straight motion by its `stroke` from peak to peak [m], `frequency` [Hz] and `direction` [rad]."""
-        half = require_positive("stroke", stroke, "m") / 2.0
-        direction = require_finite("direction", direction, "rad")
+        half = stroke / 2.0
         return cls.displacement_amplitude(
             amplitude=(half * math.cos(direction), half * math.sin(direction), 0.0),
-            angular_frequency=2.0 * math.pi * require_positive("frequency", frequency, "Hz"),
+            angular_frequency=2.0 * math.pi * frequency,
             start_phase=start_phase,
             ramp=ramp,
         )
 
     @classmethod
+    @checked_arguments
     def orbit(
         cls,
         *,
@@ -248,11 +241,11 @@ class Harmonic(BaseMotion):
         ramp: Ramp = 0.0,
     ) -> Self:
         """Return a circular motion by the `diameter` of its path [m] and its turns a minute (an orbital shaker)."""
-        radius = require_positive("diameter", diameter, "m") / 2.0
+        radius = diameter / 2.0
         return cls.displacement_amplitude(
             amplitude=(radius, radius, 0.0),
-            phase=(0.0, -_sense(sense) * math.pi / 2.0, 0.0),
-            angular_frequency=2.0 * math.pi * require_positive("rpm", rpm, "1/min") / 60.0,
+            phase=(0.0, -sense * math.pi / 2.0, 0.0),
+            angular_frequency=2.0 * math.pi * rpm / 60.0,
             start_phase=start_phase,
             ramp=ramp,
         )
@@ -353,10 +346,3 @@ def _integral_of_exp(z: npt.NDArray[np.complexfloating], times: int) -> npt.NDAr
 def _exact(ratio: float) -> float:
     """Return a sine or cosine, 0 where only the rounding of the angle keeps it from that."""
     return 0.0 if abs(ratio) < 8.0 * np.finfo(float).eps else ratio
-
-
-def _sense(sense: int) -> int:
-    if sense not in (-1, 1):
-        message = f"sense must be +1 (anticlockwise) or -1 (clockwise), got {sense!r}"
-        raise ParameterError(message)
-    return sense

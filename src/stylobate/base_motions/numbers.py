@@ -5,6 +5,8 @@ from typing import Annotated
 
 from stylobate.quantities import Quantity
 
+_SHORT = "since a pulse is short: use Harmonic for steady shaking"
+
 Acceleration = Annotated[float, Quantity(symbol="a", unit="m/s²", text="amplitude of the acceleration")]
 AngularFrequency = Annotated[float, Quantity(symbol="Ω", unit="rad/s", text="angular frequency", gt=0.0)]
 Frequency = Annotated[float, Quantity(symbol="f", unit="Hz", text="frequency", gt=0.0)]
@@ -15,11 +17,24 @@ Ramp = Annotated[float, Quantity(unit="s", text="time in which it grows to its a
 Direction = Annotated[
     float, Quantity(unit="rad", text="direction in the plane, from x towards y", slider=(-3.142, 3.142))
 ]
-Sense = Annotated[int, Quantity(text="+1 anticlockwise, −1 clockwise")]
+Sense = Annotated[int, Quantity(text="+1 anticlockwise, −1 clockwise", choices=(1, -1))]
 Start = Annotated[float, Quantity(unit="s", text="when it begins", ge=0.0)]
 VerticalRatio = Annotated[float, Quantity(text="vertical acceleration over the horizontal one", slider=(-1.0, 1.0))]
-Cycles = Annotated[float, Quantity(text="cycles", gt=0.0, slider=(1.0, 6.0))]
+Cycles = Annotated[float, Quantity(text="cycles", gt=0.0, le=1000.0, note=_SHORT, slider=(1.0, 6.0))]
 WholeCycles = Annotated[int, Quantity(text="cycles", ge=1.0, slider=(1.0, 6.0))]
-Oscillations = Annotated[float, Quantity(text="oscillations under the bell", gt=0.0, slider=(1.0, 6.0))]
-Amplitudes = Annotated[Sequence[float], Quantity(text="amplitudes along the axes", components=3)]
+Oscillations = Annotated[
+    float, Quantity(text="oscillations under the bell", gt=0.0, le=100.0, note=_SHORT, slider=(1.0, 6.0))
+]
+Bell = Annotated[float, Quantity(text="oscillations under the bell", gt=1.0, le=100.0, note=_SHORT, slider=(1.0, 6.0))]
+Amplitudes = Annotated[Sequence[float], Quantity(unit="m", text="amplitudes along the axes", components=3)]
+Displacement = Annotated[float, Quantity(unit="m", text="amplitude of the displacement")]
+Frequencies = Annotated[
+    tuple[float, float], Quantity(symbol="f", unit="Hz", text="first and last frequency", gt=0.0, components=2)
+]
+Length = Annotated[float, Quantity(unit="s", text="length", gt=0.0)]
+Factor = Annotated[float, Quantity(text="factor of the horizontal components")]
+VerticalFactor = Annotated[float, Quantity(text="factor of the vertical component")]
+Angle = Annotated[float, Quantity(unit="rad", text="turned by", slider=(-3.142, 3.142))]
+Chosen = Annotated[int, Quantity(text="number of the motion, from 0 on")]
+Delay = Annotated[float, Quantity(unit="s", text="delay")]
 Phases = Annotated[Sequence[float], Quantity(unit="rad", text="phases of the components", components=3)]

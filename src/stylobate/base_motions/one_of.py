@@ -1,10 +1,12 @@
-"""One of several motions, told by its number: so that runs under different records are one ensemble."""
+"""One of several motions, chosen by its number: so that runs under different records are one ensemble."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import Any, Self
 
 from stylobate.base_motions.base import BaseMotion
 from stylobate.base_motions.combined import Following, Transformed, require_motion
+from stylobate.base_motions.numbers import Chosen
 from stylobate.errors import ParameterError
 
 
@@ -35,9 +37,10 @@ class OneOf(Following):
     """
 
     motions: tuple[BaseMotion, ...]
-    chosen: int = 0
+    chosen: Chosen = 0
 
-    def __post_init__(self) -> None:
+    def validate(self) -> None:
+        """Raise ParameterError unless there is a motion of the number `chosen`."""
         object.__setattr__(self, "motions", tuple(self.motions))
         for motion in self.motions:
             require_motion("motions", motion)
@@ -46,6 +49,10 @@ class OneOf(Following):
             message = f"motion must be a whole number from 0 to {count - 1}, of {count} motions; got {number!r}"
             raise ParameterError(message)
         object.__setattr__(self, "chosen", int(number))
+
+    def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
+        """Return that it is one of its motions."""
+        return OneOf, {"motions": self.motions, "chosen": self.chosen}
 
     def choose(self, number: float) -> Self:
         """Return this with the motion of another `number` chosen."""

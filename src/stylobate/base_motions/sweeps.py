@@ -1,19 +1,30 @@
 """Sine sweeps: a straight harmonic motion whose frequency changes with time."""
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Self, TypeVar
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions.base import ACCELERATION, DISPLACEMENT, VELOCITY, BaseMotion, Components
+from stylobate.base_motions.numbers import (
+    Acceleration,
+    Direction,
+    Displacement,
+    Frequencies,
+    Length,
+    Start,
+    StartPhase,
+    VerticalRatio,
+)
 from stylobate.base_motions.pulses.quadrature import double_integral, integral
-from stylobate.errors import ParameterError, require_finite, require_not_negative, require_positive, require_vector
+from stylobate.errors import ParameterError
+from stylobate.quantities import Quantity, checked_arguments, parameters_of
 
 Floats = npt.NDArray[np.float64]
-_Kind = TypeVar("_Kind", bound=StrEnum)
 
 MOST_CYCLES = 1e5
 """Of a sweep: its integrals are stored cycle by cycle."""
@@ -82,23 +93,20 @@ class SineSweep(BaseMotion):
     [0.5 1.  2. ]
     """
 
-    amplitude: float
-    quantity: SweepQuantity = SweepQuantity.ACCELERATION
-    law: SweepLaw = SweepLaw.LINEAR
-    frequencies: tuple[float, float]
-    length: float
-    direction: float = 0.0
-    start_phase: float = 0.0
-    start: float = 0.0
-    vertical: float = 0.0
+    ends: ClassVar[bool] = True
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "quantity", _member(SweepQuantity, "quantity", self.quantity))
-        object.__setattr__(self, "law", _member(SweepLaw, "law", self.law))
-        object.__setattr__(self, "frequencies", _two_frequencies(self.frequencies))
-        unit = "m/s²" if self.quantity is SweepQuantity.ACCELERATION else "m"
-        object.__setattr__(self, "amplitude", require_finite("amplitude", self.amplitude, unit))
-        object.__setattr__(self, "length", require_positive("length", self.length, "s"))
+    amplitude: Annotated[float, Quantity(text="amplitude of what is constant")]
+    quantity: Annotated[SweepQuantity, Quantity(text="what is constant")] = SweepQuantity.ACCELERATION
+    law: Annotated[SweepLaw, Quantity(text="how the frequency changes")] = SweepLaw.LINEAR
+    frequencies: Frequencies
+    length: Length
+    direction: Direction = 0.0
+    start_phase: StartPhase = 0.0
+    start: Start = 0.0
+    vertical: VerticalRatio = 0.0
+
+    def validate(self) -> None:
+        """Raise ParameterError for a sweep with too many cycles to store."""
         cycles = max(self.frequencies) * self.length
         if cycles > MOST_CYCLES:
             message = (
@@ -106,23 +114,20 @@ class SineSweep(BaseMotion):
                 "Shorten it, or lower its frequencies."
             )
             raise ParameterError(message)
-        object.__setattr__(self, "direction", require_finite("direction", self.direction, "rad"))
-        object.__setattr__(self, "start_phase", require_finite("start_phase", self.start_phase, "rad"))
-        object.__setattr__(self, "start", require_not_negative("start", self.start, "s"))
-        object.__setattr__(self, "vertical", require_finite("vertical", self.vertical))
 
     @classmethod
+    @checked_arguments
     def linear(
         cls,
         *,
-        acceleration: float | None = None,
-        displacement: float | None = None,
-        frequencies: tuple[float, float],
-        length: float,
-        direction: float = 0.0,
-        start_phase: float = 0.0,
-        start: float = 0.0,
-        vertical: float = 0.0,
+        acceleration: Acceleration | None = None,
+        displacement: Displacement | None = None,
+        frequencies: Frequencies,
+        length: Length,
+        direction: Direction = 0.0,
+        start_phase: StartPhase = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
     ) -> Self:
         """Return a sweep by as many hertz in any second, of this `acceleration` [m/s²] or `displacement` [m]."""
         amplitude, quantity = _given_amplitude(acceleration, displacement)
@@ -139,17 +144,18 @@ class SineSweep(BaseMotion):
         )
 
     @classmethod
+    @checked_arguments
     def logarithmic(
         cls,
         *,
-        acceleration: float | None = None,
-        displacement: float | None = None,
-        frequencies: tuple[float, float],
-        length: float,
-        direction: float = 0.0,
-        start_phase: float = 0.0,
-        start: float = 0.0,
-        vertical: float = 0.0,
+        acceleration: Acceleration | None = None,
+        displacement: Displacement | None = None,
+        frequencies: Frequencies,
+        length: Length,
+        direction: Direction = 0.0,
+        start_phase: StartPhase = 0.0,
+        start: Start = 0.0,
+        vertical: VerticalRatio = 0.0,
     ) -> Self:
         """Return a sweep by as many octaves in any second, of this `acceleration` [m/s²] or `displacement` [m]."""
         amplitude, quantity = _given_amplitude(acceleration, displacement)
@@ -164,6 +170,13 @@ class SineSweep(BaseMotion):
             start=start,
             vertical=vertical,
         )
+
+    def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
+        """Return the constructor of its law, and the amplitude of what it keeps constant by that name."""
+        shared = [name for name in parameters_of(SineSweep.linear) if name in parameters_of(SineSweep)]
+        numbers = {name: getattr(self, name) for name in shared}
+        make = SineSweep.linear if self.law is SweepLaw.LINEAR else SineSweep.logarithmic
+        return make, {self.quantity.value: self.amplitude, **numbers}
 
     def frequency(self, time: npt.ArrayLike) -> Floats:
         """Return the frequency at `time` [Hz], that of the ends outside."""
@@ -258,21 +271,8 @@ class SineSweep(BaseMotion):
 
 def _given_amplitude(acceleration: float | None, displacement: float | None) -> tuple[float, SweepQuantity]:
     if acceleration is not None and displacement is None:
-        return require_finite("acceleration", acceleration, "m/s²"), SweepQuantity.ACCELERATION
+        return acceleration, SweepQuantity.ACCELERATION
     if displacement is not None and acceleration is None:
-        return require_finite("displacement", displacement, "m"), SweepQuantity.DISPLACEMENT
+        return displacement, SweepQuantity.DISPLACEMENT
     message = f"acceleration or displacement must be given, one of them, got {acceleration!r} and {displacement!r}"
     raise ParameterError(message)
-
-
-def _two_frequencies(frequencies: tuple[float, float]) -> tuple[float, float]:
-    first, last = require_vector("frequencies", frequencies, 2, "Hz")
-    return require_positive("frequencies[0]", first, "Hz"), require_positive("frequencies[1]", last, "Hz")
-
-
-def _member(kind: type[_Kind], name: str, value: str) -> _Kind:
-    try:
-        return kind(value)
-    except ValueError:
-        message = f"{name} must be one of {', '.join(kind)}, got {value!r}"
-        raise ParameterError(message) from None

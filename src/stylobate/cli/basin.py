@@ -67,7 +67,7 @@ def basin(options: Options) -> None:
 
 def _prepared(saved: "xr.Dataset | None", options: Options) -> "tuple[Callable[..., xr.Dataset], config.Setup]":
     values = _with_sample(study_values(saved, options, config.BasinConfig), options)
-    setup = options.chosen.setup(config.BasinConfig, with_axes(values, options, "basin"))
+    setup = config.BasinConfig.parse(with_axes(values, options, "basin")).build()
     _check_names(setup.options)
     return studies.basins, setup
 

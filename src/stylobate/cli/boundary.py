@@ -53,7 +53,7 @@ def boundary(options: Options) -> None:
         message = f"--bounds: missing. Give the lowest and the highest {name}: --bounds LOW HIGH."
         raise ParameterError(message)
     values = overlay(read_source(options["source"]), options, config.ResponseConfig.model_fields)
-    setup = options.chosen.setup(config.ResponseConfig, values)
+    setup = config.ResponseConfig.parse(values).build()
     arguments = {
         "parameter": options["parameter"].replace("-", "_"),
         "bounds": options["bounds"],

@@ -82,7 +82,7 @@ class Command:
         described = {part: tables[part] for part in parts.values() if part in tables and part not in kinds}
         from_file = Chosen.of(described, source.parent if source else Path())
         from_options = Chosen.of({part: as_kind(kind) for part, kind in kinds.items()})
-        return Chosen({**described, **from_options.kinds}, {**from_file.classes, **from_options.classes})
+        return Chosen({**from_file.kinds, **from_options.kinds}, {**from_file.classes, **from_options.classes})
 
 
 def command(

@@ -69,7 +69,7 @@ def _prepared(saved: "xr.Dataset | None", options: Options) -> "tuple[Callable[.
         message = "drift.x is missing. State the number that varies, such as --x acceleration 2 30 29."
         raise ParameterError(message)
     merge(values, "drift", options.pick("late"))
-    setup = options.chosen.setup(kind, values)
+    setup = kind.parse(values).build()
     for place, name in zip("xy", setup.options["over"], strict=False):
         check_quantities(f"drift.{place}", setup.model, [name])
     return conveying.drift, setup

@@ -120,14 +120,12 @@ def fragility(options: Options) -> None:
     values = _overlay(
         _described(options["source"]) if saved is None else _description(saved, options["source"]), options
     )
-    description = earthquakes.config.FragilityConfig.parse(options.chosen.with_stand_ins(values))
+    description = earthquakes.config.FragilityConfig.parse(values)
     read = is_to_compute(saved, options, shown_with=_OF_FITS)
-    setup = options.chosen.with_own_parts(description.build(read=read), values)
-    study = earthquakes.FragilityStudy.of(setup)
+    study = earthquakes.FragilityStudy.of(description.build(read=read))
     if read:
         runs, complete = _computed(study, options)
-        if not options.chosen.classes:
-            runs = runs.assign_attrs(description=json.dumps(description.values()))
+        runs = runs.assign_attrs(description=json.dumps(description.values()))
     else:
         assert saved is not None
         runs = saved

@@ -58,7 +58,7 @@ def hierarchy(options: Options) -> None:
     check_writable(options["figure"], options["output"])
     values = overlay(read_source(options["source"]), options, config.HierarchyConfig.model_fields)
     merge(values, "ladder", _compared(options))
-    setup = options.chosen.setup(config.HierarchyConfig, values)
+    setup = config.HierarchyConfig.parse(values).build()
     options.refuse_unused()
     arguments = setup.options
     if options["figure"] is not None and arguments["samples"] is None:

@@ -43,7 +43,7 @@ def overturning_map(options: Options) -> None:
 
 def _prepared(saved: "xr.Dataset | None", options: Options) -> "tuple[Callable[..., xr.Dataset], config.Setup]":
     values = with_axes(study_values(saved, options, config.MapConfig), options, "map")
-    setup = options.chosen.setup(config.MapConfig, values)
+    setup = config.MapConfig.parse(values).build()
     check_axes("map", setup)
     return (conveying.contact_map if setup.model.switches else studies.overturning_map), setup
 

@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from stylobate.cli.declarations import as_kind
 from stylobate.cli.options import Options
 from stylobate.cli.parts import KINDS_IN_FILES, PARTS, Part
 from stylobate.errors import ConfigError, ParameterError
@@ -132,7 +131,7 @@ def _model(values: dict[str, Any], options: Options, fields: Iterable[str], prob
     kind = None
     if "model" in options.declared and options.declared["model"].part:
         if options["model"] and isinstance(table, Mapping):
-            kind = as_kind(options["model"])
+            kind = options.chosen.kinds.get("model", options["model"])
             values["model"] = table = {**_kept(table, kind, options), "kind": kind}
         kind = table.get("kind", "slender") if isinstance(table, Mapping) else None
     numbers, names = _numbers(part, kind, options, problems, fields)
@@ -159,7 +158,7 @@ def _motion(values: dict[str, Any], options: Options, problems: list[str]) -> li
         return []
     table = values.get("motion")
     before = table.get("kind") if isinstance(table, Mapping) else None
-    kind = as_kind(options["motion"]) if options["motion"] else None
+    kind = options.chosen.kinds.get("motion", options["motion"]) if options["motion"] else None
     if kind in KINDS_IN_FILES and before != kind:
         message = (
             f"--motion: no options state the numbers of this motion (got {options['motion']}). "

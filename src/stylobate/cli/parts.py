@@ -63,10 +63,9 @@ def _models() -> Mapping[str, Callable[..., Any]]:
 
 
 def _motions() -> Mapping[str, Callable[..., Any]]:
-    from stylobate.base_motions.declared import HARMONIC_KINDS, PULSE_KINDS  # noqa: PLC0415
-    from stylobate.cli.sine_sweeps import sine_sweep  # noqa: PLC0415
+    from stylobate.base_motions.declared import MOTIONS  # noqa: PLC0415
 
-    return {**HARMONIC_KINDS, **PULSE_KINDS, "linear_sweep": sine_sweep, "logarithmic_sweep": sine_sweep}
+    return {kind: MOTIONS[kind] for kind in MOTIONS if kind not in ("rest", "record", *KINDS_IN_FILES)}
 
 
 PARTS = {

@@ -48,7 +48,7 @@ def response(options: Options) -> None:
         message = f"--points: --exact chooses its own frequencies (got {options['points']}). Remove one of them."
         raise ParameterError(message)
     values = overlay(read_source(options["source"]), options, config.ResponseConfig.model_fields)
-    setup = options.chosen.setup(config.ResponseConfig, values)
+    setup = config.ResponseConfig.parse(values).build()
     options.refuse_unused()
     low, high = setup.options["range"]
     if exact:

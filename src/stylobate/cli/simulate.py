@@ -41,7 +41,7 @@ def simulate(options: Options) -> None:
     check_writable(options["figure"], options["output"])
     fields = config.SimulationConfig.model_fields
     values = overlay(read_source(options["source"]), options, fields)
-    setup = options.chosen.setup(config.SimulationConfig, values)
+    setup = config.SimulationConfig.parse(values).build()
     options.refuse_unused()
     run = engine.simulate(setup.model, setup.motion, **setup.options)
     deliver(run, options, _save, _summary, lambda run: print_table("run", _rows(run, setup.model.column)))

@@ -76,7 +76,7 @@ def _prepared(saved: "xr.Dataset | None", options: Options) -> "tuple[Callable[.
     more = {} if saved is None else {"rocking": saved.attrs["kind"] == _ROCKING}
     values = with_axes(study_values(saved, options, kind, **more), options, "spectrum")
     values = _with_spectrum(values, options)
-    setup = options.chosen.setup(kind, values)
+    setup = kind.parse(values).build()
     check_axes("spectrum", setup)
     rocking = values["spectrum"].get("rocking")
     return (earthquakes.rocking_spectrum if rocking else earthquakes.overturning_bands), setup

@@ -18,7 +18,8 @@ class DescribedColumn(Config):
 
     def build(self) -> Column:
         """Return the column."""
-        return SHAPES[self.shape](**self.model_dump(exclude={"shape"}))
+        column: Column = self.make(**self.model_dump(exclude={"shape"}))
+        return column
 
 
 _BY_SHAPE = configs_of(DescribedColumn, "shape", SHAPES)

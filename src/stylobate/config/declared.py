@@ -3,42 +3,71 @@
 from collections.abc import Callable, Iterable, Mapping
 from typing import Annotated, Any, Literal, TypeVar, Union
 
-from pydantic import Field, create_model
+from pydantic import Field, SerializeAsAny, ValidationError, WrapValidator, create_model
 
 from stylobate.config.description import Config
+from stylobate.kinds import Place
 from stylobate.quantities import Parameter, parameters_of
 
 _D = TypeVar("_D", bound=Config)
 
 
-def configs_of(base: type[_D], tag: str, kinds: Mapping[str, Callable[..., Any]]) -> Mapping[str, type[_D]]:
-    """Return a description for each of the `kinds`, told apart by the value of the key `tag`.
+def config_of_kind(base: type[_D], tag: str, kind: str, make: Callable[..., Any]) -> type[_D]:
+    """Return the description of a kind, by the declared numbers of what makes it.
 
     Parameters
     ----------
     base
-        What descriptions of all kinds share, with a `build` that makes the thing.
+        What descriptions of all kinds share, with a `build` that calls `make`.
     tag
         The key that holds the kind.
-    kinds
-        By name, the class or named constructor whose declared numbers are described. Their bounds are checked when
-        the thing is built.
+    kind
+        Its value: a name, or the place of a class of the user's own.
+    make
+        The class or named constructor whose declared numbers are described. Their bounds are checked when the thing is
+        built.
     """
-    return {kind: _description_of(base, tag, kind, make) for kind, make in kinds.items()}
-
-
-def one_of(descriptions: Iterable[type[Config]], tag: str) -> Any:
-    """Return the annotation of a field that holds one of the `descriptions`, told apart by the key `tag`."""
-    union: Any = Union[tuple(descriptions)]  # noqa: UP007  the members are not known before
-    return Annotated[union, Field(discriminator=tag)]
-
-
-def _description_of(base: type[_D], tag: str, kind: str, make: Callable[..., Any]) -> type[_D]:
     numbers = {name: (_type_of(one), ... if one.required else one.default) for name, one in parameters_of(make).items()}
-    fields: dict[str, Any] = {tag: (Literal[kind], kind), **numbers}
-    name = f"{kind.title().replace('_', '')}{base.__name__.removeprefix('Described')}"
+    fields: dict[str, Any] = {tag: (Literal[str(kind)], str(kind)), **numbers}
+    room = next(one.__name__ for one in base.__mro__ if one.__name__.startswith("Described")).removeprefix("Described")
+    name = f"{kind.rpartition(':')[2].title().replace('_', '')}{room}"
     first_sentence = (make.__doc__ or "").partition("\n")[0]
-    return create_model(name, __base__=base, __doc__=first_sentence, __module__=base.__module__, **fields)
+    found = create_model(name, __base__=base, __doc__=first_sentence, __module__=base.__module__, **fields)
+    found.make = staticmethod(make)
+    return found
+
+
+def configs_of(base: type[_D], tag: str, kinds: Mapping[str, Callable[..., Any]]) -> Mapping[str, type[_D]]:
+    """Return a description for each of the `kinds`, told apart by the value of the key `tag`."""
+    return {kind: config_of_kind(base, tag, kind, make) for kind, make in kinds.items()}
+
+
+def one_of(descriptions: Iterable[type[Config]], tag: str, own: Callable[[Place], type[Config]] | None = None) -> Any:
+    """Return the annotation of a field that holds one of the `descriptions`, told apart by the key `tag`.
+
+    With `own`, which describes a class of the user's own, the key can hold the place of one too.
+    """
+    union: Any = Union[tuple(descriptions)]  # noqa: UP007  the members are not known before
+
+    def read(value: Any, registered: Callable[[Any], Any]) -> Any:
+        kind = value.get(tag) if isinstance(value, Mapping) else None
+        if own is None or not isinstance(kind, Place):
+            return registered(value)
+        try:
+            return own(kind).model_validate({**value, tag: str(kind)})
+        except ValidationError as error:
+            raise _under(kind, error) from None
+
+    return Annotated[union, Field(discriminator=tag), WrapValidator(read), SerializeAsAny()]  # type: ignore[type-arg]
+
+
+def _under(kind: str, error: ValidationError) -> ValidationError:
+    """Return the error with its lines under the kind, as those of a registered kind are."""
+    lines: list[Any] = [
+        {"type": one["type"], "loc": (kind, *one["loc"]), "input": one["input"], "ctx": one.get("ctx", {})}
+        for one in error.errors()
+    ]
+    return ValidationError.from_exception_data(error.title, lines)
 
 
 def _type_of(parameter: Parameter) -> Any:

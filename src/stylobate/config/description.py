@@ -1,11 +1,12 @@
 """What all descriptions share: strict keys, and mistakes told one to a line."""
 
+import re
 from collections.abc import Callable, Mapping
-from typing import Any, Self, TypeVar
+from typing import Any, ClassVar, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from stylobate.config.suggestions import with_suggestions
+from stylobate.config.suggestions import did_you_mean, with_suggestions
 from stylobate.errors import ConfigError, ParameterError
 
 _T = TypeVar("_T")
@@ -25,6 +26,9 @@ class Config(BaseModel):
     """A part of a TOML or JSON description; unknown keys are mistakes."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+    make: ClassVar[Callable[..., Any]]
+    """What is described: a class or a named constructor; for a kind of column, model or motion only."""
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
@@ -68,12 +72,20 @@ def _line(problem: Any) -> str:
         case "extra_forbidden":
             return _unknown(name, problem["loc"])
         case "union_tag_invalid":
-            return f"{name}.{tag} must be one of {context['expected_tags']}, got {context['tag']!r}"
+            return f"{name}.{tag} must be one of {context['expected_tags']}, got {context['tag']!r}{_meant(context)}"
         case "union_tag_not_found":
             return f"{name}.{tag} is missing"
         case "value_error":
             return str(context["error"])
     return f"{name}: {problem['msg'][0].lower()}{problem['msg'][1:]}, got {given!r}"
+
+
+def _meant(context: Mapping[str, Any]) -> str:
+    """Return what an unknown kind may have meant."""
+    if ":" in context["tag"]:
+        return "; a class of your own is read from a TOML file or a saved result only"
+    question = did_you_mean(context["tag"], re.findall(r"'(\w+)'", context["expected_tags"]))
+    return f"; {question}" if question else ""
 
 
 def _unknown(name: str, loc: tuple[int | str, ...]) -> str:

@@ -9,7 +9,7 @@ from pydantic import Field
 from stylobate.config.columns import ColumnConfig
 from stylobate.config.description import Config, built
 from stylobate.config.models import default_values, described_model
-from stylobate.config.motions import MotionConfig, RestMotion
+from stylobate.config.motions import AT_REST, MotionConfig
 from stylobate.config.run_numbers import OneRun, problems_of_the_numbers
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
@@ -41,7 +41,7 @@ class HierarchyOptions(Config):
 class _HierarchyCase(Config):
     column: ColumnConfig
     model: HierarchyFrictions = HierarchyFrictions()
-    motion: MotionConfig = RestMotion(kind="rest")
+    motion: MotionConfig = AT_REST
 
 
 class HierarchyConfig(OneRun, _HierarchyCase):

@@ -7,6 +7,7 @@ from pydantic import Field
 
 from stylobate.base_motions import BaseMotion
 from stylobate.config.description import built
+from stylobate.config.motions import is_to_end, made_by
 from stylobate.config.run_numbers import SharedByRuns, problems_of_the_numbers
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
@@ -14,11 +15,12 @@ from stylobate.config.simulation import (
     built_parts,
     built_rules,
     duration_with_tail,
-    is_to_end,
     refuse_own_classes,
 )
 from stylobate.errors import ParameterError
+from stylobate.kinds import with_places
 from stylobate.models import Model
+from stylobate.quantities import parameters_of
 from stylobate.results import OutcomeRules
 
 
@@ -71,7 +73,7 @@ class ManyRuns(SharedByRuns, Case):
 
     def _lasts_as_its_motion(self, names: Sequence[str]) -> bool:
         untold = self.duration is None and self.periods is None and "duration" not in names
-        return untold and is_to_end(self.motion.model_dump())
+        return untold and is_to_end(self.motion)
 
 
 _OF_A_SINGLE_RUN = ("samples", "twist", "position", "friction_coefficient", "velocity", "clearance")
@@ -86,27 +88,16 @@ _SHARED = (
 def with_numbers_that_vary(values: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
     """Return `values` with a number in the motion for each that it needs and that varies anyway, if it lacks one."""
     motion = values.get("motion")
-    if not isinstance(motion, Mapping):
+    make = made_by(motion.get("kind")) if isinstance(motion, Mapping) else None
+    if make is None:
         return dict(values)
-    needed = _NEEDED.get(str(motion.get("kind")), ())
+    declared = parameters_of(make)
+    # By a path or a velocity the acceleration depends on the frequency, which can then not stay away.
+    by_path = any(one.quantity.unit in ("m", "m/s") for one in declared.values())
+    needed = [name for name in names if name in declared and declared[name].required]
     # With an amplitude of 1 m/s² scaling to an acceleration is exact.
-    return {**values, "motion": {**{name: 1.0 for name in needed if name in names}, **motion}}
-
-
-_NEEDED = {
-    "circular": ("acceleration", "angular_frequency"),
-    "straight": ("acceleration", "angular_frequency"),
-    "oblique": ("acceleration", "angular_frequency"),
-    "elliptic": ("angular_frequency",),
-    "harmonic": ("angular_frequency",),
-    **dict.fromkeys(
-        (
-            *("half_sine", "half_cosine", "one_sine", "one_cosine", "sinusoidal"),
-            *("ricker", "antisymmetric_ricker"),
-        ),
-        ("acceleration",),
-    ),
-}
+    given = {name: 1.0 for name in needed if not (by_path and name == "angular_frequency")}
+    return {**values, "motion": {**given, **values["motion"]}}
 
 
 def common_values(provenance: Mapping[str, Any]) -> dict[str, Any]:
@@ -119,7 +110,7 @@ def common_values(provenance: Mapping[str, Any]) -> dict[str, Any]:
     """
     refuse_own_classes(provenance)
     known = ("column", "model", "motion", "rules", *_SHARED)
-    return {name: provenance[name] for name in known if provenance.get(name) is not None}
+    return {name: with_places(provenance[name]) for name in known if provenance.get(name) is not None}
 
 
 def name_of(axis: object) -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, Self
 
-from stylobate.base_motions.frequency import is_pulse, with_frequency
+from stylobate.base_motions.varying import is_pulse, with_numbers
 from stylobate.config.axis import Axis
 from stylobate.config.description import Config, built
 from stylobate.config.many_runs import ManyRuns, common_values, name_of, refuse_design, with_numbers_that_vary
@@ -69,5 +69,7 @@ class MapConfig(ManyRuns):
         frequencies = over.get("angular_frequency")
         if frequencies is not None and self.duration is None and self.periods is None and is_pulse(motion):
             # Each to the end of its own pulse: that of the lowest frequency lasts longest.
-            options["duration"] = duration_with_tail(model, with_frequency(motion, float(frequencies.min())))
+            options["duration"] = duration_with_tail(
+                model, with_numbers(motion, {"angular_frequency": float(frequencies.min())})
+            )
         return Setup(model, motion, {"over": over, **options})

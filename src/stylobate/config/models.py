@@ -1,17 +1,18 @@
 """Descriptions of models, made from the declarations of their numbers and told apart by their `kind`."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import BeforeValidator
 
 from stylobate.column import Column
-from stylobate.config.declared import configs_of, one_of
+from stylobate.config.declared import config_of_kind, configs_of, one_of
 from stylobate.config.description import Config
 from stylobate.errors import UnsupportedError
+from stylobate.kinds import Place
 from stylobate.models import Model
 from stylobate.models.declared import MODELS
-from stylobate.quantities import parameters_of
+from stylobate.quantities import is_declared, parameters_of
 
 
 class DescribedModel(Config):
@@ -21,8 +22,8 @@ class DescribedModel(Config):
 
     def build(self, column: Column) -> Model:
         """Return the model of `column`."""
-        model: Callable[..., Model] = MODELS[self.kind]
-        return model(column, **self.model_dump(exclude={"kind"}))
+        model: Model = self.make(column, **self.model_dump(exclude={"kind"}))
+        return model
 
 
 _BY_KIND = configs_of(DescribedModel, "kind", MODELS)
@@ -36,10 +37,15 @@ def _with_kind(described: Any) -> Any:
     return {"kind": "slender", **described} if isinstance(described, dict) else described
 
 
+def _of_own(place: Place) -> type[DescribedModel]:
+    """Return the description of a model of the user's own."""
+    return config_of_kind(DescribedModel, "kind", place, MODELS[place])
+
+
 if TYPE_CHECKING:
     ModelConfig = DescribedModel
 else:
-    ModelConfig = Annotated[one_of(DESCRIBED_MODELS, "kind"), BeforeValidator(_with_kind)]
+    ModelConfig = Annotated[one_of(DESCRIBED_MODELS, "kind", _of_own), BeforeValidator(_with_kind)]
 
 
 def described_model(kind: str, **values: Any) -> DescribedModel:
@@ -69,13 +75,12 @@ def describe_model(model: Model) -> Config:
     Raises
     ------
     UnsupportedError
-        If the model is of a class that descriptions do not know.
+        If the model is of a class that cannot be loaded from its place, or has numbers that are not declared.
     """
-    kind = _KINDS.get(type(model))  # a subclass is another model
-    if kind is not None:
-        return described_model(kind, **{name: getattr(model, name) for name in parameters_of(type(model))})
+    make = type(model)
+    kind = MODELS.name_of(make)
+    if kind and is_declared(make, "column"):
+        config = _BY_KIND.get(kind) or config_of_kind(DescribedModel, "kind", kind, make)
+        return config(**{"kind": kind, **{name: getattr(model, name) for name in parameters_of(make)}})
     message = f"a model of class {type(model).__name__} has no description; results keep its repr only"
     raise UnsupportedError(message)
-
-
-_KINDS: Mapping[type[Model], str] = {model: kind for kind, model in MODELS.items()}

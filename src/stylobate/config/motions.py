@@ -1,16 +1,17 @@
-"""Descriptions of base motions, told apart by their `kind`."""
+"""Descriptions of base motions, made from the declarations of their numbers and told apart by their `kind`."""
 
-from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any, Literal, get_args
+import inspect
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
 
-from stylobate.base_motions import BaseMotion, Delayed, Harmonic, OneOf, Pulse, Record, Rotated, Scaled, SineSweep, Sum
-from stylobate.base_motions.declared import HARMONIC_KINDS, PULSE_KINDS
-from stylobate.base_motions.pulses import AntisymmetricRicker, Gabor, MavroeidisPapageorgiou, Ricker, Sinusoid
-from stylobate.config.declared import configs_of, one_of
+from stylobate.base_motions import BaseMotion, Record
+from stylobate.base_motions.declared import MOTIONS
+from stylobate.config.declared import config_of_kind, one_of
 from stylobate.config.description import Config
 from stylobate.config.records import DescribedRecord, RecordMotion
 from stylobate.errors import UnsupportedError
-from stylobate.quantities import parameters_of
+from stylobate.kinds import Place, with_places
+from stylobate.quantities import is_declared
 
 
 class DescribedMotion(Config):
@@ -20,141 +21,86 @@ class DescribedMotion(Config):
 
     def build(self) -> BaseMotion:
         """Return the motion."""
-        make: Callable[..., BaseMotion] = {**HARMONIC_KINDS, **PULSE_KINDS}[self.kind]
-        return make(**self.model_dump(exclude={"kind"}))
+        motion: BaseMotion = self.make(**self._numbers())
+        return motion
+
+    def _numbers(self) -> dict[str, Any]:
+        return {name: value for name, value in self if name not in ("kind", "motion", "motions")}
 
 
-class RestMotion(DescribedMotion):
-    """A base at rest."""
+class MotionOfMotions(DescribedMotion):
+    """Several motions, and numbers."""
 
-    kind: Literal["rest"]
-
-    def build(self) -> BaseMotion:
-        """Return the motion."""
-        return Sum()
-
-
-class PulseMotion(DescribedMotion):
-    """A pulse by the numbers of its kind."""
-
-
-HARMONICS = configs_of(DescribedMotion, "kind", HARMONIC_KINDS)
-_PULSES = configs_of(PulseMotion, "kind", PULSE_KINDS)
-
-
-class SweepMotion(Config):
-    """A sine sweep of constant acceleration [m/s²] or displacement [m] between two frequencies [Hz] in `length` [s]."""
-
-    kind: Literal["linear_sweep", "logarithmic_sweep"]
-    acceleration: float | None = None
-    displacement: float | None = None
-    frequencies: tuple[float, float]
-    length: float
-    start_phase: float = 0.0
-    direction: float = 0.0
-    start: float = 0.0
-    vertical: float = 0.0
-
-    def build(self) -> BaseMotion:
-        """Return the motion."""
-        make = SineSweep.linear if self.kind == "linear_sweep" else SineSweep.logarithmic
-        return make(**self.model_dump(exclude={"kind"}))
-
-
-class SumMotion(Config):
-    """The sum of several motions."""
-
-    kind: Literal["sum"]
     motions: tuple["MotionConfig", ...]
 
     def build(self) -> BaseMotion:
         """Return the motion."""
-        return Sum(motions=tuple(motion.build() for motion in self.motions))
+        motion: BaseMotion = self.make(motions=tuple(one.build() for one in self.motions), **self._numbers())
+        return motion
 
 
-class OneOfMotion(Config):
-    """One of several motions, the one of the number `chosen`, counted from 0."""
+class ChangedMotion(DescribedMotion):
+    """Another motion, and numbers by which it is changed: by a method that it has, or by a class of the user's own."""
 
-    kind: Literal["one_of"]
-    motions: tuple["MotionConfig", ...]
-    chosen: int = 0
-
-    def build(self) -> BaseMotion:
-        """Return the motion."""
-        return OneOf(motions=tuple(motion.build() for motion in self.motions), chosen=self.chosen)
-
-
-class ScaledMotion(Config):
-    """A motion times `factor`, its vertical component times `vertical`."""
-
-    kind: Literal["scaled"]
     motion: "MotionConfig"
-    factor: float
-    vertical: float | None = None
 
     def build(self) -> BaseMotion:
         """Return the motion."""
-        return self.motion.build().scaled(self.factor, vertical=self.vertical)
+        inner = self.motion.build()
+        change = self.make if isinstance(self.make, type) else getattr(inner, self.make.__name__)
+        of = {"motion": inner} if isinstance(self.make, type) else {}
+        motion: BaseMotion = change(**of, **self._numbers())
+        return motion
 
 
-class RotatedMotion(Config):
-    """A motion turned by `angle` [rad]."""
-
-    kind: Literal["rotated"]
-    motion: "MotionConfig"
-    angle: float
-
-    def build(self) -> BaseMotion:
-        """Return the motion."""
-        return self.motion.build().rotated(self.angle)
+def _config(kind: str, make: Callable[..., Any]) -> type[Config]:
+    """Return the description of a kind of motion; that of a record reads files."""
+    if make is Record:
+        return RecordMotion
+    arguments = inspect.signature(make).parameters
+    several, changed = "motions" in arguments, "motion" in arguments or "self" in arguments
+    base = MotionOfMotions if several else ChangedMotion if changed else DescribedMotion
+    return config_of_kind(base, "kind", kind, make)
 
 
-class DelayedMotion(Config):
-    """A motion begun `delay` [s] later."""
+def _of_own(place: Place) -> type[Config]:
+    """Return the description of a motion of the user's own."""
+    return _config(place, MOTIONS[place])
 
-    kind: Literal["delayed"]
-    motion: "MotionConfig"
-    delay: float
 
-    def build(self) -> BaseMotion:
-        """Return the motion."""
-        return self.motion.build().delayed(self.delay)
-
+_BY_KIND = {kind: _config(kind, make) for kind, make in MOTIONS.items()}
 
 if TYPE_CHECKING:
     MotionConfig = DescribedMotion
 else:
-    MotionConfig = one_of(
-        (
-            RestMotion,
-            *HARMONICS.values(),
-            *_PULSES.values(),
-            SweepMotion,
-            RecordMotion,
-            OneOfMotion,
-            SumMotion,
-            ScaledMotion,
-            RotatedMotion,
-            DelayedMotion,
-        ),
-        "kind",
-    )
+    MotionConfig = one_of(_BY_KIND.values(), "kind", _of_own)
 
-_MEMBERS: tuple[type[Config], ...] = get_args(get_args(MotionConfig)[0])
+for _one in _BY_KIND.values():
+    _one.model_rebuild()
+
+AT_REST: Any = _BY_KIND["rest"].parse({"kind": "rest"})
+"""The description of a base at rest."""
+
+COMPOSITE = tuple(kind for kind, one in _BY_KIND.items() if issubclass(one, (MotionOfMotions, ChangedMotion)))
+"""Kinds of motions made of other motions."""
 
 
-def _kinds(members: Iterable[type[Config]]) -> tuple[str, ...]:
-    return tuple(kind for one in members for kind in get_args(one.model_fields["kind"].annotation))
+def is_to_end(motion: object) -> bool:
+    """Return whether a `motion`, described or in plain values, is one that ends.
+
+    Its class says so by `ends`; what is made of motions ends if all of them do.
+    """
+    values = dict(motion) if isinstance(motion, (Mapping, Config)) else {}
+    members = values.get("motions", [values["motion"]] if "motion" in values else None)
+    if members is not None:
+        return isinstance(members, (list, tuple)) and bool(members) and all(is_to_end(one) for one in members)
+    make = motion.make if isinstance(motion, Config) else made_by(values.get("kind"))
+    return bool(getattr(getattr(make, "__self__", make), "ends", False))
 
 
-ENDING = _kinds(one for one in _MEMBERS if issubclass(one, (PulseMotion, SweepMotion, RecordMotion)))
-"""Kinds of motions that end, so that a run needs no duration: pulses, sine sweeps and records."""
-
-PULSES = _kinds(one for one in _MEMBERS if issubclass(one, PulseMotion) and "angular_frequency" in one.model_fields)
-"""Kinds of pulses that have an angular frequency."""
-
-for _composite in (SumMotion, OneOfMotion, ScaledMotion, RotatedMotion, DelayedMotion):
-    _composite.model_rebuild()
+def made_by(kind: object) -> Callable[..., Any] | None:
+    """Return what makes motions of a kind in plain values; None for one that is not known."""
+    return MOTIONS[kind] if isinstance(kind, Place) or (isinstance(kind, str) and kind in MOTIONS) else None
 
 
 def describe_motion(motion: BaseMotion) -> Config:
@@ -163,91 +109,30 @@ def describe_motion(motion: BaseMotion) -> Config:
     Raises
     ------
     UnsupportedError
-        If the motion is of a class that descriptions do not know, or a record that was read in Python.
+        If the motion is of a class that cannot be loaded from its place, has numbers that are not declared, or is a
+        record that was read in Python.
     """
-    describe = _DESCRIBERS.get(type(motion))  # a subclass is another motion
-    if describe is not None:
-        return describe(motion)
+    if isinstance(motion, DescribedRecord):
+        return motion.description
     if type(motion) is Record:
         message = f"the record {motion.name!r} has no description that tells of which files; results keep its repr only"
         raise UnsupportedError(message)
-    message = f"a motion of class {type(motion).__name__} has no description; results keep its repr only"
-    raise UnsupportedError(message)
-
-
-def _described_harmonic(motion: Harmonic) -> Config:
-    numbers = {name: getattr(motion, name) for name in parameters_of(Harmonic)}
-    return HARMONICS["harmonic"](**{"kind": "harmonic", **numbers})
-
-
-def _described_record(motion: DescribedRecord) -> Config:
-    return motion.description
-
-
-def _described_sum(motion: Sum) -> Config:
-    if not motion.motions:
-        return RestMotion(kind="rest")
-    return SumMotion.parse({"kind": "sum", "motions": _described_members(motion)})
-
-
-def _described_one_of(motion: OneOf) -> Config:
-    return OneOfMotion.parse({"kind": "one_of", "motions": _described_members(motion), "chosen": motion.chosen})
-
-
-def _described_members(motion: Sum | OneOf) -> list[dict[str, Any]]:
-    return [describe_motion(member).values() for member in motion.motions]
-
-
-def _described_copy(motion: Scaled | Rotated | Delayed) -> Config:
-    copied = {"motion": describe_motion(motion.motion).values()}
-    match motion:
-        case Scaled():
-            changed = {"kind": "scaled", "factor": motion.factor, "vertical": motion.vertical}
-            return ScaledMotion.parse({**changed, **copied})
-        case Rotated():
-            return RotatedMotion.parse({"kind": "rotated", "angle": motion.angle, **copied})
-        case Delayed():
-            return DelayedMotion.parse({"kind": "delayed", "delay": motion.delay, **copied})
-
-
-_WAVEFORMS: Mapping[type, str] = {
-    Sinusoid: "sinusoidal",
-    Ricker: "ricker",
-    AntisymmetricRicker: "antisymmetric_ricker",
-    Gabor: "gabor",
-    MavroeidisPapageorgiou: "mavroeidis_papageorgiou",
-}
-
-
-def _described_pulse(pulse: Pulse) -> Config:
-    waveform = pulse.waveform
-    if type(waveform) not in _WAVEFORMS:
-        message = f"a waveform of class {type(waveform).__name__} has no description; results keep its repr only"
+    own = "made_by" not in vars(type(motion))  # a subclass is another motion
+    make, arguments = BaseMotion.made_by(motion) if own else motion.made_by()
+    kind = MOTIONS.name_of(make)
+    if own and is_declared(make, "motion") and hasattr(motion, "motion"):
+        arguments = {"motion": motion.motion, **arguments}
+    if not kind or (kind not in MOTIONS and not is_declared(make, *arguments)):
+        message = f"a motion of class {type(motion).__name__} has no description; results keep its repr only"
         raise UnsupportedError(message)
-    kind = _WAVEFORMS[type(waveform)]
-    line = _line(pulse)
-    numbers = {name: getattr(waveform, name) for name in parameters_of(PULSE_KINDS[kind]) if name not in line}
-    return _PULSES[kind].parse({"kind": kind, **numbers, **line})
+    config = _BY_KIND.get(kind) or _config(kind, make)
+    return config.parse({"kind": kind, **{name: _described(value) for name, value in arguments.items()}})
 
 
-def _described_sweep(sweep: SineSweep) -> Config:
-    own = {"frequencies": sweep.frequencies, "length": sweep.length, "start_phase": sweep.start_phase}
-    kind, amplitude = f"{sweep.law.value}_sweep", {sweep.quantity.value: sweep.amplitude}
-    return SweepMotion.parse({"kind": kind, **amplitude, **own, **_line(sweep)})
-
-
-def _line(motion: Pulse | SineSweep) -> dict[str, float]:
-    return {"direction": motion.direction, "start": motion.start, "vertical": motion.vertical}
-
-
-_DESCRIBERS: Mapping[type[BaseMotion], Callable[[Any], Config]] = {
-    Harmonic: _described_harmonic,
-    Pulse: _described_pulse,
-    SineSweep: _described_sweep,
-    DescribedRecord: _described_record,
-    Sum: _described_sum,
-    OneOf: _described_one_of,
-    Scaled: _described_copy,
-    Rotated: _described_copy,
-    Delayed: _described_copy,
-}
+def _described(value: Any) -> Any:
+    """Return the plain values of a motion, or of several; another value as it is."""
+    if isinstance(value, BaseMotion):
+        return with_places(describe_motion(value).values())
+    if isinstance(value, tuple) and value and isinstance(value[0], BaseMotion):
+        return [_described(one) for one in value]
+    return value

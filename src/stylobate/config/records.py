@@ -4,7 +4,7 @@ import hashlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -66,6 +66,8 @@ class RecordMotion(Reading):
     record. Then come the steps of `processing`, in their order, each with the name of a method of `Record`; at
     last `scale`, `rotation` [rad] and `tail` [s of rest]. A saved result has `file_sha256` of its files, by path.
     """
+
+    make: ClassVar = Record
 
     kind: Literal["record"] = "record"
     path: str | tuple[str, ...] | None = None

@@ -14,7 +14,7 @@ from stylobate.config.columns import ANY_COLUMN, ColumnConfig, describe_column
 from stylobate.config.description import Config, built
 from stylobate.config.file_values import DEEPEST, check_file_values
 from stylobate.config.models import ModelConfig, describe_model, described_model
-from stylobate.config.motions import ENDING, MotionConfig, RestMotion, describe_motion
+from stylobate.config.motions import AT_REST, MotionConfig, describe_motion, is_to_end
 from stylobate.config.records import RecordMotion, anchored
 from stylobate.config.run_numbers import SingleRun, problems_of_the_numbers
 from stylobate.errors import (
@@ -23,6 +23,7 @@ from stylobate.errors import (
     ParameterError,
     UnsupportedError,
 )
+from stylobate.kinds import with_places
 from stylobate.models import Model
 from stylobate.results import OutcomeRules
 
@@ -41,7 +42,7 @@ class Case(Config):
 
     column: ColumnConfig
     model: ModelConfig = described_model("slender")
-    motion: MotionConfig = RestMotion(kind="rest")
+    motion: MotionConfig = AT_REST
 
 
 class SimulationConfig(SingleRun, Case):
@@ -102,18 +103,6 @@ FREE_TAIL = 20.0
 """How long a run goes on after its base motion if no duration is given, in 1/p: near its balance all parts by e²⁰."""
 
 
-def is_to_end(motion: object) -> bool:
-    """Return whether the plain values of a `motion` are of one that ends: see `ENDING`; a scaled one too."""
-    if not isinstance(motion, Mapping):
-        return False
-    kind = motion.get("kind")
-    if kind in ("sum", "one_of"):
-        members = motion.get("motions")
-        return isinstance(members, Sequence) and bool(members) and all(is_to_end(one) for one in members)
-    changed = kind in ("scaled", "rotated", "delayed")
-    return kind in ENDING or (changed and is_to_end(motion.get("motion")))
-
-
 def with_default_duration(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return `values` without a `duration` that is not given, or with None for it if the motion ends."""
     if values.get("duration") is not None:
@@ -156,7 +145,8 @@ def read_config(path: str | Path) -> dict[str, Any]:
         message = f"{path}: nested too deeply to be read. Describe it with at most {DEEPEST} levels."
         raise FileError(message) from None
     check_file_values(values)
-    found: dict[str, Any] = anchored(values, Path(path).parent)
+    folder = Path(path).parent
+    found: dict[str, Any] = anchored(with_places(values, folder), folder)
     return found
 
 
@@ -190,7 +180,7 @@ def config_of(provenance: Mapping[str, Any]) -> SimulationConfig:
         If the run was made with a model or motion that descriptions do not know.
     """
     refuse_own_classes(provenance)
-    return SimulationConfig.parse({name: value for name, value in provenance.items() if name != "version"})
+    return SimulationConfig.parse({name: value for name, value in with_places(provenance).items() if name != "version"})
 
 
 def refuse_own_classes(provenance: Mapping[str, Any]) -> None:

@@ -5,7 +5,11 @@ from typing import Any
 
 import tomlkit
 
+import stylobate as sb
+from stylobate.base_motions.declared import MOTIONS
 from stylobate.config.simulation import SimulationConfig
+from stylobate.kinds import Kinds
+from stylobate.models.declared import MODELS
 
 
 def as_toml(values: Mapping[str, Any]) -> str:
@@ -45,10 +49,9 @@ def as_python(description: SimulationConfig) -> str:
     shape = str(getattr(description.column, "shape"))  # noqa: B009  every member of the union has one
     column.pop("shape", None)
     maker = "sb.Column" if shape == "given" else f"sb.Column.{shape}"
-    class_name = "".join(part.title() for part in model.kind.split("_"))
     numbers = model.model_dump(exclude={"kind"}, exclude_defaults=True)
     lines = ["import stylobate as sb", "", f"column = {maker}({_keywords(column)})"]
-    lines.append(f"model = sb.{class_name}({_joined(['column', _keywords(numbers)])})")
+    lines.append(f"model = {_maker(MODELS, model.kind)}({_joined(['column', _keywords(numbers)])})")
     moved = description.motion.kind != "rest"
     if moved:
         lines.append(f"motion = {_motion(description.motion)}")
@@ -75,11 +78,20 @@ def _motion(motion: Any) -> str:
         return _record(motion, numbers)
     if kind in _CHANGES:
         return _motion(motion.motion) + _changed(kind, numbers)
-    if kind in _CONTAINERS:
-        members = ", ".join(_motion(member) for member in motion.motions)
-        return f"{_CONTAINERS[kind]}({_joined([f'motions=({members},)', _keywords(numbers)])})"
-    maker = _MAKERS.get(kind, f"sb.Pulse.{kind}")
-    return f"{maker}({_keywords(numbers)})"
+    own = []
+    if hasattr(motion, "motions"):
+        own = [f"motions=({', '.join(_motion(member) for member in motion.motions)},)"]
+    elif hasattr(motion, "motion"):
+        own = [f"motion={_motion(motion.motion)}"]
+    return f"{_maker(MOTIONS, kind)}({_joined([*own, _keywords(numbers)])})"
+
+
+def _maker(kinds: Kinds, kind: str) -> str:
+    """Return the Python of what makes a kind: by its public name, or from the place of a class of the user's own."""
+    if kind not in kinds:
+        return f"sb.kinds.loaded({kind!r})"
+    name = kinds.places[kind].rpartition(":")[2]
+    return f"sb.{name}" if name.partition(".")[0] in sb.__all__ else f"sb.base_motions.{name}"
 
 
 def _record(motion: Any, numbers: Mapping[str, Any]) -> str:
@@ -130,14 +142,6 @@ def _without_none(values: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-_HARMONICS = ("circular", "straight", "elliptic", "vertical", "oblique", "displacement_amplitude", "stroke", "orbit")
-_MAKERS = {kind: f"sb.Harmonic.{kind}" for kind in _HARMONICS} | {
-    "harmonic": "sb.Harmonic",
-    "linear_sweep": "sb.SineSweep.linear",
-    "logarithmic_sweep": "sb.SineSweep.logarithmic",
-}
-"""What makes the motions of each kind but for pulses, whose kinds are methods of `Pulse`."""
-
 _CHANGES = {
     "scaled": ("factor", 1.0),
     "rotated": ("angle", 0.0),
@@ -151,5 +155,3 @@ _LAST = {"scale": "scaled", "rotation": "rotated", "tail": "with_tail"}
 
 _SHOWN = ('print(run.outcome.name, "-", run.reason)', 'sb.plot(run).savefig("run.png")')
 """The end of each program: what became of the column, and its history as a figure."""
-
-_CONTAINERS = {"sum": "sb.base_motions.Sum", "one_of": "sb.OneOf"}

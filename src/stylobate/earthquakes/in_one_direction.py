@@ -9,6 +9,7 @@ import numpy.typing as npt
 from stylobate.base_motions import BaseMotion, Record
 from stylobate.base_motions.base import Components
 from stylobate.base_motions.combined import Transformed
+from stylobate.base_motions.numbers import Direction
 from stylobate.errors import require_finite
 
 
@@ -16,11 +17,7 @@ from stylobate.errors import require_finite
 class InOneDirection(Transformed):
     """`motion` without its horizontal acceleration across the `direction` [rad from x, anticlockwise]."""
 
-    direction: float
-
-    def __post_init__(self) -> None:
-        Transformed.__post_init__(self)
-        require_finite("direction", self.direction, "rad")
+    direction: Direction
 
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
         """Return the displacement (`order` 0), velocity (1) or acceleration (2)."""

@@ -142,7 +142,7 @@ def property_samples(
     if not isinstance(rng, np.random.Generator):
         message = f"rng must be a numpy.random.Generator, got {rng!r}; try numpy.random.default_rng(0)"
         raise ParameterError(message)
-    check_names(model, spreads, where="spreads")
+    check_names(model, None, spreads, where="spreads")
     for name, spread in spreads.items():
         if name not in (*COLUMN_NAMES, *model_names(model)):
             message = f"spreads cannot name {name}: it belongs to the base motion"

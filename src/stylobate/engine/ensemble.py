@@ -22,7 +22,7 @@ from stylobate.engine.ensembles.pool import Halt, parts_of, run_parts, usual_thr
 from stylobate.engine.ensembles.summaries import QUANTITIES, Arrays, empty, fallen, summaries
 from stylobate.engine.motion_checks import check_motion
 from stylobate.engine.pace import announce, expected_steps
-from stylobate.engine.parameters import MOTION_NAMES, changed_model, check_names
+from stylobate.engine.parameters import changed_model, check_names, split
 from stylobate.engine.single import require_nouns
 from stylobate.errors import MOST_THREADS, Interrupted, Outcome, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
@@ -134,7 +134,7 @@ def simulate_ensemble(
     require_nouns(model, motion, rules)
     moved = BASE_AT_REST if motion is None else motion
     changes = _named(parameters)
-    check_names(model, changes)
+    check_names(model, moved, changes)
     options = Options.checked(
         method=method,
         rtol=rtol,
@@ -169,7 +169,7 @@ def simulate_ensemble(
     if terms_of(moved) is None and len(runs):
         for member in members_of(moved):
             check_motion(member, float(runs.duration.max()))
-    plan = Plan(model, MotionPlan.of(moved, runs.values, runs.duration), options)
+    plan = Plan(model, MotionPlan.of(moved, split(model, runs.values)[1], runs.duration), options)
 
     def result() -> xr.Dataset:
         return _dataset(runs, arrays, _provenance(model, moved, options, same))
@@ -182,7 +182,7 @@ def simulate_ensemble(
 
 def _check_own_model(model: Model, runs: Runs) -> None:
     """Raise ModelError if the members of a user's own model contradict each other at the parameters of some runs."""
-    own = {name: values for name, values in runs.values.items() if name not in MOTION_NAMES}
+    own, _ = split(model, runs.values)
     for index in {round(share * (len(runs) - 1)) for share in (0.0, 0.25, 0.5, 0.75, 1.0)} if own and len(runs) else ():
         check_once(changed_model(model, {name: float(values[index]) for name, values in own.items()}))
 

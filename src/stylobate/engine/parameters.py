@@ -2,15 +2,18 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
-from types import SimpleNamespace
+from typing import TypeVar
 
 from stylobate.base_motions import BaseMotion, Harmonic
 from stylobate.base_motions.combined import Sum, Transformed
-from stylobate.base_motions.frequency import frequency_of, has_frequency_of_its_own, is_pulse, with_frequency
+from stylobate.base_motions.declared import motion_quantities
 from stylobate.base_motions.one_of import number_of, with_choice
+from stylobate.base_motions.varying import numbers_of, value_of, with_numbers
 from stylobate.column import Column
 from stylobate.errors import ParameterError, UnsupportedError, require_finite
 from stylobate.models import Model
+
+_T = TypeVar("_T")
 
 COLUMN_NAMES = (
     "radius",
@@ -25,13 +28,16 @@ COLUMN_NAMES = (
 """Its fields; `slenderness` changes the radius, `size` all lengths at the same density."""
 
 MOTION_NAMES = ("motion", "angular_frequency", "start_phase", "acceleration", "scale", "rotation", "delay")
-"""In the order in which they are applied."""
+"""In the order in which they are applied; `angular_frequency` and `start_phase` are declared numbers as others are."""
 
 ELLIPSE_NAMES = ("amplitude_x", "amplitude_y", "amplitude_z", "phase_difference")
 """Of one harmonic motion, before all others; ensembles do not vary them."""
 
-_OF_HARMONICS = ("angular_frequency", "start_phase")
-"""Of which a pulse has the first."""
+_CHANGES = {"rotation": 0.0, "delay": 0.0, "scale": 1.0, "size": 1.0}
+"""What every motion and column takes, with the number that changes nothing."""
+
+_OWN = "motion."
+"""Before the name of a number of the motion that something else has too: see `motion_names`."""
 
 # What a name changes besides itself: with the other it would be said twice, and differently.
 _CONTRARY = {"slenderness": ("radius",), "size": ("radius", "mass_height")}
@@ -44,15 +50,57 @@ def model_names(model: Model) -> tuple[str, ...]:
     return tuple(field.name for field in fields(model) if field.name != "column" and field.init)
 
 
+def motion_names(model: Model, motion: BaseMotion | None) -> tuple[str, ...]:
+    """Return the names of the declared numbers of `motion`; of any of the package, where that is not known.
+
+    One whose name the column, the model, a change of the motion or a result has too is called "motion." and its name.
+    """
+    from stylobate.engine.ensembles.summaries import QUANTITIES  # noqa: PLC0415  the two modules need each other
+
+    taken = {*COLUMN_NAMES, *model_names(model), "motion", "acceleration", *_CHANGES, *QUANTITIES}
+    names = motion_quantities() if motion is None else numbers_of(motion)
+    return tuple(_OWN + name if name in taken else name for name in names)
+
+
+def split(model: Model, values: Mapping[str, _T]) -> tuple[dict[str, _T], dict[str, _T]]:
+    """Return those of the `values` that change the column and its `model`, and those that change the motion."""
+    own = {*COLUMN_NAMES, *model_names(model)} - {*MOTION_NAMES, *ELLIPSE_NAMES}
+    of_model = {name: value for name, value in values.items() if name in own}
+    return of_model, {name: value for name, value in values.items() if name not in own}
+
+
+def declared_names(motion: BaseMotion, values: Mapping[str, object]) -> dict[str, str]:
+    """Return the names in `values` of declared numbers of `motion`, each with what it is called there.
+
+    Raises
+    ------
+    UnsupportedError
+        If the motion has no such number.
+    """
+    changes = {*MOTION_NAMES, *ELLIPSE_NAMES} - {"angular_frequency", "start_phase"}
+    names = {name: name.removeprefix(_OWN) for name in values if name not in changes}
+    for name, own in names.items():
+        if own not in numbers_of(motion):
+            message = f"{name}: the base motion has no such number; {_said(motion)}. {_having(motion)}"
+            raise UnsupportedError(message)
+    return names
+
+
 def check_names(
-    model: Model, names: Iterable[str], *, where: str = "parameters", others: Iterable[str] = (), ellipse: bool = False
+    model: Model,
+    motion: BaseMotion | None,
+    names: Iterable[str],
+    *,
+    where: str = "parameters",
+    others: Iterable[str] = (),
+    ellipse: bool = False,
 ) -> None:
     """Raise ParameterError if one of the `names` is none that can be changed, or two say contrary things.
 
     Parameters
     ----------
-    model
-        The model whose numbers are changed.
+    model, motion
+        Whose numbers are changed; None where the motion is not known.
     names
         What is to be changed.
     where
@@ -64,6 +112,7 @@ def check_names(
     """
     names = tuple(names)
     known = (*others, *COLUMN_NAMES, *model_names(model), *MOTION_NAMES, *(ELLIPSE_NAMES if ellipse else ()))
+    known = tuple(dict.fromkeys((*known, *motion_names(model, motion))))
     for name in names:
         if name not in known:
             message = f"{where}: {name} is not known here; known are {', '.join(known)}"
@@ -86,9 +135,11 @@ def with_parameters(model: Model, motion: BaseMotion, /, **values: float) -> tup
         Of the column: radius, mass_height [m], mass [kg], transverse_inertia, axial_inertia [kg m²], gravity [m/s²],
         slenderness (by its radius), size (all lengths times it). Of the model: its own fields, such as damping. Of the
         motion, applied in this order: motion (which of those in a `OneOf`); of a harmonic motion amplitude_x,
-        amplitude_y, amplitude_z [m/s²] and phase_difference (phase of y less that of x) [rad]; angular_frequency
-        [rad/s], of a pulse too; start_phase [rad], acceleration [m/s²] (its largest horizontal one; of a sum, the sum
-        of those of its parts), scale (a factor), rotation [rad] about the vertical, delay [s].
+        amplitude_y, amplitude_z [m/s²] and phase_difference (phase of y less that of x) [rad]; the numbers that its
+        class declares, such as angular_frequency [rad/s], start_phase [rad], or the cycles of a pulse; acceleration
+        [m/s²] (its largest horizontal one; of a sum, the sum of those of its parts), scale (a factor), rotation [rad]
+        about the vertical, delay [s]. A name that the column or the model has too stands for theirs: "motion." before
+        it makes it that of the motion.
 
     Raises
     ------
@@ -107,9 +158,8 @@ def with_parameters(model: Model, motion: BaseMotion, /, **values: float) -> tup
     >>> changed.damping, faster.angular_frequency
     (0.2, 3.0)
     """
-    check_names(model, values, where="with_parameters", ellipse=True)
-    of_motion = {name: values[name] for name in (*ELLIPSE_NAMES, *MOTION_NAMES) if name in values}
-    of_model = {name: value for name, value in values.items() if name not in of_motion}
+    check_names(model, motion, values, where="with_parameters", ellipse=True)
+    of_model, of_motion = split(model, values)
     return changed_model(model, of_model), changed_motion(motion, of_motion)
 
 
@@ -132,14 +182,15 @@ def _changed_column(column: Column, values: Mapping[str, float]) -> Column:
 
 
 def changed_motion(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotion:
-    """Return `motion` with these numbers: those of the ellipse, then in the order of MOTION_NAMES."""
+    """Return `motion` with these numbers: of the ellipse, the declared ones, then in the order of MOTION_NAMES."""
     if "motion" in values:
         motion = _one_of(motion, values["motion"])
-    harmonic = {name: values[name] for name in (*ELLIPSE_NAMES, *_OF_HARMONICS) if name in values}
-    if "angular_frequency" in harmonic and is_pulse(motion):
-        motion = with_frequency(motion, harmonic.pop("angular_frequency"))
-    if harmonic:
-        motion = _changed_harmonic(motion, harmonic)
+    ellipse = {name: values[name] for name in ELLIPSE_NAMES if name in values}
+    if ellipse:
+        motion = _changed_harmonic(motion, ellipse)
+    numbers = {own: values[name] for name, own in declared_names(motion, values).items()}
+    if numbers:
+        motion = with_numbers(motion, numbers)
     if "acceleration" in values:
         value = require_finite("acceleration", values["acceleration"], "m/s²")
         motion = motion.scaled(value / largest_acceleration(motion))
@@ -184,8 +235,7 @@ def harmonic_part(motion: BaseMotion, name: str) -> Harmonic:
     if isinstance(motion, Transformed):
         return harmonic_part(motion.motion, name)
     if type(motion) is not Harmonic:
-        where = "a Harmonic motion or a pulse" if name == "angular_frequency" else "a Harmonic motion"
-        message = f"{name} can be changed in {where} only; {_said(motion)}"
+        message = f"{name} can be changed in a Harmonic motion only; {_said(motion)}"
         raise UnsupportedError(message)
     return motion
 
@@ -198,15 +248,15 @@ def _said(motion: BaseMotion) -> str:
 
 
 def _changed_harmonic(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotion:
-    harmonic_part(motion, next(iter(values)))
+    harmonic = harmonic_part(motion, next(iter(values)))
     if isinstance(motion, Transformed):
         return replace(motion, motion=_changed_harmonic(motion.motion, values))
-    assert isinstance(motion, Harmonic)
-    own = {name: value for name, value in values.items() if name in _OF_HARMONICS}
-    x, y, z = (values.get(name, usual) for name, usual in zip(ELLIPSE_NAMES[:3], motion.amplitude, strict=True))
-    first, second, third = motion.phase
-    second = first + values.get("phase_difference", second - first)
-    return replace(motion, amplitude=(x, y, z), phase=(first, second, third), **own)
+    numbers = {**_ellipse(harmonic), **values}
+    x, y, z = (numbers[name] for name in ELLIPSE_NAMES[:3])
+    first, second, third = harmonic.phase
+    if "phase_difference" in values:
+        second = first + values["phase_difference"]
+    return replace(harmonic, amplitude=(x, y, z), phase=(first, second, third))
 
 
 def present_value(model: Model, motion: BaseMotion, name: str) -> float:
@@ -219,34 +269,32 @@ def present_value(model: Model, motion: BaseMotion, name: str) -> float:
     UnsupportedError
         If the motion has no such number.
     """
-    check_names(model, [name], where="parameter", ellipse=True)
+    check_names(model, motion, [name], where="parameter", ellipse=True)
     if name in _CHANGES:
         return _CHANGES[name]
     if name == "acceleration":
         return largest_acceleration(motion)
     if name == "motion":
         return float(number_of(motion))
-    value = getattr(*_holder(model, motion, name))
+    if name in ELLIPSE_NAMES:
+        return _ellipse(harmonic_part(motion, name))[name]
+    of_model, _ = split(model, {name: None})
+    if not of_model:
+        return value_of(motion, declared_names(motion, {name: None})[name])
+    value = getattr(model.column if name in COLUMN_NAMES else model, name)
     if value is None:
         message = f"parameter {name} has no value in model {model.name}; give it one"
         raise ParameterError(message)
     return float(value)
 
 
-_CHANGES = {"rotation": 0.0, "delay": 0.0, "scale": 1.0, "size": 1.0}
+def _ellipse(motion: Harmonic) -> Mapping[str, float]:
+    """Return the numbers of ELLIPSE_NAMES."""
+    x, y, z = motion.amplitude
+    first, second, _ = motion.phase
+    return dict(zip(ELLIPSE_NAMES, (x, y, z, second - first), strict=True))
 
 
-def _holder(model: Model, motion: BaseMotion, name: str) -> tuple[object, str]:
-    """Return the object that holds a number, and what it is called there."""
-    if name in COLUMN_NAMES:
-        return model.column, name
-    if name in model_names(model):
-        return model, name
-    if name == "angular_frequency" and has_frequency_of_its_own(motion):
-        return SimpleNamespace(angular_frequency=frequency_of(motion)), name
-    harmonic = harmonic_part(motion, name)
-    if name in _OF_HARMONICS:
-        return harmonic, name
-    x, y, z = harmonic.amplitude
-    first, second, _ = harmonic.phase
-    return SimpleNamespace(**dict(zip(ELLIPSE_NAMES, (x, y, z, second - first), strict=True))), name
+def _having(motion: BaseMotion) -> str:
+    names = ", ".join(numbers_of(motion))
+    return f"Its numbers are {names}." if names else "It has none."

@@ -11,8 +11,7 @@ from stylobate.base_motions.records.samples import sample_names
 from stylobate.config.columns import ColumnConfig
 from stylobate.config.description import Config
 from stylobate.config.models import DESCRIBED_MODELS
-from stylobate.config.motions import MotionConfig
-from stylobate.config.simulation import is_to_end
+from stylobate.config.motions import MotionConfig, is_to_end
 from stylobate.errors import Outcome
 from stylobate.lab.limits import Limits
 from stylobate.lab.parameter_info import NUMBERS, Number

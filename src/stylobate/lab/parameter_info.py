@@ -22,17 +22,14 @@ class Number:
 def _declared() -> Mapping[str, Number]:
     """Return the numbers of columns, models and base motions, as they are declared there."""
     return {
-        name: Number(one.symbol, one.unit, one.text, *(one.slider or ()))
+        name: Number(one.symbol, one.unit, one.text, first, last, one.choices)
         for name, one in {**column_quantities(), **model_quantities(), **motion_quantities()}.items()
+        for first, last in [one.slider or (None, None)]
     }
 
 
 NUMBERS: Mapping[str, Number] = {
     **_declared(),
-    "sense": Number("", "", "+1 anticlockwise, −1 clockwise", choices=(1, -1)),
-    "displacement": Number("", "m", "amplitude of the displacement"),
-    "frequencies": Number("f", "Hz", "first and last frequency"),
-    "length": Number("", "s", "length"),
     "scale": Number("", "", "scale factor", 0.1, 4.0),
     "rotation": Number("", "rad", "turned by", -3.142, 3.142),
     "tail": Number("", "s", "rest after the record"),

@@ -4,23 +4,21 @@ from collections.abc import Mapping
 from functools import cache
 
 from stylobate.column import SHAPES
-from stylobate.models.model import Model
-from stylobate.models.planar_rocking import PlanarRocking
-from stylobate.models.rolling import Rolling
-from stylobate.models.slender import Slender
-from stylobate.models.slender_rolling import SlenderRolling
-from stylobate.models.sliding import Sliding
-from stylobate.models.wobbling import Wobbling
+from stylobate.kinds import Kinds
 from stylobate.quantities import Quantity, parameters_of
 
-MODELS: Mapping[str, type[Model]] = {
-    "slender": Slender,
-    "slender_rolling": SlenderRolling,
-    "wobbling": Wobbling,
-    "rolling": Rolling,
-    "sliding": Sliding,
-    "planar_rocking": PlanarRocking,
-}
+MODELS = Kinds(
+    "model",
+    "stylobate.models.model:Model",
+    {
+        "slender": "stylobate.models.slender:Slender",
+        "slender_rolling": "stylobate.models.slender_rolling:SlenderRolling",
+        "wobbling": "stylobate.models.wobbling:Wobbling",
+        "rolling": "stylobate.models.rolling:Rolling",
+        "sliding": "stylobate.models.sliding.model:Sliding",
+        "planar_rocking": "stylobate.models.planar_rocking:PlanarRocking",
+    },
+)
 """The models of the package, by their kind in files and on the command line."""
 
 

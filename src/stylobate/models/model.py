@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from stylobate.column import Column
 from stylobate.errors import ParameterError
-from stylobate.quantities import check_declared
+from stylobate.quantities import Declared
 
 Floats = npt.NDArray[np.float64]
 
@@ -67,7 +67,7 @@ class Output:
     long_name: str
 
 
-class Model(ABC):
+class Model(Declared, ABC):
     """A column with its equations of motion.
 
     A model integrates in its own units: time in units of `time_scale`, accelerations of the base in units of
@@ -195,13 +195,9 @@ class Model(ABC):
     """(state…, parameters…) → the state in which a column that comes to rest stands; None for all zeros."""
 
     def __post_init__(self) -> None:
-        """Check the numbers by their declarations, then all of them together by `validate`."""
+        """Check the column, then the numbers by their declarations."""
         require_column(self.column)
-        check_declared(self)
-        self.validate()
-
-    def validate(self) -> None:  # noqa: B027  a hook that most models leave empty
-        """Raise ParameterError for numbers that do not go together; each of them has been checked by itself."""
+        Declared.__post_init__(self)
 
     @property
     @abstractmethod

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.base_motions.frequency import with_frequency
+from stylobate.base_motions.numbers import AngularFrequency
 from stylobate.base_motions.pulses import Waveform
+from stylobate.base_motions.varying import with_numbers
 from stylobate.engine.ensembles.polynomials import tabulated
 from stylobate.engine.ensembles.stretched import tabulated_alike
 from stylobate.errors import ParameterError, UnsupportedError
@@ -42,7 +43,9 @@ def test_each_run_is_that_under_the_pulse_of_its_frequency(pulse):
     runs = sb.simulate_ensemble(MODEL, pulse, duration=6.0, parameters={"angular_frequency": FREQUENCIES})
     moved = 0
     for run, frequency in zip((runs.isel(run=i) for i in range(runs.sizes["run"])), FREQUENCIES, strict=True):
-        alone = sb.simulate(MODEL, with_frequency(pulse, float(frequency)), duration=6.0, recheck=False)
+        alone = sb.simulate(
+            MODEL, with_numbers(pulse, {"angular_frequency": float(frequency)}), duration=6.0, recheck=False
+        )
         assert sb.results.outcome_of(run["outcome"]) == alone.outcome
         if alone.outcome is not sb.Outcome.OVERTURNED:  # else it ends with a step of the method's
             assert float(run["largest_tilt"]) == pytest.approx(alone.measures["largest_tilt"], rel=1e-6, abs=1e-9)
@@ -53,7 +56,7 @@ def test_each_run_is_that_under_the_pulse_of_its_frequency(pulse):
 @every_pulse
 @pytest.mark.parametrize("end", [0.4, 6.0])
 def test_a_stretched_table_is_that_of_the_pulse_itself_whatever_its_end(pulse, end):
-    members = [with_frequency(pulse, frequency) for frequency in (2.5, 4.0, 9.0)]
+    members = [with_numbers(pulse, {"angular_frequency": frequency}) for frequency in (2.5, 4.0, 9.0)]
     time = np.linspace(0.0, end, 500)[:-1]
     for member, table in zip(members, tabulated_alike(members, end), strict=True):
         size = member.largest_horizontal(0.0)
@@ -67,7 +70,7 @@ def test_a_stretched_table_is_that_of_the_pulse_itself_whatever_its_end(pulse, e
 class Hump(Waveform):
     """Of a height that falls with its frequency, and a shape that goes with it: no two are alike."""
 
-    angular_frequency: float
+    angular_frequency: AngularFrequency
 
     duration = 2.0
     highest_frequency = 12.0
@@ -84,7 +87,7 @@ class Hump(Waveform):
 
 
 def test_a_pulse_that_is_another_at_each_frequency_is_not_stretched():
-    members = [with_frequency(P(waveform=Hump(1.0)), frequency) for frequency in (1.0, 3.0)]
+    members = [with_numbers(P(waveform=Hump(1.0)), {"angular_frequency": frequency}) for frequency in (1.0, 3.0)]
     time = np.linspace(0.01, 1.99, 200)
     for member, table in zip(members, tabulated_alike(members, 3.0), strict=True):
         wanted = member.waveform.derivative(time, 2)
@@ -111,12 +114,15 @@ def test_a_map_over_the_frequency_of_a_pulse_has_its_runs():
 
 def test_what_has_no_frequency_is_refused_with_a_word():
     record = sb.sample_record()
-    with pytest.raises(UnsupportedError, match="angular_frequency can be changed in a Harmonic motion or a pulse only"):
+    with pytest.raises(UnsupportedError, match=r"angular_frequency: the base motion has no .* It has none"):
         sb.simulate_ensemble(MODEL, record, duration=1.0, parameters={"angular_frequency": [2.0]})
     with pytest.raises(ParameterError, match="angular_frequency must be positive"):
         sb.simulate_ensemble(MODEL, PULSES["ricker"], duration=1.0, parameters={"angular_frequency": [0.0]})
     over = {"angular_frequency": [2.0], "acceleration": [1.0]}
     with pytest.raises(ParameterError, match="periods needs a periodic base motion"):
         sb.studies.overturning_map(MODEL, PULSES["ricker"], over=over, periods=3.0)
-    with pytest.raises(UnsupportedError, match="start_phase can be changed in a Harmonic motion only"):
+    with pytest.raises(
+        UnsupportedError,
+        match=r"start_phase: the base motion has no such number; .* Its numbers are acceleration, angular_freq",
+    ):
         sb.simulate_ensemble(MODEL, PULSES["ricker"], duration=1.0, parameters={"start_phase": [0.0]})

@@ -2,32 +2,34 @@
 
 import math
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions.base import ACCELERATION, DISPLACEMENT, VELOCITY, BaseMotion, Components
+from stylobate.base_motions.numbers import Direction, Start, VerticalRatio
 from stylobate.base_motions.pulses.waveform import Waveform
-from stylobate.errors import ParameterError, require_finite, require_not_negative
+from stylobate.errors import ParameterError
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AlongLine(BaseMotion):
     """What a `Pulse` does, whose named constructors make the waveforms."""
 
+    ends: ClassVar[bool] = True
+
     waveform: Waveform
-    direction: float = 0.0
-    start: float = 0.0
-    vertical: float = 0.0
+    direction: Direction = 0.0
+    start: Start = 0.0
+    vertical: VerticalRatio = 0.0
     _turning_points: tuple[tuple[float, float], ...] = field(init=False, repr=False, compare=False)
 
-    def __post_init__(self) -> None:
+    def validate(self) -> None:
+        """Raise ParameterError unless `waveform` is one; find the turning points of one that is."""
         if not isinstance(self.waveform, Waveform):
             message = f"waveform must be a Waveform such as Ricker(...), got {self.waveform!r}"
             raise ParameterError(message)
-        object.__setattr__(self, "direction", require_finite("direction", self.direction, "rad"))
-        object.__setattr__(self, "start", require_not_negative("start", self.start, "s"))
-        object.__setattr__(self, "vertical", require_finite("vertical", self.vertical))
         object.__setattr__(self, "_turning_points", self.waveform.turning_points())
 
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:

@@ -2,21 +2,15 @@
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from stylobate.base_motions.base import ACCELERATION, VELOCITY
+from stylobate.base_motions.numbers import Frequency, Oscillations, Phase, Velocity
 from stylobate.base_motions.pulses.quadrature import integral
 from stylobate.base_motions.pulses.ricker import BAND, CUT
-from stylobate.base_motions.pulses.waveform import (
-    MOST_OSCILLATIONS,
-    Floats,
-    Waveform,
-    found_turning_points,
-    require_few,
-    unseen,
-)
-from stylobate.errors import require_finite, require_positive
+from stylobate.base_motions.pulses.waveform import Floats, Waveform, found_turning_points, unseen
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,16 +40,12 @@ class Gabor(Waveform):
     quadrature, to 1e-13 of A/f. Over all of it the base moves by √(2π) γ/(2πf) exp(−γ²/2) cos ν A.
     """
 
-    velocity: float
-    frequency: float
-    phase: float
-    oscillations: float
+    constructor: ClassVar[str] = "gabor"
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "velocity", require_finite("velocity", self.velocity, "m/s"))
-        object.__setattr__(self, "frequency", require_positive("frequency", self.frequency, "Hz"))
-        object.__setattr__(self, "phase", require_finite("phase", self.phase, "rad"))
-        object.__setattr__(self, "oscillations", require_few("oscillations", self.oscillations, MOST_OSCILLATIONS))
+    velocity: Velocity
+    frequency: Frequency
+    phase: Phase
+    oscillations: Oscillations
 
     @property
     def deviation(self) -> float:

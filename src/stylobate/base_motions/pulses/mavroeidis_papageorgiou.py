@@ -2,19 +2,13 @@
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from stylobate.base_motions.base import ACCELERATION, VELOCITY
-from stylobate.base_motions.pulses.waveform import (
-    MOST_OSCILLATIONS,
-    Floats,
-    Waveform,
-    found_turning_points,
-    require_few,
-    unseen,
-)
-from stylobate.errors import ParameterError, require_finite, require_positive
+from stylobate.base_motions.numbers import Bell, Frequency, Phase, Velocity
+from stylobate.base_motions.pulses.waveform import Floats, Waveform, found_turning_points, unseen
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,20 +38,12 @@ class MavroeidisPapageorgiou(Waveform):
     last such that it begins with 0. The acceleration has no jumps; its slope jumps at both ends.
     """
 
-    velocity: float
-    frequency: float
-    phase: float
-    oscillations: float
+    constructor: ClassVar[str] = "mavroeidis_papageorgiou"
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "velocity", require_finite("velocity", self.velocity, "m/s"))
-        object.__setattr__(self, "frequency", require_positive("frequency", self.frequency, "Hz"))
-        object.__setattr__(self, "phase", require_finite("phase", self.phase, "rad"))
-        oscillations = require_few("oscillations", self.oscillations, MOST_OSCILLATIONS)
-        if oscillations <= 1.0:
-            message = f"oscillations must be above 1, got {oscillations!r}: a bell is longer than an oscillation"
-            raise ParameterError(message)
-        object.__setattr__(self, "oscillations", oscillations)
+    velocity: Velocity
+    frequency: Frequency
+    phase: Phase
+    oscillations: Bell
 
     @property
     def duration(self) -> float:

@@ -1,12 +1,15 @@
 """The pulses of the literature as base motions."""
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
+from stylobate.base_motions.base import BaseMotion
 from stylobate.base_motions.numbers import (
     Acceleration,
     AngularFrequency,
+    Bell,
     Cycles,
     Direction,
     Frequency,
@@ -23,7 +26,7 @@ from stylobate.base_motions.pulses.gabor import Gabor
 from stylobate.base_motions.pulses.mavroeidis_papageorgiou import MavroeidisPapageorgiou
 from stylobate.base_motions.pulses.ricker import AntisymmetricRicker, Ricker
 from stylobate.base_motions.pulses.sinusoid import Sinusoid
-from stylobate.errors import require_finite, require_positive, require_whole
+from stylobate.quantities import checked_arguments, parameters_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,7 +69,15 @@ class Pulse(AlongLine):
     [0.     1.2732 0.    ]
     """
 
+    def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
+        """Return the constructor of its waveform, and the numbers of both; `Pulse` for a waveform without one."""
+        make = getattr(Pulse, self.waveform.constructor, Pulse)
+        line = {name: getattr(self, name) for name in parameters_of(Pulse)}
+        wave = {name: getattr(self.waveform, name) for name in parameters_of(type(self.waveform))}
+        return make, {**wave, **line}
+
     @classmethod
+    @checked_arguments
     def sinusoidal(
         cls,
         *,
@@ -83,6 +94,7 @@ class Pulse(AlongLine):
         return cls(waveform=waveform, direction=direction, start=start, vertical=vertical)
 
     @classmethod
+    @checked_arguments
     def half_sine(
         cls,
         *,
@@ -103,6 +115,7 @@ class Pulse(AlongLine):
         )
 
     @classmethod
+    @checked_arguments
     def half_cosine(
         cls,
         *,
@@ -124,6 +137,7 @@ class Pulse(AlongLine):
         )
 
     @classmethod
+    @checked_arguments
     def one_sine(
         cls,
         *,
@@ -143,6 +157,7 @@ class Pulse(AlongLine):
         )
 
     @classmethod
+    @checked_arguments
     def one_cosine(
         cls,
         *,
@@ -163,6 +178,7 @@ class Pulse(AlongLine):
         )
 
     @classmethod
+    @checked_arguments
     def type_a(
         cls,
         *,
@@ -173,16 +189,16 @@ class Pulse(AlongLine):
         vertical: VerticalRatio = 0.0,
     ) -> Self:
         """Return the forward pulse of velocity ½V(1 − cos ωt), one sine of acceleration ½ωV (Makris 1997)."""
-        frequency = require_positive("angular_frequency", angular_frequency, "rad/s")
         return cls.one_sine(
-            acceleration=0.5 * frequency * require_finite("velocity", velocity, "m/s"),
-            angular_frequency=frequency,
+            acceleration=0.5 * angular_frequency * velocity,
+            angular_frequency=angular_frequency,
             direction=direction,
             start=start,
             vertical=vertical,
         )
 
     @classmethod
+    @checked_arguments
     def type_b(
         cls,
         *,
@@ -193,16 +209,16 @@ class Pulse(AlongLine):
         vertical: VerticalRatio = 0.0,
     ) -> Self:
         """Return the forward-and-back pulse of velocity V sin ωt, one cosine of acceleration ωV (Makris 1997)."""
-        frequency = require_positive("angular_frequency", angular_frequency, "rad/s")
         return cls.one_cosine(
-            acceleration=frequency * require_finite("velocity", velocity, "m/s"),
-            angular_frequency=frequency,
+            acceleration=angular_frequency * velocity,
+            angular_frequency=angular_frequency,
             direction=direction,
             start=start,
             vertical=vertical,
         )
 
     @classmethod
+    @checked_arguments
     def type_c(
         cls,
         *,
@@ -218,20 +234,19 @@ class Pulse(AlongLine):
         φ is such that the base ends where it began, without velocity (Makris 1997; Zhang and Makris 2001): 0.0697 π
         for n = 1, 0.0410 π for n = 2.
         """
-        frequency = require_positive("angular_frequency", angular_frequency, "rad/s")
-        number = require_whole("cycles", cycles, least=1)
-        phase = closing_phase(number)
+        phase = closing_phase(cycles)
         return cls.sinusoidal(
-            acceleration=frequency * require_finite("velocity", velocity, "m/s"),
-            angular_frequency=frequency,
+            acceleration=angular_frequency * velocity,
+            angular_frequency=angular_frequency,
             phase=phase + 0.5 * math.pi,
-            cycles=number + 0.5 - phase / math.pi,
+            cycles=cycles + 0.5 - phase / math.pi,
             direction=direction,
             start=start,
             vertical=vertical,
         )
 
     @classmethod
+    @checked_arguments
     def ricker(
         cls,
         *,
@@ -246,6 +261,7 @@ class Pulse(AlongLine):
         return cls(waveform=waveform, direction=direction, start=start, vertical=vertical)
 
     @classmethod
+    @checked_arguments
     def antisymmetric_ricker(
         cls,
         *,
@@ -260,6 +276,7 @@ class Pulse(AlongLine):
         return cls(waveform=waveform, direction=direction, start=start, vertical=vertical)
 
     @classmethod
+    @checked_arguments
     def gabor(
         cls,
         *,
@@ -276,13 +293,14 @@ class Pulse(AlongLine):
         return cls(waveform=waveform, direction=direction, start=start, vertical=vertical)
 
     @classmethod
+    @checked_arguments
     def mavroeidis_papageorgiou(
         cls,
         *,
         velocity: Velocity,
         frequency: Frequency,
         phase: Phase = 0.0,
-        oscillations: Oscillations,
+        oscillations: Bell,
         direction: Direction = 0.0,
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,

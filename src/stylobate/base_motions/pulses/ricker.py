@@ -8,8 +8,8 @@ import numpy as np
 from numpy.polynomial import HermiteE
 
 from stylobate.base_motions.base import ACCELERATION, DISPLACEMENT
+from stylobate.base_motions.numbers import Acceleration, AngularFrequency
 from stylobate.base_motions.pulses.waveform import Floats, Waveform
-from stylobate.errors import require_finite, require_positive
 
 # The bell is cut where it is e⁻³² = 1.3e-14 of its height, so many standard deviations from its middle.
 CUT = 8.0
@@ -21,16 +21,11 @@ BAND = 5.0
 class _BellDerivative(Waveform):
     """An acceleration that is a derivative of −exp(−x²/2), x the time from the middle in standard deviations σ."""
 
-    acceleration: float
-    angular_frequency: float
+    acceleration: Acceleration
+    angular_frequency: AngularFrequency
 
     degree: ClassVar[int]
     turns: ClassVar[tuple[float, ...]]  # x of the turning points: zeros of the next Hermite polynomial
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "acceleration", require_finite("acceleration", self.acceleration, "m/s²"))
-        frequency = require_positive("angular_frequency", self.angular_frequency, "rad/s")
-        object.__setattr__(self, "angular_frequency", frequency)
 
     @property
     def deviation(self) -> float:
@@ -97,6 +92,7 @@ class Ricker(_BellDerivative):
     analysis", Bulletin of the Seismological Society of America 101 (2011).
     """
 
+    constructor: ClassVar[str] = "ricker"
     degree: ClassVar[int] = 2
     turns: ClassVar[tuple[float, ...]] = (-math.sqrt(3.0), 0.0, math.sqrt(3.0))
 
@@ -122,6 +118,7 @@ class AntisymmetricRicker(_BellDerivative):
     Vassiliou and Makris (2011), see `Ricker`.
     """
 
+    constructor: ClassVar[str] = "antisymmetric_ricker"
     degree: ClassVar[int] = 3
     turns: ClassVar[tuple[float, ...]] = tuple(
         side * math.sqrt(3.0 + inner * math.sqrt(6.0)) for side, inner in ((-1, 1), (-1, -1), (1, -1), (1, 1))

@@ -2,15 +2,13 @@
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from stylobate.base_motions.base import ACCELERATION, VELOCITY
-from stylobate.base_motions.pulses.waveform import Floats, Waveform, require_few
-from stylobate.errors import require_finite, require_positive
-
-MOST_CYCLES = 1000.0
-"""A longer pulse is steady shaking."""
+from stylobate.base_motions.numbers import Acceleration, AngularFrequency, Cycles, Phase
+from stylobate.base_motions.pulses.waveform import Floats, Waveform
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,17 +32,12 @@ class Sinusoid(Waveform):
         If a number is not finite, the frequency or `cycles` not positive, or `cycles` above 1000.
     """
 
-    acceleration: float
-    angular_frequency: float
-    phase: float
-    cycles: float
+    constructor: ClassVar[str] = "sinusoidal"
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "acceleration", require_finite("acceleration", self.acceleration, "m/s²"))
-        frequency = require_positive("angular_frequency", self.angular_frequency, "rad/s")
-        object.__setattr__(self, "angular_frequency", frequency)
-        object.__setattr__(self, "phase", require_finite("phase", self.phase, "rad"))
-        object.__setattr__(self, "cycles", require_few("cycles", self.cycles, MOST_CYCLES))
+    acceleration: Acceleration
+    angular_frequency: AngularFrequency
+    phase: Phase
+    cycles: Cycles
 
     @property
     def duration(self) -> float:

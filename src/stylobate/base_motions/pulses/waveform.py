@@ -3,11 +3,12 @@
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.errors import ParameterError, require_positive
+from stylobate.quantities import Declared
 
 Floats = npt.NDArray[np.float64]
 
@@ -15,11 +16,8 @@ Floats = npt.NDArray[np.float64]
 _CELLS_PER_PERIOD = 1024
 _HALVINGS = 60
 
-MOST_OSCILLATIONS = 100.0
-"""Of a wavelet, a harmonic under a bell: pulses near faults have one to five."""
 
-
-class Waveform(ABC):
+class Waveform(Declared, ABC):
     """An acceleration along a line from the time 0 to `duration`, and what follows from it.
 
     Notes
@@ -29,6 +27,9 @@ class Waveform(ABC):
     """
 
     __slots__ = ()
+
+    constructor: ClassVar[str] = ""
+    """The constructor of `Pulse` that takes its numbers; empty for a waveform of the user's own."""
 
     @property
     @abstractmethod
@@ -60,18 +61,6 @@ class Waveform(ABC):
     def margin(self) -> float:
         """By how much the acceleration may pass those of `turning_points` and the ends [m/s²]."""
         return 0.0
-
-
-def require_few(name: str, value: float, most: float) -> float:
-    """Return `value` as a float, or raise ParameterError unless it is positive and `most` at most.
-
-    What is told of a pulse is found oscillation by oscillation when it is made.
-    """
-    number = require_positive(name, value)
-    if number > most:
-        message = f"{name} must be at most {most:g}, got {value!r}: a pulse is short; use Harmonic for steady shaking"
-        raise ParameterError(message)
-    return number
 
 
 def found_turning_points(

@@ -3,7 +3,7 @@
 import hashlib
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -58,6 +58,8 @@ class Record(BaseMotion):
     >>> record.scaled(2.0).provenance
     ('scaled by 2.0',)
     """
+
+    ends: ClassVar[bool] = True
 
     samples: Floats
     step: float

@@ -6,7 +6,6 @@ from typing import Any, Literal, Self
 from stylobate.config.axis import Axis
 from stylobate.config.description import Config, built
 from stylobate.config.many_runs import ManyRuns, common_values, name_of, with_numbers_that_vary
-from stylobate.config.motions import PULSES
 from stylobate.config.simulation import Setup
 
 
@@ -47,7 +46,7 @@ class SpectrumConfig(ManyRuns):
         varied = tuple(name_of(table.get(place)) for place in "xy")
         scaled = () if table.get("rocking") else ("acceleration",)
         own = {name: value for name, value in values.items() if name != "periods"}  # those are of other commands
-        return super().parse(_with_frequency(with_numbers_that_vary(own, (*varied, *scaled)), varied))
+        return super().parse(with_numbers_that_vary(own, (*varied, *scaled)))
 
     @classmethod
     def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]], *, rocking: bool) -> Self:
@@ -115,11 +114,3 @@ class SpectrumConfig(ManyRuns):
         if table.x is not None and table.y is not None and table.x.name == table.y.name:
             problems.append(f"spectrum.x and spectrum.y must differ, got {table.x.name!r} in both")
         return problems
-
-
-def _with_frequency(values: Mapping[str, Any], varied: tuple[str, ...]) -> Mapping[str, Any]:
-    """Return `values` with a frequency of the pulse, if it varies and there is none."""
-    motion = values.get("motion")
-    if "angular_frequency" not in varied or not isinstance(motion, Mapping) or motion.get("kind") not in PULSES:
-        return values
-    return {**values, "motion": {"angular_frequency": 1.0, **motion}}

@@ -10,8 +10,8 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.base_motions.frequency import frequency_of
 from stylobate.base_motions.one_of import members_of
+from stylobate.base_motions.varying import frequency_of
 from stylobate.engine.parameters import with_parameters
 from stylobate.errors import ParameterError, require_positive
 from stylobate.models import Model
@@ -79,7 +79,7 @@ class Cases:
         if not isinstance(motion, BaseMotion):
             message = f"motion must be a base motion such as Pulse.one_sine(...), got {motion!r}"
             raise ParameterError(message)
-        over = _checked_names(model, {} if over is None else over, scaled=scaled)
+        over = _checked_names(model, motion, {} if over is None else over, scaled=scaled)
         axes = {name: checked_values("over", name, values) for name, values in over.items()}
         meshes = np.meshgrid(*axes.values(), indexing="ij") if axes else []
         values = {name: mesh.ravel() for name, mesh in zip(axes, meshes, strict=True)}
@@ -133,7 +133,9 @@ class Cases:
         return found
 
 
-def _checked_names(model: Model, over: Mapping[str, npt.ArrayLike], *, scaled: bool) -> Mapping[str, npt.ArrayLike]:
+def _checked_names(
+    model: Model, motion: BaseMotion, over: Mapping[str, npt.ArrayLike], *, scaled: bool
+) -> Mapping[str, npt.ArrayLike]:
     if not isinstance(over, Mapping):
         message = f'over must name parameters with their values, such as {{"size": […]}}; got {over!r}'
         raise ParameterError(message)
@@ -143,7 +145,7 @@ def _checked_names(model: Model, over: Mapping[str, npt.ArrayLike], *, scaled: b
             message = f"over cannot name {name}: {remedy}"
             raise ParameterError(message)
     if over:
-        check_quantities("over", model, over)
+        check_quantities("over", model, over, motion)
     require_values("over", over)
     remark_on_lengths("over", over)
     return over

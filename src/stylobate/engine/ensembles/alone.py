@@ -14,7 +14,7 @@ from stylobate.engine.ensembles.broadcasting import Runs
 from stylobate.engine.ensembles.noting import note
 from stylobate.engine.ensembles.pool import Halt
 from stylobate.engine.forcing import Forcing
-from stylobate.engine.parameters import MOTION_NAMES, changed_model, changed_motion
+from stylobate.engine.parameters import changed_model, changed_motion, split
 from stylobate.engine.single import method_of
 from stylobate.engine.starts import Turning
 from stylobate.engine.switching.course import SwitchingCourse
@@ -39,9 +39,8 @@ def _course(batch: Batch, run: Runs, rest_energy: float, halt: Halt) -> Switchin
     """Return the course of a single run, from the start to the end."""
     options = batch.plan.options
     values = {name: float(value[0]) for name, value in run.values.items()}
-    own = {name: value for name, value in values.items() if name not in MOTION_NAMES}
+    own, shaken = split(batch.plan.model, values)
     model = changed_model(batch.plan.model, own)
-    shaken = {name: values[name] for name in MOTION_NAMES if name in values}
     motion = changed_motion(batch.plan.motion.motion, shaken)
     limit = math.inf if options.tilt_limit is None else options.tilt_limit
     course = SwitchingCourse(

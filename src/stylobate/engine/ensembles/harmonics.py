@@ -12,6 +12,8 @@ from stylobate.base_motions import BaseMotion, Delayed, Harmonic, Rotated, Scale
 
 Floats = npt.NDArray[np.float64]
 
+_COPIES = (Scaled, Rotated, Delayed)
+
 
 @dataclass(frozen=True, slots=True)
 class Term:
@@ -46,24 +48,17 @@ def terms_of(motion: BaseMotion) -> tuple[Term, ...] | None:
     if type(motion) is Sum:
         parts = [terms_of(part) for part in motion.motions]
         return None if None in parts else tuple(term for part in parts for term in part or ())
-    if type(motion) not in (Scaled, Rotated, Delayed):  # a subclass is another motion
+    if not isinstance(motion, _COPIES) or type(motion) not in _COPIES:  # a subclass is another motion
         return None
-    inner = terms_of(motion.motion)  # type: ignore[attr-defined]
+    inner = terms_of(motion.motion)
     return None if inner is None else tuple(_transformed(motion, term) for term in inner)
 
 
-def _transformed(motion: BaseMotion, term: Term) -> Term:
-    x, y, z = term.amplitude
-    match motion:
-        case Scaled():
-            return replace(term, amplitude=(motion.factor * x, motion.factor * y, motion.vertical * z))
-        case Rotated():
-            cos, sin = math.cos(motion.angle), math.sin(motion.angle)
-            return replace(term, amplitude=(cos * x - sin * y, sin * x + cos * y, z))
-        case Delayed():
-            begins = motion.delay if motion.delay > 0.0 else -math.inf
-            return replace(term, shift=term.shift + motion.delay, onset=max(begins, term.onset + motion.delay))
-    raise AssertionError(motion)
+def _transformed(motion: Scaled | Rotated | Delayed, term: Term) -> Term:
+    if isinstance(motion, Delayed):
+        begins = motion.delay if motion.delay > 0.0 else -math.inf
+        return replace(term, shift=term.shift + motion.delay, onset=max(begins, term.onset + motion.delay))
+    return replace(term, amplitude=motion.changed(*term.amplitude))
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,6 +106,7 @@ class Terms:
             frequency = np.broadcast_to(values["angular_frequency"][:, np.newaxis], frequency.shape)
         if "start_phase" in values:
             start_phase = np.broadcast_to(values["start_phase"][:, np.newaxis], frequency.shape)
+        ramp = np.broadcast_to(values["ramp"][:, np.newaxis], frequency.shape) if "ramp" in values else self.ramp
         factor = factors(values, base_acceleration)
         if factor is not None:
             amplitude = amplitude * factor[:, np.newaxis, np.newaxis]
@@ -122,7 +118,7 @@ class Terms:
             delay = values["delay"][:, np.newaxis]
             shift = shift + delay
             onset = np.maximum(np.where(delay > 0.0, delay, -np.inf), onset + delay)
-        return Terms(frequency, amplitude, start_phase, shift, onset, self.ramp)
+        return Terms(frequency, amplitude, start_phase, shift, onset, ramp)
 
     @property
     def phase_at_start(self) -> Floats:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.parameters import MOTION_NAMES, changed_model
+from stylobate.engine.parameters import changed_model, split
 from stylobate.models import Model
 
 Floats = npt.NDArray[np.float64]
@@ -42,7 +42,7 @@ class ModelColumns:
             If a value is out of range.
         """
         count = len(tilt)
-        own = {name: value for name, value in values.items() if name not in MOTION_NAMES}
+        own, _ = split(model, values)
         numbers = np.empty((6, count))
         comes_to_rest, slope = np.empty(count, dtype=bool), np.empty((count, 3))
         states = np.empty((count, len(model.state_names)))

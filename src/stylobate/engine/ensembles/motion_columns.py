@@ -9,20 +9,18 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
-from stylobate.base_motions.frequency import is_pulse, with_frequency
 from stylobate.base_motions.one_of import members_of
+from stylobate.base_motions.varying import is_pulse, numbers_of
 from stylobate.engine.ensembles.harmonics import Term, Terms, factors, terms_of
 from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.polynomials import Table, one_after_another, tabulated
 from stylobate.engine.ensembles.stretched import tabulated_alike
 from stylobate.engine.lanes.forcing_source import ForcingSource, Harmonics, Polynomials
-from stylobate.engine.parameters import changed_motion, harmonic_part, largest_acceleration
+from stylobate.engine.parameters import changed_motion, declared_names, largest_acceleration
 from stylobate.engine.thresholds import least_rest_energy
-from stylobate.errors import require_positive
 
 Floats = npt.NDArray[np.float64]
 
-_NONE = np.empty(0)
 _NO_PIECES = np.zeros((1, 5))
 
 
@@ -30,14 +28,17 @@ _NO_PIECES = np.zeros((1, 5))
 class MotionPlan:
     """How an ensemble's base motion is evaluated: decided once, so that all its runs are computed alike.
 
-    `members` are the motions of which each run has one: of a pulse whose frequency varies, those of the `frequencies`,
-    in rising order. `terms` is None for motions that are tabulated, in `table`, one after another: each begins at its
-    piece of `first`, and has so many as `lengths` tells.
+    `members` are the motions of which each run has one. Where declared numbers of the motion vary and it is tabulated,
+    there is one for each of their combinations: `names` are these numbers, `levels` the values of each, in rising
+    order, and `combinations` the places of those of each member, as one number. `terms` is None for motions that are
+    tabulated, in `table`, one after another: each begins at its piece of `first`, and has as many as `lengths` states.
     """
 
     motion: BaseMotion
     members: tuple[BaseMotion, ...]
-    frequencies: Floats
+    names: tuple[str, ...]
+    levels: tuple[Floats, ...]
+    combinations: npt.NDArray[np.intp]
     terms: tuple[Term, ...] | None
     table: Table | None
     first: npt.NDArray[np.intp]
@@ -48,46 +49,56 @@ class MotionPlan:
 
     @classmethod
     def of(cls, motion: BaseMotion, values: Mapping[str, Floats], duration: Floats) -> "MotionPlan":
-        """Return the plan for runs that change these `values`.
+        """Return the plan for runs that change these `values` of the motion.
 
         Raises
         ------
         ParameterError
-            If an angular frequency is not positive, or there is no motion of a number that is chosen.
+            If a number of the motion is out of range, or there is no motion of a number that is chosen.
         UnsupportedError
             If the motion lacks a number that is to be changed, or cannot be tabulated.
         """
-        of_pulse = "angular_frequency" in values and is_pulse(motion)
-        for name in ("start_phase",) if of_pulse else ("angular_frequency", "start_phase"):
-            if name in values:
-                harmonic_part(motion, name)
-        if "angular_frequency" in values:
-            require_positive("angular_frequency", values["angular_frequency"].min(initial=1.0), "rad/s")
+        declared = declared_names(motion, values)
+        for name, own in declared.items():
+            for value in (values[name].min(initial=math.inf), values[name].max(initial=-math.inf)):
+                if math.isfinite(value):
+                    numbers_of(motion)[own].quantity.checked(name, float(value))
         for number in np.unique(values.get("motion", ())):
             changed_motion(motion, {"motion": float(number)})
-        frequencies = np.unique(values["angular_frequency"]) if of_pulse else _NONE
-        members = _members(motion, values, frequencies)
+        terms = terms_of(motion) if all(name == own for name, own in declared.items()) else None
+        names = () if terms is not None or not len(duration) else tuple(declared)
+        if names and "motion" in values:
+            names = ("motion", *names)
+        levels, combinations = _combined([values[name] for name in names])
+        members = members_of(motion) if "motion" in values else (motion,)
+        if names:
+            places = np.unravel_index(combinations, tuple(map(len, levels)))
+            chosen = np.stack([level[place] for level, place in zip(levels, places, strict=True)], axis=1)
+            changes = (dict(zip(names, numbers, strict=True)) for numbers in chosen.tolist())
+            members = tuple(changed_motion(motion, change) for change in changes)
         scaled = "acceleration" in values
         base = np.array([largest_acceleration(member) if scaled else 1.0 for member in members])
         vertical = any(bound != 0.0 for member in members for bound in member.vertical_range(0.0))
         nowhere = np.zeros(1, dtype=np.intp)
-        terms = terms_of(motion)
+        varied = (names, levels, combinations)
         if terms is not None:
             windowed = "delay" in values or any(term.ramp > 0.0 or term.onset > 0.0 for term in terms)
             vertical = any(term.amplitude[2] != 0.0 for term in terms)
-            return cls(motion, members, frequencies, terms, None, nowhere, nowhere, windowed, vertical, base)
+            return cls(motion, members, *varied, terms, None, nowhere, nowhere, windowed, vertical, base)
         least_delay = values["delay"].min(initial=0.0) if "delay" in values else 0.0
         end = float(duration.max(initial=1e-300)) - float(least_delay)
-        tables = tabulated_alike(members, end) if of_pulse else [tabulated(member, end) for member in members]
+        alike = names == ("angular_frequency",) and is_pulse(motion)
+        tables = tabulated_alike(members, end) if alike else [tabulated(member, end) for member in members]
         lengths = np.array([len(table.rows) for table in tables])
         table = one_after_another(tables)
         first = np.cumsum(lengths) - lengths
-        return cls(motion, members, frequencies, None, table, first, lengths, False, vertical, base)
+        return cls(motion, members, *varied, None, table, first, lengths, False, vertical, base)
 
     def member(self, values: Mapping[str, Floats], count: int) -> npt.NDArray[np.intp]:
         """Return which of the `members` each of `count` runs has."""
-        if self.frequencies.size > 0:
-            return np.searchsorted(self.frequencies, values["angular_frequency"])
+        if self.names:
+            places = [np.searchsorted(level, values[name]) for name, level in zip(self.names, self.levels, strict=True)]
+            return np.searchsorted(self.combinations, _combination(self.levels, places))
         return values["motion"].astype(np.intp) if "motion" in values else np.zeros(count, dtype=np.intp)
 
     def source(self, *, planar: bool) -> ForcingSource:
@@ -154,7 +165,7 @@ class MotionColumns:
             phase = np.zeros(count)
             forward = backward = np.full(count, np.nan)
         period = each(lambda motion: motion.period or 0.0)
-        if "angular_frequency" in values and plan.frequencies.size == 0:
+        if "angular_frequency" in values and plan.terms is not None:
             period = 2.0 * math.pi / values["angular_frequency"]
         return cls(
             columns=columns,
@@ -173,10 +184,15 @@ class MotionColumns:
         )
 
 
-def _members(motion: BaseMotion, values: Mapping[str, Floats], frequencies: Floats) -> tuple[BaseMotion, ...]:
-    if frequencies.size > 0:
-        return tuple(with_frequency(motion, frequency) for frequency in frequencies.tolist())
-    return members_of(motion) if "motion" in values else (motion,)
+def _combined(values: Sequence[Floats]) -> tuple[tuple[Floats, ...], npt.NDArray[np.intp]]:
+    """Return the different values of each number in rising order, and the combinations that there are of them."""
+    levels = tuple(np.unique(one) for one in values)
+    places = [np.searchsorted(level, one) for level, one in zip(levels, values, strict=True)]
+    return levels, np.unique(_combination(levels, places)) if levels else np.zeros(0, dtype=np.intp)
+
+
+def _combination(levels: Sequence[Floats], places: Sequence[npt.NDArray[np.intp]]) -> npt.NDArray[np.intp]:
+    return np.asarray(np.ravel_multi_index(tuple(places), tuple(map(len, levels))), dtype=np.intp)
 
 
 def _single_frequency(terms: Terms, motion: BaseMotion) -> tuple[Floats, Floats, Floats, Floats]:

@@ -5,11 +5,9 @@ from dataclasses import fields
 from typing import Any
 
 from stylobate import config
-from stylobate.base_motions.declared import motion_quantities
-from stylobate.base_motions.pulses.sinusoid import MOST_CYCLES
-from stylobate.base_motions.pulses.waveform import MOST_OSCILLATIONS
+from stylobate.base_motions.declared import MOTIONS, motion_quantities
 from stylobate.config.description import Config
-from stylobate.config.motions import ENDING
+from stylobate.config.motions import COMPOSITE, is_to_end
 from stylobate.errors import LARGEST
 from stylobate.lab.limits import Limits
 from stylobate.lab.parameter_info import NUMBERS
@@ -63,14 +61,14 @@ _TAGS = ("shape", "kind", "method")
 
 _POSITIVE = (
     *column_quantities(),
-    *(name for name, quantity in motion_quantities().items() if quantity.gt == 0.0),
-    *("length", "duration", "periods", "rtol", "atol", "tilt_limit"),
+    *(name for name, quantity in motion_quantities().items() if quantity.gt == 0.0 and quantity.components == 1),
+    *("duration", "periods", "rtol", "atol", "tilt_limit"),
 )
 _NOT_NEGATIVE = (
     *(name for name, quantity in motion_quantities().items() if quantity.ge == 0.0),
     *("rest_energy", "clearance", "tail"),
 )
-_OF_MOTIONS = ("sum", "one_of", "scaled", "rotated", "delayed")
+_ENDING = (*(kind for kind in MOTIONS if is_to_end({"kind": kind})), *COMPOSITE)
 _HAS_RESPONSE = ("circular", "straight", "elliptic", "displacement_amplitude", "stroke", "orbit", "harmonic")
 
 
@@ -85,9 +83,12 @@ _BOUNDS: dict[str, Schema] = {
     **{name: {"minimum": LEAST} for name in _POSITIVE},
     **{name: {"minimum": 0} for name in _NOT_NEGATIVE},
     **{name: _schema_of(quantity) for name, quantity in model_quantities().items()},
-    "cycles": {"minimum": LEAST, "maximum": MOST_CYCLES},
-    "oscillations": {"minimum": LEAST, "maximum": MOST_OSCILLATIONS},
-    "sense": {"enum": [1, -1]},
+    **{
+        name: {"minimum": LEAST, "maximum": quantity.le}
+        for name, quantity in motion_quantities().items()
+        if quantity.le
+    },
+    **{name: {"enum": list(quantity.choices)} for name, quantity in motion_quantities().items() if quantity.choices},
     "max_steps": {"minimum": 1},
     **{name: {"minimum": 2} for name in ("samples", "strobes", "points")},
     **{name: {"minimum": 1, "maximum": HIGHEST_DEGREE} for name in ("order", "degree")},
@@ -143,7 +144,7 @@ def _within(body: Schema, limits: Limits) -> Schema:
 
 def _until_the_end(body: Schema) -> Schema:
     """Return the schema of a run, which needs a duration unless its motion is one that ends, or of such."""
-    ending = {"type": "object", "properties": {"kind": {"enum": [*ENDING, *_OF_MOTIONS]}}}
+    ending = {"type": "object", "properties": {"kind": {"enum": list(_ENDING)}}}
     lasting = [
         {"required": ["duration"], "properties": {"duration": {"type": "number"}}},
         {"required": ["motion"], "properties": {"motion": ending}},

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.base_motions import BaseMotion
+from stylobate.base_motions.declared import motion_quantities
 from stylobate.column import Column
 from stylobate.engine.parameters import check_names
 from stylobate.errors import ParameterError, require_size
@@ -53,6 +55,7 @@ _QUANTITIES = {
     "slenderness": _positive("slenderness", "1"),
     "size": _positive("size, in that of the column given", "1"),
     **{name: _declared(quantity) for name, quantity in model_quantities().items()},
+    **{name: _declared(quantity) for name, quantity in motion_quantities().items()},
     "motion": _Quantity(
         "number of the base motion", "1", lambda values: (values >= 0.0) & (values % 1.0 == 0.0), "be whole, from 0 on"
     ),
@@ -70,9 +73,9 @@ _QUANTITIES = {
 _ANY = _Quantity("", "")
 
 
-def check_quantities(where: str, model: Model, names: Iterable[str]) -> None:
+def check_quantities(where: str, model: Model, names: Iterable[str], motion: BaseMotion | None = None) -> None:
     """Raise ParameterError if one of the `names` in the argument `where` cannot vary, or two say contrary things."""
-    check_names(model, names, where=where, others=OF_A_RUN)
+    check_names(model, motion, names, where=where, others=OF_A_RUN)
 
 
 def attributes_of(name: str) -> dict[str, str]:

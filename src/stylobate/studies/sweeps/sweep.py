@@ -9,9 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
-from stylobate.base_motions.frequency import is_pulse
+from stylobate.base_motions.varying import is_pulse
 from stylobate.config import provenance_of_run
 from stylobate.errors import ParameterError, require_positive, require_vector
+from stylobate.kinds import names_code
 from stylobate.models import Model
 from stylobate.results import OutcomeRules
 from stylobate.studies.sweeps.blocks import Blocks
@@ -76,7 +77,7 @@ class Sweep:
         if not isinstance(self.motion, BaseMotion):
             message = f"motion must be a base motion such as Harmonic.circular(...) or None, got {self.motion!r}"
             raise ParameterError(message)
-        check_quantities(self.design.argument, self.model, self.design.names)
+        check_quantities(self.design.argument, self.model, self.design.names, self.motion)
         self._check_duration()
         unknown = [name for name in self.options if name not in DEFAULTS]
         if unknown:
@@ -188,6 +189,8 @@ class Sweep:
         for name, thing in (("model", self.model), ("motion", self.motion)):
             if provenance[name].get("kind") == "other":
                 provenance[name] = identity_of(thing)
+            elif names_code(provenance[name]):  # which can change while its place and its numbers stay
+                provenance[f"{name} code"] = identity_of(thing)
         return {**provenance, "duration": self.duration, "periods": self.periods, "design": self.design.describe()}
 
     def _check_duration(self) -> None:

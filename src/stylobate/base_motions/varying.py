@@ -1,0 +1,92 @@
+"""The declared numbers of a base motion, by name: studies and ensembles vary them, also in scaled and turned copies."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from stylobate.base_motions.base import BaseMotion
+from stylobate.base_motions.combined import Delayed, Following, Rotated, Scaled, Transformed
+from stylobate.base_motions.numbers import AngularFrequency
+from stylobate.base_motions.one_of import OneOf
+from stylobate.base_motions.pulses.along_line import AlongLine
+from stylobate.errors import UnsupportedError
+from stylobate.quantities import Parameter, parameters_of
+
+_FREQUENCY = Parameter("angular_frequency", AngularFrequency.__metadata__[0], float)  # type: ignore[attr-defined]
+
+
+def numbers_of(motion: BaseMotion) -> Mapping[str, Parameter]:
+    """Return the declared numbers of `motion`, of what it is a copy of, and of its waveform, by name.
+
+    A motion with a `frequency` [Hz] has an `angular_frequency` [rad/s] too. `Scaled`, `Rotated` and `Delayed` have none
+    of their own: they are the changes that every motion takes.
+    """
+    found = {name: one for part in _parts(motion) for name, one in _declared(part).items() if _is_number(one)}
+    return {"angular_frequency": _FREQUENCY, **found} if "frequency" in found else found
+
+
+def value_of(motion: BaseMotion, name: str) -> float:
+    """Return the declared number of this `name`; NaN if the motion has none."""
+    for part in _parts(motion):
+        if name in _declared(part):
+            return float(getattr(part, name))
+    return 2.0 * math.pi * value_of(motion, "frequency") if name == "angular_frequency" else math.nan
+
+
+def with_numbers(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotion:
+    """Return `motion` with some of its declared numbers changed; the others, such as the acceleration, stay.
+
+    Raises
+    ------
+    ParameterError
+        If it cannot have one of the `values`.
+    UnsupportedError
+        If it has no number of this name.
+    """
+    known = numbers_of(motion)
+    for name in values:
+        if name not in known:
+            numbers = f"Its numbers are {', '.join(known)}." if known else "It has none."
+            message = f"{name}: the base motion has no such number (got {motion!r}). {numbers}"
+            raise UnsupportedError(message)
+    if "angular_frequency" in values and "frequency" in known:
+        values = {**values, "frequency": values["angular_frequency"] / (2.0 * math.pi)}
+    changed: BaseMotion = _changed(motion, values)
+    return changed
+
+
+def frequency_of(motion: BaseMotion) -> float:
+    """Return the angular frequency of a motion that has one [rad/s], turned, chosen or not; else NaN."""
+    return frequency_of(motion.followed) if isinstance(motion, Following) else value_of(motion, "angular_frequency")
+
+
+def is_pulse(motion: BaseMotion) -> bool:
+    """Return whether `motion` is one pulse, scaled or turned or not."""
+    return is_pulse(motion.motion) if isinstance(motion, Transformed) else isinstance(motion, AlongLine)
+
+
+def _changed(part: Any, values: Mapping[str, float]) -> Any:
+    changes = {name: values[name] for name in _declared(part) if name in values and _is_own(part)}
+    inner = {name: _changed(getattr(part, name), values) for name in ("motion", "waveform") if hasattr(part, name)}
+    return replace(part, **changes, **inner) if changes or inner else part
+
+
+def _parts(motion: BaseMotion) -> tuple[Any, ...]:
+    """Return what has the numbers of a motion: its waveform, itself, and what it is a copy of."""
+    inner = _parts(motion.motion) if isinstance(motion, Transformed) else ()
+    waveform = (motion.waveform,) if isinstance(motion, AlongLine) else ()
+    return (*inner, *waveform, *([motion] if _is_own(motion) else []))
+
+
+def _declared(part: object) -> Mapping[str, Parameter]:
+    make: Callable[..., Any] = type(part)
+    return parameters_of(make)
+
+
+def _is_own(part: object) -> bool:
+    return type(part) not in (Scaled, Rotated, Delayed, OneOf)
+
+
+def _is_number(parameter: Parameter) -> bool:
+    return parameter.annotation in (float, int) and parameter.quantity.components == 1 and not parameter.choices
