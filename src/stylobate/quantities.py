@@ -37,8 +37,8 @@ class Quantity:
         As in text, such as "m/s²"; empty for a number without dimension.
     text
         What it is, in a few words, as on an axis.
-    ge, gt, le
-        Bounds: at least, above, at most.
+    ge, gt, le, lt
+        Bounds: at least, above, at most, below.
     note
         A remedy, behind the bounds in a message.
     slider
@@ -55,6 +55,7 @@ class Quantity:
     ge: float | None = None
     gt: float | None = None
     le: float | None = None
+    lt: float | None = None
     note: str = ""
     slider: tuple[float, float] | None = None
     components: int = 1
@@ -75,6 +76,8 @@ class Quantity:
             return f"{above} and at most {self.le:.6g}"
         if self.le is not None:
             return f"lie between {self.ge or 0.0:g} and {self.le:.6g}"
+        if self.lt is not None:
+            return f"lie between {self.gt or 0.0:g} and {self.lt:g}"
         if self.gt is not None:
             return "be positive" if self.gt == 0.0 else f"be above {self.gt:g}"
         if self.ge is not None:
@@ -96,6 +99,8 @@ class Quantity:
             inside &= array >= self.ge
         if self.gt is not None:
             inside &= array > self.gt
+        if self.lt is not None:
+            inside &= array < self.lt
         return inside & (array <= (LARGEST if self.le is None else self.le))
 
     def checked(self, name: str, value: Any) -> float:
@@ -108,7 +113,8 @@ class Quantity:
         """
         number = as_float(name, value)
         above = (self.ge is None or number >= self.ge) and (self.gt is None or number > self.gt)
-        if not (above and (self.le is None or number <= self.le) and math.isfinite(number)):
+        below = (self.le is None or number <= self.le) and (self.lt is None or number < self.lt)
+        if not (above and below and math.isfinite(number)):
             demand = f"{self.demand}, {self.note}" if self.note else self.demand
             message = f"{name} must {demand}, got {number!r} {self.unit}".rstrip()
             raise ParameterError(message)
@@ -134,6 +140,11 @@ class Parameter:
     def choices(self) -> tuple[Any, ...]:
         """The words or whole numbers it can be; empty for any number within the bounds."""
         return get_args(self.annotation) if get_origin(self.annotation) is Literal else self.quantity.choices
+
+    @property
+    def whole(self) -> bool:
+        """Whether it is a whole number."""
+        return self.annotation is int or int in get_args(self.annotation)
 
     @property
     def optional(self) -> bool:
@@ -198,12 +209,15 @@ def parameters_of(make: Callable[..., Any]) -> Mapping[str, Parameter]:
         signature = inspect.signature(make, eval_str=True)
     except NameError:  # a name that only the type checker knows
         signature = inspect.signature(make)
-    found = {}
-    for name, argument in signature.parameters.items():
-        quantity = _declared(argument.annotation)
-        if quantity is not None:
-            found[name] = Parameter(name, quantity, _without_declaration(argument.annotation), argument.default)
-    return found
+    arguments = signature.parameters.items()
+    declared = (parameter_of(name, argument.annotation, argument.default) for name, argument in arguments)
+    return {one.name: one for one in declared if one is not None}
+
+
+def parameter_of(name: str, annotation: Any, default: Any) -> Parameter | None:
+    """Read the parameter that an annotation declares; None if it declares no quantity."""
+    quantity = _declared(annotation)
+    return None if quantity is None else Parameter(name, quantity, _without_declaration(annotation), default)
 
 
 def is_declared(make: Callable[..., Any], *others: str) -> bool:
@@ -255,5 +269,5 @@ def _without_declaration(annotation: Any) -> Any:
     if get_origin(annotation) is Annotated:
         return get_args(annotation)[0]
     if NoneType in get_args(annotation):
-        return float | None
+        return next(_without_declaration(one) for one in get_args(annotation) if one is not NoneType) | None
     return annotation

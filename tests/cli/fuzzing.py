@@ -10,15 +10,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType
 
-import typer
-
+from stylobate.cli.commands import COMMANDS
 from stylobate.cli.interrupts import _is_importing
-from stylobate.cli.main import app, run
+from stylobate.cli.main import run
 
 PROCESSOR_TIME = 10.0
 """Longest processor time of one command line that shows no progress [s]."""
-
-COMMANDS = typer.main.get_command(app).commands
 
 COLUMN = "--slenderness 0.1 --damping 0.1"
 TUBE = "--radius 0.5 --inner-radius 0.2 --height 5 --density 2000"
@@ -33,7 +30,7 @@ BASES = {
         f"{TUBE} --model sliding --friction-coefficient 0.3 --motion stroke --stroke 0.3 --frequency 1 --duration 1",
         f"{COLUMN} --motion linear-sweep --acceleration 0.1 --frequencies 1 2 --length 4",
     ],
-    "ladder": [f"{COLUMN} {DRIVEN} --duration 2"],
+    "hierarchy": [f"{COLUMN} {DRIVEN} --duration 2"],
     "response": [f"{COLUMN} {CIRCULAR} {RANGE} --points 20"],
     "boundary": [f"{COLUMN} --motion straight --acceleration 0.06 {RANGE} --bounds 0.1 0.2"],
     "map": [f"{COLUMN} {DRIVEN} --x damping 0.1 0.2 3 --y start-phase 0 1 2 --periods 3"],
@@ -134,7 +131,8 @@ def _tables(deep: int) -> Written:
 def options_of(command: str) -> list:
     """Return the options of a command but for those that write or serve, and those that start other processes."""
     left_out = {"help", "figure", "output", "executor", "folder", "runs_figure", "resume", "workers", "store"}
-    return [one for one in COMMANDS[command].params if one.opts[0].startswith("--") and one.name not in left_out]
+    parsed = COMMANDS[command].load().program(command).params
+    return [one for one in parsed if one.opts[0].startswith("--") and one.name not in left_out]
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from filelock import FileLock
 
-from stylobate import studies
+from stylobate import earthquakes
 from stylobate.cli.main import run
 
 STUDY = """
@@ -74,7 +74,7 @@ def test_a_study_gives_a_report_that_is_kept_and_shown_again(study, tmp_path, ca
     assert f"stylobate: 6 of 6 parts were kept in {folder / 'store'} and not computed" in capsys.readouterr().err
     assert (folder / "report.html").read_text(encoding="utf-8") == drawn
     assert all(name in drawn for name in ("strong", "weak", "SHA-256"))
-    monkeypatch.setattr(studies, "assess", None)  # nothing is computed to show it again
+    monkeypatch.setattr(earthquakes, "assess", None)  # nothing is computed to show it again
     assert run(["assess", str(folder / "assessment.nc"), "--folder", str(tmp_path / "again"), "--json"]) == 0
     summary = json.loads(capsys.readouterr().out)["summary"]
     assert summary[0]["overturned it"] == "1"
@@ -95,9 +95,9 @@ def test_an_interrupted_assessment_says_how_to_go_on(study, tmp_path, capsys, mo
     def stop(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(studies, "assess", stop)
+    monkeypatch.setattr(earthquakes, "assess", stop)
     assert run(["assess", str(study), "--folder", str(tmp_path / "out")]) == 130
-    assert "the same command goes on from there" in capsys.readouterr().err
+    assert "the same command continues from them" in capsys.readouterr().err
 
 
 def test_the_report_lies_beside_the_study_and_the_first_line_says_where(study, tmp_path, capsys, monkeypatch):
@@ -107,7 +107,7 @@ def test_the_report_lies_beside_the_study_and_the_first_line_says_where(study, t
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
     monkeypatch.chdir(elsewhere)
-    monkeypatch.setattr(studies, "assess", stop)
+    monkeypatch.setattr(earthquakes, "assess", stop)
     assert run(["assess", "../study.toml"]) == 130
     assert capsys.readouterr().err.startswith("stylobate: writing into ../study-assessment\n")
     assert (tmp_path / "study-assessment" / "store").is_dir()
@@ -116,13 +116,13 @@ def test_the_report_lies_beside_the_study_and_the_first_line_says_where(study, t
 
 @pytest.mark.parametrize("held", ["out", "out/store"])
 def test_a_second_assessment_in_a_folder_is_refused_before_its_work(held, study, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(studies, "assess", None)
+    monkeypatch.setattr(earthquakes, "assess", None)
     (tmp_path / held).mkdir(parents=True)
     with FileLock(tmp_path / held / ".lock"):
         assert run(["assess", str(study), "--folder", str(tmp_path / "out")]) == 2
     told = capsys.readouterr().err.splitlines()
     assert told[1:] == [
-        f"stylobate: {tmp_path / held}: another assessment writes into it. Wait for its end, or name another folder."
+        f"stylobate: {tmp_path / held}: another assessment writes into it. Wait until it ends, or name another folder."
     ]
 
 
@@ -132,7 +132,7 @@ def test_how_to_compute_is_refused_where_nothing_is_computed(tmp_path, capsys):
     assert run(["assess", str(saved), "--threads", "2"]) == 2
     assert capsys.readouterr().err == (
         f"stylobate: --threads: assess does not use it to show {saved}, for which it computes nothing (got 2). "
-        "Leave it out.\n"
+        "Remove it.\n"
     )
 
 

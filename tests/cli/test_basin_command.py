@@ -8,7 +8,7 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.cli.main import run
-from stylobate.cli.options import joined_ranges
+from stylobate.cli.usage import joined_ranges
 from stylobate.studies.proportions import wilson_interval
 
 SYSTEM = ["--slenderness", "0.1", "--damping", "0.1", "--motion", "circular"]
@@ -49,7 +49,7 @@ def test_a_random_sample_is_that_of_basins(tmp_path, capsys, saved):
     over = {"tilt_x": (-0.08, 0.08), "tilt_rate_y": (-0.1, 0.1)}
     found = sb.studies.basins(MODEL, CIRCLE, over=over, count=60, rng=3, periods=60.0)
     xr.testing.assert_equal(saved(path), found)
-    assert "60 starts" in printed
+    assert "60 initial conditions" in printed
     low, high = 100.0 * found["fraction_low"].values, 100.0 * found["fraction_high"].values
     for place, name in enumerate(found["attractor_name"].values):
         assert str(name) in printed
@@ -157,4 +157,4 @@ def test_a_map_holds_no_basins(tmp_path, capsys):
     axes = ["--x", "acceleration", "0.01", "0.1", "2", "--y", "damping", "0", "0.1", "2"]
     assert run(["map", *SYSTEM, *axes, "--periods", "2", "--output", str(path)]) == 0
     assert run(["basin", str(path)]) == 2
-    assert "without strobed states" in capsys.readouterr().err
+    assert "runs without stroboscopic samples" in capsys.readouterr().err

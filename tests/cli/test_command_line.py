@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
+from stylobate.cli.commands import COMMANDS
 from stylobate.cli.main import run
 
 COLUMN = ["--slenderness", "0.1", "--damping", "0.1"]
@@ -99,7 +100,10 @@ def test_response_as_json_has_every_curve(capsys):
         ),
         (
             ["simulate", *COLUMN, "--radius", "1", "--duration", "1"],
-            ["column.radius does not belong to column 'dimensionless'"],
+            [
+                "--radius: column shape 'dimensionless' does not use it (got 1.0). "
+                "Remove it, or choose --shape solid, hollow or frustum."
+            ],
         ),
         (["simulate", "no such file.toml"], ["cannot read no such file.toml: No such file or directory"]),
         (
@@ -124,7 +128,7 @@ def test_response_as_json_has_every_curve(capsys):
         (["boundary", *COLUMN, *MOTION[:4], "--bounds", "0.1", "0.2"], ["angular_frequency_range is missing"]),
         (
             ["response", "--exact", *COLUMN, *MOTION[:4], "--angular-frequency-range", "1", "3", "--points", "50"],
-            ["--points counts the frequencies of theory"],
+            ["--points: --exact chooses its own frequencies (got 50). Remove one of them."],
         ),
         (
             ["response", *COLUMN, *MOTION[:4], "--angular-frequency-range", "1", "3", "--figure", "x.bmp"],
@@ -233,6 +237,17 @@ def test_without_friction_the_table_says_neutrally_stable(capsys):
 @pytest.mark.parametrize("command", ["response", "boundary"])
 def test_help_offers_the_motions_that_have_their_options(command, capsys):
     assert run([command, "--help"]) == 0
-    told = capsys.readouterr().out
-    assert "circular, straight or elliptic" in " ".join(told.split())
-    assert not any(kind in told for kind in ("stroke", "orbit;", "vertical"))
+    panel = capsys.readouterr().out.partition("Base motion:")[2].partition("Output:")[0]
+    assert "circular, straight or elliptic" in " ".join(panel.split())
+    assert not any(kind in panel for kind in ("stroke", "orbit", "vertical"))
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_table_of_commands_has_the_first_line_of_each_help(name):
+    summary = COMMANDS[name].summary
+    assert COMMANDS[name].load().function.__doc__.partition("\n")[0] == summary
+
+
+def test_a_command_that_is_not_known_is_one_line_with_the_most_alike(capsys):
+    assert run(["simulat"]) == 2
+    assert capsys.readouterr().err == "stylobate: No such command 'simulat'. Did you mean simulate?\n"

@@ -58,7 +58,7 @@ def test_a_store_is_shown_as_a_drift_and_repeated_with_other_numbers(tmp_path, c
         (["--late", "12"], "periods must be at least one more than late, which is 12; got 12.0"),
         (
             ["--model", "rolling"],
-            "--friction-coefficient: only model sliding uses it in drift (got 0.2). Choose --model sliding",
+            "--friction-coefficient: model 'rolling' does not use it (got 0.2). Remove it, or choose --model sliding.",
         ),
         (["--y", "acceleration", "1", "2", "2"], "drift.x and drift.y must differ, got 'acceleration' in both"),
         (["--y", "tilt-z", "1", "2", "2"], "drift.y"),
@@ -74,7 +74,9 @@ def test_bad_questions_are_told_in_one_line(arguments, line, capsys):
 
 def test_what_varies_must_be_told(capsys):
     assert run(["drift", *BLOCK, *SLOPE]) == 2
-    assert "drift.x is missing: what varies, such as --x acceleration 2 30 29" in capsys.readouterr().err
+    assert (
+        "drift.x is missing. State the number that varies, such as --x acceleration 2 30 29." in capsys.readouterr().err
+    )
 
 
 def test_a_saved_map_is_no_drift(tmp_path, capsys):

@@ -3,10 +3,10 @@
 from typing import get_args
 
 import pytest
-import typer
 
-from stylobate.cli import options as opt
-from stylobate.cli.main import app, run
+from stylobate.cli.commands import COMMANDS
+from stylobate.cli.main import run
+from stylobate.cli.parts import KINDS_IN_FILES
 from stylobate.config.motions import MotionConfig
 
 
@@ -17,6 +17,7 @@ def words(text):
 COLUMN = ("--slenderness", "0.1", "--damping", "0.1")
 TUBE = words("--radius 0.5 --inner-radius 0.2 --height 5 --density 2000")
 CONE = words("--radius 0.5 --top-radius 0.4 --height 5 --density 2000")
+BODY = words("--radius 1 --mass-height 5 --mass 1 --transverse-inertia 20 --axial-inertia 0.5")
 CIRCULAR = ("--motion", "circular", "--acceleration", "0.06")
 DRIVEN = (*CIRCULAR, "--angular-frequency", "1.8")
 STRAIGHT = ("--motion", "straight", "--acceleration", "0.06")
@@ -50,8 +51,9 @@ BASES = {
         (*TUBE, *DRIVEN, "--duration", "9", "--model", "wobbling"),
         (*CONE, *DRIVEN, "--duration", "9", "--model", "rolling"),
         (*TUBE, *DRIVEN, "--duration", "9", *SLIDING, "--friction-coefficient", "0.3"),
+        (*BODY, *DRIVEN, "--duration", "9"),
     ],
-    "ladder": [(*COLUMN, *DRIVEN, "--duration", "9"), (*TUBE, *PULSE)],
+    "hierarchy": [(*COLUMN, *DRIVEN, "--duration", "9"), (*TUBE, *PULSE)],
     "response": [(*COLUMN, *CIRCULAR, *RANGE), (*COLUMN, *STRAIGHT, *RANGE, "--model", "wobbling", "--exact")],
     "boundary": [(*COLUMN, *STRAIGHT, *RANGE, "--bounds", "0.1", "0.2")],
     "map": [
@@ -98,9 +100,6 @@ records = {samples = ["el centro 1940"]}
 """
 
 MEMBERS = get_args(get_args(MotionConfig)[0])
-PROGRAM = typer.main.get_command(app)
-COMMANDS = PROGRAM.commands
-
 # What changes the form of what is printed only.
 _OF_PRINTING = ("as_json",)
 
@@ -112,7 +111,6 @@ class ComputedError(Exception):
 @pytest.fixture(autouse=True)
 def nothing_is_computed(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("typer.main.get_command", lambda _: PROGRAM)  # it is slow to make
     (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
     (tmp_path / VALUES[0]).touch()  # no folder can have this name
     opened = []
@@ -157,7 +155,7 @@ def with_option(arguments, option, capsys):
 
 
 def options_of(command):
-    kept = [one for one in COMMANDS[command].params if one.opts[0].startswith("--")]
+    kept = [one for one in COMMANDS[command].load().program(command).params if one.opts[0].startswith("--")]
     return [one for one in kept if one.name not in ("help", *_OF_PRINTING)]
 
 
@@ -181,16 +179,17 @@ def test_no_option_of_a_run_is_refused_with_every_column_model_and_motion(capsys
             if not with_option(["simulate", *base], option, capsys)[1]:
                 del never[option.name]
     # Words, files and what belongs to files, and a sign: none of the values above.
-    words = {"shape", "model", "constraint", "motion", "record", "sample_record", "units", "step", "figure", "output"}
-    assert set(never) == {*words, "record_direction", "single", "sense"}
+    words = {"shape", "model", "constraint", "couples", "motion"}
+    files = {"record", "record_direction", "single", "sample_record", "units", "step", "figure", "output"}
+    assert set(never) == {*words, *files, "sense"}
 
 
 @pytest.mark.parametrize("command", ["map", "spectrum", "fragility"])
 def test_a_coefficient_of_friction_that_changes_no_run_is_refused_with_a_remedy(command, capsys):
     base = [command, *BASES[command][0]]
     assert outcome([*base, "--friction-coefficient", "0.3"], capsys)[1] == [
-        f"stylobate: --friction-coefficient: only model sliding uses it in {command} (got 0.3). "
-        "Choose --model sliding, or leave it out."
+        "stylobate: --friction-coefficient: model 'slender' does not use it (got 0.3). "
+        "Remove it, or choose --model sliding."
     ]
     assert not outcome([*base, "--model", "sliding", "--friction-coefficient", "0.3"], capsys)[1]
 
@@ -201,7 +200,11 @@ def test_a_coefficient_of_friction_that_changes_no_run_is_refused_with_a_remedy(
         ("spectrum", "--duration 9 --free-tail 3", "spectrum.tail: duration says how long to follow a column"),
         ("fragility", "--years 10", "--years: fragility does not use it (got 10.0)"),
         ("basin", "--seed 3", "--seed: basin does not use it (got 3)"),
-        ("map", "--threads 2 --executor dask://", "--threads is for this process"),
+        (
+            "map",
+            "--threads 2 --executor dask://",
+            "--threads: the workers of dask:// have one thread each (got 2)",
+        ),
     ],
 )
 def test_an_option_that_another_one_or_its_absence_makes_useless_is_refused(command, more, told, capsys):
@@ -209,19 +212,19 @@ def test_an_option_that_another_one_or_its_absence_makes_useless_is_refused(comm
     assert told in line
 
 
-def test_every_kind_of_motion_in_files_is_in_the_help_and_runs_from_options_or_says_where(capsys):
+def test_every_kind_of_motion_is_in_the_help_and_runs_from_options_or_needs_a_file(capsys):
     motion = next(one for one in options_of("simulate") if one.name == "motion")
-    options, in_files = motion.help.replace(" or ", ", ").replace(";", ",").split("in a file also")
-    told = {word.strip().removeprefix("a pulse: ") for word in options.split(",")} - {""}
-    told_in_files = {word.strip() for word in in_files.split(",")}
+    options, in_files = motion.help.replace(" or ", ", ").split("; in a file also")
+    listed = {word.strip() for word in options.partition(" (")[0].split(",")}
+    listed_in_files = {word.strip() for word in in_files.split(",")}
     kinds = {kind.replace("_", "-") for one in MEMBERS for kind in get_args(one.model_fields["kind"].annotation)}
-    assert told | told_in_files == kinds
-    assert told_in_files == {kind.replace("_", "-") for kind in opt.MOTIONS_IN_FILES}
-    for kind in told_in_files:
+    assert listed | listed_in_files == kinds
+    assert listed_in_files == {kind.replace("_", "-") for kind in KINDS_IN_FILES}
+    for kind in listed_in_files:
         (line,) = outcome(["simulate", *COLUMN, "--motion", kind, "--duration", "9"], capsys)[1]
-        assert line.startswith("stylobate: --motion: no options give the numbers of this motion")
+        assert line.startswith("stylobate: --motion: no options state the numbers of this motion")
     names = {one.opts[0] for one in options_of("simulate")}
-    for kind in told - {"record"}:
+    for kind in listed - {"record"}:
         for line in outcome(["simulate", *COLUMN, "--motion", kind, "--duration", "9"], capsys)[1]:
             needed = line.removeprefix("stylobate: motion").split()[0].strip(".:").replace("_", "-")
             assert f"--{needed}" in names, line

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import stylobate as sb
-from stylobate.cli.fragility_table import told_parts
+from stylobate.cli.fragility_table import describe_parts
 from stylobate.cli.main import run
 from stylobate.earthquakes import (
     Counting,
@@ -149,7 +149,7 @@ def test_a_rate_beyond_the_hazard_is_not_told_as_a_fact(folder, capsys, monkeypa
     capsys.readouterr()
     assert run(["fragility", "runs.nc", "--hazard", "weak.csv", "--hazard-component", "RotD50"]) == 0
     told = capsys.readouterr().out
-    assert "annual rate of 'overturning': not told, for the hazard curve ends at 0.01, and" in told
+    assert "annual rate of 'overturning': withheld: the hazard curve ends at 0.01, and" in told
     assert "of the rate lies beyond; it is between" in told
     assert run(["fragility", "runs.nc", "--hazard", "weak.csv", "--hazard-component", "RotD50", "--json"]) == 0
     states = {one["name"]: one for one in json.loads(capsys.readouterr().out)["limit_states"]}
@@ -179,7 +179,7 @@ def test_a_dispersion_of_nothing_reads_as_none_seen():
     scale = np.geomspace(1.0, 10.0, 11)
     capacities = np.array([2.0, 3.0, 5.0])[:, np.newaxis, np.newaxis]
     reached = xr.DataArray(np.repeat(scale > capacities, 4, axis=1), dims=("record", "property_sample", "scale"))
-    told = told_parts(dispersion_parts(scale, reached, rng=np.random.default_rng(0)))
+    told = describe_parts(dispersion_parts(scale, reached, rng=np.random.default_rng(0)))
     hidden = np.log(10.0) / 10.0 / np.sqrt(12.0)
     assert f"none seen from properties (0 to {hidden:.3g})" in told
     assert "e-" not in told
@@ -193,7 +193,7 @@ def test_a_store_goes_on(folder, capsys, monkeypatch):
     assert run([*command, "--resume"]) == 0
     assert json.loads(capsys.readouterr().out) == first
     assert run(["fragility", "runs.zarr"]) == 2
-    assert "it goes on with the description that began it" in capsys.readouterr().err
+    assert "which cannot be shown. Continue it with its description" in capsys.readouterr().err
 
 
 def test_what_was_interrupted_is_fitted_as_far_as_it_is_known_and_goes_on(folder, capsys, interrupted, monkeypatch):
@@ -201,7 +201,7 @@ def test_what_was_interrupted_is_fitted_as_far_as_it_is_known_and_goes_on(folder
     command = ["fragility", "study.toml", "--property-samples", "24", "--threads", "1", "--json"]
     assert run([*command, "--output", "runs.zarr"]) == 130
     told = capsys.readouterr()
-    assert "goes on with --resume" in told.err
+    assert "continues with --resume" in told.err
     partial = json.loads(told.out)
     assert 0 < partial["computed"] < 384
     assert partial["limit_states"][-1]["runs"] <= partial["computed"]

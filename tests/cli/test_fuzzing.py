@@ -4,21 +4,14 @@ import subprocess
 import sys
 
 import pytest
-import typer
 from tests.cli.fuzzing import SILENT, Case, Report, case
 
-from stylobate.cli.main import app
-
 QUICK = ("simulate", "response", "map", "basin", "records", "spectrum", "fragility")
-
-
-PROGRAM = typer.main.get_command(app)
 
 
 @pytest.fixture(autouse=True)
 def in_a_folder_of_its_own(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("typer.main.get_command", lambda _: PROGRAM)  # it is slow to make
 
 
 def test_hostile_input_is_refused_or_computed(capsys):

@@ -50,5 +50,5 @@ def test_before_any_run_is_done_no_file_is_written(tmp_path, capsys, monkeypatch
     path = tmp_path / "map.nc"
     options = "--slenderness 0.1 --motion circular --x angular-frequency 1 2 3 --y acceleration 0.1 0.2 3 --periods 5"
     assert run(["map", *options.split(), "--output", str(path)]) == INTERRUPTED
-    assert capsys.readouterr().err == "stylobate: no run is done, and nothing is written\nstylobate: interrupted\n"
+    assert capsys.readouterr().err == "stylobate: no run is complete, and nothing is written\nstylobate: interrupted\n"
     assert not list(tmp_path.iterdir())

@@ -120,7 +120,7 @@ def test_after_ctrl_c_what_was_computed_is_in_the_file(tmp_path, capsys, interru
 def test_a_store_goes_on_after_ctrl_c_and_ends_as_if_undisturbed(tmp_path, capsys, interrupted, saved):
     store, whole = tmp_path / "map.zarr", tmp_path / "whole.nc"
     assert run([*LARGE, "--output", str(store)]) == 130
-    assert f"{store} goes on with --resume" in capsys.readouterr().err
+    assert f"{store} continues with --resume" in capsys.readouterr().err
     assert run(["map", str(store), "--figure", str(tmp_path / "unfinished.png"), "--json"]) == 0
     first = json.loads(capsys.readouterr().out)
     assert 0 < first["computed"] < first["runs"] == 2000
@@ -210,9 +210,12 @@ def test_dask_workers_compute_the_same(tmp_path):
             ["map.x['angular_frequency'] must be positive, got 0.0 rad s-1"],
         ),
         ([*MAP, "--method", "rk4"], ["method: input should be 'dop853' or 'taylor', got 'rk4'"]),
-        ([*MAP, "--resume"], ["--resume needs the store to continue: give --output NAME.zarr"]),
+        ([*MAP, "--resume"], ["--resume: the store to continue is missing. Add --output NAME.zarr."]),
         ([*MAP, "--executor", "slurm"], ['executor must be "threads"']),
-        ([*MAP, "--executor", "dask://h:1", "--threads", "2"], ["--threads is for this process"]),
+        (
+            [*MAP, "--executor", "dask://h:1", "--threads", "2"],
+            ["--threads: the workers of dask://h:1 have one thread"],
+        ),
         ([*MAP, "--threads", "0"], ["threads must be a whole number of at least 1"]),
         ([*MAP, "--output", "none/map.nc"], ["cannot write none/map.nc"]),
         ([*MAP, "--output", "none/map.zarr"], ["none is no folder one can write into"]),

@@ -27,6 +27,6 @@ def test_paper_makes_its_report(tmp_path, capsys):
 def test_an_unconfirmed_claim_ends_with_status_1(monkeypatch, tmp_path, capsys):
     doubt = Finding("(1)", "a claim", "a number", Verdict.NOT_CONFIRMED)
     monkeypatch.setattr("stylobate.paper.check_paper", lambda **_: PaperCheck({"s": Section((doubt,))}))
-    monkeypatch.setattr("stylobate.paper.report", lambda *_: tmp_path / "report.html")
+    monkeypatch.setattr("stylobate.paper.paper_report", lambda *_: tmp_path / "report.html")
     assert run(["paper", "--folder", str(tmp_path)]) == 1
     assert "not confirmed here" in capsys.readouterr().out

@@ -6,85 +6,77 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from stylobate import config, earthquakes, studies
-from stylobate.cli.assess_progress import parts_done
-from stylobate.cli.given import Given
+from stylobate.cli.command import Argument, command
+from stylobate.cli.declarations import COMPUTING, JSON, Group, Option
 from stylobate.cli.interrupts import INTERRUPTED
-from stylobate.cli.options import Json, ThreadCount
+from stylobate.cli.options import Options
 from stylobate.cli.output import NETCDF, check_place, print_json, print_table
+from stylobate.cli.progress import parts_done
 from stylobate.errors import FileError, Interrupted
 
 if TYPE_CHECKING:
     from stylobate.earthquakes.config import AssessmentSetup
     from stylobate.results.assessment import Assessment
 
-Source = Annotated[Path, typer.Argument(help="the study, a TOML file; or a saved assessment (.nc) to show again")]
-Folder = Annotated[
-    Path | None,
-    typer.Option(
-        help="where to write report, tables and figures [default: NAME-assessment beside the study]", show_default=False
-    ),
-]
-Store = Annotated[
-    Path | None, typer.Option(help="what keeps the parts computed [default: FOLDER/store]", show_default=False)
-]
-
 _SHOWN = ("column", "scale", "did not overturn it", "overturned it", "not decided", "flip under small changes")
 
 
-def assess(
-    context: typer.Context,
-    source: Source,
-    folder: Folder = None,
-    store: Store = None,
-    threads: ThreadCount = None,
-    as_json: Json = False,
-) -> None:
-    """Tell whether columns survive records, how close it was, and how sure that is.
+@command(
+    Option("folder", "folder of report, tables and figures; NAME-assessment beside the study by default", Path),
+    Option("store", "store of the parts that are computed; FOLDER/store by default", Path),
+    argument=Argument(text="study, a TOML file; or a saved assessment (.nc) to show again", required=True),
+    groups=(COMPUTING.reduced_to("threads"), Group.of("Output", JSON)),
+)
+def assess(options: Options) -> None:
+    """Assess whether columns survive records, and how robust the answer is.
 
-    Reads a study in a TOML file: columns, a folder of records, the dissipation at three levels, the friction. Writes
-    report.html, which needs no other file and no network; tables, figures, a summary and the numbers. Parts that are
-    computed are kept: after Ctrl-C the same command goes on. Examples:
+    A study is a TOML file: columns, a folder of records, the dissipation at three levels, the friction coefficient.
+    The command writes report.html, which needs no other file and no network; tables, figures, a summary and the
+    numbers. Computed parts are kept: after Ctrl-C the same command continues. Examples:
 
     stylobate assess study.toml
 
     stylobate assess study-assessment/assessment.nc --folder again
     """
+    source = options["source"]
     if not source.is_file():
         message = f"cannot read {source}: No such file or directory"
         raise FileError(message)
-    given = Given.of(context)
-    target = given["folder"] or source.with_name(f"{source.stem}-assessment")
+    target = options["folder"] or source.with_name(f"{source.stem}-assessment")
     check_place(target / "report.html" if target.exists() else target)
     setup = None
     if source.suffix == NETCDF:
-        given.refuse_unused(f"to show {source}, for which it computes nothing")
+        options.refuse_unused(f"to show {source}, for which it computes nothing")
     else:
         setup = _described(source, target)
     print(f"stylobate: writing into {target}", file=sys.stderr)
-    with _alone_in(target):
-        found = _loaded(source) if setup is None else _computed(setup, store or target / "store", threads)
+    with _locked(target):
+        if setup is None:
+            result = _loaded(source)
+        else:
+            result = _computed(setup, options["store"] or target / "store", options["threads"])
         with parts_done() as progress:
             report = earthquakes.assessment_report(
-                found, target, progress=lambda done, total: progress("drawing figures", done, total)
+                result, target, progress=lambda done, total: progress("drawing figures", done, total)
             )
-    summary = earthquakes.assessment_tables(found)["summary"]
-    if as_json:
-        print_json({"summary": _rows(summary), "setting": found.setting, "report": str(report)})
+    summary = earthquakes.assessment_tables(result)["summary"]
+    if options["as_json"]:
+        print_json({"summary": _rows(summary), "setting": result.setting, "report": str(report)})
     else:
         shown = [summary.header.index(name) for name in _SHOWN if name in summary.header]
         rows = [[row[place] for place in shown] for row in summary.rows]
-        print_table(str(found.setting["title"]), rows, [summary.header[place] for place in shown])
+        print_table(str(result.setting["title"]), rows, [summary.header[place] for place in shown])
         print((target / "summary.txt").read_text(encoding="utf-8").partition("\n")[2])
         print(f"report: {report}")
 
 
 @contextmanager
-def _alone_in(folder: Path) -> Iterator[None]:
+def _locked(folder: Path) -> Iterator[None]:
     """Hold the folder while this process writes into it.
 
     Raises
@@ -99,7 +91,7 @@ def _alone_in(folder: Path) -> Iterator[None]:
         lock = FileLock(folder.resolve() / ".lock", timeout=0, is_singleton=True)
         lock.acquire()
     except Timeout:
-        message = f"{folder}: another assessment writes into it. Wait for its end, or name another folder."
+        message = f"{folder}: another assessment writes into it. Wait until it ends, or name another folder."
         raise FileError(message) from None
     except OSError as error:
         message = f"cannot write {folder}: {error.strerror or error}"
@@ -127,7 +119,7 @@ def _described(source: Path, target: Path) -> "AssessmentSetup":
 
 def _computed(setup: "AssessmentSetup", store: Path, threads: int | None) -> "Assessment":
     try:
-        with _alone_in(store), parts_done() as progress:
+        with _locked(store), parts_done() as progress:
             return earthquakes.assess(
                 setup.columns,
                 setup.records,
@@ -137,7 +129,9 @@ def _computed(setup: "AssessmentSetup", store: Path, threads: int | None) -> "As
                 progress=progress,
             )
     except (Interrupted, KeyboardInterrupt):
-        print(f"stylobate: what was computed is kept in {store}; the same command goes on from there", file=sys.stderr)
+        print(
+            f"stylobate: the computed parts are kept in {store}; the same command continues from them", file=sys.stderr
+        )
         raise typer.Exit(INTERRUPTED) from None
 
 

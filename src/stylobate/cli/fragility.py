@@ -1,20 +1,33 @@
-"""`stylobate fragility`: with what probability records of an intensity overturn the column, and how often in a year."""
+"""`stylobate fragility`: the probability that records of an intensity overturn the column, and its annual rate."""
 
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Any
 
 from stylobate import config, earthquakes, plots
-from stylobate.cli import options as opt
+from stylobate.cli.command import command
+from stylobate.cli.declarations import (
+    COMPUTING,
+    OUTPUT_OR_STORE,
+    SAMPLE,
+    SINGLE,
+    STEP,
+    UNITS,
+    Group,
+    Option,
+    run_numbers,
+)
 from stylobate.cli.fragility_table import print_fits, summary
-from stylobate.cli.given import Given
-from stylobate.cli.many_runs import check_outputs, computed, end, is_to_compute
+from stylobate.cli.many_runs import check_outputs, computed, end, is_to_compute, save
+from stylobate.cli.options import Options
 from stylobate.cli.output import STORE, check_writable, print_json, save_figure
+from stylobate.cli.overlay import axis_values, overlay, spacing
+from stylobate.cli.parts import COLUMN, MODEL
 from stylobate.cli.saved import open_saved
 from stylobate.cli.source import read_source
+from stylobate.cli.spectrum import SCALES, SCALES_SPACING
+from stylobate.config.run_numbers import SharedByRuns
 from stylobate.errors import FileError, ParameterError
 
 if TYPE_CHECKING:
@@ -22,161 +35,108 @@ if TYPE_CHECKING:
 
     from stylobate.earthquakes import FragilityStudy
 
-Source = Annotated[
-    Path | None,
-    typer.Argument(help="TOML description, or saved runs (.nc) to fit anew or repeat", show_default=False),
-]
-
-
-def _option(text: str, metavar: str | None = None) -> Any:
-    return typer.Option(help=text, rich_help_panel="Fragility", show_default=False, metavar=metavar)
-
-
-Records = Annotated[
-    list[str] | None, _option("a folder of records, a pattern such as 'quakes/*.AT2', or a file; may be repeated")
-]
-SampleRecords = Annotated[
-    list[str] | None, _option('a record that comes with the package: "el centro 1940", or "… corrected"')
-]
-ScaleRange = Annotated[
-    tuple[float, float, int] | None, _option("factors of the records: from, to, how many", "FROM TO NUMBER")
-]
-ScalesSpacing = Annotated[str | None, _option("log (by default) or linear")]
-Intensity = Annotated[
-    str | None,
-    _option("'peak ground acceleration' (by default), 'peak ground velocity', 'PGA/(g tan α)' or 'p PGV/(g tan α)'"),
-]
-Component = Annotated[
-    str | None,
-    _option(
+_FRAGILITY = Group.of(
+    "Fragility",
+    Option("records", "folder of records, pattern such as 'quakes/*.AT2', or file; repeat it", list[str]),
+    Option("sample_records", SAMPLE, list[str]),
+    UNITS,
+    STEP,
+    SINGLE,
+    SCALES,
+    SCALES_SPACING,
+    Option(
+        "intensity",
+        "'peak ground acceleration' (by default), 'peak ground velocity', 'PGA/(g tan α)' or 'p PGV/(g tan α)'",
+        str,
+    ),
+    Option(
+        "component",
         "definition of the horizontal component of the intensity: RotD50 (by default), RotD100 (the vector), "
-        "'geometric mean' or 'larger component'"
+        "'geometric mean' or 'larger component'",
+        str,
     ),
-]
-Vertical = Annotated[str | None, _option("whether vertical components act: on (by default), off or both")]
-FreeTail = Annotated[float | None, _option("how long columns are followed after a record [s]; by default 20/p")]
-Spread = Annotated[
-    list[str] | None, _option("an uncertain property: its lognormal dispersion; may be repeated", "NAME=DISPERSION")
-]
-PropertySamples = Annotated[int | None, _option("how many samples of uncertain properties are drawn")]
-Seed = Annotated[int | None, _option("of samples and resamples [default: 0]")]
-CountingRule = Annotated[
-    str | None, _option("of records safe again higher up: 'as computed' (by default), or 'first': all above the first")
-]
-Confidence = Annotated[float | None, _option("of intervals [default: 0.95]")]
-Resamples = Annotated[int | None, _option("how often records are drawn anew for intervals [default: 1000]")]
-HazardFile = Annotated[
-    Path | None,
-    _option(
-        "a hazard curve of OpenQuake, or a file of two columns: intensity, annual rate or probability of exceedance; "
-        "first line: PGA RotD50 [g], annual rate [1/a], or … probability in 50 years"
+    Option("vertical", "whether vertical components act: on (by default), off or both", str),
+    Option("free_tail", "free vibration time after a record [s]; 20/p by default"),
+    Option(
+        "spread", "uncertain property and its lognormal dispersion; repeat it", list[str], metavar="NAME=DISPERSION"
     ),
-]
-HazardUnits = Annotated[str | None, _option("of the intensities of the hazard, where its file states none: g, m/s2 …")]
-HazardComponent = Annotated[
-    str | None, _option("horizontal component of the hazard, where its file states none: RotD50, 'geometric mean' …")
-]
-HazardSite = Annotated[
-    str | None, _option("which site of a table of OpenQuake: its number, from 0, or LON,LAT", "NUMBER|LON,LAT")
-]
-Years = Annotated[float | None, _option("for which the probability is told [default: 50]")]
-RunsFigure = Annotated[
-    Path | None,
-    typer.Option(help="draw the runs into this file", rich_help_panel="Output", show_default=False),
-]
+    Option("property_samples", "number of samples of the uncertain properties", int),
+    Option("seed", "seed of samples and resamples; 0 by default", int),
+    Option(
+        "counting",
+        "'as computed' (by default), or 'first': all scales above the first that reaches a limit state count",
+        str,
+    ),
+    Option("confidence", "confidence level of intervals; 0.95 by default"),
+    Option("resamples", "number of bootstrap resamples of the records; 1000 by default", int),
+    Option(
+        "hazard",
+        "hazard curve of OpenQuake, or file of two columns: intensity, annual rate or probability of exceedance; "
+        "first line: PGA RotD50 [g], annual rate [1/a], or … probability in 50 years",
+        Path,
+    ),
+    Option("hazard_units", "unit of the hazard's intensities, if its file states none: g, m/s2", str),
+    Option(
+        "hazard_component", "horizontal component of the hazard, if its file states none: RotD50, 'geometric mean'", str
+    ),
+    Option(
+        "hazard_site",
+        "site in a table of OpenQuake: its number, from 0, or its position",
+        str,
+        metavar="NUMBER|LON,LAT",
+    ),
+    Option("years", "period of the stated probability [a]; 50 by default"),
+)
+_RUNS_FIGURE = Group.of("Output", Option("runs_figure", "draw the runs into this file", Path))
 
 
-def fragility(
-    context: typer.Context,
-    source: Source = None,
-    records: Records = None,
-    sample_records: SampleRecords = None,
-    units: opt.Units = None,
-    step: opt.TimeStep = None,
-    single: opt.Single = None,
-    scales: ScaleRange = None,
-    scales_spacing: ScalesSpacing = None,
-    intensity: Intensity = None,
-    component: Component = None,
-    vertical: Vertical = None,
-    free_tail: FreeTail = None,
-    spread: Spread = None,
-    property_samples: PropertySamples = None,
-    seed: Seed = None,
-    counting: CountingRule = None,
-    confidence: Confidence = None,
-    resamples: Resamples = None,
-    hazard: HazardFile = None,
-    hazard_units: HazardUnits = None,
-    hazard_component: HazardComponent = None,
-    hazard_site: HazardSite = None,
-    years: Years = None,
-    tilt: opt.Tilt = None,
-    tilt_rate: opt.TiltRate = None,
-    spin: opt.Spin = None,
-    method: opt.Method = None,
-    rtol: opt.Rtol = None,
-    rest_energy: opt.RestEnergy = None,
-    max_steps: opt.MaxSteps = None,
-    shape: opt.Shape = None,
-    radius: opt.Radius = None,
-    height: opt.Height = None,
-    density: opt.Density = None,
-    inner_radius: opt.InnerRadius = None,
-    top_radius: opt.TopRadius = None,
-    slenderness: opt.Slenderness = None,
-    gravity: opt.Gravity = None,
-    model: opt.Model = None,
-    damping: opt.Damping = None,
-    spin_damping: opt.SpinDamping = None,
-    rolling_resistance: opt.RollingResistance = None,
-    restitution: opt.Restitution = None,
-    constraint: opt.Constraint = None,
-    passage_tilt: opt.PassageTilt = None,
-    friction_coefficient: opt.FrictionCoefficient = None,
-    static_friction_coefficient: opt.StaticFriction = None,
-    patch: opt.Patch = None,
-    incline: opt.Incline = None,
-    incline_direction: opt.InclineDirection = None,
-    resume: opt.Resume = False,
-    executor: opt.Executor = None,
-    threads: opt.ThreadCount = None,
-    figure: opt.Figure = None,
-    runs_figure: RunsFigure = None,
-    output: opt.OutputOrStore = None,
-    as_json: opt.Json = False,
-) -> None:
-    """Tell with what probability records of an intensity bring a column to each limit state.
+@command(
+    argument="TOML description, or saved runs (.nc) to fit again or repeat",
+    groups=(
+        _FRAGILITY,
+        run_numbers(SharedByRuns).without("duration", "periods", "tilt_limit"),
+        COLUMN,
+        MODEL,
+        COMPUTING,
+        OUTPUT_OR_STORE,
+        _RUNS_FIGURE,
+    ),
+)
+def fragility(options: Options) -> None:
+    """Fit fragility curves: probability of each limit state versus intensity.
 
-    Every record is run at every scale, with every sample of uncertain properties. Saved runs are fitted anew; options
-    that change the runs compute them anew. With --hazard, annual rates and probabilities. Examples:
+    A run is computed for every record, scale and sample of uncertain properties. Saved runs are fitted again; options
+    that change the runs compute them again. With --hazard, the result holds annual rates and probabilities. Examples:
 
     stylobate fragility --radius 0.5 --height 5 --density 2000 --damping 0.05 --records quakes --units g
     --scales 0.5 8 12 --figure fragility.png --output runs.nc
 
     stylobate fragility runs.nc --counting first --hazard site.csv
     """
-    given, complete = Given.of(context), True
-    check_outputs(given)
-    check_writable(given["runs_figure"])
-    saved = _saved(source)
-    values = _overlay(_described(source) if saved is None else _description(saved, source), given)
+    complete = True
+    check_outputs(options)
+    check_writable(options["runs_figure"])
+    saved = _saved(options["source"])
+    values = _overlay(
+        _described(options["source"]) if saved is None else _description(saved, options["source"]), options
+    )
     description = earthquakes.config.FragilityConfig.parse(values)
-    if not is_to_compute(saved, given, shown_with=_OF_FITS):
+    read = is_to_compute(saved, options, shown_with=_OF_FITS)
+    study = earthquakes.FragilityStudy.of(description.build(read=read))
+    if read:
+        runs, complete = _computed(study, options)
+        runs = runs.assign_attrs(description=json.dumps(description.values()))
+    else:
         assert saved is not None
-        found, study = saved, earthquakes.FragilityStudy.of(description.build(read=False))
+        runs = saved
+    fits = study.fits(runs)
+    parts, rates = study.parts(runs), study.rates(fits)
+    _write(runs, fits, options)
+    if options["as_json"]:
+        print_json(summary(runs, fits, parts, rates))
     else:
-        study = earthquakes.FragilityStudy.of(description.build())
-        found, complete = _computed(study, given)
-        found = found.assign_attrs(description=json.dumps(description.values()))
-    fits = study.fits(found)
-    parts, rates = study.parts(found), study.rates(fits)
-    _write(found, fits, given)
-    if as_json:
-        print_json(summary(found, fits, parts, rates))
-    else:
-        print_fits(found, fits, parts, rates)
-    end(found, given, complete=complete)
+        print_fits(runs, fits, parts, rates)
+    end(runs, options, complete=complete)
 
 
 _OF_HAZARD = ("hazard", "hazard_units", "hazard_component", "hazard_site")
@@ -187,27 +147,27 @@ _OF_FITS = ("counting", "confidence", "resamples", *_OF_HAZARD, "years", "runs_f
 def _saved(source: Path | None) -> "xr.Dataset | None":
     if source is not None and source.suffix == STORE:
         message = (
-            f"{source} is a store of runs: it goes on with the description that began it, --output {source} and "
-            "--resume; runs to be shown are saved as .nc"
+            f"{source} is a store of runs, which cannot be shown. Continue it with its description, "
+            f"--output {source} and --resume, or save runs as .nc."
         )
         raise FileError(message)
     saved = open_saved(source)
     if saved is not None and saved.attrs["kind"] != "incremental dynamic analysis":
-        message = f"{source} holds a {saved.attrs['kind']}, and no runs under records at several scales"
+        message = f"{source}: no runs under records at several scales (got a {saved.attrs['kind']})."
         raise FileError(message)
     return saved
 
 
 def _description(saved: "xr.Dataset", source: Path | None) -> dict[str, Any]:
     if "description" not in saved.attrs:
-        message = f"{source} was saved from Python; fit it there: sb.earthquakes.fragility_of_runs(runs)"
+        message = f"{source}: saved without its description. Fit it in Python: sb.earthquakes.fragility_of_runs(runs)."
         raise FileError(message)
-    found: dict[str, Any] = json.loads(saved.attrs["description"])
-    return found
+    description: dict[str, Any] = json.loads(saved.attrs["description"])
+    return description
 
 
 def _described(source: Path | None) -> dict[str, Any]:
-    """Return the values of a TOML file, the file of its hazard told from its folder on."""
+    """Read the values of a TOML file; the file of its hazard is relative to its folder."""
     values = read_source(source)
     table = values.get("fragility")
     hazard = table.get("hazard") if isinstance(table, Mapping) else None
@@ -217,28 +177,25 @@ def _described(source: Path | None) -> dict[str, Any]:
     return {**values, "fragility": {**dict(table or {}), "hazard": anchored}}
 
 
-def _overlay(described: Mapping[str, Any], given: Given) -> dict[str, Any]:
+def _overlay(described: Mapping[str, Any], options: Options) -> dict[str, Any]:
     """Return the values `described` with the options laid over them."""
-    from stylobate.earthquakes.config import FragilityConfig  # noqa: PLC0415
-
-    own = given.without("records", "units", "step", "single")
-    values = opt.overlay(described, own, FragilityConfig.model_fields)
+    values = overlay(described, options, earthquakes.config.FragilityConfig.model_fields)
     if not values.get("motion"):
         values.pop("motion", None)
-    return {**values, "records": _records(values.get("records"), given), "fragility": _table(values, given)}
+    return {**values, "records": _records(values.get("records"), options), "fragility": _table(values, options)}
 
 
-def _records(described: Any, given: Mapping[str, Any]) -> Any:
+def _records(described: Any, options: Options) -> Any:
     table = dict(described) if isinstance(described, Mapping) else {"source": described} if described else {}
-    if given["records"] or given["sample_records"]:
+    if options["records"] or options["sample_records"]:
         table = {name: value for name, value in table.items() if name not in ("source", "event", "samples", "only")}
-    if given["records"]:
-        table["source"] = given["records"][0] if len(given["records"]) == 1 else tuple(given["records"])
-    if given["sample_records"]:
-        table["samples"] = tuple(given["sample_records"])
+    if options["records"]:
+        table["source"] = options["records"][0] if len(options["records"]) == 1 else tuple(options["records"])
+    if options["sample_records"]:
+        table["samples"] = tuple(options["sample_records"])
     source = table.get("source")
     if source is not None:  # samples know their units
-        table |= {name: given[name] for name in ("units", "step", "single") if given[name] is not None}
+        table |= options.pick("units", "step", "single")
     if isinstance(source, str):
         table["source"] = str(Path(source).absolute())
     elif isinstance(source, (list, tuple)):
@@ -249,39 +206,36 @@ def _records(described: Any, given: Mapping[str, Any]) -> Any:
 _VERTICAL = {"on": (True,), "off": (False,), "both": (True, False)}
 
 
-def _table(values: Mapping[str, Any], given: Mapping[str, Any]) -> Any:
+def _table(values: Mapping[str, Any], options: Options) -> Any:
     described = values.get("fragility", {})
     if not isinstance(described, Mapping):
         return described
     table = dict(described)
-    if given["scales"] is not None:
-        first, last, number = given["scales"]
-        table["scales"] = {"from": first, "to": last, "number": number}
-    table |= opt.overlay_spacing(table, "scales", given)
-    if given["vertical"] is not None:
-        if given["vertical"] not in _VERTICAL:
-            message = f"--vertical must be on, off or both, got {given['vertical']!r}"
+    if options["scales"] is not None:
+        table["scales"] = axis_values(options["scales"])
+    table |= spacing(table, "scales", options)
+    if options["vertical"] is not None:
+        if options["vertical"] not in _VERTICAL:
+            message = f"--vertical must be on, off or both, got {options['vertical']!r}"
             raise ParameterError(message)
-        table["vertical"] = _VERTICAL[given["vertical"]]
-    if given["spread"]:
-        table["spreads"] = dict(_spread(text) for text in given["spread"])
-    table |= _hazard(table.get("hazard"), given)
-    names = {"free_tail": "tail", "property_samples": "samples"}
+        table["vertical"] = _VERTICAL[options["vertical"]]
+    if options["spread"]:
+        table["spreads"] = dict(_spread(text) for text in options["spread"])
+    table |= _hazard(table.get("hazard"), options)
     rates = ("years",) if table.get("hazard") is not None else ()
-    for name in ("intensity", "component", "seed", "counting", "confidence", "resamples", *rates, *names):
-        if given[name] is not None:
-            table[names.get(name, name)] = given[name]
-    return table
+    table |= options.pick("intensity", "component", "seed", "counting", "confidence", "resamples", *rates)
+    renamed = options.pick("free_tail", "property_samples")
+    return table | {{"free_tail": "tail", "property_samples": "samples"}[name]: one for name, one in renamed.items()}
 
 
-def _hazard(described: Any, given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the hazard, if the options say something of it."""
-    own: dict[str, Any] = {} if given["hazard"] is None else {"file": str(given["hazard"].absolute())}
-    own |= {name: given[f"hazard_{name}"] for name in ("units", "component") if given[f"hazard_{name}"] is not None}
-    if given["hazard_site"] is not None:
-        own["site"] = _site(given["hazard_site"])
-    # Another file is another curve: nothing of what is described is of it.
-    kept = dict(described) if isinstance(described, Mapping) and given["hazard"] is None else {}
+def _hazard(described: Any, options: Options) -> dict[str, Any]:
+    """Return the hazard, if options state it."""
+    own: dict[str, Any] = {} if options["hazard"] is None else {"file": str(options["hazard"].absolute())}
+    own |= {name: options[f"hazard_{name}"] for name in ("units", "component") if options[f"hazard_{name}"] is not None}
+    if options["hazard_site"] is not None:
+        own["site"] = _site(options["hazard_site"])
+    # Another file is another curve: the description of the first one is not about it.
+    kept = dict(described) if isinstance(described, Mapping) and options["hazard"] is None else {}
     return {"hazard": {**kept, **own}} if own else {}
 
 
@@ -303,21 +257,18 @@ def _spread(text: str) -> tuple[str, dict[str, Any]]:
         raise ParameterError(message) from None
 
 
-def _computed(study: "FragilityStudy", given: Given) -> "tuple[xr.Dataset, bool]":
+def _computed(study: "FragilityStudy", options: Options) -> "tuple[xr.Dataset, bool]":
     from stylobate.base_motions import BASE_AT_REST  # noqa: PLC0415
 
     def run(_model: Any, _motion: Any, **computing: Any) -> "xr.Dataset":
         return study.runs(**computing)
 
-    return computed(run, config.Setup(study.model, BASE_AT_REST, {}), given, "fragility")
+    return computed(run, config.Setup(study.model, BASE_AT_REST, {}), options, "fragility")
 
 
-def _write(found: "xr.Dataset", fits: "xr.Dataset", given: Mapping[str, Any]) -> None:
-    output: Path | None = given["output"]
-    if output is not None and output.suffix != STORE:
-        from stylobate.results import write_netcdf  # noqa: PLC0415
-
-        write_netcdf(found, output)
-    for result, path in ((fits, given["figure"]), (found, given["runs_figure"])):
+def _write(runs: "xr.Dataset", fits: "xr.Dataset", options: Options) -> None:
+    if options["output"] is not None:
+        save(runs, options["output"])
+    for result, path in ((fits, options["figure"]), (runs, options["runs_figure"])):
         if path is not None:
             save_figure(plots.plot(result), path)

@@ -1,70 +1,25 @@
-"""The program `stylobate`: its commands, and how mistakes are told."""
+"""The program `stylobate`: it finds the command, runs it, and reports mistakes one to a line."""
 
+import difflib
+import shutil
 import sys
+import textwrap
 import warnings
 from collections.abc import Sequence
-from typing import Annotated, Any
+from typing import Any
 
-import typer
-
-from stylobate.cli.assess import assess
-from stylobate.cli.basin import basin
-from stylobate.cli.boundary import boundary
-from stylobate.cli.drift import drift
-from stylobate.cli.fragility import fragility
-from stylobate.cli.given import with_values
-from stylobate.cli.hierarchy import model_hierarchy
+from stylobate.cli.commands import COMMANDS
 from stylobate.cli.interrupts import INTERRUPTED, interrupted_by_signals
-from stylobate.cli.lab import lab
-from stylobate.cli.map import overturning_map
-from stylobate.cli.options import joined_ranges
-from stylobate.cli.paper import paper
 from stylobate.cli.progress import log_lines
-from stylobate.cli.records import records
-from stylobate.cli.response import response
-from stylobate.cli.simulate import simulate
-from stylobate.cli.spectrum import spectrum
-from stylobate.cli.usage import told
 from stylobate.errors import ConfigError, ModelError, StylobateError, UnlikelyInputWarning
 
 _BAD_INPUT = 2
-
-# The class of all mistakes on a command line; typer gives it no public name of its own.
-_UsageError: type[Exception] = typer.BadParameter.__mro__[1]
-
-app = typer.Typer(
-    name="stylobate",
-    help="Free-standing round columns on shaking bases: they stay, rock, roll round their rim, or overturn.",
-    epilog="Examples: stylobate paper; stylobate simulate --slenderness 0.1 --damping 0.1 --motion circular "
-    "--acceleration 0.065 --angular-frequency 1.8 --tilt 0.04 0 --tilt-rate 0 0.07 --duration 200 --figure run.png",
-    no_args_is_help=True,
-    add_completion=False,
-    rich_markup_mode=None,
+_WIDEST = 80
+_ABOUT = "Free-standing round columns on shaking bases: they stay, rock, roll round their rim, or overturn."
+_EXAMPLES = (
+    "Examples: stylobate paper; stylobate simulate --slenderness 0.1 --damping 0.1 --motion circular "
+    "--acceleration 0.065 --angular-frequency 1.8 --tilt 0.04 0 --tilt-rate 0 0.07 --duration 200 --figure run.png"
 )
-
-
-def _show_version(wanted: bool) -> None:
-    if wanted:
-        from stylobate import __version__  # noqa: PLC0415  read from the installed package only when asked for
-
-        print(f"stylobate {__version__}")
-        raise typer.Exit
-
-
-@app.callback()
-def _options(
-    version: Annotated[
-        bool, typer.Option("--version", help="Print the version.", callback=_show_version, is_eager=True)
-    ] = False,
-) -> None:
-    del version
-
-
-for command in (paper, simulate, model_hierarchy, response, boundary):
-    app.command()(with_values(command))
-app.command("map")(with_values(overturning_map))
-for command in (basin, drift, records, assess, spectrum, fragility, lab):
-    app.command()(with_values(command))
 
 
 def main() -> None:
@@ -83,7 +38,7 @@ def run(arguments: Sequence[str]) -> int:
         warnings.simplefilter("always", UnlikelyInputWarning)
         warnings.showwarning = _show_warning
         with log_lines():
-            return _run(joined_ranges(arguments) or ["--help"])
+            return _run(arguments)
 
 
 def _show_warning(message: Warning | str, *rest: Any, **more: Any) -> None:
@@ -93,19 +48,44 @@ def _show_warning(message: Warning | str, *rest: Any, **more: Any) -> None:
 
 def _run(arguments: Sequence[str]) -> int:
     if any("\0" in argument for argument in arguments):
-        return _tell(["the command line: an argument holds a NUL character. Remove it."])
-    program = typer.main.get_command(app)
+        return _report(["the command line: an argument holds a NUL character. Remove it."])
+    name, *rest = arguments or ("--help",)
+    if name == "--help":
+        print(_help())
+        return 0
+    if name == "--version":
+        from stylobate import __version__  # noqa: PLC0415  read from the installed package only when asked for
+
+        print(f"stylobate {__version__}")
+        return 0
+    if name not in COMMANDS:
+        return _report([_unknown(name)])
+    return _run_command(name, rest)
+
+
+def _run_command(name: str, arguments: Sequence[str]) -> int:
+    import typer  # noqa: PLC0415  the list of commands needs no parser
+
+    from stylobate.cli.usage import joined_ranges, usage_error  # noqa: PLC0415
+
+    # The class of all mistakes on a command line; typer gives it no public name of its own.
+    mistake: type[Exception] = typer.BadParameter.__mro__[1]
+    program = None
     try:
-        status = program.main(arguments, prog_name="stylobate", standalone_mode=False)
-    except _UsageError as error:
-        return _tell([told(error, program)])
+        arguments = joined_ranges(arguments)
+        program = COMMANDS[name].load().program(name, arguments)
+        status = program.main(arguments, prog_name=f"stylobate {name}", standalone_mode=False)
+    except mistake as error:
+        return _report([usage_error(error, program)])
     except (ConfigError, ModelError) as error:
-        return _tell(error.problems)
+        return _report(error.problems)
     except StylobateError as error:
-        return _tell([str(error)])
+        return _report([str(error)])
     except OSError as error:  # a name that no system accepts, or a disk that fails
         reason = error.strerror or str(error)
-        return _tell([f"{error.filename}: cannot be used ({reason}). Name another one." if error.filename else reason])
+        return _report(
+            [f"{error.filename}: cannot be used ({reason}). Name another one." if error.filename else reason]
+        )
     except (KeyboardInterrupt, typer.Abort):
         status = INTERRUPTED
     if status == INTERRUPTED:
@@ -113,8 +93,35 @@ def _run(arguments: Sequence[str]) -> int:
     return int(status or 0)
 
 
-def _tell(problems: Sequence[str]) -> int:
+def _report(problems: Sequence[str]) -> int:
     for problem in problems:
         line = problem.replace("\n", "\\n")  # of a name that holds one
         print(f"stylobate: {line}", file=sys.stderr)
     return _BAD_INPUT
+
+
+def _unknown(name: str) -> str:
+    if name.startswith("-"):
+        return f"No such option: {name}. Write the command before its options: stylobate COMMAND {name} …"
+    similar = difflib.get_close_matches(name, COMMANDS, n=1)
+    return f"No such command {name!r}. {f'Did you mean {similar[0]}?' if similar else 'See stylobate --help.'}"
+
+
+def _help() -> str:
+    width = min(_WIDEST, shutil.get_terminal_size().columns) - 2
+    first = max(map(len, COMMANDS)) + 4
+
+    def wrapped(text: str) -> str:
+        return textwrap.fill(text, width, initial_indent="  ", subsequent_indent="  ")
+
+    rows = [
+        textwrap.fill(entry.summary, width, initial_indent=f"  {name}".ljust(first), subsequent_indent=" " * first)
+        for name, entry in COMMANDS.items()
+    ]
+    options = ["  --version  Print the version.", "  --help     Show this message and exit."]
+    return "\n".join(
+        [
+            *("Usage: stylobate [OPTIONS] COMMAND [ARGS]...", "", wrapped(_ABOUT), ""),
+            *("Options:", *options, "", "Commands:", *rows, "", wrapped(_EXAMPLES)),
+        ]
+    )

@@ -1,4 +1,4 @@
-"""What `map` and `basin` share: many runs computed with progress, to the end or to Ctrl-C, and written."""
+"""Compute many runs with progress, to the end or to Ctrl-C, and write them: for `map`, `basin` and other studies."""
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -7,11 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from stylobate import plots, studies
-from stylobate.cli.given import Given
+from stylobate import studies
 from stylobate.cli.interrupts import INTERRUPTED
-from stylobate.cli.output import STORE, check_writable, save_figure
+from stylobate.cli.options import Options
+from stylobate.cli.output import STORE, check_writable, deliver
+from stylobate.cli.overlay import overlay
 from stylobate.cli.progress import runs_done
+from stylobate.cli.saved import axes_of, provenance_of
+from stylobate.cli.source import read_source
 from stylobate.errors import Interrupted, ParameterError, StylobateError
 
 if TYPE_CHECKING:
@@ -24,15 +27,15 @@ if TYPE_CHECKING:
 _HOW = ("source", "figure", "output", "as_json", "resume", "executor", "threads")
 
 
-def is_to_compute(saved: "xr.Dataset | None", given: Given, *, shown_with: Sequence[str] = ("confidence",)) -> bool:
+def is_to_compute(saved: "xr.Dataset | None", options: Options, *, shown_with: Sequence[str] = ("confidence",)) -> bool:
     """Return whether there is something to compute: `saved` results are only shown unless options change them.
 
     Parameters
     ----------
     saved
         The results, or None.
-    given
-        The options.
+    options
+        Of the command.
     shown_with
         Names of options that change what is shown of saved results, and not the runs.
 
@@ -41,21 +44,94 @@ def is_to_compute(saved: "xr.Dataset | None", given: Given, *, shown_with: Seque
     ConfigError
         If results are only shown and an option says how to compute them.
     """
-    changes = any(name not in (*_HOW, *shown_with) for name in given.flags)
-    if saved is None or changes or given["resume"] or _is_store(given["output"]):
+    changes = any(name not in (*_HOW, *shown_with) for name in options.flags)
+    if saved is None or changes or options["resume"] or _is_store(options["output"]):
         return True
-    given.use(*shown_with)
-    given.refuse_unused(f"to show {given['source']}, for which it computes nothing")
+    options.use(*shown_with)
+    options.refuse_unused(f"to show {options['source']}, for which it computes nothing")
     return False
 
 
-def check_outputs(given: Mapping[str, Any]) -> None:
+def check_outputs(options: Options) -> None:
     """Raise an error now for an output that could not be written when the work is done; see `check_writable`."""
-    check_writable(given["figure"], given["output"], stores=True)
+    check_writable(options["figure"], options["output"], stores=True)
+
+
+def run_study(
+    options: Options,
+    what: str,
+    saved: "xr.Dataset | None",
+    show_saved: Callable[["xr.Dataset"], "xr.Dataset"],
+    prepare: Callable[["xr.Dataset | None"], "tuple[Callable[..., xr.Dataset], Setup]"],
+) -> "tuple[xr.Dataset, bool]":
+    """Compute a study, or show a saved one if no option changes it.
+
+    Parameters
+    ----------
+    options
+        Of the command.
+    what
+        Name of the study in its progress.
+    saved
+        The saved study, or None.
+    show_saved
+        Completes the saved study.
+    prepare
+        Returns the function of the study, and its arguments as a setup.
+
+    Returns
+    -------
+    tuple
+        The result, and whether it was computed to its end: False after Ctrl-C.
+    """
+    check_outputs(options)
+    if not is_to_compute(saved, options):
+        assert saved is not None
+        return show_saved(saved), True
+    study, setup = prepare(saved)
+    return computed(study, setup, options, what)
+
+
+def study_values(
+    saved: "xr.Dataset | None", options: Options, kind: Any, usual: Mapping[str, Any] | None = None, **of_saved: Any
+) -> dict[str, Any]:
+    """Lay the options over the values of a file or of a saved study.
+
+    Parameters
+    ----------
+    saved
+        The saved study, or None.
+    options
+        Of the command.
+    kind
+        Class of the configuration.
+    usual
+        Values that a file may leave out.
+    of_saved
+        Further arguments of `kind.of_saved`.
+    """
+    if saved is None:
+        values = {**(usual or {}), **read_source(options["source"])}
+    else:
+        values = kind.of_saved(provenance_of(saved), axes_of(saved), **of_saved).values()
+    return overlay(values, options, kind.model_fields)
+
+
+def finish(
+    result: "xr.Dataset",
+    options: Options,
+    summary: Callable[["xr.Dataset"], Any],
+    show: Callable[["xr.Dataset"], None],
+    *,
+    complete: bool,
+) -> None:
+    """Write and print a result; end with status 130 if it was interrupted."""
+    deliver(result, options, save, summary, show)
+    end(result, options, complete=complete)
 
 
 def check_axes(section: str, setup: "Setup") -> None:
-    """Raise ParameterError for a quantity along x or y, or a value of it, that cannot be; told by its place."""
+    """Raise ParameterError for an impossible quantity along x or y, or value of it; the message names its place."""
     from stylobate.studies.sweeps.quantities import check_quantities, checked_values  # noqa: PLC0415
 
     for place, (name, values) in zip("xy", setup.options["over"].items(), strict=False):
@@ -63,8 +139,10 @@ def check_axes(section: str, setup: "Setup") -> None:
         checked_values(f"{section}.{place}", name, values)
 
 
-def computed(study: Callable[..., "xr.Dataset"], setup: "Setup", given: Given, what: str) -> "tuple[xr.Dataset, bool]":
-    """Return what `study` finds, and whether it was computed to its end: False after Ctrl-C.
+def computed(
+    study: Callable[..., "xr.Dataset"], setup: "Setup", options: Options, what: str
+) -> "tuple[xr.Dataset, bool]":
+    """Compute a study; return the result, and whether it is complete: False after Ctrl-C.
 
     Raises
     ------
@@ -73,12 +151,12 @@ def computed(study: Callable[..., "xr.Dataset"], setup: "Setup", given: Given, w
     typer.Exit
         After Ctrl-C before any run was done: there is nothing to write.
     """
-    store, resume = _store(given), given["resume"]
-    executor = _executor(given["executor"], given["threads"])
-    given.refuse_unused()
+    store, resume = _store(options), options["resume"]
+    executor = _executor(options["executor"], options["threads"])
+    options.refuse_unused()
     try:
         with runs_done(what) as progress:
-            found = study(
+            result = study(
                 setup.model,
                 setup.motion,
                 **setup.options,
@@ -89,32 +167,29 @@ def computed(study: Callable[..., "xr.Dataset"], setup: "Setup", given: Given, w
             )
     except Interrupted as stop:
         if store is None and not (stop.partial["outcome"] >= 0).any():
-            print("stylobate: no run is done, and nothing is written", file=sys.stderr)
+            print("stylobate: no run is complete, and nothing is written", file=sys.stderr)
             raise typer.Exit(INTERRUPTED) from None
         return stop.partial, False
     except StylobateError as error:
         raise StylobateError(str(error).replace("resume=True", "--resume")) from None
-    return found, True
+    return result, True
 
 
-def write(found: "xr.Dataset", given: Mapping[str, Any]) -> None:
-    """Write what was found into the files asked for; a store holds it already."""
-    output: Path | None = given["output"]
-    if output is not None and not _is_store(output):
+def save(result: "xr.Dataset", output: Path) -> None:
+    """Write a result into a netCDF file; a store holds it already."""
+    if not _is_store(output):
         from stylobate.results import write_netcdf  # noqa: PLC0415  heavy imports wait until they are needed
 
-        write_netcdf(found, output)
-    if given["figure"] is not None:
-        save_figure(plots.plot(found), given["figure"])
+        write_netcdf(result, output)
 
 
-def end(found: "xr.Dataset", given: Mapping[str, Any], *, complete: bool) -> None:
-    """End the command with status 130 if it was interrupted, and say what there is."""
+def end(result: "xr.Dataset", options: Options, *, complete: bool) -> None:
+    """End the command with status 130 if it was interrupted, and report how many runs are done."""
     if complete:
         return
-    store = _store(given)
-    remedy = f"; {store} goes on with --resume" if store else "; with --output NAME.zarr it could go on with --resume"
-    print(f"stylobate: {int(found['computed'])} of {found['outcome'].size} runs are done{remedy}", file=sys.stderr)
+    store = _store(options)
+    remedy = f"{store} continues with --resume" if store else "with --output NAME.zarr, --resume could continue"
+    print(f"stylobate: {int(result['computed'])} of {result['outcome'].size} runs are done; {remedy}", file=sys.stderr)
     raise typer.Exit(INTERRUPTED)
 
 
@@ -122,14 +197,14 @@ def _is_store(path: Path | None) -> bool:
     return path is not None and path.suffix == STORE
 
 
-def _store(given: Mapping[str, Any]) -> Path | None:
-    if _is_store(given["output"]):
-        return given["output"]  # type: ignore[no-any-return]  # options by name
-    if not given["resume"]:
+def _store(options: Options) -> Path | None:
+    if _is_store(options["output"]):
+        return options["output"]  # type: ignore[no-any-return]  # options by name
+    if not options["resume"]:
         return None
-    if _is_store(given["source"]):
-        return given["source"]  # type: ignore[no-any-return]
-    message = "--resume needs the store to continue: give --output NAME.zarr"
+    if _is_store(options["source"]):
+        return options["source"]  # type: ignore[no-any-return]
+    message = "--resume: the store to continue is missing. Add --output NAME.zarr."
     raise ParameterError(message)
 
 
@@ -138,6 +213,6 @@ def _executor(text: str | None, threads: int | None) -> "Threads | Dask":
         return studies.Threads(threads)
     chosen = studies.executor_from(str(text))
     if threads is not None:
-        message = f"--threads is for this process and not for {text}, whose workers have one each; leave it out"
+        message = f"--threads: the workers of {text} have one thread each (got {threads}). Remove it."
         raise ParameterError(message)
     return chosen

@@ -4,7 +4,7 @@ import json
 import math
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -41,6 +41,40 @@ def print_table(title: str, rows: Sequence[Sequence[str]], header: Sequence[str]
     console.print(table)
     if header is not None:
         console.print(title, soft_wrap=True)
+
+
+def deliver(
+    result: Any,
+    options: Mapping[str, Any],
+    save: Callable[[Any, Path], None],
+    summary: Callable[[Any], Any],
+    show: Callable[[Any], None],
+) -> None:
+    """Write a result into the files that the options name, and print it.
+
+    Parameters
+    ----------
+    result
+        Of a run or a study.
+    options
+        Of the command: output, figure, as_json.
+    save
+        Writes the result into the file `output`.
+    summary
+        Makes the plain values that are printed as JSON.
+    show
+        Prints a table.
+    """
+    from stylobate import plots  # noqa: PLC0415  only figures need it
+
+    if options["output"] is not None:
+        save(result, options["output"])
+    if options["figure"] is not None:
+        save_figure(plots.plot(result), options["figure"])
+    if options["as_json"]:
+        print_json(summary(result))
+    else:
+        show(result)
 
 
 def check_writable(figure: Path | None, output: Path | None = None, *, stores: bool = False) -> None:

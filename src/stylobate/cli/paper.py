@@ -2,35 +2,40 @@
 
 import os
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
+from stylobate.cli.command import command
+from stylobate.cli.declarations import JSON, Group, Option
+from stylobate.cli.options import Options
 from stylobate.cli.output import check_place, print_json, print_table
-from stylobate.cli.paper_progress import sections_done
-
-Folder = Annotated[Path, typer.Option(help="where to write figures, data and report.html")]
-Workers = Annotated[int | None, typer.Option(help="processes to use; all cores by default", show_default=False, min=1)]
-Json = Annotated[bool, typer.Option("--json", help="print JSON instead of a table")]
+from stylobate.cli.progress import sections_done
 
 
-def paper(folder: Folder = Path("stylobate-paper"), workers: Workers = None, as_json: Json = False) -> None:
-    """Reproduce the source paper: draw its figures, measure its claims, correct its misprints.
+@command(
+    Option("folder", "folder of the report; stylobate-paper by default", Path, default=Path("stylobate-paper")),
+    Option("workers", "number of processes; all cores by default", int, minimum=1),
+    groups=(Group.of("Output", JSON),),
+)
+def paper(options: Options) -> None:
+    """Reproduce the source paper: figures, measured claims, corrected misprints.
 
-    Writes figures, their data and one self-contained page, report.html, into a folder, and prints the verdict on
-    every claim. Takes about a minute on two cores. Ends with status 1 if a claim could not be confirmed.
+    The command writes figures, their data and one self-contained page, report.html, into a folder, and prints the
+    verdict on every claim. It takes about a minute on two cores, and ends with status 1 if a claim could not be
+    confirmed.
 
     The folder keeps each finished section: after Ctrl-C the same command computes only the others.
     """
     from stylobate.paper import check_paper, paper_report  # noqa: PLC0415  heavy imports wait until they are used
     from stylobate.results import Verdict  # noqa: PLC0415
 
+    folder, workers = options["folder"], options["workers"]
     check_place(folder / "report.html" if folder.exists() else folder)
     with sections_done() as progress:
         check = check_paper(workers=workers or os.cpu_count() or 1, progress=progress, folder=folder)
     report = paper_report(check, folder)
     rows = [(f.source, f.statement, f.measured, f.verdict.value) for f in check.findings]
-    if as_json:
+    if options["as_json"]:
         print_json([dict(zip(("source", "statement", "measured", "verdict"), row, strict=True)) for row in rows])
     else:
         print_table("Every claim of the paper, measured", rows, ("where", "statement", "measured", "verdict"))

@@ -1,14 +1,13 @@
-"""`stylobate records`: which files make which record, and the numbers of each."""
+"""`stylobate records`: the files of each record, and its intensities."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Any
 
 from stylobate import config, earthquakes
-from stylobate.cli import options as opt
-from stylobate.cli.given import Given
+from stylobate.cli.command import Argument, command
+from stylobate.cli.declarations import FIGURE, JSON, SAMPLE, SINGLE, STEP, UNITS, Group, Option
+from stylobate.cli.options import Options
 from stylobate.cli.output import check_place, check_writable, print_json, print_table, save_figure
 from stylobate.cli.source import read_source
 from stylobate.errors import FileError, ParameterError
@@ -18,23 +17,6 @@ from stylobate.text import plural
 if TYPE_CHECKING:
     from stylobate.base_motions import Record
     from stylobate.base_motions.records.listing import ComponentRow
-
-Sources = Annotated[
-    list[str] | None,
-    typer.Argument(
-        help="folders, patterns such as 'quakes/*.AT2', files; or a study (.toml)",
-        show_default=False,
-        metavar="SOURCE…",
-    ),
-]
-SampleRecords = Annotated[
-    list[str] | None, typer.Option(help='a record that comes with the package: "el centro 1940"', show_default=False)
-]
-Damping = Annotated[float, typer.Option(help="damping ratio of the spectra in the figure", show_default=False)]
-Output = Annotated[
-    Path | None,
-    typer.Option(help="save the table into this file (.csv)", rich_help_panel="Output", show_default=False),
-]
 
 _PERIODS = (0.05, 5.0, 60)
 _COLUMNS = {
@@ -54,21 +36,30 @@ _COLUMNS = {
 _SHOWN = tuple(name for name in _COLUMNS if name not in ("origin", "pga"))
 
 
-def records(
-    context: typer.Context,
-    sources: Sources = None,
-    sample_records: SampleRecords = None,
-    units: opt.Units = None,
-    step: opt.TimeStep = None,
-    single: opt.Single = None,
-    spectral_damping: Damping = 0.05,
-    figure: opt.Figure = None,
-    output: Output = None,
-    as_json: opt.Json = False,
-) -> None:
-    """List the records in a folder: which files were joined, peaks, Arias intensity, duration, residual velocity.
+@command(
+    argument=Argument(
+        name="sources",
+        type=list[str],
+        text="folders, patterns such as 'quakes/*.AT2', files; or a study (.toml)",
+        metavar="SOURCE…",
+    ),
+    groups=(
+        Group.of(
+            "Records",
+            Option("sample_records", SAMPLE, list[str]),
+            UNITS,
+            STEP,
+            SINGLE,
+            Option("spectral_damping", "damping ratio of the spectra in the figure; 0.05 by default", default=0.05),
+        ),
+        Group.of("Output", FIGURE, Option("output", "save the table into this file (.csv)", Path), JSON),
+    ),
+)
+def records(options: Options) -> None:
+    """List ground-motion records, their components and their intensities.
 
-    Files are joined as in all commands: by record number, header or name, or as a study lists them. Examples:
+    The components of an event are joined as in all commands: by record number, header or name, or as a study lists
+    them. The table holds peaks, Arias intensity, significant duration and residual velocity. Examples:
 
     stylobate records quakes --figure quakes.png --output quakes.csv
 
@@ -76,40 +67,40 @@ def records(
 
     stylobate records study.toml
     """
+    figure, output = options["figure"], options["output"]
     check_writable(figure)
     _check_table(output)
-    given = Given.of(context)
-    given.use("sources", "sample_records", "figure", "output", *(("spectral_damping",) if figure else ()))
-    values = _values(sources or [], given)
-    given.refuse_unused()
-    description = config.RecordsConfig.parse(values)
-    found = list(description.build().values())
+    if figure is not None:
+        options.use("spectral_damping")
+    values = _values(options["sources"] or [], options)
+    options.refuse_unused()
+    listed = list(config.RecordsConfig.parse(values).build().values())
     from stylobate.base_motions.records.listing import component_rows, notes_on  # noqa: PLC0415
 
-    rows = {record.name: component_rows(record) for record in found}
-    notes = [note for record in found for note in notes_on(record)]
+    rows = {record.name: component_rows(record) for record in listed}
+    notes = [note for record in listed for note in notes_on(record)]
     if output is not None:
         _save(rows, output)
     if figure is not None:
-        _draw(found, spectral_damping, figure)
-    if as_json:
-        print_json({"records": [_summary(record, rows[record.name]) for record in found], "notes": notes})
+        _draw(listed, options["spectral_damping"], figure)
+    if options["as_json"]:
+        print_json({"records": [_summary(record, rows[record.name]) for record in listed], "notes": notes})
         return
     cells = [[_written(value) for value in _row(row, _SHOWN)] for group in rows.values() for row in group]
-    print_table(plural(len(found), "record"), cells, [_COLUMNS[name] for name in _SHOWN])
+    print_table(plural(len(listed), "record"), cells, [_COLUMNS[name] for name in _SHOWN])
     for name, group in rows.items():
         print(f"{name}: {'; '.join(f'{row.axis} {row.origin}' for row in group)}")
     for note in notes:
         print(note)
 
 
-def _values(sources: Sequence[str], given: Given) -> dict[str, Any]:
+def _values(sources: Sequence[str], options: Options) -> dict[str, Any]:
     """Return the plain values of a description of records, options over those of a study."""
     values = _described(sources)
-    if given["sample_records"]:
-        values["samples"] = tuple(given["sample_records"])
+    if options["sample_records"]:
+        values["samples"] = tuple(options["sample_records"])
     of_files = ("units", "step", "single") if values.get("source") or values.get("event") else ()  # samples state them
-    return values | {name: given[name] for name in of_files if given[name] is not None}
+    return values | options.pick(*of_files)
 
 
 def _described(sources: Sequence[str]) -> dict[str, Any]:
@@ -141,12 +132,12 @@ def _save(rows: Mapping[str, Sequence["ComponentRow"]], output: Path) -> None:
     write_whole(output, csv_text(_COLUMNS.values(), table))
 
 
-def _draw(found: Sequence["Record"], damping: float, figure: Path) -> None:
+def _draw(listed: Sequence["Record"], damping: float, figure: Path) -> None:
     import numpy as np  # noqa: PLC0415
 
     from stylobate.base_motions.records import response_spectra  # noqa: PLC0415
 
-    moving = [record for record in found if record.axes]
+    moving = [record for record in listed if record.axes]
     if not moving:
         message = "--figure: no record accelerates, so there is nothing to draw. Check the files"
         raise ParameterError(message)

@@ -1,15 +1,17 @@
 """`stylobate response`: amplitude and phase of steady rolling against frequency, from theory."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import typer
 
-from stylobate import config, plots, studies
-from stylobate.cli import options as opt
-from stylobate.cli.given import Given
-from stylobate.cli.output import check_writable, print_json, print_table, save_figure
+from stylobate import config, studies
+from stylobate.cli.command import command
+from stylobate.cli.declarations import OUTPUT, Option
+from stylobate.cli.options import Options
+from stylobate.cli.output import check_writable, deliver, print_table
+from stylobate.cli.overlay import overlay
+from stylobate.cli.parts import COLUMN, HORIZONTAL_MOTION, MODEL
 from stylobate.cli.source import read_source
 from stylobate.errors import ParameterError
 
@@ -18,47 +20,21 @@ if TYPE_CHECKING:
 
 _ROWS = 17
 
-Source = Annotated[Path | None, typer.Argument(help="TOML description", show_default=False)]
-Range = Annotated[tuple[float, float] | None, typer.Option(help="lowest and highest angular frequency [rad/s]")]
-Exact = Annotated[bool, typer.Option("--exact", help="exact periodic orbits instead of theory, with bifurcations")]
-Points = Annotated[int | None, typer.Option(help="number of frequencies, 400 by default")]
+FREQUENCY_RANGE = Option("angular_frequency_range", "lowest and highest angular frequency [rad/s]", tuple[float, float])
 
 
-def response(
-    context: typer.Context,
-    source: Source = None,
-    angular_frequency_range: Range = None,
-    points: Points = None,
-    shape: opt.Shape = None,
-    radius: opt.Radius = None,
-    height: opt.Height = None,
-    density: opt.Density = None,
-    inner_radius: opt.InnerRadius = None,
-    top_radius: opt.TopRadius = None,
-    slenderness: opt.Slenderness = None,
-    gravity: opt.Gravity = None,
-    model: opt.Model = None,
-    damping: opt.Damping = None,
-    spin_damping: opt.SpinDamping = None,
-    rolling_resistance: opt.RollingResistance = None,
-    restitution: opt.Restitution = None,
-    constraint: opt.Constraint = None,
-    passage_tilt: opt.PassageTilt = None,
-    motion: opt.HarmonicMotion = None,
-    acceleration: opt.Acceleration = None,
-    amplitude: opt.Amplitude = None,
-    phase: opt.Phase = None,
-    direction: opt.Direction = None,
-    sense: opt.Sense = None,
-    exact: Exact = False,
-    figure: opt.Figure = None,
-    output: opt.Output = None,
-    as_json: opt.Json = False,
-) -> None:
-    """Show amplitude and phase of steady rolling against the frequency of the base, with their stability.
+@command(
+    FREQUENCY_RANGE,
+    Option("points", "number of frequencies; 400 by default", int),
+    Option("exact", "exact periodic orbits and bifurcations, no theory", bool, default=False),
+    argument="TOML description",
+    groups=(COLUMN, MODEL, HORIZONTAL_MOTION, OUTPUT),
+)
+def response(options: Options) -> None:
+    """Compute amplitude and phase of steady rolling against frequency.
 
-    By theory exact for circular motion and averaged for straight and elliptic motion; with --exact from periodic
-    orbits, with their bifurcations. Examples:
+    Theory is exact for circular motion and averaged for straight and elliptic motion. With --exact, periodic orbits
+    and their bifurcations are computed instead. Examples:
 
     stylobate response --slenderness 0.1 --damping 0.1 --motion circular --acceleration 0.065
     --angular-frequency-range 0.2 4 --figure response.png
@@ -66,30 +42,21 @@ def response(
     stylobate response --exact --slenderness 0.1 --damping 0.1 --motion straight --acceleration 0.13
     --angular-frequency-range 0.8 8 --figure exact.png
     """
-    given = Given.of(context)
-    check_writable(given["figure"], given["output"])
-    if given["exact"] and points is not None:
-        message = "--points counts the frequencies of theory; leave it out with --exact, which chooses its own steps"
+    check_writable(options["figure"], options["output"])
+    exact = options["exact"]
+    if exact and options["points"] is not None:
+        message = f"--points: --exact chooses its own frequencies (got {options['points']}). Remove one of them."
         raise ParameterError(message)
-    values = opt.overlay(read_source(source), given, config.ResponseConfig.model_fields)
+    values = overlay(read_source(options["source"]), options, config.ResponseConfig.model_fields)
     setup = config.ResponseConfig.parse(values).build()
-    given.refuse_unused()
+    options.refuse_unused()
     low, high = setup.options["range"]
     if exact:
         curves = studies.exact_response(setup.model, setup.motion, angular_frequency=(low, high))
     else:
         frequencies = np.linspace(low, high, setup.options["points"])
         curves = studies.response_curves(setup.model, setup.motion, angular_frequency=frequencies)
-    if output is not None:
-        save_curves(curves, output)
-    if figure is not None:
-        save_figure(plots.plot(curves), figure)
-    if as_json:
-        print_json(plain_curves(curves))
-    elif exact:
-        _print_exact(curves)
-    else:
-        _print(curves)
+    deliver(curves, options, save_curves, plain_curves, _print_exact if exact else _print)
 
 
 def _print_exact(curves: "xr.Dataset") -> None:
@@ -134,7 +101,7 @@ def _stable_ranges(curves: "xr.Dataset") -> list[list[str]]:
 
 
 def save_curves(curves: "xr.Dataset", path: Path) -> None:
-    """Write curves to a netCDF file, which knows no truth values."""
+    """Write curves to a netCDF file; truth values become integers."""
     from stylobate.results import write_netcdf  # noqa: PLC0415  heavy imports wait until they are needed
 
     flags = {name: data.astype("int8") for name, data in curves.data_vars.items() if data.dtype == bool}

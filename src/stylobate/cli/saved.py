@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any
 from stylobate import config, studies
 from stylobate.cli.output import NETCDF, STORE
 from stylobate.errors import FileError
+from stylobate.text import plural
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
 def open_saved(source: Path | None) -> "xr.Dataset | None":
-    """Return the runs saved in a netCDF file (.nc) or a store (.zarr), finished or not; None for any other source.
+    """Read the runs saved in a netCDF file (.nc) or a store (.zarr), finished or not; None for any other source.
 
     Raises
     ------
@@ -43,7 +44,7 @@ def _relocated(data: "xr.Dataset", source: Path) -> "xr.Dataset":
 
 
 def provenance_of(data: "xr.Dataset") -> dict[str, Any]:
-    """Return what tells how `data` was made."""
+    """Return the provenance of `data`."""
     provenance: dict[str, Any] = json.loads(data.attrs["provenance"])
     return provenance
 
@@ -59,6 +60,18 @@ def axes_of(data: "xr.Dataset") -> dict[str, list[float]]:
     """Return the values along each dimension of the runs in `data`, by name; none for a random sample."""
     names = [str(dim) for dim in data["outcome"].dims]
     return {name: data[name].to_numpy().tolist() for name in names if name in data.coords}
+
+
+def study_summary(data: "xr.Dataset", **own: Any) -> dict[str, Any]:
+    """Describe a study for JSON: its kind and axes, its `own` values, how many runs are computed, its provenance."""
+    done = {"computed": int(data["computed"]), "runs": data["outcome"].size}
+    return {"kind": data.attrs["kind"], **plain_axes(data), **own, **done, "provenance": provenance_of(data)}
+
+
+def number_of_runs(data: "xr.Dataset", over: str = "", word: str = "run") -> str:
+    """Describe in words how many runs a study has, and how many of them are computed."""
+    done, total = int(data["computed"]), data["outcome"].size
+    return f"{plural(total, word)}{over}" + (f", {done} of them done" if done < total else "")
 
 
 def plain_axes(data: "xr.Dataset") -> Mapping[str, Any]:

@@ -1,4 +1,4 @@
-"""What a command is told in a file: a TOML description, or a saved run."""
+"""The file from which a command starts: a TOML description, or a saved run."""
 
 from pathlib import Path
 from typing import Any
@@ -8,7 +8,7 @@ from stylobate.errors import FileError
 
 
 def read_source(source: Path | None) -> dict[str, Any]:
-    """Return the plain values of a description; of a saved run (.nc), those that repeat it.
+    """Read the plain values of a description; of a saved run (.nc), those that repeat it.
 
     Raises
     ------
@@ -17,7 +17,7 @@ def read_source(source: Path | None) -> dict[str, Any]:
 
     Notes
     -----
-    Files of records that were moved together with a saved run are found again, see `spec.relocated`.
+    Files of records that were moved together with a saved run are found again, see `config.relocated`.
     """
     if source is None:
         return {}

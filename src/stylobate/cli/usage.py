@@ -1,19 +1,24 @@
-"""Mistakes in the options of a command line, told by what the option wants."""
+"""Mistakes in the options of a command line, described by what the option needs."""
 
+from collections.abc import Sequence
 from typing import Any
 
+from stylobate.errors import ParameterError
 
-def told(error: Exception, program: Any) -> str:
-    """Return one line for a mistake that the parser of options found.
+_RANGE = 3
 
-    Of an option that is followed by several values it says which these are.
+
+def usage_error(error: Exception, program: Any) -> str:
+    """Write one line for a mistake that the parser of options found.
+
+    For an option that is followed by several values it states which these are.
 
     Parameters
     ----------
     error
         What the parser raised.
     program
-        The command line with its commands, whose options have one meaning in all of them.
+        The parser of the command.
     """
     message: str = getattr(error, "format_message", error.__str__)()
     option = getattr(error, "param", None) or _named(error, program)
@@ -28,7 +33,33 @@ def told(error: Exception, program: Any) -> str:
 
 
 def _named(error: Exception, program: Any) -> Any:
-    """Return the option that an error of too few values names, or None; the error knows no command."""
+    """Find the option that an error of too few values names, or None; the error does not name the command."""
     name = getattr(error, "option_name", None)
-    options = (option for command in getattr(program, "commands", {}).values() for option in command.params)
-    return next((option for option in options if name in option.opts), None)
+    return next((option for option in getattr(program, "params", ()) if name in option.opts), None)
+
+
+def joined_ranges(arguments: Sequence[str]) -> list[str]:
+    """Join the three values of each option --over in `arguments`: typer has no lists of tuples."""
+    joined: list[str] = []
+    rest = list(arguments)
+    while rest:
+        joined.append(rest.pop(0))
+        if joined[-1] == "--over":
+            joined.append(" ".join(rest[:_RANGE]))
+            del rest[:_RANGE]
+    return joined
+
+
+def named_range(text: str) -> tuple[str, list[str]]:
+    """Split the joined values of an option --over into the name and the two bounds.
+
+    Raises
+    ------
+    ParameterError
+        If there are not three values.
+    """
+    name, *bounds = text.split()
+    if len(bounds) != _RANGE - 1:
+        message = f"--over must be followed by a name, its lowest and its highest value; got {text!r}"
+        raise ParameterError(message)
+    return name, bounds

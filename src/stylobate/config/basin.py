@@ -8,6 +8,7 @@ from pydantic import Field, field_validator
 from stylobate.config.axis import Axis
 from stylobate.config.description import Config, built
 from stylobate.config.many_runs import ManyRuns, common_values, refuse_design
+from stylobate.config.run_numbers import Stroboscopic
 from stylobate.config.simulation import Setup
 from stylobate.errors import LARGEST_SEED, MOST_RUNS, require_whole
 
@@ -52,12 +53,10 @@ def _problems_of_the_grid(axes: Mapping[str, Axis], over: Mapping[str, object]) 
     return missing or [f"basin.x and basin.y must differ, got {axes['x'].name!r} in both"]
 
 
-class BasinConfig(ManyRuns):
+class BasinConfig(Stroboscopic, ManyRuns):
     """Basins of attraction: `column`, `model`, `motion`, the arguments of a run, and the starts `basin`."""
 
     basin: Starts = Starts()
-    strobes: int | None = None
-    confidence: float = 0.95
 
     @classmethod
     def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]]) -> Self:

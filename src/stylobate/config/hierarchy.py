@@ -10,6 +10,7 @@ from stylobate.config.columns import ColumnConfig
 from stylobate.config.description import Config, built
 from stylobate.config.models import default_values, described_model
 from stylobate.config.motions import AT_REST, MotionConfig
+from stylobate.config.run_numbers import OneRun, problems_of_the_numbers
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
     Setup,
@@ -17,7 +18,6 @@ from stylobate.config.simulation import (
     built_parts,
     built_rules,
     duration_with_tail,
-    problems_of_the_run,
     with_default_duration,
 )
 from stylobate.errors import ConfigError, require_positive
@@ -38,23 +38,15 @@ class HierarchyOptions(Config):
     reference: str = "rolling"
 
 
-class HierarchyConfig(Config):
-    """A case on the ladder: `column`, frictions under `model`, `motion`, the arguments of a run, and `ladder`."""
-
+class _HierarchyCase(Config):
     column: ColumnConfig
     model: HierarchyFrictions = HierarchyFrictions()
     motion: MotionConfig = AT_REST
-    tilt: tuple[float, float] = (0.0, 0.0)
-    tilt_rate: tuple[float, float] = (0.0, 0.0)
-    spin: float = 0.0
-    duration: float | None
-    friction_coefficient: float | None = None
-    rtol: float = 1e-8
-    atol: float | None = None
-    tilt_limit: float | None = None
-    rest_energy: float | None = None
-    max_steps: int = 200_000
-    samples: int | None = None
+
+
+class HierarchyConfig(OneRun, _HierarchyCase):
+    """A case on the ladder: `column`, frictions under `model`, `motion`, the arguments of a run, and `ladder`."""
+
     rules: dict[str, float] = Field(default_factory=dict)
     ladder: HierarchyOptions = HierarchyOptions()
 
@@ -83,7 +75,7 @@ class HierarchyConfig(Config):
         ConfigError
             With one line for each part that cannot be.
         """
-        problems = problems_of_the_run(self)
+        problems = problems_of_the_numbers(self)
         for c in self.ladder.slenderness:
             built("ladder", partial(require_positive, "slenderness", c), problems)
         rules = built("rules", lambda: built_rules(self.rules), problems)

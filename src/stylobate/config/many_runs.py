@@ -1,21 +1,20 @@
 """What descriptions of many runs share: a column, its model, a base motion, a start, how long and how closely."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal, Self
+from typing import Any, Self
 
 from pydantic import Field
 
 from stylobate.base_motions import BaseMotion
-from stylobate.config.columns import ColumnConfig
-from stylobate.config.description import Config, built
-from stylobate.config.models import ModelConfig, described_model
-from stylobate.config.motions import AT_REST, MotionConfig, is_to_end, made_by
+from stylobate.config.description import built
+from stylobate.config.motions import is_to_end, made_by
+from stylobate.config.run_numbers import SharedByRuns, problems_of_the_numbers
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
+    Case,
     built_parts,
     built_rules,
     duration_with_tail,
-    problems_of_the_run,
     refuse_own_classes,
 )
 from stylobate.errors import ParameterError
@@ -25,23 +24,9 @@ from stylobate.quantities import parameters_of
 from stylobate.results import OutcomeRules
 
 
-class ManyRuns(Config):
+class ManyRuns(SharedByRuns, Case):
     """What all runs have in common, under the names of `simulate_ensemble`; `periods` may stand for `duration`."""
 
-    column: ColumnConfig
-    model: ModelConfig = described_model("slender")
-    motion: MotionConfig = AT_REST
-    tilt: tuple[float, float] = (0.0, 0.0)
-    tilt_rate: tuple[float, float] = (0.0, 0.0)
-    spin: float = 0.0
-    duration: float | None = None
-    periods: float | None = None
-    method: Literal["dop853", "taylor"] = "dop853"
-    rtol: float = 1e-8
-    atol: float | None = None
-    tilt_limit: float | None = None
-    rest_energy: float | None = None
-    max_steps: int = 200_000
     demands: bool = False
     recheck: bool = False
     rules: dict[str, float] = Field(default_factory=dict)
@@ -64,7 +49,7 @@ class ManyRuns(Config):
         ConfigError
             With one line for each part that cannot be, and the `problems` known before.
         """
-        problems += problems_of_the_run(self)
+        problems += problems_of_the_numbers(self)
         rules = built("rules", lambda: built_rules(self.rules), problems)
         model, motion = built_parts(self.column, self.model, self.motion, problems)
         options = {name: getattr(self, name) for name in _SHARED} | {"rules": rules or OutcomeRules()}

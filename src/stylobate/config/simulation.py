@@ -16,17 +16,12 @@ from stylobate.config.file_values import DEEPEST, check_file_values
 from stylobate.config.models import ModelConfig, describe_model, described_model
 from stylobate.config.motions import AT_REST, MotionConfig, describe_motion, is_to_end
 from stylobate.config.records import RecordMotion, anchored
+from stylobate.config.run_numbers import SingleRun, problems_of_the_numbers
 from stylobate.errors import (
-    MOST_STEPS,
     ConfigError,
     FileError,
     ParameterError,
     UnsupportedError,
-    require_finite,
-    require_not_negative,
-    require_positive,
-    require_vector,
-    require_whole,
 )
 from stylobate.kinds import with_places
 from stylobate.models import Model
@@ -42,31 +37,21 @@ class Setup:
     options: dict[str, Any]
 
 
-class SimulationConfig(Config):
+class Case(Config):
+    """What every run has: `column`, `model` and `motion`."""
+
+    column: ColumnConfig
+    model: ModelConfig = described_model("slender")
+    motion: MotionConfig = AT_REST
+
+
+class SimulationConfig(SingleRun, Case):
     """A run: `column`, `model`, `motion` and the arguments of `simulate`, under the same names.
 
     A run under a record, a pulse or a sine sweep needs no `duration`: it then lasts as long as the motion and a free
     tail of 20/p.
     """
 
-    column: ColumnConfig
-    model: ModelConfig = described_model("slender")
-    motion: MotionConfig = AT_REST
-    tilt: tuple[float, float] = (0.0, 0.0)
-    tilt_rate: tuple[float, float] = (0.0, 0.0)
-    spin: float = 0.0
-    twist: float = 0.0
-    position: tuple[float, float] = (0.0, 0.0)
-    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    clearance: float = 0.0
-    duration: float | None
-    friction_coefficient: float | None = None
-    rtol: float = 1e-8
-    atol: float | None = None
-    tilt_limit: float | None = None
-    rest_energy: float | None = None
-    max_steps: int = 200_000
-    samples: int | None = None
     rules: dict[str, float] = Field(default_factory=dict)
     recheck: bool = True
 
@@ -84,26 +69,13 @@ class SimulationConfig(Config):
         ConfigError
             With one line for each part that cannot be.
         """
-        problems = problems_of_the_run(self)
+        problems = problems_of_the_numbers(self)
         rules = built("rules", lambda: built_rules(self.rules), problems)
         model, motion = built_parts(self.column, self.model, self.motion, problems)
         options = self.model_dump(exclude={"column", "model", "motion"}) | {"rules": rules}
         if self.duration is None:
             options["duration"] = duration_with_tail(model, motion)
         return Setup(model, motion, options)
-
-
-def problems_of_the_run(description: Config) -> list[str]:
-    """Return one line for each number of a run, or of many, that cannot be."""
-    problems: list[str] = []
-    for name, check in _RUN_CHECKS.items():
-        value = getattr(description, name, None)
-        try:
-            if value is not None:
-                check(name, value)
-        except ParameterError as error:
-            problems.append(str(error))
-    return problems
 
 
 def built_parts(
@@ -144,38 +116,11 @@ def duration_with_tail(model: Model, motion: BaseMotion) -> float:
     return motion.duration + FREE_TAIL / model.column.frequency_parameter
 
 
-def _require_share(name: str, value: float) -> None:
-    if not 0.0 < value < 1.0:
-        message = f"{name} must lie between 0 and 1, got {value!r}; 0.95 is usual"
-        raise ParameterError(message)
-
-
 OF_OTHER_COMMANDS = (
     *("map", "basin", "spectrum", "fragility", "records", "ladder", "periods"),
     *("method", "strobes", "confidence", "angular_frequency_range", "points"),
 )
 """What a description may say that is no argument of a single run."""
-
-_RUN_CHECKS: Mapping[str, Callable[[str, Any], object]] = {
-    "duration": lambda name, value: require_positive(name, value, "s"),
-    "periods": require_positive,
-    "tilt_limit": lambda name, value: require_positive(name, value, "rad"),
-    "rtol": require_positive,
-    "atol": lambda name, value: require_positive(name, value, "rad"),
-    "rest_energy": require_not_negative,
-    "friction_coefficient": require_positive,
-    "spin": lambda name, value: require_finite(name, value, "rad/s"),
-    "twist": lambda name, value: require_finite(name, value, "rad"),
-    "position": lambda name, value: require_vector(name, value, 2, "m"),
-    "velocity": lambda name, value: require_vector(name, value, 3, "m/s"),
-    "clearance": lambda name, value: require_not_negative(name, value, "m"),
-    "max_steps": lambda name, value: require_whole(name, value, least=1, most=MOST_STEPS),
-    "samples": lambda name, value: require_whole(name, value, least=2),
-    "strobes": lambda name, value: require_whole(name, value, least=2),
-    "confidence": _require_share,
-    "tilt": lambda name, value: require_vector(name, value, 2, "rad"),
-    "tilt_rate": lambda name, value: require_vector(name, value, 2, "rad/s"),
-}
 
 
 def read_config(path: str | Path) -> dict[str, Any]:

@@ -8,6 +8,9 @@ from stylobate.config.description import Config, built
 from stylobate.config.many_runs import ManyRuns, common_values, name_of, refuse_design, with_numbers_that_vary
 from stylobate.config.simulation import Setup
 
+_PERIODS = 60.0
+"""How many periods of its base motion a column is followed by default."""
+
 
 class Varied(Config):
     """The quantity `x` that varies, perhaps another `y`; `late`: last periods over which means are taken."""
@@ -21,13 +24,13 @@ class DriftConfig(ManyRuns):
     """A drift: `column`, `model`, `motion`, the arguments of a run, and `drift.x`, perhaps `drift.y`, `drift.late`."""
 
     drift: Varied
-    periods: float | None = 60.0
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
         """Return the description of these `values`; a motion may lack a number that varies."""
         varied = values.get("drift")
         axes = varied if isinstance(varied, Mapping) else {}
+        values = {"periods": _PERIODS, **values}
         return super().parse(with_numbers_that_vary(values, (name_of(axes.get("x")), name_of(axes.get("y")))))
 
     @classmethod

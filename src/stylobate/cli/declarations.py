@@ -1,0 +1,220 @@
+"""Declare the options of commands: each once, in groups that commands take."""
+
+import inspect
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass, replace
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from stylobate.cli.own_classes import Chosen
+from stylobate.errors import FileError
+from stylobate.quantities import Parameter
+
+MAX_NAMED_KINDS = 3
+"""How many kinds a help text or a remedy lists."""
+
+
+@dataclass(frozen=True, slots=True)
+class Option:
+    """One option.
+
+    Parameters
+    ----------
+    name
+        As in Python; the flag follows from it unless `flag` is another one.
+    text
+        What help shows.
+    type
+        Of one value; a tuple for several values, a list for an option that may be repeated, bool for a switch.
+    panel
+        The heading of the help below which the option stands.
+    part, number
+        The table of a configuration, such as "motion", and the name there; empty for other options.
+    kinds
+        The kinds of this part that have the number, as in files.
+    """
+
+    name: str
+    text: str = ""
+    type: Any = float
+    _: KW_ONLY
+    flag: str = ""
+    panel: str = "Options"
+    default: Any = None
+    metavar: str | None = None
+    minimum: int | None = None
+    callback: Callable[[Any], Any] | None = None
+    hidden: bool = False
+    part: str = ""
+    number: str = ""
+    kinds: tuple[str, ...] = ()
+
+    def as_parameter(self) -> inspect.Parameter:
+        """Make the parameter of a function from which typer reads this option."""
+        flags = (self.flag or f"--{written(self.name)}",)
+        declared = typer.Option(
+            *flags,
+            help=self.text,
+            rich_help_panel=self.panel,
+            show_default=False,
+            metavar=self.metavar,
+            min=self.minimum,
+            callback=self.callback,
+            hidden=self.hidden,
+        )
+        annotation = self.type if self.default is not None else self.type | None
+        return inspect.Parameter(
+            self.name, inspect.Parameter.KEYWORD_ONLY, default=self.default, annotation=Annotated[annotation, declared]
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Options that several commands take; they are made when a command of these is chosen."""
+
+    make: Callable[[Chosen], Iterable[Option]]
+    left_out: tuple[str, ...] = ()
+    only: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, panel: str, *options: Option) -> "Group":
+        """Make a group of these options below one heading."""
+        return cls(lambda _: [replace(option, panel=panel) for option in options])
+
+    def without(self, *names: str) -> "Group":
+        """Return this group but for the options of these names."""
+        return replace(self, left_out=(*self.left_out, *names))
+
+    def reduced_to(self, *names: str) -> "Group":
+        """Return the options of these names in this group."""
+        return replace(self, only=names)
+
+    def options(self, chosen: Chosen) -> list[Option]:
+        """List the options, with those of the chosen kinds."""
+        kept = [one for one in self.make(chosen) if one.name not in self.left_out]
+        return [one for one in kept if not self.only or one.name in self.only]
+
+
+def run_numbers(group: type) -> Group:
+    """Make the options of the declared numbers of a run, such as `stylobate.config.run_numbers.SingleRun`."""
+
+    def made(_: Chosen) -> Iterable[Option]:
+        from stylobate.config.run_numbers import numbers_of  # noqa: PLC0415  heavy imports wait
+
+        for name, parameter in numbers_of(group).items():
+            yield Option(name, text_of(parameter), type_of(parameter), panel="Run")
+
+    return Group(made)
+
+
+def type_of(parameter: Parameter) -> Any:
+    """Determine the type of the values of an option from its declaration."""
+    if parameter.quantity.components > 1:
+        return tuple[(float,) * parameter.quantity.components]  # type: ignore[misc]
+    if any(isinstance(choice, str) for choice in parameter.choices):
+        return str
+    return int if parameter.whole else float
+
+
+def text_of(parameter: Parameter, kinds: Sequence[str] = ()) -> str:
+    """Describe an option from its declaration: text, unit, choices, default, and the only `kinds` that have it."""
+    quantity, default = parameter.quantity, parameter.default
+    unit = quantity.unit and f"[{quantity.unit}]"
+    text = " ".join(part for part in (quantity.text, quantity.symbol, unit) if part)
+    words = [written(choice) for choice in parameter.choices if isinstance(choice, str)]
+    if words:
+        text += f": {listed(words)}"
+    if kinds:
+        text += f"; only of {listed(kinds, 'and')}"
+    if not (parameter.required or default is None or default in (0.0, (0.0,) * quantity.components)):
+        text += f"; {written(default) if isinstance(default, str) else f'{default:g}'} by default"
+    return text
+
+
+def written(name: str) -> str:
+    """Write the name of an option or a kind as on the command line; a user's own class as it is.
+
+    >>> written("half_sine"), written("my_models.py:Tethered")
+    ('half-sine', 'my_models.py:Tethered')
+    """
+    return name if ":" in name else name.replace("_", "-")
+
+
+def as_kind(name: str) -> str:
+    """Write the name of a kind as in files."""
+    return name if ":" in name else name.replace("-", "_")
+
+
+def listed(names: Sequence[str], word: str = "or") -> str:
+    """List names in words.
+
+    >>> listed(["rolling", "half_sine", "sum"])
+    'rolling, half-sine or sum'
+    """
+    shown = [written(name) for name in names]
+    return f" {word} ".join(part for part in (", ".join(shown[:-1]), shown[-1]) if part)
+
+
+def readable(paths: list[Path] | None) -> list[Path] | None:
+    """Raise FileError at once for a file that is missing: the code that reads it takes seconds to import."""
+    for path in paths or ():
+        if not path.is_file():
+            message = f"cannot read {path}: No such file or directory"
+            raise FileError(message)
+    return paths
+
+
+_AXIS = tuple[str, float, float, int]
+AXES = Group.of(
+    "Axes",
+    Option("x", "values along x: name, first, last, number", _AXIS, metavar="NAME FROM TO NUMBER"),
+    Option("y", "values along y: name, first, last, number", _AXIS, metavar="NAME FROM TO NUMBER"),
+    Option("x_spacing", "linear (by default) or log", str),
+    Option("y_spacing", "linear (by default) or log", str),
+)
+UNITS = Option("units", "unit of files that do not state it: g, m/s2 or cm/s2", str)
+STEP = Option("step", "time step of files that do not state it [s]")
+SINGLE = Option("single", "accept records of one component without a warning", bool)
+SAMPLE = 'record that comes with the package: "el centro 1940", or "el centro 1940 corrected"'
+
+_RECORD_OPTIONS: Mapping[str, Option] = {
+    "path": Option(
+        "record",
+        "file of a record; repeat it for each component of the same event, whatever its name",
+        list[Path],
+        callback=readable,
+    ),
+    "directions": Option(
+        "record_direction",
+        "direction of a component, once for each --record, in their order: an azimuth, up, N10E, L",
+        list[str],
+    ),
+    "single": SINGLE,
+    "sample": Option("sample_record", SAMPLE, str),
+    "units": UNITS,
+    "step": STEP,
+    "scale": Option("scale", "factor of a record"),
+    "rotation": Option("rotation", "rotation of a record about the vertical [rad]"),
+    "tail": Option("tail", "free vibration time after a record [s]"),
+}
+RECORD = Group.of(
+    "Record",
+    *(replace(one, part="motion", number=number, kinds=("record",)) for number, one in _RECORD_OPTIONS.items()),
+)
+COMPUTING = Group.of(
+    "Computing",
+    Option("resume", "continue the store of --output", bool, default=False),
+    Option("executor", "threads (by default), dask:// (workers here) or dask://host:port", str),
+    Option("threads", "number of threads; all cores by default", int),
+)
+FIGURE = Option("figure", "draw into this file (.png, .pdf, .svg)", Path)
+JSON = Option("as_json", "print JSON instead of a table", bool, flag="--json", default=False)
+OUTPUT = Group.of("Output", FIGURE, Option("output", "save the result as netCDF (.nc)", Path), JSON)
+OUTPUT_OR_STORE = Group.of(
+    "Output",
+    FIGURE,
+    Option("output", "save the result as netCDF (.nc), or in a store (.zarr) for --resume", Path),
+    JSON,
+)

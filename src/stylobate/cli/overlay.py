@@ -1,0 +1,199 @@
+"""Lay the options of a command line over the values of a file: same names, options win."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from stylobate.cli.options import Options
+from stylobate.cli.parts import KINDS_IN_FILES, PARTS, Part
+from stylobate.errors import ConfigError, ParameterError
+from stylobate.quantities import parameters_of
+
+_TABLES = ("column", "model", "motion", "records")
+
+
+def overlay(values: Mapping[str, Any], options: Options, fields: Iterable[str]) -> dict[str, Any]:
+    """Lay the options over the values of a file.
+
+    Parameters
+    ----------
+    values
+        As read from a TOML file, or nothing.
+    options
+        All options of the command.
+    fields
+        Names at the top of the configuration: other options of the run are not read.
+
+    Raises
+    ------
+    ConfigError
+        With one line for each option that the chosen column shape, model or base motion does not use.
+    """
+    result, fields, problems = dict(values), [name for name in fields if name not in _TABLES], list[str]()
+    of_parts = {*_column(result, options, problems), *_model(result, options, fields, problems)}
+    of_parts |= {*_motion(result, options, problems)}
+    if problems:
+        raise ConfigError(problems)
+    chosen = options.pick(*(name for name in fields if name not in of_parts))
+    for name, other in (("duration", "periods"), ("periods", "duration")):
+        if name in chosen and other not in chosen:
+            result.pop(other, None)  # one of them states the duration
+    return result | chosen
+
+
+def merge(values: dict[str, Any], name: str, options: Mapping[str, Any], tag: str = "") -> None:
+    """Lay options over the table `name` of `values`; another kind, at the key `tag`, replaces the table."""
+    table = values.get(name, {})
+    if not isinstance(table, Mapping):
+        return
+    replaced = tag in options and options[tag] != table.get(tag)
+    merged = dict(options) if replaced else {**table, **options}
+    if merged or name in values:
+        values[name] = merged
+
+
+def with_axes(values: Mapping[str, Any], options: Options, section: str) -> dict[str, Any]:
+    """Lay the options x, y, x_spacing and y_spacing over the axes in the table `section` of `values`."""
+    result, table = dict(values), values.get(section, {})
+    if not isinstance(table, Mapping):
+        return result
+    table = dict(table)
+    for place in "xy":
+        if options[place] is not None:
+            name, *rest = options[place]
+            table[place] = {"name": name, **axis_values(rest)}
+        table |= spacing(table, place, options)
+    return {**result, section: table} if table else result
+
+
+def axis_values(values: Iterable[Any]) -> dict[str, Any]:
+    """Name the values of an option FROM TO NUMBER."""
+    return dict(zip(("from", "to", "number"), values, strict=True))
+
+
+def spacing(table: Mapping[str, Any], name: str, options: Options) -> dict[str, Any]:
+    """Return the axis `name` of a table with its spacing, if an option states it; listed values have none."""
+    axis = table.get(name)
+    if not isinstance(axis, Mapping) or "values" in axis or options[f"{name}_spacing"] is None:
+        return {}
+    return {name: {**axis, "spacing": options[f"{name}_spacing"]}}
+
+
+def _numbers(
+    part: Part, kind: str | None, options: Options, problems: list[str], fields: Iterable[str] = ()
+) -> tuple[dict[str, Any], list[str]]:
+    """Return the stated numbers of a part, and the names of their options.
+
+    An option that this kind does not use is one more line in `problems`, unless a run has a number of that name in
+    its `fields`. Without a kind, or with one that does not exist, all are kept: the configuration reports that.
+    """
+    numbers, names = dict[str, Any](), list[str]()
+    known = kind in part.kinds or part.table in options.chosen.classes
+    for option in options.stated(part.table):
+        name = option.name
+        if option.number == part.tag or (option.kinds == ("record",) and kind in (None, "record")):
+            continue
+        if kind is None or kind in option.kinds or not known:
+            value = options[name]
+            numbers[option.number] = value.replace("-", "_") if option.type is str else value
+            names.append(name)
+        elif name not in fields:
+            problems.append(options.refusal_by_kind(option, part.noun, kind))
+    return numbers, names
+
+
+def _column(values: dict[str, Any], options: Options, problems: list[str]) -> list[str]:
+    """Merge the column; options may not change the shape that a file has unless --shape states it."""
+    from stylobate.config.columns import implied_shape  # noqa: PLC0415  heavy imports wait until the options are read
+
+    part, stated = PARTS["column"], options.stated("column")
+    if not stated:
+        return []
+    table = values.get("column")
+    implied = implied_shape([one.number for one in stated])
+    shape = options["shape"]
+    if shape is None and isinstance(table, Mapping):
+        shape = table.get("shape", implied_shape(table) or "solid")
+        if shape == "given" or implied not in (None, shape):
+            message = (
+                f"column: the file describes another shape (got {shape!r}). "
+                f"To replace it, add --shape {implied or 'solid'} and all of its numbers."
+            )
+            raise ParameterError(message)
+    shape = shape or implied or "solid"
+    numbers, names = _numbers(part, shape, options, problems)
+    merge(values, "column", {**numbers, "shape": shape}, tag="shape")
+    return names
+
+
+def _model(values: dict[str, Any], options: Options, fields: Iterable[str], problems: list[str]) -> list[str]:
+    """Merge the model; another kind than that of the file keeps the numbers there that it has."""
+    part, table = PARTS["model"], values.get("model", {})
+    kind = None
+    if "model" in options.declared and options.declared["model"].part:
+        if options["model"] and isinstance(table, Mapping):
+            kind = options.chosen.kinds.get("model", options["model"])
+            values["model"] = table = {**_kept(table, kind, options), "kind": kind}
+        kind = table.get("kind", "slender") if isinstance(table, Mapping) else None
+    numbers, names = _numbers(part, kind, options, problems, fields)
+    merge(values, "model", numbers)
+    return names
+
+
+def _kept(table: Mapping[str, Any], kind: str, options: Options) -> dict[str, Any]:
+    own = options.chosen.classes.get("model")
+    makers = PARTS["model"].makers()
+    make = own if own is not None else makers.get(kind)
+    return {name: value for name, value in table.items() if make is None or name in parameters_of(make)}
+
+
+def _motion(values: dict[str, Any], options: Options, problems: list[str]) -> list[str]:
+    """Merge the base motion; another kind than that of the file replaces it.
+
+    Raises
+    ------
+    ParameterError
+        If no options state its numbers, and the file describes another motion.
+    """
+    if "motion" not in options.declared:
+        return []
+    table = values.get("motion")
+    before = table.get("kind") if isinstance(table, Mapping) else None
+    kind = options.chosen.kinds.get("motion", options["motion"]) if options["motion"] else None
+    if kind in KINDS_IN_FILES and before != kind:
+        message = (
+            f"--motion: no options state the numbers of this motion (got {options['motion']}). "
+            f'Describe it in a file: [motion], kind = "{kind}".'
+        )
+        raise ParameterError(message)
+    record = _record(table if isinstance(table, Mapping) else {}, options) if kind in (None, "record") else {}
+    if kind is None and ("path" in record or "sample" in record):
+        kind = "record"
+    if kind is None and before != "record" and before is not None:
+        record = {}
+    numbers, names = _numbers(PARTS["motion"], kind or before, options, problems)
+    merge(values, "motion", {**({"kind": kind} if kind else {}), **numbers, **record}, tag="kind")
+    return names
+
+
+def _record(table: Mapping[str, Any], options: Options) -> dict[str, Any]:
+    """Return the options of a record; only files can lack a component."""
+    if "record" not in options.declared:
+        return {}
+    stated = options.pick("units", "step", "scale", "rotation", "tail")
+    files = [str(path) for path in options["record"] or ()]
+    if files:
+        stated["path"] = files[0] if len(files) == 1 else files
+    if options["sample_record"]:
+        stated["sample"] = options["sample_record"]
+    if options["record_direction"]:
+        stated["directions"] = [_azimuth_or_name(text) for text in options["record_direction"]]
+    if files or ("sample" not in stated and "path" in table):
+        stated |= options.pick("single")
+    return stated
+
+
+def _azimuth_or_name(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
