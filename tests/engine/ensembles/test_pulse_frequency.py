@@ -123,6 +123,6 @@ def test_what_has_no_frequency_is_refused_with_a_word():
         sb.studies.overturning_map(MODEL, PULSES["ricker"], over=over, periods=3.0)
     with pytest.raises(
         UnsupportedError,
-        match=r"start_phase: the base motion has no such number; .* Its numbers are acceleration, angular_freq",
+        match=r"start_phase: the base motion has no such number .* Its numbers are acceleration, angular_freq",
     ):
         sb.simulate_ensemble(MODEL, PULSES["ricker"], duration=1.0, parameters={"start_phase": [0.0]})
