@@ -71,7 +71,7 @@ def _prepared(saved: "xr.Dataset | None", options: Options) -> "tuple[Callable[.
     merge(values, "drift", options.pick("late"))
     setup = kind.parse(values).build()
     for place, name in zip("xy", setup.options["over"], strict=False):
-        check_quantities(f"drift.{place}", setup.model, [name])
+        check_quantities(f"drift.{place}", setup.model, [name], setup.motion)
     return conveying.drift, setup
 
 

@@ -135,7 +135,7 @@ def check_axes(section: str, setup: "Setup") -> None:
     from stylobate.studies.sweeps.quantities import check_quantities, checked_values  # noqa: PLC0415
 
     for place, (name, values) in zip("xy", setup.options["over"].items(), strict=False):
-        check_quantities(f"{section}.{place}", setup.model, [name])
+        check_quantities(f"{section}.{place}", setup.model, [name], setup.motion)
         checked_values(f"{section}.{place}", name, values)
 
 

@@ -62,7 +62,7 @@ def expect_runs_as_alone(motion, parameters, model=MODEL, duration=4.0):
         changes = {name: values[index] for name, values in parameters.items()}
         changed = sb.with_parameters(model, motion, **changes)
         alone = sb.simulate(*changed, tilt=TILT, duration=duration, rtol=1e-10, samples=2, recheck=False)
-        assert sb.results.outcome_of(runs["outcome"][index]) is alone.outcome
+        assert sb.Outcome(int(runs["outcome"][index])) is alone.outcome
         end = np.asarray(alone.data["tilt"])[-1]
         if (
             alone.outcome is sb.Outcome.OVERTURNED
