@@ -70,3 +70,13 @@ class Limits:
     jobs: int = 2
     waiting: int = 8
     abandoned: float = 120.0
+
+    def of_numbers(self) -> dict[str, tuple[float, str]]:
+        """Return the largest value of each number of a run that is limited, with its unit, by name."""
+        return {
+            "duration": (self.duration, "s"),
+            "max_steps": (self.steps, "steps"),
+            "samples": (self.steps, "samples"),
+            "points": (self.points, "frequencies"),
+            "strobes": (self.points, "states"),
+        }

@@ -11,14 +11,11 @@ from stylobate.base_motions.records.samples import sample_names
 from stylobate.config.columns import ColumnConfig
 from stylobate.config.description import Config
 from stylobate.config.models import DESCRIBED_MODELS
-from stylobate.config.motions import MotionConfig, is_to_end
+from stylobate.config.motions import COMPOSITE, MotionConfig, is_to_end
 from stylobate.errors import Outcome
 from stylobate.lab.limits import Limits
 from stylobate.lab.parameter_info import NUMBERS, Number
 from stylobate.lab.presets import presets
-
-# Motions made of motions, and records, have controls of their own or are for files.
-_NO_CONTROLS = frozenset({"sum", "one_of", "scaled", "rotated", "delayed"})
 
 
 def about(limits: Limits) -> dict[str, Any]:
@@ -26,7 +23,7 @@ def about(limits: Limits) -> dict[str, Any]:
     motions = (
         {**kind, "ends": is_to_end(kind)}
         for kind in _kinds(_members(MotionConfig), "kind")
-        if kind["kind"] not in _NO_CONTROLS
+        if kind["kind"] not in COMPOSITE  # these are for files
     )
     return {
         "version": version("stylobate"),

@@ -71,16 +71,9 @@ def _refuse_files(values: Mapping[str, Any]) -> None:
 
 def _beyond(body: Mapping[str, Any], limits: Limits) -> list[str]:
     """Return a line for each number beyond its limit."""
-    bounds = {
-        "duration": (limits.duration, "s"),
-        "max_steps": (limits.steps, "steps"),
-        "samples": (limits.steps, "samples"),
-        "points": (limits.points, "frequencies"),
-        "strobes": (limits.points, "states"),
-    }
     problems = [
         f"{name} may be at most {bound:g} {unit} here, got {body[name]!r}; use stylobate in Python for more"
-        for name, (bound, unit) in bounds.items()
+        for name, (bound, unit) in limits.of_numbers().items()
         if number_of(body.get(name)) > bound
     ]
     plane = body.get("map") or body.get("basin")

@@ -119,13 +119,7 @@ def _finite(schema: Any) -> Any:
 
 def _within(body: Schema, limits: Limits) -> Schema:
     """Return the schema of a description with what its numbers are, and the limits."""
-    most = {
-        "duration": limits.duration,
-        "max_steps": limits.steps,
-        "samples": limits.steps,
-        "points": limits.points,
-        "strobes": limits.points,
-    }
+    most = {name: bound for name, (bound, _) in limits.of_numbers().items()}
     properties: dict[str, Schema] = body["properties"]
     for name, schema in properties.items():
         if name in _TEXTS:
