@@ -4,7 +4,7 @@ import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args, get_origin
 
 import typer
 
@@ -59,7 +59,7 @@ class Option:
             help=self.text,
             rich_help_panel=self.panel,
             show_default=False,
-            metavar=self.metavar,
+            metavar=self.metavar or _several(self.type),
             min=self.minimum,
             callback=self.callback,
             hidden=self.hidden,
@@ -68,6 +68,11 @@ class Option:
         return inspect.Parameter(
             self.name, inspect.Parameter.KEYWORD_ONLY, default=self.default, annotation=Annotated[annotation, declared]
         )
+
+
+def _several(kind: Any) -> str | None:
+    """Return how the values of an option that takes several are written in help; None for other options."""
+    return " ".join(["NUMBER"] * len(get_args(kind))) if get_origin(kind) is tuple else None
 
 
 @dataclass(frozen=True, slots=True)

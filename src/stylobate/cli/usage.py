@@ -25,7 +25,8 @@ def usage_error(error: Exception, program: Any) -> str:
     count = getattr(option, "nargs", 1)
     if option is None or count == 1:
         return message
-    wanted = getattr(option, "metavar", None) or f"{count} numbers"
+    names = getattr(option, "metavar", None) or ""
+    wanted = f"{count} numbers" if set(names.split()) <= {"NUMBER"} else names
     if "requires" in message:
         return f"{option.opts[0]} must be followed by {wanted}; got fewer"
     wrong = f"{wanted.split()[-1]} must be a whole number" if "integer" in message else "one of them is no number"
