@@ -51,4 +51,4 @@ else:
     ColumnConfig = Annotated[one_of(_BY_SHAPE.values(), "shape"), BeforeValidator(_with_shape)]
 
 ANY_COLUMN = Column.dimensionless(0.1)
-"""Stands in for a column that cannot be built, so that mistakes in the model are told with it."""
+"""Stands in for a column that cannot be built, so that mistakes in the model are reported with it."""

@@ -1,4 +1,4 @@
-"""What all descriptions share: strict keys, and mistakes told one to a line."""
+"""What all descriptions share: strict keys, and one line for each mistake."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -104,5 +104,5 @@ def _without_tags(loc: tuple[int | str, ...]) -> list[str]:
 
 
 def _in_table(loc: tuple[int | str, ...], place: int) -> bool:
-    """Return whether the part at this `place` tells which member of a union a named one is."""
+    """Return whether the part at this `place` states which member of a union a named one is."""
     return place == 2 and loc[0] in _UNION_TABLES and len(loc) > 3  # noqa: PLR2004  columns, name, shape, number

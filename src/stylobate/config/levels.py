@@ -31,7 +31,7 @@ def problems_of_the_levels(levels: Mapping[str, Mapping[str, float]], model: typ
             except ParameterError as error:
                 problems.append(str(error))
             if name not in OF_DISSIPATION:
-                remedy = did_you_mean(name, OF_DISSIPATION) or f"dissipation is told by {', '.join(OF_DISSIPATION)}"
+                remedy = did_you_mean(name, OF_DISSIPATION) or f"use {', '.join(OF_DISSIPATION)}"
                 problems.append(f"dissipation.{level}.{name} is not known here; {remedy}")
     kind = model.model_fields["kind"].default
     problems += [
@@ -47,8 +47,8 @@ def _differing(levels: Mapping[str, Mapping[str, float]]) -> list[str]:
     names = set(levels["central"])
     if names and all(set(level) == names for level in levels.values()):
         return []
-    told = ", ".join(f"{level} {' and '.join(sorted(numbers)) or 'nothing'}" for level, numbers in levels.items())
-    return [f"dissipation must name the same numbers at each level, one or more, got {told}"]
+    given = ", ".join(f"{level} {' and '.join(sorted(numbers)) or 'nothing'}" for level, numbers in levels.items())
+    return [f"dissipation must name the same numbers at each level, one or more, got {given}"]
 
 
 def _falling(levels: Mapping[str, Mapping[str, float]]) -> list[str]:
@@ -56,5 +56,5 @@ def _falling(levels: Mapping[str, Mapping[str, float]]) -> list[str]:
     dampings = [levels[name]["damping"] for name in LEVELS if "damping" in levels[name]]
     if len(dampings) < len(LEVELS) or dampings == sorted(dampings):
         return []
-    told = ", ".join(f"{name} {value:g}" for name, value in zip(LEVELS, dampings, strict=True))
-    return [f"dissipation: damping must not fall from low to central to high, got {told}"]
+    given = ", ".join(f"{name} {value:g}" for name, value in zip(LEVELS, dampings, strict=True))
+    return [f"dissipation: damping must not fall from low to central to high, got {given}"]

@@ -72,12 +72,12 @@ class ManyRuns(SharedByRuns, Case):
         return [f"duration [s], periods or a duration that varies is needed, one of them; got {got}"]
 
     def _lasts_as_its_motion(self, names: Sequence[str]) -> bool:
-        untold = self.duration is None and self.periods is None and "duration" not in names
-        return untold and is_to_end(self.motion)
+        open_end = self.duration is None and self.periods is None and "duration" not in names
+        return open_end and is_to_end(self.motion)
 
 
 _OF_A_SINGLE_RUN = ("samples", "twist", "position", "friction_coefficient", "velocity", "clearance")
-"""What changes what is told of a run, and no outcome."""
+"""Numbers that change the result of a single run, and no outcome."""
 
 _SHARED = (
     *("tilt", "tilt_rate", "spin", "duration", "periods"),

@@ -33,7 +33,7 @@ DESCRIBED_MODELS: tuple[type[Config], ...] = tuple(_BY_KIND.values())
 
 
 def _with_kind(described: Any) -> Any:
-    """Return the values of a model with its kind; it is the slender one where none is told."""
+    """Return the values of a model with its kind; it is the slender one if none is stated."""
     return {"kind": "slender", **described} if isinstance(described, dict) else described
 
 

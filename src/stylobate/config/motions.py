@@ -115,7 +115,7 @@ def describe_motion(motion: BaseMotion) -> Config:
     if isinstance(motion, DescribedRecord):
         return motion.description
     if type(motion) is Record:
-        message = f"the record {motion.name!r} has no description that tells of which files; results keep its repr only"
+        message = f"the record {motion.name!r} has no description that names its files; results keep its repr only"
         raise UnsupportedError(message)
     own = "made_by" not in vars(type(motion))  # a subclass is another motion
     make, arguments = BaseMotion.made_by(motion) if own else motion.made_by()

@@ -149,7 +149,7 @@ class RecordMotion(Reading):
             if was != found:
                 message = (
                     f"{path} has changed since the result was saved: its SHA-256 was {was[:12]}…, is {found[:12]}…; "
-                    "put the old file back, or describe the run anew"
+                    "put the old file back, or describe the run again"
                 )
                 raise ParameterError(message)
         return digests
@@ -267,7 +267,7 @@ class DescribedRecord(Record):
 
 
 def anchored(values: Any, folder: Path) -> Any:
-    """Return the plain values of a description with the files of its records told from `folder` on.
+    """Return the plain values of a description with the paths of its records taken from `folder` on.
 
     Parameters
     ----------

@@ -124,7 +124,7 @@ OF_OTHER_COMMANDS = (
 
 
 def read_config(path: str | Path) -> dict[str, Any]:
-    """Return the plain values of the TOML file `path`; files of records are told from its folder on.
+    """Return the plain values of the TOML file `path`; paths of records are taken from its folder on.
 
     Raises
     ------
@@ -201,11 +201,11 @@ def _described(describe: Callable[[], Config], thing: object) -> dict[str, Any]:
     try:
         return describe().values()
     except UnsupportedError:
-        return {"kind": "other", "repr": repr(thing), **_told_of_record(thing)}
+        return {"kind": "other", "repr": repr(thing), **_identity_of_record(thing)}
 
 
-def _told_of_record(thing: object) -> dict[str, Any]:
-    """Return what is told of a record that was read in Python."""
+def _identity_of_record(thing: object) -> dict[str, Any]:
+    """Return the identity of a record that was read in Python."""
     if not isinstance(thing, Record):
         return {}
     return {"record": thing.name, "digest": thing.digest, "processing": list(thing.provenance)}

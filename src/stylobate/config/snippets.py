@@ -119,7 +119,7 @@ def _changed(kind: str, numbers: Mapping[str, Any]) -> str:
     """Return the call that changes a motion; none where its number leaves all as it is."""
     name, neutral = _CHANGES[kind]
     change = numbers[name]
-    # A vertical component is scaled as the others are, where nothing else is told.
+    # A vertical component is scaled as the others are, if nothing else is stated.
     apart = {other: value for other, value in numbers.items() if other != name and value != change}
     if change == neutral and not apart:
         return ""
@@ -154,4 +154,4 @@ _LAST = {"scale": "scaled", "rotation": "rotated", "tail": "with_tail"}
 """The changes that a record may have at last, in their order."""
 
 _SHOWN = ('print(run.outcome.name, "-", run.reason)', 'sb.plot(run).savefig("run.png")')
-"""The end of each program: what became of the column, and its history as a figure."""
+"""The end of each program: the outcome, and its history as a figure."""

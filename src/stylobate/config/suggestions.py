@@ -7,7 +7,7 @@ from typing import Annotated, Any, get_args, get_origin
 
 from pydantic import BaseModel
 
-_NOT_KNOWN = re.compile(r"(?P<told>(?P<path>\S+) (is not known here|does not belong to \w+ '\w+')); .*")
+_NOT_KNOWN = re.compile(r"(?P<problem>(?P<path>\S+) (is not known here|does not belong to \w+ '\w+')); .*")
 _LIKENESS = 0.7
 
 
@@ -40,7 +40,7 @@ def _suggesting(description: type[BaseModel], line: str) -> str:
         return line
     *path, name = found["path"].split(".")
     question = did_you_mean(name, _names(description, path))
-    return f"{found['told']}; {question}" if question and f" {name}?" not in question else line
+    return f"{found['problem']}; {question}" if question and f" {name}?" not in question else line
 
 
 def _names(annotation: Any, path: Sequence[str]) -> set[str]:

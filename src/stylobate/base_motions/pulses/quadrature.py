@@ -18,7 +18,7 @@ def integral(function: Callable[[Floats], Floats], time: Floats, end: float, cyc
 
 
 def double_integral(function: Callable[[Floats], Floats], time: Floats, end: float, cycles: float) -> Floats:
-    """Return ∫₀ᵗ (t − s) f ds, the integral of the integral, likewise."""
+    """Return ∫₀ᵗ (t − s) f ds, the integral of the integral, in the same way."""
     return _integrals(function, time, end, cycles)[1]
 
 
