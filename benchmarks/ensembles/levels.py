@@ -1,4 +1,4 @@
-"""The levels of the ladder side by side, into tables: `python -m benchmarks.ensembles.levels`, part of `make bench`.
+"""The models of the hierarchy side by side, into tables: `python -m benchmarks.ensembles.levels`, part of `make bench`.
 
 Every level has its own steady rolling and its own mix, and its events, outcomes and summaries; all are timed in turns
 in one process on one core. The fastest of the rounds counts.

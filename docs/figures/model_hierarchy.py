@@ -1,4 +1,4 @@
-"""Draws the figures of the page "The ladder of models" into docs/_static/ladder.
+"""Draws the figures of the page "The model hierarchy" into docs/_static/hierarchy.
 
 Run it with `python docs/figures/model_hierarchy.py`; it takes minutes on one core. Dimensionless columns, η = ζ = 0.1.
 """
@@ -14,7 +14,7 @@ from PIL import Image
 
 import stylobate as sb
 
-FOLDER = Path(__file__).parents[1] / "_static" / "ladder"
+FOLDER = Path(__file__).parents[1] / "_static" / "hierarchy"
 ETA = ZETA = 0.1
 
 BLUE, SKY, VERMILION, AMBER, GREY = "#0072B2", "#56B4E9", "#D55E00", "#E69F00", "#767676"

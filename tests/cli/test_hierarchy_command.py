@@ -38,7 +38,7 @@ def test_ladder_prints_what_ladder_finds(capsys):
 
 
 def test_the_table_has_a_row_for_each_level_and_says_how_they_converge(capsys, tmp_path):
-    drawn, saved = tmp_path / "ladder.png", tmp_path / "ladder.nc"
+    drawn, saved = tmp_path / "hierarchy.png", tmp_path / "hierarchy.nc"
     arguments = [*CASE, "--scaled-to", "0.05", "--scaled-to", "0.2", "--friction-coefficient", "0.05"]
     assert run(["hierarchy", *arguments, "--figure", str(drawn), "--output", str(saved)]) == 0
     printed = capsys.readouterr().out
@@ -71,7 +71,7 @@ def test_a_file_of_simulate_serves_the_ladder(tmp_path, capsys):
     description.write_text(
         'duration = 5.0\ntilt = [0.04, 0.0]\n[column]\nshape = "dimensionless"\nslenderness = 0.1\n'
         '[model]\nkind = "rolling"\ndamping = 0.1\nspin_damping = 0.2\nrolling_resistance = 0.0\n'
-        '[ladder]\nslenderness = [0.1, 0.2]\nreference = "slender rolling"\n'
+        '[hierarchy]\nslenderness = [0.1, 0.2]\nreference = "slender rolling"\n'
     )
     assert run(["hierarchy", str(description), "--json"]) == 0
     printed = told(capsys)
@@ -202,15 +202,15 @@ def test_a_friction_that_levels_do_not_share_is_refused(tmp_path, capsys):
     )
     assert run(["hierarchy", str(description)]) == 2
     assert (
-        "model.rolling_resistance is no friction of the ladder: damping, spin_damping, restitution; remove it"
-        in capsys.readouterr().err
+        "model.rolling_resistance is no damping parameter of the hierarchy: "
+        "damping, spin_damping, restitution; remove it" in capsys.readouterr().err
     )
 
 
 def test_a_slenderness_in_a_file_is_named(tmp_path, capsys):
     description = tmp_path / "run.toml"
     description.write_text(
-        'duration = 5.0\n[column]\nshape = "dimensionless"\nslenderness = 0.1\n[ladder]\nslenderness = [0.1, -1.0]\n'
+        'duration = 5.0\n[column]\nshape = "dimensionless"\nslenderness = 0.1\n[hierarchy]\nslenderness = [0.1, -1.0]\n'
     )
     assert run(["hierarchy", str(description)]) == 2
-    assert capsys.readouterr().err == "stylobate: ladder: slenderness must be positive, got -1.0\n"
+    assert capsys.readouterr().err == "stylobate: hierarchy: slenderness must be positive, got -1.0\n"

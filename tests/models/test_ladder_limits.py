@@ -1,4 +1,4 @@
-"""The levels of the ladder against each other: what tends to what, how fast, and what does not."""
+"""The models of the hierarchy against each other: what tends to what, how fast, and what does not."""
 
 import math
 

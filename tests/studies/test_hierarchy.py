@@ -112,7 +112,7 @@ def test_a_column_at_rest_is_upright_to_the_end_and_one_that_fell_is_unknown():
 def test_histories_are_kept_on_request_and_files_hold_all(scaled, tmp_path, saved_dataset):
     assert scaled["amplitude"].dims == ("slenderness", "level", "time")
     assert "amplitude" not in sb.studies.model_hierarchy(COLUMN, **START, duration=2.0)
-    again = saved_dataset(scaled, tmp_path / "ladder.nc")
+    again = saved_dataset(scaled, tmp_path / "hierarchy.nc")
     np.testing.assert_array_equal(again["amplitude"], scaled["amplitude"])
     assert json.loads(again.attrs["provenance"])["slenderness"] == [0.05, 0.1, 0.2]
 
@@ -135,7 +135,7 @@ def saved_dataset():
         ({"slenderness": [0.1, -0.1]}, "slenderness must be a list of positive numbers"),
         ({"slenderness": [0.2], "tilt": (1.2, 0.0)}, r"becomes \(2.4, 0\) rad where the case is scaled to"),
         ({"slenderness": [0.2, 4.0]}, "cannot be scaled to slenderness 4: axial_inertia"),
-        ({"foo": 2}, "foo is no argument of ladder"),
+        ({"foo": 2}, "foo is no argument of model_hierarchy"),
         ({"samples": 1}, "samples must be a whole number"),
         ({"damping": -1.0}, "damping must be zero or positive"),
         ({"duration": 0.0}, "duration must be positive"),

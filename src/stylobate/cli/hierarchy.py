@@ -44,7 +44,7 @@ def hierarchy(options: Options) -> None:
     Examples
     --------
     stylobate hierarchy --slenderness 0.1 --damping 0.1 --spin-damping 0.1 --motion circular --acceleration 0.065
-    --angular-frequency 1.8 --tilt 0.04 0 --tilt-rate 0 0.07 --duration 100 --figure ladder.png
+    --angular-frequency 1.8 --tilt 0.04 0 --tilt-rate 0 0.07 --duration 100 --figure hierarchy.png
 
     stylobate hierarchy run.toml --scaled-to 0.05 --scaled-to 0.1 --scaled-to 0.2
     """
@@ -57,7 +57,7 @@ def hierarchy(options: Options) -> None:
         raise ParameterError(message)
     check_writable(options["figure"], options["output"])
     values = overlay(read_source(options["source"]), options, config.HierarchyConfig.model_fields)
-    merge(values, "ladder", _compared(options))
+    merge(values, "hierarchy", _compared(options))
     setup = config.HierarchyConfig.parse(values).build()
     options.refuse_unused()
     arguments = setup.options

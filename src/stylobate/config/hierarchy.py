@@ -1,4 +1,4 @@
-"""The description of one case on the ladder of models."""
+"""The description of one case on the model hierarchy."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -45,10 +45,10 @@ class _HierarchyCase(Config):
 
 
 class HierarchyConfig(OneRun, _HierarchyCase):
-    """A case on the ladder: `column`, frictions under `model`, `motion`, the arguments of a run, and `ladder`."""
+    """A case of the model hierarchy: `column`, damping under `model`, `motion`, numbers of a run, and `hierarchy`."""
 
     rules: dict[str, float] = Field(default_factory=dict)
-    ladder: HierarchyOptions = HierarchyOptions()
+    hierarchy: HierarchyOptions = HierarchyOptions()
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
@@ -63,7 +63,7 @@ class HierarchyConfig(OneRun, _HierarchyCase):
             if strange:
                 shared = ", ".join(HierarchyFrictions.model_fields)
                 raise ConfigError(
-                    [f"model.{name} is no friction of the ladder: {shared}; remove it" for name in strange]
+                    [f"model.{name} is no damping parameter of the hierarchy: {shared}; remove it" for name in strange]
                 )
         return super().parse(with_default_duration(kept))
 
@@ -76,15 +76,15 @@ class HierarchyConfig(OneRun, _HierarchyCase):
             With one line for each part that cannot be.
         """
         problems = problems_of_the_numbers(self)
-        for c in self.ladder.slenderness:
-            built("ladder", partial(require_positive, "slenderness", c), problems)
+        for c in self.hierarchy.slenderness:
+            built("hierarchy", partial(require_positive, "slenderness", c), problems)
         rules = built("rules", lambda: built_rules(self.rules), problems)
         frictions = self.model.model_dump()
         restitution = frictions.pop("restitution")
         level = described_model("rolling", **frictions, restitution=1.0 if restitution is None else restitution)
         model, motion = built_parts(self.column, level, self.motion, problems)
-        options = self.model_dump(exclude={"column", "model", "motion", "ladder"})
+        options = self.model_dump(exclude={"column", "model", "motion", "hierarchy"})
         if self.duration is None:
             options["duration"] = duration_with_tail(model, motion)
-        compared = {"slenderness": self.ladder.slenderness or None, "reference": self.ladder.reference}
+        compared = {"slenderness": self.hierarchy.slenderness or None, "reference": self.hierarchy.reference}
         return Setup(model, motion, options | compared | frictions | {"restitution": restitution, "rules": rules})

@@ -1,4 +1,4 @@
-"""Equations of motion, one file for each level of the ladder of models."""
+"""Equations of motion, one file for each model of the hierarchy."""
 
 from stylobate.models.consistency import check
 from stylobate.models.model import Balance, Model, Output, Push

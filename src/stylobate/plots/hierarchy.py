@@ -1,4 +1,4 @@
-"""The levels of the ladder of models compared: histories over one another, what the contact bears, convergence."""
+"""The models of the hierarchy compared: histories over one another, what the contact bears, convergence."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -45,7 +45,7 @@ _UNFINISHED = MapClass(NOT_COMPUTED, "not computed", Look("#ffffff", "//////", "
 @figure_of("model hierarchy")
 @styled
 def plot_hierarchy(found: xr.Dataset) -> Figure:
-    """Return a figure of the levels of a `ladder` compared.
+    """Return a figure of the models of a hierarchy compared.
 
     Where it keeps histories: the tilt of all levels against time, and the spin where there is some. Below, over several
     slendernesses, how the levels come together as c falls; of one case what the contact must bear. Histories of several

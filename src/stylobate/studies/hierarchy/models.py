@@ -1,4 +1,4 @@
-"""The levels of the ladder of models, and one case that all of them run."""
+"""The models of the hierarchy, and one case that all of them run."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

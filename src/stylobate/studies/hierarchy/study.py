@@ -1,4 +1,4 @@
-"""One case through all levels of the ladder of models: what each assumption costs."""
+"""One case through all models of the hierarchy: what each assumption costs."""
 
 import json
 import math
@@ -105,7 +105,9 @@ def model_hierarchy(
     """
     strange = [name for name in arguments if name not in _OF_SIMULATE]
     if strange:
-        message = f"{strange[0]} is no argument of ladder; of those of simulate it takes {', '.join(_OF_SIMULATE)}"
+        message = (
+            f"{strange[0]} is no argument of model_hierarchy; of those of simulate it takes {', '.join(_OF_SIMULATE)}"
+        )
         raise ParameterError(message)
     moved = BASE_AT_REST if motion is None else motion
     case = _case(column, moved, damping, spin_damping, restitution, tilt, tilt_rate, spin)
