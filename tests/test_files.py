@@ -46,7 +46,7 @@ def save_assessment(path):
 KINDS = {
     "run": (save_run, sb.load),
     "study": (save_study, open_saved),
-    "orbit": (save_orbit, orbits.load),
+    "orbit": (save_orbit, orbits.load_orbits),
     "assessment": (save_assessment, Assessment.load),
 }
 

@@ -8,7 +8,7 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import FileError, ParameterError
-from stylobate.orbits import bifurcation_curve, continue_branch, load, periodic_orbit
+from stylobate.orbits import bifurcation_curve, continue_branch, load_orbits, periodic_orbit
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=2.0)
@@ -25,13 +25,13 @@ def branch(orbit):
 
 
 def test_an_orbit_is_read_as_it_was_saved(orbit, tmp_path):
-    again = load(orbit.save(tmp_path / "orbit.nc"))
+    again = load_orbits(orbit.save(tmp_path / "orbit.nc"))
     np.testing.assert_array_equal(again.state, orbit.state)
     np.testing.assert_array_equal(again.multipliers, orbit.multipliers)
 
 
 def test_a_branch_is_read_as_it_was_saved(branch, tmp_path):
-    again = load(branch.save(tmp_path / "branch.nc"))
+    again = load_orbits(branch.save(tmp_path / "branch.nc"))
     xr.testing.assert_identical(again.points.drop_attrs(), branch.points.drop_attrs())
     assert again.ends == branch.ends
 
@@ -39,7 +39,7 @@ def test_a_branch_is_read_as_it_was_saved(branch, tmp_path):
 def test_a_curve_is_read_as_it_was_saved(branch, tmp_path):
     bounds = ((1.0, 2.0), (0.05, 0.08))
     curve = bifurcation_curve(branch.bifurcations[0], "acceleration", bounds=bounds)
-    again = load(curve.save(tmp_path / "curve.nc"))
+    again = load_orbits(curve.save(tmp_path / "curve.nc"))
     xr.testing.assert_identical(again.points.drop_attrs(), curve.points.drop_attrs())
     assert (again.kind, again.parameters, again.ends) == (curve.kind, curve.parameters, curve.ends)
 
@@ -69,18 +69,18 @@ def test_a_file_that_holds_no_orbit_is_told_in_one_line(tmp_path):
     }
     for name, expected in words.items():
         with pytest.raises(FileError, match=expected) as told:
-            load(tmp_path / name)
+            load_orbits(tmp_path / name)
         assert "\n" not in str(told.value)
         assert "HDF5" not in str(told.value)
     with pytest.raises(ParameterError, match="path must be the name of a file, got None"):
-        load(None)
+        load_orbits(None)
 
 
 def test_a_run_s_loader_points_to_that_of_orbits(tmp_path):
     circle = sb.Harmonic.circular(acceleration=0.065, angular_frequency=2.0)
     orbit = sb.orbits.periodic_orbit(sb.Slender(sb.Column.dimensionless(0.1), damping=0.1), circle)
     with pytest.raises(FileError, match=r"stylobate\.load reads it"):
-        sb.results.load(orbit.save(tmp_path / "orbit.nc"))
+        sb.results.load_response(orbit.save(tmp_path / "orbit.nc"))
     with pytest.raises(FileError, match="there is no such file"):
         sb.load(tmp_path / "none.nc")
     with pytest.raises(FileError, match="it is a folder"):

@@ -3,7 +3,7 @@ from .branch import Branch, continue_branch
 from .curves import BifurcationCurve, bifurcation_curve
 from .finding import periodic_orbit, periodic_orbits
 from .orbit import PeriodicOrbit
-from .storage import load
+from .storage import load_orbits
 from .switching import switch_branch
 from .tracing import End, StepControl
 
@@ -17,7 +17,7 @@ __all__ = [
     "StepControl",
     "bifurcation_curve",
     "continue_branch",
-    "load",
+    "load_orbits",
     "periodic_orbit",
     "periodic_orbits",
     "switch_branch",

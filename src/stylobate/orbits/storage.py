@@ -55,7 +55,7 @@ def save(found: PeriodicOrbit | Branch | BifurcationCurve, path: str | Path) -> 
     return write_netcdf(data, path)
 
 
-def load(path: str | Path) -> PeriodicOrbit | Branch | BifurcationCurve:
+def load_orbits(path: str | Path) -> PeriodicOrbit | Branch | BifurcationCurve:
     """Return the orbit, branch or curve saved in the netCDF file `path`.
 
     Raises

@@ -62,7 +62,7 @@ def save_response(response: Response, path: Path) -> Path:
     return write_netcdf(data, path)
 
 
-def load(path: str | Path) -> Response:
+def load_response(path: str | Path) -> Response:
     """Return the run saved in the netCDF file `path`.
 
     Raises

@@ -41,9 +41,9 @@ def load(path: str | Path) -> results.Response | results.Assessment | Orbits | x
     if written.startswith("stylobate assessment"):
         return results.Assessment.load(path)
     if written.startswith("stylobate response"):
-        return results.load(path)
+        return results.load_response(path)
     if written.startswith("stylobate "):
-        return orbits.load(path)
+        return orbits.load_orbits(path)
     if "kind" not in data.attrs:
         message = f"{path}: not saved by stylobate (got the variables {list(data.variables)}). Read it with xarray."
         raise FileError(message)
