@@ -47,6 +47,8 @@ class Quantity:
         How many numbers it consists of.
     choices
         The only values it can have; empty for any within the bounds.
+    dissipates
+        Whether it takes energy from the column.
     """
 
     symbol: str = ""
@@ -60,6 +62,7 @@ class Quantity:
     slider: tuple[float, float] | None = None
     components: int = 1
     choices: tuple[int, ...] = ()
+    dissipates: bool = False
 
     def __repr__(self) -> str:
         """Return it as signatures show it: symbol, unit and bounds."""

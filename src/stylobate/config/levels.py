@@ -5,11 +5,12 @@ from collections.abc import Mapping
 from stylobate.config.description import Config
 from stylobate.config.suggestions import did_you_mean
 from stylobate.errors import ParameterError, require_not_negative
+from stylobate.models.declared import dissipation_names
 
 LEVELS = ("low", "central", "high")
 """The levels that are needed."""
 
-OF_DISSIPATION = ("damping", "spin_damping", "rolling_resistance", "restitution")
+OF_DISSIPATION = dissipation_names()
 """The numbers of a model that dissipate."""
 
 

@@ -10,6 +10,7 @@ from stylobate.base_motions import BaseMotion, Record
 from stylobate.earthquakes.incremental import without_vertical
 from stylobate.errors import ParameterError, require_finite, require_not_negative, require_positive
 from stylobate.models import Model
+from stylobate.models.declared import dissipation_names
 
 
 class PerturbationOf(Enum):
@@ -252,7 +253,7 @@ class DissipationScaled(_Scaled):
 
     def changed_values(self, model: Model) -> dict[str, float] | None:
         """Return the frictions and the restitution; None for a model without dissipation."""
-        names = ("damping", "spin_damping", "rolling_resistance")
+        names = [name for name in dissipation_names() if name != "restitution"]
         given = {name: float(getattr(model, name, 0.0) or 0.0) for name in names}
         values = {name: self.factor * value for name, value in given.items() if value > 0.0}
         restitution = getattr(model, "impact_restitution", getattr(model, "restitution", None))

@@ -37,3 +37,9 @@ def model_quantities() -> Mapping[str, Quantity]:
         for name, parameter in parameters_of(model).items()
         if not parameter.choices
     }
+
+
+@cache
+def dissipation_names() -> tuple[str, ...]:
+    """Return the names of the numbers of models that dissipate."""
+    return tuple(name for name, quantity in model_quantities().items() if quantity.dissipates)

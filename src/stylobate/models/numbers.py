@@ -7,9 +7,11 @@ from stylobate.quantities import Quantity
 # Beyond this Coulomb friction is not resolved; a column that never slips is another model.
 _MOST_FRICTION = 1e8
 
-Damping = Annotated[float, Quantity(symbol="η", text="damping of tilting", ge=0.0, slider=(0.0, 0.5))]
-SpinDamping = Annotated[float, Quantity(symbol="ζ", text="damping of spin", ge=0.0, slider=(0.0, 2.0))]
-RollingResistance = Annotated[float, Quantity(symbol="μ_r", text="rolling resistance", ge=0.0, slider=(0.0, 0.05))]
+Damping = Annotated[float, Quantity(symbol="η", text="damping of tilting", ge=0.0, slider=(0.0, 0.5), dissipates=True)]
+SpinDamping = Annotated[float, Quantity(symbol="ζ", text="damping of spin", ge=0.0, slider=(0.0, 2.0), dissipates=True)]
+RollingResistance = Annotated[
+    float, Quantity(symbol="μ_r", text="rolling resistance", ge=0.0, slider=(0.0, 0.05), dissipates=True)
+]
 Restitution = Annotated[
     float,
     Quantity(
@@ -19,6 +21,7 @@ Restitution = Annotated[
         le=1.0,
         note="1 for no loss",
         slider=(0.0, 1.0),
+        dissipates=True,
     ),
 ]
 PassageTilt = Annotated[float, Quantity(unit="rad", text="tilt below which the vertical is passed", ge=0.0)]

@@ -12,11 +12,12 @@ from stylobate.engine import simulate
 from stylobate.engine.parameters import model_names
 from stylobate.errors import Outcome
 from stylobate.models import Model, Sliding
+from stylobate.models.declared import dissipation_names
 from stylobate.results.outcomes import NOT_COMPUTED, outcome_attributes
 from stylobate.studies.sweeps.computing import Progress
 
 # Of the numbers of a model that dissipate, stated or not, those that `Sliding` has too: its restitution is another one.
-_DISSIPATION = ("damping", "spin_damping", "rolling_resistance")
+_DISSIPATION = tuple(name for name in dissipation_names() if name != "restitution")
 _OPTIONS = ("rtol", "atol", "rest_energy", "max_steps")
 _NUMBERS = {
     "tilt_ratio": ("1", "largest tilt over α"),
