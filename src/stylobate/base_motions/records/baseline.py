@@ -1,19 +1,23 @@
 """Correction of the baseline: drift of the velocity that no ground has."""
 
 import numpy as np
+import numpy.typing as npt
 
 from stylobate.base_motions.records.knots import integrals
-from stylobate.base_motions.records.record import Record
 from stylobate.errors import require_whole
 
+Floats = npt.NDArray[np.float64]
 
-def baseline_corrected(record: Record, degree: int = 1) -> Record:
-    """Return `record` less the derivative of a polynomial fitted to its velocity.
+
+def baseline_corrected(samples: Floats, step: float, degree: int = 1) -> tuple[Floats, str]:
+    """Return `samples` less the derivative of a polynomial fitted to their velocity, and a note about it.
 
     Parameters
     ----------
-    record
-        The record.
+    samples
+        Accelerations, shape (n, 3) [m/s²].
+    step
+        Time step [s].
     degree
         Degree of the polynomial, 1 or more. It is zero at the first sample, where the velocity is; degree 1 takes a
         constant off the acceleration.
@@ -24,11 +28,11 @@ def baseline_corrected(record: Record, degree: int = 1) -> Record:
     zero; a high-pass filter (`Record.filtered`) removes drift that is no polynomial.
     """
     degree = require_whole("degree", degree, least=1)
-    time = np.linspace(0.0, 1.0, len(record.samples))[:, np.newaxis]
+    time = np.linspace(0.0, 1.0, len(samples))[:, np.newaxis]
     powers = np.arange(1, degree + 1)
-    velocity, _ = integrals(record.samples, record.step)
+    velocity, _ = integrals(samples, step)
     fit, *_ = np.linalg.lstsq(time**powers, velocity, rcond=None)
-    length = record.step * (len(record.samples) - 1)
+    length = step * (len(samples) - 1)
     slope = (powers * time ** (powers - 1)) @ fit / length
     note = f"baseline: derivative of a polynomial of degree {degree} fitted to the velocity taken off"
-    return record.changed(note, samples=record.samples - slope)
+    return samples - slope, note

@@ -3,24 +3,34 @@
 import math
 
 import numpy as np
+import numpy.typing as npt
 from scipy.signal import butter, sosfilt, sosfiltfilt
 
-from stylobate.base_motions.records.record import Floats, Record
 from stylobate.errors import ParameterError, require_positive, require_whole
+
+Floats = npt.NDArray[np.float64]
 
 # Zeros beside a record filtered in both directions: 1.5 times the order over the corner (Boore 2005).
 _PAD = 1.5
 
 
 def filtered(
-    record: Record, *, highpass: float | None = None, lowpass: float | None = None, order: int = 4, causal: bool = False
-) -> Record:
-    """Return `record` through a Butterworth filter.
+    samples: Floats,
+    step: float,
+    *,
+    highpass: float | None = None,
+    lowpass: float | None = None,
+    order: int = 4,
+    causal: bool = False,
+) -> tuple[Floats, str]:
+    """Return `samples` through a Butterworth filter, and a note about it.
 
     Parameters
     ----------
-    record
-        The record.
+    samples
+        Accelerations, shape (n, 3) [m/s²].
+    step
+        Time step [s].
     highpass
         Corner below which motion is removed [Hz].
     lowpass
@@ -47,7 +57,7 @@ def filtered(
     if not corners:
         message = "highpass or lowpass must be given [Hz]"
         raise ParameterError(message)
-    nyquist = 0.5 / record.step
+    nyquist = 0.5 / step
     for name, value in corners.items():
         if require_positive(name, value, "Hz") >= nyquist:
             message = f"{name} must be below half the sampling rate, {nyquist!r} Hz, got {value!r} Hz"
@@ -56,16 +66,16 @@ def filtered(
     if len(edges) > 1 and edges[0] >= edges[1]:
         message = f"highpass must be below lowpass = {edges[1]!r} Hz, got {edges[0]!r} Hz"
         raise ParameterError(message)
-    sections = _sections(edges, order, lowest=highpass is None, rate=1.0 / record.step)
+    sections = _sections(edges, order, lowest=highpass is None, rate=1.0 / step)
     if causal:
-        samples = sosfilt(sections, record.samples, axis=0)
+        passed = sosfilt(sections, samples, axis=0)
     else:
-        zeros = math.ceil(_PAD * order / edges[0] / record.step)
-        wide = np.pad(record.samples, ((zeros, zeros), (0, 0)))
-        samples = sosfiltfilt(sections, wide, axis=0, padlen=0)[zeros : zeros + len(record.samples)]
+        zeros = math.ceil(_PAD * order / edges[0] / step)
+        wide = np.pad(samples, ((zeros, zeros), (0, 0)))
+        passed = sosfiltfilt(sections, wide, axis=0, padlen=0)[zeros : zeros + len(samples)]
     corners_text = ", ".join(f"{name} {value!r} Hz" for name, value in corners.items())
     way = "forwards only" if causal else "forwards and backwards"
-    return record.changed(f"Butterworth {corners_text}, order {order}, {way}", samples=samples)
+    return passed, f"Butterworth {corners_text}, order {order}, {way}"
 
 
 def _sections(edges: list[float], order: int, *, lowest: bool, rate: float) -> Floats:

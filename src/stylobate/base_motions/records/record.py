@@ -312,9 +312,10 @@ class Record(BaseMotion):
 
     def resampled(self, step: float) -> "Record":
         """Return this record at another `step` [s], band-limited (see `records.resampling`)."""
-        from stylobate.base_motions.records.resampling import resampled  # noqa: PLC0415  takes SciPy; needs this module
+        from stylobate.base_motions.records.resampling import resampled  # noqa: PLC0415  takes SciPy
 
-        return resampled(self, step)
+        samples, note = resampled(self.samples, self.step, step)
+        return self.changed(note, samples=samples, step=float(step)) if note else self
 
     def filtered(
         self, *, highpass: float | None = None, lowpass: float | None = None, order: int = 4, causal: bool = False
@@ -322,13 +323,17 @@ class Record(BaseMotion):
         """Return this record through a Butterworth filter with corners in Hz (see `records.filtering`)."""
         from stylobate.base_motions.records.filtering import filtered  # noqa: PLC0415
 
-        return filtered(self, highpass=highpass, lowpass=lowpass, order=order, causal=causal)
+        samples, note = filtered(
+            self.samples, self.step, highpass=highpass, lowpass=lowpass, order=order, causal=causal
+        )
+        return self.changed(note, samples=samples)
 
     def baseline_corrected(self, degree: int = 1) -> "Record":
         """Return this record less the derivative of a polynomial fitted to its velocity (see `records.baseline`)."""
         from stylobate.base_motions.records.baseline import baseline_corrected  # noqa: PLC0415
 
-        return baseline_corrected(self, degree)
+        samples, note = baseline_corrected(self.samples, self.step, degree)
+        return self.changed(note, samples=samples)
 
     def changed(self, note: str, **changes: Any) -> "Record":
         """Return this record with other fields and one more `note` in its provenance."""

@@ -2,17 +2,23 @@
 
 from fractions import Fraction
 
+import numpy as np
+import numpy.typing as npt
 from scipy.signal import resample_poly
 
-from stylobate.base_motions.records.record import Record
 from stylobate.errors import ParameterError, require_positive
 
 _LARGEST_FACTOR = 1000
 _RATIO_TOLERANCE = 1e-9
 
 
-def resampled(record: Record, step: float) -> Record:
-    """Return `record` at another `step` [s], band-limited: what the coarser of the two steps cannot carry is removed.
+Floats = npt.NDArray[np.float64]
+
+
+def resampled(samples: Floats, before: float, step: float) -> tuple[Floats, str]:
+    """Return `samples` of the step `before` at another `step` [s], and a note; the note is empty if both are equal.
+
+    The result is band-limited: what the coarser of the two steps cannot carry is removed.
 
     Raises
     ------
@@ -25,13 +31,12 @@ def resampled(record: Record, step: float) -> Record:
     zeros beyond the ends). The motion between the old samples is no longer linear: peaks may change a little.
     """
     step = require_positive("step", step, "s")
-    ratio = Fraction(record.step / step).limit_denominator(_LARGEST_FACTOR)
+    ratio = Fraction(before / step).limit_denominator(_LARGEST_FACTOR)
     up, down = ratio.numerator, ratio.denominator
-    if not 0 < up <= _LARGEST_FACTOR or abs(record.step / step / float(ratio) - 1.0) > _RATIO_TOLERANCE:
-        message = f"step must be in a ratio of whole numbers up to 1000 to {record.step!r} s, got {step!r} s"
+    if not 0 < up <= _LARGEST_FACTOR or abs(before / step / float(ratio) - 1.0) > _RATIO_TOLERANCE:
+        message = f"step must be in a ratio of whole numbers up to 1000 to {before!r} s, got {step!r} s"
         raise ParameterError(message)
     if up == down:
-        return record
-    samples = resample_poly(record.samples, up, down, axis=0)
-    note = f"resampled from {record.step!r} s to {step!r} s (polyphase {up}:{down}, anti-aliased)"
-    return record.changed(note, samples=samples, step=step)
+        return samples, ""
+    note = f"resampled from {before!r} s to {step!r} s (polyphase {up}:{down}, anti-aliased)"
+    return resample_poly(samples, up, down, axis=0), note
