@@ -92,7 +92,7 @@ class Quantity:
         """The unit as netCDF files have it: "m s-2" for "m/s²", "1" for none."""
         above, _, below = self.unit.translate(_CF_POWERS).partition("/")
         inverse = (f"{part}-1" if part.isalpha() else f"{part[:-1]}-{part[-1]}" for part in below.split())
-        return " ".join((*above.split(), *inverse)) or "1"
+        return " ".join((*(one for one in above.split() if one != "1"), *inverse)) or "1"
 
     def accepts(self, values: npt.ArrayLike) -> npt.NDArray[np.bool_]:
         """Return which values are inside the bounds; NaN and infinities are not."""
