@@ -246,7 +246,7 @@ class Straight(sb.Slender):
         (Doubled(COLUMN), r"contact: inherited from Slender, gives the forces of the equations of Slender"),
         (Stuck(COLUMN, damping=0.1), r"departure: does not follow rates, inherited from Slender,"),
         (Away(COLUMN), r"from_plane: does not return a state with the tilt"),
-        (Mirrored(COLUMN), r"lean: does not return the tilt and the rate with which start made the state"),
+        (Mirrored(COLUMN), r"tilt_of: does not return the tilt and the rate with which start made the state"),
         (Fed(COLUMN), r"energy: grows in free motion"),
         (High(COLUMN), r"balance: a column at its tilt 0\.1 rad can have less energy than it says"),
         (Fast(COLUMN, restitution=0.9), r"impact_map: moves the column or makes it faster"),

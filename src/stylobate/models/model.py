@@ -78,7 +78,7 @@ class Model(Declared, ABC):
 
     Notes
     -----
-    For developers: a model has a `column` and gives `state_names`, `parameters`, `rates`, `lean` and `start`;
+    For developers: a model has a `column` and gives `state_names`, `parameters`, `rates`, `tilt_of` and `start`;
     everything below them in this class has a default. Without `rest_energy` a column never comes to rest, without
     `planar_rates` coplanar motion is integrated in space, without `no_return_tilt` a stated limit decides overturning.
 

@@ -42,7 +42,7 @@ def check(model: Model) -> None:
     """Check that the members of a model agree with each other and with its equations of motion.
 
     Call it in a test of a model of your own. It compares, at random states: the number of arguments and results of
-    each function with `parameters` and `state_names`; `start`, `lean` and `from_plane`; `planar_rates` with `rates`;
+    each function with `parameters` and `state_names`; `start`, `tilt_of` and `from_plane`; `planar_rates` with `rates`;
     `no_return_tilt` and `balance` with the inequalities that prove them; `departure`, `passage` and `rest_energy` near
     the upright, `impact_map`, and `jacobian` with `rates`. The first run of a model of your own makes the cheap ones of
     these comparisons by itself.

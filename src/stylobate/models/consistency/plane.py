@@ -11,14 +11,14 @@ _AGREE = 1e-6  # relative, above the error of the differences
 
 
 def problems_of_maps(subject: Subject) -> Iterator[str]:
-    """Yield a line where `lean` does not give back the tilt and the rate from which `start` makes a state."""
+    """Yield a line where `tilt_of` does not give back the tilt and the rate from which `start` makes a state."""
     c = subject.slenderness
     given = np.array([0.3 * c, -0.4 * c, 0.1 * c, 0.2 * c])
     state = subject.state((given[0], given[1]), (given[2], given[3]))
     found = np.array(subject.model.tilt_of(*state, *subject.numbers), dtype=float)
     if np.abs(found - given).max() > _AGREE * c:
         yield (
-            "lean: does not return the tilt and the rate with which start made the state "
+            "tilt_of: does not return the tilt and the rate with which start made the state "
             f"({_listed(given)} became {_listed(found)}). Return x, y, vx, vy, the rate in the time of the model."
         )
 
@@ -54,7 +54,7 @@ def _mapped_wrongly(subject: Subject, motion: tuple[float, float], line: tuple[f
         return ""
     return (
         f"from_plane{subject.origin('from_plane')}: does not return a state with the tilt {motion[0]:.3g} rad and the "
-        f"rate {motion[1]:.3g} along ({_listed(np.array(line))}) (got {_listed(found)}). Make it agree with lean."
+        f"rate {motion[1]:.3g} along ({_listed(np.array(line))}) (got {_listed(found)}). Make it agree with tilt_of."
     )
 
 
