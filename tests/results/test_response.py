@@ -177,7 +177,7 @@ def test_the_result_of_a_study_is_told_from_a_run(tmp_path):
     path = tmp_path / "map.nc"
     xr.Dataset({"outcome": ("run", [0])}, attrs={"kind": "overturning map"}).to_netcdf(path, engine="h5netcdf")
     with pytest.raises(FileError, match=r"of kind 'overturning map'; stylobate\.load reads it$"):
-        sb.results.load_response(path)
+        sb.Response.load(path)
 
 
 def test_codes_are_those_of_outcomes():

@@ -25,5 +25,5 @@ def read_source(source: Path | None) -> dict[str, Any]:
         message = f"cannot read {source}: No such file or directory"
         raise FileError(message)
     if source.suffix == ".nc":
-        return config.config_of(config.relocated(results.load_response(source).provenance, source.parent)).values()
+        return config.config_of(config.relocated(results.Response.load(source).provenance, source.parent)).values()
     return config.read_config(source)

@@ -3,7 +3,7 @@ from .findings import Finding, PaperCheck, Section, Verdict
 from .report_details import DesignSpectrum, ReportDetails
 from .response import Event, Response
 from .rules import OutcomeRules
-from .storage import load_response, read_dataset, write_netcdf
+from .storage import read_dataset, write_netcdf
 
 __all__ = [
     "Assessment",
@@ -16,7 +16,6 @@ __all__ = [
     "Response",
     "Section",
     "Verdict",
-    "load_response",
     "read_dataset",
     "write_netcdf",
 ]

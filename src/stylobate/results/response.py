@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy.typing as npt
 import xarray as xr
@@ -113,9 +113,25 @@ class Response:
 
     def save(self, path: str | Path) -> Path:
         """Write the run to a netCDF file at `path`, with its provenance; `stylobate.load` reads it again."""
-        from stylobate.results.storage import save_response  # noqa: PLC0415  storage needs this class
+        from stylobate.results.run_file import as_dataset  # noqa: PLC0415  heavy imports wait until they are needed
+        from stylobate.results.storage import write_netcdf  # noqa: PLC0415
 
-        return save_response(self, Path(path))
+        return write_netcdf(as_dataset(self), Path(path))
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """Read the run saved in the netCDF file `path`; `stylobate.load` reads any result.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be read or holds no saved run.
+        """
+        from stylobate.results.run_file import fields_of  # noqa: PLC0415
+
+        fields = fields_of(path)
+        fields["events"] = tuple(Event(kind, time) for kind, time in fields["events"])
+        return cls(**fields | {"warnings": tuple(fields.get("warnings", ()))})
 
     def __reduce__(self) -> tuple[Any, ...]:
         # The integrator's dense output stays behind: a run sent to another process has its samples only.

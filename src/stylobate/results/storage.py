@@ -1,6 +1,5 @@
-"""Results as netCDF files: the samples as variables, everything else in the attributes."""
+"""NetCDF files, sealed by a checksum."""
 
-import json
 import sys
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
@@ -9,86 +8,14 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import h5py
-import numpy as np
 import xarray as xr
 
-from stylobate.errors import FileError, Outcome
+from stylobate.errors import FileError
 from stylobate.files import read_sealed, sealed, write_whole
-from stylobate.results.response import Event, Response
 
 _Data = TypeVar("_Data", xr.Dataset, xr.DataTree)
 
 _OWN_FORMATS = "stylobate "
-_FORMAT = f"{_OWN_FORMATS}response 1"
-_OF_ORBITS = ("orbit", "branch", "bifurcation")
-_OWN_ATTRIBUTES = (
-    "format",
-    "outcome",
-    "reason",
-    "decided_at",
-    "uncertain",
-    "planar",
-    "events",
-    "thresholds",
-    "measures",
-    "provenance",
-    "warnings",
-)
-
-
-def save_response(response: Response, path: Path) -> Path:
-    """Write `response` to the netCDF file `path` and return the path.
-
-    Raises
-    ------
-    FileError
-        If the file cannot be written.
-    """
-    attributes = {
-        "format": _FORMAT,
-        "outcome": response.outcome.name,
-        "reason": response.reason,
-        "decided_at": response.decided_at,
-        "uncertain": int(response.uncertain),
-        "planar": int(response.planar),
-        "events": json.dumps([[event.kind, event.time] for event in response.events]),
-        "thresholds": json.dumps(dict(response.thresholds)),
-        "measures": json.dumps(dict(response.measures)),
-        "provenance": json.dumps(dict(response.provenance)),
-        "warnings": json.dumps(list(response.warnings)),
-    }
-    data = response.data.assign_attrs(attributes)
-    data["resting"] = data["resting"].astype(np.int8)
-    return write_netcdf(data, path)
-
-
-def load_response(path: str | Path) -> Response:
-    """Return the run saved in the netCDF file `path`.
-
-    Raises
-    ------
-    FileError
-        If the file cannot be read or holds no saved run; `stylobate.load` reads any result.
-    """
-    data = read_dataset(path)
-    attributes: dict[str, Any] = dict(data.attrs)
-    if "format" not in attributes and "kind" in attributes:
-        message = (
-            f"{path} holds no run but the result of a study, of kind {attributes['kind']!r}; stylobate.load reads it"
-        )
-        raise FileError(message)
-    kind = str(attributes.get("format", "")).removeprefix(_OWN_FORMATS).partition(" ")[0]
-    if kind in _OF_ORBITS:
-        message = f"{path} holds no run but, of stylobate.orbits, an object of kind {kind!r}; stylobate.load reads it"
-        raise FileError(message)
-    if attributes.get("format") != _FORMAT:
-        message = f"{path} is no run saved by stylobate: its format is {attributes.get('format')!r}, not {_FORMAT!r}"
-        raise FileError(message)
-    try:
-        return _response(data, attributes)
-    except (KeyError, TypeError, ValueError) as error:
-        message = f"{path} is damaged: {error}"
-        raise FileError(message) from error
 
 
 def read_dataset(path: str | Path) -> xr.Dataset:
@@ -162,21 +89,3 @@ def _require_readable(content: bytes) -> None:
     with h5py.File(BytesIO(content), "r") as file:
         dict(file.attrs)
         file.visititems(read)
-
-
-def _response(data: xr.Dataset, attributes: dict[str, Any]) -> Response:
-    data.attrs = {name: value for name, value in attributes.items() if name not in _OWN_ATTRIBUTES}
-    data["resting"] = data["resting"].astype(bool)
-    return Response(
-        outcome=Outcome[attributes["outcome"]],
-        reason=str(attributes["reason"]),
-        decided_at=float(attributes["decided_at"]),
-        uncertain=bool(attributes["uncertain"]),
-        planar=bool(attributes["planar"]),
-        data=data,
-        events=tuple(Event(kind, time) for kind, time in json.loads(attributes["events"])),
-        thresholds=json.loads(attributes["thresholds"]),
-        measures=json.loads(attributes["measures"]),
-        provenance=json.loads(attributes["provenance"]),
-        warnings=tuple(json.loads(attributes.get("warnings", "[]"))),
-    )

@@ -41,7 +41,7 @@ def load(path: str | Path) -> results.Response | results.Assessment | Orbits | x
     if written.startswith("stylobate assessment"):
         return results.Assessment.load(path)
     if written.startswith("stylobate response"):
-        return results.load_response(path)
+        return results.Response.load(path)
     if written.startswith("stylobate "):
         return orbits.load_orbits(path)
     if "kind" not in data.attrs:
