@@ -1,12 +1,11 @@
-"""Executors: who computes the blocks of a sweep. Threads of this process here; Dask has a file of its own."""
+"""Executors compute the blocks of a sweep: the protocol, and threads of this process."""
 
 from collections.abc import Generator, Iterable
 from dataclasses import dataclass
 from typing import Protocol
 
-from stylobate.errors import MOST_THREADS, ParameterError, require_whole
+from stylobate.errors import MOST_THREADS, require_whole
 from stylobate.studies.sweeps.computing import Computed, Progress, Task
-from stylobate.studies.sweeps.dask_executor import Dask
 
 
 class Work(Protocol):
@@ -53,25 +52,3 @@ class Threads:
         """Yield each task with its result, in order."""
         for task in tasks:
             yield task, work(task, threads=self.threads, progress=progress)
-
-
-def executor_from(text: str) -> Threads | Dask:
-    """Return the executor that `text` names: `threads`, `dask://` (workers on this machine) or `dask://host:port`.
-
-    Raises
-    ------
-    ParameterError
-        If it names none.
-
-    Examples
-    --------
-    >>> executor_from("dask://10.0.0.1:8786")
-    Dask(address='tcp://10.0.0.1:8786', workers=None)
-    """
-    if text == "threads":
-        return Threads()
-    scheme, separator, place = text.partition("://")
-    if scheme == "dask" and separator:
-        return Dask(address=f"tcp://{place}" if place else None)
-    message = f'executor must be "threads", "dask://" or "dask://host:port", got {text!r}'
-    raise ParameterError(message)
