@@ -11,6 +11,8 @@ import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.base_motions.one_of import members_of
+from stylobate.base_motions.varying import numbers_of
+from stylobate.column import Column
 from stylobate.config import provenance_of_run
 from stylobate.engine.ensembles.alone import follow_alone
 from stylobate.engine.ensembles.batch import Batch, Plan
@@ -27,6 +29,7 @@ from stylobate.engine.single import require_nouns
 from stylobate.errors import MOST_THREADS, Interrupted, Outcome, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.models.consistency import check_once
+from stylobate.quantities import Parameter, parameters_of
 from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED
 
@@ -172,7 +175,8 @@ def simulate_ensemble(
     plan = Plan(model, MotionPlan.of(moved, split(model, runs.values)[1], runs.duration), options)
 
     def result() -> xr.Dataset:
-        return _dataset(runs, arrays, _provenance(model, moved, options, same))
+        declared = {**parameters_of(Column), **parameters_of(type(model)), **numbers_of(moved)}
+        return _dataset(runs, arrays, _provenance(model, moved, options, same), declared)
 
     if _followed(plan, runs, arrays, threads, progress) and _rechecked(plan, runs, arrays, threads):
         return result()
@@ -249,7 +253,12 @@ def _provenance(model: Model, motion: BaseMotion, options: Options, same: Mappin
     return provenance_of_run(model, motion, **kept)
 
 
-def _dataset(runs: Runs, arrays: Mapping[str, npt.NDArray[Any]], provenance: Mapping[str, Any]) -> xr.Dataset:
+def _dataset(
+    runs: Runs,
+    arrays: Mapping[str, npt.NDArray[Any]],
+    provenance: Mapping[str, Any],
+    declared: Mapping[str, Parameter],
+) -> xr.Dataset:
     variables = {
         name: xr.Variable(
             (*runs.dims, *QUANTITIES[name].dims),
@@ -265,6 +274,11 @@ def _dataset(runs: Runs, arrays: Mapping[str, npt.NDArray[Any]], provenance: Map
         # Along a dimension of its own name it is the index, which is there already.
         if name not in coordinates:
             coordinates[name] = array.variable
-    return xr.Dataset(
+    data = xr.Dataset(
         variables, coords=coordinates, attrs={"kind": "ensemble", "provenance": json.dumps(dict(provenance))}
     )
+    for name in runs.coordinates:
+        known = declared.get(name.removeprefix("motion."))
+        if known is not None and not data[name].attrs:
+            data[name].attrs = {"long_name": known.quantity.text, "units": known.quantity.cf_units}
+    return data

@@ -169,3 +169,14 @@ def test_names_that_say_contrary_things_are_refused():
         sb.with_parameters(STONE, SHAKING, size=2.0, radius=0.4)
     with pytest.raises(ParameterError, match="with_parameters: colour is not known here"):
         sb.with_parameters(STONE, SHAKING, colour=2.0)
+
+
+def test_numbers_that_vary_have_their_unit_and_name():
+    runs = sb.simulate_ensemble(
+        sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1),
+        sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8),
+        duration=1.0,
+        parameters={"angular_frequency": [1.0, 1.8], "damping": [0.1, 0.2]},
+    )
+    assert runs["angular_frequency"].attrs == {"long_name": "angular frequency", "units": "rad s-1"}
+    assert runs["damping"].attrs == {"long_name": "damping of tilting", "units": "1"}
