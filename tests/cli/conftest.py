@@ -2,11 +2,26 @@
 
 import signal
 from contextlib import contextmanager
+from importlib import import_module
 
 import pytest
 import xarray as xr
 
 from stylobate.cli import many_runs
+
+ROOMS = (
+    "config",
+    "conveying",
+    "earthquakes",
+    "engine",
+    "lab",
+    "orbits",
+    "paper",
+    "plots",
+    "results",
+    "studies",
+    "theory",
+)
 
 
 def _saved(path):
@@ -34,3 +49,12 @@ def interrupted(monkeypatch):
 
     monkeypatch.setattr(many_runs, "runs_done", runs_done)
     return monkeypatch
+
+
+@pytest.fixture(scope="session", autouse=True)
+def all_public_names_are_loaded():
+    """Load what is imported on first use: a module loaded during a test that replaces a function would keep that."""
+    for room in ("", *(f".{name}" for name in ROOMS)):
+        module = import_module(f"stylobate{room}")
+        for name in module.__all__:
+            getattr(module, name)
