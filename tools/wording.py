@@ -13,12 +13,13 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 
 RULES = {
-    # Underscores part the words of a name.
-    r"(?<![a-z])(?:un)?(?:told|tells?|telling)(?![a-z])(?!(?:\W+\w+){0,6}?\W+apart\b)": (
+    # Underscores and capitals part the words of a name.
+    r"(?:(?<![A-Za-z])(?:un)?(?i:told|tells?|telling)|(?<=[a-z])T(?:old|ells?|elling))(?![a-z])"
+    r"(?!(?:\W+\w+){0,6}?\W+apart\b)": (
         "report, return, show, state, specify, infer, determine, detect, classify or warn"
     ),
-    r"\b(?:becomes?|became) of\b": "outcome of, response of",
-    r"\b(?:nought|anew|likewise|whoever|many an?\b|hang(?:s|ing)? on|vouch(?:es|ed)?|mend(?:s|ed|ing)?)\b": (
+    r"(?i)\b(?:becomes?|became) of\b": "outcome of, response of",
+    r"(?i)\b(?:nought|anew|likewise|whoever|many an?\b|hang(?:s|ing)? on|vouch(?:es|ed)?|mend(?:s|ed|ing)?)\b": (
         "zero, again, also, anyone, many, depends on, guarantee, repair"
     ),
 }
@@ -54,7 +55,7 @@ def problems() -> Iterator[tuple[str, int, str, str]]:
     for path in files():
         text = (ROOT / path).read_text(encoding="utf-8")
         for pattern, remedy in RULES.items():
-            for match in re.finditer(pattern, text, re.IGNORECASE):
+            for match in re.finditer(pattern, text):
                 yield path, text.count("\n", 0, match.start()) + 1, match[0], remedy
 
 

@@ -8,10 +8,9 @@ import numpy as np
 import xarray as xr
 
 from stylobate.errors import FileError, Outcome
-from stylobate.results.storage import read_dataset
+from stylobate.results.storage import OWN_FORMATS, read_dataset
 
-_OWN_FORMATS = "stylobate "
-_FORMAT = f"{_OWN_FORMATS}response 1"
+_FORMAT = f"{OWN_FORMATS}response 1"
 _OF_ORBITS = ("orbit", "branch", "bifurcation")
 _WORDS, _FLAGS = ("reason", "decided_at"), ("uncertain", "planar")
 _AS_JSON = ("thresholds", "measures", "provenance", "warnings")
@@ -48,7 +47,7 @@ def fields_of(path: str | Path) -> dict[str, Any]:
             f"{path} holds no run but the result of a study, of kind {attributes['kind']!r}; stylobate.load reads it"
         )
         raise FileError(message)
-    kind = str(attributes.get("format", "")).removeprefix(_OWN_FORMATS).partition(" ")[0]
+    kind = str(attributes.get("format", "")).removeprefix(OWN_FORMATS).partition(" ")[0]
     if kind in _OF_ORBITS:
         message = f"{path} holds no run but, of stylobate.orbits, an object of kind {kind!r}; stylobate.load reads it"
         raise FileError(message)

@@ -15,7 +15,8 @@ from stylobate.files import read_sealed, sealed, write_whole
 
 _Data = TypeVar("_Data", xr.Dataset, xr.DataTree)
 
-_OWN_FORMATS = "stylobate "
+OWN_FORMATS = "stylobate "
+"""How the formats of the package's own files begin."""
 
 
 def read_dataset(path: str | Path) -> xr.Dataset:
@@ -72,7 +73,7 @@ def _read(open_file: Callable[..., _Data], path: str | Path) -> _Data:
     except Exception as error:  # of a damaged file HDF5 and the layers above it raise errors of many classes
         message = f"cannot read {path}: it is no netCDF file, or damaged ({' '.join(str(error).split())})"
         raise FileError(message) from error
-    if not is_sealed and str(data.attrs.get("format", "")).startswith(_OWN_FORMATS):
+    if not is_sealed and str(data.attrs.get("format", "")).startswith(OWN_FORMATS):
         message = f"{path} is damaged, or another program changed it: its checksum is missing. Compute it again"
         raise FileError(message)
     return data

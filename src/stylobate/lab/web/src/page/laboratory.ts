@@ -17,7 +17,7 @@ import { Job, problemsIn } from "./server/job";
 import { Help } from "./frame/help";
 import { listenToKeys } from "./frame/keys";
 import { Latest } from "./server/latest";
-import { toldOf } from "./view/link";
+import { inWords } from "./view/link";
 import { menuOf } from "./view/menu";
 import { MotionView } from "./motion/motion-view";
 import { paceOf } from "./motion/pace";
@@ -297,7 +297,7 @@ export class Laboratory {
     this.#fresh = true;
     this.#given = true;
     this.#store.change(firstView(this.#about));
-    this.#problems.showLink(toldOf(lines.join("; ")));
+    this.#problems.showLink(inWords(lines.join("; ")));
   }
 
   /** The server forgets records when it ends; what was uploaded here is sent once more. */

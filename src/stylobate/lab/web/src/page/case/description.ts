@@ -50,7 +50,7 @@ export function written(value: Value): string {
 }
 
 /** Returns the case in one line: kinds with their numbers. */
-export function toldOfCase(description: Description): string {
+export function caseInWords(description: Description): string {
   const written = ([name, value]: [string, Value]): string => `${name.replaceAll("_", " ")} ${String(value)}`;
   const parts = PARTS.map((part) => {
     const tag = tagOf(part);

@@ -32,7 +32,7 @@ export class Controls {
   readonly #about: About;
   readonly #hearing: ControlsHearing;
   readonly #presets: HTMLSelectElement;
-  readonly #presetTold = element("p", { class: "hint" });
+  readonly #presetText = element("p", { class: "hint" });
   readonly #changed = element("span", { class: "changed unseen" });
   /** The preset that the case was, or is still. */
   #from: Preset | null = null;
@@ -79,7 +79,7 @@ export class Controls {
         { class: "panel preset" },
         element("div", { class: "preset-head" }, element("label", { for: id }, "Preset"), this.#changed),
         this.#presets,
-        this.#presetTold,
+        this.#presetText,
       ),
       problems,
       section("Column", this.#forms.column.root),
@@ -111,8 +111,8 @@ export class Controls {
     const same = this.#about.presets.find((one) => written(one.description) === written(description));
     this.#from = same ?? this.#from;
     this.#presets.value = this.#from?.id ?? "";
-    this.#presetTold.textContent = this.#from?.about ?? "";
-    this.#presetTold.hidden = !this.#from?.about;
+    this.#presetText.textContent = this.#from?.about ?? "";
+    this.#presetText.hidden = !this.#from?.about;
     this.#changed.classList.toggle("unseen", same !== undefined || this.#from === null);
   }
 

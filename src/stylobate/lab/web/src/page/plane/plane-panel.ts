@@ -80,7 +80,7 @@ export class PlanePanel {
   ): void {
     this.#plane = plane;
     this.#values = values;
-    this.#runs = toldOfLength(length);
+    this.#runs = lengthInWords(length);
     this.#key = key;
     this.#axesForm.show(plane, quantities, description);
     if (this.#shownKey !== key) this.#stop(); // nobody sees the rest of an earlier case
@@ -205,7 +205,7 @@ export class PlanePanel {
 
   /** Before anything is computed: the axes alone. */
   #rest(plane: Plane, quantities: readonly Quantity[]): void {
-    const toldAxis = (axis: Axis): ComputedAxis => ({
+    const computedAxis = (axis: Axis): ComputedAxis => ({
       name: axis.name,
       values: Array.from(
         { length: axis.number },
@@ -214,7 +214,7 @@ export class PlanePanel {
       units: quantities.find((one) => one.name === axis.name)?.unit ?? "",
     });
     this.#canvas.show(
-      { axes: { x: toldAxis(plane.x), y: toldAxis(plane.y) }, cells: null, looks: new Map() },
+      { axes: { x: computedAxis(plane.x), y: computedAxis(plane.y) }, cells: null, looks: new Map() },
       this.#values,
     );
     this.#readout.textContent = HINTS[this.#kind];
@@ -273,7 +273,7 @@ const HINTS: Readonly<Record<PlaneKind, string>> = {
   basin: "Where each start leads in the long run. Compute it, then click a start to see its motion.",
 };
 
-function toldOfLength({ periods, duration }: Part): string {
+function lengthInWords({ periods, duration }: Part): string {
   if (typeof periods === "number") return ` of ${formatted(periods)} periods of the base`;
   return typeof duration === "number" ? ` of ${withUnit(duration, "s")}` : "";
 }

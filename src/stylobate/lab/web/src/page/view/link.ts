@@ -206,6 +206,6 @@ function planeRead(what: string, text: string): Value {
 }
 
 /** Returns the line for a link that cannot be followed. */
-export function toldOf(reason: string): string {
+export function inWords(reason: string): string {
   return `This link cannot be followed: ${reason.replace(/\.$/, "")}. The first preset is shown instead.`;
 }

@@ -1,6 +1,6 @@
 /** What the export menu takes along of the view that is shown. */
 
-import { toldOfCase, written } from "../case/description";
+import { caseInWords, written } from "../case/description";
 import { ExportMenu } from "../frame/exports";
 import { clockTime } from "../frame/format";
 import { joined } from "../frame/units";
@@ -34,7 +34,7 @@ function captionOf(motion: MotionView, { view, answer }: Shown): readonly string
   const { time, to } = motion.clock;
   const fall = motion.falling ? " The fall is drawn on and was not computed." : "";
   const at = `At ${joined(clockTime(time, to), "s")} of ${joined(clockTime(to, to), "s")}.${fall}`;
-  return answer === null ? [] : [`${verdictOf(answer)} ${at}`, toldOfCase(view.description)];
+  return answer === null ? [] : [`${verdictOf(answer)} ${at}`, caseInWords(view.description)];
 }
 
 /** Returns the case in the languages of the package, whether its run has been answered or not. */

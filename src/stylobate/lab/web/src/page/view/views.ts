@@ -1,7 +1,7 @@
 /** The views of presets and of links. */
 
 import type { About, Preset } from "../case/about";
-import { BrokenLink, toldOf, viewFrom } from "./link";
+import { BrokenLink, inWords, viewFrom } from "./link";
 import type { View } from "./state";
 import { viewOf } from "./state";
 
@@ -21,7 +21,7 @@ export function viewOfLink(link: string, about: About): readonly [view: View, pr
   try {
     return [viewFrom(link, about), null];
   } catch (error) {
-    if (error instanceof BrokenLink) return [firstView(about), toldOf(error.message)];
+    if (error instanceof BrokenLink) return [firstView(about), inWords(error.message)];
     throw error;
   }
 }
