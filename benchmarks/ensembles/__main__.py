@@ -43,7 +43,7 @@ def main() -> None:
         for workload in ("rolling", "mix")
         for cost in scaling.costs(workload, largest=1_000 if arguments.quick else scaling.COUNTS[-1])
     ]
-    packages = ("numpy", "scipy", "numba", *sorted({name for engine in present for name in engine.needs}))
+    packages = ("numpy", "scipy", "llvmlite", *sorted({name for engine in present for name in engine.needs}))
     results = {
         "machine": {"cores": cores, "instructions": peak.instruction_set(), "one core": one_core},
         "versions": {name: version(name) for name in ("stylobate", *packages)},

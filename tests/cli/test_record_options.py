@@ -124,7 +124,7 @@ def test_a_record_beyond_what_the_ground_does_is_one_line_of_warning(tmp_path, c
 def test_a_file_that_is_missing_is_told_before_anything_heavy_is_imported(tmp_path):
     code = (
         "import sys; from stylobate.cli.main import run; status = run(sys.argv[1:]); "
-        "print(status, sorted({'numba', 'scipy', 'xarray', 'matplotlib'} & set(sys.modules)))"
+        "print(status, sorted({'llvmlite', 'scipy', 'xarray', 'matplotlib'} & set(sys.modules)))"
     )
     missing = str(tmp_path / "missing.txt")
     for arguments in (

@@ -2,20 +2,14 @@
 
 import math
 import os
-import re
 import subprocess
 import sys
 
-import numba
 import numpy as np
 import pytest
 import xarray as xr
 
 import stylobate as sb
-from stylobate.engine.ensembles.batch import Plan
-from stylobate.engine.ensembles.motion_columns import MotionPlan
-from stylobate.engine.ensembles.options import Options
-from stylobate.engine.lanes.kernels import kernel_of
 from stylobate.errors import Interrupted, ParameterError, UnsupportedError
 
 C = ETA = 0.1
@@ -285,21 +279,3 @@ def test_a_model_in_a_users_file_is_compiled_once_and_anew_when_it_changes(tmp_p
     assert second.stdout == first.stdout  # to the bit
     assert "compiling dragged" in changed.stderr
     assert changed.stdout != first.stdout
-
-
-@pytest.mark.slow  # looked at from another side in lanes/test_vectorised.py
-@pytest.mark.parametrize("planar", [False, True])
-def test_the_steps_of_all_lanes_are_vector_code(planar):
-    machine = numba.core.config.NUMBA_NUM_THREADS and numba.core.codegen.ll.get_host_cpu_features()
-    if not machine.get("avx2", False):
-        pytest.skip("the machine has no AVX2")
-    options = Options.checked(
-        rtol=1e-8, atol=None, tilt_limit=None, rest_energy=None, max_steps=1000, samples=None, strobes=0, rules=None
-    )
-    plan = Plan(MODEL, MotionPlan.of(CIRCLE, {}, np.ones(1)), options)
-    kernel = kernel_of(sb.Slender, plan.shape(planar=planar))
-    kernel.module.step(np.zeros(len(kernel.shape.rows()) * kernel.shape.width))
-    (assembly,) = kernel.module.step.inspect_asm().values()
-    arithmetic = r"\bv(?:mul|add|sub|div|sqrt|fn?m(?:add|sub)\d+)"
-    assert len(re.findall(arithmetic + "pd", assembly)) > 300
-    assert not re.findall(arithmetic + "sd", assembly)

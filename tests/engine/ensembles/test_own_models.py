@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.compiling.model_code import fingerprint
+from stylobate.engine.compiler.model_code import fingerprint
 from stylobate.errors import UnsupportedError
 
 COLUMN = sb.Column.dimensionless(0.1)
@@ -312,7 +312,10 @@ def test_a_change_of_another_models_function_changes_the_fingerprint_of_what_cal
 
 @pytest.mark.slow
 def test_functions_that_the_user_compiled_already_are_taken_and_told_apart(written):
-    before = "import numba\n\n\n@numba.njit\ndef resistance(vx, vy, k):\n    return k * math.sqrt(vx * vx + vy * vy)\n"
+    # As other compilers do it.
+    before = "class Jit:\n    def __init__(self, function):\n        self.py_func = function\n\n"
+    before += "    def __call__(self, *values):\n        return self.py_func(*values)\n\n\n"
+    before += "@Jit\ndef resistance(vx, vy, k):\n    return k * math.sqrt(vx * vx + vy * vy)\n"
     one = written(dragged("resistance(vx, vy, k)", before)).Dragged
     other = written(dragged("resistance(vx, vy, k)", before.replace("return k", "return 2.0 * k"))).Dragged
     assert fingerprint(one.rates) != fingerprint(other.rates)

@@ -38,7 +38,7 @@ from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.recipe import RunOptions
 
 # Packages on whose versions the digits depend.
-_PACKAGES = ("stylobate", "numpy", "scipy", "numba", "llvmlite", "xarray")
+_PACKAGES = ("stylobate", "numpy", "scipy", "llvmlite", "xarray")
 
 
 def assess(

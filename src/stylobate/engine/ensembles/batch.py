@@ -144,10 +144,7 @@ class Batch:
             return True
         table = np.ascontiguousarray(self.table[chosen])
         kernel = kernel_of(type(self.plan.model), self.plan.shape(planar=planar))
-        with np.errstate(
-            all="ignore"
-        ):  # lanes divide by zero where the result is not used; told without compilation only
-            finished = kernel.advance(table, self.plan.motion.pieces, halt)
+        finished = kernel.advance(table, self.plan.motion.pieces, halt)
         self.table[chosen] = table
         if np.any(self.log(Log.STATUS) == Status.CANNOT_DEPART):
             raise cannot_depart(self.plan.model)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from stylobate.engine.compiling.model_code import called_functions, plain_function, with_functions
+from stylobate.engine.compiler.model_code import called_functions, plain_function, with_functions
 from stylobate.engine.equations.expressions import FUNCTIONS, Expression, Recording
 
 Function = Callable[..., Any]

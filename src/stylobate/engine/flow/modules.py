@@ -1,14 +1,15 @@
 """Writes and compiles the flow of a model."""
 
-import types
 from collections.abc import Callable
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from stylobate.engine.compiling import arithmetic
-from stylobate.engine.compiling.modules import compiled_module
+from stylobate.engine import elementary
+from stylobate.engine.compiler.compiled import Compiled
+from stylobate.engine.compiler.unit import ArrayArgument
+from stylobate.engine.compiler.values import Kind
 from stylobate.engine.equations.expressions import Expression, Recording
 from stylobate.engine.equations.recording import recorded
 from stylobate.engine.flow import tableau
@@ -23,8 +24,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.compiling.arithmetic import part, turning_point, winding
-from stylobate.engine.compiling.loading import kept
+from stylobate.engine.elementary import turning_point, winding
 from stylobate.engine.flow.tableau import DOP_A, DOP_C, DOP_E3, DOP_E5, Status
 
 Table = npt.NDArray[np.float64]
@@ -33,13 +33,13 @@ Vector = npt.NDArray[np.float64]
 
 
 @cache
-def flow_module(model: type[Model], states: int, numbers: int, *, planar: bool) -> types.ModuleType:
-    """Return the compiled flow of a class of models with so many states and parameters, in space or in a plane.
+def flow_of(model: type[Model], states: int, numbers: int, *, planar: bool) -> Compiled:
+    """Return the flow of a class of models with so many states and parameters, in space or in a plane.
 
     Raises
     ------
     UnsupportedError
-        If the equations cannot be differentiated, or Numba cannot compile them.
+        If the equations cannot be differentiated.
     """
     rates = model.planar_rates if planar else model.rates
     if rates is None:
@@ -69,13 +69,25 @@ def flow_module(model: type[Model], states: int, numbers: int, *, planar: bool) 
             Path(__file__).with_name("pattern.py").read_text(encoding="utf-8").split(_MARK, 1)[1],
         ]
     )
-    return compiled_module(
-        f"{model.name}_flow_{kind}",
-        text,
-        functions,
-        imported=(arithmetic, tableau),
-        told=f"{model.name}, flow in {kind} with its derivatives",
-        of=model.name,
+    vector = ArrayArgument((numbers,))
+    terms = ArrayArgument((None, 1 + 2 * len(arguments.accelerations)))
+    return Compiled(
+        name="flow",
+        text=text,
+        functions=functions,
+        arguments=(
+            ArrayArgument((order, order + 2)),
+            *[Kind.FLOAT] * 3,
+            terms,
+            vector,
+            ArrayArgument((1 + numbers,)),
+            terms,
+            ArrayArgument((4,)),
+            ArrayArgument((5,)),
+        ),
+        model=model.name,
+        description=f"{model.name}, flow in {kind} with its derivatives",
+        imported=(elementary, tableau),
     )
 
 
@@ -115,7 +127,6 @@ def _rates_source(arguments: _Arguments) -> str:
     results = ", ".join(f"out[{j}]" for j in range(len(arguments.states)))
     return "\n".join(
         [
-            "@part",
             "def rates_into(y, push, side, numbers, out):",
             *arguments.unpacked(),
             f"    {results} = rates({', '.join(arguments.all)})",
@@ -133,7 +144,6 @@ def _jacobian_source(rates: Callable[..., Any], arguments: _Arguments) -> str:
     columns = len(variables)
     return "\n".join(
         [
-            "@part",
             "def jacobian_into(y, push, side, numbers, out):",
             *arguments.unpacked(),
             *(f"    {line}" for line in lines),
@@ -146,7 +156,6 @@ def _given_jacobian(arguments: _Arguments) -> str:
     rows, columns = range(len(arguments.states)), range(len(arguments.variables))
     return "\n".join(
         [
-            "@part",
             "def jacobian_into(y, push, side, numbers, out):",
             *arguments.unpacked(),
             f"    rows = jacobian({', '.join(arguments.all)})",
@@ -162,16 +171,15 @@ def _lean_source(arguments: _Arguments) -> str:
         states = [f"y[{j}]" for j in range(len(arguments.states))]
         numbers = [f"numbers[{j}]" for j in range(len(arguments.numbers))]
         body = f"tilt_of({', '.join([*states, *numbers])})"
-    return f"@part\ndef lean_of(y, numbers):\n    return {body}"
+    return f"def lean_of(y, numbers):\n    return {body}"
 
 
 def _loss_source(arguments: _Arguments, *, loses: bool) -> str:
     if not loses:
-        return "@part\ndef speed_left(rate, numbers):\n    return rate"
+        return "def speed_left(rate, numbers):\n    return rate"
     numbers = ", ".join(f"numbers[{j}]" for j in range(len(arguments.numbers)))
     return "\n".join(
         [
-            "@part",
             "def speed_left(rate, numbers):",
             f"    state = impact_map(*from_plane(0.0, rate, 1.0, 0.0, {numbers}), {numbers})",
             f"    _, _, vx, _ = tilt_of(*state, {numbers})",

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.compiling.arithmetic import part, turning_point, winding
-from stylobate.engine.compiling.loading import kept
+from stylobate.engine.elementary import turning_point, winding
 from stylobate.engine.flow.tableau import DOP_A, DOP_C, DOP_E3, DOP_E5, Status
 
 if TYPE_CHECKING:
@@ -45,7 +44,6 @@ MET, MOST_TRIES = 1e-15, 60
 LOSS_STEP = 1e-6
 
 
-@part
 def accelerations_into(s: float, terms: Table, out: Vector) -> None:
     """Set the accelerations at `s` turns: in each row of `terms` a multiple of the frequency, then pairs cos, sin."""
     for k in range(ACCELERATIONS):
@@ -57,7 +55,6 @@ def accelerations_into(s: float, terms: Table, out: Vector) -> None:
             out[k] += terms[term, 1 + 2 * k] * cos + terms[term, 2 + 2 * k] * sin
 
 
-@part
 def slopes_into(
     y: Table,
     s: float,
@@ -95,7 +92,6 @@ def slopes_into(
         out[i, ORDER + 1] += period * total + change[0] * rates[i]
 
 
-@part
 def stages_into(
     y: Table,
     s: float,
@@ -121,7 +117,6 @@ def stages_into(
         slopes_into(new, s + DOP_C[stage] * h, side, period, terms, numbers, change, term_change, work, k[stage])
 
 
-@part
 def error_of(y: Table, new: Table, h: float, k: npt.NDArray[np.float64], rtol: float, atol: float) -> float:
     """Return the error of a step over what is allowed; that of the derivative by a number is not looked at."""
     e5 = e3 = 0.0
@@ -139,7 +134,6 @@ def error_of(y: Table, new: Table, h: float, k: npt.NDArray[np.float64], rtol: f
     return abs(h) * e5 / math.sqrt(spread * ORDER * (ORDER + 1)) if spread > 0.0 else 0.0
 
 
-@part
 def note_tilt(y: Table, new: Table, duration: float, numbers: Vector, told: Vector) -> float:
     """Note the least and the largest tilt of a step, by a cubic through the squares at its ends.
 
@@ -158,7 +152,6 @@ def note_tilt(y: Table, new: Table, duration: float, numbers: Vector, told: Vect
     return at
 
 
-@part
 def note_turning(y: Table, new: Table, numbers: Vector, told: Vector) -> None:
     """Count how often the lean passes the negative x axis, anticlockwise less clockwise."""
     x0, y0, vx0, vy0 = lean_of(y[:, 0], numbers)
@@ -166,7 +159,6 @@ def note_turning(y: Table, new: Table, numbers: Vector, told: Vector) -> None:
     told[4] += winding(x0, y0, x1, y1, x0 * vy0 - y0 * vx0 + x1 * vy1 - y1 * vx1)
 
 
-@part
 def note_extremes(
     y: Table,
     s: float,
@@ -198,7 +190,6 @@ def note_extremes(
         note_tilt(middle, new, period * (1.0 - at) * h, numbers, told)
 
 
-@part
 def step_to_upright(
     y: Table,
     s: float,
@@ -231,7 +222,6 @@ def step_to_upright(
     return h
 
 
-@part
 def cross(y: Table, s: float, side: float, terms: Table, numbers: Vector, change: Vector, work: Table) -> bool:
     """Pass the upright in a plane: speed and acceleration jump, and derivatives with them; False if it grazes.
 
@@ -253,16 +243,14 @@ def cross(y: Table, s: float, side: float, terms: Table, numbers: Vector, change
         y[1, column] = kept_part * y[1, column] + jump * y[0, column]
         y[0, column] *= kept_part
     # What the loss itself changes with the number on which the system depends.
-    numbers_change = change[1:]
-    more = speed_left(speed, numbers + LOSS_STEP * numbers_change)
-    y[1, ORDER + 1] += (more - speed_left(speed, numbers - LOSS_STEP * numbers_change)) / (2.0 * LOSS_STEP)
+    larger, smaller = np.zeros(NUMBERS), np.zeros(NUMBERS)
+    for j in range(NUMBERS):
+        larger[j] = numbers[j] + LOSS_STEP * change[1 + j]
+        smaller[j] = numbers[j] - LOSS_STEP * change[1 + j]
+    y[1, ORDER + 1] += (speed_left(speed, larger) - speed_left(speed, smaller)) / (2.0 * LOSS_STEP)
     return True
 
 
-@kept(
-    "int64(float64[:, ::1], float64, float64, float64, float64[:, ::1], float64[::1], float64[::1], float64[:, ::1], "
-    "float64[::1], float64[::1])"
-)
 def flow(
     y: Table,
     begin: float,
@@ -284,7 +272,7 @@ def flow(
     k = np.zeros((13, ORDER, ORDER + 2))
     work = np.zeros((3 + ORDER, ORDER + ACCELERATIONS + NUMBERS))
     new = np.zeros((ORDER, ORDER + 2))
-    near, middle = np.zeros_like(k), np.zeros_like(new)
+    near, middle = np.zeros((13, ORDER, ORDER + 2)), np.zeros((ORDER, ORDER + 2))
     side = told[3]
     s, h = begin, min(FIRST_STEP, end - begin)
     rejected = False

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.ensembles.harmonics import terms_of
-from stylobate.engine.flow.modules import flow_module
+from stylobate.engine.flow.modules import flow_of
 from stylobate.engine.flow.tableau import Status
 from stylobate.engine.forcing import common_line
 from stylobate.engine.parameters import present_value, with_parameters
@@ -182,9 +182,7 @@ class PeriodicSystem:
             Beyond it the motion is given up; the tilt of no return by default.
         """
         order, numbers = self.order, self.numbers
-        module = flow_module(
-            type(self.model), len(self.model.state_names), len(self.model.parameters), planar=self.planar
-        )
+        flow = flow_of(type(self.model), len(self.model.state_names), len(self.model.parameters), planar=self.planar)
         table = np.zeros((order, order + 2))
         table[:, 0] = state
         table[:, 1 : order + 1] = np.eye(order)
@@ -201,19 +199,18 @@ class PeriodicSystem:
         if self.planar and side == 0.0:
             side = math.copysign(1.0, state[0] if state[0] != 0.0 else state[1])
         told = np.array([math.inf, 0.0, 0.0, side, 0.0])
-        with np.errstate(all="ignore"):
-            status = module.flow(
-                table,
-                begin,
-                end,
-                numbers.period,
-                numbers.terms,
-                numbers.parameters,
-                np.concatenate([[change.period], change.parameters]),
-                change.terms,
-                limits,
-                told,
-            )
+        status = flow(
+            table,
+            begin,
+            end,
+            numbers.period,
+            numbers.terms,
+            numbers.parameters,
+            np.concatenate([[change.period], change.parameters]),
+            change.terms,
+            limits,
+            told,
+        )
         return Flow(
             Status(status),
             table[:, 0].copy(),

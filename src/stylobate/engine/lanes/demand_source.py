@@ -20,7 +20,7 @@ def demand_lines(shape: Shape, rows: Rows) -> list[str]:
     """
     loops = [_loads(shape, rows, place) for place in range(1, PLACES + 1)]
     loops.append([f"go = {rows.at('go')}", *(line for name in DEMANDS for line in _extreme(rows.at, name))])
-    return [line for body in loops for line in ("    for i in range(WIDTH):", *(f"        {text}" for text in body))]
+    return [line for body in loops for line in ("    for i in lanes(WIDTH):", *(f"        {text}" for text in body))]
 
 
 def _loads(shape: Shape, rows: Rows, place: int) -> list[str]:

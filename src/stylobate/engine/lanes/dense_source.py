@@ -20,7 +20,7 @@ def dense_source(shape: Shape, rows: Rows) -> str:
         return f"buf[{rows[f'{name}0']} + j, i]"
 
     stages = [row(f"k{stage}_") for stage in range(STAGES + 1)] + [row(name) for name in _EXTRA]
-    lines = ["@part", "def set_dense(buf, i):", f"    h = {rows.of_lane('tried')}", f"    t = {rows.of_lane('time')}"]
+    lines = ["def set_dense(buf, i):", f"    h = {rows.of_lane('tried')}", f"    t = {rows.of_lane('time')}"]
     made = f"row_state(buf, i, {rows['dense0_0']})"
     for number, (weights, fraction, name) in enumerate(zip(DOP853.A_EXTRA, DOP853.C_EXTRA, _EXTRA, strict=True)):
         known = STAGES + 1 + number
@@ -39,7 +39,7 @@ def dense_source(shape: Shape, rows: Rows) -> str:
         f"        {row('dense2_')} = 2.0 * change - h * ({stages[0]} + {stages[STAGES]})",
         *(f"        {row(f'dense{3 + k}_')} = h * ({combination(d, stages)})" for k, d in enumerate(DOP853.D)),
     ]
-    lines += ["", "", "@part", "def dense_state(buf, i, u):", "    v = 1.0 - u"]
+    lines += ["", "", "def dense_state(buf, i, u):", "    v = 1.0 - u"]
     lines.append(f"    return ({', '.join(_within(rows, j) for j in range(shape.order))})")
     return "\n".join(lines) + "\n"
 

@@ -108,7 +108,7 @@ def model_source(shape: Shape, has: Mapping[str, bool]) -> str:
         definitions["model_departure(buf, i, push, elapsed, ux, uy)"] = nothing
     elif not shape.planar:
         definitions["model_departure(buf, i, push, elapsed, ux, uy)"] = call("departure", "push", "elapsed")
-    source = "\n\n".join(f"@part\ndef {name}:\n    return {value}" for name, value in definitions.items()) + "\n"
+    source = "\n\n".join(f"def {name}:\n    return {value}" for name, value in definitions.items()) + "\n"
     if has["departure"] and shape.planar:
         source += _plane_departure(call("departure", "push", "elapsed"), parameters)
     if has["impact_map"] and shape.planar:
@@ -146,7 +146,6 @@ def _plane_struck(state: list[str], parameters: list[str]) -> str:
     numbers = ", ".join(parameters)
     return f"""
 
-@part
 def model_struck(buf, i):
     state = impact_map(*from_plane({state[0]}, {state[1]}, 1.0, 0.0, {numbers}), {numbers})
     x, y, vx, vy = tilt_of(*state, {numbers})
@@ -157,7 +156,6 @@ def model_struck(buf, i):
 def _plane_departure(departure: str, parameters: list[str]) -> str:
     return f"""
 
-@part
 def model_departure(buf, i, push, elapsed, ux, uy):
     state = {departure}
     x, y, vx, vy = tilt_of(*state, {", ".join(parameters)})

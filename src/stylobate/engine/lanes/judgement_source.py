@@ -28,7 +28,7 @@ def judgement(shape: Shape, rows: Rows) -> list[str]:
     loops = ((_error, _acceptance), (_extremes, _turning), (_keeping, _next_step, _suspicion))
     lines: list[str] = []
     for parts in loops:
-        lines.append("    for i in range(WIDTH):")
+        lines.append("    for i in lanes(WIDTH):")
         lines += [f"        {text}" for part in parts for text in part(shape, rows)]
     return lines
 

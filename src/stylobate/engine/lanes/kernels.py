@@ -1,7 +1,6 @@
 """Kernels: written for a model and a kind of base motion."""
 
 import re
-import types
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
@@ -9,12 +8,18 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from stylobate.engine.compiling import arithmetic
-from stylobate.engine.compiling.modules import compiled_module
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.engine import elementary
+from stylobate.engine.compiler.compiled import Compiled
+from stylobate.engine.compiler.unit import ArrayArgument
+from stylobate.engine.compiler.values import Element
 from stylobate.engine.lanes import pattern, roots
 from stylobate.engine.lanes.columns import LOOKS, Status, Window
 from stylobate.engine.lanes.dense_source import dense_source
 from stylobate.engine.lanes.head_source import OPTIONAL, SWITCHING, constants_source, model_source
+from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.margin_source import margins_source, reaction_source, window_source
 from stylobate.engine.lanes.observation_source import observation_source
 from stylobate.engine.lanes.shape import DEMANDS, STAGES, Shape
@@ -23,40 +28,49 @@ from stylobate.engine.lanes.step_source import accelerations_source, rates_sourc
 from stylobate.models import Model
 
 _MARK = "# --- the kernel's text begins here ---"
+_EDGE = 8
+"""Numbers in a line of the processor's cache: a vector that lies across two lines costs twice."""
+
+_IN_LANES = ("rates", "tilt_of", "contact", "guards", "project")
+"""Functions of a model that steps call for all lanes."""
 
 
 @dataclass(frozen=True, slots=True)
 class Kernel:
-    """A compiled kernel."""
+    """What advances batches of runs of a model."""
 
     shape: Shape
-    module: types.ModuleType
+    compiled: Compiled
 
-    @property
-    def advance(self) -> Callable[..., bool]:
-        """Runs a batch; see the driver."""
-        function: Callable[..., bool] = self.module.advance
-        return function
+    def advance(self, table: Table, pieces: Table, halt: npt.NDArray[np.uint8]) -> bool:
+        """Run a batch to its end, or until `halt[0]` is set; return whether it got there. See the driver."""
+        rows, width = len(self.shape.rows()), self.shape.width
+        room = np.zeros(rows * width + _EDGE)
+        flat = room[(-room.ctypes.data // room.itemsize) % _EDGE :][: rows * width]
+        return bool(self.compiled(table, pieces, halt, flat.reshape(rows, width), flat))
 
 
 @cache
 def kernel_of(model: type[Model], shape: Shape) -> Kernel:
-    """Return the kernel of a class of models for this shape, from memory, from disk or newly compiled.
-
-    Raises
-    ------
-    UnsupportedError
-        If Numba cannot compile the model, or kernels cannot be kept.
-    """
-    module = compiled_module(
-        _file_name(model, shape),
-        kernel_source(model, shape),
-        _functions(model, shape),
-        imported=(arithmetic, roots),
-        told=_in_words(model, shape),
-        of=model.name,
+    """Return the kernel of a class of models for this shape."""
+    rows, width, table = len(shape.rows()), shape.width, ArrayArgument((None, None))
+    compiled = Compiled(
+        name="advance",
+        text=kernel_source(model, shape),
+        functions=_functions(model, shape),
+        arguments=(
+            table,
+            table,
+            ArrayArgument((1,), Element.SIGNAL),
+            ArrayArgument((rows, width)),
+            ArrayArgument((rows * width,)),
+        ),
+        model=model.name,
+        description=_in_words(model, shape),
+        imported=(elementary, roots),
+        fast=_IN_LANES,
     )
-    return Kernel(shape, module)
+    return Kernel(shape, compiled)
 
 
 def kernel_source(model: type[Model], shape: Shape) -> str:
@@ -87,9 +101,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.compiling.arithmetic import cos_turns, part, turning_point, vectorised, winding
-from stylobate.engine.compiling.loading import kept
-from stylobate.engine.lanes.layout import Table
+from stylobate.engine.compiler.marks import fast, flat, lanes
+from stylobate.engine.elementary import cos_turns, turning_point, winding
+from stylobate.engine.lanes.layout import Row, Table
 from stylobate.engine.lanes.roots import cubic, first_growth_past, first_return, nearest_turn, quintic, turns_of
 from stylobate.models.model import Push
 """
@@ -160,8 +174,3 @@ def _in_words(model: type[Model], shape: Shape) -> str:
     """Describe a kernel so that its description differs from those of the other kernels of a model."""
     options = (", by Taylor series" if shape.series else "", ", with contact demands" if shape.demands else "")
     return f"{model.name}, {_kind(shape)}{''.join(options)}"
-
-
-def _file_name(model: type[Model], shape: Shape) -> str:
-    name = re.sub(r"\W+", "_", model.name)
-    return f"{name}_{'plane' if shape.planar else 'space'}_{shape.forcing.tag}_{shape.width}"

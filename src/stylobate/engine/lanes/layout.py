@@ -4,6 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 Table = npt.NDArray[np.float64]
+Row = npt.NDArray[np.float64]
 
 
 class Rows:

@@ -48,7 +48,7 @@ def margins_source(shape: Shape, rows: Rows) -> str:
         f"x, y, _, _ = tilt_of({', '.join(state)}, {parameters})",
         f"return {', '.join(guards)}, {at('tilt_limit')} - math.sqrt(x * x + y * y)",
     ]
-    return "\n".join(["@part", "def margins_at(buf, i, t, state):", *(f"    {line}" for line in lines)]) + "\n"
+    return "\n".join(["def margins_at(buf, i, t, state):", *(f"    {line}" for line in lines)]) + "\n"
 
 
 _WINDOW_ENDS = (("x", "footprint_x"), ("y", "footprint_y"), ("twist", "twist"))
@@ -57,7 +57,7 @@ _WINDOW_TIMES = (("sliding", ("SLIDING",)), ("rim", ("ROLLING", "SLIPPING")), ("
 
 def window_source(model: type[Model], shape: Shape, rows: Rows) -> str:
     """Return the source of `note_window`, for the driver; it does nothing where contacts do not change."""
-    lines = ["@part", "def note_window(buf, i, t):"]
+    lines = ["def note_window(buf, i, t):"]
     if not shape.guards:
         return "\n".join([*lines, "    pass"]) + "\n"
     at = rows.of_lane
@@ -78,7 +78,6 @@ def reaction_source(shape: Shape, rows: Rows) -> str:
     parameters = ", ".join(at(f"p{j}") for j in range(shape.parameters))
     after = ", ".join(f"s[{j}]" for j in range(shape.order))
     return f"""\
-@part
 def model_react(buf, i, number, now, later, ahead):
     ax, ay, az = now
     bx, by, bz = later

@@ -28,7 +28,7 @@ def observation_source(shape: Shape) -> str:
     rows = shape.rows()
     at = rows.at
     lines = [
-        "@vectorised",
+        "@fast",
         "def observe(buf, i):",
         f"    h = {at('made')}",
         f"    w = {at('per_turn')}",
@@ -47,7 +47,7 @@ def _by_nodes(shape: Shape, rows: Rows) -> list[str]:
     kept = {name: f"buf[{rows[f'node_{name}']} * WIDTH + node]" for name in OBSERVED}
     out = _terms_of_step(shape, rows)
     out += [
-        f"for node in range({NODES}):",
+        f"for node in lanes({NODES}):",
         "    u = PLACES[node]",
         *(f"    s{j} = {_state_within(shape, j)}" for j in range(shape.order)),
         f"    x, y, _, _ = {_lean(shape, [f's{j}' for j in range(shape.order)])}",

@@ -2,8 +2,6 @@
 
 import math
 
-from stylobate.engine.compiling.arithmetic import part
-
 _BISECTIONS = 52
 # A first return is sought from this fraction of the step on, doubled up to the second number, then at equal steps.
 _FIRST_FRACTION, _EQUAL = 2.0**-40, 1.0 / 16.0
@@ -11,7 +9,6 @@ _FIRST_FRACTION, _EQUAL = 2.0**-40, 1.0 / 16.0
 _ROOT = 1e-14
 
 
-@part
 def cubic(u: float, start: float, end: float, slope: float, end_slope: float) -> float:
     """Return the cubic on [0, 1] with these values and slopes at its ends."""
     rise = end - start
@@ -20,7 +17,6 @@ def cubic(u: float, start: float, end: float, slope: float, end_slope: float) ->
     return start + u * (slope + u * (b + u * a))
 
 
-@part
 def cubic_rate(u: float, start: float, end: float, slope: float, end_slope: float) -> float:
     """Return the derivative of `cubic`."""
     rise = end - start
@@ -29,7 +25,6 @@ def cubic_rate(u: float, start: float, end: float, slope: float, end_slope: floa
     return slope + u * (2.0 * b + 3.0 * u * a)
 
 
-@part
 def first_growth_past(bound: float, start: float, end: float, slope: float, end_slope: float) -> float:
     """Return the u in [0, 1] at which the cubic first lies above `bound` and grows; 1 if only its end does."""
     before = 0.0
@@ -48,13 +43,11 @@ def first_growth_past(bound: float, start: float, end: float, slope: float, end_
     return 1.0
 
 
-@part
 def _grows_past(u: float, bound: float, start: float, end: float, slope: float, end_slope: float) -> bool:
     above = cubic(u, start, end, slope, end_slope) >= bound
     return above and cubic_rate(u, start, end, slope, end_slope) > 0.0
 
 
-@part
 def quintic(
     u: float, h: float, x0: float, v0: float, a0: float, x1: float, v1: float, a1: float
 ) -> tuple[float, float]:
@@ -71,7 +64,6 @@ def quintic(
     return value, p1 + u * (2.0 * p2 + u * (3.0 * p3 + u * (4.0 * p4 + u * 5.0 * p5)))
 
 
-@part
 def first_return(h: float, s0: float, v0: float, a0: float, s1: float, v1: float, a1: float) -> float:
     """Return the time in (0, h] at which a height s > 0 first falls below zero, 0 if at once, h if not.
 
@@ -98,7 +90,6 @@ def first_return(h: float, s0: float, v0: float, a0: float, s1: float, v1: float
     return _falling_root(low, low_value, u, value, h, s0, v0, a0, s1, v1, a1) * h
 
 
-@part
 def _falling_root(
     low: float,
     low_value: float,
@@ -129,13 +120,11 @@ def _falling_root(
     return u
 
 
-@part
 def turns_of(x: float, y: float) -> float:
     """Return the azimuth of (x, y) in turns, −½ to ½."""
     return math.atan2(y, x) / (2.0 * math.pi)
 
 
-@part
 def nearest_turn(azimuth: float, previous: float) -> float:
     """Return `azimuth` [turns] plus the whole turns that bring it nearest to the `previous` one; NaN there is none."""
     return azimuth if math.isnan(previous) else azimuth + math.floor(previous - azimuth + 0.5)

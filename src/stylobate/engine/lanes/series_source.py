@@ -36,7 +36,7 @@ def series_lines(shape: Shape, rows: Rows, expansion: Expansion) -> list[str]:
         body += [f"{at(f'c{k}_{j}')} = s{j}_{k}" for k in range(1, shape.degree(j) + 1)]
         body += _end(shape, rows, j)
     body += _defect(shape, rows, expansion)
-    return ["    for i in range(WIDTH):", *(f"        {line}" for line in body)]
+    return ["    for i in lanes(WIDTH):", *(f"        {line}" for line in body)]
 
 
 def state_polynomial(shape: Shape, at: Callable[[str], str], j: int) -> list[str]:

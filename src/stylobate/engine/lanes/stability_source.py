@@ -30,4 +30,4 @@ def stability_source(shape: Shape, rows: Rows) -> str:
         "return h * math.sqrt(change / apart) if apart > 0.0 else 0.0",
     ]
     assert shape.guards
-    return "\n".join(["@part", "def stability(buf, i):", *(f"    {line}" for line in lines)]) + "\n"
+    return "\n".join(["def stability(buf, i):", *(f"    {line}" for line in lines)]) + "\n"

@@ -47,7 +47,7 @@ def stage_lines(shape: Shape, rows: Rows, stage: int) -> list[str]:
     last = stage == STAGES
     weights = DOP853.B if last else DOP853.A[stage, :stage]
     fraction = 1.0 if last else float(DOP853.C[stage])
-    out = ["    for i in range(WIDTH):", f"        h = {rows.at('h')}", f"        t = {rows.at('time')}"]
+    out = ["    for i in lanes(WIDTH):", f"        h = {rows.at('h')}", f"        t = {rows.at('time')}"]
     for j in range(shape.order):
         total = combination(weights, [rows.at(f"k{s}_{j}") for s in range(stage)])
         out.append(f"        s{j} = {rows.at(f'y{j}')} + h * ({total})")

@@ -15,7 +15,7 @@ def step_source(model: type[Model], shape: Shape) -> str:
     if shape.guards:
         return switching_step_source(shape)
     rows = shape.rows()
-    lines = ["@vectorised", "def step(buf):"]
+    lines = ["@fast", "def step(buf):"]
     if shape.series:
         lines += series_lines(shape, rows, expansion_of(model, shape))
     else:
@@ -30,7 +30,7 @@ def step_source(model: type[Model], shape: Shape) -> str:
 def accelerations_source(shape: Shape) -> str:
     """Return the source of `accelerations(buf, i, t)`, for the driver: horizontal x, y and vertical [g]."""
     rows = shape.rows()
-    lines = ["@part", "def accelerations(buf, i, t):"]
+    lines = ["def accelerations(buf, i, t):"]
     lines += [f"    {line}" for line in shape.forcing.lines(rows.of_lane, "t")]
     horizontal = "ah, 0.0" if shape.planar else "ax, ay"
     lines.append(f"    return {horizontal}, {vertical(shape)}")
@@ -40,7 +40,7 @@ def accelerations_source(shape: Shape) -> str:
 def rates_source(shape: Shape) -> str:
     """Return the source of `rates_at(buf, i, t, state)`, the right-hand side for the driver."""
     rows = shape.rows()
-    lines = ["@part", "def rates_at(buf, i, t, state):"]
+    lines = ["def rates_at(buf, i, t, state):"]
     lines += [f"    {line}" for line in shape.forcing.lines(rows.of_lane, "t")]
     lines.append(f"    return {rates_call(shape, rows.of_lane, [f'state[{j}]' for j in range(shape.order)])}")
     return "\n".join(lines) + "\n"

@@ -18,7 +18,7 @@ def switching_step_source(shape: Shape) -> str:
     """Return the source of `step(buf)`, one attempt at a step in every lane, and of what it calls."""
     rows = shape.rows()
     h = rows.at("h")
-    step = ["@vectorised", "def step(buf):", *over_lanes([f"{rows.at(f'step{j}')} = {h}" for j in range(shape.order)])]
+    step = ["@fast", "def step(buf):", *over_lanes([f"{rows.at(f'step{j}')} = {h}" for j in range(shape.order)])]
     for stage in range(1, STAGES + 1):
         step += _stage(rows, stage)
     step += _over_block([f"{_block(rows, 'new0')} = {_block(rows, 'stage0')}"])
@@ -31,7 +31,7 @@ def switching_step_source(shape: Shape) -> str:
 
 def over_lanes(body: list[str]) -> list[str]:
     """Return the loop over lanes with this body."""
-    return ["    for i in range(WIDTH):", *(f"        {line}" for line in body)]
+    return ["    for i in lanes(WIDTH):", *(f"        {line}" for line in body)]
 
 
 def _evaluation(shape: Shape, rows: Rows) -> list[str]:
@@ -42,7 +42,7 @@ def _evaluation(shape: Shape, rows: Rows) -> list[str]:
         f"{_names('r', shape.order)} = {rates_call(shape, at, [at(f'stage{j}') for j in range(shape.order)])}",
         *(f"{at(f'rate{j}')} = r{j}" for j in range(shape.order)),
     ]
-    return ["@vectorised", "def evaluate(buf, share):", *over_lanes(body)]
+    return ["@fast", "def evaluate(buf, share):", *over_lanes(body)]
 
 
 def _guarding(shape: Shape, rows: Rows) -> list[str]:
@@ -63,7 +63,7 @@ def _guarding(shape: Shape, rows: Rows) -> list[str]:
         f"crossed = (1.0 if {last} < 0.0 else 0.0) * (0.0 if before < 0.0 else 1.0)",
         f"{at('broken')} = max({at('broken')}, max(crossed, 1.0 if least < 0.0 else 0.0))",
     ]
-    return ["@vectorised", "def guard(buf, share):", *over_lanes(body)]
+    return ["@fast", "def guard(buf, share):", *over_lanes(body)]
 
 
 def _stage(rows: Rows, stage: int) -> list[str]:
@@ -95,7 +95,7 @@ def _block(rows: Rows, first: str) -> str:
 
 
 def _over_block(body: list[str]) -> list[str]:
-    return ["    for n in range(ORDER * WIDTH):", *(f"        {line}" for line in body)]
+    return ["    for n in lanes(ORDER * WIDTH):", *(f"        {line}" for line in body)]
 
 
 def _names(letter: str, count: int) -> str:

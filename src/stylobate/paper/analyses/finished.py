@@ -69,7 +69,7 @@ class FinishedAnalyses:
 def fingerprint() -> str:
     """Return a digest of what the paper's check depends on: the text of stylobate, and the libraries that compute."""
     digest = hashlib.sha256(sys.version.encode())
-    for library in ("numpy", "scipy", "numba", "xarray"):
+    for library in ("numpy", "scipy", "llvmlite", "xarray"):
         digest.update(f"{library} {version(library)}\n".encode())
     package = Path(__file__).parents[2]
     for path in sorted(package.rglob("*.py")):

@@ -36,7 +36,7 @@ from stylobate.text import plural
 _log = logging.getLogger("stylobate")
 
 _FORMAT = "stylobate sweep 2"
-_SOFTWARE = ("numpy", "scipy", "numba", "zarr")
+_SOFTWARE = ("numpy", "scipy", "llvmlite", "zarr")
 _SEAL = "metadata_sha256"
 _CODECS: tuple[dict[str, Any], ...] = (
     {"name": "zstd", "configuration": {"level": 0, "checksum": False}},

@@ -3,7 +3,6 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.layout import Table
 
 if TYPE_CHECKING:
@@ -27,7 +26,6 @@ if TYPE_CHECKING:
 COEFFICIENTS_AT, GOES_ON = 6, 5
 
 
-@part
 def set_leg(buf: Table, i: int, table: Table, pieces: Table, t: float) -> None:
     """Set the rows of the base motion for the leg that begins at `t`."""
     motion = table[int(buf[R.RUN, i]), MOTION_AT:]
@@ -38,7 +36,6 @@ def set_leg(buf: Table, i: int, table: Table, pieces: Table, t: float) -> None:
         set_terms(buf, i, motion, t)
 
 
-@part
 def set_terms(buf: Table, i: int, motion: Table, t: float) -> None:
     columns = 7 + 3 * WINDOWED
     for term in range(TERMS):
@@ -72,7 +69,6 @@ def set_terms(buf: Table, i: int, motion: Table, t: float) -> None:
             buf[row + 3, i] = -per_turn * begins
 
 
-@part
 def set_piece(buf: Table, i: int, motion: Table, pieces: Table, t: float) -> None:
     """Load the polynomial that holds from `t` on."""
     delay, first, last = motion[4], int(motion[5]), int(motion[5] + motion[6]) - 1
@@ -86,7 +82,6 @@ def set_piece(buf: Table, i: int, motion: Table, pieces: Table, t: float) -> Non
     load_piece(buf, i, motion, pieces, piece_at(pieces, first + int(buf[R.PIECE, i]), first, last, delay, time))
 
 
-@part
 def load_piece(buf: Table, i: int, motion: Table, pieces: Table, index: int) -> None:
     """Load the polynomial in row `index`, and the bounds of the base motion from its start on."""
     factor, cos, sin, vertical, delay = motion[0], motion[1], motion[2], motion[3], motion[4]
@@ -120,7 +115,6 @@ def load_piece(buf: Table, i: int, motion: Table, pieces: Table, index: int) -> 
     buf[R.LEG_ENDS, i] = (end + delay) / scale if index - first < count - 1 else math.inf
 
 
-@part
 def goes_on_in_next_piece(buf: Table, i: int, table: Table, pieces: Table) -> bool:
     """Load the next piece if it goes on at the end of this leg without a jump, so that slopes hold; return whether."""
     motion = table[int(buf[R.RUN, i]), MOTION_AT:]
@@ -133,7 +127,6 @@ def goes_on_in_next_piece(buf: Table, i: int, table: Table, pieces: Table) -> bo
     return buf[R.LEG_ENDS, i] > leg_end
 
 
-@part
 def piece_at(pieces: Table, near: int, first: int, last: int, delay: float, time: float) -> int:
     """Return the last piece that begins at a time or before: most often the one behind the last that was asked for."""
     if pieces[near, 0] + delay <= time:
@@ -151,7 +144,6 @@ def piece_at(pieces: Table, near: int, first: int, last: int, delay: float, time
     return first
 
 
-@part
 def set_no_return(buf: Table, i: int) -> None:
     bound = math.inf
     if CAN_PROVE_NO_RETURN:
@@ -159,7 +151,6 @@ def set_no_return(buf: Table, i: int) -> None:
     buf[R.NO_RETURN, i] = bound if bound < math.inf else buf[R.OVERTURNED_TILT, i]
 
 
-@part
 def forcing_rate(buf: Table, i: int) -> float:
     """Return the largest rate at which the force on a column near rest can change; exactly, where it is linear."""
     if DEGREE == 1:
@@ -175,13 +166,11 @@ def forcing_rate(buf: Table, i: int) -> float:
     return buf[R.FREQUENCY, i] * (buf[R.LARGEST_HORIZONTAL, i] + buf[R.SLENDERNESS, i] * vertical)
 
 
-@part
 def least_force(buf: Table, i: int) -> float:
     """Return the least force that holds a standing column down from now on; below zero where it can be released."""
     pushed = buf[R.LARGEST_HORIZONTAL, i] + math.hypot(buf[R.SLOPE_X, i], buf[R.SLOPE_Y, i])
     return buf[R.CAPACITY, i] * (1.0 + buf[R.LEAST_VERTICAL, i] + buf[R.SLOPE_Z, i]) - pushed
 
 
-@part
 def held_for_good(buf: Table, i: int) -> bool:
     return least_force(buf, i) >= 0.0 and 1.0 + buf[R.LEAST_VERTICAL, i] + buf[R.SLOPE_Z, i] > 0.0

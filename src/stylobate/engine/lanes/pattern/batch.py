@@ -5,10 +5,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.compiling.arithmetic import part
-from stylobate.engine.compiling.loading import kept
 from stylobate.engine.lanes.columns import STATE, Status
-from stylobate.engine.lanes.layout import Table
+from stylobate.engine.lanes.layout import Row, Table
 from stylobate.engine.lanes.pattern.base_motion import set_leg, set_no_return
 from stylobate.engine.lanes.pattern.events import handle
 from stylobate.engine.lanes.pattern.moving import azimuth_now, square_of_speed
@@ -33,7 +31,6 @@ if TYPE_CHECKING:
 GROWN = 1e-3
 
 
-@part
 def enter(buf: Table, i: int, table: Table, pieces: Table, run: int) -> int:
     """Take a run into lane `i`; return WAITING when it moves, else the status with which it ends at once."""
     for column in range(STATE):
@@ -60,7 +57,6 @@ def enter(buf: Table, i: int, table: Table, pieces: Table, run: int) -> int:
     return begin(buf, i, table, pieces)
 
 
-@part
 def leave(buf: Table, i: int, table: Table, status: int) -> None:
     """Note the run of lane `i` as it is now."""
     run = int(buf[R.RUN, i])
@@ -75,7 +71,6 @@ def leave(buf: Table, i: int, table: Table, status: int) -> None:
         table[run, STATE + j] = buf[R.STATE + j, i]
 
 
-@part
 def quiet(buf: Table, i: int) -> None:
     """Fill an idle lane with numbers that do no harm."""
     for row in range(len(buf)):
@@ -89,7 +84,6 @@ def quiet(buf: Table, i: int) -> None:
     buf[R.RUN, i] = -1.0
 
 
-@part
 def fill(buf: Table, i: int, table: Table, pieces: Table, waiting: int) -> int:
     """Take the first run from `waiting` on that does not end at once into lane `i`; return which waits next."""
     while waiting < len(table):
@@ -104,17 +98,12 @@ def fill(buf: Table, i: int, table: Table, pieces: Table, waiting: int) -> int:
     return waiting
 
 
-@kept("boolean(float64[:, ::1], float64[:, ::1], uint8[::1])")
-def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8]) -> bool:
+def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table, flat: Row) -> bool:
     """Run a batch to its end; return whether it got there.
 
-    `table` has a row for each run, see `columns`; `halt[0]` set to 1 from another thread ends the batch early.
+    `table` has a row for each run, see `columns`; `halt[0]` set to 1 from another thread ends the batch early. `buf`
+    and `flat` are one piece of memory, as a table of rows and as one row.
     """
-    # Begins at the edge of a cache line: a vector that lies across two costs twice.
-    room = np.zeros(R.COUNT * WIDTH + 8)
-    skipped = (-room.ctypes.data // 8) % 8
-    flat = room[skipped : skipped + R.COUNT * WIDTH]
-    buf = flat.reshape((R.COUNT, WIDTH))
     waiting = 0
     for i in range(WIDTH):
         quiet(buf, i)

@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.compiling.arithmetic import part
+from stylobate.engine.compiler.marks import flat
 from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import held_for_good
@@ -45,7 +45,6 @@ MOST_AT_ONCE, ONE_MOMENT = 100, 1e-12
 BEGINS = -1
 
 
-@part
 def go_through(buf: Table, i: int, table: Table, pieces: Table, number: int) -> int:
     """Go on from a broken margin, and from all that break at once behind it; return WAITING, or the final status."""
     while True:
@@ -70,7 +69,6 @@ def go_through(buf: Table, i: int, table: Table, pieces: Table, number: int) -> 
                 return resume(buf, i, table, pieces)
 
 
-@part
 def endless(buf: Table, i: int) -> bool:
     """Return whether the contact has changed too often at this moment; count the change that follows."""
     t = buf[R.TIME, i]
@@ -80,7 +78,6 @@ def endless(buf: Table, i: int) -> bool:
     return buf[R.AT_ONCE, i] > MOST_AT_ONCE
 
 
-@part
 def change(buf: Table, i: int, number: int) -> None:
     """Let the model tell how it goes on from a broken margin; put that into the state, and note it."""
     t, before = buf[R.TIME, i], int(buf[R.CONTACT, i])
@@ -101,7 +98,6 @@ def change(buf: Table, i: int, number: int) -> None:
         pass_lapse(buf, i, elapsed)
 
 
-@part
 def pass_lapse(buf: Table, i: int, elapsed: float) -> None:
     """Pass the short time in which one state became the other."""
     buf[R.TIME, i] += elapsed
@@ -109,10 +105,9 @@ def pass_lapse(buf: Table, i: int, elapsed: float) -> None:
         set_lean(buf, i)
         buf[R.MADE, i] = elapsed
         buf[R.LOW, i] = buf[R.TILT, i]
-        observe(buf.reshape(buf.size), i)
+        observe(flat(buf), i)
 
 
-@part
 def count(buf: Table, i: int, number: int, before: int, after: int, elapsed: float) -> None:
     """Count impacts, slips that begin, rests and releases."""
     # Slip that goes on at once along another heading has not ended.
@@ -129,7 +124,6 @@ def count(buf: Table, i: int, number: int, before: int, after: int, elapsed: flo
             buf[R.RELEASED_FROM_REST, i] = 1.0
 
 
-@part
 def set_going(buf: Table, i: int) -> None:
     """Begin to integrate from the state in the buffer, whose lean is set: with the step wanted before, if any."""
     x, y, tilt, t = buf[R.X, i], buf[R.Y, i], buf[R.TILT, i], buf[R.TIME, i]
@@ -155,7 +149,6 @@ def set_going(buf: Table, i: int) -> None:
         buf[R.WANTED, i] = first_step(buf, i, t)
 
 
-@part
 def stand(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int]:
     """Stand until the base motion ends that; return WAITING and the margin that is broken, or the final status."""
     buf[R.STANDS, i] = 1.0
@@ -183,7 +176,6 @@ def stand(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int]:
             return Status.WAITING, broken_at_release(buf, i)
 
 
-@part
 def broken_at_release(buf: Table, i: int) -> int:
     """Return the margin that ends standing; by a rounding it may not be broken yet."""
     guards = margins_at(buf, i, buf[R.TIME, i], row_state(buf, i, R.STATE))

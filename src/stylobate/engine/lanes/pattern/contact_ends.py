@@ -3,7 +3,6 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.layout import Table
 
 if TYPE_CHECKING:
@@ -29,13 +28,11 @@ SECANTS, MOST_LOOKS = 20, 100
 NEXT_TO_NOUGHT = 1e-8
 
 
-@part
 def margins_within(buf: Table, i: int, elapsed: float) -> tuple[float, ...]:
     """Return the guards at a time within the step that was held back, told by its dense output."""
     return margins_at(buf, i, buf[R.TIME, i] + elapsed, dense_state(buf, i, elapsed / buf[R.TRIED, i]))
 
 
-@part
 def first_end(buf: Table, i: int) -> tuple[float, int]:
     """Return how long into the step that was held back a margin is first broken, and which; or −1 for none."""
     h = buf[R.TRIED, i]
@@ -59,7 +56,6 @@ def first_end(buf: Table, i: int) -> tuple[float, int]:
     return h, -1
 
 
-@part
 def crossing_of(buf: Table, i: int, number: int, low: float, high: float, at_low: float, at_high: float) -> float:
     """Return a time at which a margin is broken, within rounding of where it begins to be: by the Illinois rule.
 
@@ -84,7 +80,6 @@ def crossing_of(buf: Table, i: int, number: int, low: float, high: float, at_low
     return high
 
 
-@part
 def broken_now(buf: Table, i: int) -> int:
     """Return the first margin that the state breaks with which a kind of contact begins, or −1; note the last one."""
     guards = margins_at(buf, i, buf[R.TIME, i], row_state(buf, i, R.STATE))
@@ -97,7 +92,6 @@ def broken_now(buf: Table, i: int) -> int:
     return -1
 
 
-@part
 def nearly_broken(buf: Table, i: int) -> int:
     """Return the margin next to whose end no step can be made, as where slip is all but gone, or −1."""
     guards = margins_at(buf, i, buf[R.TIME, i], row_state(buf, i, R.STATE))

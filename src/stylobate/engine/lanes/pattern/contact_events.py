@@ -3,7 +3,8 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.compiling.arithmetic import part, turning_point, winding
+from stylobate.engine.compiler.marks import flat
+from stylobate.engine.elementary import turning_point, winding
 from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.contact_changes import BEGINS, ONE_MOMENT, go_through
@@ -42,7 +43,6 @@ if TYPE_CHECKING:
 # --- the kernel's text begins here ---
 
 
-@part
 def begin(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Set the run of a lane going; return WAITING when it moves, else the status with which it ends at once."""
     buf[R.LIFTS_AT, i] = math.inf
@@ -57,7 +57,6 @@ def begin(buf: Table, i: int, table: Table, pieces: Table) -> int:
     return go_through(buf, i, table, pieces, BEGINS)
 
 
-@part
 def handle(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Deal with a lane that needs it; return the status of a run that ends, or WAITING."""
     if buf[R.HELD, i] > 0.0:
@@ -94,7 +93,6 @@ def handle(buf: Table, i: int, table: Table, pieces: Table) -> int:
     return Status.WAITING
 
 
-@part
 def held_back(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Find what ended the kind of contact in the step that was held back, and go on from there."""
     set_dense(buf, i)
@@ -118,7 +116,6 @@ def held_back(buf: Table, i: int, table: Table, pieces: Table) -> int:
     return go_through(buf, i, table, pieces, number)
 
 
-@part
 def turns(buf: Table, i: int, elapsed: float) -> bool:
     """Return whether a slip that has ended along its heading, so long into the step held back, goes on across it."""
     if buf[R.CONTACT, i] not in (SLIDING, SLIPPING) or elapsed <= ONE_MOMENT * max(1.0, buf[R.TIME, i]):
@@ -129,7 +126,6 @@ def turns(buf: Table, i: int, elapsed: float) -> bool:
     return math.hypot(state[SLIP_X], state[SLIP_Y]) > SLIP_TURNS * tolerance
 
 
-@part
 def come_to(buf: Table, i: int, elapsed: float) -> None:
     """Take the step that was held back up to this time, and note what happened in it."""
     x0, y0, tilt0 = buf[R.X, i], buf[R.Y, i], buf[R.TILT, i]
@@ -156,10 +152,9 @@ def come_to(buf: Table, i: int, elapsed: float) -> None:
         measure_peak(buf, i)
     if buf[R.WATCHED, i] > 0.0:
         buf[R.LOW, i] = low
-        observe(buf.reshape(buf.size), i)
+        observe(flat(buf), i)
 
 
-@part
 def note_tilt(buf: Table, i: int) -> None:
     if buf[R.TILT, i] > buf[R.LARGEST_TILT, i]:
         buf[R.LARGEST_TILT, i] = buf[R.TILT, i]

@@ -2,7 +2,6 @@
 
 from typing import TYPE_CHECKING
 
-from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
 
@@ -16,7 +15,6 @@ if TYPE_CHECKING:
 LOOK_EVERY, MOST_STIFF_LOOKS, NEAR_BOUNDARY = 500.0, 1000.0, 3.0
 
 
-@part
 def look_whether_stiff(buf: Table, i: int) -> None:
     """Look now and then whether stability cuts the steps of a contact that slips; the step was just made.
 
@@ -30,12 +28,10 @@ def look_whether_stiff(buf: Table, i: int) -> None:
         buf[R.MOST_STEPS, i] += LOOK_EVERY
 
 
-@part
 def stiff_for_long(buf: Table, i: int) -> bool:
     return buf[R.STIFF_LOOKS, i] >= MOST_STIFF_LOOKS
 
 
-@part
 def out_of_steps(buf: Table, i: int) -> int:
     """Return the status of a run whose steps are used up: stiff if that took half of them."""
     stiff = 2.0 * LOOK_EVERY * buf[R.STIFF_LOOKS, i] >= buf[R.STEPS, i]

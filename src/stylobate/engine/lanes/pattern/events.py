@@ -3,7 +3,6 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.moving import set_lean, set_state
@@ -34,7 +33,6 @@ if TYPE_CHECKING:
 MOST_AIMS, SHORT_AIM = 6, 1e-6
 
 
-@part
 def event_ahead(buf: Table, i: int) -> float:
     """Return the step to the first event within a step that was held back."""
     h = buf[R.HELD_STEP, i]
@@ -63,13 +61,11 @@ def event_ahead(buf: Table, i: int) -> float:
     return found
 
 
-@part
 def meets_upright(buf: Table, i: int) -> bool:
     """Return whether the event that a lane was aimed at is the upright."""
     return PLANAR and buf[R.TILT, i] < 0.5 * min(buf[R.TILT_LIMIT, i], buf[R.NO_RETURN, i])
 
 
-@part
 def miss(buf: Table, i: int) -> float:
     """Return the further step to the event at which an aimed step has arrived."""
     tilt, radial, h = buf[R.TILT, i], buf[R.RADIAL, i], buf[R.MADE, i]
@@ -88,7 +84,6 @@ def miss(buf: Table, i: int) -> float:
     return min(max(further, -0.5 * abs(h)), 0.5 * abs(h))
 
 
-@part
 def creep(buf: Table, i: int, h: float) -> None:
     """Go on by a time so short that the step's series, or two terms of another, tells the state."""
     if SERIES:
@@ -102,7 +97,6 @@ def creep(buf: Table, i: int, h: float) -> None:
     set_lean(buf, i)
 
 
-@part
 def held_back(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Aim at the event within the step that was held back."""
     h = buf[R.TRIED, i]
@@ -115,7 +109,6 @@ def held_back(buf: Table, i: int, table: Table, pieces: Table) -> int:
     return Status.WAITING
 
 
-@part
 def aim(buf: Table, i: int, ahead: float) -> None:
     """Let the next step end at the event that lies `ahead`."""
     # Of the two conditions of overturning, which is met last: tilt, or growth of the tilt. A lossy passage, −1, is
@@ -125,7 +118,6 @@ def aim(buf: Table, i: int, ahead: float) -> None:
     buf[R.AIMED, i] = 1.0
 
 
-@part
 def arrived(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Go nearer to the event that the lane was aimed at, or deal with it."""
     further = miss(buf, i)
@@ -146,7 +138,6 @@ def arrived(buf: Table, i: int, table: Table, pieces: Table) -> int:
     return Status.LIMIT if buf[R.TILT_LIMIT, i] <= buf[R.NO_RETURN, i] else Status.OVERTURNED
 
 
-@part
 def near_upright(buf: Table, i: int) -> float:
     """Deal with a passage near the upright, out of a plane; return when the column came to rest there, or NaN."""
     if CAN_LOSE and loses(buf, i):
@@ -162,7 +153,6 @@ def near_upright(buf: Table, i: int) -> float:
     return math.nan
 
 
-@part
 def handle(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Deal with a lane that needs it; return the status of a run that ends, or WAITING."""
     if buf[R.HELD, i] > 0.0:

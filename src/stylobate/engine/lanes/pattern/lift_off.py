@@ -3,7 +3,6 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import set_leg
 from stylobate.engine.lanes.pattern.release import SAMPLES_PER_PERIOD
@@ -15,7 +14,6 @@ if TYPE_CHECKING:
 # --- the kernel's text begins here ---
 
 
-@part
 def find_lift(buf: Table, i: int, table: Table, pieces: Table) -> None:
     """Set when the base begins to fall faster than gravity."""
     buf[R.LIFTS_AT, i] = math.inf
@@ -38,12 +36,10 @@ def find_lift(buf: Table, i: int, table: Table, pieces: Table) -> None:
     set_leg(buf, i, table, pieces, buf[R.TIME, i])
 
 
-@part
 def weight(buf: Table, i: int, t: float) -> float:
     return 1.0 + accelerations(buf, i, t)[2]
 
 
-@part
 def lift_in_leg(buf: Table, i: int, start: float, end: float) -> float:
     frequency = buf[R.FREQUENCY, i]
     # A weight that is linear in time is least at an end.

@@ -3,7 +3,6 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.roots import nearest_turn, turns_of
 
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
 # --- the kernel's text begins here ---
 
 
-@part
 def azimuth_now(buf: Table, i: int) -> float:
     """Return the azimuth of the lean, followed round [turns]; the last one known while it stands, 0 before any."""
     if PLANAR or buf[R.STANDS, i] > 0.0:
@@ -34,7 +32,6 @@ def azimuth_now(buf: Table, i: int) -> float:
     return buf[R.TURNS, i] + turns_of(buf[R.X, i], buf[R.Y, i])
 
 
-@part
 def square_of_speed(buf: Table, i: int, energy: float) -> float:
     """Return the square of the speed at which a column near the upright has this energy [c²]."""
     c = buf[R.SLENDERNESS, i]
@@ -42,7 +39,6 @@ def square_of_speed(buf: Table, i: int, energy: float) -> float:
     return energy * c**4 / of_speed_c if of_speed_c > 0.0 else 0.0
 
 
-@part
 def set_lean(buf: Table, i: int) -> None:
     """Set the rows that describe the lean from the state."""
     x, y, vx, vy = model_lean(buf, i)
@@ -55,7 +51,6 @@ def set_lean(buf: Table, i: int) -> None:
     buf[R.MOMENTUM, i] = x * vy - y * vx
 
 
-@part
 def set_rates(buf: Table, i: int, t: float) -> None:
     """Set what a step begins with: the loads of the contact, where they are followed, and slopes, where it has them."""
     if DEMANDS:
@@ -67,7 +62,6 @@ def set_rates(buf: Table, i: int, t: float) -> None:
         buf[R.SLOPE + j, i] = slopes[j]
 
 
-@part
 def set_loads(buf: Table, i: int, t: float) -> None:
     """Note the loads of the contact at the beginning of a step."""
     ax, ay, az = accelerations(buf, i, t)
@@ -78,19 +72,16 @@ def set_loads(buf: Table, i: int, t: float) -> None:
     buf[R.PIVOTING_NOW, i] = moment * per
 
 
-@part
 def set_state(buf: Table, i: int, state: tuple[float, ...]) -> None:
     for j in range(ORDER):
         buf[R.STATE + j, i] = state[j]
 
 
-@part
 def at_upright(buf: Table, i: int) -> bool:
     x, y, vx, vy = model_lean(buf, i)
     return x == 0.0 and y == 0.0 and vx == 0.0 and vy == 0.0
 
 
-@part
 def set_off(buf: Table, i: int, t: float, wanted: float) -> None:
     """Begin to move from the state in the buffer at `t`; `wanted` is the first step to try, or 0."""
     buf[R.STANDS, i] = 0.0
@@ -117,7 +108,6 @@ def set_off(buf: Table, i: int, t: float, wanted: float) -> None:
     buf[R.WANTED, i] = wanted if wanted > 0.0 else first_step(buf, i, t)
 
 
-@part
 def first_step(buf: Table, i: int, t: float) -> float:
     """Return a first step (Hairer, Nørsett, Wanner, section II.4)."""
     atol, rtol = buf[R.ATOL_NOW, i], buf[R.RTOL, i]

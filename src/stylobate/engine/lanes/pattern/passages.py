@@ -3,7 +3,6 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.moving import azimuth_now, set_lean, set_off, set_state
 from stylobate.engine.lanes.pattern.resting import rest_margin, settle
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
 JUST_MET = 1e-6
 
 
-@part
 def cross_upright(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Pass the upright in the plane, or come to rest there."""
     t, speed = buf[R.TIME, i], buf[R.STATE + 1, i]
@@ -44,7 +42,6 @@ def cross_upright(buf: Table, i: int, table: Table, pieces: Table) -> int:
     return resume(buf, i, table, pieces)
 
 
-@part
 def loses(buf: Table, i: int) -> bool:
     """Return whether the step just made went past the upright so closely that the passage costs energy."""
     if buf[R.LOW, i] >= buf[R.PASSAGE_TILT, i] or buf[R.RADIAL, i] <= 0.0:
@@ -55,7 +52,6 @@ def loses(buf: Table, i: int) -> bool:
     return x * vx + y * vy < -JUST_MET * math.hypot(x, y) * math.hypot(vx, vy)
 
 
-@part
 def strike(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Take the loss of a passage, at the least tilt; return as `resume` does."""
     set_state(buf, i, model_struck(buf, i))
@@ -64,7 +60,6 @@ def strike(buf: Table, i: int, table: Table, pieces: Table) -> int:
     return resume(buf, i, table, pieces)
 
 
-@part
 def hops(buf: Table, i: int) -> bool:
     """Return whether the lane heads past the upright so closely that the passage is made in closed form."""
     c, speed = buf[R.SLENDERNESS, i], math.hypot(buf[R.VX, i], buf[R.VY, i])
@@ -72,7 +67,6 @@ def hops(buf: Table, i: int) -> bool:
     return near and abs(buf[R.MOMENTUM, i]) < HOP_OFFSET * c * speed
 
 
-@part
 def hop(buf: Table, i: int) -> None:
     """Make the passage, if it ends before the next stop."""
     t = buf[R.TIME, i]

@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.compiling.arithmetic import part, winding
+from stylobate.engine.elementary import winding
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.moving import set_lean
 from stylobate.engine.lanes.pattern.within import set_within
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 DIFFERENCE = 1e-5
 
 
-@part
 def measure_peak(buf: Table, i: int) -> float:
     """Measure the largest tilt within the step just made.
 
@@ -55,7 +54,6 @@ def measure_peak(buf: Table, i: int) -> float:
     return high * h
 
 
-@part
 def closest_within(buf: Table, i: int) -> float:
     """Return how long before the end of the step just made the tilt was least."""
     before = after = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -72,7 +70,6 @@ def closest_within(buf: Table, i: int) -> float:
     return (1.0 - high) * buf[R.MADE, i]
 
 
-@part
 def take_back(buf: Table, i: int) -> None:
     """Return to the beginning of the step just made."""
     x1, y1, momentum1 = buf[R.X, i], buf[R.Y, i], buf[R.MOMENTUM, i]
@@ -86,17 +83,14 @@ def take_back(buf: Table, i: int) -> None:
         buf[R.TURNS, i] -= winding(buf[R.X, i], buf[R.Y, i], x1, y1, buf[R.MOMENTUM, i] + momentum1)
 
 
-@part
 def lean_before(buf: Table, i: int) -> tuple[float, float, float, float, float, float]:
     return lean_and_rates(buf, i, row_state(buf, i, R.LAST_STATE), row_state(buf, i, R.LAST_SLOPE))
 
 
-@part
 def lean_after(buf: Table, i: int) -> tuple[float, float, float, float, float, float]:
     return lean_and_rates(buf, i, row_state(buf, i, R.STATE), row_state(buf, i, R.SLOPE))
 
 
-@part
 def lean_and_rates(
     buf: Table, i: int, state: tuple[float, ...], slopes: tuple[float, ...]
 ) -> tuple[float, float, float, float, float, float]:
@@ -113,7 +107,6 @@ def lean_and_rates(
     return x, y, vx, vy, (ahead_x - behind_x) / (2.0 * DIFFERENCE), (ahead_y - behind_y) / (2.0 * DIFFERENCE)
 
 
-@part
 def lean_within(
     buf: Table,
     i: int,

@@ -3,7 +3,6 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import held_for_good
 
@@ -20,14 +19,12 @@ MOMENT = 1e-6
 RELEASE_MARGIN = 8.0 * 2.220446049250313e-16
 
 
-@part
 def excess(buf: Table, i: int, t: float) -> float:
     ax, ay, az = accelerations(buf, i, t)
     pushed = math.hypot(ax + buf[R.SLOPE_X, i], ay + buf[R.SLOPE_Y, i])
     return pushed - buf[R.CAPACITY, i] * (1.0 + az + buf[R.SLOPE_Z, i])
 
 
-@part
 def release_time(buf: Table, i: int, start: float, end: float) -> float:
     """Return the first time in [start, end) at which the base motion releases a standing column, or infinity."""
     if held_for_good(buf, i) or end <= start:
@@ -63,7 +60,6 @@ def release_time(buf: Table, i: int, start: float, end: float) -> float:
     return math.inf
 
 
-@part
 def release_on_line(buf: Table, i: int, start: float, end: float) -> float:
     """Return the same where the base acceleration is linear in time: the excess is convex, and largest at an end."""
     if excess(buf, i, start) > 0.0:
@@ -77,7 +73,6 @@ def release_on_line(buf: Table, i: int, start: float, end: float) -> float:
     return found if found < end else math.inf
 
 
-@part
 def peak(buf: Table, i: int, low: float, high: float) -> float:
     """Return where the excess is largest, by golden sections."""
     golden = 0.6180339887498949
@@ -95,7 +90,6 @@ def peak(buf: Table, i: int, low: float, high: float) -> float:
     return a if ea > eb else b
 
 
-@part
 def crossing(buf: Table, i: int, low: float, high: float) -> float:
     if excess(buf, i, low) >= 0.0:
         return low

@@ -3,7 +3,6 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import forcing_rate, held_for_good, least_force
@@ -35,14 +34,12 @@ if TYPE_CHECKING:
 DEPARTURE = 1e-3
 
 
-@part
 def holding_force(buf: Table, i: int, ax: float, ay: float, az: float) -> float:
     """Return the force that holds a standing column down: the least from now on, if that holds it for good."""
     force = least_force(buf, i)
     return force if force >= 0.0 else buf[R.CAPACITY, i] * (1.0 + az) - math.hypot(ax, ay)
 
 
-@part
 def rest_margin(buf: Table, i: int, t: float, tilt: float, speed: float) -> float:
     """Return what is positive where a column of this tilt and speed comes to rest at `t`."""
     ax, ay, az = accelerations(buf, i, t)
@@ -57,7 +54,6 @@ def rest_margin(buf: Table, i: int, t: float, tilt: float, speed: float) -> floa
     return max(min(share, STILL) * square - energy, min(share * square - energy, dies))
 
 
-@part
 def rest_within_step(buf: Table, i: int) -> float:
     """Return when the column came to rest within the step just made, or NaN."""
     h = buf[R.MADE, i]
@@ -78,7 +74,6 @@ def rest_within_step(buf: Table, i: int) -> float:
     return math.nan
 
 
-@part
 def margin_within_step(buf: Table, i: int, start: float, h: float, u: float) -> float:
     ax, ay, az = accelerations(buf, i, start + u * h)
     force = holding_force(buf, i, ax, ay, az)
@@ -89,7 +84,6 @@ def margin_within_step(buf: Table, i: int, start: float, h: float, u: float) -> 
     return rest_margin(buf, i, start + u * h, math.hypot(x, y), math.hypot(vx, vy))
 
 
-@part
 def settle(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
     """Come to rest at `t`; return as `stand` does."""
     if not PLANAR:
@@ -101,7 +95,6 @@ def settle(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
     return stand(buf, i, table, pieces, t)
 
 
-@part
 def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
     """Stand from `t` until released; return WAITING when moving again, else the status with which the run ends."""
     release = release_within_leg(buf, i, t)
@@ -131,7 +124,6 @@ def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
             release = release_within_leg(buf, i, t)
 
 
-@part
 def release_within_leg(buf: Table, i: int, t: float) -> float:
     """Return when the base motion releases the column before the leg ends, or infinity; note what it bears till then.
 
@@ -143,7 +135,6 @@ def release_within_leg(buf: Table, i: int, t: float) -> float:
     return release
 
 
-@part
 def depart(buf: Table, i: int, release: float) -> float:
     """Put the state a short time after the release into the buffer, and return that time."""
     elapsed = DEPARTURE / (1.0 + buf[R.FREQUENCY, i])
@@ -162,7 +153,6 @@ def depart(buf: Table, i: int, release: float) -> float:
     return release + elapsed
 
 
-@part
 def take_off(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
     """Go on, moving, from the departure at `t`."""
     # Looks within the departure, which moves the column by the third power of its duration, see it stand.

@@ -3,7 +3,6 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.release import SAMPLES_PER_PERIOD
 
@@ -16,7 +15,6 @@ if TYPE_CHECKING:
 LEAST_WEIGHT = 1e-12
 
 
-@part
 def bear_standing(buf: Table, i: int, start: float, end: float) -> None:
     """Note the largest friction demand |a_h|/(1 + a_z), and the least normal force, of standing from start to end.
 
@@ -45,14 +43,12 @@ def bear_standing(buf: Table, i: int, start: float, end: float) -> None:
     buf[R.NORMAL, i] = min(buf[R.NORMAL, i], least)
 
 
-@part
 def standing_load(buf: Table, i: int, t: float) -> tuple[float, float]:
     """Return the friction demand and the normal force over the weight of a column that stands at `t`."""
     ax, ay, az = accelerations(buf, i, t)
     return math.hypot(ax, ay) / max(1.0 + az, LEAST_WEIGHT), 1.0 + az
 
 
-@part
 def crest(before: float, here: float, after: float) -> float:
     """Return the height of the parabola through three equidistant values where it has a crest, else the middle one."""
     bend = before - 2.0 * here + after

@@ -2,7 +2,6 @@
 
 from typing import TYPE_CHECKING
 
-from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.lift_off import find_lift
@@ -16,7 +15,6 @@ if TYPE_CHECKING:
 # --- the kernel's text begins here ---
 
 
-@part
 def begin(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Set the run of a lane going; return WAITING when it moves, else the status with which it ends at once."""
     t = buf[R.TIME, i]

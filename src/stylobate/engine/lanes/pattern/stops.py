@@ -3,7 +3,6 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.columns import LOOKS, NOTE, SLACK, Status, Window
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import goes_on_in_next_piece, set_leg
@@ -16,7 +15,6 @@ if TYPE_CHECKING:
 # --- the kernel's text begins here ---
 
 
-@part
 def look_count(buf: Table, i: int) -> float:
     """Return the number of the last look: two windows and one period more, one and one more, or −1 for none."""
     end, period, periods = buf[R.END, i], buf[R.PERIOD, i], buf[R.PERIODS, i]
@@ -26,7 +24,6 @@ def look_count(buf: Table, i: int) -> float:
     return LOOKS * (2 * periods + 1 if end >= (2 * periods + 1) * period else periods + 1)
 
 
-@part
 def set_look(buf: Table, i: int) -> None:
     """Set the time of the next look."""
     last, index = look_count(buf, i), buf[R.NEXT_LOOK, i]
@@ -35,7 +32,6 @@ def set_look(buf: Table, i: int) -> None:
         buf[R.LOOKS_AT, i] = buf[R.END, i] - (last - index) * (buf[R.PERIOD, i] / LOOKS)
 
 
-@part
 def set_sample(buf: Table, i: int) -> None:
     """Set the time of the next sample."""
     index, end, samples = buf[R.NEXT_SAMPLE, i], buf[R.END, i], buf[R.SAMPLES, i]
@@ -44,7 +40,6 @@ def set_sample(buf: Table, i: int) -> None:
         buf[R.SAMPLES_AT, i] = end if index == samples - 1 else index * (end / (samples - 1))
 
 
-@part
 def set_strobe(buf: Table, i: int) -> None:
     """Set the time of the next strobe; those kept are the last ones before the end."""
     buf[R.STROBES_AT, i] = math.inf
@@ -59,7 +54,6 @@ def set_strobe(buf: Table, i: int) -> None:
         buf[R.STROBES_AT, i] = min(buf[R.STROBE, i] + number * period, end)
 
 
-@part
 def set_break(buf: Table, i: int, table: Table) -> None:
     index = int(buf[R.NEXT_BREAK, i])
     buf[R.BREAKS_AT, i] = math.inf
@@ -67,18 +61,15 @@ def set_break(buf: Table, i: int, table: Table) -> None:
         buf[R.BREAKS_AT, i] = table[int(buf[R.RUN, i]), BREAKS_AT + index]
 
 
-@part
 def leg_end(buf: Table, i: int) -> float:
     """Return until when the base motion is what it is now."""
     return min(buf[R.END, i], buf[R.LIFTS_AT, i], buf[R.LEG_ENDS, i], buf[R.BREAKS_AT, i])
 
 
-@part
 def next_stop(buf: Table, i: int) -> float:
     return min(leg_end(buf, i), buf[R.LOOKS_AT, i], buf[R.SAMPLES_AT, i], buf[R.STROBES_AT, i])
 
 
-@part
 def go_on(buf: Table, i: int) -> None:
     """Set the next stop, and the step towards it."""
     stop = next_stop(buf, i)
@@ -86,7 +77,6 @@ def go_on(buf: Table, i: int) -> None:
     buf[R.H, i] = min(buf[R.WANTED, i], stop - buf[R.TIME, i])
 
 
-@part
 def passes_knot(buf: Table, i: int, table: Table, pieces: Table) -> bool:
     """Go on where a piece of the base motion ends and the next goes on, and nothing else is due; return whether."""
     # A flag of 1 that is due to a stop reached has no other cause.
@@ -103,7 +93,6 @@ def passes_knot(buf: Table, i: int, table: Table, pieces: Table) -> bool:
     return True
 
 
-@part
 def meet_stop(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
     """Do what is due at the stop `t`; return the status of a run that ends there, or WAITING."""
     while buf[R.LOOKS_AT, i] <= t:
@@ -132,7 +121,6 @@ def meet_stop(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
     return Status.WAITING
 
 
-@part
 def resume(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Go on from an event, which may have been met a rounding beyond a stop; return as `meet_stop` does."""
     while next_stop(buf, i) <= buf[R.TIME, i]:
@@ -143,7 +131,6 @@ def resume(buf: Table, i: int, table: Table, pieces: Table) -> int:
     return Status.WAITING
 
 
-@part
 def stand_to_the_end(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
     """Note the rest of a run that stands for good, and what it bears in the legs to come."""
     while t < buf[R.END, i]:
@@ -156,14 +143,12 @@ def stand_to_the_end(buf: Table, i: int, table: Table, pieces: Table, t: float) 
     return Status.RESTED
 
 
-@part
 def lean_now(buf: Table, i: int) -> tuple[float, float, float, float]:
     if buf[R.STANDS, i] > 0.0:
         return 0.0, 0.0, 0.0, 0.0
     return buf[R.X, i], buf[R.Y, i], buf[R.VX, i], buf[R.VY, i]
 
 
-@part
 def note_lean(buf: Table, i: int, table: Table, t: float, index: int) -> None:
     """Note the lean as the sample or strobe of this index; strobes follow the samples."""
     x, y, vx, vy = lean_now(buf, i)
@@ -179,7 +164,6 @@ def note_lean(buf: Table, i: int, table: Table, t: float, index: int) -> None:
     table[run, column + 4] = t
 
 
-@part
 def take_look(buf: Table, i: int, t: float) -> None:
     """Note the lean at one of the looks in the last periods, and its change since one period before."""
     index, last, span = int(buf[R.NEXT_LOOK, i]), int(look_count(buf, i)), int(buf[R.PERIODS, i]) * LOOKS

@@ -2,7 +2,6 @@
 
 from typing import TYPE_CHECKING
 
-from stylobate.engine.compiling.arithmetic import part
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.roots import cubic
 
@@ -12,7 +11,6 @@ if TYPE_CHECKING:
 # --- the kernel's text begins here ---
 
 
-@part
 def set_within(buf: Table, i: int, elapsed: float) -> None:
     """Put the state at this time after the step just made began into the rows of the new state.
 

@@ -1,42 +1,13 @@
-"""Scalar arithmetic that compiles to vector instructions: no branches, no calls into the C library."""
+"""Elementary functions without branches and without calls into the C library, so that lanes take them side by side."""
 
 import math
-from collections.abc import Callable
-from typing import Any, TypeVar, cast
 
 import numpy as np
-from numba import njit
 
-_F = TypeVar("_F", bound=Callable[..., Any])
-
-# Without "nnan" and "ninf", so that a step that ran into NaN is seen and made smaller.
-_FAST = {"contract", "arcp", "nsz", "afn"}
-
-# Parts of kernels are called from compiled code only: without entries from Python they compile faster.
-_INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+from stylobate.engine.compiler.marks import fast
 
 
-def inlined(function: _F) -> _F:
-    """Compile `function` into every place that calls it, so that a loop over lanes can become vector code.
-
-    Numba's own division checks would be branches; NumPy's error model leaves them out.
-    """
-    compiled = njit(forceinline=True, error_model="numpy", fastmath=_FAST, **_INNER)  # type: ignore[call-overload]
-    return cast("_F", compiled(function))
-
-
-def vectorised(function: _F) -> _F:
-    """Compile a function whose loops run over lanes."""
-    return cast("_F", njit(error_model="numpy", fastmath=_FAST, nogil=True)(function))
-
-
-def part(function: _F) -> _F:
-    """Compile a function that serves one lane at a time, as part of the one that calls it."""
-    compiled = njit(error_model="numpy", nogil=True, **_INNER)  # type: ignore[call-overload]
-    return cast("_F", compiled(function))
-
-
-@inlined
+@fast
 def cos_turns(u: float) -> float:
     """Return cos 2πu, `u` in turns, right to 3e-16: the best odd polynomial of degree 15 for sin 2πs, |s| ≤ ¼."""
     s: float = 0.25 - abs(u - np.floor(u + 0.5))
@@ -52,7 +23,7 @@ def cos_turns(u: float) -> float:
     return s * series
 
 
-@inlined
+@fast
 def winding(x0: float, y0: float, x1: float, y1: float, momentum: float) -> float:
     """Return +1 or −1 if the way from (x0, y0) to (x1, y1) crosses the negative x axis anticlockwise or clockwise.
 
@@ -69,7 +40,7 @@ def winding(x0: float, y0: float, x1: float, y1: float, momentum: float) -> floa
     return forward - backward
 
 
-@inlined
+@fast
 def turning_point(start: float, end: float, slope: float, end_slope: float, sign: float) -> tuple[float, float]:
     """Return where on [0, 1] the cubic through two values with two slopes has its extreme, and its value there.
 

@@ -2,7 +2,6 @@
 
 import dis
 import hashlib
-import inspect
 import itertools
 import types
 from collections.abc import Callable, Iterator, Mapping
@@ -11,47 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from stylobate.engine.compiling.arithmetic import part
-
 Function = Callable[..., Any]
 
-# Numba has its own versions of what stands in these packages.
-_KNOWN_TO_NUMBA = ("numpy", "numba")
+# What stands in these packages is taken as it is.
+_LIBRARIES = ("numpy",)
 
-# Numba takes two modules of one name for the same.
 _number = itertools.count()
-
-
-def for_compiling(
-    function: Function,
-    compiled: Callable[[Function], Function],
-    within: tuple[types.CodeType, ...] = (),
-    known: dict[tuple[types.FunctionType, Callable[[Function], Function]], Function] | None = None,
-) -> Function:
-    """Return `function` compiled, and with it the plain functions that it calls, each of them once.
-
-    Raises
-    ------
-    RecursionError
-        If it calls itself, one of the functions that it is called `within`.
-    """
-    plain = plain_function(function)
-    if plain.__code__ in within:
-        message = f"{plain.__name__} calls itself; write it as a loop"
-        raise RecursionError(message)
-    within = (*within, plain.__code__)
-    if plain.__code__.co_flags & inspect.CO_VARARGS:
-        compiled = part  # Numba's own inlining knows no *arguments: left to the compiler behind it
-    known = {} if known is None else known
-    if (plain, compiled) in known:
-        return known[plain, compiled]
-    called = {name: for_compiling(value, compiled, within, known) for name, value in called_functions(plain)}
-    # A process that reads the machine code imports the modules of its functions: this one is there in all of them.
-    names = with_functions({**plain.__globals__, "__name__": __name__}, called, plain.__code__)
-    copy = types.FunctionType(plain.__code__, names, plain.__name__, plain.__defaults__, plain.__closure__)
-    copy.__module__ = __name__
-    known[plain, compiled] = compiled(copy)
-    return known[plain, compiled]
 
 
 def fingerprint(function: Function) -> str:
@@ -124,7 +88,7 @@ def called_functions(function: types.FunctionType) -> list[tuple[str, Function]]
         for attribute in path:
             value = getattr(value, attribute, None) if isinstance(value, (types.ModuleType, type)) else None
         plain = getattr(value, "py_func", value)
-        if isinstance(plain, types.FunctionType) and plain.__module__.split(".")[0] not in _KNOWN_TO_NUMBA:
+        if isinstance(plain, types.FunctionType) and plain.__module__.split(".")[0] not in _LIBRARIES:
             found[name] = plain
     return list(found.items())
 

@@ -1,0 +1,300 @@
+"""Arithmetic on numbers of compiled code, single or in lanes, with the results that Python gives.
+
+Where it differs: division by zero is infinite or not a number instead of an error, and whole numbers have 64 bits.
+"""
+
+import ast
+import math
+import operator
+from collections.abc import Callable
+from typing import Any
+
+from stylobate.engine.compiler.refusal import Refusal
+from stylobate.engine.compiler.text import FunctionText, ModuleText
+from stylobate.engine.compiler.values import (
+    Kind,
+    LaneIndex,
+    Number,
+    Value,
+    constant,
+    is_known_number,
+    kind_of,
+    type_of,
+)
+
+FAST = "contract arcp nsz afn "
+"""Flags of fast arithmetic: neither "nnan" nor "ninf", so that what is not a number stays so."""
+
+_KNOWN: dict[type, Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Pow: operator.pow,
+    ast.FloorDiv: operator.floordiv,
+    ast.Mod: operator.mod,
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+    ast.Is: operator.is_,
+    ast.IsNot: operator.is_not,
+}
+_FLOAT = {ast.Add: "fadd", ast.Sub: "fsub", ast.Mult: "fmul", ast.Div: "fdiv"}
+_INTEGER = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul"}
+_COMPARED = {
+    ast.Lt: ("olt", "slt"),
+    ast.LtE: ("ole", "sle"),
+    ast.Gt: ("ogt", "sgt"),
+    ast.GtE: ("oge", "sge"),
+    ast.Eq: ("oeq", "eq"),
+    ast.NotEq: ("une", "ne"),
+}
+
+MOST_FACTORS = 16
+"""A power up to this one, a whole number that is known, is made by multiplications."""
+
+
+class Arithmetic:
+    """Writes the instructions of arithmetic into a function.
+
+    Parameters
+    ----------
+    module, text
+        Where they are written.
+    fast
+        Whether its results may be rounded otherwise; see `marks.fast`.
+    """
+
+    def __init__(self, module: ModuleText, text: FunctionText, *, fast: bool) -> None:
+        self.module, self.text = module, text
+        self.flags = FAST if fast else ""
+        self.lanes = 0
+
+    # Numbers and their kinds
+
+    def number(self, value: Value, kind: Kind | None = None) -> Number:
+        """Return a value as a number of the compiled code, of this kind.
+
+        Raises
+        ------
+        Refusal
+            If it is none, or holds what the kind cannot.
+        """
+        if isinstance(value, Number):
+            return value if kind is None or value.kind is kind else self._converted(value, kind)
+        if not is_known_number(value):
+            message = f"a number is wanted, not {_described(value)}"
+            raise Refusal(message)
+        own = kind_of(value)
+        if kind is not None and kind < own and kind is Kind.INTEGER:
+            message = f"a whole number is wanted, not {value}"
+            raise Refusal(message)
+        return constant(value, own if kind is None else kind)
+
+    def _converted(self, number: Number, kind: Kind) -> Number:
+        if kind is Kind.BOOLEAN:
+            return self.number(self.compared(ast.NotEq(), number, 0))
+        if kind < number.kind:
+            message = "a whole number is wanted, not one with a fraction; write int(...)"
+            raise Refusal(message)
+        instruction = "sitofp" if number.kind is Kind.INTEGER else "uitofp" if kind is Kind.FLOAT else "zext"
+        text = self.text.value(f"{instruction} {number.operand} to {type_of(kind, number.lanes)}")
+        return Number(kind, text, number.lanes)
+
+    def truth(self, value: Value) -> Number:
+        """Return whether a number is not zero."""
+        return self.number(value, Kind.BOOLEAN)
+
+    def wide(self, number: Number) -> Number:
+        """Return a number in each lane."""
+        if number.lanes or not self.lanes:
+            return number
+        kind = type_of(number.kind, self.lanes)
+        one = self.text.value(f"insertelement {kind} poison, {number.operand}, i32 0")
+        text = self.text.value(f"shufflevector {kind} {one}, {kind} poison, <{self.lanes} x i32> zeroinitializer")
+        return Number(number.kind, text, self.lanes)
+
+    def alike(self, *values: Value, kind: Kind | None = None) -> list[Number]:
+        """Return numbers of one kind, by default the one that holds all of them, in lanes if any of them is."""
+        kind = max(map(kind_of, values)) if kind is None else kind
+        if any(isinstance(value, Number) and value.lanes for value in values):
+            return [
+                constant(value, kind, self.lanes)
+                if not isinstance(value, Number) and is_known_number(value)
+                else self.wide(self.number(value, kind))
+                for value in values
+            ]
+        return [self.number(value, kind) for value in values]
+
+    # Operations
+
+    def binary(self, operation: ast.operator, a: Value, b: Value) -> Value:
+        """Return a sum, product and so on."""
+        if isinstance(a, LaneIndex) or isinstance(b, LaneIndex):
+            return _moved(operation, a, b)
+        if isinstance(a, tuple) and isinstance(b, tuple) and isinstance(operation, ast.Add):
+            return (*a, *b)
+        if is_known_number(a) and is_known_number(b):
+            return _quotient(a, b) if isinstance(operation, ast.Div) else _KNOWN[type(operation)](a, b)
+        if isinstance(operation, ast.Pow):
+            return self._power(a, b)
+        least = Kind.FLOAT if isinstance(operation, ast.Div) else Kind.INTEGER
+        x, y = self.alike(a, b, kind=max(least, *map(self._kind, (a, b))))
+        if x.kind is Kind.INTEGER and isinstance(operation, ast.FloorDiv | ast.Mod):
+            return self._divided(operation, x, y)
+        names = _FLOAT if x.kind is Kind.FLOAT else _INTEGER
+        if type(operation) not in names:
+            message = f"{type(operation).__name__} of numbers with a fraction; write a - b * math.floor(a / b)"
+            raise Refusal(message)
+        flags = self.flags if x.kind is Kind.FLOAT else ""
+        text = self.text.value(f"{names[type(operation)]} {flags}{x.operand}, {y.text}")
+        return Number(x.kind, text, x.lanes)
+
+    def _kind(self, value: Value) -> Kind:
+        return self.number(value).kind
+
+    def _divided(self, operation: ast.operator, x: Number, y: Number) -> Number:
+        # LLVM rounds quotients of whole numbers towards zero, Python down.
+        rest = Number(Kind.INTEGER, self.text.value(f"srem {x.operand}, {y.text}"))
+        apart = self.text.value(f"xor {rest.operand}, {y.text}")
+        opposite = self.compared(ast.Lt(), Number(Kind.INTEGER, apart), 0)
+        one_off = self.both(self.compared(ast.NotEq(), rest, 0), opposite)
+        if isinstance(operation, ast.Mod):
+            return self.number(self.chosen(one_off, self.binary(ast.Add(), rest, y), rest))
+        whole = Number(Kind.INTEGER, self.text.value(f"sdiv {x.operand}, {y.text}"))
+        return self.number(self.chosen(one_off, self.binary(ast.Sub(), whole, 1), whole))
+
+    def _power(self, base: Value, exponent: Value) -> Value:
+        whole = is_known_number(exponent) and exponent == int(exponent) and 0 < exponent <= MOST_FACTORS
+        if not whole:
+            return self.called("llvm.pow", base, exponent)
+        left, square, result = int(exponent), base, None
+        while left:
+            if left % 2:
+                result = square if result is None else self.binary(ast.Mult(), result, square)
+            left //= 2
+            if left:
+                square = self.binary(ast.Mult(), square, square)
+        return result
+
+    def negative(self, value: Value) -> Value:
+        """Return a number with its sign changed."""
+        if is_known_number(value):
+            return -value
+        number = self.number(value)
+        if number.kind is not Kind.FLOAT:
+            return self.binary(ast.Sub(), 0, number)
+        return Number(Kind.FLOAT, self.text.value(f"fneg {self.flags}{number.operand}"), number.lanes)
+
+    def opposite(self, value: Value) -> Value:
+        """Return whether a condition does not hold."""
+        if not isinstance(value, Number):
+            return not value
+        number = self.truth(value)
+        always = constant(1, Kind.BOOLEAN, number.lanes)
+        return Number(Kind.BOOLEAN, self.text.value(f"xor {number.operand}, {always.text}"), number.lanes)
+
+    def compared(self, operation: ast.cmpop, a: Value, b: Value) -> Value:
+        """Return whether two numbers stand to each other as the operation says."""
+        if not isinstance(a, Number) and not isinstance(b, Number):
+            return _KNOWN[type(operation)](a, b)
+        if type(operation) not in _COMPARED:
+            message = f"{type(operation).__name__} of numbers; write == or !="
+            raise Refusal(message)
+        x, y = self.alike(a, b)
+        of_floats, of_integers = _COMPARED[type(operation)]
+        if x.kind is Kind.FLOAT:
+            text = self.text.value(f"fcmp {self.flags}{of_floats} {x.operand}, {y.text}")
+        else:
+            text = self.text.value(f"icmp {of_integers} {x.operand}, {y.text}")
+        return Number(Kind.BOOLEAN, text, x.lanes)
+
+    def both(self, a: Value, b: Value) -> Value:
+        """Return whether both conditions hold."""
+        return self._joined("and", a, b)
+
+    def either(self, a: Value, b: Value) -> Value:
+        """Return whether one of two conditions holds."""
+        return self._joined("or", a, b)
+
+    def _joined(self, instruction: str, a: Value, b: Value) -> Value:
+        decided = instruction == "or"
+        for one, other in ((a, b), (b, a)):
+            if not isinstance(one, Number):
+                return decided if bool(one) is decided else other
+        x, y = self.alike(a, b, kind=Kind.BOOLEAN)
+        return Number(Kind.BOOLEAN, self.text.value(f"{instruction} {x.operand}, {y.text}"), x.lanes)
+
+    def chosen(self, condition: Value, a: Value, b: Value) -> Value:
+        """Return `a` where the condition holds, else `b`; both are computed."""
+        if not isinstance(condition, Number):
+            return a if condition else b
+        if isinstance(a, tuple) or isinstance(b, tuple):
+            made = [self.chosen(condition, *pair) for pair in zip(a, b, strict=True)]
+            return type(a)(*made) if hasattr(a, "_fields") else tuple(made)
+        x, y = self.alike(a, b)
+        condition = self.truth(condition)
+        if condition.lanes:
+            x, y = self.wide(x), self.wide(y)
+        text = self.text.value(f"select {condition.operand}, {x.operand}, {y.operand}")
+        return Number(x.kind, text, x.lanes)
+
+    # Functions
+
+    def called(self, name: str, *values: Value) -> Number:
+        """Return the result of one of LLVM's own functions, `llvm.sqrt` and the like."""
+        numbers = self.alike(*values, kind=Kind.FLOAT)
+        kind, lanes = numbers[0].type, numbers[0].lanes
+        suffix = f"v{lanes}f64" if lanes else "f64"
+        function = self.module.declared(f"{name}.{suffix}", kind, [kind] * len(numbers))
+        text = self.text.value(f"call {self.flags}{kind} {function}({', '.join(one.operand for one in numbers)})")
+        return Number(Kind.FLOAT, text, lanes)
+
+    def called_in_library(self, name: str, *values: Value) -> Number:
+        """Return the result of a function of the C library, one lane after the other."""
+        numbers = self.alike(*values, kind=Kind.FLOAT)
+        lanes = numbers[0].lanes
+        function = self.module.declared(name, "double", ["double"] * len(numbers))
+        if not lanes:
+            operands = ", ".join(one.operand for one in numbers)
+            return Number(Kind.FLOAT, self.text.value(f"call double {function}({operands})"))
+        kind, result = numbers[0].type, "poison"
+        for lane in range(lanes):
+            singles = [self.text.value(f"extractelement {one.operand}, i32 {lane}") for one in numbers]
+            single = self.text.value(f"call double {function}({', '.join(f'double {one}' for one in singles)})")
+            result = self.text.value(f"insertelement {kind} {result}, double {single}, i32 {lane}")
+        return Number(Kind.FLOAT, result, lanes)
+
+    def whole(self, value: Value) -> Value:
+        """Return a number without its fraction, as `int` does; beyond 64 bits the largest, 0 where it is none."""
+        if not isinstance(value, Number):
+            return int(value)
+        if value.kind is not Kind.FLOAT:
+            return self.number(value, Kind.INTEGER)
+        if value.lanes:
+            message = "int(...) in a loop over lanes; write math.floor"
+            raise Refusal(message)
+        function = self.module.declared("llvm.fptosi.sat.i64.f64", "i64", ["double"])
+        return Number(Kind.INTEGER, self.text.value(f"call i64 {function}({value.operand})"))
+
+
+def _moved(operation: ast.operator, a: Value, b: Value) -> LaneIndex:
+    index, step = (a, b) if isinstance(a, LaneIndex) else (b, a)
+    if not isinstance(operation, ast.Add) or not isinstance(step, int):
+        message = "the index of a loop over lanes may only be added to known whole numbers, to find its place in a row"
+        raise Refusal(message)
+    return LaneIndex(index.first, index.offset + step)
+
+
+def _quotient(a: float, b: float) -> float:
+    if b != 0:
+        return a / b
+    return math.nan if a == 0 or math.isnan(a) else math.copysign(math.inf, a) * math.copysign(1.0, b)
+
+
+def _described(value: Value) -> str:
+    if isinstance(value, LaneIndex):
+        return "the index of a loop over lanes"
+    return f"a {type(value).__name__}" if isinstance(value, tuple) else repr(value)

@@ -1,0 +1,167 @@
+"""Places in arrays, and views into them."""
+
+import ast
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from stylobate.engine.compiler.arithmetic import Arithmetic
+from stylobate.engine.compiler.refusal import Refusal
+from stylobate.engine.compiler.values import Array, Element, Kind, LaneIndex, Number, Value, constant, type_of
+
+MOST_IN_FUNCTION = 4096
+"""Numbers that an array made in a function may hold."""
+
+
+def view(arithmetic: Arithmetic, array: Array, indices: Sequence[Value]) -> Array:
+    """Return the part of an array that indices and slices of its first axes leave."""
+    if len(indices) > len(array.shape):
+        message = f"an array of {len(array.shape)} axes is asked for with {len(indices)} indices"
+        raise Refusal(message)
+    known, pointer = 0, array.pointer
+    shape, strides = [], []
+    for axis, index in enumerate(indices):
+        length, stride = array.shape[axis], array.strides[axis]
+        start = index
+        if isinstance(index, slice):
+            start, end = _ends(arithmetic, index, length)
+            shape.append(arithmetic.binary(ast.Sub(), end, start))
+            strides.append(stride)
+        step = _from_the_start(arithmetic, start, length)
+        step = step if stride == 1 else arithmetic.binary(ast.Mult(), step, stride)
+        if isinstance(step, int):
+            known += step
+        else:
+            pointer = _moved(arithmetic, pointer, arithmetic.number(step, Kind.INTEGER), array.element)
+    if known:
+        pointer = _moved(arithmetic, pointer, constant(known, Kind.INTEGER), array.element)
+    rest = len(indices)
+    return Array(pointer, (*shape, *array.shape[rest:]), (*strides, *array.strides[rest:]), array.element)
+
+
+def room(arithmetic: Arithmetic, shape: Value) -> Array:
+    """Return a small array of zeros, which lasts as long as the function runs."""
+    shape = shape if isinstance(shape, tuple) else (shape,)
+    if not _is_known(shape) or math.prod(shape) > MOST_IN_FUNCTION:
+        message = (
+            f"arrays made in a function have a known shape and at most {MOST_IN_FUNCTION} numbers; pass it instead"
+        )
+        raise Refusal(message)
+    array = Array(arithmetic.text.allocated(f"[{math.prod(shape)} x double]"), shape, _without_gaps(shape))
+    clear = arithmetic.module.declared("llvm.memset.p0.i64", "void", ["ptr", "i8", "i64", "i1"])
+    arithmetic.text.line(f"call void {clear}(ptr {array.pointer}, i8 0, i64 {_bytes(array)}, i1 false)")
+    return array
+
+
+def copy(arithmetic: Arithmetic, target: Array, source: Value) -> None:
+    """Put the numbers of an array into another one of the same shape, both without gaps."""
+    alike = isinstance(source, Array) and source.shape == target.shape and source.strides == target.strides
+    if not alike or target.strides != _without_gaps(target.shape):
+        message = "arrays are copied as a whole where shapes are known and equal, without gaps; write a loop"
+        raise Refusal(message)
+    move = arithmetic.module.declared("llvm.memmove.p0.p0.i64", "void", ["ptr", "ptr", "i64", "i1"])
+    operands = f"ptr {target.pointer}, ptr {source.pointer}, i64 {_bytes(target)}, i1 false"
+    arithmetic.text.line(f"call void {move}({operands})")
+
+
+def elements(arithmetic: Arithmetic, array: Array) -> tuple[Value, ...]:
+    """Return the elements of an array of known length."""
+    if len(array.shape) != 1 or not isinstance(array.shape[0], int):
+        message = "only a row of known length is taken to pieces"
+        raise Refusal(message)
+    return tuple(load(arithmetic, *place(arithmetic, array, [index])) for index in range(array.shape[0]))
+
+
+def flat(arithmetic: Arithmetic, array: Array) -> Array:
+    """Return an array without gaps as one row."""
+    size: Value = 1
+    for length in array.shape:
+        size = arithmetic.binary(ast.Mult(), size, length)
+    return Array(array.pointer, (size,), (1,), array.element)
+
+
+def place(arithmetic: Arithmetic, array: Array, indices: Sequence[Value]) -> tuple[Array, int]:
+    """Return one element as an array without axes, and in how many lanes it is addressed.
+
+    Raises
+    ------
+    Refusal
+        If lanes do not lie one beside the other.
+    """
+    *outer, last = indices
+    if not isinstance(last, LaneIndex):
+        return view(arithmetic, array, indices), 0
+    if array.strides[len(outer)] != 1:
+        message = "the index of a loop over lanes belongs in the last axis"
+        raise Refusal(message)
+    row = view(arithmetic, array, [*outer, last.offset])
+    return Array(_moved(arithmetic, row.pointer, last.first, array.element), (), (), array.element), arithmetic.lanes
+
+
+def load(arithmetic: Arithmetic, element: Array, lanes: int) -> Number:
+    """Return what stands at a `place`."""
+    if element.element is Element.SIGNAL:
+        byte = arithmetic.text.value(f"load volatile i8, ptr {element.pointer}")
+        return Number(Kind.INTEGER, arithmetic.text.value(f"zext i8 {byte} to i64"))
+    kind = type_of(Kind.FLOAT, lanes)
+    return Number(Kind.FLOAT, arithmetic.text.value(f"load {kind}, ptr {element.pointer}, align 8"), lanes)
+
+
+def store(arithmetic: Arithmetic, element: Array, lanes: int, value: Value) -> None:
+    """Put a number at a `place`."""
+    if element.element is Element.SIGNAL:
+        message = "signals are read only"
+        raise Refusal(message)
+    number = arithmetic.number(value, Kind.FLOAT)
+    if number.lanes and not lanes:
+        message = "lanes are put into one place; write them to places of their own"
+        raise Refusal(message)
+    number = arithmetic.wide(number) if lanes else number
+    arithmetic.text.line(f"store {number.operand}, ptr {element.pointer}, align 8")
+
+
+def table(arithmetic: Arithmetic, values: np.ndarray) -> Array:
+    """Return a constant array of the module that is compiled."""
+    numbers = [constant(float(value), Kind.FLOAT).operand for value in values.ravel()]
+    return Array(arithmetic.module.table(numbers), values.shape, _without_gaps(values.shape))
+
+
+def _is_known(shape: tuple[Value, ...]) -> bool:
+    return all(isinstance(length, int) for length in shape)
+
+
+def _without_gaps(shape: tuple[Value, ...]) -> tuple[int, ...]:
+    """Return the strides of an array of known shape, or nothing."""
+    return tuple(math.prod(shape[axis + 1 :]) for axis in range(len(shape))) if _is_known(shape) else ()
+
+
+def _bytes(array: Array) -> int:
+    lengths: tuple[Value, ...] = array.shape
+    return int(array.element) * math.prod(lengths)
+
+
+def _ends(arithmetic: Arithmetic, index: slice, length: Value) -> tuple[Value, Value]:
+    if index.step is not None:
+        message = "slices take every element; write a loop"
+        raise Refusal(message)
+    start = 0 if index.start is None else index.start
+    end = length if index.stop is None else _from_the_start(arithmetic, index.stop, length)
+    return _from_the_start(arithmetic, start, length), end
+
+
+def _from_the_start(arithmetic: Arithmetic, index: Value, length: Value) -> Value:
+    if isinstance(index, Number):
+        return arithmetic.number(index, Kind.INTEGER)
+    if isinstance(index, LaneIndex):
+        message = "the index of a loop over lanes belongs in the last axis"
+        raise Refusal(message)
+    if not isinstance(index, int | np.integer):
+        message = f"an index is a whole number, not {index!r}"
+        raise Refusal(message)
+    return int(index) if index >= 0 else arithmetic.binary(ast.Add(), length, int(index))
+
+
+def _moved(arithmetic: Arithmetic, pointer: str, by: Number, element: Element) -> str:
+    kind = "double" if element is Element.FLOAT else "i8"
+    return arithmetic.text.value(f"getelementptr {kind}, ptr {pointer}, {by.operand}")

@@ -1,0 +1,408 @@
+"""Statements: the body of one function, turned into instructions."""
+
+import ast
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from stylobate.engine.compiler import arrays, marks, slots
+from stylobate.engine.compiler.arithmetic import Arithmetic
+from stylobate.engine.compiler.expressions import Expressions
+from stylobate.engine.compiler.refusal import Refusal, at_its_place
+from stylobate.engine.compiler.sources import Source
+from stylobate.engine.compiler.text import Block
+from stylobate.engine.compiler.values import Array, Kind, LaneIndex, Number, Value, constant
+
+if TYPE_CHECKING:
+    from stylobate.engine.compiler.unit import Unit
+
+RESULT = "return"
+"""The name under which the room of a function's result is kept."""
+
+
+class Body(Expressions):
+    """The body of one function under construction.
+
+    Parameters
+    ----------
+    unit
+        What compiles the functions that it calls.
+    source
+        The function.
+    arithmetic
+        Writes its instructions.
+    kinds
+        Kinds that the room of a name must at least have.
+    """
+
+    def __init__(self, unit: "Unit", source: Source, arithmetic: Arithmetic, kinds: Mapping[str, Kind]) -> None:
+        super().__init__(arithmetic)
+        self.unit, self.source, self.kinds = unit, source, kinds
+        self.result: Value = None
+        self.exit = self.text.new_block()
+        self._bound: dict[str, Value] = {}
+        self._slots: dict[str, Value] = {}
+        self._chosen = _assigned_by_control_flow(source.body)
+        self._own = _assigned(source.body) | {one.arg for one in _all_arguments(source.arguments)}
+        self._loops: list[tuple[Block, Block]] = []
+        self._depth = 0
+        self._returned = False
+        self._at: ast.AST = source.arguments
+
+    # Running
+
+    def run(self, arguments: Mapping[str, Value]) -> None:
+        """Write the instructions of the function for these arguments.
+
+        Raises
+        ------
+        CompileError
+            If something in it is not compiled.
+        slots.WiderKindError
+            If a name needs room of another kind, noted in its `name`.
+        """
+        try:
+            for name, value in arguments.items():
+                self._assign(name, value)
+            self._block(self.source.body)
+        except Refusal as refusal:
+            raise at_its_place(refusal, self._at, self.source.file, self.source.name) from refusal
+        if self.arithmetic.lanes:
+            return
+        if RESULT in self._slots and not self.text.block.ended:
+            message = "some ways through it return a value, others none"
+            raise at_its_place(message, self._at, self.source.file, self.source.name)
+        self.text.jump(self.exit)
+        self.text.begin(self.exit)
+
+    def read(self, name: str) -> Value:
+        """Return what a name means here."""
+        if name in self._bound:
+            return self._bound[name]
+        if name in self._slots:
+            return self.loaded(self._slots[name])
+        if name in self._own:
+            message = f"{name} has no value here, or one in lanes only"
+            raise Refusal(message)
+        try:
+            return self.source.find(name)
+        except KeyError:
+            message = f"{name} is not defined"
+            raise Refusal(message) from None
+
+    def call(self, function: Callable[..., Any], values: list[Value], keywords: dict[str, Value]) -> Value:
+        """Return the result of a function written in Python."""
+        return self.unit.call(self, function, values, keywords)
+
+    def slot_of(self, value: Value) -> Value:
+        """Return room for a value of this structure."""
+        return slots.slot_for(self.arithmetic, value)
+
+    def stored(self, slot: Value, value: Value) -> None:
+        """Put a value into its room."""
+        slots.store(self.arithmetic, slot, value)
+
+    def loaded(self, slot: Value) -> Value:
+        """Return the value that stands in a room."""
+        return slots.load(self.arithmetic, slot)
+
+    # Names
+
+    def _assign(self, name: str, value: Value) -> None:
+        lanes = self.arithmetic.lanes
+        if lanes or name not in self._chosen or (not self._depth and not slots.can_be_stored(value)):
+            self._bound[name] = value
+            return
+        self._bound.pop(name, None)
+        self._put(name, value)
+
+    def _put(self, name: str, value: Value) -> None:
+        if name not in self._slots:
+            self._slots[name] = slots.slot_for(self.arithmetic, value, self.kinds.get(name, Kind.BOOLEAN))
+        try:
+            self.stored(self._slots[name], value)
+        except slots.WiderKindError as error:
+            error.name = name
+            raise
+
+    def _assign_to(self, target: ast.expr, value: Value) -> None:
+        match target:
+            case ast.Name():
+                self._assign(target.id, value)
+            case ast.Tuple() | ast.List():
+                items = self.items(value)
+                if len(items) != len(target.elts):
+                    message = f"{ast.unparse(target)} take {len(target.elts)} values, not {len(items)}"
+                    raise Refusal(message)
+                for part, item in zip(target.elts, items, strict=True):
+                    self._assign_to(part, item)
+            case ast.Subscript():
+                self._put_into_array(target, value)
+            case _:
+                message = f"{ast.unparse(target)} cannot be assigned to"
+                raise Refusal(message)
+
+    def _put_into_array(self, target: ast.Subscript, value: Value) -> None:
+        if isinstance(value, Array):
+            arrays.copy(self.arithmetic, arrays.view(self.arithmetic, self._array(target), self.indices(target)), value)
+        else:
+            arrays.store(self.arithmetic, *self._place(target), value)
+
+    def _array(self, target: ast.Subscript) -> Array:
+        owner = self.value(target.value)
+        if not isinstance(owner, Array):
+            message = f"{ast.unparse(target.value)} is no array"
+            raise Refusal(message)
+        return owner
+
+    def _place(self, target: ast.Subscript) -> tuple[Array, int]:
+        owner, indices = self._array(target), self.indices(target)
+        if len(indices) != len(owner.shape) or any(map(_is_slice, indices)):
+            message = f"{ast.unparse(target)} is no single element of an array; write a loop"
+            raise Refusal(message)
+        return arrays.place(self.arithmetic, owner, indices)
+
+    # Statements
+
+    def _block(self, statements: Iterable[ast.stmt]) -> None:
+        for statement in statements:
+            if self.text.block.ended or self._returned:
+                return
+            self._at = statement
+            self._statement(statement)
+
+    def _statement(self, node: ast.stmt) -> None:  # noqa: C901, PLR0912  one case for each form
+        match node:
+            case ast.Expr(value=ast.Constant()) | ast.Pass():
+                pass
+            case ast.Expr():
+                self.value(node.value)
+            case ast.Assign():
+                value = self.value(node.value)
+                for target in node.targets:
+                    self._assign_to(target, value)
+            case ast.AnnAssign():
+                if node.value is not None:
+                    self._assign_to(node.target, self.value(node.value))
+            case ast.AugAssign():
+                self._change(node)
+            case ast.Return():
+                self._return(None if node.value is None else self.value(node.value))
+            case ast.If():
+                self._if(node)
+            case ast.While(orelse=[]):
+                self._while(node)
+            case ast.For(orelse=[]):
+                self._for(node)
+            case ast.Break():
+                self.text.jump(self._loops[-1][1])
+            case ast.Continue():
+                self.text.jump(self._loops[-1][0])
+            case _:
+                message = f"{type(node).__name__} is not compiled; write it with loops, conditions and calls"
+                raise Refusal(message)
+
+    def _change(self, node: ast.AugAssign) -> None:
+        if not isinstance(node.target, ast.Subscript):
+            old = self.value(ast.parse(ast.unparse(node.target), mode="eval").body)
+            self._assign_to(node.target, self.arithmetic.binary(node.op, old, self.value(node.value)))
+            return
+        element, lanes = self._place(node.target)
+        old = arrays.load(self.arithmetic, element, lanes)
+        new = self.arithmetic.binary(node.op, old, self.value(node.value))
+        arrays.store(self.arithmetic, element, lanes, new)
+
+    def _return(self, value: Value) -> None:
+        if self.arithmetic.lanes:
+            self.result, self._returned = value, True
+            return
+        if value is not None:
+            self._put(RESULT, value)
+        self.text.jump(self.exit)
+
+    def finished(self) -> Value:
+        """Return the result, behind the last instruction of the function."""
+        return self.result if self.arithmetic.lanes else self.loaded(self._slots.get(RESULT))
+
+    def _if(self, node: ast.If) -> None:
+        condition = self.value(node.test)
+        if not isinstance(condition, Number):
+            self._block(node.body if condition else node.orelse)
+            return
+        if self.arithmetic.lanes:
+            message = "a condition on lanes; write a if condition else b"
+            raise Refusal(message)
+        yes, no, done = (self.text.new_block() for _ in range(3))
+        self.text.branch(self.arithmetic.truth(condition).text, yes, no)
+        for block, statements in ((yes, node.body), (no, node.orelse)):
+            self.text.begin(block)
+            self._while_running(statements)
+            self.text.jump(done)
+        self.text.begin(done)
+
+    def _while_running(self, statements: Iterable[ast.stmt]) -> None:
+        self._depth += 1
+        self._block(statements)
+        self._depth -= 1
+
+    def _while(self, node: ast.While) -> None:
+        self._outside_lanes()
+        head, body, done = (self.text.new_block() for _ in range(3))
+        self.text.jump(head)
+        self.text.begin(head)
+        condition = self.value(node.test)
+        if isinstance(condition, Number):
+            self.text.branch(self.arithmetic.truth(condition).text, body, done)
+        else:
+            self.text.jump(body if condition else done)
+        self.text.begin(body)
+        self._pass(node.body, head, done)
+        self.text.jump(head)
+        self.text.begin(done)
+
+    def _pass(self, statements: Iterable[ast.stmt], onward: Block, done: Block) -> None:
+        self._loops.append((onward, done))
+        self._while_running(statements)
+        self._loops.pop()
+
+    def _outside_lanes(self) -> None:
+        if self.arithmetic.lanes:
+            message = "a loop whose length is not known, within lanes"
+            raise Refusal(message)
+
+    # Loops
+
+    def _for(self, node: ast.For) -> None:
+        if isinstance(node.iter, ast.Call) and isinstance(node.iter.func, ast.Name | ast.Attribute):
+            function = self.value(node.iter.func)
+            if function in (range, marks.lanes):
+                ends = [self.value(argument) for argument in node.iter.args]
+                if function is marks.lanes and self.unit.lanes:
+                    self._over_lanes(node, *ends)
+                else:
+                    self._over_range(node, ends)
+                return
+        items = self.value(node.iter)
+        if not isinstance(items, tuple):
+            message = f"{ast.unparse(node.iter)} is no range and no tuple"
+            raise Refusal(message)
+        self._unrolled(node, items)
+
+    def _over_range(self, node: ast.For, ends: list[Value]) -> None:
+        known = all(isinstance(end, int) for end in ends)
+        if known and (self.arithmetic.lanes or self._picks_from_tuples(node)):
+            self._unrolled(node, range(*ends))
+            return
+        self._outside_lanes()
+        start, stop, *step = ends if len(ends) > 1 else [0, *ends]
+        if step and step != [1]:
+            message = "a range whose step is not 1; write a while loop"
+            raise Refusal(message)
+        counter = self.text.allocated("i64")
+        end = self.arithmetic.number(stop, Kind.INTEGER)
+        self.text.line(f"store {self.arithmetic.number(start, Kind.INTEGER).operand}, ptr {counter}")
+        head, body, onward, done = (self.text.new_block() for _ in range(4))
+        self.text.jump(head)
+        self.text.begin(head)
+        index = Number(Kind.INTEGER, self.text.value(f"load i64, ptr {counter}"))
+        self.text.branch(self.arithmetic.compared(ast.Lt(), index, end).text, body, done)
+        self.text.begin(body)
+        self._assign_to(node.target, index)
+        self._pass(node.body, onward, done)
+        self.text.jump(onward)
+        self.text.begin(onward)
+        next_one = self.arithmetic.binary(ast.Add(), index, 1)
+        self.text.line(f"store {next_one.operand}, ptr {counter}")
+        self.text.jump(head)
+        self.text.begin(done)
+
+    def _unrolled(self, node: ast.For, items: Iterable[Value]) -> None:
+        done = self.text.new_block()
+        for item in items:
+            onward = self.text.new_block()
+            if isinstance(node.target, ast.Name):
+                self._bound[node.target.id] = item
+            else:
+                self._assign_to(node.target, item)
+            self._loops.append((onward, done))
+            self._block(node.body)
+            self._loops.pop()
+            if not self.arithmetic.lanes:
+                self.text.jump(onward)
+                self.text.begin(onward)
+        if isinstance(node.target, ast.Name):  # a loop that was left early left it with another value
+            self._bound.pop(node.target.id, None)
+        if not self.arithmetic.lanes:
+            self.text.jump(done)
+            self.text.begin(done)
+
+    def _picks_from_tuples(self, node: ast.For) -> bool:
+        """Return whether the loop's index picks from tuples: each pass has then instructions of its own."""
+        if not isinstance(node.target, ast.Name):
+            return False
+        return any(
+            isinstance(part, ast.Subscript)
+            and isinstance(part.value, ast.Name)
+            and isinstance(part.slice, ast.Name)
+            and part.slice.id == node.target.id
+            and self._is_tuple(part.value.id)
+            for statement in node.body
+            for part in ast.walk(statement)
+        )
+
+    def _is_tuple(self, name: str) -> bool:
+        known = self._bound.get(name, self._slots.get(name))
+        if known is None and name not in self._own:
+            known = self.source.names.get(name)
+        return isinstance(known, tuple)
+
+    def _over_lanes(self, node: ast.For, count: Value) -> None:
+        """Make the passes of a loop side by side, as many at once as fit into a vector."""
+        width = self.unit.lanes
+        if (
+            self.arithmetic.lanes
+            or not isinstance(count, int)
+            or count % width
+            or not isinstance(node.target, ast.Name)
+        ):
+            message = f"a loop over lanes stands by itself and has a multiple of {width} passes"
+            raise Refusal(message)
+        before = dict(self._bound)
+        head, done = self.text.new_block(), self.text.new_block()
+        self.text.jump(head)
+        begun = self.text.block
+        self.text.begin(head)
+        first, onward = self.text.name(), self.text.name()
+        position = len(head.lines)
+        self.arithmetic.lanes = width
+        self._bound[node.target.id] = LaneIndex(Number(Kind.INTEGER, first))
+        self._block(node.body)
+        self.arithmetic.lanes = 0
+        self._bound = before
+        self.text.line(f"{onward} = add nuw nsw i64 {first}, {constant(width, Kind.INTEGER).text}")
+        more = self.text.value(f"icmp ult i64 {onward}, {count}")
+        end = self.text.block
+        head.lines.insert(position, f"{first} = phi i64 [ 0, %{begun.label} ], [ {onward}, %{end.label} ]")
+        self.text.branch(more, head, done)
+        self.text.begin(done)
+
+
+def _is_slice(index: Value) -> bool:
+    return isinstance(index, slice)
+
+
+def _all_arguments(arguments: ast.arguments) -> list[ast.arg]:
+    variable = [one for one in (arguments.vararg, arguments.kwarg) if one]
+    return [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs, *variable]
+
+
+def _assigned(statements: Iterable[ast.AST]) -> set[str]:
+    return {
+        part.id
+        for statement in statements
+        for part in ast.walk(statement)
+        if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)
+    }
+
+
+def _assigned_by_control_flow(statements: Iterable[ast.stmt]) -> set[str]:
+    return _assigned(statement for statement in statements if isinstance(statement, ast.If | ast.While | ast.For))

@@ -1,0 +1,119 @@
+"""Functions that are compiled when they are first called."""
+
+import ctypes
+import types
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stylobate.engine.compiler import kept, machine
+from stylobate.engine.compiler.refusal import CompileError
+from stylobate.engine.compiler.unit import ArrayArgument, Unit
+from stylobate.engine.compiler.values import Element, Kind
+from stylobate.engine.compiler.written import written_module
+from stylobate.errors import UnsupportedError
+
+
+@dataclass(frozen=True, eq=False)
+class Compiled:
+    """A function of a module whose text is written for a model.
+
+    Parameters
+    ----------
+    name
+        The function.
+    text
+        Its module.
+    functions
+        Functions of the model, by the names under which they stand in the module.
+    arguments
+        What it is called with.
+    model, description
+        What messages call the model, and what is compiled.
+    imported
+        Modules from which it takes functions.
+    fast
+        Names of functions of the model whose arithmetic is fast; see `marks.fast`.
+    """
+
+    name: str
+    text: str
+    functions: Mapping[str, Callable[..., Any]]
+    arguments: Sequence[ArrayArgument | Kind]
+    model: str
+    description: str
+    imported: Sequence[types.ModuleType] = ()
+    fast: Sequence[str] = field(default=())
+
+    def __call__(self, *values: Any) -> int:
+        """Return what it returns for these arrays, without gaps, and numbers.
+
+        Raises
+        ------
+        UnsupportedError
+            If the model cannot be compiled.
+        """
+        if kept.runs_plain():
+            with np.errstate(all="ignore"):  # numbers that are not used may be none
+                return int(getattr(self.module, self.name)(*values) or 0)
+        passed: list[Any] = []
+        for argument, value in zip(self.arguments, values, strict=True):
+            passed += [value] if isinstance(argument, Kind) else _passed(argument, value)
+        return int(self._code(*passed))
+
+    @cached_property
+    def module(self) -> types.ModuleType:
+        """The module, of plain Python."""
+        return written_module(f"{self._words}_{id(self)}", self.text, self.functions)
+
+    def unit(self) -> Unit:
+        """Return a unit to which functions of the module can be added."""
+        fast = [function for name, function in self.functions.items() if name in self.fast]
+        return Unit(lanes=machine.lanes(), fast=fast)
+
+    @property
+    def _words(self) -> str:
+        return "".join(character if character.isalnum() else "_" for character in self.description)
+
+    @cached_property
+    def _code(self) -> Callable[..., int]:
+        texts = [Path(module.__file__ or "").read_text(encoding="utf-8") for module in self.imported]
+        try:
+            engine = kept.code_of(
+                self._words, [self.text, *texts], self.functions, self._written, description=self.description
+            )
+        except CompileError as error:
+            message = f"model {self.model} cannot be compiled; single runs by simulate need no compiling: {error}"
+            raise UnsupportedError(message) from error
+        kinds = [kind for argument in self.arguments for kind in _types_of(argument)]
+        function = ctypes.CFUNCTYPE(ctypes.c_int64, *kinds)(engine.get_function_address(self.name))
+        vars(function)["engine"] = engine  # it lasts as long as its code may be called
+        return function
+
+    def _written(self) -> str:
+        unit = self.unit()
+        unit.export(getattr(self.module, self.name), self.name, self.arguments)
+        return unit.module.text(machine.attributes())
+
+
+def _passed(argument: ArrayArgument, value: np.ndarray[Any, Any]) -> list[int]:
+    """Return the pointer of an array, and its lengths that are not known before."""
+    assert value.flags.c_contiguous
+    assert value.dtype == (np.float64 if argument.element is Element.FLOAT else np.uint8)
+    known = zip(value.shape, argument.shape, strict=True)
+    lengths = []
+    for length, expected in known:
+        assert expected in (None, length)
+        if expected is None:
+            lengths.append(length)
+    return [value.ctypes.data, *lengths]
+
+
+def _types_of(argument: ArrayArgument | Kind) -> list[Any]:
+    if isinstance(argument, Kind):
+        return [ctypes.c_double if argument is Kind.FLOAT else ctypes.c_int64]
+    return [ctypes.c_void_p, *[ctypes.c_int64] * argument.shape.count(None)]

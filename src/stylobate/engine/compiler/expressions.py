@@ -1,0 +1,246 @@
+"""Expressions: read from the syntax tree, evaluated where their values are known, else written as instructions."""
+
+import ast
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from stylobate.engine.compiler import arrays, marks, mathematics
+from stylobate.engine.compiler.arithmetic import Arithmetic
+from stylobate.engine.compiler.refusal import Refusal
+from stylobate.engine.compiler.values import Array, Kind, LaneIndex, Number, Value, kind_of
+
+_OVER_TUPLES = (zip, enumerate, reversed, tuple)
+_OF_ARRAYS: dict[Any, Callable[..., Array]] = {marks.flat: arrays.flat, np.zeros: arrays.room}
+
+
+class Expressions(ABC):
+    """Evaluates expressions for the function in whose text the instructions are written."""
+
+    def __init__(self, arithmetic: Arithmetic) -> None:
+        self.arithmetic = arithmetic
+        self.text = arithmetic.text
+
+    @abstractmethod
+    def read(self, name: str) -> Value:
+        """Return what a name means here."""
+
+    @abstractmethod
+    def call(self, function: Callable[..., Any], values: list[Value], keywords: dict[str, Value]) -> Value:
+        """Return the result of a function written in Python."""
+
+    @abstractmethod
+    def slot_of(self, value: Value) -> Value:
+        """Return room for a value of this structure."""
+
+    @abstractmethod
+    def stored(self, slot: Value, value: Value) -> None:
+        """Put a value into its room."""
+
+    @abstractmethod
+    def loaded(self, slot: Value) -> Value:
+        """Return the value that stands in a room."""
+
+    def value(self, node: ast.expr) -> Value:  # noqa: C901, PLR0911  one case for each form
+        """Return the value of an expression."""
+        match node:
+            case ast.Constant():
+                return node.value
+            case ast.Name():
+                return self._usable(self.read(node.id))
+            case ast.Attribute():
+                return self._attribute(node)
+            case ast.Tuple():
+                return tuple(self._items(node.elts))
+            case ast.UnaryOp():
+                return self._unary(node)
+            case ast.BinOp():
+                return self.arithmetic.binary(node.op, self.value(node.left), self.value(node.right))
+            case ast.BoolOp():
+                return self._all_or_any(node)
+            case ast.Compare():
+                return self._comparison(node)
+            case ast.IfExp():
+                return self._conditional(node)
+            case ast.Subscript():
+                return self._element(node)
+            case ast.Call():
+                return self._called(node)
+            case _:
+                message = f"{type(node).__name__} is not compiled; write it with loops, conditions and calls"
+                raise Refusal(message)
+
+    def indices(self, node: ast.Subscript) -> list[Value]:
+        """Return what stands between the brackets."""
+        parts = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
+        return [self._index(part) for part in parts]
+
+    def _index(self, node: ast.expr) -> Value:
+        if not isinstance(node, ast.Slice):
+            return self.value(node)
+        ends = (None if end is None else self.value(end) for end in (node.lower, node.upper, node.step))
+        return slice(*ends)
+
+    def _usable(self, value: Value) -> Value:
+        if isinstance(value, np.ndarray):
+            if value.dtype.kind not in "fiub":
+                message = f"arrays hold numbers, not {value.dtype}"
+                raise Refusal(message)
+            return arrays.table(self.arithmetic, value)
+        return value.item() if isinstance(value, np.generic) else value
+
+    def _attribute(self, node: ast.Attribute) -> Value:
+        owner = self.value(node.value)
+        if isinstance(owner, Array) and node.attr == "shape":
+            return owner.shape
+        if isinstance(owner, Array | Number | LaneIndex) or not hasattr(owner, node.attr):
+            message = f"{ast.unparse(node)} is not known while compiling"
+            raise Refusal(message)
+        return self._usable(getattr(owner, node.attr))
+
+    def _items(self, nodes: list[ast.expr]) -> list[Value]:
+        out: list[Value] = []
+        for node in nodes:
+            if isinstance(node, ast.Starred):
+                out += self.items(self.value(node.value))
+            else:
+                out.append(self.value(node))
+        return out
+
+    def items(self, value: Value) -> tuple[Value, ...]:
+        """Return the parts of a tuple, or the elements of a row of known length."""
+        if isinstance(value, Array):
+            return arrays.elements(self.arithmetic, value)
+        if not isinstance(value, tuple | range):
+            message = "a tuple is wanted, whose length is known while compiling"
+            raise Refusal(message)
+        return tuple(value)
+
+    def _unary(self, node: ast.UnaryOp) -> Value:
+        value = self.value(node.operand)
+        match node.op:
+            case ast.USub():
+                return self.arithmetic.negative(value)
+            case ast.Not():
+                return self.arithmetic.opposite(value)
+            case ast.UAdd():
+                return value
+            case _:
+                message = "bits of whole numbers are not compiled"
+                raise Refusal(message)
+
+    def _all_or_any(self, node: ast.BoolOp) -> Value:
+        """Evaluate `and` or `or`: of a single run no more than is needed, as Python does."""
+        joined = self.arithmetic.both if isinstance(node.op, ast.And) else self.arithmetic.either
+        decisive = isinstance(node.op, ast.Or)
+        if self.arithmetic.lanes:
+            result = self.value(node.values[0])
+            for part in node.values[1:]:
+                result = joined(result, self.value(part))
+            return result
+        for position, part in enumerate(node.values):
+            value = self.value(part)
+            if isinstance(value, Number):
+                return self._in_turn(value, node.values[position + 1 :], decisive=decisive)
+            if bool(value) is decisive:
+                return decisive
+        return not decisive
+
+    def _in_turn(self, first: Number, others: list[ast.expr], *, decisive: bool) -> Value:
+        if not others:
+            return self.arithmetic.truth(first)
+        result, done = self.text.allocated("i1"), self.text.new_block()
+        value = self.arithmetic.truth(first)
+        for other in others:
+            self.text.line(f"store {value.operand}, ptr {result}")
+            more = self.text.new_block()
+            self.text.branch(value.text, *((done, more) if decisive else (more, done)))
+            self.text.begin(more)
+            value = self.arithmetic.truth(self.value(other))
+        self.text.line(f"store {value.operand}, ptr {result}")
+        self.text.jump(done)
+        self.text.begin(done)
+        return Number(Kind.BOOLEAN, self.text.value(f"load i1, ptr {result}"))
+
+    def _comparison(self, node: ast.Compare) -> Value:
+        left, result = self.value(node.left), True
+        for operation, right_node in zip(node.ops, node.comparators, strict=True):
+            right = self.value(right_node)
+            result = self.arithmetic.both(result, self._compared(operation, left, right))
+            left = right
+        return result
+
+    def _compared(self, operation: ast.cmpop, left: Value, right: Value) -> Value:
+        if not isinstance(operation, ast.In | ast.NotIn):
+            return self.arithmetic.compared(operation, left, right)
+        found: Value = False
+        for item in self.items(right):
+            found = self.arithmetic.either(found, self.arithmetic.compared(ast.Eq(), left, item))
+        return self.arithmetic.opposite(found) if isinstance(operation, ast.NotIn) else found
+
+    def _conditional(self, node: ast.IfExp) -> Value:
+        condition = self.value(node.test)
+        if not isinstance(condition, Number):
+            return self.value(node.body if condition else node.orelse)
+        branches = (node.body, node.orelse)
+        costly = any(isinstance(part, ast.Call | ast.Subscript) for one in branches for part in ast.walk(one))
+        if self.arithmetic.lanes or not costly:
+            return self.arithmetic.chosen(condition, self.value(node.body), self.value(node.orelse))
+        yes, no, done = (self.text.new_block() for _ in range(3))
+        self.text.branch(self.arithmetic.truth(condition).text, yes, no)
+        self.text.begin(yes)
+        first = self.value(node.body)
+        end_of_yes = self.text.block
+        self.text.begin(no)
+        second = self.value(node.orelse)
+        slot = self.slot_of(_wider(first, second))
+        self.stored(slot, second)
+        self.text.jump(done)
+        self.text.block = end_of_yes
+        self.stored(slot, first)
+        self.text.jump(done)
+        self.text.begin(done)
+        return self.loaded(slot)
+
+    def _element(self, node: ast.Subscript) -> Value:
+        owner, indices = self.value(node.value), self.indices(node)
+        if isinstance(owner, tuple | range):
+            return self._of_tuple(tuple(owner), indices[0])
+        if not isinstance(owner, Array):
+            message = f"{ast.unparse(node)} is no element of an array or a tuple"
+            raise Refusal(message)
+        if len(indices) < len(owner.shape) or any(isinstance(index, slice) for index in indices):
+            return arrays.view(self.arithmetic, owner, indices)
+        return arrays.load(self.arithmetic, *arrays.place(self.arithmetic, owner, indices))
+
+    def _of_tuple(self, items: tuple[Value, ...], index: Value) -> Value:
+        if not isinstance(index, Number):
+            return items[index]
+        result = items[-1]
+        for position, item in reversed(list(enumerate(items[:-1]))):
+            result = self.arithmetic.chosen(self.arithmetic.compared(ast.Eq(), index, position), item, result)
+        return result
+
+    def _called(self, node: ast.Call) -> Value:
+        function = self.value(node.func)
+        values = self._items(node.args)
+        keywords = {keyword.arg or "": self.value(keyword.value) for keyword in node.keywords}
+        if mathematics.is_mathematics(function) and not keywords:
+            return mathematics.call(self.arithmetic, function, values)
+        if isinstance(function, type) and hasattr(function, "_fields"):
+            return function(*values, **keywords)
+        if function in _OF_ARRAYS:
+            return _OF_ARRAYS[function](self.arithmetic, *values)
+        if function in _OVER_TUPLES:
+            return tuple(function(*map(self.items, values)))
+        return self.call(function, values, keywords)
+
+
+def _wider(a: Value, b: Value) -> Value:
+    """Return of two values of one structure numbers of the kinds that hold both."""
+    if isinstance(a, tuple) and isinstance(b, tuple):
+        made = [_wider(*pair) for pair in zip(a, b, strict=True)]
+        return type(a)(*made) if hasattr(a, "_fields") else tuple(made)
+    return max(a, b, key=kind_of)

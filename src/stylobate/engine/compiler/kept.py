@@ -1,0 +1,117 @@
+"""Machine code on disk: compiled once, loaded by every later process as the same bytes."""
+
+import hashlib
+import logging
+import os
+import sys
+import threading
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from llvmlite import binding as llvm
+
+from stylobate.engine.compiler import machine
+from stylobate.engine.compiler.model_code import fingerprint
+from stylobate.engine.compiler.trusted_cache import VARIABLE, TrustedCache
+from stylobate.errors import FileError
+
+PLAIN_VARIABLE = "STYLOBATE_PLAIN"
+"""With this set to 1, what would be compiled runs as plain Python: slowly, and step by step in a debugger."""
+
+_log = logging.getLogger("stylobate")
+_loading = threading.RLock()
+
+
+def runs_plain() -> bool:
+    """Return whether the user wants plain Python."""
+    return os.environ.get(PLAIN_VARIABLE, "") not in ("", "0")
+
+
+def code_of(
+    name: str,
+    parts: Iterable[str],
+    functions: Mapping[str, Callable[..., Any]],
+    write: Callable[[], str],
+    *,
+    description: str,
+) -> llvm.ExecutionEngine:
+    """Return machine code, loaded: from disk, or newly compiled.
+
+    Parameters
+    ----------
+    name
+        Beginning of its name on disk.
+    parts
+        Texts on which it depends.
+    functions
+        Functions of a model on which it depends.
+    write
+        Returns the text of its module of LLVM.
+    description
+        What is compiled, in words.
+
+    Raises
+    ------
+    CompileError
+        If something in it is not compiled.
+    FileError
+        If other users can write to the folder of compiled code.
+    """
+    entry = f"{name}_{_key(parts, functions)}.{_machine_key()}.code"
+    folder = TrustedCache(cache_folder())
+    with _loading:
+        code = folder.read(entry, quiet=True)
+        if code is None:
+            # One process compiles, others that need the same wait for it.
+            with folder.held(entry):
+                code = folder.read(entry)
+                if code is None:
+                    # A warning, seen where no logging is set up: seconds may pass, once.
+                    _log.warning("compiling %s; kept in %s", description, folder.folder)
+                    code = machine.object_code(write())
+                    _keep(folder, entry, code)
+        return machine.linked(code)
+
+
+def cache_folder() -> Path:
+    """Return the folder in which compiled code is kept: $STYLOBATE_CACHE, or `stylobate` in the user's cache folder."""
+    chosen = os.environ.get(VARIABLE)
+    if chosen:
+        return Path(chosen)
+    if sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local"))
+    elif sys.platform == "darwin":
+        base = Path.home() / "Library" / "Caches"
+    else:
+        base = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
+    return base / "stylobate"
+
+
+def _keep(folder: TrustedCache, entry: str, code: bytes) -> None:
+    """Write an entry, or warn that each process will compile it."""
+    try:
+        folder.write(entry, code)
+    except (OSError, FileError) as error:
+        _log.warning(
+            "compiled code cannot be kept in %s: %s; name another folder in $%s, or every process compiles it",
+            *(folder.folder, getattr(error, "strerror", None) or error, VARIABLE),
+        )
+
+
+def _key(parts: Iterable[str], functions: Mapping[str, Callable[..., Any]]) -> str:
+    texts = [_own_text(), *parts]
+    texts += [f"{name} {fingerprint(function)}" for name, function in sorted(functions.items())]
+    return hashlib.sha256("\n".join(texts).encode()).hexdigest()[:16]
+
+
+@cache
+def _own_text() -> str:
+    """Return the text of the compiler: machine code depends on it too."""
+    return "".join(path.read_text(encoding="utf-8") for path in sorted(Path(__file__).parent.glob("*.py")))
+
+
+@cache
+def _machine_key() -> str:
+    return hashlib.sha256(machine.described().encode()).hexdigest()[:8]

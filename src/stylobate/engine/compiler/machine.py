@@ -1,0 +1,87 @@
+"""Machine code for the processor at hand."""
+
+import threading
+from functools import cache
+
+from llvmlite import binding as llvm
+
+_OPTIMISATION = 2
+_BITS = 64
+
+_compiling = threading.Lock()
+
+
+@cache
+def _target() -> llvm.TargetMachine:
+    return _new_target()
+
+
+def _new_target() -> llvm.TargetMachine:
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    features = llvm.get_host_cpu_features()
+    # LLVM prefers half registers on processors that once slowed down by full ones.
+    features["prefer-256-bit"] = False
+    target = llvm.Target.from_default_triple()
+    return target.create_target_machine(
+        cpu=llvm.get_host_cpu_name(), features=features.flatten(), opt=_OPTIMISATION, reloc="pic", codemodel="default"
+    )
+
+
+@cache
+def vector_bits() -> int:
+    """Return the length of the processor's vector registers."""
+    features = llvm.get_host_cpu_features()
+    return 512 if features.get("avx512f") else 256 if features.get("avx") else 128
+
+
+def lanes() -> int:
+    """Return how many numbers a vector register holds."""
+    return vector_bits() // _BITS
+
+
+def attributes() -> str:
+    """Return what functions say of the processor."""
+    width = vector_bits()
+    return f'nounwind "prefer-vector-width"="{width}" "min-legal-vector-width"="{width}"'
+
+
+def described() -> str:
+    """Return all that machine code depends on besides its text."""
+    machine = _target()
+    return repr((machine.triple, llvm.get_host_cpu_name(), str(machine.target_data), llvm.llvm_version_info))
+
+
+def optimised(text: str) -> llvm.ModuleRef:
+    """Return a module of LLVM, from its text."""
+    machine = _target()
+    module = llvm.parse_assembly(text)
+    module.triple, module.data_layout = machine.triple, str(machine.target_data)
+    module.verify()
+    options = llvm.create_pipeline_tuning_options(speed_level=_OPTIMISATION)
+    # Vectors are made by the compiler before; these would only look for more.
+    options.loop_vectorization = options.slp_vectorization = options.loop_unrolling = False
+    builder = llvm.create_pass_builder(machine, options)
+    builder.getModulePassManager().run(module, builder)
+    return module
+
+
+def object_code(text: str) -> bytes:
+    """Return the machine code of a module, from its text."""
+    with _compiling:
+        return bytes(_target().emit_object(optimised(text)))
+
+
+def assembly(text: str) -> str:
+    """Return the same for reading."""
+    with _compiling:
+        return str(_target().emit_assembly(optimised(text)))
+
+
+def linked(code: bytes) -> llvm.ExecutionEngine:
+    """Return machine code that can be called, as long as the engine is kept."""
+    with _compiling:
+        engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _new_target())  # the engine owns its target
+        engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+        engine.finalize_object()
+        return engine

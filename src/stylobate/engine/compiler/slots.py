@@ -1,0 +1,103 @@
+"""Room in memory for names that control flow assigns to; LLVM keeps most of it in registers."""
+
+from stylobate.engine.compiler.arithmetic import Arithmetic
+from stylobate.engine.compiler.refusal import Refusal
+from stylobate.engine.compiler.values import (
+    Array,
+    Kind,
+    LaneIndex,
+    Number,
+    Slot,
+    Value,
+    is_known_number,
+    kind_of,
+    rebuilt,
+)
+
+
+class WiderKindError(Exception):
+    """A number was put into room that is too narrow for its kind: the function is compiled again with more."""
+
+    def __init__(self, kind: Kind) -> None:
+        super().__init__(kind)
+        self.kind = kind
+        self.name = ""
+
+
+def can_be_stored(value: Value) -> bool:
+    """Return whether a value is made of numbers and views, so that it can be chosen while running."""
+    if isinstance(value, tuple):
+        return all(map(can_be_stored, value))
+    return isinstance(value, Number | Array) or is_known_number(value)
+
+
+def slot_for(arithmetic: Arithmetic, value: Value, least: Kind = Kind.BOOLEAN) -> Value:
+    """Return room for a value of this structure, each number of it at least of a kind."""
+
+    def room(part: Value) -> Value:
+        if isinstance(part, Array):
+            numbers = ((size if isinstance(size, int) else room(size)) for size in (*part.shape, *part.strides))
+            sizes = tuple(numbers)
+            axes = len(part.shape)
+            return Array(arithmetic.text.allocated("ptr"), sizes[:axes], sizes[axes:], part.element)
+        kind = max(kind_of(part), least)
+        return Slot(kind, arithmetic.text.allocated(kind.type))
+
+    if not can_be_stored(value) or _in_lanes(value):
+        message = "what control flow assigns to a name is a number, a view into an array, or a tuple of them"
+        raise Refusal(message)
+    return rebuilt(value, room)
+
+
+def store(arithmetic: Arithmetic, slot: Value, value: Value) -> None:
+    """Put a value into its room.
+
+    Raises
+    ------
+    WiderKindError
+        If a number does not fit.
+    Refusal
+        If it has another structure.
+    """
+    match slot, value:
+        case Slot(), _ if isinstance(value, Number) or is_known_number(value):
+            if kind_of(value) > slot.kind:
+                raise WiderKindError(kind_of(value))
+            arithmetic.text.line(f"store {arithmetic.number(value, slot.kind).operand}, ptr {slot.pointer}")
+        case tuple(), tuple() if len(slot) == len(value):
+            for room, part in zip(slot, value, strict=True):
+                store(arithmetic, room, part)
+        case Array(), Array() if len(slot.shape) == len(value.shape):
+            arithmetic.text.line(f"store ptr {value.pointer}, ptr {slot.pointer}")
+            for room, size in zip((*slot.shape, *slot.strides), (*value.shape, *value.strides), strict=True):
+                if isinstance(room, Slot):
+                    store(arithmetic, room, size)
+                elif room != size:
+                    _refuse_other_structure()
+        case _:
+            _refuse_other_structure()
+
+
+def load(arithmetic: Arithmetic, slot: Value) -> Value:
+    """Return the value that stands in a room."""
+
+    def found(part: Value) -> Value:
+        if isinstance(part, Slot):
+            return Number(part.kind, arithmetic.text.value(f"load {part.kind.type}, ptr {part.pointer}"))
+        if isinstance(part, Array):
+            pointer = arithmetic.text.value(f"load ptr, ptr {part.pointer}")
+            return Array(pointer, tuple(map(found, part.shape)), tuple(map(found, part.strides)), part.element)
+        return part
+
+    return rebuilt(slot, found)
+
+
+def _in_lanes(value: Value) -> bool:
+    if isinstance(value, tuple):
+        return any(map(_in_lanes, value))
+    return isinstance(value, LaneIndex) or (isinstance(value, Number) and value.lanes > 0)
+
+
+def _refuse_other_structure() -> None:
+    message = "a name, or a result, is given values of different structure; give it numbers, or tuples of one length"
+    raise Refusal(message)

@@ -1,0 +1,151 @@
+"""Functions as text: their syntax trees, with the names that they use."""
+
+import ast
+import builtins
+import copy
+import inspect
+import linecache
+import textwrap
+import types
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from stylobate.engine.compiler.marks import is_fast
+from stylobate.engine.compiler.refusal import CompileError
+
+_Node = ast.FunctionDef | ast.Lambda
+_Functions = dict[tuple[str, int], tuple[list[_Node], types.CodeType | None]]
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A function as it is written.
+
+    Parameters
+    ----------
+    name, file
+        As messages name it.
+    arguments, body
+        Its syntax tree; a lambda returns its one expression.
+    signature
+        Its arguments with their default values.
+    names
+        What stands in its module, and in functions round it.
+    fast
+        Whether it is marked so.
+    """
+
+    name: str
+    file: str
+    arguments: ast.arguments
+    body: tuple[ast.stmt, ...]
+    signature: inspect.Signature
+    names: dict[str, Any]
+    fast: bool
+
+    def find(self, name: str) -> Any:
+        """Return what a name of the module means.
+
+        Raises
+        ------
+        KeyError
+            If nothing has this name.
+        """
+        return self.names[name] if name in self.names else vars(builtins)[name]
+
+
+def source_of(function: Callable[..., Any]) -> Source:
+    """Return a function as it is written.
+
+    Raises
+    ------
+    CompileError
+        If its text cannot be read, or is not that of the function.
+    """
+    plain = plain_function(function)
+    node = _node_of(plain.__code__)
+    names = plain.__globals__
+    if plain.__closure__:
+        names = {**names, **dict(zip(plain.__code__.co_freevars, map(_content, plain.__closure__), strict=True))}
+    body = (ast.Return(node.body, lineno=node.lineno),) if isinstance(node, ast.Lambda) else tuple(node.body)
+    return Source(
+        plain.__name__, plain.__code__.co_filename, node.args, body, inspect.signature(plain), names, is_fast(plain)
+    )
+
+
+def plain_function(function: Callable[..., Any]) -> types.FunctionType:
+    """Return the Python function behind a static method, or one that another library compiled."""
+    plain = inspect.unwrap(getattr(function, "py_func", function))
+    if not isinstance(plain, types.FunctionType):
+        message = f"{getattr(function, '__name__', repr(function))} is no function written in Python"
+        raise CompileError(message)
+    return plain
+
+
+def _content(cell: types.CellType) -> Any:
+    return cell.cell_contents
+
+
+def _node_of(code: types.CodeType) -> _Node:
+    linecache.checkcache(code.co_filename)
+    lines = linecache.getlines(code.co_filename)
+    place = (code.co_name, code.co_firstlineno)
+    nodes, written = _functions_of("".join(lines), code.co_filename).get(place) or _within_other_text(lines, *place)
+    if len(nodes) != 1 or written is None or not _is_same(written, code):
+        message = (
+            f"the text of {code.co_name} cannot be found in {code.co_filename}; write it in a file, or in a cell of a "
+            "notebook, one function to a line; if the file has changed since it was imported, start again"
+        )
+        raise CompileError(message)
+    return nodes[0]
+
+
+def _is_same(a: types.CodeType, b: types.CodeType) -> bool:
+    """Return whether two codes use the same names and constants in the same lines."""
+
+    def described(code: types.CodeType) -> tuple[object, ...]:
+        lines = [line and line - code.co_firstlineno for _, _, line in code.co_lines()]
+        constants = [repr(one) for one in code.co_consts if not isinstance(one, types.CodeType)]
+        return (code.co_names, code.co_varnames, constants, sorted({line for line in lines if line}))
+
+    return described(a) == described(b)
+
+
+@cache
+def _functions_of(text: str, file: str) -> _Functions:
+    """Return the functions of a text with their code, by name and first line."""
+    try:
+        tree, whole = ast.parse(text, file), compile(text, file, "exec", dont_inherit=True)
+    except SyntaxError:  # changed since it was imported, or a page with programs in it
+        return {}
+    codes = {(code.co_name, code.co_firstlineno): code for code in _codes_in(whole)}
+    nodes: dict[tuple[str, int], list[_Node]] = {}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef | ast.Lambda):
+            nodes.setdefault((getattr(node, "name", "<lambda>"), _first_line(node)), []).append(node)
+    return {place: (found, codes.get(place)) for place, found in nodes.items()}
+
+
+def _within_other_text(lines: list[str], name: str, first: int) -> tuple[list[_Node], types.CodeType | None]:
+    """Return a function that begins in this line, of a file that is no program as a whole."""
+    try:
+        text = textwrap.dedent("".join(inspect.getblock(lines[first - 1 :])))
+    except (IndexError, SyntaxError):
+        return [], None
+    nodes, code = _functions_of(text, "").get((name, 1), ([], None))
+    moved = [ast.increment_lineno(copy.deepcopy(node), first - 1) for node in nodes]
+    return moved, code
+
+
+def _codes_in(code: types.CodeType) -> Iterator[types.CodeType]:
+    yield code
+    for constant in code.co_consts:
+        if isinstance(constant, types.CodeType):
+            yield from _codes_in(constant)
+
+
+def _first_line(node: _Node) -> int:
+    decorators = node.decorator_list if isinstance(node, ast.FunctionDef) else []
+    return min([node.lineno, *(decorator.lineno for decorator in decorators)])

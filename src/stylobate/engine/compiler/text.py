@@ -1,0 +1,117 @@
+"""Functions and modules of LLVM, as text."""
+
+from dataclasses import dataclass, field
+
+
+@dataclass(slots=True, eq=False)
+class Block:
+    """Instructions that run one after the other; the last one leads elsewhere."""
+
+    label: str
+    lines: list[str] = field(default_factory=list)
+    ended: bool = False
+    reached: bool = False
+
+
+class FunctionText:
+    """The text of a function under construction; instructions are added to the block that was begun last."""
+
+    def __init__(self) -> None:
+        self._count = 0
+        self._allocations: list[str] = []
+        self._blocks = [Block("begin", reached=True)]
+        self.block = self._blocks[0]
+
+    def name(self) -> str:
+        """Return a new name."""
+        self._count += 1
+        return f"%v{self._count}"
+
+    def line(self, text: str) -> None:
+        """Add an instruction without a result."""
+        self.block.lines.append(text)
+
+    def value(self, text: str) -> str:
+        """Add an instruction and return the name of its result."""
+        name = self.name()
+        self.block.lines.append(f"{name} = {text}")
+        return name
+
+    def allocated(self, kind: str) -> str:
+        """Return a pointer to room for a value of this type, which lasts as long as the function runs."""
+        name = self.name()
+        self._allocations.append(f"{name} = alloca {kind}")
+        return name
+
+    def new_block(self) -> Block:
+        """Return a block to branch to; `begin` puts it behind the others."""
+        self._count += 1
+        return Block(f"b{self._count}")
+
+    def begin(self, block: Block) -> None:
+        """Add instructions to this block from now on; one that no other leads to has ended before it begins."""
+        self._blocks.append(block)
+        self.block = block
+        block.ended = not block.reached
+
+    def jump(self, block: Block) -> None:
+        """Go on at a block, unless this one has ended already."""
+        if not self.block.ended:
+            block.reached = True
+        self.end(f"br label %{block.label}")
+
+    def branch(self, condition: str, yes: Block, no: Block) -> None:
+        """Go on at one of two blocks."""
+        if not self.block.ended:
+            yes.reached = no.reached = True
+        self.end(f"br i1 {condition}, label %{yes.label}, label %{no.label}")
+
+    def end(self, line: str) -> None:
+        """End the block with this instruction, unless it has ended already."""
+        if not self.block.ended:
+            self.block.lines.append(line)
+            self.block.ended = True
+
+    def body(self) -> str:
+        """Return the text between the braces."""
+        out = ["entry:", *(f"  {line}" for line in self._allocations), f"  br label %{self._blocks[0].label}"]
+        for block in self._blocks:
+            out.append(f"{block.label}:")
+            out += [f"  {line}" for line in block.lines]
+            if not (block.ended and block.reached):
+                out.append("  unreachable")
+        return "\n".join(out)
+
+
+class ModuleText:
+    """The text of a module under construction."""
+
+    def __init__(self) -> None:
+        self._declared: dict[str, str] = {}
+        self._constants: dict[tuple[str, ...], str] = {}
+        self._functions: list[str] = []
+
+    def declared(self, name: str, result: str, arguments: list[str]) -> str:
+        """Return the name of a function that is defined elsewhere."""
+        self._declared[name] = f"declare {result} @{name}({', '.join(arguments)})"
+        return f"@{name}"
+
+    def table(self, numbers: list[str]) -> str:
+        """Return a pointer to constant numbers in a row, given as texts with their type."""
+        key = tuple(numbers)
+        if key not in self._constants:
+            self._constants[key] = f"@table{len(self._constants)}"
+        return self._constants[key]
+
+    def define(self, head: str, body: str) -> None:
+        """Add a function."""
+        self._functions.append(f"define {head} #0 {{\n{body}\n}}")
+
+    def text(self, attributes: str) -> str:
+        """Return the module, its functions with these attributes."""
+        tables = (
+            f"{name} = internal unnamed_addr constant [{len(numbers)} x double] [{', '.join(numbers)}]"
+            for numbers, name in self._constants.items()
+        )
+        parts = [*tables, *self._declared.values(), *self._functions, f"attributes #0 = {{ {attributes} }}"]
+        return "\n\n".join(parts) + "\n"

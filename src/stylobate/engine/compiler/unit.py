@@ -1,0 +1,237 @@
+"""A unit of compiled code: functions, each of them once for every structure of arguments that it is called with."""
+
+import ast
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+from stylobate.engine.compiler.arithmetic import Arithmetic
+from stylobate.engine.compiler.body import Body
+from stylobate.engine.compiler.refusal import CompileError, Refusal
+from stylobate.engine.compiler.slots import WiderKindError
+from stylobate.engine.compiler.sources import Source, plain_function, source_of
+from stylobate.engine.compiler.text import FunctionText, ModuleText
+from stylobate.engine.compiler.values import Array, Element, Kind, Number, Value, parts, rebuilt
+
+
+@dataclass(frozen=True, slots=True)
+class ArrayArgument:
+    """An array that is passed to compiled code, its elements without gaps.
+
+    Parameters
+    ----------
+    shape
+        Lengths; None where they are told at each call.
+    element
+        What it holds.
+    """
+
+    shape: tuple[int | None, ...]
+    element: Element = Element.FLOAT
+
+
+@dataclass(frozen=True, slots=True)
+class _Made:
+    name: str
+    result: Value
+
+
+class Unit:
+    """Functions that are compiled together.
+
+    Parameters
+    ----------
+    lanes
+        Numbers in a vector; 0 makes loops over lanes one pass after the other.
+    fast
+        Functions whose arithmetic is fast as if they were marked so.
+    """
+
+    def __init__(self, *, lanes: int, fast: Collection[Callable[..., Any]] = ()) -> None:
+        self.module = ModuleText()
+        self.lanes = lanes
+        self._fast = {plain_function(function) for function in fast}
+        self._sources: dict[Callable[..., Any], Source] = {}
+        self._made: dict[tuple[Any, ...], _Made] = {}
+        self._within: list[Callable[..., Any]] = []
+
+    def export(self, function: Callable[..., Any], name: str, arguments: Sequence[ArrayArgument | Kind]) -> None:
+        """Add a function that is called from outside: with numbers, and pointers followed by lengths not known before.
+
+        It returns a number of 64 bits: whole, or whether something holds.
+        """
+        text = FunctionText()
+        head: list[str] = []
+        arithmetic = Arithmetic(self.module, text, fast=False)
+        values = [_argument(arithmetic, argument, head) for argument in arguments]
+        result = _called(arithmetic, self._specialised(function, values, fast=False), values)
+        text.end("ret i64 0" if result is None else f"ret {arithmetic.number(result, Kind.INTEGER).operand}")
+        self.module.define(f"i64 @{name}({', '.join(head)})", text.body())
+
+    def call(
+        self, caller: Body, function: Callable[..., Any], values: list[Value], keywords: Mapping[str, Value]
+    ) -> Value:
+        """Return the result of a function that another one calls: a call, or in lanes its instructions in place."""
+        try:
+            source = self._source(function)
+        except CompileError as error:
+            raise Refusal(error) from error
+        arithmetic = caller.arithmetic
+        fast = bool(arithmetic.flags)
+        bound = _bound(source, values, keywords)
+        if not arithmetic.lanes:
+            ordered = list(bound.values())
+            return _called(arithmetic, self._specialised(function, ordered, fast=fast), ordered)
+        with self._entered(plain_function(function)):
+            body = Body(self, source, arithmetic, {})
+            body.run(bound)
+        return body.finished()
+
+    def _source(self, function: Callable[..., Any]) -> Source:
+        plain = plain_function(function)
+        if plain not in self._sources:
+            self._sources[plain] = source_of(plain)
+        return self._sources[plain]
+
+    def _specialised(self, function: Callable[..., Any], values: Sequence[Value], *, fast: bool) -> _Made:
+        plain = plain_function(function)
+        key = (plain, fast, *map(_structure, values))
+        if key not in self._made:
+            source = self._source(function)
+            with self._entered(plain):
+                self._made[key] = self._compiled(source, values, fast=fast or source.fast or plain in self._fast)
+        return self._made[key]
+
+    def _compiled(self, source: Source, values: Sequence[Value], *, fast: bool) -> _Made:
+        kinds: dict[str, Kind] = {}
+        while True:
+            text, head = FunctionText(), list[str]()
+            arguments = [_parameter(value, head) for value in values]
+            body = Body(self, source, Arithmetic(self.module, text, fast=fast), kinds)
+            try:
+                body.run(dict(zip(source.signature.parameters, arguments, strict=True)))
+            except WiderKindError as error:
+                kinds[error.name] = error.kind
+                continue
+            result = body.finished()
+            name = f"{source.name}.{len(self._made)}.{len(self._within)}"
+            self.module.define(f'internal {_type_of(result)} @"{name}"({", ".join(head)})', _with_return(text, result))
+            return _Made(name, result)
+
+    @contextmanager
+    def _entered(self, function: Callable[..., Any]) -> Iterator[None]:
+        if function in self._within:
+            message = f"{function.__name__} calls itself; write it as a loop"
+            raise Refusal(message)
+        self._within.append(function)
+        try:
+            yield
+        finally:
+            self._within.pop()
+
+
+def _argument(arithmetic: Arithmetic, argument: ArrayArgument | Kind, head: list[str]) -> Value:
+    """Return what is passed from outside; its number, or pointer and lengths, are added to the head."""
+    if isinstance(argument, Kind):
+        return _parameter(Number(argument, ""), head)
+    pointer = f"%x{len(head)}"
+    head.append(f"ptr {pointer}")
+    shape: list[Value] = []
+    for length in argument.shape:
+        if length is None:
+            shape.append(Number(Kind.INTEGER, f"%x{len(head)}"))
+            head.append(shape[-1].operand)
+        else:
+            shape.append(length)
+    strides: list[Value] = [1]
+    for length in reversed(shape[1:]):
+        strides.insert(0, arithmetic.binary(ast.Mult(), strides[0], length))
+    return Array(pointer, tuple(shape), tuple(strides), argument.element)
+
+
+def _parameter(value: Value, head: list[str]) -> Value:
+    """Return an argument as the called function sees it; what is passed is added to its head."""
+
+    def passed(part: Value) -> Value:
+        if isinstance(part, Number):
+            number = Number(part.kind, f"%x{len(head)}")
+            head.append(number.operand)
+            return number
+        if isinstance(part, Array):
+            pointer = f"%x{len(head)}"
+            head.append(f"ptr {pointer}")
+            return Array(pointer, tuple(map(passed, part.shape)), tuple(map(passed, part.strides)), part.element)
+        return part
+
+    return rebuilt(value, passed)
+
+
+def _operands(value: Value) -> Iterator[str]:
+    """Yield what is passed for an argument, in the order of `_parameter`."""
+    if isinstance(value, Number):
+        yield value.operand
+    elif isinstance(value, Array):
+        yield f"ptr {value.pointer}"
+        for size in (*value.shape, *value.strides):
+            yield from _operands(size)
+    elif isinstance(value, tuple):
+        for part in value:
+            yield from _operands(part)
+
+
+def _structure(value: Value) -> Any:
+    """Return what sets an argument apart from others for which a function is compiled anew."""
+    match value:
+        case Number():
+            return value.kind
+        case Array():
+            return (*map(_structure, value.shape), *map(_structure, value.strides), value.element)
+        case tuple():
+            return (type(value), *map(_structure, value))
+        case bool() | int() | float() | str():
+            return (type(value), repr(value))
+        case _:
+            return (type(value), id(value))
+
+
+def _bound(source: Source, values: list[Value], keywords: Mapping[str, Value]) -> dict[str, Value]:
+    """Return the arguments of a call by name, defaults among them."""
+    try:
+        bound = source.signature.bind(*values, **keywords)
+    except TypeError as error:
+        message = f"{source.name}: {error}"
+        raise Refusal(message) from error
+    bound.apply_defaults()
+    return dict(bound.arguments)
+
+
+def _called(arithmetic: Arithmetic, made: _Made, values: Sequence[Value]) -> Value:
+    operands = ", ".join(operand for value in values for operand in _operands(value))
+    kind = _type_of(made.result)
+    call = f'call {kind} @"{made.name}"({operands})'
+    if kind == "void":
+        arithmetic.text.line(call)
+        return None
+    result = arithmetic.text.value(call)
+    numbers = iter(range(len(list(parts(made.result)))))
+
+    def taken(part: Number) -> Number:
+        text = arithmetic.text.value(f"extractvalue {kind} {result}, {next(numbers)}")
+        return Number(part.kind, text)
+
+    return rebuilt(made.result, taken)
+
+
+def _type_of(result: Value) -> str:
+    types = [number.type for number in parts(result)]
+    return f"{{ {', '.join(types)} }}" if types else "void"
+
+
+def _with_return(text: FunctionText, result: Value) -> str:
+    kind = _type_of(result)
+    whole = "poison"
+    for position, number in enumerate(parts(result)):
+        whole = text.value(f"insertvalue {kind} {whole}, {number.operand}, {position}")
+    text.end("ret void" if kind == "void" else f"ret {kind} {whole}")
+    return text.body()

@@ -1,1 +1,0 @@
-"""Compiled modules: written for a model, compiled once in a process of their own, kept on disk."""

@@ -1,0 +1,187 @@
+"""What is not of the accepted language is refused with file, line and a remedy."""
+
+import re
+
+import numpy as np
+import pytest
+
+from stylobate.engine.compiler.marks import lanes
+from stylobate.engine.compiler.refusal import CompileError
+
+from .calling import text_of
+
+X = np.ones(8)
+UNKNOWN = {"a": 1.0}
+
+
+def comprehension(x):
+    x[0] = sum([x[k] for k in range(3)])
+
+
+def a_dictionary(x):
+    x[0] = UNKNOWN["a"]
+
+
+def of_another_kind(x):
+    y = 1.0
+    if x[0] > 0.0:
+        y = (1.0, 2.0)
+    x[1] = y
+
+
+def text(x):
+    y = 0.0
+    if x[0] > 0.0:
+        y = "a"
+    x[1] = y
+
+
+def not_assigned(x):
+    x[0] = y  # noqa: F821
+    y = 1.0  # noqa: F841
+
+
+def not_defined(x):
+    x[0] = nothing_here(x[0])  # noqa: F821
+
+
+def recursive(x):
+    deep(x, 1.0)
+
+
+def deep(x, a):
+    if a > 0.0:
+        deep(x, a - x[0])
+
+
+def opens_a_file(x):
+    open("x")  # noqa: PTH123, SIM115
+    x[0] = 1.0
+
+
+def some_ways(x):
+    x[0] = sometimes(x[0])
+
+
+def sometimes(a):  # noqa: RET503
+    if a > 0.0:
+        return 1.0
+
+
+def wrong_arguments(x):
+    x[0] = sometimes(x[0], 2.0)
+
+
+def condition_in_lanes(x):
+    for i in lanes(8):
+        if x[i] > 0.0:
+            x[i] = 1.0
+
+
+def number_of_a_lane(x):
+    for i in lanes(8):
+        x[i] = i
+
+
+def first_axis(x):
+    for i in lanes(8):
+        x[i] = np.zeros((8, 2))[i, 0]
+
+
+def lanes_into_one_place(x):
+    for i in lanes(8):
+        x[0] = x[i]
+
+
+def uneven(x):
+    for i in lanes(7):
+        x[i] = 1.0
+
+
+def after_the_lanes(x):
+    for i in lanes(8):
+        a = x[i]
+    x[0] = a
+
+
+def fraction_as_index(x):
+    x[0] = x[1.5]
+
+
+def too_many_indices(x):
+    x[0] = x[0, 1]
+
+
+def whole_of_a_fraction(x):
+    x[0] = x[int(x[0] * 1.0)] + x[x[0] * 1.0]
+
+
+def steps(x):
+    for k in range(0, 8, 2):
+        x[k] = 1.0
+
+
+def with_a_block(x):
+    with x[0]:
+        pass
+
+
+def of_unknown_length(x):
+    a, b = x
+    x[0] = a + b
+
+
+REFUSED = {
+    comprehension: "ListComp is not compiled; write it with loops",
+    a_dictionary: "is no element of an array or a tuple",
+    of_another_kind: "values of different structure",
+    text: "a number, a view into an array, or a tuple of them|different structure",
+    not_assigned: "y has no value here",
+    not_defined: "nothing_here is not defined",
+    recursive: "deep calls itself; write it as a loop",
+    opens_a_file: "open is no function written in Python",
+    some_ways: "some ways through it return a value, others none",
+    wrong_arguments: "too many positional arguments",
+    condition_in_lanes: "a condition on lanes; write a if condition else b",
+    number_of_a_lane: "a number is wanted, not the index of a loop over lanes",
+    first_axis: "belongs in the last axis",
+    lanes_into_one_place: "lanes are put into one place",
+    uneven: "a multiple of 8 passes",
+    after_the_lanes: "a has no value here, or one in lanes only",
+    fraction_as_index: "an index is a whole number, not 1.5",
+    too_many_indices: "an array of 1 axes is asked for with 2 indices",
+    whole_of_a_fraction: r"a whole number is wanted, not one with a fraction; write int\(...\)",
+    steps: "a range whose step is not 1",
+    with_a_block: "With is not compiled",
+    of_unknown_length: "only a row of known length",
+}
+
+
+@pytest.mark.parametrize("function", REFUSED, ids=lambda function: function.__name__)
+def test_what_is_not_compiled_is_refused_with_its_line(function):
+    with pytest.raises(CompileError, match=REFUSED[function]) as caught:
+        text_of(function, X)
+    message = str(caught.value)
+    assert "\n" not in message
+    assert re.match(rf"{re.escape(__file__)}:\d+: in \w+: ", message)
+
+
+def test_a_function_without_text_is_refused_with_a_remedy():
+    names = {}
+    exec("def hidden(x):\n    x[0] = 1.0\n", names)  # noqa: S102
+    with pytest.raises(CompileError, match="the text of hidden cannot be found in <string>; write it in a file"):
+        text_of(names["hidden"], X)
+
+
+def test_a_file_that_changed_after_it_was_imported_is_refused(tmp_path, monkeypatch):
+    path = tmp_path / "changing_functions.py"
+    path.write_text("def changed(x):\n    x[0] = 1.0\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    from changing_functions import changed  # noqa: PLC0415
+
+    path.write_text("ONE = 1.0\n\n\ndef changed(x):\n    x[0] = 2.0 * ONE\n")
+    with pytest.raises(CompileError, match="if the file has changed since it was imported, start again"):
+        text_of(changed, X)
+    path.write_text("def changed(x):\n    x[0] = 2.0\n\n")
+    with pytest.raises(CompileError, match="if the file has changed since it was imported, start again"):
+        text_of(changed, X)
