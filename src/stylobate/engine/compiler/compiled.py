@@ -70,10 +70,10 @@ class Compiled:
         """The module, of plain Python."""
         return written_module(f"{self._words}_{id(self)}", self.text, self.functions)
 
-    def unit(self) -> Unit:
+    def unit(self, *, exact: bool = False) -> Unit:
         """Return a unit to which functions of the module can be added."""
         fast = [function for name, function in self.functions.items() if name in self.fast]
-        return Unit(lanes=machine.lanes(), fast=fast)
+        return Unit(lanes=machine.lanes(), fast=fast, exact=exact)
 
     @property
     def _words(self) -> str:

@@ -46,11 +46,13 @@ class Unit:
         Numbers in a vector; 0 makes loops over lanes one pass after the other.
     fast
         Functions whose arithmetic is fast as if they were marked so.
+    exact
+        Whether no arithmetic is fast: then numbers are those of plain Python.
     """
 
-    def __init__(self, *, lanes: int, fast: Collection[Callable[..., Any]] = ()) -> None:
+    def __init__(self, *, lanes: int, fast: Collection[Callable[..., Any]] = (), exact: bool = False) -> None:
         self.module = ModuleText()
-        self.lanes = lanes
+        self.lanes, self.exact = lanes, exact
         self._fast = {plain_function(function) for function in fast}
         self._sources: dict[Callable[..., Any], Source] = {}
         self._made: dict[tuple[Any, ...], _Made] = {}
@@ -108,7 +110,7 @@ class Unit:
         while True:
             text, head = FunctionText(), list[str]()
             arguments = [_parameter(value, head) for value in values]
-            body = Body(self, source, Arithmetic(self.module, text, fast=fast), kinds)
+            body = Body(self, source, Arithmetic(self.module, text, fast=fast and not self.exact), kinds)
             try:
                 body.run(dict(zip(source.signature.parameters, arguments, strict=True)))
             except WiderKindError as error:
