@@ -11,7 +11,7 @@ import pytest
 import stylobate
 from stylobate.base_motions.declared import MOTIONS, motion_quantities
 from stylobate.column import SHAPES
-from stylobate.config.run_numbers import SharedByRuns, SingleRun, Stroboscopic, numbers_of
+from stylobate.config.run_numbers import run_numbers
 from stylobate.models.declared import MODELS, column_quantities, model_quantities
 
 ROOT = Path(stylobate.__file__).parent
@@ -19,7 +19,7 @@ NUMBERS = {
     *motion_quantities(),
     *model_quantities(),
     *column_quantities(),
-    *(name for group in (SingleRun, SharedByRuns, Stroboscopic) for name in numbers_of(group)),
+    *run_numbers(),
 }
 KINDS = {*MODELS, *MOTIONS, *SHAPES}
 
@@ -32,7 +32,6 @@ REGISTRIES = {"base_motions/declared.py", "models/declared.py", "column.py"}
 REMAINING: dict[str, int] = {
     "base_motions/base.py": 1,
     "cli/parts.py": 2,
-    "config/many_runs.py": 2,
     "config/response.py": 2,
     "conveying/slip_limits.py": 1,
     "earthquakes/assessment/sliding.py": 1,
