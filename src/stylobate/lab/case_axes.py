@@ -9,10 +9,12 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate import config
+from stylobate.base_motions.declared import motion_quantities
 from stylobate.conveying.contact_maps import class_shares
-from stylobate.engine.parameters import COLUMN_NAMES, present_value
+from stylobate.engine.parameters import COLUMN_NAMES, MOTION_NAMES, present_value
 from stylobate.errors import UnsupportedError
 from stylobate.models import Model
+from stylobate.models.declared import column_quantities, model_quantities
 from stylobate.studies.maps.overturning import outcome_shares
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
@@ -20,20 +22,20 @@ from stylobate.studies.sweeps.labelled import labelled_sweep
 
 Floats = npt.NDArray[np.float64]
 
+_PATHS_AND_RATES = ("m", "m/s", "Hz", "1/min")
+
 _NUMBERS = {
-    "column": ("radius", "height", "inner_radius", "top_radius", "density", "inertia_ratio", "axial_ratio"),
-    "motion": ("diameter", "rpm", "stroke", "frequency", "velocity"),
+    # A sweep varies a radius without the mass, which depends on it in a body of a described shape.
+    "column": {name: one for name, one in column_quantities().items() if name not in COLUMN_NAMES or name == "radius"},
+    # From paths and rates acceleration and angular frequency follow, which a sweep knows.
+    "motion": {
+        name: one for name, one in motion_quantities().items() if one.unit in _PATHS_AND_RATES and one.components == 1
+    },
 }
 """What an axis can be besides the quantities of sweeps, by the part that it describes."""
 
-_UNITS = {
-    **dict.fromkeys(("radius", "height", "inner_radius", "top_radius", "diameter", "stroke"), "m"),
-    **dict.fromkeys(("inertia_ratio", "axial_ratio"), "1"),
-    "density": "kg m-3",
-    "rpm": "min-1",
-    "frequency": "Hz",
-    "velocity": "m s-1",
-}
+VARIED = frozenset({*COLUMN_NAMES, *MOTION_NAMES, *model_quantities(), *_NUMBERS["column"], *_NUMBERS["motion"]})
+"""The numbers of columns, models and base motions that a map can vary."""
 
 _BODY = tuple(name for name in COLUMN_NAMES if name not in ("slenderness", "size"))
 _MOVED = ("angular_frequency", "acceleration")
@@ -41,7 +43,7 @@ _MOVED = ("angular_frequency", "acceleration")
 
 def units_of(name: str) -> str:
     """Return the unit of a number that describes a case."""
-    return _UNITS[name]
+    return next(part[name].cf_units for part in _NUMBERS.values() if name in part)
 
 
 def case_numbers(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[str, tuple[str, ...]]:

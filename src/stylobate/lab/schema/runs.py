@@ -1,8 +1,10 @@
 """What is answered of a run: its outcome, measures and history, and how it is drawn."""
 
+from stylobate.column import Column
 from stylobate.errors import Outcome
 from stylobate.lab.schema.notation import (
     Schema,
+    declared,
     exactly,
     flag,
     listed,
@@ -15,7 +17,10 @@ from stylobate.lab.schema.notation import (
     unless_none,
     word,
 )
+from stylobate.models.declared import column_quantities
 from stylobate.models.sliding.phases import Contact
+from stylobate.plots.shape import Shape
+from stylobate.quantities import parameters_of
 
 _ANY_NUMBER: Schema = {"type": ["number", "null"]}
 
@@ -23,18 +28,21 @@ _CONTACTS = {kind.value: kind.name.lower() for kind in Contact}
 
 _OUTCOME = word("the outcome", [one.name for one in Outcome])
 
+OF_ANY_COLUMN = {
+    **{
+        name: declared(one)
+        for name, one in column_quantities().items()
+        if hasattr(Column, name) and name != "height"  # which not all have
+    },
+    "frequency_scale": number("ω0 [rad/s]"),
+    "frequency_parameter": number("p of the literature [rad/s]"),
+}
+"""The attributes of a column that are answered."""
+
 _COLUMN = table(
     "The numbers of the column that decide.",
     {
-        "radius": number("of the base [m]"),
-        "mass_height": number("height of the centre of mass [m]"),
-        "mass": number("[kg]"),
-        "slenderness": number("c = radius over mass_height"),
-        "inertia_ratio": number("κ = m h²/J0"),
-        "axial_ratio": number("I_a/(m r²)"),
-        "frequency_scale": number("ω0 [rad/s]"),
-        "frequency_parameter": number("p of the literature [rad/s]"),
-        "gravity": number("[m/s²]"),
+        **OF_ANY_COLUMN,
         "releasing_acceleration": number("c g, the horizontal acceleration that tips the standing column [m/s²]"),
     },
 )
@@ -108,13 +116,7 @@ _DRAWN = table(
     {
         "column": table(
             "The body.",
-            {
-                "radius": number("of the base [m]"),
-                "top_radius": number("[m]"),
-                "height": number("[m]"),
-                "mass_height": number("[m]"),
-                "slenderness": number("c"),
-            },
+            {name: declared(one.quantity) for name, one in parameters_of(Shape).items()},
             others={},
         ),
         "plane": table("", {"incline": number("[rad]"), "incline_direction": number("[rad]")}, others={}),
