@@ -14,6 +14,7 @@ from stylobate.config.description import Config
 from stylobate.config.models import DESCRIBED_MODELS
 from stylobate.config.motions import MotionConfig, is_to_end
 from stylobate.errors import Outcome
+from stylobate.lab.case_axes import VARIED
 from stylobate.lab.limits import Limits
 from stylobate.lab.parameter_info import NUMBERS, Number
 from stylobate.lab.presets import presets
@@ -73,6 +74,7 @@ def _parameter(name: str, field: Any) -> dict[str, Any]:
         "about": number.about,
         "default": list(default) if isinstance(default, tuple) else default,
         "needed": field.is_required(),
+        "varies": name in VARIED,
         "from": number.first,
         "to": number.last,
         **({"choices": choices} if choices else {}),

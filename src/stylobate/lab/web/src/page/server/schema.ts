@@ -278,6 +278,8 @@ export type Kind = {
     readonly default: unknown;
     /** whether it must be given */
     readonly needed: boolean;
+    /** whether maps can vary it */
+    readonly varies: boolean;
     /** lower end of a slider; null where none serves all */
     readonly from: number | null;
     /** its upper end */
