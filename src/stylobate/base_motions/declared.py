@@ -81,12 +81,9 @@ def kinds_with_response() -> tuple[str, ...]:
 @cache
 def kinds_by_acceleration() -> tuple[str, ...]:
     """Return those kinds with response that are horizontal, and whose acceleration does not follow from a path."""
-    horizontal = len("xy")
-    return tuple(
-        kind
-        for kind in kinds_with_response()
-        if all(
-            one.quantity.unit != "m" and one.quantity.components <= horizontal
-            for one in parameters_of(MOTIONS[kind]).values()
-        )
-    )
+
+    def fits(quantity: Quantity) -> bool:
+        return quantity.unit != "m" and quantity.components <= len("xy")
+
+    numbers = {kind: parameters_of(MOTIONS[kind]).values() for kind in kinds_with_response()}
+    return tuple(kind for kind, declared in numbers.items() if all(fits(one.quantity) for one in declared))

@@ -2,10 +2,12 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 from stylobate.cli.declarations import MAX_NAMED_KINDS, Group, Option, listed, text_of, type_of
 from stylobate.cli.own_classes import Chosen
+from stylobate.kinds import loaded
 from stylobate.quantities import Parameter, parameters_of
 
 # Two numbers of these names have one option: the model takes it if it has the number, the run otherwise.
@@ -28,65 +30,42 @@ class Part:
         The option that chooses it, without hyphens.
     noun
         As in messages.
-    registry
-        Gives the class or constructor of each kind.
-    kinds_in_files
-        Gives the kinds whose numbers no options state.
+    place
+        Where the class or constructor of each kind is registered; imported when it is needed.
     """
 
     table: str
     tag: str
     flag: str
     noun: str
-    registry: Callable[[], Mapping[str, Callable[..., Any]]]
-    kinds_in_files: Callable[[], tuple[str, ...]] = tuple
+    place: str
 
     @property
     def kinds(self) -> tuple[str, ...]:
         """All kinds that the package has."""
-        return tuple(self.registry())
+        return tuple(loaded(self.place))
 
     def makers(self) -> dict[str, Callable[..., Any]]:
         """Return the class or constructor of each kind that has declared numbers and options for them."""
-        others = self.kinds_in_files()
-        return {kind: make for kind, make in self.registry().items() if kind not in others and parameters_of(make)}
+        others = kinds_in_files()
+        return {kind: make for kind, make in loaded(self.place).items() if kind not in others and parameters_of(make)}
 
 
-def _shapes() -> Mapping[str, Callable[..., Any]]:
-    from stylobate.column import SHAPES  # noqa: PLC0415  heavy imports wait until they are needed
-
-    return SHAPES
+_MOTIONS = "stylobate.base_motions.declared"
 
 
-def _models() -> Mapping[str, Callable[..., Any]]:
-    from stylobate.models.declared import MODELS  # noqa: PLC0415
-
-    return MODELS
-
-
-def _motions() -> Mapping[str, Callable[..., Any]]:
-    from stylobate.base_motions.declared import MOTIONS  # noqa: PLC0415
-
-    return MOTIONS
+def _motions_by(function: str) -> tuple[str, ...]:
+    kinds: tuple[str, ...] = loaded(f"{_MOTIONS}:{function}")()
+    return kinds
 
 
-def kinds_in_files() -> tuple[str, ...]:
-    """Return the kinds of base motion that consist of others: no options state their numbers."""
-    from stylobate.base_motions.declared import composite_kinds  # noqa: PLC0415
-
-    return composite_kinds()
-
-
-def _by_acceleration() -> tuple[str, ...]:
-    from stylobate.base_motions.declared import kinds_by_acceleration  # noqa: PLC0415
-
-    return kinds_by_acceleration()
-
+kinds_in_files = partial(_motions_by, "composite_kinds")
+"""Returns the kinds of base motion that consist of others: no options state their numbers."""
 
 PARTS = {
-    "column": Part("column", "shape", "shape", "column shape", _shapes),
-    "model": Part("model", "kind", "model", "model", _models),
-    "motion": Part("motion", "kind", "motion", "base motion", _motions, kinds_in_files),
+    "column": Part("column", "shape", "shape", "column shape", "stylobate.column:SHAPES"),
+    "model": Part("model", "kind", "model", "model", "stylobate.models.declared:MODELS"),
+    "motion": Part("motion", "kind", "motion", "base motion", f"{_MOTIONS}:MOTIONS"),
 }
 
 
@@ -113,12 +92,12 @@ def part_group(
     """
 
     def made(chosen: Chosen) -> Iterable[Option]:
-        makers, in_files = part.makers(), part.kinds_in_files()
+        makers, in_files = part.makers(), kinds_in_files()
         if part.table in chosen.classes:
             makers[chosen.kinds[part.table]] = chosen.classes[part.table]
         known = part.kinds if kinds is None else kinds()
         offered = tuple(kind for kind in known if kind not in (*in_files, *left_out))
-        others = f"; in a file also {listed(in_files)}" if in_files and kinds is None else ""
+        others = f"; in a file also {listed(in_files)}" if part.table == "motion" and kinds is None else ""
         text = f"{listed(offered)}{default}{others}"
         yield Option(part.flag, text, str, panel=panel, part=part.table, number=part.tag, kinds=offered)
         shown = {*offered, *chosen.kinds.values()}
@@ -160,9 +139,9 @@ MOTION = part_group(PARTS["motion"], "Base motion", default=" (rest by default),
 MOTION_WITHOUT_RECORDS = part_group(
     PARTS["motion"], "Base motion", default=" (rest by default), or FILE.py:CLASS", left_out=("record",)
 )
-HORIZONTAL_MOTION = part_group(PARTS["motion"], "Base motion", kinds=_by_acceleration).without(
-    "angular_frequency", "start_phase", "ramp"
-)
+HORIZONTAL_MOTION = part_group(
+    PARTS["motion"], "Base motion", kinds=partial(_motions_by, "kinds_by_acceleration")
+).without("angular_frequency", "start_phase", "ramp")
 
 
 def joined(groups: Iterable[Iterable[Option]]) -> list[Option]:
