@@ -9,12 +9,11 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate import config
-from stylobate.base_motions.declared import motion_quantities
 from stylobate.conveying.contact_maps import class_shares
-from stylobate.engine.parameters import COLUMN_NAMES, MOTION_NAMES, present_value
+from stylobate.engine.parameters import COLUMN_NAMES, present_value
 from stylobate.errors import UnsupportedError
+from stylobate.lab.parameter_info import CASE_NUMBERS
 from stylobate.models import Model
-from stylobate.models.declared import column_quantities, model_quantities
 from stylobate.studies.maps.overturning import outcome_shares
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
@@ -22,28 +21,13 @@ from stylobate.studies.sweeps.labelled import labelled_sweep
 
 Floats = npt.NDArray[np.float64]
 
-_PATHS_AND_RATES = ("m", "m/s", "Hz", "1/min")
-
-_NUMBERS = {
-    # A sweep varies a radius without the mass, which depends on it in a body of a described shape.
-    "column": {name: one for name, one in column_quantities().items() if name not in COLUMN_NAMES or name == "radius"},
-    # From paths and rates acceleration and angular frequency follow, which a sweep knows.
-    "motion": {
-        name: one for name, one in motion_quantities().items() if one.unit in _PATHS_AND_RATES and one.components == 1
-    },
-}
-"""What an axis can be besides the quantities of sweeps, by the part that it describes."""
-
-VARIED = frozenset({*COLUMN_NAMES, *MOTION_NAMES, *model_quantities(), *_NUMBERS["column"], *_NUMBERS["motion"]})
-"""The numbers of columns, models and base motions that a map can vary."""
-
 _BODY = tuple(name for name in COLUMN_NAMES if name not in ("slenderness", "size"))
 _MOVED = ("angular_frequency", "acceleration")
 
 
 def units_of(name: str) -> str:
     """Return the unit of a number that describes a case."""
-    return next(part[name].cf_units for part in _NUMBERS.values() if name in part)
+    return next(part[name].cf_units for part in CASE_NUMBERS.values() if name in part)
 
 
 def case_numbers(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[str, tuple[str, ...]]:
@@ -54,7 +38,7 @@ def case_numbers(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[
     given = values["column"].get("shape") == "given"
     found = {
         part: tuple(name for name in over if name in values.get(part, {}))
-        for part, names in _NUMBERS.items()
+        for part, names in CASE_NUMBERS.items()
         if any(name in values.get(part, {}) for name in over if name in names)
     }
     return {part: names for part, names in found.items() if not (part == "column" and given)}

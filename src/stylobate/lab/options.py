@@ -14,9 +14,8 @@ from stylobate.config.description import Config
 from stylobate.config.models import DESCRIBED_MODELS
 from stylobate.config.motions import MotionConfig, is_to_end
 from stylobate.errors import Outcome
-from stylobate.lab.case_axes import VARIED
 from stylobate.lab.limits import Limits
-from stylobate.lab.parameter_info import NUMBERS, Number
+from stylobate.lab.parameter_info import NUMBERS, VARIED, Number
 from stylobate.lab.presets import presets
 
 

@@ -1,7 +1,7 @@
 """What is answered of a run: its outcome, measures and history, and how it is drawn."""
 
-from stylobate.column import Column
 from stylobate.errors import Outcome
+from stylobate.lab.parameter_info import OF_ANY_COLUMN
 from stylobate.lab.schema.notation import (
     Schema,
     declared,
@@ -17,7 +17,6 @@ from stylobate.lab.schema.notation import (
     unless_none,
     word,
 )
-from stylobate.models.declared import column_quantities
 from stylobate.models.sliding.phases import Contact
 from stylobate.plots.shape import Shape
 from stylobate.quantities import parameters_of
@@ -28,21 +27,10 @@ _CONTACTS = {kind.value: kind.name.lower() for kind in Contact}
 
 _OUTCOME = word("the outcome", [one.name for one in Outcome])
 
-OF_ANY_COLUMN = {
-    **{
-        name: declared(one)
-        for name, one in column_quantities().items()
-        if hasattr(Column, name) and name != "height"  # which not all have
-    },
-    "frequency_scale": number("ω0 [rad/s]"),
-    "frequency_parameter": number("p of the literature [rad/s]"),
-}
-"""The attributes of a column that are answered."""
-
 _COLUMN = table(
     "The numbers of the column that decide.",
     {
-        **OF_ANY_COLUMN,
+        **{name: declared(one) for name, one in OF_ANY_COLUMN.items()},
         "releasing_acceleration": number("c g, the horizontal acceleration that tips the standing column [m/s²]"),
     },
 )
