@@ -1,33 +1,70 @@
-"""Write the TypeScript types of the laboratory's answers from its OpenAPI document: `python tools/page_types.py`.
+"""Write what the laboratory's page takes from the package, in TypeScript: `python tools/page_types.py`.
 
-With `--check` nothing is written, and the exit status is 1 if the file is not what would be written.
+These are the types of the server's answers, from its OpenAPI document, and names and kinds, from their declarations.
+With `--check` nothing is written, and the exit status is 1 if a file is not what would be written.
 """
 
+import json
 import sys
 from pathlib import Path
 from typing import Any
 
+from stylobate.base_motions import Harmonic
+from stylobate.base_motions.declared import MOTIONS, kinds_by_acceleration, kinds_with_response
+from stylobate.config.run_numbers import Start, numbers_of, run_numbers
 from stylobate.lab.limits import Limits
 from stylobate.lab.schema import schema
 from stylobate.lab.schema.curves import CURVES
 from stylobate.lab.schema.jobs import JOBS
 from stylobate.lab.schema.options import CATALOGUE
 from stylobate.lab.schema.runs import RUNS
+from stylobate.models.declared import MODELS
+from stylobate.quantities import parameters_of
 
-TARGET = Path(__file__).parents[1] / "src/stylobate/lab/web/src/page/server/schema.ts"
+FOLDER = Path(__file__).parents[1] / "src/stylobate/lab/web/src/page/server"
 _HEAD = "/** Types of the server's answers, written by tools/page_types.py from its OpenAPI document. Do not edit. */\n"
+_HEAD_OF_NAMES = "/** Names and kinds, written by tools/page_types.py from their declarations. Do not edit. */\n"
+_RATES = ("rad/s", "Hz", "1/min")
 
 
 def main() -> int:
-    """Write the file, or check it; return the exit status."""
-    text = types()
+    """Write the files, or check them; return the exit status."""
+    texts = {FOLDER / "schema.ts": types(), FOLDER / "declared.ts": names()}
     if "--check" not in sys.argv[1:]:
-        TARGET.write_text(text, encoding="utf-8", newline="\n")
+        for path, text in texts.items():
+            path.write_text(text, encoding="utf-8", newline="\n")
         return 0
-    if TARGET.read_text(encoding="utf-8") == text:
-        return 0
-    print(f"{TARGET.name} is not what the server answers. Run python tools/page_types.py.")
-    return 1
+    old = [path.name for path, text in texts.items() if path.read_text(encoding="utf-8") != text]
+    for name in old:
+        print(f"{name} is not what the package declares. Run python tools/page_types.py.")
+    return int(bool(old))
+
+
+def names() -> str:
+    """Return the names and kinds that the page needs before the server answers."""
+    turning = [kind for kind, model in MODELS.items() if getattr(model, "spin_state", None) is not None]
+    listed = {
+        "START": ("The numbers of a start.", numbers_of(Start)),
+        "RUN": ("What runs have besides column, model and motion.", (*run_numbers(), "rules")),
+        "RESPONDING": ("Kinds of motions that can have response curves.", kinds_with_response()),
+        "BY_ACCELERATION": ("Those whose acceleration does not depend on their frequency.", kinds_by_acceleration()),
+        "TURNING": ("Kinds of models of columns that may turn about their axis.", turning),
+    }
+    parts = [
+        f"/** {about} */\nexport const {name}: readonly string[] = {json.dumps(list(words))};\n"
+        for name, (about, words) in listed.items()
+    ]
+    rates = [
+        f"  {kind}: {json.dumps([name, one.quantity.unit])},\n"
+        for kind, make in MOTIONS.items()
+        if Harmonic in (make, getattr(make, "__self__", None))
+        for name, one in parameters_of(make).items()
+        if one.quantity.unit in _RATES
+    ]
+    about = "By kind of harmonic motion: the number that holds the frequency, and its unit."
+    kind = "Readonly<Record<string, readonly [name: string, unit: string]>>"
+    parts += [f"/** {about} */\nexport const FREQUENCIES: {kind} = {{\n{''.join(rates)}}};\n"]
+    return "\n".join([_HEAD_OF_NAMES, *parts])
 
 
 def types() -> str:

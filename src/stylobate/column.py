@@ -21,6 +21,10 @@ Gravity = Annotated[
     float, Quantity(symbol="g", unit="m/s²", text="acceleration of gravity", gt=0.0, slider=(0.5, 15.0))
 ]
 
+TopRadius = Annotated[float, Quantity(symbol="r_t", unit="m", text="radius of the top", gt=0.0)]
+MassHeight = Annotated[float, Quantity(symbol="h", unit="m", text="height of the centre of mass", gt=0.0)]
+Slenderness = Annotated[float, Quantity(symbol="c", text="slenderness r/h", gt=0.0, slider=(0.02, 0.5))]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Column:
@@ -57,7 +61,7 @@ class Column:
     """
 
     radius: Radius
-    mass_height: Annotated[float, Quantity(symbol="h", unit="m", text="height of the centre of mass", gt=0.0)]
+    mass_height: MassHeight
     mass: Annotated[float, Quantity(symbol="m", unit="kg", text="mass", gt=0.0)]
     transverse_inertia: Annotated[
         float,
@@ -123,7 +127,7 @@ class Column:
         cls,
         *,
         radius: Radius,
-        top_radius: Annotated[float, Quantity(symbol="r_t", unit="m", text="radius of the top", gt=0.0)],
+        top_radius: TopRadius,
         height: Height,
         density: Density,
         gravity: Gravity = STANDARD_GRAVITY,
@@ -156,7 +160,7 @@ class Column:
     @classmethod
     def dimensionless(
         cls,
-        slenderness: Annotated[float, Quantity(symbol="c", text="slenderness r/h", gt=0.0, slider=(0.02, 0.5))],
+        slenderness: Slenderness,
         inertia_ratio: Annotated[float, Quantity(symbol="κ", text="m h²/J0", gt=0.0, slider=(0.3, 0.95))] = 0.75,
         axial_ratio: Annotated[float, Quantity(symbol="i_a", text="I_a/(m r²)", gt=0.0, slider=(0.1, 1.0))] = 0.5,
     ) -> Self:

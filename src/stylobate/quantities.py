@@ -240,6 +240,21 @@ def checked_arguments(make: Callable[_P, _T]) -> Callable[_P, _T]:
     return checking
 
 
+def stating(**facts: bool) -> Callable[[Callable[_P, _T]], Callable[_P, _T]]:
+    """State facts of a named constructor that differ from those of its class; a decorator."""
+
+    def state(make: Callable[_P, _T]) -> Callable[_P, _T]:
+        vars(make).update(facts)
+        return make
+
+    return state
+
+
+def states(make: object, fact: str) -> bool:
+    """Return whether a class, or a named constructor or else its class, states a fact as `fact = True`."""
+    return bool(getattr(make, fact, getattr(getattr(make, "__self__", make), fact, False)))
+
+
 def check_declared(made: Any) -> None:
     """Make the declared numbers of a frozen dataclass floats.
 

@@ -6,7 +6,7 @@ import pytest
 
 from stylobate.cli.commands import COMMANDS
 from stylobate.cli.main import run
-from stylobate.cli.parts import KINDS_IN_FILES
+from stylobate.cli.parts import kinds_in_files
 from stylobate.config.motions import MotionConfig
 
 
@@ -219,7 +219,7 @@ def test_every_kind_of_motion_is_in_the_help_and_runs_from_options_or_needs_a_fi
     listed_in_files = {word.strip() for word in in_files.split(",")}
     kinds = {kind.replace("_", "-") for one in MEMBERS for kind in get_args(one.model_fields["kind"].annotation)}
     assert listed | listed_in_files == kinds
-    assert listed_in_files == {kind.replace("_", "-") for kind in KINDS_IN_FILES}
+    assert listed_in_files == {kind.replace("_", "-") for kind in kinds_in_files()}
     for kind in listed_in_files:
         (line,) = outcome(["simulate", *COLUMN, "--motion", kind, "--duration", "9"], capsys)[1]
         assert line.startswith("stylobate: --motion: no options state the numbers of this motion")

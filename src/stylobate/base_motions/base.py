@@ -3,6 +3,7 @@
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from inspect import isfunction
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -38,11 +39,14 @@ class BaseMotion(Declared, ABC):
     ends: ClassVar[bool] = False
     """Whether each motion of the class comes to an end, so that a run under it needs no duration."""
 
+    responds: ClassVar[bool] = False
+    """Whether response curves can be computed for motions of the class: harmonic motions that can be horizontal."""
+
     def __init_subclass__(cls, **options: Any) -> None:
         """Refuse fields that would take the place of a method, or have it for a default."""
         super().__init_subclass__(**options)
-        for name in ("acceleration", "velocity", "displacement"):
-            if name in vars(cls).get("__annotations__", {}):
+        for name in vars(cls).get("__annotations__", {}):
+            if isfunction(vars(BaseMotion).get(name)):
                 message = f"{name}: a method of every base motion (got a field of {cls.__name__}). Call the field peak."
                 raise ParameterError(message)
 

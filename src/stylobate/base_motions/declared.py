@@ -3,9 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
+from inspect import signature
 
 from stylobate.kinds import Kinds
-from stylobate.quantities import Quantity, parameters_of
+from stylobate.quantities import Quantity, parameters_of, states
 
 _HARMONIC = "stylobate.base_motions.harmonic:Harmonic"
 _PULSE = "stylobate.base_motions.pulses.pulse:Pulse"
@@ -62,3 +63,27 @@ def motion_quantities() -> Mapping[str, Quantity]:
             if known.unit != one.quantity.unit:
                 found[name] = replace(known, unit="")
     return found
+
+
+@cache
+def composite_kinds() -> tuple[str, ...]:
+    """Return the kinds of motions made of other motions."""
+    others = {"self", "motion", "motions"}
+    return tuple(kind for kind, make in MOTIONS.items() if others & signature(make).parameters.keys())
+
+
+@cache
+def kinds_with_response() -> tuple[str, ...]:
+    """Return the kinds of motions for which response curves can be computed."""
+    return tuple(kind for kind, make in MOTIONS.items() if states(make, "responds"))
+
+
+@cache
+def kinds_by_acceleration() -> tuple[str, ...]:
+    """Return those kinds with response that are horizontal, and whose acceleration does not follow from a path."""
+
+    def fits(quantity: Quantity) -> bool:
+        return quantity.unit != "m" and quantity.components <= len("xy")
+
+    numbers = {kind: parameters_of(MOTIONS[kind]).values() for kind in kinds_with_response()}
+    return tuple(kind for kind, declared in numbers.items() if all(fits(one.quantity) for one in declared))

@@ -4,7 +4,7 @@ import cmath
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Self
+from typing import Annotated, ClassVar, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -23,7 +23,7 @@ from stylobate.base_motions.numbers import (
     StartPhase,
 )
 from stylobate.errors import ParameterError
-from stylobate.quantities import Quantity, checked_arguments
+from stylobate.quantities import Quantity, checked_arguments, stating
 
 # Below this |z| the series of the integrals of exp is more accurate than their closed form.
 _SERIES_RADIUS = 0.5
@@ -67,6 +67,8 @@ class Harmonic(BaseMotion):
     >>> Harmonic.orbit(diameter=0.02, rpm=300.0).largest_horizontal()  # 0.01 m (10π rad/s)²
     9.869604401089358
     """
+
+    responds: ClassVar[bool] = True
 
     amplitude: Annotated[
         tuple[float, float, float], Quantity(unit="m/s²", text="amplitudes along the axes", components=3)
@@ -140,6 +142,7 @@ class Harmonic(BaseMotion):
         )
 
     @classmethod
+    @stating(responds=False)
     @checked_arguments
     def vertical(
         cls,
@@ -158,6 +161,7 @@ class Harmonic(BaseMotion):
         )
 
     @classmethod
+    @stating(responds=False)
     @checked_arguments
     def oblique(
         cls,

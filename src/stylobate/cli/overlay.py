@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from stylobate.cli.options import Options
-from stylobate.cli.parts import KINDS_IN_FILES, PARTS, Part
+from stylobate.cli.parts import PARTS, Part, kinds_in_files
 from stylobate.errors import ConfigError, ParameterError
 from stylobate.quantities import parameters_of
 
@@ -159,7 +159,7 @@ def _motion(values: dict[str, Any], options: Options, problems: list[str]) -> li
     table = values.get("motion")
     before = table.get("kind") if isinstance(table, Mapping) else None
     kind = options.chosen.kinds.get("motion", options["motion"]) if options["motion"] else None
-    if kind in KINDS_IN_FILES and before != kind:
+    if kind in kinds_in_files() and before != kind:
         message = (
             f"--motion: no options state the numbers of this motion (got {options['motion']}). "
             f'Describe it in a file: [motion], kind = "{kind}".'

@@ -2,14 +2,13 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 from stylobate.cli.declarations import MAX_NAMED_KINDS, Group, Option, listed, text_of, type_of
 from stylobate.cli.own_classes import Chosen
+from stylobate.kinds import loaded
 from stylobate.quantities import Parameter, parameters_of
-
-KINDS_IN_FILES = ("sum", "one_of", "scaled", "rotated", "delayed")
-"""Kinds of base motion that consist of others: no options state their numbers."""
 
 # Two numbers of these names have one option: the model takes it if it has the number, the run otherwise.
 _OF_MODEL_OR_RUN = ("friction_coefficient",)
@@ -31,52 +30,52 @@ class Part:
         The option that chooses it, without hyphens.
     noun
         As in messages.
-    makers
-        Gives the class or constructor of each kind that has declared numbers.
-    others
-        The kinds without.
+    place
+        Where the class or constructor of each kind is registered; imported when it is needed.
     """
 
     table: str
     tag: str
     flag: str
     noun: str
-    makers: Callable[[], Mapping[str, Callable[..., Any]]]
-    others: tuple[str, ...] = ()
+    place: str
 
     @property
     def kinds(self) -> tuple[str, ...]:
         """All kinds that the package has."""
-        return (*self.makers(), *self.others)
+        return tuple(loaded(self.place))
+
+    def makers(self) -> dict[str, Callable[..., Any]]:
+        """Return the class or constructor of each kind that has declared numbers and options for them."""
+        others = kinds_in_files()
+        return {kind: make for kind, make in loaded(self.place).items() if kind not in others and parameters_of(make)}
 
 
-def _shapes() -> Mapping[str, Callable[..., Any]]:
-    from stylobate.column import SHAPES  # noqa: PLC0415  heavy imports wait until they are needed
-
-    return SHAPES
+_MOTIONS = "stylobate.base_motions.declared"
 
 
-def _models() -> Mapping[str, Callable[..., Any]]:
-    from stylobate.models.declared import MODELS  # noqa: PLC0415
+def _motions_by(function: str) -> tuple[str, ...]:
+    kinds: tuple[str, ...] = loaded(f"{_MOTIONS}:{function}")()
+    return kinds
 
-    return MODELS
 
-
-def _motions() -> Mapping[str, Callable[..., Any]]:
-    from stylobate.base_motions.declared import MOTIONS  # noqa: PLC0415
-
-    return {kind: MOTIONS[kind] for kind in MOTIONS if kind not in ("rest", "record", *KINDS_IN_FILES)}
-
+kinds_in_files = partial(_motions_by, "composite_kinds")
+"""Returns the kinds of base motion that consist of others: no options state their numbers."""
 
 PARTS = {
-    "column": Part("column", "shape", "shape", "column shape", _shapes),
-    "model": Part("model", "kind", "model", "model", _models),
-    "motion": Part("motion", "kind", "motion", "base motion", _motions, ("rest", "record", *KINDS_IN_FILES)),
+    "column": Part("column", "shape", "shape", "column shape", "stylobate.column:SHAPES"),
+    "model": Part("model", "kind", "model", "model", "stylobate.models.declared:MODELS"),
+    "motion": Part("motion", "kind", "motion", "base motion", f"{_MOTIONS}:MOTIONS"),
 }
 
 
 def part_group(
-    part: Part, panel: str, *, kinds: tuple[str, ...] = (), left_out: tuple[str, ...] = (), default: str = ""
+    part: Part,
+    panel: str,
+    *,
+    kinds: Callable[[], tuple[str, ...]] | None = None,
+    left_out: tuple[str, ...] = (),
+    default: str = "",
 ) -> Group:
     """Make the options of a part: one that chooses the kind, and those of the numbers.
 
@@ -87,18 +86,19 @@ def part_group(
     panel
         Heading of the help.
     kinds
-        The kinds that a command offers; all by default, but for those in `left_out`.
+        Gives the kinds that a command offers; all by default, but for those in `left_out`.
     default
         What help shows behind the kinds.
     """
 
     def made(chosen: Chosen) -> Iterable[Option]:
-        makers = dict(part.makers())
+        makers, in_files = part.makers(), kinds_in_files()
         if part.table in chosen.classes:
             makers[chosen.kinds[part.table]] = chosen.classes[part.table]
-        offered = tuple(kind for kind in kinds or part.kinds if kind not in (*KINDS_IN_FILES, *left_out))
-        in_files = f"; in a file also {listed(KINDS_IN_FILES)}" if part.table == "motion" and not kinds else ""
-        text = f"{listed(offered)}{default}{in_files}"
+        known = part.kinds if kinds is None else kinds()
+        offered = tuple(kind for kind in known if kind not in (*in_files, *left_out))
+        others = f"; in a file also {listed(in_files)}" if part.table == "motion" and kinds is None else ""
+        text = f"{listed(offered)}{default}{others}"
         yield Option(part.flag, text, str, panel=panel, part=part.table, number=part.tag, kinds=offered)
         shown = {*offered, *chosen.kinds.values()}
         declared = {kind: parameters_of(make) for kind, make in makers.items()}
@@ -134,13 +134,13 @@ MODEL = part_group(PARTS["model"], "Model", default=" (slender by default), or F
 MODEL_WITHOUT_SLIDING = part_group(
     PARTS["model"], "Model", left_out=("sliding",), default=" (slender by default), or FILE.py:CLASS"
 )
-SLIDING = part_group(PARTS["model"], "Model", kinds=("sliding",))
+SLIDING = part_group(PARTS["model"], "Model", kinds=lambda: ("sliding",))
 MOTION = part_group(PARTS["motion"], "Base motion", default=" (rest by default), or FILE.py:CLASS")
 MOTION_WITHOUT_RECORDS = part_group(
     PARTS["motion"], "Base motion", default=" (rest by default), or FILE.py:CLASS", left_out=("record",)
 )
 HORIZONTAL_MOTION = part_group(
-    PARTS["motion"], "Base motion", kinds=("circular", "straight", "elliptic"), default=""
+    PARTS["motion"], "Base motion", kinds=partial(_motions_by, "kinds_by_acceleration")
 ).without("angular_frequency", "start_phase", "ramp")
 
 

@@ -8,7 +8,7 @@ from pydantic import Field
 from stylobate.base_motions import BaseMotion
 from stylobate.config.description import built
 from stylobate.config.motions import is_to_end, made_by
-from stylobate.config.run_numbers import SharedByRuns, problems_of_the_numbers
+from stylobate.config.run_numbers import SharedByRuns, SingleRun, numbers_of, problems_of_the_numbers
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
     Case,
@@ -34,7 +34,7 @@ class ManyRuns(SharedByRuns, Case):
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
         """Return the description of these `values`; what they say for other commands is of no concern here."""
-        of_others = {*OF_OTHER_COMMANDS, *_OF_A_SINGLE_RUN} - set(cls.model_fields)
+        of_others = {*OF_OTHER_COMMANDS, *numbers_of(SingleRun)} - set(cls.model_fields)
         return super().parse({name: value for name, value in values.items() if name not in of_others})
 
     def values(self) -> dict[str, Any]:
@@ -76,13 +76,7 @@ class ManyRuns(SharedByRuns, Case):
         return open_end and is_to_end(self.motion)
 
 
-_OF_A_SINGLE_RUN = ("samples", "twist", "position", "friction_coefficient", "velocity", "clearance")
-"""Numbers that change the result of a single run, and no outcome."""
-
-_SHARED = (
-    *("tilt", "tilt_rate", "spin", "duration", "periods"),
-    *("method", "rtol", "atol", "tilt_limit", "rest_energy", "max_steps", "demands", "recheck"),
-)
+_SHARED = (*numbers_of(SharedByRuns), "demands", "recheck")
 
 
 def with_numbers_that_vary(values: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from stylobate.config.description import Config
 from stylobate.config.records import DescribedRecord, RecordMotion
 from stylobate.errors import UnsupportedError
 from stylobate.kinds import Place, with_places
-from stylobate.quantities import is_declared
+from stylobate.quantities import is_declared, states
 
 
 class DescribedMotion(Config):
@@ -81,9 +81,6 @@ for _one in _BY_KIND.values():
 AT_REST: Any = _BY_KIND["rest"].parse({"kind": "rest"})
 """The description of a base at rest."""
 
-COMPOSITE = tuple(kind for kind, one in _BY_KIND.items() if issubclass(one, (MotionOfMotions, ChangedMotion)))
-"""Kinds of motions made of other motions."""
-
 
 def is_to_end(motion: object) -> bool:
     """Return whether a `motion`, described or in plain values, is one that ends.
@@ -95,7 +92,7 @@ def is_to_end(motion: object) -> bool:
     if members is not None:
         return isinstance(members, (list, tuple)) and bool(members) and all(is_to_end(one) for one in members)
     make = motion.make if isinstance(motion, Config) else made_by(values.get("kind"))
-    return bool(getattr(getattr(make, "__self__", make), "ends", False))
+    return states(make, "ends")
 
 
 def made_by(kind: object) -> Callable[..., Any] | None:

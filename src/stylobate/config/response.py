@@ -5,12 +5,14 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any, Self
 
+from stylobate.base_motions.declared import kinds_by_acceleration
 from stylobate.config.columns import ColumnConfig
 from stylobate.config.description import Config, built
 from stylobate.config.models import ModelConfig, described_model
-from stylobate.config.motions import MotionConfig
+from stylobate.config.motions import MotionConfig, made_by
 from stylobate.config.simulation import OF_OTHER_COMMANDS, Setup, SimulationConfig, built_parts
 from stylobate.errors import ConfigError, require_positive, require_whole
+from stylobate.quantities import states
 
 
 class ResponseConfig(Config):
@@ -26,12 +28,13 @@ class ResponseConfig(Config):
     def parse(cls, values: Mapping[str, Any]) -> Self:
         """Return the description of these `values`; the frequency of the motion is taken from the range."""
         motion = values.get("motion")
-        if isinstance(motion, Mapping) and motion.get("kind") in _BY_ACCELERATION:
+        kind = motion.get("kind") if isinstance(motion, Mapping) else None
+        if isinstance(motion, Mapping) and kind in kinds_by_acceleration():
             # A mistake in the range is one mistake: the motion is built with a frequency that can be.
             given = {"angular_frequency": _possible(values.get("angular_frequency_range"))}
             values = {**values, "motion": {**given, **motion}}
-        kind = motion.get("kind") if isinstance(motion, Mapping) else None
-        if kind in _WITHOUT_RESPONSE:
+        make = made_by(kind)
+        if make is not None and not states(make, "responds"):
             message = f"motion.kind must be a horizontal harmonic motion for response curves, got {kind!r}"
             raise ConfigError([message])
         # What a description of runs says besides is of no concern here.
@@ -61,7 +64,3 @@ def _possible(frequencies: Any) -> float:
     """Return the first frequency that is above zero of what is given as a range; of none, 1 rad/s."""
     given = frequencies if isinstance(frequencies, (list, tuple)) else ()
     return next((float(one) for one in given if isinstance(one, (int, float)) and 0.0 < one < math.inf), 1.0)
-
-
-_BY_ACCELERATION = ("circular", "straight", "elliptic")
-_WITHOUT_RESPONSE = ("rest", "vertical", "sum", "scaled", "rotated", "delayed")

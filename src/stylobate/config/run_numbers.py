@@ -99,19 +99,25 @@ def numbers_of(group: type) -> Mapping[str, Parameter]:
     return {one.name: one for one in declared if one is not None}
 
 
+@cache
+def run_numbers() -> Mapping[str, Parameter]:
+    """Return the declared numbers of all runs, by name."""
+    groups = (SingleRun, SharedByRuns, Stroboscopic)
+    return {name: parameter for group in groups for name, parameter in numbers_of(group).items()}
+
+
 def problems_of_the_numbers(values: object) -> list[str]:
     """Check the numbers of a run that `values` has as attributes; one line for each that cannot be."""
     problems: list[str] = []
-    for group in (SingleRun, SharedByRuns, Stroboscopic):
-        for name, parameter in numbers_of(group).items():
-            value = getattr(values, name, None)
-            if value is None:
-                continue
-            try:
-                _check(parameter, value)
-            except ParameterError as error:
-                problems.append(str(error))
-    return list(dict.fromkeys(problems))
+    for name, parameter in run_numbers().items():
+        value = getattr(values, name, None)
+        if value is None:
+            continue
+        try:
+            _check(parameter, value)
+        except ParameterError as error:
+            problems.append(str(error))
+    return problems
 
 
 def _check(parameter: Parameter, value: Any) -> None:

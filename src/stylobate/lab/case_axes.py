@@ -12,6 +12,7 @@ from stylobate import config
 from stylobate.conveying.contact_maps import class_shares
 from stylobate.engine.parameters import COLUMN_NAMES, present_value
 from stylobate.errors import UnsupportedError
+from stylobate.lab.parameter_info import CASE_NUMBERS
 from stylobate.models import Model
 from stylobate.studies.maps.overturning import outcome_shares
 from stylobate.studies.sweeps import Executor, Sweep
@@ -20,28 +21,13 @@ from stylobate.studies.sweeps.labelled import labelled_sweep
 
 Floats = npt.NDArray[np.float64]
 
-_NUMBERS = {
-    "column": ("radius", "height", "inner_radius", "top_radius", "density", "inertia_ratio", "axial_ratio"),
-    "motion": ("diameter", "rpm", "stroke", "frequency", "velocity"),
-}
-"""What an axis can be besides the quantities of sweeps, by the part that it describes."""
-
-_UNITS = {
-    **dict.fromkeys(("radius", "height", "inner_radius", "top_radius", "diameter", "stroke"), "m"),
-    **dict.fromkeys(("inertia_ratio", "axial_ratio"), "1"),
-    "density": "kg m-3",
-    "rpm": "min-1",
-    "frequency": "Hz",
-    "velocity": "m s-1",
-}
-
 _BODY = tuple(name for name in COLUMN_NAMES if name not in ("slenderness", "size"))
 _MOVED = ("angular_frequency", "acceleration")
 
 
 def units_of(name: str) -> str:
     """Return the unit of a number that describes a case."""
-    return _UNITS[name]
+    return next(part[name].cf_units for part in CASE_NUMBERS.values() if name in part)
 
 
 def case_numbers(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[str, tuple[str, ...]]:
@@ -52,7 +38,7 @@ def case_numbers(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[
     given = values["column"].get("shape") == "given"
     found = {
         part: tuple(name for name in over if name in values.get(part, {}))
-        for part, names in _NUMBERS.items()
+        for part, names in CASE_NUMBERS.items()
         if any(name in values.get(part, {}) for name in over if name in names)
     }
     return {part: names for part, names in found.items() if not (part == "column" and given)}

@@ -7,14 +7,15 @@ from typing import Any, get_args
 
 from pydantic_core import PydanticUndefined
 
+from stylobate.base_motions.declared import composite_kinds
 from stylobate.base_motions.records.samples import sample_names
 from stylobate.config.columns import ColumnConfig
 from stylobate.config.description import Config
 from stylobate.config.models import DESCRIBED_MODELS
-from stylobate.config.motions import COMPOSITE, MotionConfig, is_to_end
+from stylobate.config.motions import MotionConfig, is_to_end
 from stylobate.errors import Outcome
 from stylobate.lab.limits import Limits
-from stylobate.lab.parameter_info import NUMBERS, Number
+from stylobate.lab.parameter_info import NUMBERS, VARIED, Number
 from stylobate.lab.presets import presets
 
 
@@ -23,7 +24,7 @@ def about(limits: Limits) -> dict[str, Any]:
     motions = (
         {**kind, "ends": is_to_end(kind)}
         for kind in _kinds(_members(MotionConfig), "kind")
-        if kind["kind"] not in COMPOSITE  # these are for files
+        if kind["kind"] not in composite_kinds()  # these are for files
     )
     return {
         "version": version("stylobate"),
@@ -72,6 +73,7 @@ def _parameter(name: str, field: Any) -> dict[str, Any]:
         "about": number.about,
         "default": list(default) if isinstance(default, tuple) else default,
         "needed": field.is_required(),
+        "varies": name in VARIED,
         "from": number.first,
         "to": number.last,
         **({"choices": choices} if choices else {}),

@@ -4,7 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from stylobate.base_motions.declared import motion_quantities
+from stylobate.column import Column
+from stylobate.engine.parameters import COLUMN_NAMES, MOTION_NAMES
 from stylobate.models.declared import column_quantities, model_quantities
+from stylobate.quantities import Quantity
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,3 +37,31 @@ NUMBERS: Mapping[str, Number] = {
     "rotation": Number("", "rad", "turned by", -3.142, 3.142),
     "tail": Number("", "s", "rest after the record"),
 }
+
+OF_ANY_COLUMN = {
+    **{
+        name: one
+        for name, one in column_quantities().items()
+        if hasattr(Column, name) and name != "height"  # which not all have
+    },
+    "frequency_scale": Quantity(unit="rad/s", text="ω0"),
+    "frequency_parameter": Quantity(unit="rad/s", text="p of the literature"),
+}
+"""The attributes of a column that the page shows."""
+
+_PATHS_AND_RATES = ("m", "m/s", "Hz", "1/min")
+
+CASE_NUMBERS = {
+    # A sweep varies a radius without the mass, which depends on it in a body of a described shape.
+    "column": {name: one for name, one in column_quantities().items() if name not in COLUMN_NAMES or name == "radius"},
+    # From paths and rates acceleration and angular frequency follow, which a sweep knows.
+    "motion": {
+        name: one for name, one in motion_quantities().items() if one.unit in _PATHS_AND_RATES and one.components == 1
+    },
+}
+"""What an axis can be besides the quantities of sweeps, by the part that it describes."""
+
+VARIED = frozenset(
+    {*COLUMN_NAMES, *MOTION_NAMES, *model_quantities(), *CASE_NUMBERS["column"], *CASE_NUMBERS["motion"]}
+)
+"""The numbers of columns, models and base motions that a map can vary."""

@@ -7,6 +7,7 @@ import numpy as np
 from stylobate import config
 from stylobate.base_motions import Record
 from stylobate.lab.json_values import numbers, table
+from stylobate.lab.parameter_info import OF_ANY_COLUMN
 from stylobate.lab.request_parsing import Described
 from stylobate.models import Model
 from stylobate.plots.animation import drawn_motion
@@ -43,12 +44,8 @@ def snippets(given: Described) -> dict[str, str]:
 def plain_column(model: Model) -> dict[str, float]:
     """Return the numbers of the column that decide."""
     column = model.column
-    names = ("radius", "mass_height", "mass", "slenderness", "inertia_ratio", "axial_ratio", "frequency_scale")
-    properties = {name: float(getattr(column, name)) for name in names}
     return {
-        **properties,
-        "frequency_parameter": column.frequency_parameter,
-        "gravity": column.gravity,
+        **{name: float(getattr(column, name)) for name in OF_ANY_COLUMN},
         "releasing_acceleration": column.slenderness * column.gravity,
     }
 

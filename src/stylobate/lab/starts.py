@@ -3,12 +3,15 @@
 from collections.abc import Mapping
 from typing import Any, Literal
 
+import numpy as np
+
 from stylobate import orbits, studies
 from stylobate.base_motions import Harmonic
 from stylobate.config.columns import ColumnConfig
 from stylobate.config.description import Config
 from stylobate.config.models import ModelConfig, described_model
 from stylobate.config.motions import MotionConfig
+from stylobate.config.run_numbers import Start, numbers_of
 from stylobate.config.simulation import built_parts
 from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError
 from stylobate.lab.json_values import numbers
@@ -66,7 +69,7 @@ def start(values: Mapping[str, Any]) -> dict[str, Any]:
     orbit = _orbit_near(model, motion, known)
     if orbit is None:
         return _plain(known, _NONE_FOUND)
-    return _plain(_start_on(orbit), *_remark(orbit))
+    return _plain({name: getattr(orbit, name) for name in numbers_of(Start)}, *_remark(orbit))
 
 
 def _is_circular(motion: Harmonic) -> bool:
@@ -100,12 +103,7 @@ def _remark(orbit: orbits.PeriodicOrbit) -> tuple[str, ...]:
     return () if orbit.inversion else (_ASYMMETRIC,)
 
 
-def _start_on(orbit: orbits.PeriodicOrbit) -> dict[str, Any]:
-    place = orbit.model.spin_state
-    spin = 0.0 if place is None else float(orbit.state[place]) / orbit.model.time_scale
-    return {"tilt": orbit.tilt, "tilt_rate": orbit.tilt_rate, "spin": spin}
-
-
 def _plain(found: Mapping[str, Any], *warnings: str) -> dict[str, Any]:
-    named = {name: numbers(found[name]) for name in ("tilt", "tilt_rate")}
-    return {**named, "spin": float(found.get("spin", 0.0)), "warnings": list(warnings)}
+    given = {name: np.asarray(found.get(name, 0.0)) for name in numbers_of(Start)}
+    named = {name: numbers(one) if one.ndim else float(one) for name, one in given.items()}
+    return {**named, "warnings": list(warnings)}

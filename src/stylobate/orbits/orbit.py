@@ -65,6 +65,12 @@ class PeriodicOrbit:
         """Its rate at t = 0 [rad/s]."""
         return np.asarray(self._lean[2:] / self.model.time_scale)
 
+    @property
+    def spin(self) -> float:
+        """Angular velocity about the axis at t = 0 [rad/s]; 0 for a model that cannot turn about it."""
+        place = self.model.spin_state
+        return 0.0 if place is None or self.planar else float(self.state[place]) / self.model.time_scale
+
     @cached_property
     def _lean(self) -> Floats:
         lean: Floats = lean_of(self.system, self.state[:, np.newaxis])[:, 0]

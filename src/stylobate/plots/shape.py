@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Self
 
+from stylobate.column import Height, MassHeight, Radius, Slenderness, TopRadius
 from stylobate.results import Response
 
 # A body whose axial inertia is that of the frustum with its centre of mass, to this part, is that frustum.
@@ -27,11 +28,11 @@ class Shape:
         c.
     """
 
-    radius: float
-    top_radius: float
-    height: float
-    mass_height: float
-    slenderness: float
+    radius: Radius
+    top_radius: TopRadius
+    height: Height
+    mass_height: MassHeight
+    slenderness: Slenderness
 
     @classmethod
     def of(cls, run: Response) -> Self:

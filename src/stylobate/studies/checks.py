@@ -5,8 +5,10 @@ from collections.abc import Iterable, Mapping
 
 import numpy.typing as npt
 
+from stylobate.column import Column
 from stylobate.errors import ParameterError, UnlikelyInputWarning
 from stylobate.models import Model
+from stylobate.quantities import parameters_of
 from stylobate.studies.sweeps.quantities import STARTS, Floats, check_quantities, checked_values
 
 SYSTEM_STARTS = (*STARTS, "start_phase")
@@ -64,8 +66,10 @@ def remark_on_lengths(where: str, names: Iterable[str]) -> None:
         warnings.warn(message, UnlikelyInputWarning, stacklevel=3)
 
 
-_LENGTHS = ("radius", "mass_height")
-_OF_THE_BODY = ("mass", "transverse_inertia", "axial_inertia")
+_LENGTHS, _OF_THE_BODY = (
+    tuple(name for name, one in parameters_of(Column).items() if one.required and one.quantity.unit.startswith(unit))
+    for unit in ("m", "kg")
+)
 
 
 def _require_some(where: str, name: str, values: Floats) -> None:

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from stylobate.config.run_numbers import Accuracy, numbers_of
 from stylobate.earthquakes.assessment.inputs import CENTRAL, Inputs
 from stylobate.earthquakes.assessment.parts import Parts
 from stylobate.earthquakes.following import tail_of
@@ -18,7 +19,7 @@ from stylobate.studies.sweeps.computing import Progress
 
 # Of the numbers of a model that dissipate, stated or not, those that `Sliding` has too: its restitution is another one.
 _DISSIPATION = tuple(name for name in dissipation_names() if name != "restitution")
-_OPTIONS = ("rtol", "atol", "rest_energy", "max_steps")
+_OPTIONS = tuple(name for name in numbers_of(Accuracy) if name != "tilt_limit")
 _NUMBERS = {
     "tilt_ratio": ("1", "largest tilt over α"),
     "residual_slip": ("m", "distance of the footprint from its place at the end"),

@@ -163,11 +163,10 @@ class FragilityConfig(ManyRuns):
         scales = built("fragility.scales", table.scales.build, problems)
         hazard = None if table.hazard is None else _points(table.hazard, problems)
         records = self._records(problems) if read else {}
-        model, _, options = self.common(problems)
-        for name in ("duration", "periods", "tilt_limit"):
-            del options[name]
+        model, _, options = self.common(problems, ("duration",))
+        given = {name: one for name, one in options.items() if one is not None}
         assert scales is not None
-        return FragilitySetup(model, records, table, tuple(scales.tolist()), hazard, options)
+        return FragilitySetup(model, records, table, tuple(scales.tolist()), hazard, given)
 
     def _records(self, problems: list[str]) -> dict[str, Record]:
         try:

@@ -3,6 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from stylobate.quantities import Quantity
+
 Schema = dict[str, Any]
 
 
@@ -19,6 +21,11 @@ def word(about: str, words: Sequence[str]) -> Schema:
 def number(about: str = "", **more: Any) -> Schema:
     """Return a number."""
     return {"type": "number", **_with_description(about), **more}
+
+
+def declared(quantity: Quantity, **more: Any) -> Schema:
+    """Return a number as it is declared."""
+    return number(f"{quantity.text} [{quantity.unit}]" if quantity.unit else quantity.text, **more)
 
 
 def whole(about: str = "", **more: Any) -> Schema:

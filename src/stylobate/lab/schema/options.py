@@ -15,6 +15,7 @@ _PARAMETER = table(
         "about": text("what it is"),
         "default": {"description": "null without one"},
         "needed": flag("whether it must be given"),
+        "varies": flag("whether maps can vary it"),
         "from": or_none(number("lower end of a slider; null where none serves all")),
         "to": or_none(number("its upper end")),
     },

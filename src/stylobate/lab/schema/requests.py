@@ -5,10 +5,10 @@ from dataclasses import fields
 from typing import Any
 
 from stylobate import config
-from stylobate.base_motions.declared import MOTIONS, motion_quantities
+from stylobate.base_motions.declared import MOTIONS, composite_kinds, kinds_with_response, motion_quantities
 from stylobate.config.description import Config
-from stylobate.config.motions import COMPOSITE, is_to_end
-from stylobate.errors import LARGEST
+from stylobate.config.motions import is_to_end
+from stylobate.config.run_numbers import run_numbers
 from stylobate.lab.limits import Limits
 from stylobate.lab.parameter_info import NUMBERS
 from stylobate.lab.schema.notation import Schema, listed, or_none, ref, table, text
@@ -28,28 +28,16 @@ _DESCRIPTIONS: dict[str, type[Config]] = {
 
 _OF_JOBS = {"exact": "Response", "map": "Map", "basin": "Basin", "animation": "Simulation"}
 
+
+def _in_words(about: str, unit: str) -> str:
+    return f"{about} [{unit}]" if unit else about
+
+
 _TEXTS = {
-    "tilt": "at the start, along x and y [rad]",
-    "tilt_rate": "at the start [rad/s]",
-    "spin": "angular velocity about the axis at the start [rad/s]",
-    "twist": "angle of turn about the axis at the start [rad]",
-    "position": "of the contact at the start [m]",
-    "velocity": "at the start, of a model that slides [m/s]",
-    "clearance": "height above the base at the start, of a model that flies [m]",
-    "duration": "how long [s]; may be left out under a record, a pulse or a sine sweep",
-    "periods": "how long, in periods of the base motion, in place of duration",
-    "friction_coefficient": "of the contact, for a warning where a run needs more",
-    "rtol": "relative tolerance of the integration",
-    "atol": "absolute tolerance [rad]",
-    "tilt_limit": "at which a run ends [rad]",
-    "rest_energy": "below which the column comes to rest, over m g h c²",
-    "max_steps": "of the integration",
-    "samples": "of the history; enough to draw it by default",
+    **{name: _in_words(one.quantity.text, one.quantity.unit) for name, one in run_numbers().items()},
+    "duration": "duration of a run [s]; may be left out under a record, a pulse or a sine sweep",
     "rules": "numbers of the rules that decide outcomes",
     "demands": "whether to compute contact demands",
-    "method": "of the integration",
-    "strobes": "states once a period that are compared",
-    "confidence": "of the intervals",
     "angular_frequency_range": "from, to [rad/s]",
     "points": "frequencies of the curves",
     "branch": "of steady rolling: upper, that of the larger tilt, or lower",
@@ -59,38 +47,31 @@ _TEXTS = {
 _TAGS = ("shape", "kind", "method")
 """By these columns, models and motions, and steps of processing are told apart."""
 
-_POSITIVE = (
-    *column_quantities(),
-    *(name for name, quantity in motion_quantities().items() if quantity.gt == 0.0 and quantity.components == 1),
-    *("duration", "periods", "rtol", "atol", "tilt_limit"),
-)
-_NOT_NEGATIVE = (
-    *(name for name, quantity in motion_quantities().items() if quantity.ge == 0.0),
-    *("rest_energy", "clearance", "tail"),
-)
-_ENDING = (*(kind for kind in MOTIONS if is_to_end({"kind": kind})), *COMPOSITE)
-_HAS_RESPONSE = ("circular", "straight", "elliptic", "displacement_amplitude", "stroke", "orbit", "harmonic")
+_ENDING = (*(kind for kind in MOTIONS if is_to_end({"kind": kind})), *composite_kinds())
 
 
-def _schema_of(quantity: Quantity) -> Schema:
-    least = {} if quantity.ge is None else {"minimum": quantity.ge}
-    return {**least, "maximum": LARGEST if quantity.le is None else quantity.le}
+def _bounds_of(quantity: Quantity) -> Schema:
+    if quantity.choices:
+        return {"enum": list(quantity.choices)}
+    above = LEAST if quantity.gt == 0.0 and quantity.components == 1 else None
+    bounds = {"minimum": above if quantity.ge is None else quantity.ge, "maximum": quantity.le}
+    return {name: bound for name, bound in bounds.items() if bound is not None}
 
 
 _RULE: Schema = {"type": "number", "minimum": LEAST}
 
 _BOUNDS: dict[str, Schema] = {
-    **{name: {"minimum": LEAST} for name in _POSITIVE},
-    **{name: {"minimum": 0} for name in _NOT_NEGATIVE},
-    **{name: _schema_of(quantity) for name, quantity in model_quantities().items()},
     **{
-        name: {"minimum": LEAST, "maximum": quantity.le}
-        for name, quantity in motion_quantities().items()
-        if quantity.le
+        name: _bounds_of(quantity)
+        for name, quantity in {
+            **{name: one.quantity for name, one in run_numbers().items()},
+            **column_quantities(),
+            **model_quantities(),
+            **motion_quantities(),
+        }.items()
     },
-    **{name: {"enum": list(quantity.choices)} for name, quantity in motion_quantities().items() if quantity.choices},
-    "max_steps": {"minimum": 1},
-    **{name: {"minimum": 2} for name in ("samples", "strobes", "points")},
+    "points": {"minimum": 2},
+    "tail": {"minimum": 0},
     **{name: {"minimum": 1, "maximum": HIGHEST_DEGREE} for name in ("order", "degree")},
 }
 """What numbers can be; some have further conditions, which the refusal states."""
@@ -130,7 +111,7 @@ def _within(body: Schema, limits: Limits) -> Schema:
     if "rules" in properties:
         properties["rules"] = table(_TEXTS["rules"], {}, {field.name: _RULE for field in fields(OutcomeRules)})
     if "angular_frequency_range" in properties or "branch" in properties:
-        properties["motion"] = _only(properties["motion"], _HAS_RESPONSE)
+        properties["motion"] = _only(properties["motion"], kinds_with_response())
     if "duration" in body["required"]:
         return _until_the_end(body)
     return body
@@ -182,7 +163,7 @@ def _described(name: str) -> Schema:
     number = NUMBERS.get(name)
     if number is None or not number.about:
         return {}
-    return {"description": f"{number.about} [{number.unit}]" if number.unit else number.about}
+    return {"description": _in_words(number.about, number.unit)}
 
 
 def _uploaded(record: Schema) -> Schema:

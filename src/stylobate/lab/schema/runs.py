@@ -1,8 +1,10 @@
 """What is answered of a run: its outcome, measures and history, and how it is drawn."""
 
 from stylobate.errors import Outcome
+from stylobate.lab.parameter_info import OF_ANY_COLUMN
 from stylobate.lab.schema.notation import (
     Schema,
+    declared,
     exactly,
     flag,
     listed,
@@ -16,6 +18,8 @@ from stylobate.lab.schema.notation import (
     word,
 )
 from stylobate.models.sliding.phases import Contact
+from stylobate.plots.shape import Shape
+from stylobate.quantities import parameters_of
 
 _ANY_NUMBER: Schema = {"type": ["number", "null"]}
 
@@ -26,15 +30,7 @@ _OUTCOME = word("the outcome", [one.name for one in Outcome])
 _COLUMN = table(
     "The numbers of the column that decide.",
     {
-        "radius": number("of the base [m]"),
-        "mass_height": number("height of the centre of mass [m]"),
-        "mass": number("[kg]"),
-        "slenderness": number("c = radius over mass_height"),
-        "inertia_ratio": number("κ = m h²/J0"),
-        "axial_ratio": number("I_a/(m r²)"),
-        "frequency_scale": number("ω0 [rad/s]"),
-        "frequency_parameter": number("p of the literature [rad/s]"),
-        "gravity": number("[m/s²]"),
+        **{name: declared(one) for name, one in OF_ANY_COLUMN.items()},
         "releasing_acceleration": number("c g, the horizontal acceleration that tips the standing column [m/s²]"),
     },
 )
@@ -108,13 +104,7 @@ _DRAWN = table(
     {
         "column": table(
             "The body.",
-            {
-                "radius": number("of the base [m]"),
-                "top_radius": number("[m]"),
-                "height": number("[m]"),
-                "mass_height": number("[m]"),
-                "slenderness": number("c"),
-            },
+            {name: declared(one.quantity) for name, one in parameters_of(Shape).items()},
             others={},
         ),
         "plane": table("", {"incline": number("[rad]"), "incline_direction": number("[rad]")}, others={}),

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Self
 
 import numpy as np
@@ -137,10 +137,8 @@ class DrawnMotion:
 
     def as_dict(self) -> dict[str, Any]:
         """Return the motion as plain numbers, lists and text for JSON."""
-        shape = self.shape
-        lengths = {"radius": shape.radius, "top_radius": shape.top_radius, "height": shape.height}
         return {
-            "column": {**lengths, "mass_height": shape.mass_height, "slenderness": shape.slenderness},
+            "column": asdict(self.shape),
             "plane": {"incline": self.incline, "incline_direction": self.incline_direction},
             "time": _plain(self.time),
             "tilt": _plain(self.tilt),

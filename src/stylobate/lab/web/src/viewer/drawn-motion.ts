@@ -67,10 +67,8 @@ export function drawable(motion: DrawnMotion): DrawnMotion {
     if (count !== time.length)
       throw new Error(`${name} must have a sample for each of the ${time.length} times, got ${count}`);
   }
-  for (const name of ["radius", "top_radius", "height"] as const) {
-    if (!(column[name] > 0 && Number.isFinite(column[name]))) {
-      throw new Error(`column.${name} must be positive, got ${column[name]} m`);
-    }
+  for (const [name, value] of Object.entries(column)) {
+    if (!(value > 0 && Number.isFinite(value))) throw new Error(`column.${name} must be positive, got ${value}`);
   }
   return motion;
 }

@@ -4,12 +4,16 @@ import type { About } from "../../src/page/case/about";
 import type { View } from "../../src/page/view/state";
 import { viewOf } from "../../src/page/view/state";
 
-const number = (name: string, usual: number | null, from: number | null = null, to: number | null = null) => ({
+const number = (name: string, usual: number, from: number | null = null, to: number | null = null, unit = "") => ({
   name,
+  unit,
   default: usual,
   from,
   to,
+  varies: true,
 });
+
+const rate = (name: string, usual: number, unit: string) => number(name, usual, null, null, unit);
 
 export const ABOUT: About = {
   version: "0",
@@ -31,13 +35,17 @@ export const ABOUT: About = {
     },
   ],
   motions: [
-    { kind: "circular", name: "circular", parameters: [number("acceleration", 1), number("angular_frequency", 2)] },
+    {
+      kind: "circular",
+      name: "circular",
+      parameters: [number("acceleration", 1), rate("angular_frequency", 2, "rad/s")],
+    },
     {
       kind: "elliptic",
       name: "elliptic",
-      parameters: [{ name: "amplitude", default: [1, 0.5] }, number("angular_frequency", 2)],
+      parameters: [{ name: "amplitude", default: [1, 0.5] }, rate("angular_frequency", 2, "rad/s")],
     },
-    { kind: "orbit", name: "orbit", parameters: [number("diameter", 0.01), number("rpm", 200)] },
+    { kind: "orbit", name: "orbit", parameters: [number("diameter", 0.01), rate("rpm", 200, "1/min")] },
     { kind: "record", name: "record", parameters: [number("scale", 1, 0.1, 4)] },
     { kind: "sum", name: "sum", parameters: [] },
     { kind: "rest", name: "rest", parameters: [] },

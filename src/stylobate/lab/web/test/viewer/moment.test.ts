@@ -67,7 +67,7 @@ test("a motion that cannot be drawn is refused in one line that names what is wr
   );
   assert.throws(
     () => drawable({ ...motion, column: { ...motion.column, radius: -1 } }),
-    /column.radius must be positive, got -1 m/,
+    /column.radius must be positive, got -1/,
   );
   assert.equal(drawable(motion), motion);
 });

@@ -8,6 +8,8 @@ export interface Parameter {
   readonly unit?: string | null;
   readonly default: Value;
   readonly needed?: boolean;
+  /** Whether maps can vary it. */
+  readonly varies?: boolean;
   readonly from?: number | null;
   readonly to?: number | null;
   readonly about?: string | null;

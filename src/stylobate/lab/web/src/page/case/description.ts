@@ -1,5 +1,7 @@
 /** The plain values of a description: the names are those of the TOML files of the command line. */
 
+import { START } from "../server/declared";
+
 export type Value = number | string | boolean | null | readonly Value[] | { readonly [name: string]: Value };
 
 /** A column, a model or a motion: its shape or kind, and its numbers. */
@@ -57,7 +59,7 @@ export function caseInWords(description: Description): string {
     const numbers = Object.entries(description[part]).filter(([name, value]) => name !== tag && isSimple(value));
     return [kindOf(description, part).replaceAll("_", " "), ...numbers.map(written)].join(", ");
   });
-  const start = (["tilt", "tilt_rate", "spin"] as const).flatMap((name) => {
+  const start = START.flatMap((name) => {
     const value = description[name];
     return value === undefined || value === null ? [] : [written([name, value])];
   });

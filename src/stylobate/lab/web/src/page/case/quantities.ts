@@ -15,16 +15,6 @@ const STARTS: Readonly<Record<string, readonly [string, 0 | 1]>> = {
 
 const OF_A_RUN: readonly string[] = ["spin", "duration"];
 
-/** What a part's number must be called for a map to vary it. */
-const VARIABLE: readonly string[] = [
-  ...["slenderness", "gravity", "mass_height", "mass", "transverse_inertia", "axial_inertia"],
-  ...["damping", "spin_damping", "rolling_resistance", "restitution"],
-  ...["friction_coefficient", "static_friction_coefficient", "patch", "incline", "incline_direction"],
-  ...["acceleration", "angular_frequency", "start_phase", "scale", "rotation", "delay"],
-  ...["rpm", "diameter", "frequency", "stroke", "velocity"],
-  ...["radius", "height", "inner_radius", "top_radius", "density", "inertia_ratio", "axial_ratio"],
-];
-
 export interface Quantity {
   readonly name: string;
   readonly symbol: string;
@@ -94,7 +84,7 @@ export function mapQuantities(description: Description, about: About, scales: Co
     const parameters = kindNamed(about, part, kindOf(description, part))?.parameters ?? [];
     const given = kindOf(description, part) === "given"; // its radius alone would be that of another body
     return parameters
-      .filter(({ name, default: usual }) => VARIABLE.includes(name) && typeof usual === "number")
+      .filter(({ varies, default: usual }) => varies && typeof usual === "number")
       .filter(({ name }) => !(given && name === "radius"))
       .map(quantityOf);
   });

@@ -3,14 +3,13 @@
 import type { Description, Part, Value } from "./description";
 import { isVector, kindOf, written } from "./description";
 import { isHorizontalHarmonic } from "./frequency";
+import { START, TURNING } from "../server/declared";
 
 export const BRANCHES = ["upper", "lower"] as const;
 export type Branch = (typeof BRANCHES)[number];
 
 /** The kinds of start that a reader chooses from. */
 export type StartKind = Branch | "standing" | "set";
-
-const STARTS = ["tilt", "tilt_rate", "spin"] as const;
 
 /** Returns what the start on a branch depends on. */
 export function startedFrom({ column, model, motion }: Description): Part {
@@ -24,18 +23,16 @@ export function startAlike(one: Description, other: Description): boolean {
 
 /** Returns what of a case its start is. */
 export function startOf(description: Description): Part {
-  return Object.fromEntries(STARTS.map((name) => [name, description[name] ?? null]));
+  return Object.fromEntries(START.map((name) => [name, description[name] ?? null]));
 }
 
 /** Returns the case with a column that stands at first. */
 export function standing(description: Description): Description {
-  return Object.fromEntries(
-    Object.entries(description).filter(([name]) => !(STARTS as readonly string[]).includes(name)),
-  ) as Description;
+  return Object.fromEntries(Object.entries(description).filter(([name]) => !START.includes(name))) as Description;
 }
 
 export function isStanding(description: Description): boolean {
-  return STARTS.every((name) => isZero(description[name]));
+  return START.every((name) => isZero(description[name]));
 }
 
 function isZero(value: Value | undefined): boolean {
@@ -45,9 +42,6 @@ function isZero(value: Value | undefined): boolean {
 export function startKind(description: Description, branch: Branch | null): StartKind {
   return branch ?? (isStanding(description) ? "standing" : "set");
 }
-
-/** Models of columns that may turn about their axis. */
-const TURNING: readonly string[] = ["slender_rolling", "rolling", "sliding"];
 
 export function mayTurn(description: Description): boolean {
   return TURNING.includes(kindOf(description, "model"));

@@ -3,6 +3,7 @@
 import type { About } from "../case/about";
 import type { Description, Part } from "../case/description";
 import { without, written } from "../case/description";
+import { RATES } from "../case/frequency";
 import type { ColumnScales, Quantity } from "../case/quantities";
 import { basinQuantities, mapQuantities, rangeAbout, valueOf } from "../case/quantities";
 import type { Axis, Plane, PlaneKind } from "../view/state";
@@ -19,15 +20,10 @@ export function quantitiesOf(
 
 /** Returns the plane of the first two quantities: frequency and strength of the motion, or the two tilts. */
 export function defaultPlane(kind: PlaneKind, description: Description, quantities: readonly Quantity[]): Plane | null {
-  const order =
-    kind === "map"
-      ? [
-          ...["angular_frequency", "rpm", "frequency", "acceleration", "diameter", "stroke", "velocity"],
-          ...["scale", "friction_coefficient", "damping"],
-        ]
-      : ["tilt_x", "tilt_y"];
-  const wanted = order.flatMap((name) => quantities.filter((one) => one.name === name));
-  const [x, y] = [...wanted, ...quantities.filter((one) => !wanted.includes(one))];
+  const moving = quantities.filter(({ name, unit }) => name in description.motion && unit !== "rad");
+  const named = ["friction_coefficient", "damping"].flatMap((name) => quantities.filter((one) => one.name === name));
+  const wanted = kind === "map" ? [...moving.filter(({ unit }) => unit in RATES), ...moving, ...named] : [];
+  const [x, y] = new Set([...wanted, ...quantities]);
   return x && y ? { x: defaultAxis(x, description), y: defaultAxis(y, description) } : null;
 }
 

@@ -92,24 +92,28 @@ export type Begun = {
 
 /** The numbers of the column that decide. */
 export type ColumnNumbers = {
-  /** of the base [m] */
+  /** radius of the base [m] */
   readonly radius: number;
-  /** height of the centre of mass [m] */
-  readonly mass_height: number;
-  /** [kg] */
-  readonly mass: number;
-  /** c = radius over mass_height */
+  /** acceleration of gravity [m/s²] */
+  readonly gravity: number;
+  /** slenderness r/h */
   readonly slenderness: number;
-  /** κ = m h²/J0 */
+  /** m h²/J0 */
   readonly inertia_ratio: number;
   /** I_a/(m r²) */
   readonly axial_ratio: number;
+  /** height of the centre of mass [m] */
+  readonly mass_height: number;
+  /** mass [kg] */
+  readonly mass: number;
+  /** moment of inertia about a horizontal axis through the centre of mass [kg m²] */
+  readonly transverse_inertia: number;
+  /** moment of inertia about the axis [kg m²] */
+  readonly axial_inertia: number;
   /** ω0 [rad/s] */
   readonly frequency_scale: number;
   /** p of the literature [rad/s] */
   readonly frequency_parameter: number;
-  /** [m/s²] */
-  readonly gravity: number;
   /** c g, the horizontal acceleration that tips the standing column [m/s²] */
   readonly releasing_acceleration: number;
 };
@@ -139,15 +143,15 @@ export type Described = {
 export type DrawnMotion = {
   /** The body. */
   readonly column: {
-    /** of the base [m] */
+    /** radius of the base [m] */
     readonly radius: number;
-    /** [m] */
+    /** radius of the top [m] */
     readonly top_radius: number;
-    /** [m] */
+    /** height of the body [m] */
     readonly height: number;
-    /** [m] */
+    /** height of the centre of mass [m] */
     readonly mass_height: number;
-    /** c */
+    /** slenderness r/h */
     readonly slenderness: number;
     readonly [name: string]: unknown;
   };
@@ -274,6 +278,8 @@ export type Kind = {
     readonly default: unknown;
     /** whether it must be given */
     readonly needed: boolean;
+    /** whether maps can vary it */
+    readonly varies: boolean;
     /** lower end of a slider; null where none serves all */
     readonly from: number | null;
     /** its upper end */

@@ -11,6 +11,7 @@ import { kindNamed } from "../case/about";
 import type { Description, Part, PartName, Value } from "../case/description";
 import { isPart, isVector, PARTS, tagOf } from "../case/description";
 import { BRANCHES } from "../case/starting";
+import { RUN } from "../server/declared";
 import type { Axis, Plane, View } from "./state";
 import { historiesFrom, isRange, TABS, viewOf } from "./state";
 
@@ -44,7 +45,7 @@ export function viewFrom(link: string, about: About): View {
   for (const [name, text] of given) {
     if (isPartName(name)) values[name] = partRead(text, name, about);
     else if (name in LOOKS) looks[name] = LOOKS[name]?.(text) ?? null;
-    else if (OF_A_RUN.includes(name)) values[name] = text.includes(",") ? text.split(",").map(read) : read(text);
+    else if (RUN.includes(name)) values[name] = text.includes(",") ? text.split(",").map(read) : read(text);
     else throw new BrokenLink(`${name} is not known`);
   }
   const { column, model, motion } = values;
@@ -57,12 +58,6 @@ export function viewFrom(link: string, about: About): View {
   };
   return viewOf(description, looks);
 }
-
-const OF_A_RUN: readonly string[] = [
-  ...["tilt", "tilt_rate", "spin", "twist", "position", "velocity", "clearance", "duration", "periods"],
-  ...["friction_coefficient", "rtol", "atol", "tilt_limit", "rest_energy", "max_steps", "samples", "rules"],
-  ...["method", "strobes", "confidence"],
-];
 
 const LOOKS: Readonly<Record<string, (text: string) => Value>> = {
   range: (text) => {

@@ -1,0 +1,29 @@
+/** Names and kinds, written by tools/page_types.py from their declarations. Do not edit. */
+
+/** The numbers of a start. */
+export const START: readonly string[] = ["tilt", "tilt_rate", "spin"];
+
+/** What runs have besides column, model and motion. */
+export const RUN: readonly string[] = ["tilt", "tilt_rate", "spin", "rtol", "atol", "tilt_limit", "rest_energy", "max_steps", "duration", "friction_coefficient", "samples", "twist", "position", "velocity", "clearance", "periods", "method", "strobes", "confidence", "rules"];
+
+/** Kinds of motions that can have response curves. */
+export const RESPONDING: readonly string[] = ["circular", "straight", "elliptic", "displacement_amplitude", "stroke", "orbit", "harmonic"];
+
+/** Those whose acceleration does not depend on their frequency. */
+export const BY_ACCELERATION: readonly string[] = ["circular", "straight", "elliptic"];
+
+/** Kinds of models of columns that may turn about their axis. */
+export const TURNING: readonly string[] = ["slender_rolling", "rolling", "sliding"];
+
+/** By kind of harmonic motion: the number that holds the frequency, and its unit. */
+export const FREQUENCIES: Readonly<Record<string, readonly [name: string, unit: string]>> = {
+  circular: ["angular_frequency", "rad/s"],
+  straight: ["angular_frequency", "rad/s"],
+  elliptic: ["angular_frequency", "rad/s"],
+  vertical: ["angular_frequency", "rad/s"],
+  oblique: ["angular_frequency", "rad/s"],
+  displacement_amplitude: ["angular_frequency", "rad/s"],
+  stroke: ["frequency", "Hz"],
+  orbit: ["rpm", "1/min"],
+  harmonic: ["angular_frequency", "rad/s"],
+};
