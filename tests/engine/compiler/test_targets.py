@@ -45,7 +45,11 @@ def texts():
     plan = Plan(sb.Rolling(sb.Column.dimensionless(0.2)), MotionPlan.of(motion, {}, np.ones(1)), options)
     kernel = kernel_of(sb.Rolling, plan.shape(planar=False))
     rows, width, table = len(kernel.shape.rows()), kernel.shape.width, ArrayArgument((None, None))
-    signal, buf, flat = ArrayArgument((1,), Element.SIGNAL), ArrayArgument((rows, width)), ArrayArgument((rows * width,))
+    signal, buf, flat = (
+        ArrayArgument((1,), Element.SIGNAL),
+        ArrayArgument((rows, width)),
+        ArrayArgument((rows * width,)),
+    )
 
     def text(lanes):
         unit = Unit(lanes=lanes)

@@ -134,7 +134,6 @@ def test_rates_that_are_no_numbers_end_a_run_as_failed_and_leave_others_alone(wr
     np.testing.assert_array_equal(runs["end_tilt"][[0, 2]], beside["end_tilt"])
 
 
-@pytest.mark.slow
 def test_a_model_that_calls_another_models_functions(written):
     model = written(SLENDER_DRAGGED).SlenderDragged(COLUMN, damping=0.1, drag=5.0)
     expect_as_alone(model, CIRCLE, **TURNING)
@@ -165,7 +164,6 @@ def resistance(vx, vy, k):
 """
 
 
-@pytest.mark.slow
 def test_a_model_whose_functions_call_helpers_and_read_constants_of_their_module(written):
     text = dragged("resistance(vx, vy, k)", HELPERS)
     model = written(text).Dragged(COLUMN, drag=5.0)
@@ -209,7 +207,6 @@ class Counted(sb.Slender):
 """
 
 
-@pytest.mark.slow
 def test_a_model_whose_tilt_is_not_its_first_state(written):
     model = written(FURTHER).Counted(COLUMN, damping=0.1)
     data = expect_as_alone(model, CIRCLE, **{**TURNING, "rtol": 1e-10})
@@ -221,11 +218,11 @@ def test_a_model_whose_tilt_is_not_its_first_state(written):
 @pytest.mark.parametrize(
     ("resistance", "before", "told"),
     [
-        pytest.param("TABLE['k']", "TABLE = {'k': object()}", "TABLE", marks=pytest.mark.slow),
+        ("TABLE['k']", "TABLE = {'k': object()}", "TABLE"),
         ("deep(k)", "def deep(k):\n    return k if k < 1.0 else deep(k - 1.0)\n", "deep calls itself"),
-        pytest.param("open('k')", "", "open", marks=pytest.mark.slow),
-        pytest.param("k * nothing_here", "", "nothing_here", marks=pytest.mark.slow),
-        pytest.param("'k'", "", "", marks=pytest.mark.slow),
+        ("open('k')", "", "open"),
+        ("k * nothing_here", "", "nothing_here"),
+        ("'k'", "", ""),
     ],
 )
 def test_a_model_that_cannot_be_compiled_is_told_in_one_line(written, resistance, before, told):
@@ -310,7 +307,6 @@ def test_a_change_of_another_models_function_changes_the_fingerprint_of_what_cal
     assert fingerprint(told) != before
 
 
-@pytest.mark.slow
 def test_functions_that_the_user_compiled_already_are_taken_and_told_apart(written):
     # As other compilers do it.
     before = "class Jit:\n    def __init__(self, function):\n        self.py_func = function\n\n"
