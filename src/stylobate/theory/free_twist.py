@@ -12,6 +12,7 @@ import numpy as np
 
 from stylobate.errors import ParameterError
 from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, not_negative, positive
+from stylobate.theory.finite_tilt import no_deviation_grows
 from stylobate.theory.rolling import rolling_amplitudes
 from stylobate.theory.rotating_frame import rotating_frame_jacobian
 
@@ -126,10 +127,8 @@ def free_twist_rolling(
     spin = np.where(exists, -lag * theta * scaled / ratio + 0.0, np.nan)
     state = np.stack([np.zeros_like(scaled), theta, c * scaled, phase, spin])
     eigenvalues = _eigenvalues(state, exists, numbers)
-    growth = np.where(exists, eigenvalues.real.max(axis=-1), np.nan)
-    scale = np.abs(np.where(np.isfinite(eigenvalues), eigenvalues, 0.0)).max(axis=-1)
-    with np.errstate(invalid="ignore"):
-        stable = np.where(eta > 0.0, growth < 0.0, growth <= _NEUTRAL * scale)
+    with np.errstate(invalid="ignore"):  # NaN, where there is no rolling, passes through
+        stable = no_deviation_grows(eigenvalues, eta)
     return FreeTwistRolling(
         amplitude=c * scaled,
         phase=phase,
@@ -139,10 +138,6 @@ def free_twist_rolling(
         stable=stable & exists,
         eigenvalues=eigenvalues,
     )
-
-
-# Eigenvalues with no more than this real part, of the largest one, count as imaginary where there is no friction.
-_NEUTRAL = 1e-7
 
 
 def free_twist_jacobian(
