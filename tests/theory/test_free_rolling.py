@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.theory.turning_frame import full_rolling_rates
 
 from stylobate import theory
 from stylobate.errors import ParameterError
-from stylobate.theory.full_rolling_rates import full_rolling_rates
 
 
 @given(tilt=st.floats(0.01, 1.5), spin=st.floats(-30.0, 30.0), c=st.floats(0.02, 1.5), kappa=st.floats(0.1, 0.6))

@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
+from tests.theory.turning_frame import free_twist_rates
 
 from stylobate import theory
 from stylobate.errors import ParameterError
-from stylobate.theory.free_twist import free_twist_jacobian, free_twist_rates
+from stylobate.theory.free_twist import free_twist_jacobian
 
 C = 0.1
 SOLID = {"inertia_ratio": 0.75, "axial_ratio": 0.5}

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from stylobate import theory
 from stylobate.errors import ParameterError
 from stylobate.theory import free_twist_critical_frequency, free_twist_upper_frequency
-from stylobate.theory.free_twist_stability import free_twist_hurwitz_coefficients
+from stylobate.theory.free_twist_stability import Frictions, characteristic
 
 C = 0.1
 EPS = float(np.finfo(float).eps)
@@ -34,7 +34,10 @@ def test_the_polynomial_is_that_of_the_jacobian(theta, a, friction, body):
     found = theory.free_twist_rolling(theta, a * C, **column)
     if not found.exists:
         return
-    polynomial = free_twist_hurwitz_coefficients(theta, float(found.amplitude), **column)
+    polynomial = [
+        1.0,
+        *characteristic(theta, C / float(found.amplitude), Frictions(*map(np.asarray, (*friction, *body)))),
+    ]
     expected = np.poly(found.eigenvalues).real
     scale = np.poly(-np.abs(found.eigenvalues))  # what the symmetric functions are sums of
     # Eigenvalues are off by rounding of the largest entry of the Jacobian, which 1/A and 1/c make large.

@@ -7,12 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
+from tests.theory.turning_frame import free_twist_rates, full_rolling_rates
 
 from stylobate import theory
 from stylobate.errors import ParameterError
 from stylobate.theory import finite_tilt
-from stylobate.theory.free_twist import free_twist_rates
-from stylobate.theory.full_rolling_rates import full_rolling_rates
 
 SOLID = {"inertia_ratio": 0.75, "axial_ratio": 0.5}
 
@@ -209,8 +208,3 @@ def test_many_at_once_are_as_one_by_one():
 def test_bad_numbers_are_refused_by_name(change, told):
     with pytest.raises(ParameterError, match=told):
         theory.full_rolling(**({"theta": 2.0, "a0": 0.05, "c": 0.1, "eta": 0.1, "zeta": 0.1} | change))
-
-
-def test_a_state_of_another_length_is_refused():
-    with pytest.raises(ParameterError, match="five entries"):
-        full_rolling_rates(np.zeros(4), 1.0, 0.0, c=0.1, eta=0.0, zeta=0.0)

@@ -5,12 +5,11 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from tests.theory.turning_frame import full_rolling_rates, wobbling_rates
 
 from stylobate import theory
 from stylobate.column import Column
 from stylobate.errors import ParameterError
-from stylobate.theory.full_rolling_rates import full_rolling_rates
-from stylobate.theory.wobbling import wobbling_rates
 
 
 @pytest.mark.parametrize(("c", "degrees"), [(0.1, 180.6724805), (0.2, 182.660)])

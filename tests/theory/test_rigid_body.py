@@ -4,11 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from tests.theory.turning_frame import full_rolling_rates, wobbling_rates
 
 from stylobate import theory
 from stylobate.errors import ParameterError
-from stylobate.theory.full_rolling_rates import full_rolling_rates
-from stylobate.theory.wobbling import wobbling_rates
 
 Z = np.array([0.0, 0.0, 1.0])
 STEP = 1e-6  # of the differences below: their error is STEP² times third derivatives, and rounding over STEP

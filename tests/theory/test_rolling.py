@@ -9,7 +9,6 @@ from stylobate.errors import ParameterError
 from stylobate.theory import rolling_backbone, steady_rolling
 from stylobate.theory.rolling import rolling_gap
 from stylobate.theory.rotating_frame import rotating_frame_jacobian, rotating_frame_rates
-from stylobate.theory.stability import hurwitz_coefficients
 
 C = 0.1
 THETA = np.linspace(0.05, 10.0, 300)[:, np.newaxis, np.newaxis]
@@ -65,9 +64,11 @@ def test_lower_branch_is_a_saddle_with_one_unstable_direction():
     assert (unstable == 1).all()
 
 
-def test_hurwitz_coefficients_are_the_characteristic_polynomial():
+def test_q_and_p0_give_the_characteristic_polynomial():
     upper = ROLLING.upper
-    coefficients = hurwitz_coefficients(THETA, np.where(upper.exists, upper.amplitude, 1.0), c=C, eta=ETA)
+    x, k = C / np.where(upper.exists, upper.amplitude, 1.0), 1.0 + THETA**2
+    q, p0 = 2.0 * THETA**2 - 2.0 + x, k * (k - x) + (ETA * THETA) ** 2
+    coefficients = np.stack(np.broadcast_arrays(1.0, 2.0 * ETA, ETA**2 + q, ETA * q, p0), axis=-1)
     for place in zip(*np.nonzero(upper.exists), strict=True):
         expected = np.poly(upper.eigenvalues[place]).real
         assert coefficients[place] == pytest.approx(expected, rel=1e-9, abs=1e-9 * np.abs(expected).max())

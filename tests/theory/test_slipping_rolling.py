@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, root
+from tests.theory.turning_frame import slipping_rolling_rates
 
 import stylobate as sb
 from stylobate.errors import ParameterError
 from stylobate.theory import critical_frequency, full_rolling, steady_rolling
 from stylobate.theory.rolling_friction import rolling_required_friction
 from stylobate.theory.slipping_rolling import slipping_rolling
-from stylobate.theory.slipping_rolling_rates import EASED, EXPONENT, SLOWED, TWISTING, slipping_rolling_rates
+from stylobate.theory.slipping_rolling_rates import EASED, EXPONENT, SLOWED, TWISTING
 
 from ..models.constrained_body import TURNING, UP, VELOCITY  # noqa: TID252
 from ..models.sliding_body import SlidingBody  # noqa: TID252
@@ -419,8 +420,3 @@ def test_nothing_holds_the_spin_of_a_point_without_spin_friction():
 def test_bad_numbers_are_refused_by_name(change, told):
     with pytest.raises(ParameterError, match=told):
         slipping_rolling(**({"theta": 2.0, "a0": 0.05, "mu": 0.1, "c": 0.1, "eta": 0.1, "zeta": 0.1} | change))
-
-
-def test_a_state_of_another_length_is_refused():
-    with pytest.raises(ParameterError, match="seven entries"):
-        slipping_rolling_rates(np.zeros(5), 1.0, 0.0, mu=0.1, c=0.1, eta=0.0, zeta=0.0)

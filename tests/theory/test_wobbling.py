@@ -5,10 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
+from tests.theory.turning_frame import wobbling_rates
 
 from stylobate import theory
-from stylobate.errors import ParameterError
-from stylobate.theory.wobbling import wobbling_rates
 
 
 @given(c=st.floats(0.01, 1.0), theta=st.floats(0.2, 8.0), a=st.floats(0.05, 5.0), eta=st.floats(0.0, 2.0))
@@ -86,8 +85,3 @@ def test_without_friction_and_base_motion_it_rolls_by_itself_with_any_phase():
     assert found.amplitude.shape == (2, 1)
     np.testing.assert_array_equal(found.exists, [[True], [False]])
     assert found.amplitude[0, 0] == pytest.approx(float(theory.rolling_backbone(1.3, 0.1)), rel=5e-3)  # c² = 0.01
-
-
-def test_a_state_of_another_length_is_refused():
-    with pytest.raises(ParameterError, match="four entries"):
-        wobbling_rates(np.zeros(5), 1.0, 0.0, c=0.1, eta=0.0)

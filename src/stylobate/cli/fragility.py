@@ -21,10 +21,10 @@ from stylobate.cli.declarations import (
 from stylobate.cli.fragility_table import print_fits, summary
 from stylobate.cli.many_runs import check_outputs, computed, end, is_to_compute, save
 from stylobate.cli.options import Options
-from stylobate.cli.output import STORE, check_writable, print_json, save_figure
+from stylobate.cli.output import check_writable, print_json, save_figure
 from stylobate.cli.overlay import axis_values, overlay, spacing
 from stylobate.cli.parts import COLUMN, MODEL
-from stylobate.cli.saved import open_saved
+from stylobate.cli.saved import open_study
 from stylobate.cli.source import read_source
 from stylobate.cli.spectrum import SCALES, SCALES_SPACING
 from stylobate.config.run_numbers import SharedByRuns
@@ -145,17 +145,12 @@ _OF_FITS = ("counting", "confidence", "resamples", *_OF_HAZARD, "years", "runs_f
 
 
 def _saved(source: Path | None) -> "xr.Dataset | None":
-    if source is not None and source.suffix == STORE:
-        message = (
-            f"{source} is a store of runs, which cannot be shown. Continue it with its description, "
-            f"--output {source} and --resume, or save runs as .nc."
-        )
-        raise FileError(message)
-    saved = open_saved(source)
-    if saved is not None and saved.attrs["kind"] != "incremental dynamic analysis":
-        message = f"{source}: no runs under records at several scales (got a {saved.attrs['kind']})."
-        raise FileError(message)
-    return saved
+    store = (
+        "a store of runs, which cannot be shown. Continue it with its description, "
+        f"--output {source} and --resume, or save runs as .nc."
+    )
+    kinds = ("incremental dynamic analysis",)
+    return open_study(source, kinds, lacks="runs under records at several scales", store=store)
 
 
 def _description(saved: "xr.Dataset", source: Path | None) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """Results of studies in files: read from netCDF files and stores, written to netCDF files."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -36,6 +36,35 @@ def open_saved(source: Path | None) -> "xr.Dataset | None":
         message = f"{source} holds no map or basins saved by stylobate"
         raise FileError(message)
     return _relocated(data, source)
+
+
+def open_study(source: Path | None, kinds: Collection[str], *, lacks: str, store: str) -> "xr.Dataset | None":
+    """Read a saved study of one of these kinds from a netCDF file; None for any other source.
+
+    Parameters
+    ----------
+    source
+        The file.
+    kinds
+        The kinds of study that the command shows.
+    lacks
+        What a file of another kind does not hold, for its message.
+    store
+        Why a store cannot be shown, and the remedy.
+
+    Raises
+    ------
+    FileError
+        If it is a store, of another kind, or cannot be read.
+    """
+    if source is not None and source.suffix == STORE:
+        message = f"{source} is {store}"
+        raise FileError(message)
+    saved = open_saved(source)
+    if saved is not None and saved.attrs["kind"] not in kinds:
+        message = f"{source}: no {lacks} (got a {saved.attrs['kind']})."
+        raise FileError(message)
+    return saved
 
 
 def _relocated(data: "xr.Dataset", source: Path) -> "xr.Dataset":

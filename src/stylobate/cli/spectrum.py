@@ -10,12 +10,11 @@ from stylobate.cli.command import command
 from stylobate.cli.declarations import AXES, COMPUTING, OUTPUT_OR_STORE, RECORD, Group, Option, run_numbers
 from stylobate.cli.many_runs import check_axes, finish, run_study, study_values
 from stylobate.cli.options import Options
-from stylobate.cli.output import STORE, print_table
+from stylobate.cli.output import print_table
 from stylobate.cli.overlay import axis_values, spacing, with_axes
 from stylobate.cli.parts import COLUMN, MODEL, MOTION
-from stylobate.cli.saved import model_named, open_saved, provenance_of
+from stylobate.cli.saved import model_named, open_study, provenance_of
 from stylobate.config.run_numbers import SharedByRuns
-from stylobate.errors import FileError
 from stylobate.text import plural
 
 if TYPE_CHECKING:
@@ -83,17 +82,11 @@ def _prepared(saved: "xr.Dataset | None", options: Options) -> "tuple[Callable[.
 
 
 def _saved(source: Path | None) -> "xr.Dataset | None":
-    if source is not None and source.suffix == STORE:
-        message = (
-            f"{source} is the store of a spectrum or a sweep, which cannot be shown. Continue it with its options, "
-            f"--output {source} and --resume, or save a spectrum as .nc."
-        )
-        raise FileError(message)
-    saved = open_saved(source)
-    if saved is not None and saved.attrs["kind"] not in _KINDS:
-        message = f"{source}: no spectrum (got a {saved.attrs['kind']})."
-        raise FileError(message)
-    return saved
+    store = (
+        "the store of a spectrum or a sweep, which cannot be shown. Continue it with its options, "
+        f"--output {source} and --resume, or save a spectrum as .nc."
+    )
+    return open_study(source, _KINDS, lacks="spectrum", store=store)
 
 
 _BANDS, _ROCKING = "overturning bands", "rocking spectrum"

@@ -1,6 +1,5 @@
 """Descriptions of models, made from the declarations of their numbers and told apart by their `kind`."""
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import BeforeValidator
@@ -51,17 +50,6 @@ else:
 def described_model(kind: str, **values: Any) -> DescribedModel:
     """Return the description of a model of this `kind`, with defaults for what is not given."""
     return _BY_KIND[kind](**{"kind": kind, **values})
-
-
-def known_values(described: Mapping[str, Any], kind: str) -> dict[str, Any]:
-    """Return those of the `described` values of a model that one of this `kind` knows, all if there is no such kind."""
-    one = _BY_KIND.get(kind)
-    return {name: value for name, value in described.items() if one is None or name in one.model_fields}
-
-
-def kinds_with(name: str) -> tuple[str, ...]:
-    """Return the kinds of model that have a number of this `name`."""
-    return tuple(kind for kind, one in _BY_KIND.items() if name in one.model_fields)
 
 
 def default_values(kind: str) -> dict[str, Any]:

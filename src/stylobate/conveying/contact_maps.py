@@ -12,7 +12,7 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.errors import Outcome, ParameterError, UnsupportedError
 from stylobate.models import Model
-from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
 from stylobate.studies.checks import require_values
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
@@ -133,6 +133,5 @@ def contact_classes(runs: xr.Dataset, least_share: float = 1e-3) -> xr.DataArray
     for where, kind in reversed(known):
         classes = classes.where(~where, int(kind))
     classes = classes.where(outcome != NOT_COMPUTED, NOT_COMPUTED).astype(np.int8)
-    meanings = " ".join(["NOT_COMPUTED", *(kind.name for kind in ContactClass)])
-    values = np.arange(NOT_COMPUTED, len(ContactClass), dtype=np.int8)
-    return classes.assign_attrs(long_name="what the column did", flag_values=values, flag_meanings=meanings)
+    meanings = ["NOT_COMPUTED", *(kind.name for kind in ContactClass)]
+    return classes.assign_attrs(flag_attributes("what the column did", meanings, first=NOT_COMPUTED))

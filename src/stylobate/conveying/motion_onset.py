@@ -10,6 +10,7 @@ from stylobate.base_motions import BASE_AT_REST
 from stylobate.config import provenance_of_run
 from stylobate.errors import ParameterError, UnsupportedError, require_finite
 from stylobate.models import Model, Sliding
+from stylobate.results.outcomes import flag_attributes
 from stylobate.studies.sweeps.quantities import checked_values
 from stylobate.theory import FirstMotion, start_of_motion
 
@@ -111,11 +112,7 @@ def start_boundary(
     start = start_of_motion(1.0, ratio, c=c, friction=mu, phase=phase, incline=slope)
     gravity = model.column.gravity
     amplitudes = {"acceleration": start.amplitude, "slide": start.slide, "rock": start.rock, "lift_off": start.lift_off}
-    flags = {
-        "long_name": "what it does first",
-        "flag_values": np.array([int(kind) for kind in FirstMotion], dtype=np.int8),
-        "flag_meanings": " ".join(kind.name for kind in FirstMotion),
-    }
+    flags = flag_attributes("what it does first", [kind.name for kind in FirstMotion])
     return xr.Dataset(
         {
             **{

@@ -16,6 +16,7 @@ from stylobate.base_motions import BaseMotion, Harmonic
 from stylobate.config import provenance_of_run
 from stylobate.errors import ParameterError, UnsupportedError
 from stylobate.models import Model, Rolling, Sliding, Wobbling
+from stylobate.results.outcomes import flag_attributes
 from stylobate.studies.ranges import require_rising_frequencies
 from stylobate.studies.responses.rolling_frame import RollingFrame
 from stylobate.studies.sweeps.quantities import attributes_of, checked_values
@@ -121,12 +122,13 @@ def slipping_boundary(
         **_ends("rolling", rolls, theta, friction, case.rolls),
         **_ends("slipping", slides, theta, friction, case.slips),
     }
+    flags = flag_attributes("steady rolling", [kind.name for kind in RollingRegime])
     return xr.Dataset(
         {
             **_without_slip(held),
             "slips": ((*_PLANE, "branch"), slips, _attributes("1", "needs more friction than there is")),
             **_with_slip(slipping, model),
-            "steady_rolling": (_PLANE, _classes(exists, rolls, slides), _flags()),
+            "steady_rolling": (_PLANE, _classes(exists, rolls, slides), flags),
             **{
                 name: ("friction_coefficient", edge / model.time_scale, _attributes("rad s-1", name.replace("_", " ")))
                 for name, edge in ends.items()
@@ -284,11 +286,3 @@ def _any(branches: Flags) -> Flags:
 
 def _attributes(units: str, long_name: str) -> dict[str, str]:
     return {"units": units, "long_name": long_name}
-
-
-def _flags() -> dict[str, Any]:
-    return {
-        "long_name": "steady rolling",
-        "flag_values": np.array([int(kind) for kind in RollingRegime], dtype=np.int8),
-        "flag_meanings": " ".join(kind.name for kind in RollingRegime),
-    }

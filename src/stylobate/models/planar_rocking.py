@@ -10,11 +10,12 @@ import numpy.typing as npt
 
 from stylobate.column import STANDARD_GRAVITY, Column
 from stylobate.errors import require_positive
-from stylobate.models import finite_tilt, tilt_vector, without_spin
+from stylobate.models import finite_tilt, without_spin
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.finite_tilt import TINY, planar_acceleration
-from stylobate.models.model import Balance, Floats, Model, Output
+from stylobate.models.model import Balance, Floats, Output
 from stylobate.models.numbers import Damping, Restitution, RollingResistance
+from stylobate.models.tilt_vector import TiltVectorModel
 
 
 def rates(
@@ -95,7 +96,7 @@ def impact_map(
 
 
 @dataclass(frozen=True, slots=True)
-class PlanarRocking(Model):
+class PlanarRocking(TiltVectorModel):
     """A body that rocks in a vertical plane from one edge to the other: Housner's model, at finite angles.
 
     Start and base motion must lie in one vertical plane. Of the column it takes the half width r, the height h of the
@@ -130,7 +131,6 @@ class PlanarRocking(Model):
     restitution: Restitution | None = None
 
     name: ClassVar[str] = "planar rocking"
-    state_names: ClassVar[tuple[str, ...]] = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
     planar_only: ClassVar[bool] = True
 
     @classmethod
@@ -178,10 +178,8 @@ class PlanarRocking(Model):
         return cls(column, damping=damping, restitution=restitution)
 
     rates = staticmethod(rates)
-    tilt_of = staticmethod(tilt_vector.tilt_of)
     contact = staticmethod(contact)
     planar_rates = staticmethod(planar_rates)
-    from_plane = staticmethod(tilt_vector.from_plane)
     rest_energy = staticmethod(without_spin.rest_energy)
     no_return_tilt = staticmethod(without_spin.no_return_tilt)
     departure = staticmethod(without_spin.departure)
@@ -201,11 +199,6 @@ class PlanarRocking(Model):
         column = self.column
         numbers = (column.slenderness, self.damping, column.inertia_ratio)
         return (*numbers, self.rolling_resistance, self.impact_restitution)
-
-    def start(self, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, float, float, float]:
-        """Return the state with this tilt vector [rad] and its rate [rad/s]."""
-        scale = self.time_scale
-        return tilt[0], tilt[1], tilt_rate[0] * scale, tilt_rate[1] * scale
 
     @property
     def comes_to_rest(self) -> bool:

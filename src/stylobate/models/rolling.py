@@ -9,11 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.models import finite_tilt, free_twist, tilt_vector
+from stylobate.models import finite_tilt, free_twist
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
-from stylobate.models.model import Balance, Floats, Model, Output, Push
+from stylobate.models.model import Balance, Floats, Output, Push
 from stylobate.models.numbers import Damping, PassageTilt, Restitution, RollingResistance, SpinDamping
+from stylobate.models.tilt_vector import LEAN, TiltVectorModel, from_plane_without_spin
 
 
 def balance(
@@ -205,7 +206,7 @@ def impact_map(
 
 
 @dataclass(frozen=True, slots=True)
-class Rolling(Model):
+class Rolling(TiltVectorModel):
     """The rigid column that rolls without slip on the rim of its base, at any tilt below π/2, and may turn.
 
     Its state is the tilt vector α = θ(cos β, sin β), its rate and the spin w3, the angular velocity about its axis;
@@ -254,16 +255,15 @@ class Rolling(Model):
     passage_tilt: PassageTilt | None = None
 
     name: ClassVar[str] = "rolling"
-    state_names: ClassVar[tuple[str, ...]] = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y", "spin")
+    state_names: ClassVar[tuple[str, ...]] = (*LEAN, "spin")
     spin_state: ClassVar[int | None] = 4
     carried_names: ClassVar[tuple[str, ...]] = ("twist", "footprint_x", "footprint_y")
 
     rates = staticmethod(rates)
-    tilt_of = staticmethod(tilt_vector.tilt_of)
     contact = staticmethod(contact)
     carried_rates = staticmethod(carried_rates)
     planar_rates = staticmethod(planar_rates)
-    from_plane = staticmethod(tilt_vector.from_plane_without_spin)
+    from_plane = staticmethod(from_plane_without_spin)
     rest_energy = staticmethod(rest_energy)
     departure = staticmethod(departure)
     passage = staticmethod(passage)
@@ -276,13 +276,6 @@ class Rolling(Model):
         shape = (column.inertia_ratio, column.axial_ratio)
         frictions = (self.rolling_resistance, self.restitution)
         return (column.slenderness, self.damping, self.spin_damping, *shape, *frictions)
-
-    def start(
-        self, tilt: tuple[float, float], tilt_rate: tuple[float, float]
-    ) -> tuple[float, float, float, float, float]:
-        """Return the state with this tilt vector [rad] and its rate [rad/s], without spin."""
-        scale = self.time_scale
-        return tilt[0], tilt[1], tilt_rate[0] * scale, tilt_rate[1] * scale, 0.0 * tilt[0]
 
     @property
     def comes_to_rest(self) -> bool:

@@ -9,12 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.models import tilt_vector
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.departing import departing_lean
-from stylobate.models.model import Balance, Floats, Model, Output, Push
+from stylobate.models.model import Balance, Floats, Output, Push
 from stylobate.models.numbers import Damping
 from stylobate.models.passing import past_the_upright
+from stylobate.models.tilt_vector import TiltVectorModel
 
 # Keeps 1/|α| finite at the upright itself, far below any tilt that is resolved.
 _TINY = 1e-300
@@ -75,7 +75,7 @@ def passage(
 
 
 @dataclass(frozen=True, slots=True)
-class Slender(Model):
+class Slender(TiltVectorModel):
     """A slender column: small tilt, no slip, no rotation about the vertical; equations (1).
 
     α̈ = (1 + a_z)(α − c û) − η α̇ − a_h with û = α/|α|, in units of 1/ω0 and g. At α = 0 the base rests flat and û is
@@ -103,13 +103,10 @@ class Slender(Model):
     damping: Damping = 0.0
 
     name: ClassVar[str] = "slender"
-    state_names: ClassVar[tuple[str, ...]] = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
 
     rates = staticmethod(rates)
-    tilt_of = staticmethod(tilt_vector.tilt_of)
     contact = staticmethod(contact)
     planar_rates = staticmethod(planar_rates)
-    from_plane = staticmethod(tilt_vector.from_plane)
     rest_energy = staticmethod(rest_energy)
     no_return_tilt = staticmethod(no_return_tilt)
     departure = staticmethod(departure)
@@ -124,11 +121,6 @@ class Slender(Model):
     def parameters(self) -> tuple[float, ...]:
         """c, η and κ."""
         return self.column.slenderness, self.damping, self.column.inertia_ratio
-
-    def start(self, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, float, float, float]:
-        """Return the state with this tilt vector [rad] and its rate [rad/s]."""
-        scale = self.time_scale
-        return tilt[0], tilt[1], tilt_rate[0] * scale, tilt_rate[1] * scale
 
     @property
     def comes_to_rest(self) -> bool:

@@ -9,10 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.models import free_twist, slender, tilt_vector
+from stylobate.models import free_twist, slender
 from stylobate.models.contact import contact_outputs, path_outputs
-from stylobate.models.model import Balance, Floats, Model, Output, Push
+from stylobate.models.model import Balance, Floats, Output, Push
 from stylobate.models.numbers import Damping, SpinDamping
+from stylobate.models.tilt_vector import LEAN, TiltVectorModel, from_plane_without_spin
 from stylobate.quantities import Quantity
 
 # As in the slender model: keeps 1/|α| finite at the upright itself.
@@ -139,7 +140,7 @@ def passage(
 
 
 @dataclass(frozen=True, slots=True)
-class SlenderRolling(Model):
+class SlenderRolling(TiltVectorModel):
     """A slender column that rolls without slip: small tilt, the twist free.
 
     With σ = w3/ω0, κ = m h²/J0, i_a = I_a/(m r²), D = 1 + i_a − κ, û = α/|α|, n across it, a_n = a_h·n, and contact
@@ -180,16 +181,15 @@ class SlenderRolling(Model):
     couples: Couples = "contact"
 
     name: ClassVar[str] = "slender rolling"
-    state_names: ClassVar[tuple[str, ...]] = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y", "spin")
+    state_names: ClassVar[tuple[str, ...]] = (*LEAN, "spin")
     spin_state: ClassVar[int | None] = 4
     carried_names: ClassVar[tuple[str, ...]] = ("twist", "footprint_x", "footprint_y")
 
     rates = staticmethod(rates)
-    tilt_of = staticmethod(tilt_vector.tilt_of)
     contact = staticmethod(contact)
     carried_rates = staticmethod(carried_rates)
     planar_rates = staticmethod(planar_rates)
-    from_plane = staticmethod(tilt_vector.from_plane_without_spin)
+    from_plane = staticmethod(from_plane_without_spin)
     rest_energy = staticmethod(rest_energy)
     departure = staticmethod(departure)
     passage = staticmethod(passage)
@@ -200,13 +200,6 @@ class SlenderRolling(Model):
         column = self.column
         numbers = (column.slenderness, self.damping, self.spin_damping, column.inertia_ratio, column.axial_ratio)
         return (*numbers, float(self.couples == "contact"))
-
-    def start(
-        self, tilt: tuple[float, float], tilt_rate: tuple[float, float]
-    ) -> tuple[float, float, float, float, float]:
-        """Return the state with this tilt vector [rad] and its rate [rad/s], without spin."""
-        scale = self.time_scale
-        return tilt[0], tilt[1], tilt_rate[0] * scale, tilt_rate[1] * scale, 0.0 * tilt[0]
 
     @property
     def comes_to_rest(self) -> bool:

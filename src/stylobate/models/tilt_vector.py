@@ -1,6 +1,11 @@
 """What models share whose state begins with the tilt vector and its rate: x, y, vx, vy, and perhaps a spin."""
 
-from typing import Any
+from typing import Any, ClassVar
+
+from stylobate.models.model import Model
+
+LEAN = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
+"""Names of these states."""
 
 
 def tilt_of(x: Any, y: Any, vx: Any, vy: Any, *_: Any) -> tuple[Any, Any, Any, Any]:
@@ -8,11 +13,27 @@ def tilt_of(x: Any, y: Any, vx: Any, vy: Any, *_: Any) -> tuple[Any, Any, Any, A
     return x, y, vx, vy
 
 
-def from_plane(tilt: Any, rate: Any, ux: float, uy: float, *_: float) -> tuple[Any, Any, Any, Any]:
+def from_plane(tilt: Any, rate: Any, ux: float, uy: float, *_: float) -> tuple[Any, ...]:
     """Return the state of a motion along the unit vector (ux, uy)."""
     return tilt * ux, tilt * uy, rate * ux, rate * uy
 
 
-def from_plane_without_spin(tilt: Any, rate: Any, ux: float, uy: float, *_: float) -> tuple[Any, Any, Any, Any, Any]:
+def from_plane_without_spin(tilt: Any, rate: Any, ux: float, uy: float, *_: float) -> tuple[Any, ...]:
     """Return the same with a spin behind it, which there is none of in a plane."""
     return tilt * ux, tilt * uy, rate * ux, rate * uy, 0.0 * tilt
+
+
+class TiltVectorModel(Model):
+    """A model whose state is the tilt vector and its rate; what a subclass adds to `state_names` begins with zero."""
+
+    __slots__ = ()
+
+    state_names: ClassVar[tuple[str, ...]] = LEAN
+
+    tilt_of = staticmethod(tilt_of)
+    from_plane = staticmethod(from_plane)
+
+    def start(self, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, ...]:
+        """Return the state with this tilt vector [rad] and its rate [rad/s]; all else is zero."""
+        scale, more = self.time_scale, len(self.state_names) - len(LEAN)
+        return tilt[0], tilt[1], tilt_rate[0] * scale, tilt_rate[1] * scale, *(0.0 * tilt[0],) * more

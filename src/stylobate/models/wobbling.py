@@ -9,12 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.models import finite_tilt, tilt_vector, without_spin
+from stylobate.models import finite_tilt, without_spin
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
-from stylobate.models.model import Balance, Floats, Model, Output
+from stylobate.models.model import Balance, Floats, Output
 from stylobate.models.numbers import Damping, PassageTilt, Restitution, RollingResistance
 from stylobate.models.passing import past_the_upright
+from stylobate.models.tilt_vector import TiltVectorModel
 from stylobate.quantities import Quantity
 
 Constraint = Annotated[Literal["pure_tilt", "rubber"], Quantity(text="what keeps the column from turning")]
@@ -199,7 +200,7 @@ def impact_map(
 
 
 @dataclass(frozen=True, slots=True)
-class Wobbling(Model):
+class Wobbling(TiltVectorModel):
     """The rigid column that rolls on the rim of its base at any tilt below π/2 and cannot turn.
 
     Its angular velocity has no part along e3 + Z, the bisector of axis and vertical: it tilts without twist, the
@@ -244,15 +245,12 @@ class Wobbling(Model):
     constraint: Constraint = "pure_tilt"
 
     name: ClassVar[str] = "wobbling"
-    state_names: ClassVar[tuple[str, ...]] = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
     carried_names: ClassVar[tuple[str, ...]] = ("twist", "footprint_x", "footprint_y")
 
     rates = staticmethod(rates)
-    tilt_of = staticmethod(tilt_vector.tilt_of)
     contact = staticmethod(contact)
     carried_rates = staticmethod(carried_rates)
     planar_rates = staticmethod(planar_rates)
-    from_plane = staticmethod(tilt_vector.from_plane)
     rest_energy = staticmethod(without_spin.rest_energy)
     no_return_tilt = staticmethod(without_spin.no_return_tilt)
     departure = staticmethod(without_spin.departure)
@@ -266,11 +264,6 @@ class Wobbling(Model):
         shape = (column.inertia_ratio, column.axial_ratio)
         rest = (self.rolling_resistance, float(self.constraint == "rubber"), self.restitution)
         return (column.slenderness, self.damping, *shape, *rest)
-
-    def start(self, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, float, float, float]:
-        """Return the state with this tilt vector [rad] and its rate [rad/s]."""
-        scale = self.time_scale
-        return tilt[0], tilt[1], tilt_rate[0] * scale, tilt_rate[1] * scale
 
     @property
     def comes_to_rest(self) -> bool:

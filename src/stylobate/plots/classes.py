@@ -4,7 +4,7 @@ The hues are those of Okabe and Ito's palette for colour-blind readers; the ligh
 a tenth of its range or more, and textures tell the others apart where print has no colour.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import xarray as xr
@@ -38,6 +38,7 @@ _UNSETTLED, _OVERTURNED = Look(_LILAC, "xx", _LILAC_INK), Look(_NIGHT)
 UNFINISHED = Look("#ffffff", "//////", "#b0b0b0")
 """What has not been computed: white paper, finely hatched."""
 
+# From standing to falling.
 OUTCOME_LOOKS = {
     Outcome.AT_REST: _AT_REST,
     Outcome.ROCKING: _ROCKING,
@@ -82,44 +83,29 @@ class MapClass:
     look: Look
 
 
-_UNFINISHED_CLASS = MapClass(NOT_COMPUTED, "not computed", UNFINISHED)
-_FROM_STANDING_TO_FALLING = (
-    Outcome.AT_REST,
-    Outcome.ROCKING,
-    Outcome.ROLLING,
-    Outcome.MODULATED,
-    Outcome.SURVIVED,
-    Outcome.STILL_MOVING,
-    Outcome.OVERTURNED,
-    Outcome.LIMIT_REACHED,
-    Outcome.LIFTED_OFF,
-    Outcome.SLID,
-    Outcome.STOPPED,
-    Outcome.FAILED,
-)
+UNFINISHED_CLASS = MapClass(NOT_COMPUTED, "not computed", UNFINISHED)
+
+
+def classes_of(names: Iterable[object], looks: Iterable[Look]) -> tuple[MapClass, ...]:
+    """Return classes of these names and looks, whose codes are their places."""
+    return tuple(MapClass(code, str(name), look) for code, (name, look) in enumerate(zip(names, looks, strict=True)))
 
 
 def outcome_classes() -> tuple[MapClass, ...]:
     """Return the classes of outcomes, from standing to falling, the last for what has not been computed."""
-    known = (MapClass(int(one), one.label, OUTCOME_LOOKS[one]) for one in _FROM_STANDING_TO_FALLING)
-    return (*known, _UNFINISHED_CLASS)
+    return (*(MapClass(int(one), one.label, look) for one, look in OUTCOME_LOOKS.items()), UNFINISHED_CLASS)
 
 
 def contact_classes(found: xr.Dataset) -> tuple[MapClass, ...]:
     """Return the classes of a contact map, from standing to falling, the last for what has not been computed."""
     looks = (_AT_REST, _SLIDING, _ROCKING, _ROLLING_BACK, Look(_GREY, "**"), _OVERTURNED)
-    names = [str(name) for name in found["class_name"].to_numpy()]
-    shown = zip(names, (*looks, OUTCOME_LOOKS[Outcome.FAILED]), strict=True)
-    return (*(MapClass(code, name, look) for code, (name, look) in enumerate(shown)), _UNFINISHED_CLASS)
+    return (*classes_of(found["class_name"].to_numpy(), (*looks, OUTCOME_LOOKS[Outcome.FAILED])), UNFINISHED_CLASS)
 
 
 def attractor_classes(found: xr.Dataset) -> tuple[MapClass, ...]:
     """Return the classes of the attractors in a table over `attractor_index`, those not settled too, and of no runs."""
     kinds = [str(kind) for kind in found["attractor_kind"].to_numpy()]
-    names = [str(name) for name in found["attractor_name"].to_numpy()]
-    looks = _looks(kinds)
-    known = (MapClass(code, name, look) for code, (name, look) in enumerate(zip(names, looks, strict=True)))
-    return (*known, _UNFINISHED_CLASS)
+    return (*classes_of(found["attractor_name"].to_numpy(), _looks(kinds)), UNFINISHED_CLASS)
 
 
 def _looks(kinds: Sequence[str]) -> list[Look]:

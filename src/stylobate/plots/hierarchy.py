@@ -11,12 +11,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from stylobate.errors import Outcome
 from stylobate.plots.cells import fill_options, percent
-from stylobate.plots.classes import Look, MapClass
+from stylobate.plots.classes import OUTCOME_LOOKS, UNFINISHED_CLASS, Look, MapClass, classes_of
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.maps import draw_classes
 from stylobate.plots.style import BLACK, GREY, PALETTE, new_figure, styled
-from stylobate.results.outcomes import NOT_COMPUTED, outcome_label
+from stylobate.results.outcomes import outcome_label
 
 # Levels that cannot turn are blue and black, those that may turn vermilion and orange; finite tilt is dashed, over it.
 _LINES: dict[str, dict[str, Any]] = {
@@ -37,9 +38,8 @@ _DIFFERENCES = (
     Look(PALETTE[0], "///"),
     Look(PALETTE[5], "...", "#333333"),
     Look("#1B0B16"),
-    Look("#ffffff", "xxx", "#D55E00"),
+    OUTCOME_LOOKS[Outcome.FAILED],
 )
-_UNFINISHED = MapClass(NOT_COMPUTED, "not computed", Look("#ffffff", "//////", "#b0b0b0"))
 
 
 @figure_of("model hierarchy")
@@ -200,8 +200,8 @@ def plot_outcome_differences(found: xr.Dataset) -> Figure:
         str(name).replace("the first", found.attrs["first"]).replace("the second", found.attrs["second"])
         for name in found["comparison_name"].to_numpy()
     ]
-    classes = [MapClass(code, name, look) for code, (name, look) in enumerate(zip(names, _DIFFERENCES, strict=True))]
-    draw_classes(axes, found, found["comparison"], [*classes, _UNFINISHED])
+    classes = classes_of(names, _DIFFERENCES)
+    draw_classes(axes, found, found["comparison"], [*classes, UNFINISHED_CLASS])
     figure.legend(handles=_entries(found, classes), loc="outside upper center", ncols=2)
     return figure
 

@@ -1,8 +1,10 @@
-"""Outcomes in arrays: the attributes that explain the codes, and their words."""
+"""Outcomes and other codes in arrays: the attributes that explain them, and the words for outcomes."""
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from stylobate.errors import Outcome
 
@@ -16,9 +18,26 @@ def outcome_label(code: int) -> str:
 
 
 def outcome_attributes() -> dict[str, Any]:
-    """Return the attributes of a variable that holds codes, after the CF conventions' flags."""
-    return {
-        "long_name": "outcome",
-        "flag_values": np.array([NOT_COMPUTED, *Outcome], dtype=np.int8),
-        "flag_meanings": " ".join(["NOT_COMPUTED", *(outcome.name for outcome in Outcome)]),
-    }
+    """Return the attributes of a variable that holds outcomes."""
+    return flag_attributes("outcome", ["NOT_COMPUTED", *(outcome.name for outcome in Outcome)], first=NOT_COMPUTED)
+
+
+def flag_attributes(
+    long_name: str, meanings: Iterable[str], *, first: int = 0, dtype: npt.DTypeLike = np.int8
+) -> dict[str, Any]:
+    """Return the attributes of a variable that holds the codes `first`, `first` + 1, …, after the CF conventions.
+
+    Parameters
+    ----------
+    long_name
+        What the codes say.
+    meanings
+        The meaning of each code, one word without spaces.
+    first
+        The first code.
+    dtype
+        Type of the codes among the attributes.
+    """
+    words = list(meanings)
+    values = np.arange(first, first + len(words), dtype=dtype)
+    return {"long_name": long_name, "flag_values": values, "flag_meanings": " ".join(words)}

@@ -107,16 +107,16 @@ def _scan(
             square = (along - a0[row]) * (along + a0[row]) + across**2
             return np.where(side == 0.0, square, along - side * a0[row])
 
-        at, tilts = zeros(excess, _grid(scale[rows[part]]))
+        at, tilts = zeros(excess, tilt_grid(scale[rows[part]], _POINTS))
         found.append((rows[part][at], tilts))
     every, tilts = (np.concatenate(part) for part in zip(*found, strict=True))
     return every, tilts
 
 
-def _grid(scale: FloatArray) -> FloatArray:
+def tilt_grid(scale: FloatArray, points: int) -> FloatArray:
     """Return tilts that are evenly spaced below `scale` and by equal ratios above it."""
     start, reach = np.arcsinh(_LEAST), np.arcsinh((0.5 * np.pi - _MARGIN) / scale)
-    steps = np.linspace(0.0, 1.0, _POINTS)
+    steps = np.linspace(0.0, 1.0, points)
     return np.asarray(scale[:, np.newaxis] * np.sinh(start + (reach[:, np.newaxis] - start) * steps))
 
 

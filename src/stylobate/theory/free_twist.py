@@ -12,6 +12,7 @@ import numpy as np
 
 from stylobate.errors import ParameterError
 from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, not_negative, positive
+from stylobate.theory.finite_tilt import no_deviation_grows
 from stylobate.theory.rolling import rolling_amplitudes
 from stylobate.theory.rotating_frame import rotating_frame_jacobian
 
@@ -126,10 +127,8 @@ def free_twist_rolling(
     spin = np.where(exists, -lag * theta * scaled / ratio + 0.0, np.nan)
     state = np.stack([np.zeros_like(scaled), theta, c * scaled, phase, spin])
     eigenvalues = _eigenvalues(state, exists, numbers)
-    growth = np.where(exists, eigenvalues.real.max(axis=-1), np.nan)
-    scale = np.abs(np.where(np.isfinite(eigenvalues), eigenvalues, 0.0)).max(axis=-1)
-    with np.errstate(invalid="ignore"):
-        stable = np.where(eta > 0.0, growth < 0.0, growth <= _NEUTRAL * scale)
+    with np.errstate(invalid="ignore"):  # NaN, where there is no rolling, passes through
+        stable = no_deviation_grows(eigenvalues, eta)
     return FreeTwistRolling(
         amplitude=c * scaled,
         phase=phase,
@@ -141,35 +140,23 @@ def free_twist_rolling(
     )
 
 
-# Eigenvalues with no more than this real part, of the largest one, count as imaginary where there is no friction.
-_NEUTRAL = 1e-7
-
-
-def free_twist_rates(
-    state: Real,
-    theta: Real,
-    a0: Real,
-    *,
-    c: Real,
-    eta: Real,
-    zeta: Real,
-    inertia_ratio: Real = 0.75,
-    axial_ratio: Real = 0.5,
+def free_twist_jacobian(
+    state: Real, a0: Real, *, c: Real, eta: Real, zeta: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
 ) -> FloatArray:
-    """Right-hand side of rolling with free twist on a circularly moving base, in the frame that turns with it.
+    """Jacobian of rolling with free twist on a circularly moving base, in the frame that turns with it, at any state.
 
     Parameters
     ----------
     state
         Tilt rate μ, rolling rate ω, tilt angle A > 0 [rad], phase ψ = β − θτ and spin σ [ω0], along the first axis:
         shape (5, ...).
-    theta, a0, c, eta, zeta, inertia_ratio, axial_ratio
+    a0, c, eta, zeta, inertia_ratio, axial_ratio
         As for `free_twist_rolling`; `zeta` finite.
 
     Returns
     -------
     numpy.ndarray
-        Rates of the state in the same order, shape (5, ...). Nothing is checked but the length of the first axis.
+        Matrices along the last two axes, shape (..., 5, 5). θ does not enter.
 
     Raises
     ------
@@ -183,45 +170,6 @@ def free_twist_rates(
         Ä = A(1 + ω²) − c − ηȦ − a0 cos ψ − cκσω
         Aω̇ = −2Ȧω − η(1 + i_a)Aω/D + a0 sin ψ i_a/D − cκζσ
         σ̇ = −a0 sin ψ (1 − κ)/(cκD) − ηAω/(cD) − ζσ
-    """
-    mu, omega, tilt, psi, spin = _components(state)
-    a, slender, friction, decay, kappa, i_a = _arrays(a0, c, eta, zeta, inertia_ratio, axial_ratio)
-    push, drive = a * np.cos(psi), a * np.sin(psi)
-    freedom = 1.0 + i_a - kappa
-    across = (
-        -2.0 * mu * omega
-        + (drive * i_a - friction * (1.0 + i_a) * tilt * omega) / freedom
-        - slender * kappa * decay * spin
-    )
-    rates = (
-        tilt * (1.0 + omega**2) - slender - friction * mu - push - slender * kappa * spin * omega,
-        across / tilt,
-        mu,
-        omega - np.asarray(theta, dtype=np.float64),
-        -(drive * (1.0 - kappa) / kappa + friction * tilt * omega) / (slender * freedom) - decay * spin,
-    )
-    return np.stack(np.broadcast_arrays(*rates))
-
-
-def free_twist_jacobian(
-    state: Real, a0: Real, *, c: Real, eta: Real, zeta: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
-) -> FloatArray:
-    """Jacobian of `free_twist_rates` with respect to its state, at any state.
-
-    Parameters
-    ----------
-    state, a0, c, eta, zeta, inertia_ratio, axial_ratio
-        As for `free_twist_rates`.
-
-    Returns
-    -------
-    numpy.ndarray
-        Matrices along the last two axes, shape (..., 5, 5). θ does not enter.
-
-    Raises
-    ------
-    ParameterError
-        If the first axis of `state` does not have five entries.
     """
     mu, omega, tilt, psi, spin = _components(state)
     a, slender, friction, decay, kappa, i_a = _arrays(a0, c, eta, zeta, inertia_ratio, axial_ratio)

@@ -19,10 +19,7 @@ At given θ this is a cubic in c/A.
 
 from typing import NamedTuple
 
-import numpy as np
-
-from stylobate.theory.arguments import BoolArray, FloatArray, Real, positive
-from stylobate.theory.free_twist import checked_numbers
+from stylobate.theory.arguments import BoolArray, FloatArray
 
 
 class Frictions(NamedTuple):
@@ -44,43 +41,8 @@ class Frictions(NamedTuple):
         return self.eta / (self.zeta * self.freedom)
 
 
-def free_twist_hurwitz_coefficients(
-    theta: Real, tilt: Real, *, c: Real, eta: Real, zeta: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
-) -> FloatArray:
-    """Coefficients of the characteristic polynomial of steady rolling with a free twist, highest power first.
-
-    Parameters
-    ----------
-    theta
-        Excitation frequency θ, which is the rolling rate.
-    tilt
-        Tilt angle A of the steady rolling [rad].
-    c, eta, zeta, inertia_ratio, axial_ratio
-        As for `free_twist_rolling`; `zeta` positive and finite.
-
-    Returns
-    -------
-    numpy.ndarray
-        1, p1, …, p5 along the last axis, shape (..., 6).
-
-    Raises
-    ------
-    ParameterError
-        If `theta`, `tilt`, `c`, `zeta`, `inertia_ratio` or `axial_ratio` is not positive, `inertia_ratio` is 1 or
-        more, or `eta` is negative.
-
-    Notes
-    -----
-    From `free_twist_jacobian`. The amplitude a0 does not enter: θ, A and the frictions fix it.
-    """
-    numbers = checked_numbers(theta, 0.0, c, eta, positive("zeta", zeta), inertia_ratio, axial_ratio)
-    theta, _, c, *rest = np.broadcast_arrays(*numbers)
-    coefficients = characteristic(theta, c / positive("tilt", tilt), Frictions(*rest))
-    return np.stack(np.broadcast_arrays(np.ones_like(coefficients[0]), *coefficients), axis=-1)
-
-
 def characteristic(theta: FloatArray, x: FloatArray, column: Frictions) -> tuple[FloatArray, ...]:
-    """Return p1 to p5 at the slenderness ratio x = c/A."""
+    """Return p1 to p5 at the slenderness ratio x = c/A; a0 does not enter, since θ, A and the frictions fix it."""
     eta, zeta = column.eta, column.zeta
     epsilon, nu, lag = column.kappa / column.freedom, column.axial / column.freedom, column.lag
     square = theta**2

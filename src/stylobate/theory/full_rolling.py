@@ -66,7 +66,6 @@ def full_rolling(
     --------
     free_twist_rolling : the limit of small tilts.
     wobbling_rolling : the same for pure tilting, without twist.
-    full_rolling_rates : the equations.
 
     Notes
     -----

@@ -2,61 +2,38 @@
 
 import numpy as np
 
-from stylobate.errors import ParameterError
-from stylobate.theory.arguments import FloatArray, Real
+from stylobate.theory.arguments import FloatArray
 from stylobate.theory.rigid_body import Numbers, RigidBody
 
 STATES = 5
 
 
-def full_rolling_rates(
-    state: Real,
-    theta: Real,
-    a0: Real,
-    *,
-    c: Real,
-    eta: Real,
-    zeta: Real,
-    inertia_ratio: Real = 0.75,
-    axial_ratio: Real = 0.5,
-) -> FloatArray:
-    """Right-hand side of rolling without slip at finite tilt on a circularly moving base, in the frame of the motion.
+def rates(
+    state: Numbers, theta: FloatArray, a0: FloatArray, eta: FloatArray, zeta: FloatArray, body: RigidBody
+) -> Numbers:
+    """Return the right-hand side of rolling without slip at finite tilt, in the frame of the circular base motion.
 
     Parameters
     ----------
     state
         Tilt rate μ, rolling rate ω = β̇, tilt angle A > 0 [rad], phase ψ = β − θτ and axial angular velocity σ [ω0],
-        along the first axis: shape (5, ...).
+        real or complex, along the first axis: shape (5, ...).
     theta
         Excitation frequency θ.
     a0
         Acceleration amplitude of the base [g].
-    c
-        Slenderness.
     eta
         Viscous friction η, a couple against the rate of tilt.
     zeta
         Spin damping ζ, a moment against rotation about the vertical. Infinite, it forbids that; the state must then
         have σ cos A + ω sin²A = 0.
-    inertia_ratio
-        κ = m h²/J0; ¾ for a slender solid cylinder, as by default.
-    axial_ratio
-        i_a = I_a/(m r²); ½ for a solid cylinder.
+    body
+        The column.
 
     Returns
     -------
     numpy.ndarray
-        Rates of the state in the same order, shape (5, ...). Nothing is checked but the length of the first axis. Not
-        defined at A = 0.
-
-    Raises
-    ------
-    ParameterError
-        If the first axis of `state` does not have five entries.
-
-    See Also
-    --------
-    free_twist_rates : the limit of small tilts.
+        Rates of the state in the same order, shape (5, ...). Not defined at A = 0.
 
     Notes
     -----
@@ -70,21 +47,6 @@ def full_rolling_rates(
 
     T is the force of the contact across the lean, over m g.
     """
-    state = np.asarray(state, dtype=np.float64)
-    if state.ndim == 0 or len(state) != STATES:
-        message = f"state must have the five entries (μ, ω, A, ψ, σ) along its first axis, got the shape {state.shape}"
-        raise ParameterError(message)
-    theta, a0, c, eta, zeta, kappa, axial = (
-        np.asarray(value, dtype=np.float64) for value in (theta, a0, c, eta, zeta, inertia_ratio, axial_ratio)
-    )
-    body = RigidBody(c=c, kappa=kappa, axial_ratio=axial)
-    return np.asarray(rates(state, theta, a0, eta, zeta, body), dtype=np.float64)
-
-
-def rates(
-    state: Numbers, theta: FloatArray, a0: FloatArray, eta: FloatArray, zeta: FloatArray, body: RigidBody
-) -> Numbers:
-    """Return `full_rolling_rates` of a real or complex state."""
     mu, omega, tilt, psi, spin = state
     s, cosine, height = np.sin(tilt), np.cos(tilt), body.height(tilt)
     w1 = -omega * s

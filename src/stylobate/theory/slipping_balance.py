@@ -10,10 +10,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from stylobate.theory.arguments import BoolArray, FloatArray
+from stylobate.theory.finite_tilt import tilt_grid
 from stylobate.theory.rigid_body import Numbers, RigidBody
 from stylobate.theory.slipping_pairs import common_zeros
 from stylobate.theory.slipping_rolling_rates import EASED, EXPONENT, SLOWED, TWISTING, Frictions
 from stylobate.theory.zeros import Rows, zeros
+
+# Points of the scan over the tilt.
+_POINTS = 512
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +110,7 @@ def _known_turn(forced: Forced) -> tuple[Rows, FloatArray, FloatArray, FloatArra
         return np.asarray((along - here.friction.mu) * (along + here.friction.mu) + across**2)
 
     some = forced[possible]
-    at, tilt = zeros(excess, _tilts(some.body.c / (1.0 + some.body.transverse * some.theta**2)))
+    at, tilt = zeros(excess, tilt_grid(some.body.c / (1.0 + some.body.transverse * some.theta**2), _POINTS))
     here = some[at]
     turn = here.turn(tilt)
     along, across = here.force(tilt, turn)
@@ -119,17 +123,6 @@ def _known_turn(forced: Forced) -> tuple[Rows, FloatArray, FloatArray, FloatArra
     half, left, here = half[slips], left[slips], here[np.flatnonzero(slips)]
     speed = left / (half + np.sqrt(half**2 + left)) / (here.body.kappa * here.theta)
     return possible[at[slips]], tilt[slips], turn[slips], speed
-
-
-# Points of the scan over the tilt, its least part of the tilt at which the balance bends, and its end below π/2 [rad].
-_POINTS, _LEAST, _MARGIN = 512, 1e-9, 1e-9
-
-
-def _tilts(scale: FloatArray) -> FloatArray:
-    """Return tilts that are evenly spaced below `scale` and by equal ratios above it."""
-    start, reach = np.arcsinh(_LEAST), np.arcsinh((0.5 * np.pi - _MARGIN) / scale)
-    steps = np.linspace(0.0, 1.0, _POINTS)
-    return np.asarray(scale[:, np.newaxis] * np.sinh(start + (reach[:, np.newaxis] - start) * steps))
 
 
 # The scan of a patch that turns: points of ln |ω_z| and of ln |v|, and their reach below and above their scales.

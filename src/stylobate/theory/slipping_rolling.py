@@ -108,7 +108,6 @@ def slipping_rolling(
     --------
     full_rolling : the same without slip, with the friction that it needs.
     rolling_required_friction : that friction for a slender column, in closed form.
-    slipping_rolling_rates : the equations.
 
     Notes
     -----

@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from stylobate.errors import ParameterError
-from stylobate.theory.arguments import FloatArray, Real
+from stylobate.theory.arguments import FloatArray
 from stylobate.theory.rigid_body import Numbers, RigidBody
 
 STATES = 7
@@ -28,61 +27,29 @@ class Frictions:
         return Frictions(eta=self.eta[cells], zeta=self.zeta[cells], mu=self.mu[cells], patch=self.patch[cells])
 
 
-def slipping_rolling_rates(
-    state: Real,
-    theta: Real,
-    a0: Real,
-    *,
-    mu: Real,
-    c: Real,
-    eta: Real,
-    zeta: Real,
-    patch: Real = 0.0,
-    inertia_ratio: Real = 0.75,
-    axial_ratio: Real = 0.5,
-) -> FloatArray:
-    """Right-hand side of a column that slips on a circularly moving base, in the frame of the motion.
+def rates(state: Numbers, theta: FloatArray, a0: FloatArray, friction: Frictions, body: RigidBody) -> Numbers:
+    """Return the right-hand side of a column that slips on its base, in the frame of the circular base motion.
 
     Parameters
     ----------
     state
         Tilt rate θ̇, rolling rate ω = β̇, tilt angle A > 0 [rad], phase ψ = β − θτ, axial angular velocity σ [ω0], and
-        the slip of the contact point along and across the lean, v_d and v_n [hω0], along the first axis: shape
-        (7, ...).
+        the slip of the contact point along and across the lean, v_d and v_n [hω0], real or complex, along the first
+        axis: shape (7, ...).
     theta
         Excitation frequency θ.
     a0
         Acceleration amplitude of the base [g].
-    mu
-        Coefficient of friction μ of the contact.
-    c
-        Slenderness.
-    eta
-        Viscous friction η, a couple against the rate of tilt.
-    zeta
-        Spin damping ζ, a moment against rotation about the vertical. Infinite, it forbids that; the state must then
-        have σ cos A + ω sin²A = 0.
-    patch
-        Radius of the contact, in units of the radius of the base, for pivoting friction; 0 is a point.
-    inertia_ratio
-        κ = m h²/J0; ¾ for a slender solid cylinder, as by default.
-    axial_ratio
-        i_a = I_a/(m r²); ½ for a solid cylinder.
+    friction
+        What resists. Infinite spin damping ζ forbids rotation about the vertical; the state must then have
+        σ cos A + ω sin²A = 0.
+    body
+        The column.
 
     Returns
     -------
     numpy.ndarray
-        Rates of the state in the same order, shape (7, ...). Nothing is checked but the length of the first axis. Not
-        defined at A = 0, nor without slip.
-
-    Raises
-    ------
-    ParameterError
-        If the first axis of `state` does not have seven entries.
-
-    See Also
-    --------
-    full_rolling_rates : the same without slip.
+        Rates of the state in the same order, shape (7, ...). Not defined at A = 0, nor without slip.
 
     Notes
     -----
@@ -95,21 +62,6 @@ def slipping_rolling_rates(
     M1 = −ηw1 − Ms, M3 = M cos A, M the moment about the vertical: −ζκc²Dω_z of the spin damping, and that of the
     patch. The centre of mass has the velocity V = (v_d + pθ̇, v_n − cσ − w1) and the acceleration T/κ − a.
     """
-    state = np.asarray(state, dtype=np.float64)
-    if state.ndim == 0 or len(state) != STATES:
-        message = f"state must have seven entries along its first axis, got the shape {state.shape}"
-        raise ParameterError(message)
-    theta, a0, mu, c, eta, zeta, radius, kappa, axial = (
-        np.asarray(value, dtype=np.float64)
-        for value in (theta, a0, mu, c, eta, zeta, patch, inertia_ratio, axial_ratio)
-    )
-    body = RigidBody(c=c, kappa=kappa, axial_ratio=axial)
-    frictions = Frictions(eta=eta, zeta=zeta, mu=mu, patch=radius * c)
-    return np.asarray(rates(state, theta, a0, frictions, body), dtype=np.float64)
-
-
-def rates(state: Numbers, theta: FloatArray, a0: FloatArray, friction: Frictions, body: RigidBody) -> Numbers:
-    """Return `slipping_rolling_rates` of a real or complex state."""
     w2, omega, tilt, psi, w3, along, across = state
     s, cosine, p = np.sin(tilt), np.cos(tilt), body.height(tilt)
     slope = -body.overhang(tilt)  # z'

@@ -19,46 +19,7 @@ eigenvalues are imaginary and distinct: deviations stay small in the linear sens
 
 import numpy as np
 
-from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, not_negative, positive
-
-
-def hurwitz_coefficients(theta: Real, tilt: Real, *, c: Real, eta: Real) -> FloatArray:
-    """Coefficients of the characteristic polynomial of steady rolling, highest power first.
-
-    Parameters
-    ----------
-    theta
-        Excitation frequency θ, which is the rolling rate.
-    tilt
-        Tilt angle A of the steady rolling [rad].
-    c
-        Slenderness.
-    eta
-        Viscous friction η.
-
-    Returns
-    -------
-    numpy.ndarray
-        1, 2η, η² + q, ηq, p0 along the last axis, shape (..., 5).
-
-    Raises
-    ------
-    ParameterError
-        If `theta`, `tilt` or `c` is not positive or `eta` is negative.
-
-    Notes
-    -----
-    From the Jacobian of (7). The amplitude a0 does not enter: θ, A and η fix it through (8).
-    """
-    theta, eta = positive("theta", theta), not_negative("eta", eta)
-    q, p0 = stability_coefficients(theta, positive("c", c) / positive("tilt", tilt), eta)
-    return np.stack(np.broadcast_arrays(np.ones_like(q), 2.0 * eta, eta**2 + q, eta * q, p0), axis=-1)
-
-
-def stability_coefficients(theta: FloatArray, x: FloatArray, eta: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return q and p0 of the quadratic in s² + ηs at the slenderness ratio x = c/A."""
-    k = 1.0 + theta**2
-    return 2.0 * theta**2 - 2.0 + x, k * (k - x) + (eta * theta) ** 2
+from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray
 
 
 def critical_ratio(theta: FloatArray, eta: FloatArray) -> FloatArray:

@@ -6,7 +6,6 @@ upright to where it is by a turn about a horizontal line. The circle on which th
 
 import numpy as np
 
-from stylobate.errors import ParameterError
 from stylobate.theory.arguments import FloatArray, Real, not_negative, positive
 from stylobate.theory.finite_tilt import (
     FiniteTiltRolling,
@@ -17,8 +16,6 @@ from stylobate.theory.finite_tilt import (
 )
 from stylobate.theory.rigid_body import Numbers, RigidBody
 from stylobate.theory.zeros import Rows
-
-_STATES = 4
 
 
 def wobbling_rolling(
@@ -55,7 +52,6 @@ def wobbling_rolling(
     --------
     steady_rolling : the limit of small tilts.
     full_rolling : the same with free twist.
-    wobbling_rates : the equations.
 
     Notes
     -----
@@ -89,36 +85,23 @@ def wobbling_rolling(
     return _branches(shape, *(number.ravel() for number in numbers))
 
 
-def wobbling_rates(
-    state: Real,
-    theta: Real,
-    a0: Real,
-    *,
-    c: Real,
-    eta: Real,
-    inertia_ratio: Real = 0.75,
-    axial_ratio: Real = 0.5,
-) -> FloatArray:
-    """Right-hand side of pure tilting at finite tilt on a circularly moving base, in the frame that turns with it.
+def rates(state: Numbers, theta: FloatArray, a0: FloatArray, eta: FloatArray, body: RigidBody) -> Numbers:
+    """Return the right-hand side of pure tilting at finite tilt, in the frame of the circular base motion.
 
     Parameters
     ----------
     state
-        Tilt rate μ, rolling rate ω = β̇, tilt angle A > 0 [rad] and phase ψ = β − θτ, along the first axis: shape
-        (4, ...).
-    theta, a0, c, eta, inertia_ratio, axial_ratio
+        Tilt rate μ, rolling rate ω = β̇, tilt angle A > 0 [rad] and phase ψ = β − θτ, real or complex, along the first
+        axis: shape (4, ...).
+    theta, a0, eta
         As for `wobbling_rolling`.
+    body
+        The column.
 
     Returns
     -------
     numpy.ndarray
-        Rates of the state in the same order, shape (4, ...). Nothing is checked but the length of the first axis. Not
-        defined at A = 0.
-
-    Raises
-    ------
-    ParameterError
-        If the first axis of `state` does not have four entries.
+        Rates of the state in the same order, shape (4, ...). Not defined at A = 0.
 
     See Also
     --------
@@ -131,18 +114,6 @@ def wobbling_rates(
         K μ̇ = ½ω² dM/dA + sin A − c cos A − p a0 cos ψ − ημ
         M ω̇ = −μω dM/dA + P a0 sin ψ − ηω sin²A
     """
-    state = np.asarray(state, dtype=np.float64)
-    if state.ndim == 0 or len(state) != _STATES:
-        message = f"state must have the four entries (μ, ω, A, ψ) along its first axis, got the shape {state.shape}"
-        raise ParameterError(message)
-    theta, a0, c, eta, kappa, axial = (
-        np.asarray(value, dtype=np.float64) for value in (theta, a0, c, eta, inertia_ratio, axial_ratio)
-    )
-    body = RigidBody(c=c, kappa=kappa, axial_ratio=axial)
-    return np.asarray(_rates(state, theta, a0, eta, body), dtype=np.float64)
-
-
-def _rates(state: Numbers, theta: FloatArray, a0: FloatArray, eta: FloatArray, body: RigidBody) -> Numbers:
     mu, omega, tilt, psi = state
     inertia, slope = _about_vertical(tilt, body)
     tilting = 0.5 * slope * omega**2 + body.overhang(tilt) - body.height(tilt) * a0 * np.cos(psi) - eta * mu
@@ -182,7 +153,7 @@ def _branches(
     phase, body = np.arctan2(across, along), bodies[rows]
     moved = -kappa[rows] * theta[rows] ** 2 * body.reach(tilt)
     state = np.stack([np.zeros_like(tilt), theta[rows], tilt, phase])
-    growth = eigenvalues(lambda x: _rates(x, theta[rows], a0[rows], eta[rows], body), state)
+    growth = eigenvalues(lambda x: rates(x, theta[rows], a0[rows], eta[rows], body), state)
     stable = np.zeros(exists.shape, dtype=np.bool_)
     stable[exists] = no_deviation_grows(growth, eta[rows])
     return FiniteTiltRolling(

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from stylobate.errors import Outcome
 from stylobate.plots.cells import class_legend, draw_cells
-from stylobate.plots.classes import KIND_LOOKS, OUTCOME_LOOKS, UNFINISHED, MapClass
+from stylobate.plots.classes import KIND_LOOKS, OUTCOME_LOOKS, UNFINISHED, classes_of
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import (
@@ -74,7 +74,7 @@ def plot_slipping_boundary(found: xr.Dataset, *, friction_coefficient: Sequence[
     tilt.plot([], [], color=BLACK, linewidth=UNSTABLE_WIDTH, linestyle=_DASHED, label="thin, dashed: unstable")
     tilt.set_ylabel("tilt A [rad]")
     tilt.set_ylim(bottom=0.0)
-    codes, classes = found["steady_rolling"].to_numpy(), _classes(found)
+    codes, classes = found["steady_rolling"].to_numpy(), classes_of(found["class_name"].to_numpy(), _LOOKS)
     draw_cells(plane, found["angular_frequency"], found["friction_coefficient"], codes, classes)
     _draw_required(plane, found)
     plane.set_ylabel(axis_label(found["friction_coefficient"]))
@@ -145,8 +145,3 @@ def _draw_required(axes: Axes, found: xr.Dataset) -> None:
     least = needed.min(axis=-1)
     axes.plot(x, np.where((least >= low) & (least <= high), least, np.nan), color=BLACK, linewidth=1.4,
               label="needed without slip")  # fmt: skip
-
-
-def _classes(found: xr.Dataset) -> tuple[MapClass, ...]:
-    names = [str(name) for name in found["class_name"].to_numpy()]
-    return tuple(MapClass(code, name, look) for code, (name, look) in enumerate(zip(names, _LOOKS, strict=True)))

@@ -35,6 +35,7 @@ from stylobate.results.few_records import FEW_RECORDS
 from stylobate.results.report_details import ReportDetails
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.sweeps import Executor
+from stylobate.studies.sweeps.computing import silent
 from stylobate.studies.sweeps.recipe import RunOptions
 
 # Packages on whose versions the digits depend.
@@ -180,7 +181,7 @@ def assess(
     )
     remark_on({name: levels[CENTRAL].column for name, levels in inputs.columns.items()}, inputs.records)
     parts = Parts(
-        None if store is None else Path(store), _runs(inputs, planar=planar, sliding=sliding), progress or _silence
+        None if store is None else Path(store), _runs(inputs, planar=planar, sliding=sliding), progress or silent
     )
     names = list(inputs.columns)
     verdicts = [verdicts_on(inputs, name, parts, contact=contact, executor=executor) for name in names]
@@ -283,7 +284,3 @@ def _setting(inputs: Inputs) -> dict[str, Any]:
         "least_records": inputs.least_records,
         "options": {name: repr(value) for name, value in inputs.options.items() if value is not None},
     }
-
-
-def _silence(what: str, done: int, total: int) -> None:
-    del what, done, total

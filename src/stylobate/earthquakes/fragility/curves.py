@@ -10,6 +10,7 @@ from stylobate.base_motions.records import HorizontalComponent
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE, Floats, Observations
 from stylobate.earthquakes.fragility.probit import FitStatus
 from stylobate.errors import require_positive
+from stylobate.results.outcomes import flag_attributes
 
 CURVE_POINTS = 121
 # A curve that rests on no data is drawn this many dispersions to either side of its median.
@@ -91,11 +92,7 @@ _PROBABILITY = {"units": "1", "long_name": "probability of reaching the limit st
 
 
 def _status_attributes() -> dict[str, object]:
-    return {
-        "long_name": "what the data determine",
-        "flag_values": np.array([int(status) for status in FitStatus]),
-        "flag_meanings": " ".join(status.name for status in FitStatus),
-    }
+    return flag_attributes("what the data determine", [status.name for status in FitStatus], dtype=np.int64)
 
 
 def curves_table(seen: Observations, x: Floats, curves: list[Curve]) -> xr.Dataset:

@@ -8,7 +8,7 @@ import xarray as xr
 
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE, NOT_KNOWN
 from stylobate.errors import Outcome, ParameterError, require_positive
-from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
 from stylobate.studies.maps.safe_distance import UNRESOLVED
 
 
@@ -75,9 +75,7 @@ def limit_states(
     joined: xr.DataArray = xr.concat(states, dim=names).rename("reached")
     joined.attrs = {}
     return joined.assign_attrs(
-        long_name="limit state reached",
-        flag_values=np.array([NOT_KNOWN, 0, 1], dtype=np.int8),
-        flag_meanings="NOT_KNOWN NOT_REACHED REACHED",
+        flag_attributes("limit state reached", ["NOT_KNOWN", "NOT_REACHED", "REACHED"], first=NOT_KNOWN)
     )
 
 

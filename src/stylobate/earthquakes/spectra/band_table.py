@@ -1,51 +1,36 @@
 """Overturning intervals of the scale, from their edges."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any, get_args, get_type_hints
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from stylobate.earthquakes.spectra.cases import Cases
 from stylobate.earthquakes.spectra.edges import Edges, Ends, Integers
 
-_ATTRIBUTES: Mapping[str, Mapping[str, str]] = {
-    "band_from": {"units": "1", "long_name": "least scale of the band that overturned"},
-    "band_to": {"units": "1", "long_name": "largest scale of the band that overturned"},
-    "safe_below": {"units": "1", "long_name": "largest scale below the band that did not overturn"},
-    "safe_above": {"units": "1", "long_name": "least scale above the band that did not overturn"},
-    "open_below": {"long_name": "the band may begin lower: it reaches the first scale, or an undecided run"},
-    "open_above": {"long_name": "the band may go on: it reaches the last scale, or an undecided run"},
-    "undecided_below": {"long_name": "the next run below the band is undecided"},
-    "undecided_above": {"long_name": "the next run above the band is undecided"},
-    "uncertain_below": {"long_name": "a run at its lower edge is uncertain or undecided"},
-    "uncertain_above": {"long_name": "a run at its upper edge is uncertain or undecided"},
-}
-_OF_STRETCHES: Mapping[str, Mapping[str, str]] = {
-    "undecided_from": {"units": "1", "long_name": "largest decided scale below undecided runs, or the first scale"},
-    "undecided_to": {"units": "1", "long_name": "least decided scale above undecided runs, or the last scale"},
-}
 
-
+# Of each field the type and, as an attribute of the result, the long name.
 @dataclass(frozen=True, slots=True)
 class _Band:
-    band_from: float
-    band_to: float
-    safe_below: float = np.nan
-    safe_above: float = np.nan
-    open_below: bool = False
-    open_above: bool = False
-    undecided_below: bool = False
-    undecided_above: bool = False
-    uncertain_below: bool = False
-    uncertain_above: bool = False
+    band_from: Annotated[float, "least scale of the band that overturned"]
+    band_to: Annotated[float, "largest scale of the band that overturned"]
+    safe_below: Annotated[float, "largest scale below the band that did not overturn"] = np.nan
+    safe_above: Annotated[float, "least scale above the band that did not overturn"] = np.nan
+    open_below: Annotated[bool, "the band may begin lower: it reaches the first scale, or an undecided run"] = False
+    open_above: Annotated[bool, "the band may go on: it reaches the last scale, or an undecided run"] = False
+    undecided_below: Annotated[bool, "the next run below the band is undecided"] = False
+    undecided_above: Annotated[bool, "the next run above the band is undecided"] = False
+    uncertain_below: Annotated[bool, "a run at its lower edge is uncertain or undecided"] = False
+    uncertain_above: Annotated[bool, "a run at its upper edge is uncertain or undecided"] = False
 
 
 @dataclass(frozen=True, slots=True)
 class _Stretch:
-    undecided_from: float
-    undecided_to: float
+    undecided_from: Annotated[float, "largest decided scale below undecided runs, or the first scale"]
+    undecided_to: Annotated[float, "least decided scale above undecided runs, or the last scale"]
 
 
 def band_table(cases: Cases, scan: Ends, edges: Edges) -> xr.Dataset:
@@ -70,9 +55,11 @@ def band_table(cases: Cases, scan: Ends, edges: Edges) -> xr.Dataset:
         "unknown": (np.count_nonzero(~scan.decided, axis=1), "undecided runs of the scan"),
     }
     table: dict[str, xr.Variable] = {}
-    for dim, rows, described in (("band", bands, _ATTRIBUTES), ("stretch", stretches, _OF_STRETCHES)):
-        for name, attributes in described.items():
-            table[name] = xr.Variable((*dims, dim), cases.over_axes(_column(rows, name, attributes)), dict(attributes))
+    for dim, kind, rows in (("band", _Band, bands), ("stretch", _Stretch, stretches)):
+        for name, declared in get_type_hints(kind, include_extras=True).items():
+            of, long_name = get_args(declared)
+            attributes = {"long_name": long_name} if of is bool else {"units": "1", "long_name": long_name}
+            table[name] = xr.Variable((*dims, dim), cases.over_axes(_column(rows, name, of)), attributes)
     for name, (count, long_name) in counts.items():
         attributes = {"units": "1", "long_name": long_name}
         table[name] = xr.Variable(dims, cases.over_axes(np.array(count, dtype=np.int64)), attributes)
@@ -83,10 +70,10 @@ def band_table(cases: Cases, scan: Ends, edges: Edges) -> xr.Dataset:
     return xr.Dataset(table)
 
 
-def _column(rows: Sequence[Sequence[_Band]] | Sequence[Sequence[_Stretch]], name: str, about: Mapping[str, str]) -> Any:
-    is_flag = "units" not in about
-    shape = (len(rows), max(1, *(len(row) for row in rows)))
-    values = np.full(shape, fill_value=False if is_flag else np.nan, dtype=bool if is_flag else float)
+def _column(rows: Sequence[Sequence[_Band]] | Sequence[Sequence[_Stretch]], name: str, of: type) -> Any:
+    values: npt.NDArray[Any] = np.full(
+        (len(rows), max(1, *(len(row) for row in rows))), False if of is bool else np.nan, dtype=of
+    )
     for case, row in enumerate(rows):
         values[case, : len(row)] = [getattr(one, name) for one in row]
     return values

@@ -19,7 +19,7 @@ from stylobate.models import Model
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.sweeps import Executor, run_sweep
-from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.computing import Progress, silent
 from stylobate.studies.sweeps.quantities import Floats, attributes_of, checked_values
 from stylobate.studies.sweeps.recipe import RunOptions
 
@@ -142,7 +142,7 @@ def overturning_bands(
         provenance=provenance_of_spectrum(model, motion, options, tail=tail, duration=duration, width=float(width)),
         store=None if store is None else Path(store),
         how={"executor": executor, "resume": resume},
-        progress=progress or _silence,
+        progress=progress or silent,
     )
     return search.result()
 
@@ -236,7 +236,3 @@ def _checked_width(width: float) -> float:
         message = f"width must be at least {_NARROWEST:g}, below which rounding decides; got {width!r}"
         raise ParameterError(message)
     return float(width)
-
-
-def _silence(done: int, total: int) -> None:
-    del done, total

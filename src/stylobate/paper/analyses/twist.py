@@ -8,18 +8,15 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from stylobate import theory
-from stylobate.base_motions import Harmonic
 from stylobate.column import Column
-from stylobate.engine import simulate
 from stylobate.errors import Outcome
 from stylobate.models import Model, SlenderRolling
-from stylobate.paper.analyses.setting import CIRCULAR_AMPLITUDES, DAMPING, SLENDERNESS, judged
+from stylobate.paper.analyses.run_with_twist import A0, GONE, PERIODS, THETA, end_of_rolling, run_from_paper
+from stylobate.paper.analyses.setting import DAMPING, SLENDERNESS, judged
 from stylobate.paper.analyses.twist_at_finite_tilt import findings_at_finite_tilt
-from stylobate.results import Finding, Response, Section, Verdict
+from stylobate.results import Finding, Section, Verdict
 
 _C = SLENDERNESS
-_A0 = CIRCULAR_AMPLITUDES[1]
-_THETA = 3.0
 _SPIN_FRICTIONS = (math.inf, 1.0, 0.3, 0.1, 0.03)
 """ζ of the curves drawn."""
 
@@ -30,11 +27,6 @@ _SLIM = (0.1, 0.2, 0.3, 0.4)
 """i_a of columns whose foot is wide against what stands on it, below 2κ − 1."""
 
 _KAPPA = 0.75
-_PERIODS, _PERIODS_WITHOUT = 300, 15
-_GONE = 0.01
-"""Tilt that counts as none [c]."""
-
-# The slowest deviation decays by exp(−0.0254 τ), 1e-7 in all these periods.
 _SETTLED = 1e-4
 
 _DEVIATION = 1e-5
@@ -61,7 +53,7 @@ def twist_data() -> xr.Dataset:
     found = _steady(theta[np.newaxis], zeta[:, np.newaxis])
     dims = ("zeta", "theta")
     fields = {name: (dims, getattr(found, name)) for name in ("amplitude", "spin", "friction_moment", "stable")}
-    return xr.Dataset(fields, coords={"zeta": zeta, "theta": theta}, attrs={"a0": _A0, "c": _C})
+    return xr.Dataset(fields, coords={"zeta": zeta, "theta": theta}, attrs={"a0": A0, "c": _C})
 
 
 def boundary_data() -> xr.Dataset:
@@ -72,16 +64,16 @@ def boundary_data() -> xr.Dataset:
     damped = {"c": _C, "eta": DAMPING}
     fields = {
         "by_amplitude": (("zeta", "a0"), theory.free_twist_critical_frequency(a0, zeta=zeta[:, None], **damped)),
-        "by_friction": (("zeta", "eta"), theory.free_twist_critical_frequency(_A0, c=_C, eta=eta, zeta=zeta[:, None])),
+        "by_friction": (("zeta", "eta"), theory.free_twist_critical_frequency(A0, c=_C, eta=eta, zeta=zeta[:, None])),
         "by_spin_friction": (
             ("axial_ratio", "spin_damping"),
-            theory.free_twist_critical_frequency(_A0, zeta=friction, axial_ratio=axial[:, None], **damped),
+            theory.free_twist_critical_frequency(A0, zeta=friction, axial_ratio=axial[:, None], **damped),
         ),
         "upper": (
             ("slim", "least_spin_friction"),
-            theory.free_twist_upper_frequency(_A0, zeta=least, axial_ratio=slim[:, None], **damped),
+            theory.free_twist_upper_frequency(A0, zeta=least, axial_ratio=slim[:, None], **damped),
         ),
-        "upper_limit": ("slim", np.sqrt((1.0 + _A0 / _C + slim) / (2.0 * _KAPPA - 1.0 - slim))),
+        "upper_limit": ("slim", np.sqrt((1.0 + A0 / _C + slim) / (2.0 * _KAPPA - 1.0 - slim))),
     }
     coordinates = {
         "a0": a0,
@@ -92,35 +84,24 @@ def boundary_data() -> xr.Dataset:
         "spin_damping": friction,
         "least_spin_friction": least,
     }
-    without = float(theory.critical_frequency(_A0, **damped))
-    about = {"weak_limit": _weak_limit(), "without": without, "a0": _A0, "eta": DAMPING}
+    without = float(theory.critical_frequency(A0, **damped))
+    about = {"weak_limit": _weak_limit(), "without": without, "a0": A0, "eta": DAMPING}
     return xr.Dataset(fields, coords=coordinates, attrs=about)
 
 
 def _weak_limit() -> float:
     """Return the critical frequency with a free twist as the friction η vanishes."""
-    return math.sqrt(1.0 + 2.0 * _A0 / _C)
+    return math.sqrt(1.0 + 2.0 * A0 / _C)
 
 
 def _steady(theta: object, zeta: object) -> theory.FreeTwistRolling:
-    return theory.free_twist_rolling(theta, _A0, c=_C, eta=DAMPING, zeta=zeta)  # type: ignore[arg-type]
-
-
-def _run_from_paper(zeta: float, periods: float) -> Response:
-    """Return the motion of a column that may turn, begun on the paper's solution (8) without spin."""
-    motion = Harmonic.circular(acceleration=_A0, angular_frequency=_THETA)
-    model = SlenderRolling(Column.dimensionless(_C), damping=DAMPING, spin_damping=zeta)
-    branch = theory.steady_rolling(_THETA, _A0, c=_C, eta=DAMPING).upper
-    size, psi = float(branch.amplitude), float(branch.phase)
-    x, y = size * math.cos(psi), size * math.sin(psi)
-    rate = (-_THETA * y, _THETA * x)
-    return simulate(model, motion, tilt=(x, y), tilt_rate=rate, duration=periods * motion.period, rest_energy=0.0)
+    return theory.free_twist_rolling(theta, A0, c=_C, eta=DAMPING, zeta=zeta)  # type: ignore[arg-type]
 
 
 def _needed() -> Finding:
-    held = _steady(_THETA, math.inf)
+    held = _steady(THETA, math.inf)
     moment = float(held.friction_moment)
-    expected = DAMPING * _THETA * float(held.amplitude)
+    expected = DAMPING * THETA * float(held.amplitude)
     return Finding(
         "before (1)",
         "The column cannot rotate about the vertical.",
@@ -132,8 +113,8 @@ def _needed() -> Finding:
 
 def _with_spin_friction() -> Finding:
     zeta = 0.1
-    known, paper = _steady(_THETA, zeta), _steady(_THETA, math.inf)
-    run = _run_from_paper(zeta, _PERIODS)
+    known, paper = _steady(THETA, zeta), _steady(THETA, math.inf)
+    run = run_from_paper(SlenderRolling, zeta)
     tilt = float(np.hypot(*run.data["tilt"].to_numpy()[-1]))
     off = abs(tilt / float(known.amplitude) - 1.0)
     return Finding(
@@ -142,29 +123,25 @@ def _with_spin_friction() -> Finding:
         "With a free twist and spin damping ζ it is (8) with θ² replaced by θ²(1 + η/(ζD)) in a0 cos ψ = A(1+θ²) − c, "
         "D = 1 + i_a − κ: the column spins at σ = −ηθA/(cζκD) and leans less. Solid cylinder, ζ = 0.1, θ = 3: "
         f"A = {float(known.amplitude):.5f} instead of {float(paper.amplitude):.5f}, σ = {float(known.spin):.4f}; "
-        f"integration begun on (8) gives A = {tilt:.5f} after {_PERIODS} periods.",
+        f"integration begun on (8) gives A = {tilt:.5f} after {PERIODS} periods.",
         judged(off < _SETTLED and run.outcome is not Outcome.OVERTURNED, Verdict.LIMITED),
     )
 
 
 def _without() -> Finding:
-    run = _run_from_paper(0.0, _PERIODS_WITHOUT)
-    tilt = np.hypot(*run.data["tilt"].to_numpy().T)
-    fallen = np.flatnonzero(tilt < _GONE * _C)
-    when = float(run.data["time"][fallen[0]]) if fallen.size else math.nan
-    spin = float(run.data["spin"][fallen[0]]) if fallen.size else math.nan
+    when, spin = end_of_rolling(SlenderRolling)
     return Finding(
         "(8)",
         "The same without any friction about the vertical.",
         "None is left: what the base gives across the lean spins the column up, and the tilt dies. Begun on (8) at "
-        f"a0 = 0.065, θ = 3 it falls below {_GONE:g}c at τ = {when:.1f}, with σ = {spin:.2f}.",
-        judged(bool(fallen.size), Verdict.FAILS),
+        f"a0 = 0.065, θ = 3 it falls below {GONE:g}c at τ = {when:.1f}, with σ = {spin:.2f}.",
+        judged(math.isfinite(when), Verdict.FAILS),
     )
 
 
 def _stability() -> Finding:
     zeta = np.array([math.inf, 1.0, 0.1])
-    known = theory.free_twist_critical_frequency(_A0, c=_C, eta=DAMPING, zeta=zeta)
+    known = theory.free_twist_critical_frequency(A0, c=_C, eta=DAMPING, zeta=zeta)
     paper, much, little = (float(one) for one in known)
     off = [abs(_integrated_boundary(zeta=float(zeta[k])) - float(known[k])) for k in (1, 2)]
     return Finding(
@@ -179,14 +156,14 @@ def _stability() -> Finding:
 
 def _weak_friction() -> Finding:
     weak, zeta, theta = 0.01, 1.0, 1.45
-    paper = float(theory.critical_frequency(_A0, c=_C, eta=weak))
-    known = float(theory.free_twist_critical_frequency(_A0, c=_C, eta=weak, zeta=zeta))
+    paper = float(theory.critical_frequency(A0, c=_C, eta=weak))
+    known = float(theory.free_twist_critical_frequency(A0, c=_C, eta=weak, zeta=zeta))
     gaps = [
-        _weak_limit() - float(theory.free_twist_critical_frequency(_A0, c=_C, eta=eta, zeta=zeta))
+        _weak_limit() - float(theory.free_twist_critical_frequency(A0, c=_C, eta=eta, zeta=zeta))
         for eta in (1e-5, 2e-5)
     ]
     growth = _largest_multiplier(theta, eta=weak, zeta=zeta)
-    without = float(theory.critical_frequency_frictionless(_A0, c=_C))
+    without = float(theory.critical_frequency_frictionless(A0, c=_C))
     return Finding(
         "conclusions",
         "The critical frequency depends on the parameters: weak friction hardly moves it.",
@@ -203,9 +180,9 @@ def _weak_friction() -> Finding:
 
 def _upper_frequency() -> Finding:
     column = {"zeta": 0.003, "axial_ratio": 0.1}
-    low = float(theory.free_twist_critical_frequency(_A0, c=_C, eta=DAMPING, **column))
-    high = float(theory.free_twist_upper_frequency(_A0, c=_C, eta=DAMPING, **column))
-    solid = float(theory.free_twist_upper_frequency(_A0, c=_C, eta=DAMPING, zeta=column["zeta"]))
+    low = float(theory.free_twist_critical_frequency(A0, c=_C, eta=DAMPING, **column))
+    high = float(theory.free_twist_upper_frequency(A0, c=_C, eta=DAMPING, **column))
+    solid = float(theory.free_twist_upper_frequency(A0, c=_C, eta=DAMPING, zeta=column["zeta"]))
     below, above = (_largest_multiplier(share * high, **column) for share in (0.97, 1.03))
     return Finding(
         "after (8)",
@@ -225,7 +202,7 @@ def _integrated_boundary(*, zeta: float) -> float:
 
 def _largest_multiplier(theta: float, *, zeta: float, eta: float = DAMPING, axial_ratio: float = 0.5) -> float:
     """Return by which factor a deviation from steady rolling can grow in a period, from runs of the model."""
-    found = theory.free_twist_rolling(theta, _A0, c=_C, eta=eta, zeta=zeta, axial_ratio=axial_ratio)
+    found = theory.free_twist_rolling(theta, A0, c=_C, eta=eta, zeta=zeta, axial_ratio=axial_ratio)
     model: Model = SlenderRolling(Column.dimensionless(_C, _KAPPA, axial_ratio), damping=eta, spin_damping=zeta)
     size, psi = float(found.amplitude), float(found.phase)
     x, y = size * math.cos(psi), size * math.sin(psi)
@@ -233,7 +210,7 @@ def _largest_multiplier(theta: float, *, zeta: float, eta: float = DAMPING, axia
     scale = _DEVIATION * np.array([size, size, theta * size, theta * size, 1.0])
 
     def rates(tau: float, state: np.ndarray) -> tuple[float, ...]:
-        push = (_A0 * math.cos(theta * tau), _A0 * math.sin(theta * tau), 0.0)
+        push = (A0 * math.cos(theta * tau), A0 * math.sin(theta * tau), 0.0)
         return model.rates(*state, *push, *model.parameters)
 
     def after_a_period(start: np.ndarray) -> np.ndarray:

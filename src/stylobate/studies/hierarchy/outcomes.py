@@ -12,7 +12,7 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.errors import Outcome
 from stylobate.models import Model
-from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
 from stylobate.studies.maps.overturning import overturning_map
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.computing import Progress
@@ -113,11 +113,8 @@ _COMPARED = ("outcome", "largest_tilt", "largest_friction_demand", "largest_pivo
 def _dataset(maps: list[xr.Dataset], codes: npt.NDArray[np.int8], models: tuple[Model, Model]) -> xr.Dataset:
     dims = maps[0]["outcome"].dims
     names = [one.value for one in Comparison]
-    about: dict[str, Any] = {
-        "long_name": "comparison of the two models",
-        "flag_values": np.arange(NOT_COMPUTED, len(names), dtype=np.int8),
-        "flag_meanings": " ".join(["NOT_COMPUTED", *(one.name for one in Comparison)]),
-    }
+    meanings = ["NOT_COMPUTED", *(one.name for one in Comparison)]
+    about = flag_attributes("comparison of the two models", meanings, first=NOT_COMPUTED)
     count = np.array([np.count_nonzero(codes == code) for code in range(len(names))], dtype=np.int64)
     variables: dict[str, Any] = {
         "comparison": (dims, codes, about),

@@ -11,7 +11,7 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.errors import MOST_RUNS, require_whole
 from stylobate.models import Model
-from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
 from stylobate.results.random_numbers import Rng
 from stylobate.studies.checks import require_starts
 from stylobate.studies.maps.attractor_search import (
@@ -241,8 +241,5 @@ def rule_attributes(rules: AttractorRules, confidence: float) -> dict[str, Any]:
 
 def _label_attributes(found: Found) -> dict[str, Any]:
     names = ["not computed", *names_of(found.attractors)]
-    return {
-        "long_name": "attractor",
-        "flag_values": np.arange(NOT_COMPUTED, len(found.attractors), dtype=np.int16),
-        "flag_meanings": " ".join(name.replace(",", "").replace(" ", "_") for name in names),
-    }
+    meanings = (name.replace(",", "").replace(" ", "_") for name in names)
+    return flag_attributes("attractor", meanings, first=NOT_COMPUTED, dtype=np.int16)

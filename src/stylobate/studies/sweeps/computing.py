@@ -18,6 +18,10 @@ Progress = Callable[[int, int], None]
 Arrays = dict[str, npt.NDArray[Any]]
 
 
+def silent(*_: object) -> None:
+    """Show no progress."""
+
+
 @dataclass(frozen=True, slots=True)
 class Task:
     """One block of runs with the values that vary."""

@@ -7,7 +7,7 @@ import xarray as xr
 
 from stylobate.errors import MOST_RUNS, FileError, Interrupted, ParameterError, require_whole
 from stylobate.studies.sweeps.blocks import Blocks
-from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.computing import Progress, silent
 from stylobate.studies.sweeps.executors import Executor, Threads
 from stylobate.studies.sweeps.layout import layout_of
 from stylobate.studies.sweeps.sinks import InMemory, OnDisk, Sink, tasks_of
@@ -80,7 +80,7 @@ def run_sweep(
         chunk_size = require_whole("chunk_size", chunk_size, least=1, most=MOST_RUNS)
     sink = _sink(sweep, _folder(store), chunk_size, resume=resume)
     try:
-        _fill(sink, sweep, executor or Threads(), progress or _silence)
+        _fill(sink, sweep, executor or Threads(), progress or silent)
     except Interrupted:
         raise
     except KeyboardInterrupt:
@@ -139,7 +139,3 @@ def _interrupted(sink: Sink, store: str | Path | None) -> Interrupted:
     computed = int((partial["outcome"] >= 0).sum())
     remedy = "its result so far is .partial" if store is None else f"resume=True continues {store}"
     return Interrupted(f"stopped after {computed} of {partial['outcome'].size} runs; {remedy}", partial)
-
-
-def _silence(done: int, total: int) -> None:
-    del done, total

@@ -100,14 +100,7 @@ class Sweep:
         **options: Unpack[RunOptions],
     ) -> Self:
         """Return a sweep over every combination of these values; its result has the dimensions of `over`, in order."""
-        return cls(
-            model=model,
-            motion=BASE_AT_REST if motion is None else motion,
-            design=Grid.of(over),
-            duration=duration,
-            periods=periods,
-            options=options,
-        )
+        return cls._of(Grid.of(over), model, motion, duration=duration, periods=periods, options=options)
 
     @classmethod
     def random(
@@ -128,14 +121,7 @@ class Sweep:
         first of a longer sweep are those of a shorter one. Of a generator one number is drawn and kept as the seed, so
         that a store can be resumed.
         """
-        return cls(
-            model=model,
-            motion=BASE_AT_REST if motion is None else motion,
-            design=Box.of(over, count, rng),
-            duration=duration,
-            periods=periods,
-            options=options,
-        )
+        return cls._of(Box.of(over, count, rng), model, motion, duration=duration, periods=periods, options=options)
 
     @classmethod
     def points(
@@ -149,14 +135,12 @@ class Sweep:
         **options: Unpack[RunOptions],
     ) -> Self:
         """Return a sweep of runs at these values, arrays of one length."""
-        return cls(
-            model=model,
-            motion=BASE_AT_REST if motion is None else motion,
-            design=Points.of(at),
-            duration=duration,
-            periods=periods,
-            options=options,
-        )
+        return cls._of(Points.of(at), model, motion, duration=duration, periods=periods, options=options)
+
+    @classmethod
+    def _of(cls, design: Design, model: Model, motion: BaseMotion | None, **length_and_options: Any) -> Self:
+        base = BASE_AT_REST if motion is None else motion
+        return cls(model=model, motion=base, design=design, **length_and_options)
 
     @property
     def dims(self) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from stylobate.errors import FileError
 from stylobate.files import csv_text, write_whole
 from stylobate.plots.page import page, png_of
 from stylobate.results.assessment import Assessment
+from stylobate.studies.sweeps.computing import silent
 
 # Tables of a dozen columns, wanted whole on a screen and legible on a narrow one, where figures are scrolled too. In
 # print figures are as wide as they need to be legible, so that a page holds two or three and few pages stay half empty.
@@ -52,7 +53,7 @@ def assessment_report(
     """
     target = Path(folder)
     tables = assessment_tables(assessment)
-    pictures = _drawn(report_pictures(assessment), progress or _silence)
+    pictures = _drawn(report_pictures(assessment), progress or silent)
     title, document = str(assessment.setting["title"]), document_table(assessment)
     verdicts = verdict_table(assessment)
     try:
@@ -83,7 +84,3 @@ def _drawn(pictures: Pictures, progress: Callable[[int, int], None]) -> Pictures
         drawn[name] = replace(one, drawn=png_of(one.figure))
     progress(len(drawn), len(pictures))
     return drawn
-
-
-def _silence(done: int, total: int) -> None:
-    del done, total

@@ -1,0 +1,45 @@
+"""Columns that may turn, begun on the paper's solution for one that cannot."""
+
+import math
+
+import numpy as np
+
+from stylobate import theory
+from stylobate.base_motions import Harmonic
+from stylobate.column import Column
+from stylobate.engine import simulate
+from stylobate.models import Rolling, SlenderRolling
+from stylobate.paper.analyses.setting import CIRCULAR_AMPLITUDES, DAMPING, SLENDERNESS
+from stylobate.results import Response
+
+A0, THETA = CIRCULAR_AMPLITUDES[1], 3.0
+"""a0 and θ of these runs."""
+
+PERIODS = 300
+"""Length of a run with friction: the slowest deviation decays by exp(−0.0254 τ), 1e-7 in all these periods."""
+
+GONE = 0.01
+"""Tilt that counts as none [c]."""
+
+_PERIODS_WITHOUT = 15
+
+
+def run_from_paper(kind: type[Rolling | SlenderRolling], zeta: float, periods: float = PERIODS) -> Response:
+    """Return the motion of a column that may turn, begun on the paper's solution (8) without spin."""
+    motion = Harmonic.circular(acceleration=A0, angular_frequency=THETA)
+    model = kind(Column.dimensionless(SLENDERNESS), damping=DAMPING, spin_damping=zeta)
+    branch = theory.steady_rolling(THETA, A0, c=SLENDERNESS, eta=DAMPING).upper
+    size, psi = float(branch.amplitude), float(branch.phase)
+    x, y = size * math.cos(psi), size * math.sin(psi)
+    rate = (-THETA * y, THETA * x)
+    return simulate(model, motion, tilt=(x, y), tilt_rate=rate, duration=periods * motion.period, rest_energy=0.0)
+
+
+def end_of_rolling(kind: type[Rolling | SlenderRolling]) -> tuple[float, float]:
+    """Return τ and σ at which the tilt is gone without friction about the vertical; NaN if it stays."""
+    run = run_from_paper(kind, 0.0, _PERIODS_WITHOUT)
+    tilt = np.hypot(*run.data["tilt"].to_numpy().T)
+    fallen = np.flatnonzero(tilt < GONE * SLENDERNESS)
+    if not fallen.size:
+        return math.nan, math.nan
+    return float(run.data["time"][fallen[0]]), float(run.data["spin"][fallen[0]])
