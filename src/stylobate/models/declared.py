@@ -43,3 +43,9 @@ def model_quantities() -> Mapping[str, Quantity]:
 def dissipation_names() -> tuple[str, ...]:
     """Return the names of the numbers of models that dissipate."""
     return tuple(name for name, quantity in model_quantities().items() if quantity.dissipates)
+
+
+@cache
+def dissipation_of(model: type) -> Mapping[str, Quantity]:
+    """Return the quantity of each number of a class of models that dissipates."""
+    return {name: one.quantity for name, one in parameters_of(model).items() if one.quantity.dissipates}

@@ -18,7 +18,7 @@ const OF_A_RUN: readonly string[] = ["spin", "duration"];
 /** What a part's number must be called for a map to vary it. */
 const VARIABLE: readonly string[] = [
   ...["slenderness", "gravity", "mass_height", "mass", "transverse_inertia", "axial_inertia"],
-  ...["damping", "spin_damping", "rolling_resistance", "restitution"],
+  ...["damping", "spin_damping", "rolling_resistance", "restitution", "normal_restitution"],
   ...["friction_coefficient", "static_friction_coefficient", "patch", "incline", "incline_direction"],
   ...["acceleration", "angular_frequency", "start_phase", "scale", "rotation", "delay"],
   ...["rpm", "diameter", "frequency", "stroke", "velocity"],
