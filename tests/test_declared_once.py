@@ -34,7 +34,6 @@ REMAINING: dict[str, int] = {
     "cli/parts.py": 2,
     "config/many_runs.py": 2,
     "config/response.py": 2,
-    "conveying/slip_limits.py": 1,
     "earthquakes/assessment/sliding.py": 1,
     "earthquakes/config/fragility.py": 1,
     "engine/ensemble.py": 3,

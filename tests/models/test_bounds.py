@@ -81,7 +81,7 @@ def test_friction_beyond_what_is_resolved_is_refused_with_the_model_that_never_s
 
 def test_averaged_equations_are_refused_for_a_subclass_with_equations_of_its_own():
     class Other(sb.Slender):
-        pass
+        rates = staticmethod(sb.Slender.rates)
 
     motion = sb.Harmonic.straight(acceleration=0.04, angular_frequency=3.0)
     with pytest.raises(UnsupportedError, match=r"^model: averaged_motion holds for Slender only \(got Other\)\."):

@@ -25,10 +25,15 @@ class ClosedForm:
     eta, zeta
         Damping η and spin damping ζ that it takes; ζ is infinite for a column that cannot turn about the vertical.
     requires
-        Name of a number of the model, and the value that the closed form requires of it, where the value is another one.
+        Name of a number of the model whose value is not the one that the closed form requires, and the required value.
     """
 
     law: RollingLaw
     eta: float
     zeta: float = 0.0
     requires: tuple[str, float | str] | None = None
+
+
+def zero(model: object, *names: str) -> tuple[str, float] | None:
+    """Return what a closed form requires that holds only where these numbers of `model` are zero; None if they are."""
+    return next(((name, 0) for name in names if getattr(model, name) != 0.0), None)

@@ -45,6 +45,11 @@ def dissipation_names() -> tuple[str, ...]:
     return tuple(name for name, quantity in model_quantities().items() if quantity.dissipates)
 
 
+def name_by_symbol(model: type, symbol: str) -> str:
+    """Return the name of the number of a class of models that has this symbol; the symbol itself where none has it."""
+    return next((name for name, one in parameters_of(model).items() if one.quantity.symbol == symbol), symbol)
+
+
 @cache
 def dissipation_of(model: type) -> Mapping[str, Quantity]:
     """Return the quantity of each number of a class of models that dissipates."""

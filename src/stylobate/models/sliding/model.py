@@ -12,6 +12,7 @@ import numpy.typing as npt
 from stylobate.column import Column
 from stylobate.errors import ParameterError
 from stylobate.models import finite_tilt, tilt_vector
+from stylobate.models.closed_form import ClosedForm, RollingLaw, zero
 from stylobate.models.contact import path_outputs, per_normal_force
 from stylobate.models.model import RELEASE_MARGIN, Floats, Model, Output
 from stylobate.models.numbers import (
@@ -170,6 +171,12 @@ class Sliding(Model):
     def comes_to_rest(self) -> bool:
         """It does: strokes of the base take energy."""
         return True
+
+    @property
+    def closed_form(self) -> ClosedForm:
+        """Steady rolling with slip at a point, on a horizontal plane."""
+        requires = zero(self, "patch", "incline", "rolling_resistance")
+        return ClosedForm(RollingLaw.SLIPPING, self.damping, self.spin_damping, requires)
 
     def start(self, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, ...]:
         """Return the state with this tilt vector [rad] and its rate [rad/s], without slip on its rim."""
