@@ -184,7 +184,7 @@ def test_maps_take_models(capsys):
         ),
         (["hierarchy", *CASE, "--model", "rolling"], "--model: hierarchy runs all models (got 'rolling'). Remove it."),
         (["hierarchy", *COLUMN], "duration is missing"),
-        (["hierarchy", *CASE, "--rolling-resistance", "1"], "No such option"),
+        (["hierarchy", *CASE, "--passage-tilt", "1"], "No such option"),
     ],
 )
 def test_what_a_model_does_not_know_is_one_line(arguments, line, capsys):
@@ -198,13 +198,31 @@ def test_a_friction_that_levels_do_not_share_is_refused(tmp_path, capsys):
     description = tmp_path / "run.toml"
     description.write_text(
         'duration = 5.0\n[column]\nshape = "dimensionless"\nslenderness = 0.1\n'
-        '[model]\nkind = "rolling"\nrolling_resistance = 0.1\n'
+        '[model]\nkind = "rolling"\npassage_tilt = 0.001\n'
     )
     assert run(["hierarchy", str(description)]) == 2
     assert (
-        "model.rolling_resistance is no damping parameter of the hierarchy: "
-        "damping, spin_damping, restitution; remove it" in capsys.readouterr().err
+        "model.passage_tilt: the models of the hierarchy share damping, spin_damping, rolling_resistance, restitution "
+        "only (got 0.001). Remove it." in capsys.readouterr().err
     )
+
+
+def test_a_number_of_a_model_of_ones_own_is_refused_as_one_that_levels_do_not_share(tmp_path, capsys):
+    (tmp_path / "mine.py").write_text(
+        "from dataclasses import dataclass\nfrom typing import Annotated\nimport stylobate as sb\n\n\n"
+        "@dataclass(frozen=True, slots=True)\nclass Dragged(sb.Slender):\n"
+        '    """A slender column with drag."""\n\n'
+        '    drag: Annotated[float, sb.Quantity(text="drag", ge=0.0, dissipates=True)] = 0.0\n'
+    )
+    description = tmp_path / "run.toml"
+    description.write_text(
+        'duration = 5.0\n[column]\nshape = "dimensionless"\nslenderness = 0.1\n'
+        '[model]\nkind = "mine.py:Dragged"\ndamping = 0.1\ndrag = 0.2\n'
+    )
+    assert run(["hierarchy", str(description)]) == 2
+    message = capsys.readouterr().err
+    assert "model.drag: the models of the hierarchy share damping, " in message
+    assert "(got 0.2). Remove it." in message
 
 
 def test_a_slenderness_in_a_file_is_named(tmp_path, capsys):

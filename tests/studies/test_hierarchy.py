@@ -8,6 +8,8 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import ParameterError
+from stylobate.models.declared import dissipation_of
+from stylobate.studies.hierarchy.models import Case, LevelArguments, RunArguments
 
 COLUMN = sb.Column.dimensionless(slenderness=0.1)
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
@@ -147,3 +149,31 @@ def saved_dataset():
 def test_misuse_is_told(options, line):
     with pytest.raises(ParameterError, match=line):
         sb.studies.model_hierarchy(**{"column": COLUMN, "duration": 5.0, **START, **options})
+
+
+def test_each_level_takes_the_dissipation_that_it_declares():
+    case = Case(
+        column=COLUMN,
+        motion=sb.base_motions.BASE_AT_REST,
+        dissipation={"damping": 0.1, "spin_damping": 0.2, "rolling_resistance": 0.01, "restitution": None},
+        tilt=(0.02, 0.0),
+        tilt_rate=(0.0, 0.0),
+        spin=0.0,
+    )
+    assert case.models() == (
+        sb.Slender(COLUMN, damping=0.1),
+        sb.SlenderRolling(COLUMN, damping=0.1, spin_damping=0.2),
+        sb.Wobbling(COLUMN, damping=0.1, rolling_resistance=0.01),
+        sb.Rolling(COLUMN, damping=0.1, spin_damping=0.2, rolling_resistance=0.01),
+        sb.PlanarRocking(COLUMN, damping=0.1, rolling_resistance=0.01),
+    )
+
+
+def test_the_shared_dissipation_is_that_which_the_levels_declare():
+    shared = set(LevelArguments.__annotations__) - set(RunArguments.__annotations__)
+    assert shared == set(dissipation_of(sb.Rolling))
+    assert shared >= {
+        name
+        for model in (sb.Slender, sb.SlenderRolling, sb.Wobbling, sb.PlanarRocking)
+        for name in dissipation_of(model)
+    }

@@ -7,10 +7,11 @@ import numpy as np
 
 from stylobate import config, studies
 from stylobate.cli.command import command
-from stylobate.cli.declarations import OUTPUT, Option, run_numbers
+from stylobate.cli.declarations import OUTPUT, Group, Option, run_numbers
 from stylobate.cli.options import Options
 from stylobate.cli.output import check_writable, deliver, print_table
 from stylobate.cli.overlay import merge, overlay
+from stylobate.cli.own_classes import Chosen
 from stylobate.cli.parts import COLUMN, MODEL, MOTION_WITHOUT_RECORDS
 from stylobate.cli.response import plain_curves, save_curves
 from stylobate.cli.source import read_source
@@ -19,6 +20,13 @@ from stylobate.errors import ParameterError
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+def _dissipation(chosen: Chosen) -> list[Option]:
+    """List the options of the dissipation parameters that the models of the hierarchy share."""
+    from stylobate.config.hierarchy import HierarchyDissipation  # noqa: PLC0415  heavy imports wait
+
+    return [one for one in MODEL.make(chosen) if one.name in HierarchyDissipation.model_fields]
 
 
 @command(
@@ -31,7 +39,7 @@ if TYPE_CHECKING:
     groups=(
         run_numbers(OneRun),
         COLUMN,
-        MODEL.reduced_to("damping", "spin_damping", "restitution"),
+        Group(_dissipation),
         MOTION_WITHOUT_RECORDS,
         OUTPUT,
     ),

@@ -1,6 +1,6 @@
 """The declared numbers of all models by name: for studies that vary them, and for controls that set them."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 
 from stylobate.column import SHAPES
@@ -51,6 +51,6 @@ def name_by_symbol(model: type, symbol: str) -> str:
 
 
 @cache
-def dissipation_of(model: type) -> Mapping[str, Quantity]:
+def dissipation_of(model: Callable[..., object]) -> Mapping[str, Quantity]:
     """Return the quantity of each number of a class of models that dissipates."""
     return {name: one.quantity for name, one in parameters_of(model).items() if one.quantity.dissipates}

@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Unpack
 
 import numpy as np
@@ -14,10 +14,11 @@ from stylobate.column import Column
 from stylobate.config import provenance_of_run
 from stylobate.errors import ParameterError, require_finite, require_positive, require_vector, require_whole
 from stylobate.models import Rolling
+from stylobate.models.declared import dissipation_of
 from stylobate.models.model import require_column
 from stylobate.results import Response
 from stylobate.results.outcomes import outcome_attributes
-from stylobate.studies.hierarchy.models import Case, RunArguments
+from stylobate.studies.hierarchy.models import Case, LevelArguments, RunArguments
 from stylobate.studies.hierarchy.runs import Course, Floats, largest_distance
 
 # Times at which levels are compared, unless the user asks for histories of another length.
@@ -30,9 +31,6 @@ def model_hierarchy(
     column: Column,
     motion: BaseMotion | None = None,
     *,
-    damping: float = 0.0,
-    spin_damping: float = 0.0,
-    restitution: float | None = None,
     tilt: Sequence[float] = (0.0, 0.0),
     tilt_rate: Sequence[float] = (0.0, 0.0),
     spin: float = 0.0,
@@ -41,7 +39,7 @@ def model_hierarchy(
     friction_coefficient: float | None = None,
     reference: str = Rolling.name,
     samples: int | None = None,
-    **arguments: Unpack[RunArguments],
+    **arguments: Unpack[LevelArguments],
 ) -> xr.Dataset:
     """Run one case with every model of the hierarchy and compare the results.
 
@@ -52,12 +50,6 @@ def model_hierarchy(
     ----------
     column, motion
         The column, and how its base moves; None is a base at rest.
-    damping
-        η of all levels.
-    spin_damping
-        ζ of the levels that may turn.
-    restitution
-        e on passing the upright, of the levels at finite tilt; by default Housner's in planar rocking and 1 elsewhere.
     tilt, tilt_rate, spin
         Start [rad], [rad/s], [rad/s]; levels that cannot turn start without spin.
     duration
@@ -72,7 +64,10 @@ def model_hierarchy(
     samples
         Number of samples of the histories that are kept; none by default.
     **arguments
-        Arguments of `simulate`: rtol, atol, tilt_limit, rest_energy, max_steps, rules.
+        Dissipation parameters: damping η of all levels; spin_damping ζ of the levels that may turn; of the levels at
+        finite tilt rolling_resistance, a lever arm in radii, and restitution e at a passage near the vertical, by
+        default Housner's in planar rocking and 1 elsewhere. Arguments of `simulate`: rtol, atol, tilt_limit,
+        rest_energy, max_steps, rules.
 
     Returns
     -------
@@ -103,14 +98,16 @@ def model_hierarchy(
     wobbling           0.388
     rolling            0.193
     """
-    strange = [name for name in arguments if name not in _OF_SIMULATE]
+    shared = dissipation_of(Rolling)
+    strange = [name for name in arguments if name not in (*_OF_SIMULATE, *shared)]
     if strange:
-        message = (
-            f"{strange[0]} is no argument of model_hierarchy; of those of simulate it takes {', '.join(_OF_SIMULATE)}"
-        )
+        known = ", ".join((*shared, *_OF_SIMULATE))
+        message = f"{strange[0]} is no argument of model_hierarchy. Besides those of its signature use {known}."
         raise ParameterError(message)
     moved = BASE_AT_REST if motion is None else motion
-    case = _case(column, moved, damping, spin_damping, restitution, tilt, tilt_rate, spin)
+    given: dict[str, Any] = {**arguments}
+    dissipation = {name: given.pop(name) for name in shared if name in given}
+    case = _case(column, moved, dissipation, tilt, tilt_rate, spin)
     duration = require_positive("duration", duration, "s")
     levels = [model.name for model in case.models()]
     if reference not in levels:
@@ -119,7 +116,7 @@ def model_hierarchy(
     time = np.linspace(0.0, duration, _TIMES if samples is None else require_whole("samples", samples, least=2))
 
     def compared(one: Case) -> xr.Dataset:
-        runs = [one.run(model, duration, friction_coefficient, arguments) for model in one.models()]
+        runs = [one.run(model, duration, friction_coefficient, given) for model in one.models()]
         return _compared(one, runs, time, duration)
 
     if slenderness is None:
@@ -140,9 +137,9 @@ def model_hierarchy(
         spin=case.spin,
         duration=duration,
         friction_coefficient=friction_coefficient,
-        restitution=restitution,
+        restitution=dissipation.get("restitution"),
         slenderness=None if slenderness is None else np.asarray(slenderness, dtype=float).tolist(),
-        **{name: value for name, value in arguments.items() if name != "rules"},
+        **{name: value for name, value in given.items() if name != "rules"},
     )
     attributes = {"kind": "model hierarchy", "reference": reference, "column_slenderness": column.slenderness}
     if friction_coefficient is not None:
@@ -153,9 +150,7 @@ def model_hierarchy(
 def _case(
     column: Column,
     motion: BaseMotion,
-    damping: float,
-    spin_damping: float,
-    restitution: float | None,
+    dissipation: Mapping[str, float | None],
     tilt: Sequence[float],
     tilt_rate: Sequence[float],
     spin: float,
@@ -169,9 +164,7 @@ def _case(
     return Case(
         column=column,
         motion=motion,
-        damping=damping,
-        spin_damping=spin_damping,
-        restitution=restitution,
+        dissipation=dissipation,
         tilt=(x, y),
         tilt_rate=(vx, vy),
         spin=require_finite("spin", spin, "rad/s"),

@@ -15,11 +15,9 @@ const STARTS: Readonly<Record<string, readonly [string, 0 | 1]>> = {
 
 const OF_A_RUN: readonly string[] = ["spin", "duration"];
 
-/** What a part's number must be called for a map to vary it. */
+/** What a number of the column or motion must be called for a map to vary it; a model's numbers all vary. */
 const VARIABLE: readonly string[] = [
   ...["slenderness", "gravity", "mass_height", "mass", "transverse_inertia", "axial_inertia"],
-  ...["damping", "spin_damping", "rolling_resistance", "restitution", "normal_restitution"],
-  ...["friction_coefficient", "static_friction_coefficient", "patch", "incline", "incline_direction"],
   ...["acceleration", "angular_frequency", "start_phase", "scale", "rotation", "delay"],
   ...["rpm", "diameter", "frequency", "stroke", "velocity"],
   ...["radius", "height", "inner_radius", "top_radius", "density", "inertia_ratio", "axial_ratio"],
@@ -94,7 +92,8 @@ export function mapQuantities(description: Description, about: About, scales: Co
     const parameters = kindNamed(about, part, kindOf(description, part))?.parameters ?? [];
     const given = kindOf(description, part) === "given"; // its radius alone would be that of another body
     return parameters
-      .filter(({ name, default: usual }) => VARIABLE.includes(name) && typeof usual === "number")
+      .filter(({ name }) => part === "model" || VARIABLE.includes(name))
+      .filter(({ default: usual }) => typeof usual === "number")
       .filter(({ name }) => !(given && name === "radius"))
       .map(quantityOf);
   });
