@@ -110,6 +110,14 @@ def test_planar_rocking_and_its_restitution(capsys):
     assert told(capsys)["provenance"]["model"]["restitution"] == 0.8
 
 
+def test_the_restitution_of_impacts_of_a_sliding_column_has_a_name_of_its_own(capsys):
+    case = [*COLUMN, "--tilt", "0.03", "0", "--duration", "1", "--model", "sliding", "--json"]
+    assert run(["simulate", *case, "--normal-restitution", "0.3"]) == 0
+    assert told(capsys)["provenance"]["model"]["normal_restitution"] == 0.3
+    assert run(["simulate", *case, "--restitution", "0.3"]) == 2
+    assert "--restitution: model 'sliding' does not use it (got " in capsys.readouterr().err
+
+
 def test_a_run_begins_with_spin_twist_and_position(capsys):
     options = ["--model", "rolling", "--spin", "0.2", "--twist", "0.3", "--position", "0.01", "0.02"]
     assert run(["simulate", *CASE, *options, "--json"]) == 0
