@@ -25,7 +25,7 @@ _SQUARE = 0.1
 
 def findings_at_finite_tilt() -> tuple[Finding, ...]:
     """Check the rolling body at finite tilt against the closed forms, and both against those of small tilts."""
-    return _rolling(), _without_spin_friction(), _no_twist()
+    return _rolling(), _without_spin_damping(), _no_twist()
 
 
 def _run_from_paper(zeta: float, periods: float) -> Response:
@@ -65,7 +65,7 @@ def _rolling() -> Finding:
     )
 
 
-def _without_spin_friction() -> Finding:
+def _without_spin_damping() -> Finding:
     run = _run_from_paper(0.0, _PERIODS_WITHOUT)
     tilt = np.hypot(*run.data["tilt"].to_numpy().T)
     fallen = np.flatnonzero(tilt < _GONE * SLENDERNESS)
