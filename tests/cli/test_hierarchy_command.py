@@ -32,7 +32,7 @@ def test_ladder_prints_what_ladder_finds(capsys):
         tilt_rate=(0.0, 0.07),
         duration=10.0,
     )
-    assert printed["level"] == found["level"].to_numpy().tolist()
+    assert printed["model"] == found["model"].to_numpy().tolist()
     assert printed["largest_tilt"] == found["largest_tilt"].to_numpy().tolist()
     assert printed["deviation"] == found["deviation"].to_numpy().tolist()
 
@@ -184,7 +184,7 @@ def test_maps_take_models(capsys):
         (["simulate", *CASE, "--twist", "1"], "twist must be left out"),
         (["simulate", *CASE, "--model", "planar-rocking"], "must lie in one vertical plane"),
         (["simulate", *CASE, "--friction-coefficient", "0"], "friction_coefficient must be positive, got 0.0"),
-        (["hierarchy", *CASE, "--reference", "sliding"], "reference must be a level of this case"),
+        (["hierarchy", *CASE, "--reference", "sliding"], "reference must be a model of this case"),
         (["hierarchy", *CASE, "--scaled-to", "-1"], "--scaled-to must be followed by a positive slenderness, got -1.0"),
         (
             ["hierarchy", *CASE, "--tilt", "1.2", "0", "--scaled-to", ".2"],

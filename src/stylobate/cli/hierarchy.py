@@ -101,26 +101,26 @@ def _print(result: "xr.Dataset") -> None:
     for index in range(result.sizes["slenderness"] if several else 1):
         at = result.isel(slenderness=index) if several else result
         c = float(at["slenderness"]) if several else float(result.attrs["column_slenderness"])
-        rows += [_row(at.sel(level=level), c, several=several) for level in result["level"].to_numpy()]
+        rows += [_row(at.sel(model=model), c, several=several) for model in result["model"].to_numpy()]
     header = (*(("c",) if several else ()), *_HEADER)
     from_where = f"distance: the largest of the tilt vector from that of {result.attrs['reference']}"
     print_table(f"tilts over c; late: the last fifth of the run; {from_where}", rows, header)
     if "deviation_order" in result:
         for first, second in (("slender", "wobbling"), ("slender rolling", "rolling"), ("slender", "rolling")):
-            order = float(result["deviation_order"].sel(level=first, other_level=second))
+            order = float(result["deviation_order"].sel(model=first, other_model=second))
             print(f"the distance of {second} from {first} goes with c to the power {order:.2f}")
-    for level, warnings in _warnings(result):
-        print(f"{level}: {warnings}")
+    for model, warnings in _warnings(result):
+        print(f"{model}: {warnings}")
 
 
-_HEADER = ("level", "outcome", "top tilt", "late mean", "spin rad/s", "friction", "pivoting", "least N", "distance")
+_HEADER = ("model", "outcome", "top tilt", "late mean", "spin rad/s", "friction", "pivoting", "least N", "distance")
 
 
 def _row(at: "xr.Dataset", c: float, *, several: bool) -> list[str]:
     from stylobate.results.outcomes import outcome_label  # noqa: PLC0415  heavy, as above
 
-    name = str(at["level"].to_numpy())
-    distance = float(at["deviation"].sel(other_level=at.attrs["reference"])) / c
+    name = str(at["model"].to_numpy())
+    distance = float(at["deviation"].sel(other_model=at.attrs["reference"])) / c
     return [
         *([f"{c:.4g}"] if several else []),
         name,
@@ -140,9 +140,9 @@ def _cell(value: float) -> str:
 
 
 def _warnings(result: "xr.Dataset") -> list[tuple[str, str]]:
-    """Return the levels with warnings; over several slendernesses those of the largest."""
+    """Return the models with warnings; over several slendernesses those of the largest."""
     shown = result
     if "slenderness" in result.dims:
         shown = result.isel(slenderness=int(np.argmax(result["slenderness"].to_numpy())))
-    labelled = zip(shown["level"].to_numpy(), shown["warnings"].to_numpy(), strict=True)
-    return [(str(level), str(line)) for level, line in labelled if line]
+    labelled = zip(shown["model"].to_numpy(), shown["warnings"].to_numpy(), strict=True)
+    return [(str(model), str(line)) for model, line in labelled if line]

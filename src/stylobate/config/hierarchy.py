@@ -23,28 +23,28 @@ from stylobate.config.simulation import (
 from stylobate.errors import ConfigError, require_positive
 from stylobate.models.declared import MODELS, dissipation_of
 
-# The most general level: it declares every dissipation parameter that another one has.
+# The most general model: it declares every dissipation parameter that another one has.
 _MOST_GENERAL = "rolling"
 
 
-class _OfAllLevels(Config):
-    """The dissipation parameters of all levels: each takes those that it declares."""
+class _OfAllModels(Config):
+    """The dissipation parameters of all models: each takes those that it declares."""
 
 
 if TYPE_CHECKING:
-    HierarchyDissipation = _OfAllLevels
+    HierarchyDissipation = _OfAllModels
 else:
     HierarchyDissipation = create_model(
         "HierarchyDissipation",
-        __base__=_OfAllLevels,
-        __doc__=_OfAllLevels.__doc__,
+        __base__=_OfAllModels,
+        __doc__=_OfAllModels.__doc__,
         __module__=__name__,
         **dict.fromkeys(dissipation_of(MODELS[_MOST_GENERAL]), (float | None, None)),
     )
 
 
 class HierarchyOptions(Config):
-    """What is compared: the case scaled to these slendernesses, and the level from which differences are taken."""
+    """What is compared: the case scaled to these slendernesses, and the model from which differences are taken."""
 
     slenderness: tuple[float, ...] = ()
     reference: str = "rolling"
@@ -84,7 +84,7 @@ class HierarchyConfig(OneRun, _HierarchyCase):
         return super().parse(with_default_duration(kept))
 
     def build(self) -> Setup:
-        """Return the most general level and the motion; the options are those of `stylobate.studies.model_hierarchy`.
+        """Return the most general model and the motion; the options are those of `stylobate.studies.model_hierarchy`.
 
         Raises
         ------
@@ -96,8 +96,8 @@ class HierarchyConfig(OneRun, _HierarchyCase):
             built("hierarchy", partial(require_positive, "slenderness", c), problems)
         rules = built("rules", lambda: built_rules(self.rules), problems)
         dissipation = self.model.model_dump(exclude_none=True)
-        level = described_model(_MOST_GENERAL, **dissipation)
-        model, motion = built_parts(self.column, level, self.motion, problems)
+        described = described_model(_MOST_GENERAL, **dissipation)
+        model, motion = built_parts(self.column, described, self.motion, problems)
         options = self.model_dump(exclude={"column", "model", "motion", "hierarchy"})
         if self.duration is None:
             options["duration"] = duration_with_tail(model, motion)

@@ -14,7 +14,7 @@ from stylobate.results import OutcomeRules, Response
 
 
 class RunArguments(TypedDict, total=False):
-    """What all levels are run with: the arguments of `simulate` of these names."""
+    """What all models are run with: the arguments of `simulate` of these names."""
 
     rtol: float
     atol: float | None
@@ -24,8 +24,8 @@ class RunArguments(TypedDict, total=False):
     rules: OutcomeRules | None
 
 
-class LevelArguments(RunArguments, total=False):
-    """The dissipation parameters of the levels, which take those that they declare, and what all are run with."""
+class HierarchyArguments(RunArguments, total=False):
+    """The dissipation parameters of the models, which take those that they declare, and what all are run with."""
 
     damping: float
     spin_damping: float
@@ -42,7 +42,7 @@ class Case:
     column, motion
         The column, and how its base moves.
     dissipation
-        Dissipation parameters by name; each level takes those that it declares. None stands for its default.
+        Dissipation parameters by name; each model takes those that it declares. None stands for its default.
     tilt, tilt_rate, spin
         Start [rad], [rad/s], [rad/s].
     """
@@ -77,19 +77,19 @@ class Case:
         return self.spin == 0.0 and (not moving or common_line(*directions) is not None)
 
     def models(self) -> tuple[Model, ...]:
-        """Return the levels from the simplest on; planar rocking is the last, where the motion lies in a plane."""
-        levels = (Slender, SlenderRolling, Wobbling, Rolling, *((PlanarRocking,) if self.in_a_plane else ()))
-        return tuple(self._level(level) for level in levels)
+        """Return the models from the simplest on; planar rocking is the last, where the motion lies in a plane."""
+        models = (Slender, SlenderRolling, Wobbling, Rolling, *((PlanarRocking,) if self.in_a_plane else ()))
+        return tuple(self._model(model) for model in models)
 
-    def _level(self, level: Callable[..., Model]) -> Model:
-        declared = dissipation_of(level)
+    def _model(self, model: Callable[..., Model]) -> Model:
+        declared = dissipation_of(model)
         stated = {name: value for name, value in self.dissipation.items() if name in declared and value is not None}
-        return level(self.column, **stated)
+        return model(self.column, **stated)
 
     def run(
         self, model: Model, duration: float, friction_coefficient: float | None, arguments: Mapping[str, Any]
     ) -> Response:
-        """Return the run of one level; one that cannot turn starts without spin."""
+        """Return the run of one model; one that cannot turn starts without spin."""
         return simulate(
             model,
             self.motion,
