@@ -35,7 +35,6 @@ SIGNATURES_THAT_DECLARE = {"engine/single.py": "simulate", "engine/ensemble.py":
 """Functions of the package's public face: their arguments are documented where they stand, one by one."""
 
 REMAINING: dict[str, int] = {
-    "conveying/slip_limits.py": 1,  # numbers that the closed form lacks: theory decides, not the model
     "engine/ensemble.py": 2,  # arguments of `simulate_ensemble` by name
     "engine/ensembles/broadcasting.py": 1,  # numbers of a column that are masses
     "engine/parameters.py": 1,  # numbers of a column, and two by which it scales

@@ -42,7 +42,7 @@ def part() -> sb.plots.Animation:
     """A part that was set down askew walks along a conveyor."""
     body = sb.Column.solid(radius=0.02, height=0.03, density=7800.0)
     oblique = sb.Harmonic.oblique(acceleration=14.0, angular_frequency=60.0, angle=0.52)
-    model = sb.Sliding(body, friction_coefficient=0.3, restitution=0.3)
+    model = sb.Sliding(body, friction_coefficient=0.3, normal_restitution=0.3)
     run = sb.simulate(model, oblique, tilt=(-0.5, 0.2), spin=8.0, duration=1.2)
     return sb.animate(run, speed=0.2, **SHOWN)
 

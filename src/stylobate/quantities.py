@@ -49,6 +49,8 @@ class Quantity:
         The only values it can have; empty for any within the bounds.
     dissipates
         Whether it takes energy from the column.
+    lossless
+        The value with which a number that dissipates takes no energy.
     """
 
     symbol: str = ""
@@ -63,6 +65,7 @@ class Quantity:
     components: int = 1
     choices: tuple[int, ...] = ()
     dissipates: bool = False
+    lossless: float = 0.0
 
     def __repr__(self) -> str:
         """Return it as signatures show it: symbol, unit and bounds."""

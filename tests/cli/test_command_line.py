@@ -228,7 +228,7 @@ def test_the_table_of_stable_orbits_begins_and_ends_at_bifurcations(capsys):
         assert ends in told
 
 
-def test_without_friction_the_table_says_neutrally_stable(capsys):
+def test_without_damping_the_table_says_neutrally_stable(capsys):
     arguments = ["--motion", "straight", "--acceleration", "0.04", "--angular-frequency-range", "2.9", "3.1"]
     assert run(["response", "--exact", "--slenderness", "0.1", *arguments]) == 0
     assert "where orbits are neutrally stable" in capsys.readouterr().out

@@ -32,7 +32,7 @@ def test_ladder_prints_what_ladder_finds(capsys):
         tilt_rate=(0.0, 0.07),
         duration=10.0,
     )
-    assert printed["level"] == found["level"].to_numpy().tolist()
+    assert printed["model"] == found["model"].to_numpy().tolist()
     assert printed["largest_tilt"] == found["largest_tilt"].to_numpy().tolist()
     assert printed["deviation"] == found["deviation"].to_numpy().tolist()
 
@@ -110,6 +110,14 @@ def test_planar_rocking_and_its_restitution(capsys):
     assert told(capsys)["provenance"]["model"]["restitution"] == 0.8
 
 
+def test_the_restitution_of_impacts_of_a_sliding_column_has_a_name_of_its_own(capsys):
+    case = [*COLUMN, "--tilt", "0.03", "0", "--duration", "1", "--model", "sliding", "--json"]
+    assert run(["simulate", *case, "--normal-restitution", "0.3"]) == 0
+    assert told(capsys)["provenance"]["model"]["normal_restitution"] == 0.3
+    assert run(["simulate", *case, "--restitution", "0.3"]) == 2
+    assert "--restitution: model 'sliding' does not use it (got " in capsys.readouterr().err
+
+
 def test_a_run_begins_with_spin_twist_and_position(capsys):
     options = ["--model", "rolling", "--spin", "0.2", "--twist", "0.3", "--position", "0.01", "0.02"]
     assert run(["simulate", *CASE, *options, "--json"]) == 0
@@ -176,7 +184,7 @@ def test_maps_take_models(capsys):
         (["simulate", *CASE, "--twist", "1"], "twist must be left out"),
         (["simulate", *CASE, "--model", "planar-rocking"], "must lie in one vertical plane"),
         (["simulate", *CASE, "--friction-coefficient", "0"], "friction_coefficient must be positive, got 0.0"),
-        (["hierarchy", *CASE, "--reference", "sliding"], "reference must be a level of this case"),
+        (["hierarchy", *CASE, "--reference", "sliding"], "reference must be a model of this case"),
         (["hierarchy", *CASE, "--scaled-to", "-1"], "--scaled-to must be followed by a positive slenderness, got -1.0"),
         (
             ["hierarchy", *CASE, "--tilt", "1.2", "0", "--scaled-to", ".2"],
@@ -184,7 +192,7 @@ def test_maps_take_models(capsys):
         ),
         (["hierarchy", *CASE, "--model", "rolling"], "--model: hierarchy runs all models (got 'rolling'). Remove it."),
         (["hierarchy", *COLUMN], "duration is missing"),
-        (["hierarchy", *CASE, "--rolling-resistance", "1"], "No such option"),
+        (["hierarchy", *CASE, "--passage-tilt", "1"], "No such option"),
     ],
 )
 def test_what_a_model_does_not_know_is_one_line(arguments, line, capsys):
@@ -198,13 +206,31 @@ def test_a_friction_that_levels_do_not_share_is_refused(tmp_path, capsys):
     description = tmp_path / "run.toml"
     description.write_text(
         'duration = 5.0\n[column]\nshape = "dimensionless"\nslenderness = 0.1\n'
-        '[model]\nkind = "rolling"\nrolling_resistance = 0.1\n'
+        '[model]\nkind = "rolling"\npassage_tilt = 0.001\n'
     )
     assert run(["hierarchy", str(description)]) == 2
     assert (
-        "model.rolling_resistance is no damping parameter of the hierarchy: "
-        "damping, spin_damping, restitution; remove it" in capsys.readouterr().err
+        "model.passage_tilt: the models of the hierarchy share damping, spin_damping, rolling_resistance, restitution "
+        "only (got 0.001). Remove it." in capsys.readouterr().err
     )
+
+
+def test_a_number_of_a_model_of_ones_own_is_refused_as_one_that_levels_do_not_share(tmp_path, capsys):
+    (tmp_path / "mine.py").write_text(
+        "from dataclasses import dataclass\nfrom typing import Annotated\nimport stylobate as sb\n\n\n"
+        "@dataclass(frozen=True, slots=True)\nclass Dragged(sb.Slender):\n"
+        '    """A slender column with drag."""\n\n'
+        '    drag: Annotated[float, sb.Quantity(text="drag", ge=0.0, dissipates=True)] = 0.0\n'
+    )
+    description = tmp_path / "run.toml"
+    description.write_text(
+        'duration = 5.0\n[column]\nshape = "dimensionless"\nslenderness = 0.1\n'
+        '[model]\nkind = "mine.py:Dragged"\ndamping = 0.1\ndrag = 0.2\n'
+    )
+    assert run(["hierarchy", str(description)]) == 2
+    message = capsys.readouterr().err
+    assert "model.drag: the models of the hierarchy share damping, " in message
+    assert "(got 0.2). Remove it." in message
 
 
 def test_a_slenderness_in_a_file_is_named(tmp_path, capsys):

@@ -2,6 +2,8 @@
 
 import json
 import math
+from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 import pytest
@@ -140,6 +142,22 @@ def test_a_result_tells_from_what_it_was_made():
     assert (told["scale"], told["tail"], told["rtol"], told["rotations"]) == (0.5, 1.0, 1e-6, [0.0])
     assert told["changes"] == [repr(change) for change in changes]
     assert found.attrs["kind"] == "robustness"
+
+
+@dataclass(frozen=True, slots=True)
+class Dragged(sb.Slender):
+    """A slender column with a number of its own that dissipates, and one that does not."""
+
+    drag: Annotated[float, sb.Quantity(text="drag", ge=0.0, dissipates=True)] = 0.0
+    stiffness: Annotated[float, sb.Quantity(text="stiffness", ge=0.0)] = 0.0
+
+
+def test_every_number_that_a_model_declares_as_dissipating_is_scaled():
+    column = sb.Column.dimensionless(0.1)
+    assert DissipationScaled(2.0).changed_values(Dragged(column, drag=0.3, stiffness=0.4)) == {"drag": 0.6}
+    part = sb.Sliding(column, normal_restitution=0.9, damping=0.1)
+    assert DissipationScaled(0.5).changed_values(part) == pytest.approx({"normal_restitution": 0.95, "damping": 0.05})
+    assert DissipationScaled(2.0).changed_values(sb.Sliding(column)) == {"normal_restitution": 0.0}
 
 
 def test_restitution_is_a_dissipation_too():

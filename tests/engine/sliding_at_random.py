@@ -75,7 +75,7 @@ def random_runs(count, seed, motion):
             "friction_coefficient": friction,
             "static_friction_coefficient": friction * rng.choice([1.0, 1.0, 1.2, 2.0], count),
             "patch": rng.choice([0.0, 0.0, 0.0, 1.0], count) * rng.uniform(0.0, 0.5, count),
-            "restitution": rng.choice([0.0, 0.0, 0.3, 0.8, 1.0], count),
+            "normal_restitution": rng.choice([0.0, 0.0, 0.3, 0.8, 1.0], count),
             "damping": rng.choice([0.0, 0.0, 0.1], count),
             "spin_damping": rng.choice([0.0, 0.1], count),
             "rolling_resistance": rng.choice([0.0, 0.0, 0.02], count),

@@ -34,7 +34,7 @@ def random_runs(count, seed):
     }
     numbers = {
         "friction_coefficient": rng.choice([0.03, 0.08, 0.15, 0.4, 1.0], count),
-        "restitution": rng.choice([0.0, 0.4], count),
+        "normal_restitution": rng.choice([0.0, 0.4], count),
         "damping": rng.choice([0.0, 0.05], count),
         "rolling_resistance": rng.choice([0.0, 0.01], count),
         "incline": rng.choice([0.0, 0.02], count),

@@ -21,7 +21,7 @@ def unexplained(runs, told):
     """Which runs failed though no contact jams, and rebounds come to an end."""
     failed = told["outcome"].to_numpy() == FAILED
     jammed = told["end_contact"].to_numpy() == Contact.JAMMED
-    return np.flatnonzero(failed & ~jammed & (runs.parameters["restitution"] < 1.0))
+    return np.flatnonzero(failed & ~jammed & (runs.parameters["normal_restitution"] < 1.0))
 
 
 def obey_the_laws(runs):

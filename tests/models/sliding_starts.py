@@ -42,7 +42,7 @@ def random_start(seed, *, patch=0.0, airborne=False, restitution=0.0, static=1.0
     )  # fmt: skip
     model = sb.Sliding(
         column, friction_coefficient=mu, static_friction_coefficient=static * mu, patch=patch,
-        restitution=restitution, passage_tilt=_NO_STROKE,
+        normal_restitution=restitution, passage_tilt=_NO_STROKE,
     )  # fmt: skip
     body = SlidingBody(
         column, kinetic=mu, static=static * mu, restitution=restitution, impact="dissipative",

@@ -210,7 +210,7 @@ def test_friction_takes_energy_all_the_time(friction, hold):
         assert change.max() < 0.0
 
 
-def test_much_spin_friction_is_rubber():
+def test_much_spin_damping_is_rubber():
     # ω·Z follows −(couple that rubber needs)/D0, so deviations go with 1/D0.
     start = {"theta": 0.1, "beta": 0.3, "w1": -0.1, "w2": 0.1, "w3": -0.1 * math.tan(0.1)}
 

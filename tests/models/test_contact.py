@@ -40,7 +40,7 @@ def test_steady_rolling_that_cannot_turn_needs_what_theory_says():
     assert float(free.friction_moment) == pytest.approx(moment, rel=1e-12)
 
 
-def test_with_a_free_twist_the_spin_friction_gives_the_moment():
+def test_with_a_free_twist_the_spin_damping_gives_the_moment():
     branch = sb.theory.free_twist_rolling(THETA, A0, c=C, eta=ETA, zeta=0.1)
     found = rolling(sb.SlenderRolling(COLUMN, damping=ETA, spin_damping=0.1), branch)
     friction, _ = needed(branch, float(branch.spin))

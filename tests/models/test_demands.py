@@ -130,7 +130,7 @@ def test_a_ratio_to_no_normal_force_is_infinite_and_of_two_forces_that_are_none_
 
 def test_nothing_is_demanded_of_a_contact_in_flight():
     hop = sb.Harmonic.oblique(acceleration=1.6, angular_frequency=3.0, angle=1.2)
-    model = sb.Sliding(sb.Column.dimensionless(0.1), friction_coefficient=0.3, damping=0.05, restitution=0.3)
+    model = sb.Sliding(sb.Column.dimensionless(0.1), friction_coefficient=0.3, damping=0.05, normal_restitution=0.3)
     data = sb.simulate(model, hop, tilt=(0.05, 0.0), tilt_rate=(0.0, 0.03), duration=3.0).data
     flies = data["contact"].to_numpy() == sb.Contact.FLYING
     assert 0 < flies.sum() < flies.size

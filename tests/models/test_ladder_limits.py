@@ -107,7 +107,7 @@ def test_a_base_acceleration_across_the_lean_meets_a_half_instead_of_three_quart
     assert rates[4] == pytest.approx(4.0 / 9.0 * 1e-4 / c, rel=1e-5)
 
 
-def test_much_spin_friction_makes_rolling_rubber():
+def test_much_spin_damping_makes_rolling_rubber():
     # What is left of ω·Z goes with 1/ζ; started on the constraint.
     body = sb.Column.dimensionless(0.2, KAPPA, AXIAL)
     rubber = sb.Wobbling(body, constraint="rubber")

@@ -235,7 +235,7 @@ def test_energy_changes_by_the_work_of_the_base_and_of_each_friction():
             assert lost >= 0.0 or normal[name] < 0.0
 
 
-def test_spin_friction_slows_a_column_that_spins_almost_upright_at_its_rate():
+def test_spin_damping_slows_a_column_that_spins_almost_upright_at_its_rate():
     model = sb.Rolling(SLIM, spin_damping=0.4)
     # Its lean is too small to matter: moments about the contact point are those of an upright column.
     rate = model.rates(1e-6, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, *model.parameters)[4]

@@ -62,13 +62,13 @@ def test_on_a_horizontal_plane_it_slides_to_and_fro_as_known(amplitude, static):
 def test_it_is_conveyed_as_a_block(along, normal, phase, incline, static, restitution, direction):
     known = theory.block_cycle(
         along, normal, static_friction=static, kinetic_friction=0.3, phase=phase, incline=incline,
-        restitution=restitution,
+        normal_restitution=restitution,
     )  # fmt: skip
     assert known.period == 1
     # The way up is along `direction`.
     model = sb.Sliding(
-        SQUAT, friction_coefficient=0.3, static_friction_coefficient=static, restitution=restitution, incline=incline,
-        incline_direction=direction + math.pi,
+        SQUAT, friction_coefficient=0.3, static_friction_coefficient=static, normal_restitution=restitution,
+        incline=incline, incline_direction=direction + math.pi,
     )  # fmt: skip
     speed, run = conveyed(model, vibration(along, normal, phase, direction), 10, direction)
     assert speed * FREQUENCY == pytest.approx(known.mean_speed, abs=1e-6)

@@ -25,7 +25,7 @@ def arrivals(count, restitution):
     rng = np.random.default_rng(17)
     for c, kappa, axial, mu in rng.uniform([0.05, 0.5, 0.3, 0.02], [1.0, 0.8, 0.5, 1.5], (count, 4)):
         column = sb.Column.dimensionless(slenderness=c, inertia_ratio=kappa, axial_ratio=axial)
-        model = sb.Sliding(column, friction_coefficient=mu, restitution=restitution)
+        model = sb.Sliding(column, friction_coefficient=mu, normal_restitution=restitution)
         body = SlidingBody(column, kinetic=mu, restitution=restitution, impact="dissipative")
         theta, beta = rng.uniform(0.02, 1.4), rng.uniform(-math.pi, math.pi)
         w1, w2, w3, vx, vy = rng.normal(scale=0.5, size=5)
@@ -89,7 +89,7 @@ def test_a_stroke_of_the_base_never_adds_energy(friction, restitution, moving):
     scale = 3.0 if moving == "all" else 1.0
     for c, kappa, axial in rng.uniform([0.05, 0.5, 0.3], [0.9, 0.8, 0.5], (100, 3)):
         column = sb.Column.dimensionless(slenderness=c, inertia_ratio=kappa, axial_ratio=axial)
-        model = sb.Sliding(column, friction_coefficient=friction, restitution=restitution)
+        model = sb.Sliding(column, friction_coefficient=friction, normal_restitution=restitution)
         tilt, fall, around = c * rng.uniform([1e-4, -0.5, -0.5], [0.009, -0.1, 0.5])
         beta, spin = rng.uniform(-math.pi, math.pi), rng.normal(scale=0.3 * scale)
         slip = rng.normal(scale=0.1 * scale, size=2)
@@ -118,13 +118,13 @@ def test_a_stroke_of_the_base_never_adds_energy(friction, restitution, moving):
                 "friction_coefficient": 0.03315,
                 "static_friction_coefficient": 0.04973,
                 "patch": 0.05,
-                "restitution": 0.9,
+                "normal_restitution": 0.9,
             },
             {"tilt": (-0.29256, -0.19951), "velocity": (-0.022847, 0.487995, 0.0), "spin": 0.5, "duration": 9.0},
         ),
         (
             sb.Column.dimensionless(slenderness=0.475),
-            {"friction_coefficient": 0.1, "restitution": 0.5},
+            {"friction_coefficient": 0.1, "normal_restitution": 0.5},
             {"tilt": (0.19, 0.0), "tilt_rate": (0.0, 0.05), "duration": 4.0},
         ),
     ],
@@ -139,7 +139,7 @@ def test_no_stroke_adds_energy_to_a_squat_column_that_spins_and_slips(column, nu
 def test_a_part_that_was_dropped_and_then_slides_has_slid():
     part = sb.Column.solid(radius=0.02, height=0.03, density=7800.0)
     tray = sb.Harmonic.oblique(acceleration=15.0, angular_frequency=60.0, angle=0.52)
-    model = sb.Sliding(part, friction_coefficient=0.3, restitution=0.2)
+    model = sb.Sliding(part, friction_coefficient=0.3, normal_restitution=0.2)
     run = sb.simulate(model, tray, clearance=0.01, duration=1.0)
     assert run.measures["time_flying"] > 0.05
     assert run.outcome is sb.Outcome.SLID
@@ -191,7 +191,7 @@ def test_an_upright_drop_without_rebound_lands_at_rest():
 
 @pytest.mark.parametrize("restitution", [0.2, 0.5, 0.8])
 def test_an_upright_drop_bounces_for_a_geometric_series(restitution):
-    run = sb.simulate(sb.Sliding(COLUMN, restitution=restitution), clearance=0.1, duration=10.0)
+    run = sb.simulate(sb.Sliding(COLUMN, normal_restitution=restitution), clearance=0.1, duration=10.0)
     assert run.outcome is sb.Outcome.AT_REST
     times = [event.time for event in run.events]
     first = math.sqrt(0.2)
@@ -219,7 +219,7 @@ def test_an_upright_column_that_lands_sliding_loses_what_friction_takes():
 
 
 def test_a_rim_that_lifts_off_leaves_and_lands_in_ever_shorter_hops():
-    model = sb.Sliding(sb.Column.dimensionless(slenderness=0.27), friction_coefficient=0.04, restitution=0.5)
+    model = sb.Sliding(sb.Column.dimensionless(slenderness=0.27), friction_coefficient=0.04, normal_restitution=0.5)
     dropping = sb.Harmonic.vertical(acceleration=1.2, angular_frequency=2.0, start_phase=1.0)
     run = sb.simulate(model, dropping, tilt=(0.1, 0.0), tilt_rate=(0.0, 0.05), duration=3.0)
     kinds = [event.kind for event in run.events]

@@ -23,7 +23,7 @@ def random_run(seed, *, shaken, patch=0.0, damping=0.0):
     model = sb.Sliding(
         sb.Column.dimensionless(slenderness=c, inertia_ratio=kappa, axial_ratio=axial),
         friction_coefficient=mu, static_friction_coefficient=mu * rng.choice([1.0, 1.4]), patch=patch,
-        restitution=rng.choice([0.0, 0.5]), damping=damping, rolling_resistance=rng.choice([0.0, 0.02]),
+        normal_restitution=rng.choice([0.0, 0.5]), damping=damping, rolling_resistance=rng.choice([0.0, 0.02]),
     )  # fmt: skip
     beta, tilt = rng.uniform(0.0, 6.0), c * rng.uniform(0.1, 0.8)
     given = {

@@ -17,10 +17,10 @@ COLUMN = sb.Column.dimensionless(slenderness=0.2)
 @pytest.mark.parametrize(
     "options",
     [
-        {"restitution": 0.0, "friction_coefficient": 0.5},
-        {"restitution": 0.6, "friction_coefficient": 0.5},
-        {"restitution": 0.0, "friction_coefficient": 0.1},
-        {"restitution": 0.3, "friction_coefficient": 0.1},
+        {"normal_restitution": 0.0, "friction_coefficient": 0.5},
+        {"normal_restitution": 0.6, "friction_coefficient": 0.5},
+        {"normal_restitution": 0.0, "friction_coefficient": 0.1},
+        {"normal_restitution": 0.3, "friction_coefficient": 0.1},
     ],
 )
 def test_rocking_comes_to_rest(options):
@@ -33,7 +33,7 @@ def test_rocking_comes_to_rest(options):
 @pytest.mark.parametrize("restitution", [0.3, 0.7])
 def test_bounces_come_to_rest_from_any_height_and_attitude(restitution):
     run = sb.simulate(
-        sb.Sliding(COLUMN, restitution=restitution, rolling_resistance=0.05, damping=0.05), tilt=(0.08, 0.03),
+        sb.Sliding(COLUMN, normal_restitution=restitution, rolling_resistance=0.05, damping=0.05), tilt=(0.08, 0.03),
         tilt_rate=(0.02, 0.05), spin=0.2, clearance=0.02, duration=150.0, rtol=1e-6,
     )  # fmt: skip
     assert run.outcome is sb.Outcome.AT_REST
@@ -51,7 +51,7 @@ def random_end(seed):
     c = rng.uniform(0.1, 0.4)
     model = sb.Sliding(
         sb.Column.dimensionless(slenderness=c), friction_coefficient=rng.uniform(0.05, 0.5),
-        restitution=rng.choice([0.0, 0.4]),
+        normal_restitution=rng.choice([0.0, 0.4]),
     )  # fmt: skip
     beta, tilt = rng.uniform(0.0, 6.0), c * rng.uniform(0.2, 0.8)
     motion = sb.Harmonic.circular(acceleration=rng.uniform(0.2, 1.0) * c, angular_frequency=rng.uniform(1.0, 4.0))

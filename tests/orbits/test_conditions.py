@@ -27,7 +27,7 @@ def test_modulated_motion_is_looked_for_among_all_pairs_where_multipliers_are_kn
     assert conditions_between(point(*SLOW), point(*SLOW))["Neimark-Sacker"] is neimark_sacker
 
 
-def test_without_friction_no_modulated_motion_is_looked_for():
+def test_without_damping_no_modulated_motion_is_looked_for():
     neutral = point(2.0, 0.5, *pair(1.0))
     assert "Neimark-Sacker" not in conditions_between(neutral, point(*SLOW))
 

@@ -24,11 +24,11 @@ def test_every_slow_finding_is_confirmed(check):
 
 
 def test_a_wrong_theory_is_not_confirmed(monkeypatch):
-    monkeypatch.setattr(theory, "critical_frequency_frictionless", lambda a0, *, c: np.asarray(a0) + c)
-    assert circular._friction_free_limit().verdict is Verdict.NOT_CONFIRMED
+    monkeypatch.setattr(theory, "undamped_critical_frequency", lambda a0, *, c: np.asarray(a0) + c)
+    assert circular._undamped_limit().verdict is Verdict.NOT_CONFIRMED
 
 
-@pytest.mark.parametrize("finding", [twist._stability, twist._weak_friction, twist._upper_frequency])
+@pytest.mark.parametrize("finding", [twist._stability, twist._weak_damping, twist._upper_frequency])
 def test_boundaries_of_another_column_with_a_free_twist_are_not_confirmed(monkeypatch, finding):
     for name in ("free_twist_critical_frequency", "free_twist_upper_frequency"):
         right = getattr(theory, name)
@@ -57,9 +57,9 @@ def test_curves_of_the_critical_frequency_meet_in_their_limits():
     data = twist.boundary_data()
     least = float(data["eta"][0])
     # Proportional to η there, by a factor below 20 (ζ = 1) and to 1/ζ for smaller ones.
-    weak = data["by_friction"].isel(eta=0).sel(zeta=[1.0, 0.3, 0.1, 0.03])
+    weak = data["by_damping"].isel(eta=0).sel(zeta=[1.0, 0.3, 0.1, 0.03])
     assert bool((abs(weak - data.attrs["weak_limit"]) < 20.0 * least / weak["zeta"]).all())
-    strong = data["by_spin_friction"].isel(spin_damping=-1)
+    strong = data["by_spin_damping"].isel(spin_damping=-1)
     assert bool((abs(strong - data.attrs["without"]) < 0.2 / float(data["spin_damping"][-1])).all())
     rising = data["by_amplitude"].diff("a0")
     assert bool(((rising > 0.0) | rising.isnull()).all())

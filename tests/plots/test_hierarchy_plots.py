@@ -23,25 +23,25 @@ def run():
 def test_histories_of_all_levels_lie_over_one_another():
     found = sb.studies.model_hierarchy(COLUMN, CIRCLE, **CASE, samples=100)
     tilt, spin, *_ = sb.plot(found).axes
-    for line, level in zip(tilt.lines, found["level"].to_numpy(), strict=False):
-        np.testing.assert_array_equal(line.get_ydata(), found["amplitude"].sel(level=level))
-    assert len(spin.lines) == 2  # levels that may turn
+    for line, model in zip(tilt.lines, found["model"].to_numpy(), strict=False):
+        np.testing.assert_array_equal(line.get_ydata(), found["amplitude"].sel(model=model))
+    assert len(spin.lines) == 2  # models that may turn
 
 
 def test_several_slendernesses_show_convergence():
     found = sb.studies.model_hierarchy(COLUMN, CIRCLE, **CASE, slenderness=[0.2, 0.1])
     convergence, late = sb.plot(found).axes
     assert convergence.get_yscale() == "log"
-    expected = found["deviation"].sel(level="slender", other_level="rolling") / found["slenderness"]
+    expected = found["deviation"].sel(model="slender", other_model="rolling") / found["slenderness"]
     np.testing.assert_allclose(convergence.lines[0].get_ydata(), expected[::-1])
-    assert len(late.lines) == found.sizes["level"]
+    assert len(late.lines) == found.sizes["model"]
 
 
 def test_one_slenderness_shows_that_case_alone():
     found = sb.studies.model_hierarchy(COLUMN, CIRCLE, **CASE, slenderness=[0.2])
     tilts, demands = sb.plot(found).axes
     assert {tilts.get_xscale(), demands.get_xscale(), tilts.get_yscale()} == {"linear"}
-    top = float(found["largest_tilt"].sel(level="slender")[0]) / 0.2
+    top = float(found["largest_tilt"].sel(model="slender")[0]) / 0.2
     assert tilts.lines[0].get_xdata() == pytest.approx([top])
 
 

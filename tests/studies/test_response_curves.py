@@ -153,6 +153,8 @@ def test_the_branches_of_full_rolling():
 class Own(sb.Slender):
     """A model with equations of its own."""
 
+    rates = staticmethod(sb.Slender.rates)
+
 
 @pytest.mark.parametrize(
     ("model", "branch", "told"),

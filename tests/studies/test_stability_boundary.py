@@ -128,13 +128,13 @@ def test_without_a_loss_of_stability_it_is_told_how_rolling_is():
     assert (above.attrs["rolling"], below.attrs["rolling"]) == ("stable", "unstable")
 
 
-def test_without_friction_nothing_is_decided():
+def test_without_damping_nothing_is_decided():
     model = sb.Slender(sb.Column.dimensionless(C), damping=0.0)
     with pytest.raises(ParameterError, match="damping must be above zero"):
         sb.studies.stability_boundary(model, LINE, bounds=(0.1, 0.2), angular_frequency=(1.0, 3.0))
 
 
-def test_without_friction_exact_rolling_is_neutrally_stable_where_averaging_says_so():
+def test_without_damping_exact_rolling_is_neutrally_stable_where_averaging_says_so():
     model = sb.Slender(sb.Column.dimensionless(C), damping=0.0)
     found = sb.studies.averaging_map(model, LINE, values=[0.04], angular_frequency=[2.0, 3.0, 4.0])
     assert found.attrs["friction"] == 0

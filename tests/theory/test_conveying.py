@@ -43,7 +43,7 @@ def cycle_of(case, **options):
         along,
         normal,
         static_friction=friction,
-        restitution=restitution,
+        normal_restitution=restitution,
         phase=phase,
         incline=incline,
         **options,
@@ -378,7 +378,7 @@ HOPPING = [(0.8, 2.4, 0.3, 0.2, -0.6, -0.1), (1.0, 3.4, 0.3, 0.0, 0.3, 0.2), (1.
 
 def hopping_of(case):
     along, normal, friction, restitution, phase, incline = case
-    options = {"restitution": restitution, "kinetic_friction": friction, "phase": phase, "incline": incline}
+    options = {"normal_restitution": restitution, "kinetic_friction": friction, "phase": phase, "incline": incline}
     return float(hopping_speed(along, normal, **options))
 
 
@@ -415,38 +415,38 @@ def test_hopping_goes_on_when_it_is_begun_also_where_a_block_at_rest_would_stay(
 def test_hopping_ends_where_its_period_doubles():
     e = 0.2
     flip = math.hypot(math.pi * (1.0 - e) / (1.0 + e), 2.0 * (1.0 + e**2) / (1.0 + e) ** 2)
-    known = hopping_speed(1.0, flip * np.array([0.99999, 1.00001]), restitution=e, kinetic_friction=0.3)
+    known = hopping_speed(1.0, flip * np.array([0.99999, 1.00001]), normal_restitution=e, kinetic_friction=0.3)
     assert np.isfinite(known).tolist() == [True, False]
-    once, twice = (block_cycle(0.5, flip * part, static_friction=0.3, restitution=e) for part in (0.99, 1.01))
+    once, twice = (block_cycle(0.5, flip * part, static_friction=0.3, normal_restitution=e) for part in (0.99, 1.01))
     assert (once.period, twice.period) == (1, 2)
     assert twice.segments[-1].end == pytest.approx(2.0 * TURN)
     assert twice.mean_speed == pytest.approx(sum(segment.travel for segment in twice.segments) / (2.0 * TURN))
 
 
 def test_hopping_needs_friction_to_hold_and_a_flight_clear_of_the_plane():
-    assert np.isnan(hopping_speed(1.0, 2.4, restitution=0.2, kinetic_friction=0.1, incline=0.2))
+    assert np.isnan(hopping_speed(1.0, 2.4, normal_restitution=0.2, kinetic_friction=0.1, incline=0.2))
     without_rebound = math.sqrt(1.0 + math.pi**2) * np.array([1.0 - 1e-7, 1.0 + 1e-7])
-    known = hopping_speed(1.0, without_rebound, restitution=0.0, kinetic_friction=0.3)
+    known = hopping_speed(1.0, without_rebound, normal_restitution=0.0, kinetic_friction=0.3)
     assert np.isfinite(known).tolist() == [False, True]
     begins = math.pi * 0.99 / 1.01  # with little rebound the block soon touches again
-    assert np.isnan(hopping_speed(1.0, 1.001 * begins, restitution=0.01, kinetic_friction=0.3))
+    assert np.isnan(hopping_speed(1.0, 1.001 * begins, normal_restitution=0.01, kinetic_friction=0.3))
 
 
 def test_bounces_shrink_by_the_restitution_and_end_within_the_bounce_time():
     e, normal = 0.5, 0.5
-    cycle = block_cycle(0.0, normal, static_friction=0.3, restitution=e, start_normal_velocity=0.01, cycles=1)
+    cycle = block_cycle(0.0, normal, static_friction=0.3, normal_restitution=e, start_normal_velocity=0.01, cycles=1)
     flights = [segment for segment in cycle.segments if segment.phase is BlockPhase.FLIGHT]
     lasts = np.array([flight.end - flight.start for flight in flights])
     # Each is 2v/N to a relative error of the time since τ = 0 times N'/N, which is at its largest 0.5/1.5 of that.
     np.testing.assert_allclose(lasts[1:] / lasts[:-1], e, atol=0.5 * lasts.sum())
-    whole = lasts[0] + float(theory.bounce_time(0.01, restitution=e, weight=1.0 + normal))
+    whole = lasts[0] + float(theory.bounce_time(0.01, normal_restitution=e, weight=1.0 + normal))
     assert lasts.sum() == pytest.approx(whole, rel=lasts.sum())
-    assert float(theory.bounce_time(1.0, restitution=e)) == pytest.approx(sum(2.0 * e**k for k in range(1, 60)))
+    assert float(theory.bounce_time(1.0, normal_restitution=e)) == pytest.approx(sum(2.0 * e**k for k in range(1, 60)))
 
 
 def test_the_rest_speed_matters_no_more_than_its_bounces_last():
     coarse, fine = (cycle_of(BOUNCING, rest_speed=speed) for speed in (1e-5, 1e-9))
-    left_out = float(theory.bounce_time(1e-5 / BOUNCING[3], restitution=BOUNCING[3], weight=0.1))
+    left_out = float(theory.bounce_time(1e-5 / BOUNCING[3], normal_restitution=BOUNCING[3], weight=0.1))
     assert len(coarse.segments) < len(fine.segments)
     assert coarse.mean_speed == pytest.approx(fine.mean_speed, abs=size(BOUNCING) * left_out)
 
@@ -508,7 +508,7 @@ def test_speeds_of_many_blocks_are_those_of_each():
     [
         ({"static_friction": -0.1}, "static_friction must be zero or positive"),
         ({"static_friction": 0.1, "kinetic_friction": 0.2}, "kinetic_friction must be at most static_friction = 0.1"),
-        ({"static_friction": 0.1, "restitution": 1.0}, "restitution must be below 1"),
+        ({"static_friction": 0.1, "normal_restitution": 1.0}, "normal_restitution must be below 1"),
         ({"static_friction": 0.1, "incline": 1.6}, "incline must lie between"),
         ({"static_friction": 0.1, "rest_speed": 0.0}, "rest_speed must be positive"),
         ({"static_friction": 0.1, "cycles": 0}, "cycles must be a whole number of at least 1"),

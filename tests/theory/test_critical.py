@@ -10,11 +10,11 @@ from scipy.optimize import brentq
 from stylobate.theory import (
     critical_amplitude,
     critical_frequency,
-    critical_frequency_frictionless,
     crossing_frequency,
     first_lyapunov_coefficient,
     modulated_rolling,
     steady_rolling,
+    undamped_critical_frequency,
 )
 from stylobate.theory.lyapunov import _Expansion
 from stylobate.theory.rolling import rolling_gap
@@ -36,7 +36,7 @@ def test_published_critical_frequencies():
     # ten digits are published
     assert critical_frequency([0.02, 0.065], c=C, eta=0.1) == pytest.approx([0.9813080177, 1.3971075892], abs=1e-10)
     assert crossing_frequency([0.02, 0.065], c=C, eta=0.1) == pytest.approx([0.8872, 1.3598], abs=5e-5)
-    assert critical_frequency_frictionless([0.02, 0.065], c=C) == pytest.approx([0.99162, 1.40046], abs=5e-6)
+    assert undamped_critical_frequency([0.02, 0.065], c=C) == pytest.approx([0.99162, 1.40046], abs=5e-6)
     assert np.isnan(critical_frequency(0.01, c=C, eta=0.3))
 
 
@@ -57,15 +57,15 @@ def test_amplitude_and_frequency_invert_each_other(theta, eta):
 
 
 @given(a0=st.floats(1e-6, 100.0))
-def test_without_friction_it_has_the_closed_form(a0):
-    closed = critical_frequency_frictionless(a0, c=C)
+def test_without_damping_it_has_the_closed_form(a0):
+    closed = undamped_critical_frequency(a0, c=C)
     assert critical_frequency(a0, c=C, eta=0.0) == pytest.approx(closed, rel=1e-13)
 
 
-def test_frictionless_limits():
-    assert critical_frequency_frictionless(0.0, c=C) == pytest.approx(1.0 / np.sqrt(3.0), rel=1e-15)
+def test_undamped_limits():
+    assert undamped_critical_frequency(0.0, c=C) == pytest.approx(1.0 / np.sqrt(3.0), rel=1e-15)
     # far away a0 → c θ²/2
-    assert critical_frequency_frictionless(1e10, c=1.0) == pytest.approx(np.sqrt(2e10), rel=1e-4)
+    assert undamped_critical_frequency(1e10, c=1.0) == pytest.approx(np.sqrt(2e10), rel=1e-4)
 
 
 @pytest.mark.parametrize("eta", [0.0, 0.01, 0.1, 1.0, 2.0, 10.0, 100.0])

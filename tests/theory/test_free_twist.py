@@ -95,7 +95,7 @@ def test_integration_from_elsewhere_settles_on_it():
     np.testing.assert_allclose(run.y[:, -1], on_the_orbit(found, theta), atol=5.0 * left + 1e-7)
 
 
-def test_without_spin_friction_the_tilt_dies():
+def test_without_spin_damping_the_tilt_dies():
     theta, a0, eta = 3.0, 0.65, 0.1
     start = on_the_orbit(theory.free_twist_rolling(theta, a0 * C, c=C, eta=eta, zeta=math.inf), theta)
     dies = lambda _, state, *__: math.hypot(state[0], state[1]) - 1e-4  # noqa: E731
@@ -110,7 +110,7 @@ def test_without_spin_friction_the_tilt_dies():
 
 
 @given(theta=st.floats(0.5, 6.0), a=st.floats(0.1, 3.0), eta=st.floats(0.0, 0.5))
-def test_infinite_spin_friction_gives_the_column_that_cannot_turn(theta, a, eta):
+def test_infinite_spin_damping_gives_the_column_that_cannot_turn(theta, a, eta):
     held = theory.free_twist_rolling(theta, a * C, c=C, eta=eta, zeta=math.inf)
     paper = theory.steady_rolling(theta, a * C, c=C, eta=eta).upper
     assert bool(held.exists) is bool(paper.exists)
@@ -134,7 +134,7 @@ def test_the_limit_is_reached_as_one_over_zeta(theta):
     assert slow.real.max() == pytest.approx(paper.eigenvalues.real.max(), abs=1e-2)
 
 
-def test_without_friction_it_is_the_paper_s_and_neutrally_stable():
+def test_without_damping_it_is_the_paper_s_and_neutrally_stable():
     found = theory.free_twist_rolling(3.0, 0.065, c=C, eta=0.0, zeta=0.0)
     paper = theory.steady_rolling(3.0, 0.065, c=C, eta=0.0).upper
     assert float(found.amplitude) == pytest.approx(float(paper.amplitude), rel=1e-14)
@@ -155,7 +155,7 @@ def test_the_jacobian_is_the_derivative_of_the_rates():
         np.testing.assert_allclose((ends[0] - ends[1]) / (2.0 * step), exact[:, j], rtol=1e-6, atol=1e-7)
 
 
-def test_spin_friction_steadies_rolling_below_the_critical_frequency_of_the_paper():
+def test_spin_damping_steadies_rolling_below_the_critical_frequency_of_the_paper():
     # Without twist rolling is unstable at θ = 1.2 < 1.397; with a free one it leans less and is stable.
     at = {"c": C, "eta": 0.1}
     assert not theory.steady_rolling(1.2, 0.065, **at).upper.stable

@@ -77,7 +77,7 @@ def test_rolling_is_stable_from_the_critical_to_the_upper_frequency_and_not_beyo
 
 
 @given(a=st.floats(0.05, 10.0), eta=st.floats(0.0, 1.0), body=bodies)
-def test_infinite_spin_friction_gives_the_critical_frequency_of_the_paper(a, eta, body):
+def test_infinite_spin_damping_gives_the_critical_frequency_of_the_paper(a, eta, body):
     column = named((eta, math.inf), body)
     held = free_twist_critical_frequency(a * C, **column)
     np.testing.assert_array_equal(held, theory.critical_frequency(a * C, c=C, eta=eta))
@@ -91,7 +91,7 @@ def test_the_paper_s_is_reached_as_one_over_zeta():
 
 
 @given(a=st.floats(0.05, 10.0), zeta=st.floats(0.05, 20.0), body=bodies)
-def test_without_friction_it_is_the_same_for_every_column(a, zeta, body):
+def test_without_damping_it_is_the_same_for_every_column(a, zeta, body):
     # The determinant has the factor x − 2: A = c/2 there.
     found = free_twist_critical_frequency(a * C, **named((0.0, zeta), body))
     assert float(found) == pytest.approx(math.sqrt(1.0 + 2.0 * a), rel=1e-12)
@@ -100,7 +100,7 @@ def test_without_friction_it_is_the_same_for_every_column(a, zeta, body):
 @pytest.mark.parametrize(
     ("a", "zeta", "body"), [(0.65, 0.3, (0.75, 0.5)), (1.5, 2.0, (0.6, 1.1)), (0.2, 1.0, (0.8, 0.3))]
 )
-def test_weak_friction_lowers_it_in_proportion(a, zeta, body):
+def test_weak_damping_lowers_it_in_proportion(a, zeta, body):
     eta = np.array([1e-4, 1e-5])
     freedom = 1.0 + body[1] - body[0]
     nu = body[1] / freedom
@@ -112,7 +112,7 @@ def test_weak_friction_lowers_it_in_proportion(a, zeta, body):
 
 
 @pytest.mark.parametrize("product", [0.03, 0.3, 3.0])
-def test_weak_friction_and_strong_spin_friction_count_by_their_product(product):
+def test_weak_damping_and_strong_spin_damping_count_by_their_product(product):
     a, kappa, axial, zeta = 0.65, 0.75, 0.5, 1e4
     rho = product * (1.0 + axial - kappa) / (1.0 - kappa)
 
@@ -122,13 +122,13 @@ def test_weak_friction_and_strong_spin_friction_count_by_their_product(product):
         return 2.0 * square * m**2 * (square - 1.0 - m) + rho * (m + rho) * paper
 
     limit = math.sqrt(brentq(balance, 1.4, 1.0 + 2.0 * a))
-    assert float(theory.critical_frequency_frictionless(a * C, c=C)) < limit < math.sqrt(1.0 + 2.0 * a)
+    assert float(theory.undamped_critical_frequency(a * C, c=C)) < limit < math.sqrt(1.0 + 2.0 * a)
     # Off by the friction that is left, η = product/ζ.
     found = free_twist_critical_frequency(a * C, **named((product / zeta, zeta), (kappa, axial)))
     assert float(found) == pytest.approx(limit, abs=10.0 * product / zeta)
 
 
-def test_it_falls_as_the_root_of_a_small_spin_friction():
+def test_it_falls_as_the_root_of_a_small_spin_damping():
     # θ² = y ζD/η, where y is the root of a quartic's Hurwitz determinant.
     a, eta, kappa, axial = 0.65, 0.1, 0.75, 0.5
     freedom = 1.0 + axial - kappa
@@ -158,7 +158,7 @@ def test_a_body_no_slimmer_than_2_kappa_minus_1_stays_stable(a, friction, kappa)
 
 
 @pytest.mark.parametrize(("a", "body"), [(0.65, (0.75, 0.1)), (2.0, (0.9, 0.5)), (0.1, (0.6, 0.15))])
-def test_a_slimmer_one_loses_it_again_where_spin_friction_is_small(a, body):
+def test_a_slimmer_one_loses_it_again_where_spin_damping_is_small(a, body):
     column = {"c": C, "eta": 0.1, "inertia_ratio": body[0], "axial_ratio": body[1]}
     limit = math.sqrt((1.0 + a + body[1]) / (2.0 * body[0] - 1.0 - body[1]))
     off = free_twist_upper_frequency(a * C, zeta=np.array([1e-5, 1e-6]), **column) / limit - 1.0

@@ -39,7 +39,7 @@ def test_the_branches_are_where_nothing_changes_and_their_number_is_even_or_odd(
         assert np.abs(rates).max() <= 1e-12 * terms / (kappa * axial * min(1.0, c) * (1.0 - kappa))
 
 
-def test_nothing_is_missed_without_friction():
+def test_nothing_is_missed_without_damping():
     # Where the spin is given, X ∓ a0 is a quartic in tan(A/2) over (1 + tan²)² p: five values give all its zeros.
     rng, most = np.random.default_rng(4), 0
     nodes = np.linspace(-0.9, 0.8, 5)
@@ -178,14 +178,14 @@ def test_known_numbers():
     np.testing.assert_array_equal(found.stable, [[False, True]] * 3)
 
 
-def test_friction_without_spin_friction_leaves_no_steady_rolling():
+def test_damping_without_spin_damping_leaves_no_steady_rolling():
     found = theory.full_rolling(2.0, 0.065, c=0.1, eta=0.1, zeta=0.0)
     assert found.amplitude.shape == (1,)
     assert not found.exists.any()
     assert np.isnan(found.amplitude).all()
 
 
-def test_spin_friction_alone_forbids_rotation_about_the_vertical():
+def test_spin_damping_alone_forbids_rotation_about_the_vertical():
     found = theory.full_rolling(2.0, 0.065, c=0.3, eta=0.0, zeta=[0.2, math.inf])
     tilt = found.amplitude
     np.testing.assert_allclose(found.spin, -2.0 * np.sin(tilt) * np.tan(tilt), rtol=1e-14)

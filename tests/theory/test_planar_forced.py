@@ -81,7 +81,7 @@ def test_the_multipliers_say_how_a_deviation_in_the_plane_returns():
         assert np.abs(found - multiplier).min() < 1e-6
 
 
-def test_a_small_base_motion_without_friction_leaves_the_backbone():
+def test_a_small_base_motion_without_damping_leaves_the_backbone():
     theta = np.linspace(0.5, 5.0, 40)
     response = planar_forced_response(theta, 1e-9, c=C, eta=0.0)
     for orbit in (response.fast, response.slow):
@@ -93,7 +93,7 @@ def test_a_small_base_motion_without_friction_leaves_the_backbone():
     assert at_rest.crossing_velocity == pytest.approx(rate, rel=1e-9)
 
 
-def test_without_friction_the_amplitudes_lie_either_side_of_the_backbone():
+def test_without_damping_the_amplitudes_lie_either_side_of_the_backbone():
     theta = np.linspace(0.5, 5.0, 40)
     response = planar_forced_response(theta, 0.01, c=C, eta=0.0)
     assert (response.fast.amplitude > planar_backbone(theta, C)).all()

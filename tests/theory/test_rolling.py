@@ -50,7 +50,7 @@ def test_routh_hurwitz_agrees_with_the_eigenvalues(branch):
     assert ((growth < 0.0) == branch.stable[friction])[clear].all()
 
 
-def test_without_friction_stable_means_that_all_eigenvalues_are_imaginary():
+def test_without_damping_stable_means_that_all_eigenvalues_are_imaginary():
     free = ROLLING.upper.exists & (ETA == 0.0)
     growth = ROLLING.upper.eigenvalues.real.max(axis=-1)[free]
     assert (growth[ROLLING.upper.stable[free]] == 0.0).all()

@@ -290,7 +290,7 @@ def test_a_spin_that_nothing_decides_is_no_matter_of_stability():
     assert found.stable[:, -1].all()
 
 
-def test_spin_friction_that_forbids_the_twist_is_the_limit_of_a_strong_one():
+def test_spin_damping_that_forbids_the_twist_is_the_limit_of_a_strong_one():
     strong = np.array([math.inf, 1e7])
     found = slipping_rolling(2.5, 2.0, c=0.6, eta=0.1, zeta=strong, mu=0.5, inertia_ratio=0.5, axial_ratio=0.8)
     assert found.exists[:, -1].all()
@@ -404,7 +404,7 @@ def test_many_at_once_are_as_one_by_one():
             np.testing.assert_allclose(chosen, getattr(one, name)[one.exists], rtol=1e-12)
 
 
-def test_nothing_holds_the_spin_of_a_point_without_spin_friction():
+def test_nothing_holds_the_spin_of_a_point_without_spin_damping():
     found = slipping_rolling(3.0, 0.065, **PAPER, zeta=0.0, mu=[0.05, 0.08])
     assert found.amplitude.shape == (2, 1)
     assert not found.exists.any()

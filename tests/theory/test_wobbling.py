@@ -80,7 +80,7 @@ def test_it_settles_on_the_stable_branch():
     np.testing.assert_allclose(run.y[2:, -1], [found.amplitude[1], found.phase[1]], atol=1e-6)
 
 
-def test_without_friction_and_base_motion_it_rolls_by_itself_with_any_phase():
+def test_without_damping_and_base_motion_it_rolls_by_itself_with_any_phase():
     found = theory.wobbling_rolling(1.3, 0.0, c=0.1, eta=[0.0, 0.1])
     assert found.amplitude.shape == (2, 1)
     np.testing.assert_array_equal(found.exists, [[True], [False]])

@@ -1,8 +1,7 @@
 """Base motions: the acceleration of the base against time."""
 
-from stylobate.base_motions.base import BaseMotion
-from stylobate.base_motions.combined import BASE_AT_REST, Delayed, Rotated, Scaled, Sum, as_harmonic
-from stylobate.base_motions.harmonic import Harmonic
+from stylobate.base_motions.combined import BASE_AT_REST, BaseMotion, Delayed, Rotated, Scaled, Sum
+from stylobate.base_motions.harmonic import Harmonic, as_harmonic
 from stylobate.base_motions.one_of import OneOf
 from stylobate.base_motions.pulses.pulse import Pulse
 from stylobate.base_motions.records.record import Record

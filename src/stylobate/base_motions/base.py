@@ -2,19 +2,14 @@
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
 from inspect import isfunction
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.base_motions.numbers import Angle, Delay, Factor, VerticalFactor
 from stylobate.errors import ParameterError
-from stylobate.quantities import Declared, parameters_of
-
-if TYPE_CHECKING:
-    from stylobate.base_motions.combined import Delayed, Rotated, Scaled, Sum
+from stylobate.quantities import Declared
 
 DISPLACEMENT, VELOCITY, ACCELERATION = range(3)
 """Orders of the time derivative of the displacement."""
@@ -22,17 +17,8 @@ DISPLACEMENT, VELOCITY, ACCELERATION = range(3)
 Components = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64]]
 
 
-class BaseMotion(Declared, ABC):
-    """The motion of the base from t = 0 on, in SI units, along x, y (horizontal) and z (up).
-
-    Motions combine: `first + second`, `2.0 * motion`, `motion.rotated(angle)`, `motion.scaled(factor, vertical=0.0)`,
-    `motion.delayed(delay)`. Each is a value; combining makes a new one.
-
-    Notes
-    -----
-    For developers: a motion of your own implements `derivative`, `largest_horizontal`, `vertical_range` and
-    `directions`; `duration`, `period`, `highest_frequency`, `mean_frequency`, `breaks` and `degree` have defaults.
-    """
+class MotionContract(Declared, ABC):
+    """What a motion of the base states of itself, from t = 0 on, in SI units, along x, y (horizontal) and z (up)."""
 
     __slots__ = ()
 
@@ -46,7 +32,7 @@ class BaseMotion(Declared, ABC):
         """Refuse fields that would take the place of a method, or have it for a default."""
         super().__init_subclass__(**options)
         for name in vars(cls).get("__annotations__", {}):
-            if isfunction(vars(BaseMotion).get(name)):
+            if isfunction(getattr(super(cls, cls), name, None)):
                 message = f"{name}: a method of every base motion (got a field of {cls.__name__}). Call the field peak."
                 raise ParameterError(message)
 
@@ -123,13 +109,6 @@ class BaseMotion(Declared, ABC):
         """
         return None
 
-    def made_by(self) -> tuple[Callable[..., "BaseMotion"], Mapping[str, Any]]:
-        """Return what makes this motion, and the arguments: by default its class and its declared numbers.
-
-        A class that states it by another constructor does so for itself, not for its subclasses.
-        """
-        return type(self), {name: getattr(self, name) for name in parameters_of(type(self))}
-
     def acceleration(self, time: npt.ArrayLike) -> npt.NDArray[np.float64]:
         """Return the base acceleration at `time` [s], shape (..., 3) [m/s²]."""
         return np.stack(self.derivative(time, ACCELERATION), axis=-1)
@@ -141,33 +120,3 @@ class BaseMotion(Declared, ABC):
     def displacement(self, time: npt.ArrayLike) -> npt.NDArray[np.float64]:
         """Return the base displacement at `time` [s], shape (..., 3) [m]."""
         return np.stack(self.derivative(time, DISPLACEMENT), axis=-1)
-
-    def scaled(self, factor: Factor, *, vertical: VerticalFactor | None = None) -> "Scaled":
-        """Return this motion times `factor`; its vertical component times `vertical` where that is given."""
-        from stylobate.base_motions.combined import Scaled  # noqa: PLC0415  the two modules need each other
-
-        return Scaled(motion=self, factor=factor, vertical=factor if vertical is None else vertical)
-
-    def rotated(self, angle: Angle) -> "Rotated":
-        """Return this motion turned by `angle` [rad] about the vertical, anticlockwise seen from above."""
-        from stylobate.base_motions.combined import Rotated  # noqa: PLC0415
-
-        return Rotated(motion=self, angle=angle)
-
-    def delayed(self, delay: Delay) -> "Delayed":
-        """Return this motion begun `delay` [s] later; the base does not accelerate before."""
-        from stylobate.base_motions.combined import Delayed  # noqa: PLC0415
-
-        return Delayed(motion=self, delay=delay)
-
-    def __add__(self, other: object) -> "Sum":
-        if not isinstance(other, BaseMotion):
-            return NotImplemented
-        from stylobate.base_motions.combined import Sum  # noqa: PLC0415
-
-        return Sum(motions=(self, other))
-
-    def __mul__(self, factor: float) -> "Scaled":
-        return self.scaled(factor)
-
-    __rmul__ = __mul__

@@ -1,24 +1,67 @@
-"""Motions made of motions: sums, and scaled, rotated and delayed copies."""
+"""Base motions, and what they combine to: sums, and scaled, rotated and delayed copies."""
 
-import cmath
 import math
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.base_motions.base import ACCELERATION, VELOCITY, BaseMotion, Components
-from stylobate.base_motions.harmonic import Harmonic
+from stylobate.base_motions.base import ACCELERATION, VELOCITY, Components, MotionContract
 from stylobate.base_motions.numbers import Angle, Delay, Factor, VerticalFactor
 from stylobate.errors import ParameterError
+from stylobate.quantities import parameters_of
 
 # Frequencies whose ratio is n/d to this relative accuracy, d up to the limit, share a period.
 _RATIO_TOLERANCE = 1e-12
 _LARGEST_DENOMINATOR = 64
+
+
+class BaseMotion(MotionContract):
+    """The motion of the base from t = 0 on, in SI units, along x, y (horizontal) and z (up).
+
+    Motions combine: `first + second`, `2.0 * motion`, `motion.rotated(angle)`, `motion.scaled(factor, vertical=0.0)`,
+    `motion.delayed(delay)`. Each is a value; combining makes a new one.
+
+    Notes
+    -----
+    For developers: a motion of your own implements `derivative`, `largest_horizontal`, `vertical_range` and
+    `directions`; `duration`, `period`, `highest_frequency`, `mean_frequency`, `breaks` and `degree` have defaults.
+    """
+
+    __slots__ = ()
+
+    def made_by(self) -> tuple[Callable[..., "BaseMotion"], Mapping[str, Any]]:
+        """Return what makes this motion, and the arguments: by default its class and its declared numbers.
+
+        A class that states it by another constructor does so for itself, not for its subclasses.
+        """
+        return type(self), {name: getattr(self, name) for name in parameters_of(type(self))}
+
+    def scaled(self, factor: Factor, *, vertical: VerticalFactor | None = None) -> "Scaled":
+        """Return this motion times `factor`; its vertical component times `vertical` where that is given."""
+        return Scaled(motion=self, factor=factor, vertical=factor if vertical is None else vertical)
+
+    def rotated(self, angle: Angle) -> "Rotated":
+        """Return this motion turned by `angle` [rad] about the vertical, anticlockwise seen from above."""
+        return Rotated(motion=self, angle=angle)
+
+    def delayed(self, delay: Delay) -> "Delayed":
+        """Return this motion begun `delay` [s] later; the base does not accelerate before."""
+        return Delayed(motion=self, delay=delay)
+
+    def __add__(self, other: object) -> "Sum":
+        if not isinstance(other, BaseMotion):
+            return NotImplemented
+        return Sum(motions=(self, other))
+
+    def __mul__(self, factor: float) -> "Scaled":
+        return self.scaled(factor)
+
+    __rmul__ = __mul__
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -289,19 +332,3 @@ def require_motion(name: str, motion: object) -> None:
     if not isinstance(motion, BaseMotion):
         message = f"{name} must be a base motion such as Harmonic.circular(...), got {motion!r}"
         raise ParameterError(message)
-
-
-def as_harmonic(motion: BaseMotion) -> Harmonic | None:
-    """Return `motion` as one Harmonic if it is one that was scaled and turned, else None."""
-    if type(motion) is Harmonic:
-        return motion
-    if not isinstance(motion, (Scaled, Rotated)) or type(motion) not in (Scaled, Rotated):
-        return None
-    inner = as_harmonic(motion.motion)
-    if inner is None:
-        return None
-    if isinstance(motion, Scaled) and motion.factor > 0.0 and motion.vertical > 0.0:  # without rounding of the phases
-        return replace(inner, amplitude=motion.changed(*inner.amplitude))
-    vector = motion.changed(*(cmath.rect(a, phase) for a, phase in zip(inner.amplitude, inner.phase, strict=True)))
-    (x, y, z), (first, second, third) = map(abs, vector), map(cmath.phase, vector)
-    return replace(inner, amplitude=(x, y, z), phase=(first, second, third))

@@ -14,7 +14,7 @@ _SWEEP = "stylobate.base_motions.sweeps:SineSweep"
 
 MOTIONS = Kinds(
     "motion",
-    "stylobate.base_motions.base:BaseMotion",
+    "stylobate.base_motions.combined:BaseMotion",
     {
         "rest": "stylobate.base_motions.combined:Sum.at_rest",
         "circular": f"{_HARMONIC}.circular",
@@ -43,9 +43,9 @@ MOTIONS = Kinds(
         "record": "stylobate.base_motions.records.record:Record",
         "one_of": "stylobate.base_motions.one_of:OneOf",
         "sum": "stylobate.base_motions.combined:Sum",
-        "scaled": "stylobate.base_motions.base:BaseMotion.scaled",
-        "rotated": "stylobate.base_motions.base:BaseMotion.rotated",
-        "delayed": "stylobate.base_motions.base:BaseMotion.delayed",
+        "scaled": "stylobate.base_motions.combined:BaseMotion.scaled",
+        "rotated": "stylobate.base_motions.combined:BaseMotion.rotated",
+        "delayed": "stylobate.base_motions.combined:BaseMotion.delayed",
     },
 )
 

@@ -3,13 +3,14 @@
 import cmath
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, Self
 
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.base_motions.base import ACCELERATION, VELOCITY, BaseMotion, Components
+from stylobate.base_motions.base import ACCELERATION, VELOCITY, Components
+from stylobate.base_motions.combined import BaseMotion, Rotated, Scaled
 from stylobate.base_motions.numbers import (
     Acceleration,
     Amplitudes,
@@ -350,3 +351,19 @@ def _integral_of_exp(z: npt.NDArray[np.complexfloating], times: int) -> npt.NDAr
 def _exact(ratio: float) -> float:
     """Return a sine or cosine, 0 where only the rounding of the angle keeps it from that."""
     return 0.0 if abs(ratio) < 8.0 * np.finfo(float).eps else ratio
+
+
+def as_harmonic(motion: BaseMotion) -> Harmonic | None:
+    """Return `motion` as one Harmonic if it is one that was scaled and turned, else None."""
+    if type(motion) is Harmonic:
+        return motion
+    if not isinstance(motion, (Scaled, Rotated)) or type(motion) not in (Scaled, Rotated):
+        return None
+    inner = as_harmonic(motion.motion)
+    if inner is None:
+        return None
+    if isinstance(motion, Scaled) and motion.factor > 0.0 and motion.vertical > 0.0:  # without rounding of the phases
+        return replace(inner, amplitude=motion.changed(*inner.amplitude))
+    vector = motion.changed(*(cmath.rect(a, phase) for a, phase in zip(inner.amplitude, inner.phase, strict=True)))
+    (x, y, z), (first, second, third) = map(abs, vector), map(cmath.phase, vector)
+    return replace(inner, amplitude=(x, y, z), phase=(first, second, third))

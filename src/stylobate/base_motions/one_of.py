@@ -4,8 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Self
 
-from stylobate.base_motions.base import BaseMotion
-from stylobate.base_motions.combined import Following, Transformed, require_motion
+from stylobate.base_motions.combined import BaseMotion, Following, Transformed, require_motion
 from stylobate.base_motions.numbers import Chosen
 from stylobate.errors import ParameterError
 

@@ -9,7 +9,8 @@ from typing import Annotated, Any, ClassVar, Self
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.base_motions.base import ACCELERATION, DISPLACEMENT, VELOCITY, BaseMotion, Components
+from stylobate.base_motions.base import ACCELERATION, DISPLACEMENT, VELOCITY, Components
+from stylobate.base_motions.combined import BaseMotion
 from stylobate.base_motions.numbers import (
     Acceleration,
     Direction,

@@ -5,8 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from stylobate.base_motions.base import BaseMotion
-from stylobate.base_motions.combined import Delayed, Following, Rotated, Scaled, Transformed
+from stylobate.base_motions.combined import BaseMotion, Delayed, Following, Rotated, Scaled, Transformed
 from stylobate.base_motions.numbers import AngularFrequency
 from stylobate.base_motions.one_of import OneOf
 from stylobate.base_motions.pulses.along_line import AlongLine

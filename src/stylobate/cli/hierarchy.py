@@ -7,10 +7,11 @@ import numpy as np
 
 from stylobate import config, studies
 from stylobate.cli.command import command
-from stylobate.cli.declarations import OUTPUT, Option, run_numbers
+from stylobate.cli.declarations import OUTPUT, Group, Option, run_numbers
 from stylobate.cli.options import Options
 from stylobate.cli.output import check_writable, deliver, print_table
 from stylobate.cli.overlay import merge, overlay
+from stylobate.cli.own_classes import Chosen
 from stylobate.cli.parts import COLUMN, MODEL, MOTION_WITHOUT_RECORDS
 from stylobate.cli.response import plain_curves, save_curves
 from stylobate.cli.source import read_source
@@ -19,6 +20,13 @@ from stylobate.errors import ParameterError
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+def _dissipation(chosen: Chosen) -> list[Option]:
+    """List the options of the dissipation parameters that the models of the hierarchy share."""
+    from stylobate.config.hierarchy import HierarchyDissipation  # noqa: PLC0415  heavy imports wait
+
+    return [one for one in MODEL.make(chosen) if one.name in HierarchyDissipation.model_fields]
 
 
 @command(
@@ -31,7 +39,7 @@ if TYPE_CHECKING:
     groups=(
         run_numbers(OneRun),
         COLUMN,
-        MODEL.reduced_to("damping", "spin_damping", "restitution"),
+        Group(_dissipation),
         MOTION_WITHOUT_RECORDS,
         OUTPUT,
     ),
@@ -93,26 +101,26 @@ def _print(result: "xr.Dataset") -> None:
     for index in range(result.sizes["slenderness"] if several else 1):
         at = result.isel(slenderness=index) if several else result
         c = float(at["slenderness"]) if several else float(result.attrs["column_slenderness"])
-        rows += [_row(at.sel(level=level), c, several=several) for level in result["level"].to_numpy()]
+        rows += [_row(at.sel(model=model), c, several=several) for model in result["model"].to_numpy()]
     header = (*(("c",) if several else ()), *_HEADER)
     from_where = f"distance: the largest of the tilt vector from that of {result.attrs['reference']}"
     print_table(f"tilts over c; late: the last fifth of the run; {from_where}", rows, header)
     if "deviation_order" in result:
         for first, second in (("slender", "wobbling"), ("slender rolling", "rolling"), ("slender", "rolling")):
-            order = float(result["deviation_order"].sel(level=first, other_level=second))
+            order = float(result["deviation_order"].sel(model=first, other_model=second))
             print(f"the distance of {second} from {first} goes with c to the power {order:.2f}")
-    for level, warnings in _warnings(result):
-        print(f"{level}: {warnings}")
+    for model, warnings in _warnings(result):
+        print(f"{model}: {warnings}")
 
 
-_HEADER = ("level", "outcome", "top tilt", "late mean", "spin rad/s", "friction", "pivoting", "least N", "distance")
+_HEADER = ("model", "outcome", "top tilt", "late mean", "spin rad/s", "friction", "pivoting", "least N", "distance")
 
 
 def _row(at: "xr.Dataset", c: float, *, several: bool) -> list[str]:
     from stylobate.results.outcomes import outcome_label  # noqa: PLC0415  heavy, as above
 
-    name = str(at["level"].to_numpy())
-    distance = float(at["deviation"].sel(other_level=at.attrs["reference"])) / c
+    name = str(at["model"].to_numpy())
+    distance = float(at["deviation"].sel(other_model=at.attrs["reference"])) / c
     return [
         *([f"{c:.4g}"] if several else []),
         name,
@@ -132,9 +140,9 @@ def _cell(value: float) -> str:
 
 
 def _warnings(result: "xr.Dataset") -> list[tuple[str, str]]:
-    """Return the levels with warnings; over several slendernesses those of the largest."""
+    """Return the models with warnings; over several slendernesses those of the largest."""
     shown = result
     if "slenderness" in result.dims:
         shown = result.isel(slenderness=int(np.argmax(result["slenderness"].to_numpy())))
-    labelled = zip(shown["level"].to_numpy(), shown["warnings"].to_numpy(), strict=True)
-    return [(str(level), str(line)) for level, line in labelled if line]
+    labelled = zip(shown["model"].to_numpy(), shown["warnings"].to_numpy(), strict=True)
+    return [(str(model), str(line)) for model, line in labelled if line]

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 from functools import partial
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
-from pydantic import Field
+from pydantic import Field, create_model
 
 from stylobate.config.columns import ColumnConfig
 from stylobate.config.description import Config, built
@@ -21,18 +21,30 @@ from stylobate.config.simulation import (
     with_default_duration,
 )
 from stylobate.errors import ConfigError, require_positive
+from stylobate.models.declared import MODELS, dissipation_of
+
+# The most general model: it declares every dissipation parameter that another one has.
+_MOST_GENERAL = "rolling"
 
 
-class HierarchyFrictions(Config):
-    """The frictions of all levels: each takes what it knows."""
+class _OfAllModels(Config):
+    """The dissipation parameters of all models: each takes those that it declares."""
 
-    damping: float = 0.0
-    spin_damping: float = 0.0
-    restitution: float | None = None
+
+if TYPE_CHECKING:
+    HierarchyDissipation = _OfAllModels
+else:
+    HierarchyDissipation = create_model(
+        "HierarchyDissipation",
+        __base__=_OfAllModels,
+        __doc__=_OfAllModels.__doc__,
+        __module__=__name__,
+        **dict.fromkeys(dissipation_of(MODELS[_MOST_GENERAL]), (float | None, None)),
+    )
 
 
 class HierarchyOptions(Config):
-    """What is compared: the case scaled to these slendernesses, and the level from which differences are taken."""
+    """What is compared: the case scaled to these slendernesses, and the model from which differences are taken."""
 
     slenderness: tuple[float, ...] = ()
     reference: str = "rolling"
@@ -40,7 +52,7 @@ class HierarchyOptions(Config):
 
 class _HierarchyCase(Config):
     column: ColumnConfig
-    model: HierarchyFrictions = HierarchyFrictions()
+    model: HierarchyDissipation = HierarchyDissipation()
     motion: MotionConfig = AT_REST
 
 
@@ -59,16 +71,20 @@ class HierarchyConfig(OneRun, _HierarchyCase):
         if isinstance(described, Mapping):
             usual = {**default_values(described.get("kind", "slender")), "kind": described.get("kind")}
             kept["model"] = {name: one for name, one in described.items() if name not in usual or one != usual[name]}
-            strange = [name for name in kept["model"] if name not in HierarchyFrictions.model_fields]
+            shared = HierarchyDissipation.model_fields
+            strange = {name: value for name, value in kept["model"].items() if name not in shared}
             if strange:
-                shared = ", ".join(HierarchyFrictions.model_fields)
                 raise ConfigError(
-                    [f"model.{name} is no damping parameter of the hierarchy: {shared}; remove it" for name in strange]
+                    [
+                        f"model.{name}: the models of the hierarchy share {', '.join(shared)} only (got {value!r}). "
+                        "Remove it."
+                        for name, value in strange.items()
+                    ]
                 )
         return super().parse(with_default_duration(kept))
 
     def build(self) -> Setup:
-        """Return the most general level and the motion; the options are those of `stylobate.studies.model_hierarchy`.
+        """Return the most general model and the motion; the options are those of `stylobate.studies.model_hierarchy`.
 
         Raises
         ------
@@ -79,12 +95,11 @@ class HierarchyConfig(OneRun, _HierarchyCase):
         for c in self.hierarchy.slenderness:
             built("hierarchy", partial(require_positive, "slenderness", c), problems)
         rules = built("rules", lambda: built_rules(self.rules), problems)
-        frictions = self.model.model_dump()
-        restitution = frictions.pop("restitution")
-        level = described_model("rolling", **frictions, restitution=1.0 if restitution is None else restitution)
-        model, motion = built_parts(self.column, level, self.motion, problems)
+        dissipation = self.model.model_dump(exclude_none=True)
+        described = described_model(_MOST_GENERAL, **dissipation)
+        model, motion = built_parts(self.column, described, self.motion, problems)
         options = self.model_dump(exclude={"column", "model", "motion", "hierarchy"})
         if self.duration is None:
             options["duration"] = duration_with_tail(model, motion)
         compared = {"slenderness": self.hierarchy.slenderness or None, "reference": self.hierarchy.reference}
-        return Setup(model, motion, options | compared | frictions | {"restitution": restitution, "rules": rules})
+        return Setup(model, motion, options | compared | dissipation | {"rules": rules})

@@ -1,7 +1,6 @@
 """What friction does to steady rolling under circular base motion: where it ends by slip, and where slip goes on."""
 
 import json
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
@@ -15,7 +14,10 @@ from stylobate import theory
 from stylobate.base_motions import BaseMotion, Harmonic
 from stylobate.config import provenance_of_run
 from stylobate.errors import ParameterError, UnsupportedError
-from stylobate.models import Model, Rolling, Sliding, Wobbling
+from stylobate.models import Model
+from stylobate.models.closed_form import ClosedForm, RollingLaw
+from stylobate.models.declared import name_by_symbol
+from stylobate.models.inheritance import closed_form_of
 from stylobate.results.outcomes import flag_attributes
 from stylobate.studies.ranges import require_rising_frequencies
 from stylobate.studies.responses.rolling_frame import RollingFrame
@@ -180,7 +182,7 @@ class _Case:
     @classmethod
     def of(cls, model: Model, motion: BaseMotion) -> "_Case":
         """Return the case, or raise an error unless theory knows steady rolling with slip of it."""
-        zeta = _spin_friction(model)
+        form = _closed_form(model)
         if not isinstance(motion, Harmonic) or not _is_circle(motion):
             message = f"motion must be a horizontal circular motion, such as Harmonic.circular(...), got {motion!r}"
             raise UnsupportedError(message)
@@ -189,8 +191,8 @@ class _Case:
             RollingFrame.of(model, motion).drive,
             {
                 "c": column.slenderness,
-                "eta": float(getattr(model, "damping", 0.0)),
-                "zeta": zeta,
+                "eta": form.eta,
+                "zeta": form.zeta,
                 "inertia_ratio": column.inertia_ratio,
                 "axial_ratio": column.axial_ratio,
             },
@@ -212,26 +214,27 @@ class _Case:
         return _any(self.slipping(theta, mu).stable)
 
 
-def _spin_friction(model: Model) -> float:
-    """Return ζ of a model, infinite where it may not turn, or raise an error unless theory knows its steady rolling."""
-    turns = type(model) in (Sliding, Rolling)
-    if not turns and not (type(model) is Wobbling and model.constraint == "rubber"):
+def _closed_form(model: Model) -> ClosedForm:
+    """Return the closed form of steady rolling with slip of a model, or raise an error where it does not hold."""
+    form = closed_form_of(model)
+    if form is None or form.law not in (RollingLaw.SLIPPING, RollingLaw.FULL):
         message = (
             'steady rolling with slip is known of Sliding, Rolling and Wobbling(constraint="rubber"), got model '
             f"{getattr(model, 'name', model)!s}"
         )
         raise UnsupportedError(message)
-    for name in ("patch", "incline", "rolling_resistance"):
-        if getattr(model, name, 0.0) > 0.0:
-            message = f"{name} must be 0 for a closed form of steady rolling with slip, got {getattr(model, name)!r}"
-            raise UnsupportedError(message)
-    for name in ("damping", "spin_damping") if turns else ("damping",):
-        if not getattr(model, name) > 0.0:
-            message = (
-                f"{name} must be above zero, got {getattr(model, name)!r}: without it no steady rolling is decided"
-            )
+    if form.requires is not None:
+        name, value = form.requires
+        message = (
+            f"{name} must be {value!r} for a closed form of steady rolling with slip, got {getattr(model, name)!r}"
+        )
+        raise UnsupportedError(message)
+    for symbol, value in (("η", form.eta), ("ζ", form.zeta)):
+        if not value > 0.0:
+            name = name_by_symbol(type(model), symbol)
+            message = f"{name} must be above zero, got {value!r}: without it no steady rolling is decided"
             raise ParameterError(message)
-    return float(getattr(model, "spin_damping", math.inf)) if turns else math.inf
+    return form
 
 
 def _is_circle(motion: Harmonic) -> bool:

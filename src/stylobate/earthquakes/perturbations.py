@@ -10,7 +10,7 @@ from stylobate.base_motions import BaseMotion, Record
 from stylobate.earthquakes.incremental import without_vertical
 from stylobate.errors import ParameterError, require_finite, require_not_negative, require_positive
 from stylobate.models import Model
-from stylobate.models.declared import dissipation_names
+from stylobate.models.declared import dissipation_of
 
 
 class PerturbationOf(Enum):
@@ -242,7 +242,7 @@ class Filtered(Perturbation):
 
 @dataclass(frozen=True, slots=True)
 class DissipationScaled(_Scaled):
-    """Every dissipation of the model times `factor`: frictions, and what an impact takes, 1 − restitution."""
+    """Every dissipation of the model times `factor`: damping, and the loss of an impact, 1 − restitution."""
 
     of: ClassVar[PerturbationOf] = PerturbationOf.DISSIPATION
 
@@ -252,13 +252,14 @@ class DissipationScaled(_Scaled):
         return f"dissipation × {self.factor:g}"
 
     def changed_values(self, model: Model) -> dict[str, float] | None:
-        """Return the frictions and the restitution; None for a model without dissipation."""
-        names = [name for name in dissipation_names() if name != "restitution"]
-        given = {name: float(getattr(model, name, 0.0) or 0.0) for name in names}
-        values = {name: self.factor * value for name, value in given.items() if value > 0.0}
-        restitution = getattr(model, "impact_restitution", getattr(model, "restitution", None))
-        if restitution is not None and restitution < 1.0:
-            values["restitution"] = max(0.0, 1.0 - self.factor * (1.0 - float(restitution)))
+        """Return the dissipation parameters; None for a model without dissipation."""
+        values = {}
+        for name, quantity in dissipation_of(type(model)).items():
+            value, lossless = getattr(model, name), quantity.lossless
+            # A restitution that is not stated is that of the impact.
+            value = getattr(model, f"impact_{name}", lossless) if value is None else value
+            if value != lossless:
+                values[name] = max(0.0, lossless - self.factor * (lossless - float(value)))
         return values or None
 
 

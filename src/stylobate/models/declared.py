@@ -1,6 +1,6 @@
 """The declared numbers of all models by name: for studies that vary them, and for controls that set them."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 
 from stylobate.column import SHAPES
@@ -43,3 +43,14 @@ def model_quantities() -> Mapping[str, Quantity]:
 def dissipation_names() -> tuple[str, ...]:
     """Return the names of the numbers of models that dissipate."""
     return tuple(name for name, quantity in model_quantities().items() if quantity.dissipates)
+
+
+def name_by_symbol(model: type, symbol: str) -> str:
+    """Return the name of the number of a class of models that has this symbol; the symbol itself where none has it."""
+    return next((name for name, one in parameters_of(model).items() if one.quantity.symbol == symbol), symbol)
+
+
+@cache
+def dissipation_of(model: Callable[..., object]) -> Mapping[str, Quantity]:
+    """Return the quantity of each number of a class of models that dissipates."""
+    return {name: one.quantity for name, one in parameters_of(model).items() if one.quantity.dissipates}

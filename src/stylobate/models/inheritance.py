@@ -1,5 +1,6 @@
 """Which class of a model states a member, and whether that statement belongs to the equations of the model."""
 
+from stylobate.models.closed_form import ClosedForm
 from stylobate.models.model import Model
 
 _EQUATIONS = ("rates", "parameters")
@@ -27,3 +28,10 @@ def belongs_to_equations(kind: type[Model], name: str, *also: str) -> bool:
     """
     place = kind.__mro__.index(owner_of(kind, name))
     return all(place <= kind.__mro__.index(owner_of(kind, other)) for other in (*_EQUATIONS, *also))
+
+
+def closed_form_of(model: object) -> ClosedForm | None:
+    """Return the closed form of steady rolling that a model states for its own equations; None where it states none."""
+    if not isinstance(model, Model) or not belongs_to_equations(type(model), "closed_form", "tilt_of", "start"):
+        return None
+    return model.closed_form

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from stylobate.column import Column
 from stylobate.errors import ParameterError
+from stylobate.models.closed_form import ClosedForm
 from stylobate.quantities import Declared
 
 Floats = npt.NDArray[np.float64]
@@ -242,6 +243,15 @@ class Model(Declared, ABC):
 
         With less `energy` than it has there, and a smaller tilt, a column on a base at rest cannot overturn. A subclass
         that replaces `rates` or `parameters` makes this claim only if it states `balance` again.
+        """
+        return None
+
+    @property
+    def closed_form(self) -> ClosedForm | None:
+        """The closed form of its steady rolling on a base that moves in a circle, or None where there is none.
+
+        A subclass that replaces the equations makes this claim only if it states `closed_form` again; see
+        `closed_form_of`.
         """
         return None
 

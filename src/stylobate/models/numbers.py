@@ -16,12 +16,26 @@ Restitution = Annotated[
     float,
     Quantity(
         symbol="e",
-        text="fraction of speed left after an impact of the base",
+        text="fraction of the tilt rate left after a passage near the vertical",
         ge=0.0,
         le=1.0,
         note="1 for no loss",
         slider=(0.0, 1.0),
         dissipates=True,
+        lossless=1.0,
+    ),
+]
+NormalRestitution = Annotated[
+    float,
+    Quantity(
+        symbol="e_n",
+        text="fraction of the normal speed left after an impact",
+        ge=0.0,
+        le=1.0,
+        note="1 for no loss",
+        slider=(0.0, 1.0),
+        dissipates=True,
+        lossless=1.0,
     ),
 ]
 PassageTilt = Annotated[float, Quantity(unit="rad", text="tilt below which the vertical is passed", ge=0.0)]

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from stylobate.column import Column
 from stylobate.models import finite_tilt, free_twist
+from stylobate.models.closed_form import ClosedForm, RollingLaw, zero
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
 from stylobate.models.model import Balance, Floats, Output, Push
@@ -303,6 +304,12 @@ class Rolling(TiltVectorModel):
     def balance(self) -> Balance:
         """At the tilt atan c, with the energy m g (R − h)."""
         return finite_tilt.balance(self.column)
+
+    @property
+    def closed_form(self) -> ClosedForm:
+        """Steady rolling without rolling resistance."""
+        requires = zero(self, "rolling_resistance")
+        return ClosedForm(RollingLaw.FULL, self.damping, self.spin_damping, requires)
 
     def energy(self, states: Floats) -> Floats:
         """Return ½Kθ̇² + ½κw² + ½(1 − κ)w1² + ½I_a w3² + c sin θ − (1 − cos θ) in units of m g h [J]."""

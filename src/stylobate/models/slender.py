@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
+from stylobate.models.closed_form import ClosedForm, RollingLaw
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.departing import departing_lean
 from stylobate.models.model import Balance, Floats, Output, Push
@@ -132,6 +133,11 @@ class Slender(TiltVectorModel):
         """At the tilt c, with the energy ½c² J0 ω0²."""
         c, unit = self.column.slenderness, self.column.base_inertia * self.column.frequency_scale**2
         return Balance(tilt=c, energy=0.5 * c * c * unit)
+
+    @property
+    def closed_form(self) -> ClosedForm:
+        """Equation (8)."""
+        return ClosedForm(RollingLaw.SLENDER, self.damping)
 
     def energy(self, states: Floats) -> Floats:
         """Return ½|α̇|² + cA − ½A² in units of J0 ω0² [J]."""

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from stylobate.column import Column
 from stylobate.models import free_twist, slender
+from stylobate.models.closed_form import ClosedForm, RollingLaw
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.model import Balance, Floats, Output, Push
 from stylobate.models.numbers import Damping, SpinDamping
@@ -210,6 +211,12 @@ class SlenderRolling(TiltVectorModel):
     def balance(self) -> Balance | None:
         """That of the slender column; None with isotropic couples, which can feed the energy from the spin."""
         return slender.Slender(self.column).balance if self.couples == "contact" else None
+
+    @property
+    def closed_form(self) -> ClosedForm:
+        """Steady rolling with a free twist, known for couples of the contact."""
+        requires = None if self.couples == "contact" else ("couples", "contact")
+        return ClosedForm(RollingLaw.FREE_TWIST, self.damping, self.spin_damping, requires)
 
     def energy(self, states: Floats) -> Floats:
         """Return ½|α̇|² + cA − ½A² − cκσ Aβ̇ + ½κ(1 + i_a)c²σ² in units of J0 ω0² [J]."""

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from stylobate.column import Column
 from stylobate.models import finite_tilt, without_spin
+from stylobate.models.closed_form import ClosedForm, RollingLaw, zero
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
 from stylobate.models.model import Balance, Floats, Output
@@ -279,6 +280,14 @@ class Wobbling(TiltVectorModel):
     def balance(self) -> Balance:
         """At the tilt atan c, with the energy m g (R − h)."""
         return finite_tilt.balance(self.column)
+
+    @property
+    def closed_form(self) -> ClosedForm:
+        """Steady rolling without rolling resistance; on rubber it is that of `Rolling` with infinite spin damping."""
+        requires = zero(self, "rolling_resistance")
+        if self.constraint == "rubber":
+            return ClosedForm(RollingLaw.FULL, self.damping, math.inf, requires)
+        return ClosedForm(RollingLaw.WOBBLING, self.damping, requires=requires)
 
     def energy(self, states: Floats) -> Floats:
         """Return ½Kθ̇² + ½Mβ̇² + c sin θ − (1 − cos θ) in units of m g h [J]."""

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from stylobate.engine.flow.tableau import Status
 from stylobate.orbits.arclength import Floats, Point, corrected
 from stylobate.orbits.conditions import Condition, conditions_between
-from stylobate.orbits.multipliers import without_friction
+from stylobate.orbits.multipliers import without_damping
 from stylobate.orbits.normal_forms import (
     PeriodMap,
     critical_vectors,
@@ -152,7 +152,7 @@ def _classified(point: Point, sense: Floats, name: str) -> Bifurcation | None:
     if name == "period doubling":
         # Half an orbit that doubles is a whole one that loses its symmetry.
         kind = Kind.PITCHFORK if family.sense < 0.0 else kind
-        if not without_friction(point.multipliers):
+        if not without_damping(point.multipliers):
             coefficient = period_doubling_coefficient(period_map)
             soft = coefficient > 0.0
     if np.sum(np.abs(values) > 1.0 + _CRITICAL) > 0:

@@ -19,6 +19,7 @@ from stylobate.orbits.arguments import control_of, enclosing, require_followed, 
 from stylobate.orbits.bifurcations import Bifurcation, between, orbit_at
 from stylobate.orbits.multipliers import is_stable
 from stylobate.orbits.orbit import PeriodicOrbit
+from stylobate.orbits.saving import BRANCH, SOFT, attributes_of, write
 from stylobate.orbits.shooting import WHY_LOST, arcs_of
 from stylobate.orbits.tracing import End, StepControl, Stretch, trace
 
@@ -126,9 +127,47 @@ class Branch:
 
     def save(self, path: str | Path) -> Path:
         """Write it to a netCDF file at `path`; `stylobate.load` reads it again."""
-        from stylobate.orbits.storage import save  # noqa: PLC0415  storage needs this class
+        return write(self._data(), path)
 
-        return save(self, path)
+    def _data(self) -> xr.Dataset:
+        """Return the points and bifurcations from which it is shot again."""
+        family, found = self.path[0].family, self.bifurcations
+        located = [one.point for one in found]
+        shape = (len(found), *self.path[0].chain.states.shape)
+        values = {
+            "kind": np.array([one.kind.name for one in found], dtype=str),
+            "value": np.array([one.parameter for one in found], dtype=float),
+            "multiplier_real": np.array([one.multiplier.real for one in found], dtype=float),
+            "multiplier_imaginary": np.array([one.multiplier.imag for one in found], dtype=float),
+            "coefficient": np.array([one.coefficient for one in found], dtype=float),
+            "soft": np.array([SOFT[one.soft] for one in found], dtype=np.int8),
+        }
+        vectors = {
+            "critical_vector": (family.system.order, [one.critical_vector for one in found]),
+            "direction": (located[0].u.size if located else 0, [one.direction for one in found]),
+        }
+        return xr.Dataset(
+            {
+                "states": (("point", "arc", "state"), np.stack([point.chain.states for point in self.path])),
+                "value": ("point", [point.value for point in self.path]),
+                "bifurcation_states": (
+                    ("bifurcation", "arc", "state"),
+                    np.array([point.chain.states for point in located]).reshape(shape),
+                ),
+                **{f"bifurcation_{name}": ("bifurcation", column) for name, column in values.items()},
+                **{
+                    f"bifurcation_{name}": (("bifurcation", f"{name}_entry"), np.array(rows).reshape(len(found), width))
+                    for name, (width, rows) in vectors.items()
+                },
+            },
+            attrs={
+                **attributes_of(family.system, BRANCH, family.periods),
+                "parameter": self.parameter,
+                "span": family.span,
+                "sense": family.sense,
+                "ends": json.dumps([end.name for end in self.ends]),
+            },
+        )
 
     def __repr__(self) -> str:
         """Describe it in one line."""

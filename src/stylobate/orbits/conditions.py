@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 
 from stylobate.orbits.arclength import Floats, Point
-from stylobate.orbits.multipliers import least_are_rounding, without_friction
+from stylobate.orbits.multipliers import least_are_rounding, without_damping
 
 
 def fold(point: Point, direction: Floats) -> float:
@@ -65,7 +65,7 @@ def conditions_between(first: Point, second: Point) -> dict[str, Condition]:
     """Return the conditions whose signs reveal bifurcations between two points that follow each other."""
     found = dict(CONDITIONS)
     ends = (first, second)
-    if any(without_friction(point.multipliers) for point in ends):
+    if any(without_damping(point.multipliers) for point in ends):
         # There 1/μ goes with each multiplier μ: Π(μ_i μ_j − 1) is zero, and its sign that of rounding.
         del found["Neimark-Sacker"]
     elif any(least_are_rounding(point.multipliers) for point in ends):

@@ -19,6 +19,7 @@ from stylobate.errors import NoOrbitError, ParameterError, StylobateError
 from stylobate.orbits.arguments import control_of, enclosing, require_bifurcation, require_followed
 from stylobate.orbits.bifurcations import Bifurcation, Kind
 from stylobate.orbits.normal_forms import PeriodMap, neimark_sacker_coefficient, period_doubling_coefficient
+from stylobate.orbits.saving import CURVE, attributes_of, write
 from stylobate.orbits.shooting import Shots, shots
 from stylobate.orbits.tracing import ASTRAY, End, StepControl
 
@@ -121,9 +122,27 @@ class BifurcationCurve:
 
     def save(self, path: str | Path) -> Path:
         """Write it to a netCDF file at `path`; `stylobate.load` reads it again."""
-        from stylobate.orbits.storage import save  # noqa: PLC0415  storage needs this class
+        return write(self._data(), path)
 
-        return save(self, path)
+    def _data(self) -> xr.Dataset:
+        """Return the points from which it is shot again."""
+        plane, critical = self.plane, np.array([point.multiplier for point in self.path])
+        return xr.Dataset(
+            {
+                "states": (("point", "arc", "state"), np.stack([point.chain.states for point in self.path])),
+                "values": (("point", "parameter"), np.array([point.values for point in self.path])),
+                "multiplier": (("point", "part"), np.stack([critical.real, critical.imag], axis=-1)),
+            },
+            attrs={
+                **attributes_of(plane.system, CURVE, 1),
+                "bifurcation": self.kind.name,
+                "parameters": json.dumps(self.parameters),
+                "spans": np.array(plane.spans),
+                "covered": plane.covered,
+                "sense": plane.sense,
+                "ends": json.dumps([end.name for end in self.ends]),
+            },
+        )
 
     def __repr__(self) -> str:
         """Describe it in one line."""

@@ -7,12 +7,12 @@ Complexes = npt.NDArray[np.complex128]
 
 # A multiplier this near to the unit circle cannot be distinguished from one on it.
 _NEUTRAL = 1e-9
-# Rounding of the product of all multipliers, as measured without friction, is this times the square of the largest;
-# beyond the last number it says nothing about damping.
+# Rounding of the product of all multipliers, as measured without damping, is this times the square of the largest;
+# beyond the last number it says nothing about it.
 _ROUNDING, _UNKNOWN = 1e-14, 0.1
 
 
-def without_friction(multipliers: Complexes) -> bool:
+def without_damping(multipliers: Complexes) -> bool:
     """Return whether volumes of states keep their size: the product of all multipliers is 1.
 
     Each of them is known to 1e-9, and a large one leaves its rounding in the least.
@@ -31,6 +31,6 @@ def _rounding_of_product(multipliers: Complexes) -> float:
 
 
 def is_stable(multipliers: Complexes) -> bool:
-    """Return whether all multipliers lie inside the unit circle; without friction, whether none lies outside it."""
-    margin = _NEUTRAL if without_friction(multipliers) else -_NEUTRAL
+    """Return whether all multipliers lie inside the unit circle; without damping, whether none lies outside it."""
+    margin = _NEUTRAL if without_damping(multipliers) else -_NEUTRAL
     return bool(np.abs(multipliers).max() < 1.0 + margin)

@@ -15,14 +15,16 @@ from stylobate.base_motions import BaseMotion, Harmonic, as_harmonic
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError
 from stylobate.models import Model
+from stylobate.models.closed_form import ClosedForm
 from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.shooting import closed
-from stylobate.orbits.steady import steady_rolling_of, theory_knows
+from stylobate.orbits.steady import rolling_form_of, steady_rolling_of
 
 Floats = npt.NDArray[np.float64]
 
 _FIRST_PART, _LEAST_PART = 0.25, 1e-3
 _NO_PART = 1e-12
+_GIVE = "guess must be given, such as a run that has settled"
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,17 +63,15 @@ def rolling_by_theory(model: Model, motion: BaseMotion, sense: int | None) -> Fl
     Raises
     ------
     UnsupportedError
-        If the model is not the slender one or the motion no horizontal Harmonic.
+        If the model states no closed form of steady rolling, a number of it lies outside the closed form, or the motion
+        is no horizontal Harmonic.
     NoOrbitError
         If theory has no such motion, or it is lost on the way to this base motion.
     """
+    form = _form_of(model)
     harmonic = as_harmonic(motion)
-    if not theory_knows(model) or harmonic is None or harmonic.amplitude[2] != 0.0:
-        message = (
-            "guess must be given, such as a run that has settled: theory knows steady rolling under horizontal "
-            "Harmonic motion only, of models with no friction but damping and spin damping; got "
-            f"{model.name} under {motion!r}"
-        )
+    if harmonic is None or harmonic.amplitude[2] != 0.0:
+        message = f"{_GIVE}: steady rolling has a closed form under horizontal Harmonic motion only, got {motion!r}"
         raise UnsupportedError(message)
     require_sense(sense)
     circles = _Circles.of(harmonic)
@@ -81,7 +81,7 @@ def rolling_by_theory(model: Model, motion: BaseMotion, sense: int | None) -> Fl
     along, against = circles.forward, circles.backward
     if sense < 0:
         along, against = against, along
-    state = _on_the_circle(model, harmonic, along, sense)
+    state = _on_the_circle(model, form, harmonic, along, sense)
     if abs(against) <= _NO_PART * abs(along):
         return state
     done, step = 0.0, _FIRST_PART
@@ -101,6 +101,21 @@ def rolling_by_theory(model: Model, motion: BaseMotion, sense: int | None) -> Fl
     return state
 
 
+def _form_of(model: Model) -> ClosedForm:
+    """Return the closed form of the steady rolling of a model, or raise UnsupportedError where it has none."""
+    form = rolling_form_of(model)
+    if form is None:
+        message = f"{_GIVE}: {type(model).__name__} states no closed form of steady rolling for its equations"
+        raise UnsupportedError(message)
+    if form.requires is not None:
+        name, value = form.requires
+        message = (
+            f"{_GIVE}: {name} must be {value!r} for the closed form of steady rolling, got {getattr(model, name)!r}"
+        )
+        raise UnsupportedError(message)
+    return form
+
+
 def require_sense(sense: int | None) -> None:
     """Raise ParameterError unless `sense` is a sense of rolling, or None."""
     if sense not in (1, -1, None):
@@ -117,9 +132,9 @@ def _rolling(model: Model, motion: Harmonic, guess: Floats, sense: int) -> Float
     return chain.states[0] if PeriodicOrbit(model, motion, 1, chain).turns == sense else None
 
 
-def _on_the_circle(model: Model, motion: Harmonic, part: complex, sense: int) -> Floats:
+def _on_the_circle(model: Model, form: ClosedForm, motion: Harmonic, part: complex, sense: int) -> Floats:
     theta = motion.angular_frequency / model.column.frequency_scale
-    amplitude, psi, spin = steady_rolling_of(model, theta, abs(part) / model.column.gravity)
+    amplitude, psi, spin = steady_rolling_of(form, model.column, theta, abs(part) / model.column.gravity)
     if not amplitude > 0.0:
         message = (
             "guess must be given: theory has no steady rolling in this sense at angular_frequency = "

@@ -6,12 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
+import xarray as xr
 
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.engine.forcing import common_line
 from stylobate.models import Model
 from stylobate.orbits.multipliers import is_stable
+from stylobate.orbits.saving import ORBIT, attributes_of, write
 from stylobate.orbits.shooting import Shots
 
 Floats = npt.NDArray[np.float64]
@@ -192,9 +194,12 @@ class PeriodicOrbit:
 
     def save(self, path: str | Path) -> Path:
         """Write it to a netCDF file at `path`; `stylobate.load` reads it again."""
-        from stylobate.orbits.storage import save  # noqa: PLC0415  storage needs this class
+        return write(self._data(), path)
 
-        return save(self, path)
+    def _data(self) -> xr.Dataset:
+        """Return the states from which it is shot again."""
+        states = (("arc", "state"), self.chain.states)
+        return xr.Dataset({"states": states}, attrs=attributes_of(self.system, ORBIT, self.periods))
 
     def __repr__(self) -> str:
         """Describe it in one line."""

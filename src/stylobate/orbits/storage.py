@@ -1,4 +1,4 @@
-"""Orbits and branches as netCDF files: their states, from which they are shot again when they are read."""
+"""Read orbits, branches and curves from netCDF files: they are shot again from their states."""
 
 import json
 import math
@@ -10,49 +10,20 @@ import numpy as np
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.config import config_of, provenance_of_run
+from stylobate.config import config_of
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.engine.flow.tableau import Status
-from stylobate.errors import FileError, ParameterError, UnsupportedError
+from stylobate.errors import FileError
 from stylobate.models import Model
 from stylobate.orbits.arclength import Family, Point
 from stylobate.orbits.bifurcations import Bifurcation, Kind, orbit_at
 from stylobate.orbits.branch import Branch
 from stylobate.orbits.curves import BifurcationCurve, CurvePoint, Plane
 from stylobate.orbits.orbit import PeriodicOrbit
+from stylobate.orbits.saving import BRANCH, CURVE, ORBIT, SOFT, path_of
 from stylobate.orbits.shooting import shots
 from stylobate.orbits.tracing import End
-from stylobate.results.storage import read_dataset, write_netcdf
-
-_ORBIT, _BRANCH, _CURVE = "stylobate orbit 1", "stylobate branch 1", "stylobate bifurcation curve 1"
-_SUFFIX = ".nc"
-_SOFT = {True: 1, False: 0, None: -1}
-
-
-def save(found: PeriodicOrbit | Branch | BifurcationCurve, path: str | Path) -> Path:
-    """Write an orbit, a branch or a curve to the netCDF file `path`, with its provenance; `load` reads it again.
-
-    Raises
-    ------
-    ParameterError
-        If the path does not end in .nc.
-    FileError
-        If the file cannot be written.
-    UnsupportedError
-        If model or motion is of a class of your own, which a file cannot hold.
-    """
-    path = _path(path)
-    if path.suffix != _SUFFIX:
-        message = f"path must end in {_SUFFIX}, which is what is written; got {str(path)!r}"
-        raise ParameterError(message)
-    if not path.parent.is_dir():
-        message = f"cannot write {path}: there is no folder {path.parent}"
-        raise FileError(message)
-    if isinstance(found, PeriodicOrbit):
-        data = _orbit_data(found)
-    else:
-        data = _branch_data(found) if isinstance(found, Branch) else _curve_data(found)
-    return write_netcdf(data, path)
+from stylobate.results.storage import read_dataset
 
 
 def load_orbits(path: str | Path) -> PeriodicOrbit | Branch | BifurcationCurve:
@@ -63,7 +34,7 @@ def load_orbits(path: str | Path) -> PeriodicOrbit | Branch | BifurcationCurve:
     FileError
         If the file cannot be read or holds none of them.
     """
-    path = _path(path)
+    path = path_of(path)
     data = read_dataset(path)
     read = _READERS.get(str(data.attrs.get("format")))
     if read is None:
@@ -76,14 +47,6 @@ def load_orbits(path: str | Path) -> PeriodicOrbit | Branch | BifurcationCurve:
         raise FileError(message) from error
 
 
-def _path(path: str | Path) -> Path:
-    try:
-        return Path(path)
-    except TypeError:
-        message = f"path must be the name of a file, got {path!r}"
-        raise ParameterError(message) from None
-
-
 def _content(data: xr.Dataset) -> str:
     written, kind = data.attrs.get("format"), data.attrs.get("kind")
     if written is not None and str(written).startswith("stylobate response"):
@@ -91,21 +54,6 @@ def _content(data: xr.Dataset) -> str:
     if kind is not None:
         return f"a table of kind {kind!r}; xarray.open_dataset reads it"
     return "other data; xarray.open_dataset reads them"
-
-
-def _attributes(system: PeriodicSystem, format_name: str, periods: int) -> dict[str, Any]:
-    provenance = provenance_of_run(system.model, system.motion)
-    for name in ("model", "motion"):
-        if provenance[name].get("kind") == "other":
-            message = f"an orbit of a {name} of your own cannot be saved: {provenance[name]['repr']}"
-            raise UnsupportedError(message)
-    return {
-        "format": format_name,
-        "periods": periods,
-        "line": np.array(system.line if system.line is not None else (math.nan, math.nan)),
-        "rtol": system.rtol,
-        "provenance": json.dumps(provenance),
-    }
 
 
 def _system(data: xr.Dataset) -> PeriodicSystem:
@@ -119,11 +67,6 @@ def _parts(provenance: dict[str, Any]) -> tuple[Model, BaseMotion]:
     return setup.model, setup.motion
 
 
-def _orbit_data(orbit: PeriodicOrbit) -> xr.Dataset:
-    states = (("arc", "state"), orbit.chain.states)
-    return xr.Dataset({"states": states}, attrs=_attributes(orbit.system, _ORBIT, orbit.periods))
-
-
 def _read_orbit(data: xr.Dataset) -> PeriodicOrbit:
     system, periods = _system(data), int(data.attrs["periods"])
     chain = shots(system, np.ascontiguousarray(data["states"].to_numpy()), periods)
@@ -131,46 +74,6 @@ def _read_orbit(data: xr.Dataset) -> PeriodicOrbit:
         message = "its orbit cannot be shot again"
         raise ValueError(message)
     return PeriodicOrbit(system.model, system.motion, periods, chain, system.line, system.rtol)
-
-
-def _branch_data(branch: Branch) -> xr.Dataset:
-    family, found = branch.path[0].family, branch.bifurcations
-    located = [one.point for one in found]
-    shape = (len(found), *branch.path[0].chain.states.shape)
-    values = {
-        "kind": np.array([one.kind.name for one in found], dtype=str),
-        "value": np.array([one.parameter for one in found], dtype=float),
-        "multiplier_real": np.array([one.multiplier.real for one in found], dtype=float),
-        "multiplier_imaginary": np.array([one.multiplier.imag for one in found], dtype=float),
-        "coefficient": np.array([one.coefficient for one in found], dtype=float),
-        "soft": np.array([_SOFT[one.soft] for one in found], dtype=np.int8),
-    }
-    vectors = {
-        "critical_vector": (family.system.order, [one.critical_vector for one in found]),
-        "direction": (located[0].u.size if located else 0, [one.direction for one in found]),
-    }
-    return xr.Dataset(
-        {
-            "states": (("point", "arc", "state"), np.stack([point.chain.states for point in branch.path])),
-            "value": ("point", [point.value for point in branch.path]),
-            "bifurcation_states": (
-                ("bifurcation", "arc", "state"),
-                np.array([point.chain.states for point in located]).reshape(shape),
-            ),
-            **{f"bifurcation_{name}": ("bifurcation", column) for name, column in values.items()},
-            **{
-                f"bifurcation_{name}": (("bifurcation", f"{name}_entry"), np.array(rows).reshape(len(found), width))
-                for name, (width, rows) in vectors.items()
-            },
-        },
-        attrs={
-            **_attributes(family.system, _BRANCH, family.periods),
-            "parameter": branch.parameter,
-            "span": family.span,
-            "sense": family.sense,
-            "ends": json.dumps([end.name for end in branch.ends]),
-        },
-    )
 
 
 def _read_branch(data: xr.Dataset) -> Branch:
@@ -182,7 +85,7 @@ def _read_branch(data: xr.Dataset) -> Branch:
         _shot(family, states, float(value))
         for states, value in zip(data["states"].to_numpy(), data["value"].to_numpy(), strict=True)
     )
-    soft = {code: label for label, code in _SOFT.items()}
+    soft = {code: label for label, code in SOFT.items()}
     found = []
     for index in range(data.sizes["bifurcation"]):
         one = {str(key): data[key][index].to_numpy() for key in data.data_vars if str(key).startswith("bifurcation_")}
@@ -214,26 +117,6 @@ def _shot(family: Family, states: Any, value: float) -> Point:
     return Point(family, value, chain)
 
 
-def _curve_data(curve: BifurcationCurve) -> xr.Dataset:
-    plane, critical = curve.plane, np.array([point.multiplier for point in curve.path])
-    return xr.Dataset(
-        {
-            "states": (("point", "arc", "state"), np.stack([point.chain.states for point in curve.path])),
-            "values": (("point", "parameter"), np.array([point.values for point in curve.path])),
-            "multiplier": (("point", "part"), np.stack([critical.real, critical.imag], axis=-1)),
-        },
-        attrs={
-            **_attributes(plane.system, _CURVE, 1),
-            "bifurcation": curve.kind.name,
-            "parameters": json.dumps(curve.parameters),
-            "spans": np.array(plane.spans),
-            "covered": plane.covered,
-            "sense": plane.sense,
-            "ends": json.dumps([end.name for end in curve.ends]),
-        },
-    )
-
-
 def _read_curve(data: xr.Dataset) -> BifurcationCurve:
     kind = Kind[str(data.attrs["bifurcation"])]
     first, second = (str(name) for name in json.loads(data.attrs["parameters"]))
@@ -253,7 +136,7 @@ def _read_curve(data: xr.Dataset) -> BifurcationCurve:
 
 
 _READERS: dict[str, Callable[[xr.Dataset], PeriodicOrbit | Branch | BifurcationCurve]] = {
-    _ORBIT: _read_orbit,
-    _BRANCH: _read_branch,
-    _CURVE: _read_curve,
+    ORBIT: _read_orbit,
+    BRANCH: _read_branch,
+    CURVE: _read_curve,
 }

@@ -211,9 +211,7 @@ def critical(data: xr.Dataset) -> Figure:
     axes = figure.subplots()
     for k, eta in enumerate(data["eta"].to_numpy()):
         axes.plot(data["a0"], data["theta"].sel(eta=eta), color=PALETTE[k], linestyle=DASHES[k], label=f"η = {eta:g}")
-    axes.plot(
-        data["a0"][::12], data["frictionless"][::12], "o", markersize=3.5, color=BLACK, label="η = 0, closed form"
-    )
+    axes.plot(data["a0"][::12], data["undamped"][::12], "o", markersize=3.5, color=BLACK, label="η = 0, closed form")
     axes.set_xlabel("amplitude of the base acceleration a0 [g]")
     axes.set_ylabel("critical frequency θ*")
     axes.set_xlim(0.0, float(data["a0"][-1]))

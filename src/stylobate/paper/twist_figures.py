@@ -33,29 +33,29 @@ def twist(data: xr.Dataset) -> Figure:
 
 @styled
 def twist_boundary(data: xr.Dataset) -> Figure:
-    """Return the critical frequency against amplitude, spin damping and friction, and the upper frequency."""
+    """Return the critical frequency against amplitude, damping and spin damping, and the upper frequency."""
     figure = new_figure(6.2)
-    (amplitude, spin_damping), (friction, upper) = figure.subplots(2, 2)
+    (amplitude, spin_damping), (damping, upper) = figure.subplots(2, 2)
     at, damped = f"a0 = {data.attrs['a0']:g}", f"η = {data.attrs['eta']:g}"
-    frictions = {float(zeta): "no twist" if np.isinf(zeta) else f"ζ = {zeta:g}" for zeta in data["zeta"].to_numpy()}
-    _draw(amplitude, data["by_amplitude"], "zeta", frictions)
-    _draw(friction, data["by_friction"], "zeta", frictions)
-    _draw(spin_damping, data["by_spin_friction"], "axial_ratio", _shapes(data["axial_ratio"]))
+    curves = {float(zeta): "no twist" if np.isinf(zeta) else f"ζ = {zeta:g}" for zeta in data["zeta"].to_numpy()}
+    _draw(amplitude, data["by_amplitude"], "zeta", curves)
+    _draw(damping, data["by_damping"], "zeta", curves)
+    _draw(spin_damping, data["by_spin_damping"], "axial_ratio", _shapes(data["axial_ratio"]))
     _draw(upper, data["upper"].where(np.isfinite(data["upper"])), "slim", _shapes(data["slim"]))
     _finish(amplitude, "amplitude of the base acceleration a0 [g]", f"solid cylinder, {damped}", ncols=2)
     _finish(spin_damping, "spin damping ζ", f"{at}, {damped}")
-    _finish(friction, "friction η", f"solid cylinder, {at}")
+    _finish(damping, "friction η", f"solid cylinder, {at}")
     _finish(upper, "spin damping ζ", f"stability lost again: {at}, {damped}")
     spin_damping.axhline(data.attrs["without"], color=GREY, linewidth=0.9)
-    for axes in (spin_damping, friction, upper):
+    for axes in (spin_damping, damping, upper):
         axes.set_xscale("log")
     least, limit = float(data["eta"][0]), data.attrs["weak_limit"]
-    friction.plot(least, limit, "o", color=BLACK, clip_on=False)
-    friction.annotate("√(1 + 2a0/c)", (least, limit), (0.0, 7.0), textcoords="offset points", fontsize=8.5)
-    friction.set_ylim(0.0, 1.2 * limit)
+    damping.plot(least, limit, "o", color=BLACK, clip_on=False)
+    damping.annotate("√(1 + 2a0/c)", (least, limit), (0.0, 7.0), textcoords="offset points", fontsize=8.5)
+    damping.set_ylim(0.0, 1.2 * limit)
     amplitude.set_xlim(0.0, float(data["a0"][-1]))
     for k, highest in enumerate(data["upper_limit"].to_numpy()):
-        upper.plot(data["least_spin_friction"][0], highest, "o", color=PALETTE[k], clip_on=False)
+        upper.plot(data["least_spin_damping"][0], highest, "o", color=PALETTE[k], clip_on=False)
     upper.set_ylabel("upper frequency θ** [ω₀]")
     upper.set_ylim(0.0, 2.0 * float(data["upper_limit"][-1]))
     return figure

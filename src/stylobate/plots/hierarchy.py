@@ -19,7 +19,7 @@ from stylobate.plots.maps import draw_classes
 from stylobate.plots.style import BLACK, GREY, PALETTE, new_figure, styled
 from stylobate.results.outcomes import outcome_label
 
-# Levels that cannot turn are blue and black, those that may turn vermilion and orange; finite tilt is dashed, over it.
+# Models that cannot turn are blue and black, those that may turn vermilion and orange; finite tilt is dashed, over it.
 _LINES: dict[str, dict[str, Any]] = {
     "slender": {"color": PALETTE[4], "linestyle": "-", "linewidth": 2.8},
     "slender rolling": {"color": PALETTE[5], "linestyle": "-", "linewidth": 2.8},
@@ -47,8 +47,8 @@ _DIFFERENCES = (
 def plot_hierarchy(found: xr.Dataset) -> Figure:
     """Return a figure of the models of a hierarchy compared.
 
-    Where it keeps histories: the tilt of all levels against time, and the spin where there is some. Below, over several
-    slendernesses, how the levels come together as c falls; of one case what the contact must bear. Histories of several
+    Where it keeps histories: the tilt of all models against time, and the spin where there is some. Below, over several
+    slendernesses, how the models come together as c falls; of one case what the contact must bear. Histories of several
     slendernesses are those of the largest.
     """
     if found.sizes.get("slenderness") == 1:  # one case: nothing to come together
@@ -82,8 +82,8 @@ def plot_hierarchy(found: xr.Dataset) -> Figure:
 
 
 def _draw_histories(axes: Axes, shown: xr.Dataset, c: float) -> None:
-    for level in shown["level"].to_numpy():
-        axes.plot(shown["time"], shown["amplitude"].sel(level=level), label=_label(shown, level), **_LINES[str(level)])
+    for model in shown["model"].to_numpy():
+        axes.plot(shown["time"], shown["amplitude"].sel(model=model), label=_label(shown, model), **_LINES[str(model)])
     axes.axhline(c, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)))
     axes.set_ylim(0.0, 1.05 * max(c, min(float(shown["amplitude"].max()), 3.0 * c)))
     axes.annotate(
@@ -97,45 +97,45 @@ def _draw_histories(axes: Axes, shown: xr.Dataset, c: float) -> None:
     axes.figure.legend(*axes.get_legend_handles_labels(), loc="outside upper center", ncols=2)
 
 
-def _label(shown: xr.Dataset, level: str) -> str:
-    return f"{level}: {outcome_label(int(shown['outcome'].sel(level=level)))}"
+def _label(shown: xr.Dataset, model: str) -> str:
+    return f"{model}: {outcome_label(int(shown['outcome'].sel(model=model)))}"
 
 
 def _draw_spin(axes: Axes, shown: xr.Dataset) -> None:
-    for level in shown["level"].to_numpy():
-        spin = shown["spin"].sel(level=level)
+    for model in shown["model"].to_numpy():
+        spin = shown["spin"].sel(model=model)
         if bool(spin.notnull().any()):
-            axes.plot(shown["time"], spin, **_LINES[str(level)])
+            axes.plot(shown["time"], spin, **_LINES[str(model)])
     axes.set_ylabel("spin [rad/s]")
     axes.set_xlabel("time [s]")
 
 
 def _draw_tilts(axes: Axes, found: xr.Dataset, c: float) -> None:
-    place = np.arange(found.sizes["level"])[::-1]
+    place = np.arange(found.sizes["model"])[::-1]
     for name, label, filled in (("largest_tilt", "largest", True), ("mean_late_tilt", "late mean", False)):
-        _draw_dots(axes, place, found[name].to_numpy() / c, found["level"].to_numpy(), filled=filled)
+        _draw_dots(axes, place, found[name].to_numpy() / c, found["model"].to_numpy(), filled=filled)
         axes.plot([], [], "o", color=GREY, markerfacecolor=GREY if filled else "white", label=label)
-    axes.set_yticks(place, list(found["level"].to_numpy()))
+    axes.set_yticks(place, list(found["model"].to_numpy()))
     axes.set_ylim(-0.6, place.size - 0.1)
     axes.set_xlim(left=0.0)
     axes.set_xlabel("tilt over c")
     axes.legend(loc="upper right", ncols=2, fontsize=7.5, borderpad=0.1, handletextpad=0.1, columnspacing=0.8)
 
 
-def _draw_dots(axes: Axes, place: np.ndarray, values: np.ndarray, levels: np.ndarray, *, filled: bool) -> None:
-    for at, value, level in zip(place, values, levels, strict=True):
-        colour = _LINES[str(level)]["color"]
+def _draw_dots(axes: Axes, place: np.ndarray, values: np.ndarray, models: np.ndarray, *, filled: bool) -> None:
+    for at, value, model in zip(place, values, models, strict=True):
+        colour = _LINES[str(model)]["color"]
         axes.plot(value, at, "o", color=colour, markerfacecolor=colour if filled else "white", markersize=6)
 
 
 def _draw_demands(axes: Axes, found: xr.Dataset) -> None:
-    place = np.arange(found.sizes["level"])[::-1]
+    place = np.arange(found.sizes["model"])[::-1]
     for name, label, filled in (
         ("largest_friction_demand", "friction", True),
         ("largest_pivoting_demand", "pivoting", False),
     ):
         values = found[name].to_numpy()
-        _draw_dots(axes, place, np.where(np.isfinite(values), values, np.nan), found["level"].to_numpy(), filled=filled)
+        _draw_dots(axes, place, np.where(np.isfinite(values), values, np.nan), found["model"].to_numpy(), filled=filled)
         axes.plot([], [], "o", color=GREY, markerfacecolor=GREY if filled else "white", label=label)
     given = found.attrs.get("friction_coefficient")
     if given is not None:
@@ -150,15 +150,15 @@ def _draw_demands(axes: Axes, found: xr.Dataset) -> None:
 def _draw_convergence(axes: Axes, found: xr.Dataset) -> None:
     """Draw the deviations over c against c, and c² beside them."""
     c = found["slenderness"].sortby("slenderness").to_numpy()
-    levels = set(found["level"].to_numpy())
+    models = set(found["model"].to_numpy())
     deviation = found["deviation"].sortby("slenderness")
     styles = ((BLACK, "v", ":"), (PALETTE[0], "o", "-"), (PALETTE[1], "^", "-"))
     for (first, second), (colour, marker, style) in zip(_PAIRS, styles, strict=True):
-        if {first, second} <= levels:
-            relative = deviation.sel(level=first, other_level=second).to_numpy() / c
+        if {first, second} <= models:
+            relative = deviation.sel(model=first, other_model=second).to_numpy() / c
             name = f"{second} from {first}"
             axes.plot(c, relative, color=colour, marker=marker, markersize=4.5, linestyle=style, label=name)
-    least = deviation.sel(level="slender", other_level="wobbling").to_numpy() / c
+    least = deviation.sel(model="slender", other_model="wobbling").to_numpy() / c
     guide = _BELOW * least[-1] * (c / c[-1]) ** _ORDER
     axes.plot(c, guide, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), label="in proportion to c²")
     axes.set_xscale("log")
@@ -172,10 +172,10 @@ def _draw_over_slenderness(axes: Axes, found: xr.Dataset) -> None:
     ordered = found.sortby("slenderness")
     c = ordered["slenderness"].to_numpy()
     top = 0.0
-    for level in found["level"].to_numpy():
-        line = _LINES[str(level)]
-        values = ordered["mean_late_tilt"].sel(level=level).to_numpy() / c
-        axes.plot(c, values, marker=_MARKS[str(level)], markersize=4.5, label=str(level), **{**line, "linewidth": 1.3})
+    for model in found["model"].to_numpy():
+        line = _LINES[str(model)]
+        values = ordered["mean_late_tilt"].sel(model=model).to_numpy() / c
+        axes.plot(c, values, marker=_MARKS[str(model)], markersize=4.5, label=str(model), **{**line, "linewidth": 1.3})
         top = float(np.nanmax([top, *values]))
     axes.set_xscale("log")
     _set_slendernesses(axes, c)

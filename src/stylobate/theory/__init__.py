@@ -12,8 +12,8 @@ from stylobate.theory.conveying import BlockCycle, block_cycle, mean_block_speed
 from stylobate.theory.critical import (
     critical_amplitude,
     critical_frequency,
-    critical_frequency_frictionless,
     crossing_frequency,
+    undamped_critical_frequency,
 )
 from stylobate.theory.finite_tilt import FiniteTiltRolling
 from stylobate.theory.free_motion import FreeMotion, free_motion
@@ -77,7 +77,6 @@ __all__ = [
     "bounce_time",
     "critical_amplitude",
     "critical_frequency",
-    "critical_frequency_frictionless",
     "crossing_frequency",
     "equivalent_viscous_damping",
     "first_lyapunov_coefficient",
@@ -111,5 +110,6 @@ __all__ = [
     "start_of_motion",
     "steady_rolling",
     "throw_number",
+    "undamped_critical_frequency",
     "wobbling_rolling",
 ]

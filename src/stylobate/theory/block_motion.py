@@ -98,7 +98,7 @@ class Block:
     pull: HarmonicForce  # T if it sticks
     mu_s: float
     mu_k: float
-    restitution: float
+    normal_restitution: float
     rest_speed: float
 
     @classmethod
@@ -111,7 +111,7 @@ class Block:
         static_friction: float,
         kinetic_friction: float | None,
         *,
-        restitution: float,
+        normal_restitution: float,
         rest_speed: float,
     ) -> "Block":
         """Return the block, or raise ParameterError where a number of `block_cycle` is not one."""
@@ -127,7 +127,7 @@ class Block:
             pull=HarmonicForce(math.sin(psi), complex(float(finite("along", along)))),
             mu_s=mu_s,
             mu_k=mu_k,
-            restitution=float(below_elastic(restitution)),
+            normal_restitution=float(below_elastic(normal_restitution)),
             rest_speed=float(positive("rest_speed", rest_speed)),
         )
 
@@ -228,8 +228,8 @@ class Block:
     def impact(self, state: State) -> State:
         """Return the state after a landing."""
         speed = max(-state.rise, 0.0)
-        stays = not self.lost(self.weight, state.tau) and self.restitution * speed < self.rest_speed
-        rebound = 0.0 if stays else self.restitution * speed
+        stays = not self.lost(self.weight, state.tau) and self.normal_restitution * speed < self.rest_speed
+        rebound = 0.0 if stays else self.normal_restitution * speed
         grip = self.mu_k * (speed + rebound)
         u = math.copysign(max(abs(state.u) - grip, 0.0), state.u)
         after = replace(state, u=u, rise=rebound)

@@ -67,7 +67,7 @@ def block_cycle(
     *,
     static_friction: float,
     kinetic_friction: float | None = None,
-    restitution: float = 0.0,
+    normal_restitution: float = 0.0,
     phase: float = 0.0,
     incline: float = 0.0,
     start_velocity: float = 0.0,
@@ -88,7 +88,7 @@ def block_cycle(
         μs.
     kinetic_friction
         μk, at most μs and equal to it by default.
-    restitution
+    normal_restitution
         Normal restitution e of a landing, below 1.
     phase
         Phase of the normal component [rad].
@@ -115,8 +115,9 @@ def block_cycle(
     Raises
     ------
     ParameterError
-        If a friction or `start_normal_velocity` is negative, the kinetic friction above the static one, `restitution`
-        not in [0, 1), the plane as steep as a wall, `tolerance` or `rest_speed` not positive, or a count below 1.
+        If a friction or `start_normal_velocity` is negative, the kinetic friction above the static one,
+        `normal_restitution` not in [0, 1), the plane as steep as a wall, `tolerance` or `rest_speed` not positive, or a
+        count below 1.
 
     Notes
     -----
@@ -132,7 +133,14 @@ def block_cycle(
     0.166664 1 ['BACKWARD', 'STICK', 'FORWARD', 'STICK', 'BACKWARD']
     """
     block = Block.checked(
-        along, normal, phase, incline, static_friction, kinetic_friction, restitution=restitution, rest_speed=rest_speed
+        along,
+        normal,
+        phase,
+        incline,
+        static_friction,
+        kinetic_friction,
+        normal_restitution=normal_restitution,
+        rest_speed=rest_speed,
     )
     for name, count in (("cycles", cycles), ("longest_period", longest_period)):
         require_whole(name, count, least=1)
@@ -158,7 +166,7 @@ def mean_block_speed(
     *,
     static_friction: Real,
     kinetic_friction: Real | None = None,
-    restitution: Real = 0.0,
+    normal_restitution: Real = 0.0,
     phase: Real = 0.0,
     incline: Real = 0.0,
     cycles: int = 1000,
@@ -167,7 +175,7 @@ def mean_block_speed(
 
     Parameters
     ----------
-    along, normal, static_friction, kinetic_friction, restitution, phase, incline, cycles
+    along, normal, static_friction, kinetic_friction, normal_restitution, phase, incline, cycles
         As for `block_cycle`.
 
     Returns
@@ -197,7 +205,7 @@ def mean_block_speed(
         finite("normal", normal),
         not_negative("static_friction", static_friction),
         not_negative("kinetic_friction", kinetic),
-        below_elastic(restitution),
+        below_elastic(normal_restitution),
         finite("phase", phase),
         steepness(incline),
     )
@@ -209,7 +217,7 @@ def mean_block_speed(
             az,
             static_friction=mu_s,
             kinetic_friction=mu_k,
-            restitution=e,
+            normal_restitution=e,
             phase=phi,
             incline=psi,
             cycles=cycles,

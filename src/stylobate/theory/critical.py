@@ -137,7 +137,7 @@ def crossing_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
     return np.sqrt(np.maximum(theta**2 - 1.0 + 0.5 * critical_ratio(theta, eta), 0.0))
 
 
-def critical_frequency_frictionless(a0: Real, *, c: Real) -> FloatArray:
+def undamped_critical_frequency(a0: Real, *, c: Real) -> FloatArray:
     """Critical frequency θ* of the column without friction, in closed form.
 
     Parameters
@@ -164,7 +164,7 @@ def critical_frequency_frictionless(a0: Real, *, c: Real) -> FloatArray:
 
     Examples
     --------
-    >>> print(critical_frequency_frictionless([0.02, 0.065], c=0.1).round(5))
+    >>> print(undamped_critical_frequency([0.02, 0.065], c=0.1).round(5))
     [0.99162 1.40046]
     """
     amplitude, c = not_negative("a0", a0), positive("c", c)

@@ -68,7 +68,7 @@ def free_twist_critical_frequency(
         θ*² = 1 + 2a − η[(1+a)ζ/(a(1+2a)(1−ν)) + (1+a)(1+ν)(1+a−νa)/((1+2a)(1−ν)ζ) + a/(Dζ)] + O(η²),
 
     with a = a0/c, D = 1 + i_a − κ, ν = i_a/D: as η → 0 it tends to √(1 + 2a0/c), more than the
-    `critical_frequency_frictionless` of a column that cannot turn. As ζ → 0 it falls as √ζ.
+    `undamped_critical_frequency` of a column that cannot turn. As ζ → 0 it falls as √ζ.
 
     Examples
     --------

@@ -24,7 +24,7 @@ def hopping_speed(
     along: Real,
     normal: Real,
     *,
-    restitution: Real,
+    normal_restitution: Real,
     kinetic_friction: Real,
     phase: Real = 0.0,
     incline: Real = 0.0,
@@ -33,7 +33,7 @@ def hopping_speed(
 
     Parameters
     ----------
-    along, normal, restitution, kinetic_friction, phase, incline
+    along, normal, normal_restitution, kinetic_friction, phase, incline
         As for `block_cycle`.
 
     Returns
@@ -45,8 +45,8 @@ def hopping_speed(
     Raises
     ------
     ParameterError
-        If `normal`, `restitution` or `kinetic_friction` is negative, `restitution` is 1 or more or the plane is as
-        steep as a wall.
+        If `normal`, `normal_restitution` or `kinetic_friction` is negative, `normal_restitution` is 1 or more or the
+        plane is as steep as a wall.
 
     See Also
     --------
@@ -66,13 +66,13 @@ def hopping_speed(
 
     Examples
     --------
-    >>> print(hopping_speed(1.0, [1.0, 1.3, 1.6], restitution=0.5, kinetic_friction=0.4).round(6))
+    >>> print(hopping_speed(1.0, [1.0, 1.3, 1.6], normal_restitution=0.5, kinetic_friction=0.4).round(6))
     [     nan 0.805537      nan]
     """
     x, z, e, mu, phi, psi = np.broadcast_arrays(
         finite("along", along),
         not_negative("normal", normal),
-        below_elastic(restitution),
+        below_elastic(normal_restitution),
         not_negative("kinetic_friction", kinetic_friction),
         finite("phase", phase),
         steepness(incline),

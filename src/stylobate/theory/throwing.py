@@ -83,14 +83,14 @@ def flight_throw_number(duration: Real) -> FloatArray:
     return np.asarray(np.hypot(1.0, np.where(small, _small_quotient(x), closed)))
 
 
-def bounce_time(speed: Real, *, restitution: Real, weight: Real = 1.0) -> FloatArray:
+def bounce_time(speed: Real, *, normal_restitution: Real, weight: Real = 1.0) -> FloatArray:
     """Time of all the bounces that follow a landing under a constant normal acceleration.
 
     Parameters
     ----------
     speed
         Normal speed v of the landing relative to the base [g/Ω], or [m/s] with `weight` in m/s².
-    restitution
+    normal_restitution
         Normal restitution e, below 1.
     weight
         Acceleration N with which the block falls back on its base: cos ψ plus the base acceleration along the normal
@@ -104,7 +104,7 @@ def bounce_time(speed: Real, *, restitution: Real, weight: Real = 1.0) -> FloatA
     Raises
     ------
     ParameterError
-        If `speed` or `restitution` is negative, `restitution` is 1 or more or `weight` is not positive.
+        If `speed` or `normal_restitution` is negative, `normal_restitution` is 1 or more or `weight` is not positive.
 
     Notes
     -----
@@ -113,18 +113,18 @@ def bounce_time(speed: Real, *, restitution: Real, weight: Real = 1.0) -> FloatA
 
     Examples
     --------
-    >>> print(bounce_time(0.1, restitution=[0.0, 0.5, 0.9]))
+    >>> print(bounce_time(0.1, normal_restitution=[0.0, 0.5, 0.9]))
     [0.  0.2 1.8]
     """
-    e = below_elastic(restitution)
+    e = below_elastic(normal_restitution)
     return np.asarray(2.0 * e * not_negative("speed", speed) / (positive("weight", weight) * (1.0 - e)))
 
 
-def below_elastic(restitution: Real) -> FloatArray:
-    """Return `restitution` as an array of floats, or raise ParameterError unless all lie in [0, 1)."""
-    e = not_negative("restitution", restitution)
+def below_elastic(normal_restitution: Real) -> FloatArray:
+    """Return `normal_restitution` as an array of floats, or raise ParameterError unless all lie in [0, 1)."""
+    e = not_negative("normal_restitution", normal_restitution)
     if np.any(e >= 1.0):
-        message = f"restitution must be below 1, got {float(np.max(e))!r}: elastic bouncing does not end"
+        message = f"normal_restitution must be below 1, got {float(np.max(e))!r}: elastic bouncing does not end"
         raise ParameterError(message)
     return e
 

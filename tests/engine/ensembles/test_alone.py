@@ -31,7 +31,7 @@ def random_runs(count, seed):
         "spin": rng.uniform(-0.5, 0.5, count),
         "parameters": {
             "friction_coefficient": rng.choice([0.03, 0.08, 0.15, 0.4, 1.0], count),
-            "restitution": rng.choice([0.0, 0.4], count),
+            "normal_restitution": rng.choice([0.0, 0.4], count),
             "damping": rng.choice([0.0, 0.05], count),
             "incline": rng.choice([0.0, 0.02], count),
             "acceleration": rng.uniform(0.02, 0.3, count),

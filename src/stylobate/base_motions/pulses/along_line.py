@@ -7,7 +7,8 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.base_motions.base import ACCELERATION, DISPLACEMENT, VELOCITY, BaseMotion, Components
+from stylobate.base_motions.base import ACCELERATION, DISPLACEMENT, VELOCITY, Components
+from stylobate.base_motions.combined import BaseMotion
 from stylobate.base_motions.numbers import Direction, Start, VerticalRatio
 from stylobate.base_motions.pulses.waveform import Waveform
 from stylobate.errors import ParameterError

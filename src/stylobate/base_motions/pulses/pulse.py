@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Self
 
-from stylobate.base_motions.base import BaseMotion
+from stylobate.base_motions.combined import BaseMotion
 from stylobate.base_motions.numbers import (
     Acceleration,
     AngularFrequency,

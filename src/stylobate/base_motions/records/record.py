@@ -8,7 +8,8 @@ from typing import Any, ClassVar, Self
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.base_motions.base import ACCELERATION, VELOCITY, BaseMotion, Components
+from stylobate.base_motions.base import ACCELERATION, VELOCITY, Components
+from stylobate.base_motions.combined import BaseMotion
 from stylobate.base_motions.records.knots import corners, integrals, largest_from_each, mean_frequency
 from stylobate.errors import ParameterError, require_finite, require_not_negative, require_positive
 

@@ -75,9 +75,8 @@ def assess(
     records
         Base motions that end: a sequence, or a mapping from names. Results list them in the order of their names.
     dissipation
-        By level, of which there are "low", "central" and "high" at least, the numbers of the model that dissipate:
-        damping, spin_damping, rolling_resistance, restitution; the same ones at each level. There is no default: it
-        must be stated.
+        By level, of which there are "low", "central" and "high" at least, numbers of the model that it declares as
+        dissipating, such as damping; the same ones at each level. There is no default: it must be stated.
     friction_coefficient
         Of the contact between column and base, one or one for each column by name: what the friction that a run
         needs is compared with. It must be stated.

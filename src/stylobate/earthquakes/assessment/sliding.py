@@ -10,15 +10,12 @@ from stylobate.earthquakes.assessment.inputs import CENTRAL, Inputs
 from stylobate.earthquakes.assessment.parts import Parts
 from stylobate.earthquakes.following import tail_of
 from stylobate.engine import simulate
-from stylobate.engine.parameters import model_names
 from stylobate.errors import Outcome
 from stylobate.models import Model, Sliding
-from stylobate.models.declared import dissipation_names
+from stylobate.models.declared import dissipation_of
 from stylobate.results.outcomes import NOT_COMPUTED, outcome_attributes
 from stylobate.studies.sweeps.computing import Progress
 
-# Of the numbers of a model that dissipate, stated or not, those that `Sliding` has too: its restitution is another one.
-_DISSIPATION = tuple(name for name in dissipation_names() if name != "restitution")
 _OPTIONS = tuple(name for name in numbers_of(Accuracy) if name != "tilt_limit")
 _NUMBERS = {
     "tilt_ratio": ("1", "largest tilt over α"),
@@ -74,8 +71,8 @@ _NOT_FOLLOWED: Run = {"outcome": NOT_COMPUTED, "overturned": -1.0, "uncertain": 
 
 
 def sliding_model(given: Model, friction: float) -> Sliding:
-    """Return the model that slides with the column of a model and what dissipates in it."""
-    losses = {name: getattr(given, name) for name in _DISSIPATION if name in model_names(given)}
+    """Return the model that slides with the column of a model and the dissipation that `Sliding` has too."""
+    losses = {name: getattr(given, name) for name in dissipation_of(Sliding) if name in dissipation_of(type(given))}
     return Sliding(given.column, friction_coefficient=friction, **losses)
 
 

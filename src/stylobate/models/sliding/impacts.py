@@ -31,7 +31,7 @@ def impulse(
     arrival: tuple[float, float, float],
     response: tuple[float, float, float, float],
     coefficient: float,
-    restitution: float,
+    normal_restitution: float,
 ) -> tuple[float, float, float]:
     """Return the impulse along d, n and the vertical at a point that arrives with this velocity."""
     vd, vn, vz = arrival
@@ -40,16 +40,16 @@ def impulse(
     # P2 − P1 leaves v_z alone: its vertical part follows that along d.
     rough_d = -(vd + dz * smooth) / (dd - dz * dz / zz)
     rough_n, rough_z = -vn / nn, -dz / zz * rough_d
-    bounced = (1.0 + restitution) * smooth
+    bounced = (1.0 + normal_restitution) * smooth
     along = math.hypot(rough_d, rough_n)
     short = along - coefficient * rough_z
     share = 1.0 if short <= coefficient * bounced else coefficient * bounced / short
     return share * rough_d, share * rough_n, bounced + share * rough_z
 
 
-def rebound(restitution: float, approach: float) -> float:
+def rebound(normal_restitution: float, approach: float) -> float:
     """Return the restitution of an impact with this speed of approach: none where the rebound would be."""
-    return restitution if restitution * approach > REST_SPEED else 0.0
+    return normal_restitution if normal_restitution * approach > REST_SPEED else 0.0
 
 
 def base_impulse(

@@ -27,7 +27,7 @@ def land(state: State, now: Triple, later: Triple, ahead: float, rest: float, n:
     if vz >= 0.0:
         return 0.0, settle_rim(touching(state, vd, vn, ux, uy), now, n)
     response = responses(sine, cos, n.c, n.kappa, n.axial)
-    bounce = rebound(n.restitution, -vz)
+    bounce = rebound(n.normal_restitution, -vz)
     pd, pn, pz = impulse((vd, vn, vz), response, n.kinetic, bounce)
     dd, dz, _, nn = response
     struck = touching(kicked(state, (pd, pn, pz), n), vd + dd * pd + dz * pz, vn + nn * pn, ux, uy)
@@ -46,7 +46,7 @@ def touching(state: State, vd: float, vn: float, ux: float, uy: float) -> State:
 def land_flat(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
     """Return how a column goes on that comes down on the whole of its base: it may trip over the edge in front."""
     vx, vy, approach = state.velocity_x, state.velocity_y, max(-state.rise_rate, 0.0)
-    bounce = rebound(n.restitution, approach)
+    bounce = rebound(n.normal_restitution, approach)
     normal = (1.0 + bounce) * approach
     inertia = n.axial * n.c * n.c  # I_a/κ
     kx, ky, turned = base_impulse(vx, vy, state.spin, normal, n.kinetic, TWISTING_BASE, n.c, inertia)

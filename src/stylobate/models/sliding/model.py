@@ -12,13 +12,14 @@ import numpy.typing as npt
 from stylobate.column import Column
 from stylobate.errors import ParameterError
 from stylobate.models import finite_tilt, tilt_vector
+from stylobate.models.closed_form import ClosedForm, RollingLaw, zero
 from stylobate.models.contact import path_outputs, per_normal_force
 from stylobate.models.model import RELEASE_MARGIN, Floats, Model, Output
 from stylobate.models.numbers import (
     Damping,
     FrictionCoefficient,
+    NormalRestitution,
     PassageTilt,
-    Restitution,
     RollingResistance,
     SpinDamping,
     StaticFrictionCoefficient,
@@ -56,7 +57,7 @@ class Sliding(Model):
         Radius ε of the contact of the rim, in units of the base radius. A patch resists turning about the vertical by a
         moment up to (3π/16) μNε; force and moment fade into each other as it slips and turns. While it does neither,
         the column rolls as on rubber. 0 is a point.
-    restitution
+    normal_restitution
         e_n, speed at which the struck point leaves the plane over that of its approach.
     damping, spin_damping, rolling_resistance
         As for `Rolling`, while the rim touches.
@@ -87,7 +88,7 @@ class Sliding(Model):
     friction_coefficient: FrictionCoefficient = 0.5
     static_friction_coefficient: StaticFrictionCoefficient | None = None
     patch: Annotated[float, Quantity(text="radius of the contact, in base radii", ge=0.0, slider=(0.0, 0.2))] = 0.0
-    restitution: Restitution = 0.0
+    normal_restitution: NormalRestitution = 0.0
     damping: Damping = 0.0
     spin_damping: SpinDamping = 0.0
     rolling_resistance: RollingResistance = 0.0
@@ -142,7 +143,7 @@ class Sliding(Model):
             kinetic=kinetic,
             static=kinetic if self.static_friction_coefficient is None else self.static_friction_coefficient,
             patch=self.patch,
-            restitution=self.restitution,
+            normal_restitution=self.normal_restitution,
             passage_tilt=_PASSAGE * column.slenderness if self.passage_tilt is None else self.passage_tilt,
             slope_x=-down * math.cos(self.incline_direction),
             slope_y=-down * math.sin(self.incline_direction),
@@ -170,6 +171,12 @@ class Sliding(Model):
     def comes_to_rest(self) -> bool:
         """It does: strokes of the base take energy."""
         return True
+
+    @property
+    def closed_form(self) -> ClosedForm:
+        """Steady rolling with slip at a point, on a horizontal plane."""
+        requires = zero(self, "patch", "incline", "rolling_resistance")
+        return ClosedForm(RollingLaw.SLIPPING, self.damping, self.spin_damping, requires)
 
     def start(self, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, ...]:
         """Return the state with this tilt vector [rad] and its rate [rad/s], without slip on its rim."""

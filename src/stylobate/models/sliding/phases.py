@@ -77,7 +77,7 @@ class Numbers(NamedTuple):
         Coefficients of friction while it slips, and up to which it does not.
     patch
         ε/r, radius of the contact of the rim.
-    restitution
+    normal_restitution
         e_n of impacts.
     passage_tilt
         Least tilt below which a passage of the upright is a stroke of the base on the plane [rad].
@@ -94,7 +94,7 @@ class Numbers(NamedTuple):
     kinetic: float
     static: float
     patch: float
-    restitution: float
+    normal_restitution: float
     passage_tilt: float
     slope_x: float
     slope_y: float

@@ -44,7 +44,7 @@ def reset_map(
     kinetic: float,
     static: float,
     patch: float,
-    restitution: float,
+    normal_restitution: float,
     passage: float,
     slope_x: float,
     slope_y: float,
@@ -53,7 +53,20 @@ def reset_map(
     """Return how much later, and in which state, a column goes on; see `reaction`."""
     state = State(x, y, vx, vy, w3, twist, fx, fy, sx, sy, rise, climb, hx, hy, hz, contact)
     numbers = Numbers(
-        c, eta, zeta, kappa, axial, resistance, kinetic, static, patch, restitution, passage, slope_x, slope_y, relief
+        c,
+        eta,
+        zeta,
+        kappa,
+        axial,
+        resistance,
+        kinetic,
+        static,
+        patch,
+        normal_restitution,
+        passage,
+        slope_x,
+        slope_y,
+        relief,
     )
     return reaction(state, int(event), (ax, ay, az), (bx, by, bz), ahead, rest, numbers)
 
@@ -84,7 +97,7 @@ def project(
     _kinetic: float,
     _static: float,
     patch: float,
-    _restitution: float,
+    _normal_restitution: float,
     _passage: float,
     _slope_x: float,
     _slope_y: float,

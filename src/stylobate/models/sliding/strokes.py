@@ -52,7 +52,7 @@ def stroke(state: State, now: Triple, later: Triple, ahead: float, rest: float, 
     speed = planar_speed(state, (ux, uy), n)
     body = in_plane(state, (ux, uy), speed, n) if speed >= 0.0 else as_it_is(state, n)
     approach = n.c * (body.rate_x * ux + body.rate_y * uy) - body.climb
-    bounce = rebound(n.restitution, approach)
+    bounce = rebound(n.normal_restitution, approach)
     body = struck_at(body, ux, uy, bounce, n)
     if bounce > 0.0:
         kinetic, lift = energy_of(state, n)

@@ -26,7 +26,7 @@ def check_circular() -> Section:
         _lower_branch(),
         _criteria_agree(),
         _critical_frequencies(),
-        _friction_free_limit(),
+        _undamped_limit(),
     )
     return Section(findings, {"response": response_data(), "critical": critical_data()})
 
@@ -52,9 +52,9 @@ def critical_data() -> xr.Dataset:
     a0 = np.linspace(1e-4, 0.3, 400)
     etas = [0.1, 0.3, 0.5, 1.0]
     theta = np.array([theory.critical_frequency(a0, c=SLENDERNESS, eta=eta) for eta in etas])
-    closed = theory.critical_frequency_frictionless(a0, c=SLENDERNESS)
+    closed = theory.undamped_critical_frequency(a0, c=SLENDERNESS)
     return xr.Dataset(
-        {"theta": (("eta", "a0"), theta), "frictionless": ("a0", closed)},
+        {"theta": (("eta", "a0"), theta), "undamped": ("a0", closed)},
         coords={"a0": a0, "eta": etas},
         attrs={"c": SLENDERNESS},
     )
@@ -158,8 +158,8 @@ def _critical_frequencies() -> Finding:
     )
 
 
-def _friction_free_limit() -> Finding:
-    closed = theory.critical_frequency_frictionless(np.array(CIRCULAR_AMPLITUDES), c=SLENDERNESS)
+def _undamped_limit() -> Finding:
+    closed = theory.undamped_critical_frequency(np.array(CIRCULAR_AMPLITUDES), c=SLENDERNESS)
     small = theory.critical_frequency(np.array(CIRCULAR_AMPLITUDES), c=SLENDERNESS, eta=1e-4)
     gap = float(np.abs(small - closed).max())
     return Finding(

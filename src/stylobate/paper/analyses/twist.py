@@ -17,7 +17,7 @@ from stylobate.paper.analyses.twist_at_finite_tilt import findings_at_finite_til
 from stylobate.results import Finding, Section, Verdict
 
 _C = SLENDERNESS
-_SPIN_FRICTIONS = (math.inf, 1.0, 0.3, 0.1, 0.03)
+_SPIN_DAMPINGS = (math.inf, 1.0, 0.3, 0.1, 0.03)
 """ζ of the curves drawn."""
 
 _AXIAL_RATIOS = (0.1, 0.25, 0.5, 1.0, 2.0)
@@ -41,15 +41,15 @@ _BOUNDARY, _LINEAR = 1e-6, 0.01
 
 def check_twist() -> Section:
     """Check what the assumption of no rotation about the vertical needs, and how (8) changes without it."""
-    findings: tuple[Finding, ...] = (_needed(), _with_spin_friction(), _without())
-    findings += (_stability(), _weak_friction(), _upper_frequency())
+    findings: tuple[Finding, ...] = (_needed(), _with_spin_damping(), _without())
+    findings += (_stability(), _weak_damping(), _upper_frequency())
     findings += findings_at_finite_tilt()
     return Section(findings, {"twist": twist_data(), "twist_boundary": boundary_data()})
 
 
 def twist_data() -> xr.Dataset:
     """Return steady rolling with a free twist against frequency, for several spin damping."""
-    theta, zeta = np.linspace(0.5, 4.0, 281), np.array(_SPIN_FRICTIONS)
+    theta, zeta = np.linspace(0.5, 4.0, 281), np.array(_SPIN_DAMPINGS)
     found = _steady(theta[np.newaxis], zeta[:, np.newaxis])
     dims = ("zeta", "theta")
     fields = {name: (dims, getattr(found, name)) for name in ("amplitude", "spin", "friction_moment", "stable")}
@@ -58,19 +58,19 @@ def twist_data() -> xr.Dataset:
 
 def boundary_data() -> xr.Dataset:
     """Return the frequencies at which steady rolling with a free twist gains its stability, and loses it again."""
-    a0, zeta = np.linspace(0.002, 0.2, 199), np.array(_SPIN_FRICTIONS)
+    a0, zeta = np.linspace(0.002, 0.2, 199), np.array(_SPIN_DAMPINGS)
     eta, axial, slim = np.geomspace(1e-4, 1.0, 161), np.array(_AXIAL_RATIOS), np.array(_SLIM)
-    friction, least = np.geomspace(1e-3, 1e2, 161), np.geomspace(1e-5, 0.0125, 401)
+    damping, least = np.geomspace(1e-3, 1e2, 161), np.geomspace(1e-5, 0.0125, 401)
     damped = {"c": _C, "eta": DAMPING}
     fields = {
         "by_amplitude": (("zeta", "a0"), theory.free_twist_critical_frequency(a0, zeta=zeta[:, None], **damped)),
-        "by_friction": (("zeta", "eta"), theory.free_twist_critical_frequency(A0, c=_C, eta=eta, zeta=zeta[:, None])),
-        "by_spin_friction": (
+        "by_damping": (("zeta", "eta"), theory.free_twist_critical_frequency(A0, c=_C, eta=eta, zeta=zeta[:, None])),
+        "by_spin_damping": (
             ("axial_ratio", "spin_damping"),
-            theory.free_twist_critical_frequency(A0, zeta=friction, axial_ratio=axial[:, None], **damped),
+            theory.free_twist_critical_frequency(A0, zeta=damping, axial_ratio=axial[:, None], **damped),
         ),
         "upper": (
-            ("slim", "least_spin_friction"),
+            ("slim", "least_spin_damping"),
             theory.free_twist_upper_frequency(A0, zeta=least, axial_ratio=slim[:, None], **damped),
         ),
         "upper_limit": ("slim", np.sqrt((1.0 + A0 / _C + slim) / (2.0 * _KAPPA - 1.0 - slim))),
@@ -81,8 +81,8 @@ def boundary_data() -> xr.Dataset:
         "eta": eta,
         "axial_ratio": axial,
         "slim": slim,
-        "spin_damping": friction,
-        "least_spin_friction": least,
+        "spin_damping": damping,
+        "least_spin_damping": least,
     }
     without = float(theory.critical_frequency(A0, **damped))
     about = {"weak_limit": _weak_limit(), "without": without, "a0": A0, "eta": DAMPING}
@@ -90,7 +90,7 @@ def boundary_data() -> xr.Dataset:
 
 
 def _weak_limit() -> float:
-    """Return the critical frequency with a free twist as the friction η vanishes."""
+    """Return the critical frequency with a free twist as the damping η vanishes."""
     return math.sqrt(1.0 + 2.0 * A0 / _C)
 
 
@@ -111,7 +111,7 @@ def _needed() -> Finding:
     )
 
 
-def _with_spin_friction() -> Finding:
+def _with_spin_damping() -> Finding:
     zeta = 0.1
     known, paper = _steady(THETA, zeta), _steady(THETA, math.inf)
     run = run_from_paper(SlenderRolling, zeta)
@@ -154,7 +154,7 @@ def _stability() -> Finding:
     )
 
 
-def _weak_friction() -> Finding:
+def _weak_damping() -> Finding:
     weak, zeta, theta = 0.01, 1.0, 1.45
     paper = float(theory.critical_frequency(A0, c=_C, eta=weak))
     known = float(theory.free_twist_critical_frequency(A0, c=_C, eta=weak, zeta=zeta))
@@ -163,7 +163,7 @@ def _weak_friction() -> Finding:
         for eta in (1e-5, 2e-5)
     ]
     growth = _largest_multiplier(theta, eta=weak, zeta=zeta)
-    without = float(theory.critical_frequency_frictionless(A0, c=_C))
+    without = float(theory.undamped_critical_frequency(A0, c=_C))
     return Finding(
         "conclusions",
         "The critical frequency depends on the parameters: weak friction hardly moves it.",

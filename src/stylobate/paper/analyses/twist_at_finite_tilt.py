@@ -19,7 +19,7 @@ _SQUARE = 0.1
 
 def findings_at_finite_tilt() -> tuple[Finding, ...]:
     """Check the rolling body at finite tilt against the closed forms, and both against those of small tilts."""
-    return _rolling(), _without_spin_friction(), _no_twist()
+    return _rolling(), _without_spin_damping(), _no_twist()
 
 
 def _stable(branches: theory.FiniteTiltRolling) -> tuple[float, float]:
@@ -48,7 +48,7 @@ def _rolling() -> Finding:
     )
 
 
-def _without_spin_friction() -> Finding:
+def _without_spin_damping() -> Finding:
     when, spin = end_of_rolling(Rolling)
     return Finding(
         "(8)",

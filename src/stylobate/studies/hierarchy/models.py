@@ -1,6 +1,6 @@
 """The models of the hierarchy, and one case that all of them run."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypedDict
 
@@ -9,11 +9,12 @@ from stylobate.column import Column
 from stylobate.engine import simulate
 from stylobate.engine.forcing import common_line
 from stylobate.models import Model, PlanarRocking, Rolling, Slender, SlenderRolling, Wobbling
+from stylobate.models.declared import dissipation_of
 from stylobate.results import OutcomeRules, Response
 
 
 class RunArguments(TypedDict, total=False):
-    """What all levels are run with: the arguments of `simulate` of these names."""
+    """What all models are run with: the arguments of `simulate` of these names."""
 
     rtol: float
     atol: float | None
@@ -23,26 +24,32 @@ class RunArguments(TypedDict, total=False):
     rules: OutcomeRules | None
 
 
+class HierarchyArguments(RunArguments, total=False):
+    """The dissipation parameters of the models, which take those that they declare, and what all are run with."""
+
+    damping: float
+    spin_damping: float
+    rolling_resistance: float
+    restitution: float | None
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """A column with its frictions, a base motion and a start.
+    """A column with its dissipation, a base motion and an initial state.
 
     Parameters
     ----------
     column, motion
         The column, and how its base moves.
-    damping, spin_damping, restitution
-        η; ζ of levels that may turn; e of levels at finite tilt on passing the upright, None for Housner's value in
-        planar rocking and no loss elsewhere.
+    dissipation
+        Dissipation parameters by name; each model takes those that it declares. None stands for its default.
     tilt, tilt_rate, spin
         Start [rad], [rad/s], [rad/s].
     """
 
     column: Column
     motion: BaseMotion
-    damping: float
-    spin_damping: float
-    restitution: float | None
+    dissipation: Mapping[str, float | None]
     tilt: tuple[float, float]
     tilt_rate: tuple[float, float]
     spin: float
@@ -56,9 +63,7 @@ class Case:
         return Case(
             column=self.column.with_slenderness(slenderness),
             motion=self.motion.scaled(factor),
-            damping=self.damping,
-            spin_damping=self.spin_damping,
-            restitution=self.restitution,
+            dissipation=self.dissipation,
             tilt=(factor * self.tilt[0], factor * self.tilt[1]),
             tilt_rate=(factor * self.tilt_rate[0], factor * self.tilt_rate[1]),
             spin=self.spin,
@@ -72,22 +77,19 @@ class Case:
         return self.spin == 0.0 and (not moving or common_line(*directions) is not None)
 
     def models(self) -> tuple[Model, ...]:
-        """Return the levels from the simplest on; planar rocking is the last, where the motion lies in a plane."""
-        column, damping, loss = self.column, self.damping, 1.0 if self.restitution is None else self.restitution
-        levels: tuple[Model, ...] = (
-            Slender(column, damping=damping),
-            SlenderRolling(column, damping=damping, spin_damping=self.spin_damping),
-            Wobbling(column, damping=damping, restitution=loss),
-            Rolling(column, damping=damping, spin_damping=self.spin_damping, restitution=loss),
-        )
-        if self.in_a_plane:
-            levels += (PlanarRocking(column, damping=damping, restitution=self.restitution),)
-        return levels
+        """Return the models from the simplest on; planar rocking is the last, where the motion lies in a plane."""
+        models = (Slender, SlenderRolling, Wobbling, Rolling, *((PlanarRocking,) if self.in_a_plane else ()))
+        return tuple(self._model(model) for model in models)
+
+    def _model(self, model: Callable[..., Model]) -> Model:
+        declared = dissipation_of(model)
+        stated = {name: value for name, value in self.dissipation.items() if name in declared and value is not None}
+        return model(self.column, **stated)
 
     def run(
         self, model: Model, duration: float, friction_coefficient: float | None, arguments: Mapping[str, Any]
     ) -> Response:
-        """Return the run of one level; one that cannot turn starts without spin."""
+        """Return the run of one model; one that cannot turn starts without spin."""
         return simulate(
             model,
             self.motion,

@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Unpack
 
 import numpy as np
@@ -14,13 +14,14 @@ from stylobate.column import Column
 from stylobate.config import provenance_of_run
 from stylobate.errors import ParameterError, require_finite, require_positive, require_vector, require_whole
 from stylobate.models import Rolling
+from stylobate.models.declared import dissipation_of
 from stylobate.models.model import require_column
 from stylobate.results import Response
 from stylobate.results.outcomes import outcome_attributes
-from stylobate.studies.hierarchy.models import Case, RunArguments
+from stylobate.studies.hierarchy.models import Case, HierarchyArguments, RunArguments
 from stylobate.studies.hierarchy.runs import Course, Floats, largest_distance
 
-# Times at which levels are compared, unless the user asks for histories of another length.
+# Times at which models are compared, unless the user asks for histories of another length.
 _TIMES = 2001
 
 _OF_SIMULATE = tuple(RunArguments.__annotations__)
@@ -30,9 +31,6 @@ def model_hierarchy(
     column: Column,
     motion: BaseMotion | None = None,
     *,
-    damping: float = 0.0,
-    spin_damping: float = 0.0,
-    restitution: float | None = None,
     tilt: Sequence[float] = (0.0, 0.0),
     tilt_rate: Sequence[float] = (0.0, 0.0),
     spin: float = 0.0,
@@ -41,25 +39,19 @@ def model_hierarchy(
     friction_coefficient: float | None = None,
     reference: str = Rolling.name,
     samples: int | None = None,
-    **arguments: Unpack[RunArguments],
+    **arguments: Unpack[HierarchyArguments],
 ) -> xr.Dataset:
     """Run one case with every model of the hierarchy and compare the results.
 
-    The levels are slender, slender rolling, wobbling and rolling; where start and base motion lie in a vertical plane
+    The models are slender, slender rolling, wobbling and rolling; where start and base motion lie in a vertical plane
     also planar rocking.
 
     Parameters
     ----------
     column, motion
         The column, and how its base moves; None is a base at rest.
-    damping
-        η of all levels.
-    spin_damping
-        ζ of the levels that may turn.
-    restitution
-        e on passing the upright, of the levels at finite tilt; by default Housner's in planar rocking and 1 elsewhere.
     tilt, tilt_rate, spin
-        Start [rad], [rad/s], [rad/s]; levels that cannot turn start without spin.
+        Start [rad], [rad/s], [rad/s]; models that cannot turn start without spin.
     duration
         How long to follow each run [s].
     slenderness
@@ -68,27 +60,30 @@ def model_hierarchy(
     friction_coefficient
         Of the contact; runs warn where more is needed.
     reference
-        The level from which differences are taken.
+        The model from which differences are taken.
     samples
         Number of samples of the histories that are kept; none by default.
     **arguments
-        Arguments of `simulate`: rtol, atol, tilt_limit, rest_energy, max_steps, rules.
+        Dissipation parameters: damping η of all models; spin_damping ζ of the models that may turn; of the models at
+        finite tilt rolling_resistance, a lever arm in radii, and restitution e at a passage near the vertical, by
+        default Housner's in planar rocking and 1 elsewhere. Arguments of `simulate`: rtol, atol, tilt_limit,
+        rest_energy, max_steps, rules.
 
     Returns
     -------
     xarray.Dataset
-        Of kind "model hierarchy", over `level`, and `slenderness` where it is given: `outcome`, `uncertain`,
+        Of kind "model hierarchy", over `model`, and `slenderness` where it is given: `outcome`, `uncertain`,
         `largest_tilt`,
         `mean_late_tilt`, `mean_late_spin` (over the last fifth of the run; NaN where it ended before, or cannot spin),
         largest demands on the contact, `least_normal_force` over the weight, `steps`, `warnings`; differences from the
-        `reference`; `deviation` (level, other_level), the largest distance of the tilt vectors while both runs last
+        `reference`; `deviation` (model, other_model), the largest distance of the tilt vectors while both runs last
         [rad]. With two slendernesses or more `deviation_order`, the power of c with which `deviation`/c falls. With
         `samples` the histories `amplitude` [rad] and `spin` [rad/s] over `time`.
 
     Raises
     ------
     ParameterError
-        If an argument is out of range, or there is no such level.
+        If an argument is out of range, or there is no such model.
 
     Examples
     --------
@@ -103,23 +98,25 @@ def model_hierarchy(
     wobbling           0.388
     rolling            0.193
     """
-    strange = [name for name in arguments if name not in _OF_SIMULATE]
+    shared = dissipation_of(Rolling)
+    strange = [name for name in arguments if name not in (*_OF_SIMULATE, *shared)]
     if strange:
-        message = (
-            f"{strange[0]} is no argument of model_hierarchy; of those of simulate it takes {', '.join(_OF_SIMULATE)}"
-        )
+        known = ", ".join((*shared, *_OF_SIMULATE))
+        message = f"{strange[0]} is no argument of model_hierarchy. Besides those of its signature use {known}."
         raise ParameterError(message)
     moved = BASE_AT_REST if motion is None else motion
-    case = _case(column, moved, damping, spin_damping, restitution, tilt, tilt_rate, spin)
+    given: dict[str, Any] = {**arguments}
+    dissipation = {name: given.pop(name) for name in shared if name in given}
+    case = _case(column, moved, dissipation, tilt, tilt_rate, spin)
     duration = require_positive("duration", duration, "s")
-    levels = [model.name for model in case.models()]
-    if reference not in levels:
-        message = f"reference must be a level of this case, {', '.join(levels)}; got {reference!r}"
+    models = [model.name for model in case.models()]
+    if reference not in models:
+        message = f"reference must be a model of this case, {', '.join(models)}; got {reference!r}"
         raise ParameterError(message)
     time = np.linspace(0.0, duration, _TIMES if samples is None else require_whole("samples", samples, least=2))
 
     def compared(one: Case) -> xr.Dataset:
-        runs = [one.run(model, duration, friction_coefficient, arguments) for model in one.models()]
+        runs = [one.run(model, duration, friction_coefficient, given) for model in one.models()]
         return _compared(one, runs, time, duration)
 
     if slenderness is None:
@@ -133,16 +130,16 @@ def model_hierarchy(
     if samples is None:
         found = found.drop_vars(["amplitude", "spin", "time"])
     provenance = provenance_of_run(
-        case.models()[levels.index(reference)],
+        case.models()[models.index(reference)],
         moved,
         tilt=case.tilt,
         tilt_rate=case.tilt_rate,
         spin=case.spin,
         duration=duration,
         friction_coefficient=friction_coefficient,
-        restitution=restitution,
+        restitution=dissipation.get("restitution"),
         slenderness=None if slenderness is None else np.asarray(slenderness, dtype=float).tolist(),
-        **{name: value for name, value in arguments.items() if name != "rules"},
+        **{name: value for name, value in given.items() if name != "rules"},
     )
     attributes = {"kind": "model hierarchy", "reference": reference, "column_slenderness": column.slenderness}
     if friction_coefficient is not None:
@@ -153,9 +150,7 @@ def model_hierarchy(
 def _case(
     column: Column,
     motion: BaseMotion,
-    damping: float,
-    spin_damping: float,
-    restitution: float | None,
+    dissipation: Mapping[str, float | None],
     tilt: Sequence[float],
     tilt_rate: Sequence[float],
     spin: float,
@@ -169,9 +164,7 @@ def _case(
     return Case(
         column=column,
         motion=motion,
-        damping=damping,
-        spin_damping=spin_damping,
-        restitution=restitution,
+        dissipation=dissipation,
         tilt=(x, y),
         tilt_rate=(vx, vy),
         spin=require_finite("spin", spin, "rad/s"),
@@ -227,32 +220,32 @@ def _compared(case: Case, runs: Sequence[Response], time: Floats, duration: floa
         for run, course in zip(runs, courses, strict=True)
     ]
     histories = [course.history(time) for course in courses]
-    tilt = xr.DataArray([tilt for tilt, _ in histories], dims=("level", "time", "axis"))
+    tilt = xr.DataArray([tilt for tilt, _ in histories], dims=("model", "time", "axis"))
     variables: dict[str, Any] = {
-        name: ("level", [one.get(name, np.nan) for one in rows], {"units": units, "long_name": long_name})
+        name: ("model", [one.get(name, np.nan) for one in rows], {"units": units, "long_name": long_name})
         for name, (units, long_name) in _MEASURES.items()
     }
-    levels = [model.name for model in case.models()]
+    models = [model.name for model in case.models()]
     deviation = [[largest_distance(one, other) for other in tilt] for one in tilt]
     return xr.Dataset(
         {
-            "outcome": ("level", np.array([run.outcome for run in runs], np.int8), outcome_attributes()),
-            "uncertain": ("level", [run.uncertain for run in runs], {"long_name": "uncertain"}),
+            "outcome": ("model", np.array([run.outcome for run in runs], np.int8), outcome_attributes()),
+            "uncertain": ("model", [run.uncertain for run in runs], {"long_name": "uncertain"}),
             **variables,
-            "warnings": ("level", ["; ".join(run.warnings) for run in runs], {"long_name": "warnings"}),
+            "warnings": ("model", ["; ".join(run.warnings) for run in runs], {"long_name": "warnings"}),
             "deviation": (
-                ("level", "other_level"),
+                ("model", "other_model"),
                 deviation,
                 {"units": "rad", "long_name": "largest distance of the tilt vectors"},
             ),
             "amplitude": (
-                ("level", "time"),
+                ("model", "time"),
                 np.hypot(tilt[..., 0], tilt[..., 1]).data,
                 {"units": "rad", "long_name": "tilt angle"},
             ),
-            "spin": (("level", "time"), [spin for _, spin in histories], {"units": "rad s-1", "long_name": "spin"}),
+            "spin": (("model", "time"), [spin for _, spin in histories], {"units": "rad s-1", "long_name": "spin"}),
         },
-        coords={"level": levels, "other_level": levels, "time": ("time", time, {"units": "s", "long_name": "time"})},
+        coords={"model": models, "other_model": models, "time": ("time", time, {"units": "s", "long_name": "time"})},
     )
 
 
@@ -265,14 +258,14 @@ def _with_order(found: xr.Dataset) -> xr.Dataset:
     offset = np.log(c) - np.log(c).mean()
     slope = (offset[:, None, None] * logarithm).sum(axis=0) / (offset**2).sum()
     about = {"units": "1", "long_name": "power of the slenderness with which the deviation over it falls"}
-    return found.assign(deviation_order=(("level", "other_level"), slope, about))
+    return found.assign(deviation_order=(("model", "other_model"), slope, about))
 
 
 def _with_differences(found: xr.Dataset, reference: str) -> xr.Dataset:
-    base = found.sel(level=reference)
+    base = found.sel(model=reference)
     added = {}
     for name in _DIFFERENT:
-        difference = found[name] - base[name].drop_vars("level")
+        difference = found[name] - base[name].drop_vars("model")
         about = {**found[name].attrs, "long_name": f"{found[name].attrs['long_name']}, less that of {reference}"}
         added[f"{name}_difference"] = difference.assign_attrs(about)
     return found.assign(added)

@@ -7,6 +7,8 @@ from scipy.integrate import solve_ivp
 from stylobate.base_motions import Harmonic
 from stylobate.errors import UnsupportedError, require_positive, require_vector
 from stylobate.models import Slender
+from stylobate.models.closed_form import RollingLaw
+from stylobate.models.inheritance import closed_form_of
 from stylobate.studies.responses.rolling_frame import RollingFrame
 from stylobate.theory.rotating_frame import rotating_frame_rates
 
@@ -64,17 +66,18 @@ def averaged_motion(
     >>> round(float(slow["amplitude"].max() - slow["amplitude"].min()), 9)
     0.0
     """
-    if type(model) is not Slender:
+    form = closed_form_of(model)
+    if form is None or form.law is not RollingLaw.SLENDER:
         message = f"model: averaged_motion holds for Slender only (got {type(model).__name__}). Pass Slender(column)."
         raise UnsupportedError(message)
     frame = RollingFrame.of(model, motion, sense)
     x, y = require_vector("tilt", tilt, 2, "rad")
     vx, vy = require_vector("tilt_rate", tilt_rate, 2, "rad/s")
     end = require_positive("duration", duration, "s") / frame.time_scale
-    c = model.column.slenderness
+    c, eta = model.column.slenderness, form.eta
 
     def rates(_: float, state: np.ndarray) -> np.ndarray:
-        return rotating_frame_rates(state, frame.theta, frame.drive, c=c, eta=model.damping)
+        return rotating_frame_rates(state, frame.theta, frame.drive, c=c, eta=eta)
 
     def leaves(_: float, state: np.ndarray) -> float:
         return float(min(state[2] - _SMALLEST * c, _LARGEST * c - state[2]))

@@ -5,8 +5,10 @@ from typing import TypedDict
 
 from stylobate.base_motions import Harmonic
 from stylobate.errors import ParameterError, UnsupportedError
-from stylobate.models import Model, Rolling, Slender, SlenderRolling, Wobbling
-from stylobate.orbits.steady import steady_rolling_of
+from stylobate.models import Model
+from stylobate.models.closed_form import ClosedForm, RollingLaw
+from stylobate.models.declared import name_by_symbol
+from stylobate.orbits.steady import rolling_form_of, steady_rolling_of
 from stylobate.studies.responses.rolling_frame import RollingFrame
 
 _BRANCHES = ("upper", "lower")
@@ -67,9 +69,9 @@ def steady_start(model: Model, motion: Harmonic, *, branch: str = "upper", sense
     if branch not in _BRANCHES:
         message = f'branch must be "upper" or "lower", got {branch!r}'
         raise ParameterError(message)
-    _require_closed_form(model, branch)
+    form = _closed_form(model, branch)
     frame = RollingFrame.of(model, motion, sense)
-    tilt, psi, spin = steady_rolling_of(model, frame.theta, frame.drive, branch)
+    tilt, psi, spin = steady_rolling_of(form, model.column, frame.theta, frame.drive, branch)
     if not math.isfinite(tilt):
         message = f"motion has no steady rolling on the {branch} branch at {motion.angular_frequency!r} rad/s"
         raise ParameterError(message)
@@ -79,27 +81,26 @@ def steady_start(model: Model, motion: Harmonic, *, branch: str = "upper", sense
     return TurningStart(tilt=vector, tilt_rate=rate, spin=frame.sense * spin / frame.time_scale)
 
 
-def _require_closed_form(model: Model, branch: str) -> None:
-    """Raise an error of one line unless theory knows steady rolling of the model, with its frictions."""
-    if type(model) not in (Slender, SlenderRolling, Wobbling, Rolling):  # a subclass has other equations
+def _closed_form(model: Model, branch: str) -> ClosedForm:
+    """Return the closed form of steady rolling of a model, or raise an error of one line where it does not hold."""
+    form = rolling_form_of(model)
+    if form is None:
         message = (
             "steady_start needs a closed form of steady rolling, as of slender, slender rolling, wobbling and rolling; "
-            f"got model {getattr(model, 'name', model)!s}"
+            f"got model {getattr(model, 'name', model)!s}, whose class {type(model).__name__} states none"
         )
         raise UnsupportedError(message)
-    if isinstance(model, Wobbling | Rolling) and model.rolling_resistance > 0.0:
-        message = f"rolling_resistance must be 0 for a closed form of steady rolling, got {model.rolling_resistance!r}"
+    if form.requires is not None:
+        name, value = form.requires
+        message = f"{name} must be {value!r} for a closed form of steady rolling, got {getattr(model, name)!r}"
         raise UnsupportedError(message)
-    if isinstance(model, SlenderRolling):
-        if model.couples != "contact":
-            message = f"couples must be 'contact' for a closed form of steady rolling, got {model.couples!r}"
-            raise UnsupportedError(message)
-        if branch != "upper":
-            message = f'branch must be "upper" for slender rolling, whose closed form has no other; got {branch!r}'
-            raise ParameterError(message)
-    if isinstance(model, SlenderRolling | Rolling) and model.damping > 0.0 and model.spin_damping == 0.0:
+    if form.law is RollingLaw.FREE_TWIST and branch != "upper":
+        message = f'branch must be "upper" for slender rolling, whose closed form has no other; got {branch!r}'
+        raise ParameterError(message)
+    if form.law in (RollingLaw.FREE_TWIST, RollingLaw.FULL) and form.eta > 0.0 and form.zeta == 0.0:
         message = (
-            "spin_damping must be above zero where there is damping, got 0.0: without it the base spins the column up "
-            "for ever, and there is no steady rolling"
+            f"{name_by_symbol(type(model), 'ζ')} must be above zero where there is damping, got 0.0: without it the "
+            "base spins the column up for ever, and there is no steady rolling"
         )
         raise ParameterError(message)
+    return form

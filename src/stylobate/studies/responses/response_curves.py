@@ -11,7 +11,9 @@ from stylobate import theory
 from stylobate.base_motions import BaseMotion, as_harmonic
 from stylobate.config import provenance_of_run
 from stylobate.errors import ParameterError, UnsupportedError
-from stylobate.models import Model, Rolling, Slender, SlenderRolling, Wobbling
+from stylobate.models import Model
+from stylobate.models.closed_form import RollingLaw
+from stylobate.orbits.steady import rolling_form_of
 from stylobate.theory.averaging import circular_components
 
 
@@ -54,10 +56,10 @@ def response_curves(
     >>> curves["stable"].sel(sense="anticlockwise", branch="upper").values
     array([False,  True])
     """
-    slender = _slender(model)
+    eta, column = _damping(model), model.column
     frequency = _frequencies(angular_frequency)
-    a1, a2, phase = _amplitudes(motion, slender.column.gravity)
-    c, eta, scale = slender.column.slenderness, slender.damping, slender.column.frequency_scale
+    a1, a2, phase = _amplitudes(motion, column.gravity)
+    c, scale = column.slenderness, column.frequency_scale
     steady = theory.averaged_rolling(frequency / scale, a1, a2, phase, c=c, eta=eta)
     p, q = (abs(part) for part in circular_components(a1, a2, phase))
     largest = max(p, q)
@@ -104,20 +106,15 @@ def response_curves(
 _NO_PART = 1e-12
 
 
-_OF_OTHERS: dict[type[Model], str] = {
-    SlenderRolling: "theory.free_twist_rolling",
-    Wobbling: "theory.wobbling_rolling",
-    Rolling: "theory.full_rolling",
-}
-
-
-def _slender(model: Model) -> Slender:
-    if type(model) is not Slender:  # a subclass has other equations
+def _damping(model: Model) -> float:
+    """Return η of a model with the equations of the slender one, or raise an error."""
+    form = rolling_form_of(model)
+    if form is None or form.law is not RollingLaw.SLENDER:
         message = f"response_curves needs the slender model, which has a closed form; got {model.name}"
-        if type(model) in _OF_OTHERS:
-            message += f", of which {_OF_OTHERS[type(model)]} gives steady rolling and orbits.continue_branch orbits"
+        if form is not None:
+            message += f", of which theory.{form.law.value} gives steady rolling and orbits.continue_branch orbits"
         raise UnsupportedError(message)
-    return model
+    return form.eta
 
 
 def _frequencies(angular_frequency: npt.ArrayLike) -> npt.NDArray[np.float64]:

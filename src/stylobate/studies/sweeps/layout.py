@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,10 +14,7 @@ from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.sweeps.blocks import DISK_BLOCK, Block, Blocks
 from stylobate.studies.sweeps.designs import Design, whole
 from stylobate.studies.sweeps.quantities import attributes_of
-
-if TYPE_CHECKING:
-    from stylobate.studies.sweeps.sweep import Sweep
-
+from stylobate.studies.sweeps.recipe import Recipe
 
 # Bytes of a value of a coordinate.
 _FLOAT = 8
@@ -58,16 +55,16 @@ class Layout:
     labels: Mapping[str, list[Any]]
 
 
-def layout_of(sweep: "Sweep") -> Layout:
-    """Return the layout of the results of `sweep`, from an ensemble of no run; mistakes in its options raise.
+def layout_of(recipe: Recipe, names: tuple[str, ...]) -> Layout:
+    """Return the layout of a sweep's results over `names`, from an ensemble of no run; mistakes in its options raise.
 
     Raises
     ------
     ParameterError
         If an option or a name that varies is not what `simulate_ensemble` takes.
     """
-    nothing = {name: np.empty(0) for name in sweep.design.names}
-    sample = simulate_ensemble(sweep.model, sweep.motion, **sweep.recipe.arguments(nothing))
+    nothing = {name: np.empty(0) for name in names}
+    sample = simulate_ensemble(recipe.model, recipe.motion, **recipe.arguments(nothing))
     variables = []
     for name, array in sample.data_vars.items():
         own = {str(dim): size for dim, size in array.sizes.items() if dim != "run"}
@@ -77,16 +74,16 @@ def layout_of(sweep: "Sweep") -> Layout:
 
 
 def dataset(
-    sweep: "Sweep", layout: Layout, arrays: Mapping[str, npt.NDArray[Any]], attributes: Mapping[str, Any]
+    design: Design, layout: Layout, arrays: Mapping[str, npt.NDArray[Any]], attributes: Mapping[str, Any]
 ) -> xr.Dataset:
-    """Return `arrays`, each over all runs of the sweep, with their coordinates and attributes."""
+    """Return `arrays`, each over all runs of the design, with their coordinates and attributes."""
     data = {
-        variable.name: ((*sweep.dims, *variable.dims), arrays[variable.name], dict(variable.attributes))
+        variable.name: ((*design.dims, *variable.dims), arrays[variable.name], dict(variable.attributes))
         for variable in layout.variables
     }
     coordinates = {
-        name: (sweep.design.coordinate_dims[name], values, attributes_of(name))
-        for name, values in sweep.design.coordinates(whole(sweep.design)).items()
+        name: (design.coordinate_dims[name], values, attributes_of(name))
+        for name, values in design.coordinates(whole(design)).items()
     }
     return xr.Dataset(data, coords={**coordinates, **layout.labels}, attrs=dict(attributes))
 

@@ -9,7 +9,6 @@ from stylobate.errors import MOST_RUNS, FileError, Interrupted, ParameterError, 
 from stylobate.studies.sweeps.blocks import Blocks
 from stylobate.studies.sweeps.computing import Progress, silent
 from stylobate.studies.sweeps.executors import Executor, Threads
-from stylobate.studies.sweeps.layout import layout_of
 from stylobate.studies.sweeps.sinks import InMemory, OnDisk, Sink, tasks_of
 from stylobate.studies.sweeps.store import continue_store, create_store
 from stylobate.studies.sweeps.sweep import Sweep
@@ -98,7 +97,7 @@ def _folder(store: str | Path | None) -> Path | None:
 
 
 def _sink(sweep: Sweep, path: Path | None, chunk_size: int | None, *, resume: bool) -> Sink:
-    layout = layout_of(sweep)
+    layout = sweep.layout
     blocks = Blocks.of(sweep.shape, chunk_size)
     if path is None:
         if resume:

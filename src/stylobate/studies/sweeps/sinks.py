@@ -79,7 +79,7 @@ class InMemory:
 
     def dataset(self) -> xr.Dataset:
         """Return the arrays with their coordinates."""
-        return dataset(self.sweep, self.layout, self.arrays, attributes_of_result(self.sweep))
+        return dataset(self.sweep.design, self.layout, self.arrays, attributes_of_result(self.sweep))
 
 
 @dataclass(frozen=True, slots=True)

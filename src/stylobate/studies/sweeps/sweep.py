@@ -18,7 +18,7 @@ from stylobate.results.random_numbers import Rng
 from stylobate.studies.sweeps.blocks import Blocks
 from stylobate.studies.sweeps.designs import Box, Design, Grid, Points
 from stylobate.studies.sweeps.fingerprint import identity_of
-from stylobate.studies.sweeps.layout import bytes_on_disk, layout_of
+from stylobate.studies.sweeps.layout import Layout, bytes_on_disk, layout_of
 from stylobate.studies.sweeps.quantities import check_quantities
 from stylobate.studies.sweeps.recipe import DEFAULTS, Recipe, RunOptions
 
@@ -159,7 +159,12 @@ class Sweep:
 
     def estimated_bytes(self, chunk_size: int | None = None) -> int:
         """Return what a store of this sweep will take on disk at most [bytes]: compression is not counted."""
-        return bytes_on_disk(layout_of(self), self.design, Blocks.of(self.shape, chunk_size))
+        return bytes_on_disk(self.layout, self.design, Blocks.of(self.shape, chunk_size))
+
+    @property
+    def layout(self) -> Layout:
+        """The layout of its results; mistakes in its options raise."""
+        return layout_of(self.recipe, self.design.names)
 
     @property
     def recipe(self) -> Recipe:

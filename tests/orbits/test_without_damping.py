@@ -32,7 +32,7 @@ def test_volumes_of_states_keep_their_size(theta):
     assert abs(np.prod(multipliers) - 1.0) < 4e-9 + 1e-14 * abs(multipliers[0]) ** 2
 
 
-def test_the_lower_branch_is_a_saddle_without_friction_too():
+def test_the_lower_branch_is_a_saddle_without_damping_too():
     rolling = sb.theory.steady_rolling(2.0, A0, c=C, eta=0.0).lower
     start = rolling.amplitude * np.exp(1j * rolling.phase)
     motion = sb.Harmonic.circular(acceleration=A0, angular_frequency=2.0)
@@ -67,7 +67,7 @@ def test_rounding_invents_no_bifurcation_where_friction_ends():
     assert bool(branch.points["stable"].all())
 
 
-def test_without_friction_a_pitchfork_is_neither_soft_nor_hard():
+def test_without_damping_a_pitchfork_is_neither_soft_nor_hard():
     """Straight-line rolling has one at every friction; nothing that is born there can attract."""
     motion = sb.Harmonic.straight(acceleration=0.04, angular_frequency=2.0)
     branch = continue_branch(periodic_orbit(MODEL, motion), "angular_frequency", bounds=(1.0, 2.0))
