@@ -78,6 +78,13 @@ def condition_in_lanes(x):
             x[i] = 1.0
 
 
+def left_early_in_lanes(x):
+    for i in lanes(8):
+        for k in range(3):
+            x[i] = x[i] + k
+            break
+
+
 def number_of_a_lane(x):
     for i in lanes(8):
         x[i] = i
@@ -143,6 +150,7 @@ REFUSED = {
     some_ways: "some ways through it return a value, others none",
     wrong_arguments: "too many positional arguments",
     condition_in_lanes: "a condition on lanes; write a if condition else b",
+    left_early_in_lanes: "break and continue within lanes",
     number_of_a_lane: "a number is wanted, not the index of a loop over lanes",
     first_axis: "belongs in the last axis",
     lanes_into_one_place: "lanes are put into one place",

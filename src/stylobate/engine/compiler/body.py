@@ -79,7 +79,7 @@ class Body(Expressions):
         if name in self._bound:
             return self._bound[name]
         if name in self._slots:
-            return self.loaded(self._slots[name])
+            return slots.load(self.arithmetic, self._slots[name])
         if name in self._own:
             message = f"{name} has no value here, or one in lanes only"
             raise Refusal(message)
@@ -92,18 +92,6 @@ class Body(Expressions):
     def call(self, function: Callable[..., Any], values: list[Value], keywords: dict[str, Value]) -> Value:
         """Return the result of a function written in Python."""
         return self.unit.call(self, function, values, keywords)
-
-    def slot_of(self, value: Value) -> Value:
-        """Return room for a value of this structure."""
-        return slots.slot_for(self.arithmetic, value)
-
-    def stored(self, slot: Value, value: Value) -> None:
-        """Put a value into its room."""
-        slots.store(self.arithmetic, slot, value)
-
-    def loaded(self, slot: Value) -> Value:
-        """Return the value that stands in a room."""
-        return slots.load(self.arithmetic, slot)
 
     # Names
 
@@ -119,7 +107,7 @@ class Body(Expressions):
         if name not in self._slots:
             self._slots[name] = slots.slot_for(self.arithmetic, value, self.kinds.get(name, Kind.BOOLEAN))
         try:
-            self.stored(self._slots[name], value)
+            slots.store(self.arithmetic, self._slots[name], value)
         except slots.WiderKindError as error:
             error.name = name
             raise
@@ -193,10 +181,9 @@ class Body(Expressions):
                 self._while(node)
             case ast.For(orelse=[]):
                 self._for(node)
-            case ast.Break():
-                self.text.jump(self._loops[-1][1])
-            case ast.Continue():
-                self.text.jump(self._loops[-1][0])
+            case ast.Break() | ast.Continue():
+                self._outside_lanes("break and continue within lanes; write a if condition else b")
+                self.text.jump(self._loops[-1][isinstance(node, ast.Break)])
             case _:
                 message = f"{type(node).__name__} is not compiled; write it with loops, conditions and calls"
                 raise Refusal(message)
@@ -221,16 +208,14 @@ class Body(Expressions):
 
     def finished(self) -> Value:
         """Return the result, behind the last instruction of the function."""
-        return self.result if self.arithmetic.lanes else self.loaded(self._slots.get(RESULT))
+        return self.result if self.arithmetic.lanes else slots.load(self.arithmetic, self._slots.get(RESULT))
 
     def _if(self, node: ast.If) -> None:
         condition = self.value(node.test)
         if not isinstance(condition, Number):
             self._block(node.body if condition else node.orelse)
             return
-        if self.arithmetic.lanes:
-            message = "a condition on lanes; write a if condition else b"
-            raise Refusal(message)
+        self._outside_lanes("a condition on lanes; write a if condition else b")
         yes, no, done = (self.text.new_block() for _ in range(3))
         self.text.branch(self.arithmetic.truth(condition).text, yes, no)
         for block, statements in ((yes, node.body), (no, node.orelse)):
@@ -264,10 +249,9 @@ class Body(Expressions):
         self._while_running(statements)
         self._loops.pop()
 
-    def _outside_lanes(self) -> None:
+    def _outside_lanes(self, reason: str = "a loop whose length is not known, within lanes") -> None:
         if self.arithmetic.lanes:
-            message = "a loop whose length is not known, within lanes"
-            raise Refusal(message)
+            raise Refusal(reason)
 
     # Loops
 

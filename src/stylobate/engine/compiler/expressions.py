@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from stylobate.engine.compiler import arrays, marks, mathematics
+from stylobate.engine.compiler import arrays, marks, mathematics, slots
 from stylobate.engine.compiler.arithmetic import Arithmetic
 from stylobate.engine.compiler.refusal import Refusal
 from stylobate.engine.compiler.values import Array, Kind, LaneIndex, Number, Value, kind_of
@@ -30,18 +30,6 @@ class Expressions(ABC):
     @abstractmethod
     def call(self, function: Callable[..., Any], values: list[Value], keywords: dict[str, Value]) -> Value:
         """Return the result of a function written in Python."""
-
-    @abstractmethod
-    def slot_of(self, value: Value) -> Value:
-        """Return room for a value of this structure."""
-
-    @abstractmethod
-    def stored(self, slot: Value, value: Value) -> None:
-        """Put a value into its room."""
-
-    @abstractmethod
-    def loaded(self, slot: Value) -> Value:
-        """Return the value that stands in a room."""
 
     def value(self, node: ast.expr) -> Value:  # noqa: C901, PLR0911  one case for each form
         """Return the value of an expression."""
@@ -195,14 +183,14 @@ class Expressions(ABC):
         end_of_yes = self.text.block
         self.text.begin(no)
         second = self.value(node.orelse)
-        slot = self.slot_of(_wider(first, second))
-        self.stored(slot, second)
+        slot = slots.slot_for(self.arithmetic, _wider(first, second))
+        slots.store(self.arithmetic, slot, second)
         self.text.jump(done)
         self.text.block = end_of_yes
-        self.stored(slot, first)
+        slots.store(self.arithmetic, slot, first)
         self.text.jump(done)
         self.text.begin(done)
-        return self.loaded(slot)
+        return slots.load(self.arithmetic, slot)
 
     def _element(self, node: ast.Subscript) -> Value:
         owner, indices = self.value(node.value), self.indices(node)

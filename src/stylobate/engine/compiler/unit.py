@@ -4,6 +4,7 @@ import ast
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from types import FunctionType
 from typing import Any
 
 from stylobate.engine.compiler.arithmetic import Arithmetic
@@ -22,7 +23,7 @@ class ArrayArgument:
     Parameters
     ----------
     shape
-        Lengths; None where they are told at each call.
+        Lengths; None where each call passes them.
     element
         What it holds.
     """
@@ -54,9 +55,9 @@ class Unit:
         self.module = ModuleText()
         self.lanes, self.exact = lanes, exact
         self._fast = {plain_function(function) for function in fast}
-        self._sources: dict[Callable[..., Any], Source] = {}
+        self._sources: dict[FunctionType, Source] = {}
         self._made: dict[tuple[Any, ...], _Made] = {}
-        self._within: list[Callable[..., Any]] = []
+        self._within: list[FunctionType] = []
 
     def export(self, function: Callable[..., Any], name: str, arguments: Sequence[ArrayArgument | Kind]) -> None:
         """Add a function that is called from outside: with numbers, and pointers followed by lengths not known before.
@@ -67,7 +68,7 @@ class Unit:
         head: list[str] = []
         arithmetic = Arithmetic(self.module, text, fast=False)
         values = [_argument(arithmetic, argument, head) for argument in arguments]
-        result = _called(arithmetic, self._specialised(function, values, fast=False), values)
+        result = _called(arithmetic, self._specialised(plain_function(function), values, fast=False), values)
         text.end("ret i64 0" if result is None else f"ret {arithmetic.number(result, Kind.INTEGER).operand}")
         self.module.define(f"i64 @{name}({', '.join(head)})", text.body())
 
@@ -76,33 +77,31 @@ class Unit:
     ) -> Value:
         """Return the result of a function that another one calls: a call, or in lanes its instructions in place."""
         try:
-            source = self._source(function)
+            plain = plain_function(function)
         except CompileError as error:
             raise Refusal(error) from error
-        arithmetic = caller.arithmetic
+        source, arithmetic = self._source(plain), caller.arithmetic
         fast = bool(arithmetic.flags)
         bound = _bound(source, values, keywords)
         if not arithmetic.lanes:
             ordered = list(bound.values())
-            return _called(arithmetic, self._specialised(function, ordered, fast=fast), ordered)
-        with self._entered(plain_function(function)):
+            return _called(arithmetic, self._specialised(plain, ordered, fast=fast), ordered)
+        with self._entered(plain):
             body = Body(self, source, arithmetic, {})
             body.run(bound)
         return body.finished()
 
-    def _source(self, function: Callable[..., Any]) -> Source:
-        plain = plain_function(function)
-        if plain not in self._sources:
-            self._sources[plain] = source_of(plain)
-        return self._sources[plain]
+    def _source(self, function: FunctionType) -> Source:
+        if function not in self._sources:
+            self._sources[function] = source_of(function)
+        return self._sources[function]
 
-    def _specialised(self, function: Callable[..., Any], values: Sequence[Value], *, fast: bool) -> _Made:
-        plain = plain_function(function)
-        key = (plain, fast, *map(_structure, values))
+    def _specialised(self, function: FunctionType, values: Sequence[Value], *, fast: bool) -> _Made:
+        key = (function, fast, *map(_structure, values))
         if key not in self._made:
             source = self._source(function)
-            with self._entered(plain):
-                self._made[key] = self._compiled(source, values, fast=fast or source.fast or plain in self._fast)
+            with self._entered(function):
+                self._made[key] = self._compiled(source, values, fast=fast or source.fast or function in self._fast)
         return self._made[key]
 
     def _compiled(self, source: Source, values: Sequence[Value], *, fast: bool) -> _Made:
@@ -117,12 +116,12 @@ class Unit:
                 kinds[error.name] = error.kind
                 continue
             result = body.finished()
-            name = f"{source.name}.{len(self._made)}.{len(self._within)}"
+            name = f"{source.name}.{len(self._made)}"
             self.module.define(f'internal {_type_of(result)} @"{name}"({", ".join(head)})', _with_return(text, result))
             return _Made(name, result)
 
     @contextmanager
-    def _entered(self, function: Callable[..., Any]) -> Iterator[None]:
+    def _entered(self, function: FunctionType) -> Iterator[None]:
         if function in self._within:
             message = f"{function.__name__} calls itself; write it as a loop"
             raise Refusal(message)
