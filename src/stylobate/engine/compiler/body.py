@@ -2,30 +2,38 @@
 
 import ast
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from stylobate.engine.compiler import arrays, marks, slots
 from stylobate.engine.compiler.arithmetic import Arithmetic
-from stylobate.engine.compiler.expressions import Expressions
+from stylobate.engine.compiler.names import Names
 from stylobate.engine.compiler.refusal import Refusal, at_its_place
 from stylobate.engine.compiler.sources import Source
 from stylobate.engine.compiler.text import Block
-from stylobate.engine.compiler.values import Array, Kind, LaneIndex, Number, Value, constant
-
-if TYPE_CHECKING:
-    from stylobate.engine.compiler.unit import Unit
+from stylobate.engine.compiler.values import Kind, LaneIndex, Number, Value, constant
 
 RESULT = "return"
 """The name under which the room of a function's result is kept."""
 
 
-class Body(Expressions):
+class Callees(Protocol):
+    """The functions that are compiled together."""
+
+    lanes: int
+
+    def call(
+        self, caller: "Body", function: Callable[..., Any], values: list[Value], keywords: Mapping[str, Value]
+    ) -> Value:
+        """Return the result of a function that another one calls."""
+
+
+class Body(Names):
     """The body of one function under construction.
 
     Parameters
     ----------
-    unit
-        What compiles the functions that it calls.
+    callees
+        The functions that it calls.
     source
         The function.
     arithmetic
@@ -34,17 +42,12 @@ class Body(Expressions):
         Kinds that the room of a name must at least have.
     """
 
-    def __init__(self, unit: "Unit", source: Source, arithmetic: Arithmetic, kinds: Mapping[str, Kind]) -> None:
-        super().__init__(arithmetic)
-        self.unit, self.source, self.kinds = unit, source, kinds
+    def __init__(self, callees: Callees, source: Source, arithmetic: Arithmetic, kinds: Mapping[str, Kind]) -> None:
+        super().__init__(source, arithmetic, kinds)
+        self.callees = callees
         self.result: Value = None
         self.exit = self.text.new_block()
-        self._bound: dict[str, Value] = {}
-        self._slots: dict[str, Value] = {}
-        self._chosen = _assigned_by_control_flow(source.body)
-        self._own = _assigned(source.body) | {one.arg for one in _all_arguments(source.arguments)}
         self._loops: list[tuple[Block, Block]] = []
-        self._depth = 0
         self._returned = False
         self._at: ast.AST = source.arguments
 
@@ -62,7 +65,7 @@ class Body(Expressions):
         """
         try:
             for name, value in arguments.items():
-                self._assign(name, value)
+                self.assign(name, value)
             self._block(self.source.body)
         except Refusal as refusal:
             raise at_its_place(refusal, self._at, self.source.file, self.source.name) from refusal
@@ -74,80 +77,9 @@ class Body(Expressions):
         self.text.jump(self.exit)
         self.text.begin(self.exit)
 
-    def read(self, name: str) -> Value:
-        """Return what a name means here."""
-        if name in self._bound:
-            return self._bound[name]
-        if name in self._slots:
-            return slots.load(self.arithmetic, self._slots[name])
-        if name in self._own:
-            message = f"{name} has no value here, or one in lanes only"
-            raise Refusal(message)
-        try:
-            return self.source.find(name)
-        except KeyError:
-            message = f"{name} is not defined"
-            raise Refusal(message) from None
-
     def call(self, function: Callable[..., Any], values: list[Value], keywords: dict[str, Value]) -> Value:
         """Return the result of a function written in Python."""
-        return self.unit.call(self, function, values, keywords)
-
-    # Names
-
-    def _assign(self, name: str, value: Value) -> None:
-        lanes = self.arithmetic.lanes
-        if lanes or name not in self._chosen or (not self._depth and not slots.can_be_stored(value)):
-            self._bound[name] = value
-            return
-        self._bound.pop(name, None)
-        self._put(name, value)
-
-    def _put(self, name: str, value: Value) -> None:
-        if name not in self._slots:
-            self._slots[name] = slots.slot_for(self.arithmetic, value, self.kinds.get(name, Kind.BOOLEAN))
-        try:
-            slots.store(self.arithmetic, self._slots[name], value)
-        except slots.WiderKindError as error:
-            error.name = name
-            raise
-
-    def _assign_to(self, target: ast.expr, value: Value) -> None:
-        match target:
-            case ast.Name():
-                self._assign(target.id, value)
-            case ast.Tuple() | ast.List():
-                items = self.items(value)
-                if len(items) != len(target.elts):
-                    message = f"{ast.unparse(target)} take {len(target.elts)} values, not {len(items)}"
-                    raise Refusal(message)
-                for part, item in zip(target.elts, items, strict=True):
-                    self._assign_to(part, item)
-            case ast.Subscript():
-                self._put_into_array(target, value)
-            case _:
-                message = f"{ast.unparse(target)} cannot be assigned to"
-                raise Refusal(message)
-
-    def _put_into_array(self, target: ast.Subscript, value: Value) -> None:
-        if isinstance(value, Array):
-            arrays.copy(self.arithmetic, arrays.view(self.arithmetic, self._array(target), self.indices(target)), value)
-        else:
-            arrays.store(self.arithmetic, *self._place(target), value)
-
-    def _array(self, target: ast.Subscript) -> Array:
-        owner = self.value(target.value)
-        if not isinstance(owner, Array):
-            message = f"{ast.unparse(target.value)} is no array"
-            raise Refusal(message)
-        return owner
-
-    def _place(self, target: ast.Subscript) -> tuple[Array, int]:
-        owner, indices = self._array(target), self.indices(target)
-        if len(indices) != len(owner.shape) or any(map(_is_slice, indices)):
-            message = f"{ast.unparse(target)} is no single element of an array; write a loop"
-            raise Refusal(message)
-        return arrays.place(self.arithmetic, owner, indices)
+        return self.callees.call(self, function, values, keywords)
 
     # Statements
 
@@ -167,10 +99,10 @@ class Body(Expressions):
             case ast.Assign():
                 value = self.value(node.value)
                 for target in node.targets:
-                    self._assign_to(target, value)
+                    self.assign_to(target, value)
             case ast.AnnAssign():
                 if node.value is not None:
-                    self._assign_to(node.target, self.value(node.value))
+                    self.assign_to(node.target, self.value(node.value))
             case ast.AugAssign():
                 self._change(node)
             case ast.Return():
@@ -191,9 +123,9 @@ class Body(Expressions):
     def _change(self, node: ast.AugAssign) -> None:
         if not isinstance(node.target, ast.Subscript):
             old = self.value(ast.parse(ast.unparse(node.target), mode="eval").body)
-            self._assign_to(node.target, self.arithmetic.binary(node.op, old, self.value(node.value)))
+            self.assign_to(node.target, self.arithmetic.binary(node.op, old, self.value(node.value)))
             return
-        element, lanes = self._place(node.target)
+        element, lanes = self.place(node.target)
         old = arrays.load(self.arithmetic, element, lanes)
         new = self.arithmetic.binary(node.op, old, self.value(node.value))
         arrays.store(self.arithmetic, element, lanes, new)
@@ -203,7 +135,7 @@ class Body(Expressions):
             self.result, self._returned = value, True
             return
         if value is not None:
-            self._put(RESULT, value)
+            self.put(RESULT, value)
         self.text.jump(self.exit)
 
     def finished(self) -> Value:
@@ -260,7 +192,7 @@ class Body(Expressions):
             function = self.value(node.iter.func)
             if function in (range, marks.lanes):
                 ends = [self.value(argument) for argument in node.iter.args]
-                if function is marks.lanes and self.unit.lanes:
+                if function is marks.lanes and self.callees.lanes:
                     self._over_lanes(node, *ends)
                 else:
                     self._over_range(node, ends)
@@ -290,7 +222,7 @@ class Body(Expressions):
         index = Number(Kind.INTEGER, self.text.value(f"load i64, ptr {counter}"))
         self.text.branch(self.arithmetic.compared(ast.Lt(), index, end).text, body, done)
         self.text.begin(body)
-        self._assign_to(node.target, index)
+        self.assign_to(node.target, index)
         self._pass(node.body, onward, done)
         self.text.jump(onward)
         self.text.begin(onward)
@@ -306,7 +238,7 @@ class Body(Expressions):
             if isinstance(node.target, ast.Name):
                 self._bound[node.target.id] = item
             else:
-                self._assign_to(node.target, item)
+                self.assign_to(node.target, item)
             self._loops.append((onward, done))
             self._block(node.body)
             self._loops.pop()
@@ -341,7 +273,7 @@ class Body(Expressions):
 
     def _over_lanes(self, node: ast.For, count: Value) -> None:
         """Make the passes of a loop side by side, as many at once as fit into a vector."""
-        width = self.unit.lanes
+        width = self.callees.lanes
         if (
             self.arithmetic.lanes
             or not isinstance(count, int)
@@ -368,25 +300,3 @@ class Body(Expressions):
         head.lines.insert(position, f"{first} = phi i64 [ 0, %{begun.label} ], [ {onward}, %{end.label} ]")
         self.text.branch(more, head, done)
         self.text.begin(done)
-
-
-def _is_slice(index: Value) -> bool:
-    return isinstance(index, slice)
-
-
-def _all_arguments(arguments: ast.arguments) -> list[ast.arg]:
-    variable = [one for one in (arguments.vararg, arguments.kwarg) if one]
-    return [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs, *variable]
-
-
-def _assigned(statements: Iterable[ast.AST]) -> set[str]:
-    return {
-        part.id
-        for statement in statements
-        for part in ast.walk(statement)
-        if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)
-    }
-
-
-def _assigned_by_control_flow(statements: Iterable[ast.stmt]) -> set[str]:
-    return _assigned(statement for statement in statements if isinstance(statement, ast.If | ast.While | ast.For))

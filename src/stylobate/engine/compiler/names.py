@@ -1,0 +1,127 @@
+"""Names of a function under construction: what they mean, and what is assigned to them."""
+
+import ast
+from collections.abc import Iterable, Mapping
+
+from stylobate.engine.compiler import arrays, slots
+from stylobate.engine.compiler.arithmetic import Arithmetic
+from stylobate.engine.compiler.expressions import Expressions
+from stylobate.engine.compiler.refusal import Refusal
+from stylobate.engine.compiler.sources import Source
+from stylobate.engine.compiler.values import Array, Kind, Value
+
+
+class Names(Expressions):
+    """The names that a function assigns to, and those of its module.
+
+    A name that control flow assigns to has room in memory; any other one means its value.
+
+    Parameters
+    ----------
+    source
+        The function.
+    arithmetic
+        Writes its instructions.
+    kinds
+        Kinds that the room of a name must at least have.
+    """
+
+    def __init__(self, source: Source, arithmetic: Arithmetic, kinds: Mapping[str, Kind]) -> None:
+        super().__init__(arithmetic)
+        self.source, self._kinds = source, kinds
+        self._bound: dict[str, Value] = {}
+        self._slots: dict[str, Value] = {}
+        self._chosen = _assigned_by_control_flow(source.body)
+        self._own = _assigned(source.body) | set(source.signature.parameters)
+        self._depth = 0
+        """Of conditions and loops that are decided while running."""
+
+    def read(self, name: str) -> Value:
+        """Return what a name means here."""
+        if name in self._bound:
+            return self._bound[name]
+        if name in self._slots:
+            return slots.load(self.arithmetic, self._slots[name])
+        if name in self._own:
+            message = f"{name} has no value here, or one in lanes only"
+            raise Refusal(message)
+        try:
+            return self.source.find(name)
+        except KeyError:
+            message = f"{name} is not defined"
+            raise Refusal(message) from None
+
+    def assign(self, name: str, value: Value) -> None:
+        """Give a name a value."""
+        lanes = self.arithmetic.lanes
+        if lanes or name not in self._chosen or (not self._depth and not slots.can_be_stored(value)):
+            self._bound[name] = value
+            return
+        self._bound.pop(name, None)
+        self.put(name, value)
+
+    def put(self, name: str, value: Value) -> None:
+        """Put a value into the room of a name."""
+        if name not in self._slots:
+            self._slots[name] = slots.slot_for(self.arithmetic, value, self._kinds.get(name, Kind.BOOLEAN))
+        try:
+            slots.store(self.arithmetic, self._slots[name], value)
+        except slots.WiderKindError as error:
+            error.name = name
+            raise
+
+    def assign_to(self, target: ast.expr, value: Value) -> None:
+        """Give what stands on the left of an assignment a value."""
+        match target:
+            case ast.Name():
+                self.assign(target.id, value)
+            case ast.Tuple() | ast.List():
+                items = self.items(value)
+                if len(items) != len(target.elts):
+                    message = f"{ast.unparse(target)} take {len(target.elts)} values, not {len(items)}"
+                    raise Refusal(message)
+                for part, item in zip(target.elts, items, strict=True):
+                    self.assign_to(part, item)
+            case ast.Subscript():
+                self._put_into_array(target, value)
+            case _:
+                message = f"{ast.unparse(target)} cannot be assigned to"
+                raise Refusal(message)
+
+    def _put_into_array(self, target: ast.Subscript, value: Value) -> None:
+        if isinstance(value, Array):
+            arrays.copy(self.arithmetic, arrays.view(self.arithmetic, self._array(target), self.indices(target)), value)
+        else:
+            arrays.store(self.arithmetic, *self.place(target), value)
+
+    def _array(self, target: ast.Subscript) -> Array:
+        owner = self.value(target.value)
+        if not isinstance(owner, Array):
+            message = f"{ast.unparse(target.value)} is no array"
+            raise Refusal(message)
+        return owner
+
+    def place(self, target: ast.Subscript) -> tuple[Array, int]:
+        """Return the element that is assigned to; see `arrays.place`."""
+        owner, indices = self._array(target), self.indices(target)
+        if len(indices) != len(owner.shape) or any(map(_is_slice, indices)):
+            message = f"{ast.unparse(target)} is no single element of an array; write a loop"
+            raise Refusal(message)
+        return arrays.place(self.arithmetic, owner, indices)
+
+
+def _is_slice(index: Value) -> bool:
+    return isinstance(index, slice)
+
+
+def _assigned(statements: Iterable[ast.AST]) -> set[str]:
+    return {
+        part.id
+        for statement in statements
+        for part in ast.walk(statement)
+        if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)
+    }
+
+
+def _assigned_by_control_flow(statements: Iterable[ast.stmt]) -> set[str]:
+    return _assigned(statement for statement in statements if isinstance(statement, ast.If | ast.While | ast.For))
