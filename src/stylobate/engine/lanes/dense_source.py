@@ -4,8 +4,7 @@ E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I
 order 7, from three stages more.
 """
 
-from scipy.integrate import DOP853
-
+from stylobate.engine import dop853
 from stylobate.engine.lanes.layout import Rows
 from stylobate.engine.lanes.shape import DENSE_TERMS, STAGES, Shape
 from stylobate.engine.lanes.stage_source import combination
@@ -22,7 +21,7 @@ def dense_source(shape: Shape, rows: Rows) -> str:
     stages = [row(f"k{stage}_") for stage in range(STAGES + 1)] + [row(name) for name in _EXTRA]
     lines = ["def set_dense(buf, i):", f"    h = {rows.of_lane('tried')}", f"    t = {rows.of_lane('time')}"]
     made = f"row_state(buf, i, {rows['dense0_0']})"
-    for number, (weights, fraction, name) in enumerate(zip(DOP853.A_EXTRA, DOP853.C_EXTRA, _EXTRA, strict=True)):
+    for number, (weights, fraction, name) in enumerate(zip(dop853.A_EXTRA, dop853.C_EXTRA, _EXTRA, strict=True)):
         known = STAGES + 1 + number
         lines += [
             "    for j in range(ORDER):",
@@ -37,7 +36,7 @@ def dense_source(shape: Shape, rows: Rows) -> str:
         f"        {row('dense0_')} = change",
         f"        {row('dense1_')} = h * {stages[0]} - change",
         f"        {row('dense2_')} = 2.0 * change - h * ({stages[0]} + {stages[STAGES]})",
-        *(f"        {row(f'dense{3 + k}_')} = h * ({combination(d, stages)})" for k, d in enumerate(DOP853.D)),
+        *(f"        {row(f'dense{3 + k}_')} = h * ({combination(d, stages)})" for k, d in enumerate(dop853.D)),
     ]
     lines += ["", "", "def dense_state(buf, i, u):", "    v = 1.0 - u"]
     lines.append(f"    return ({', '.join(_within(rows, j) for j in range(shape.order))})")

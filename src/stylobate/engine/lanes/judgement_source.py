@@ -2,8 +2,7 @@
 
 from collections.abc import Callable
 
-from scipy.integrate import DOP853
-
+from stylobate.engine import dop853
 from stylobate.engine.lanes.layout import Rows
 from stylobate.engine.lanes.series_source import polynomial, wanted_lines
 from stylobate.engine.lanes.shape import SERIES_ORDER, STAGES, Shape
@@ -50,7 +49,7 @@ def _error(shape: Shape, rows: Rows) -> list[str]:
     out += reciprocal_scales(shape.order)
     for j in range(shape.order):
         stages = [at(f"k{s}_{j}") for s in range(STAGES + 1)]
-        for name, weights in (("e5", DOP853.E5), ("e3", DOP853.E3)):
+        for name, weights in (("e5", dop853.E5), ("e3", dop853.E3)):
             out += [f"q = ({combination(weights, stages)}) * per_scale{j}", f"{name} = {name} + q * q"]
     return [
         *out,

@@ -4,8 +4,7 @@ E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", section IV.2
 stages, which belong to states at one time.
 """
 
-from scipy.integrate import DOP853
-
+from stylobate.engine import dop853
 from stylobate.engine.lanes.layout import Rows
 from stylobate.engine.lanes.shape import STAGES, Shape
 from stylobate.engine.lanes.stage_source import combination
@@ -23,7 +22,7 @@ def stability_source(shape: Shape, rows: Rows) -> str:
         f"h = {rows.of_lane('made')}",
         "apart, change = 0.0, 0.0",
         "for j in range(ORDER):",
-        f"    step = {row('new')} - {row('last')} - h * ({combination(DOP853.A[last, :last], stages)})",
+        f"    step = {row('new')} - {row('last')} - h * ({combination(dop853.A[last, :last], stages)})",
         f"    turned = {row(f'k{STAGES}_')} - {row(f'k{last}_')}",
         "    apart += step * step",
         "    change += turned * turned",

@@ -7,8 +7,7 @@ locals, which the compiler turns into vector instructions.
 
 from collections.abc import Callable, Iterable, Sequence
 
-from scipy.integrate import DOP853
-
+from stylobate.engine import dop853
 from stylobate.engine.lanes.layout import Rows
 from stylobate.engine.lanes.shape import STAGES, Shape
 
@@ -45,8 +44,8 @@ def reciprocal_scales(order: int) -> list[str]:
 def stage_lines(shape: Shape, rows: Rows, stage: int) -> list[str]:
     """Return the loop of one stage; the last one gives the new state and the slope there."""
     last = stage == STAGES
-    weights = DOP853.B if last else DOP853.A[stage, :stage]
-    fraction = 1.0 if last else float(DOP853.C[stage])
+    weights = dop853.B if last else dop853.A[stage, :stage]
+    fraction = 1.0 if last else float(dop853.C[stage])
     out = ["    for i in lanes(WIDTH):", f"        h = {rows.at('h')}", f"        t = {rows.at('time')}"]
     for j in range(shape.order):
         total = combination(weights, [rows.at(f"k{s}_{j}") for s in range(stage)])

@@ -4,8 +4,7 @@ Their equations are long. They stand once, in a function that all stages call, a
 over in rows. What is done with each state alike is one loop over all states of all lanes, which lie in a block of rows.
 """
 
-from scipy.integrate import DOP853
-
+from stylobate.engine import dop853
 from stylobate.engine.lanes.demand_source import cubic_weights
 from stylobate.engine.lanes.judgement_source import judgement
 from stylobate.engine.lanes.layout import Rows
@@ -69,8 +68,8 @@ def _guarding(shape: Shape, rows: Rows) -> list[str]:
 def _stage(rows: Rows, stage: int) -> list[str]:
     """Return the lines of one stage; the last one gives the new state and the slope there."""
     last = stage == STAGES
-    fraction = 1.0 if last else float(DOP853.C[stage])
-    weights = DOP853.B if last else DOP853.A[stage, :stage]
+    fraction = 1.0 if last else float(dop853.C[stage])
+    weights = dop853.B if last else dop853.A[stage, :stage]
     total = combination(weights, [_block(rows, f"k{s}_0") for s in range(stage)])
     return [
         *_over_block([f"{_block(rows, 'stage0')} = {_block(rows, 'y0')} + {_block(rows, 'step0')} * ({total})"]),
