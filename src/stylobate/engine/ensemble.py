@@ -14,7 +14,6 @@ from stylobate.base_motions.one_of import members_of
 from stylobate.base_motions.varying import numbers_of
 from stylobate.column import Column
 from stylobate.config import provenance_of_run
-from stylobate.engine.ensembles.alone import follow_alone
 from stylobate.engine.ensembles.batch import Batch, Plan
 from stylobate.engine.ensembles.broadcasting import AXIS, ArrayLike, Runs, broadcast
 from stylobate.engine.ensembles.harmonics import terms_of
@@ -25,7 +24,7 @@ from stylobate.engine.ensembles.summaries import QUANTITIES, Arrays, empty, fall
 from stylobate.engine.motion_checks import check_motion
 from stylobate.engine.pace import announce, expected_steps
 from stylobate.engine.parameters import changed_model, check_names, split
-from stylobate.engine.single import require_nouns
+from stylobate.engine.starts import require_nouns
 from stylobate.errors import MOST_THREADS, Interrupted, Outcome, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.models.consistency import check_once
@@ -211,6 +210,8 @@ def _followed(
         _put(arrays, part, batch)
         stiff = np.flatnonzero(batch.stiff)
         if stiff.size:
+            from stylobate.engine.ensembles.alone import follow_alone  # noqa: PLC0415  SciPy, for these runs only
+
             chosen = chosen.part(stiff)
             batch = Batch.of(plan, chosen)
             follow_alone(batch, chosen, halt)

@@ -6,9 +6,9 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from stylobate.engine.forcing import Floats, Forcing
+from stylobate.engine.starts import cannot_depart
 from stylobate.engine.tolerances import SAMPLES_PER_PERIOD
 from stylobate.engine.trajectory import Piece
-from stylobate.errors import UnsupportedError
 from stylobate.models import Model, Push
 
 # Samples looked at together.
@@ -102,12 +102,6 @@ def departure(model: Model, forcing: Forcing, time: float) -> tuple[float, tuple
     if model.departure is None:
         raise cannot_depart(model)
     return time + elapsed, model.departure(push, elapsed, *model.parameters)
-
-
-def cannot_depart(model: Model) -> UnsupportedError:
-    """Return what is said of a model that does not tell how a column departs from rest."""
-    message = f"model {model.name} does not say how a column departs from rest: give it `departure`, or start it moving"
-    return UnsupportedError(message)
 
 
 def rest_piece(held: tuple[float, ...], start: float, end: float) -> Piece:

@@ -14,10 +14,10 @@ from stylobate.engine.doubt import FALLEN, finer_rest, in_doubt, other_tolerance
 from stylobate.engine.end_of_motion import duration_of, survival
 from stylobate.engine.forcing import Forcing
 from stylobate.engine.history import history
-from stylobate.engine.motion_checks import check_kinds, check_motion
+from stylobate.engine.motion_checks import check_motion
 from stylobate.engine.moving import Method, Mover
 from stylobate.engine.pace import announce, expected_steps
-from stylobate.engine.starts import Turning, require_plane
+from stylobate.engine.starts import Turning, require_nouns, require_plane
 from stylobate.engine.switching.course import SwitchingCourse
 from stylobate.engine.switching.verdict import Account, switching_verdict
 from stylobate.engine.thresholds import Thresholds, is_rest, rest_is_coarse, thresholds_of, without_dust
@@ -34,7 +34,6 @@ from stylobate.errors import (
     require_whole,
 )
 from stylobate.models import Model
-from stylobate.models.consistency import check_once
 from stylobate.results import OutcomeRules, Response
 from stylobate.text import plural
 
@@ -366,19 +365,3 @@ def method_of(model: Model, motion: BaseMotion, rtol: float, atol: float | None,
 def _pair(name: str, value: Sequence[float], unit: str) -> tuple[float, float]:
     x, y = require_vector(name, value, 2, unit)
     return x, y
-
-
-def require_nouns(model: Model, motion: BaseMotion | None, rules: OutcomeRules | None) -> None:
-    """Raise ParameterError if one of these is not what its name says."""
-    if not isinstance(model, Model):
-        message = f"model must be a model such as Slender(column), got {model!r}"
-        raise ParameterError(message)
-    check_once(model)
-    if motion is not None and not isinstance(motion, BaseMotion):
-        message = f"motion must be a base motion such as Harmonic.circular(...) or None, got {motion!r}"
-        raise ParameterError(message)
-    if motion is not None:
-        check_kinds(motion)
-    if rules is not None and not isinstance(rules, OutcomeRules):
-        message = f"rules must be OutcomeRules(...) or None, got {rules!r}"
-        raise ParameterError(message)

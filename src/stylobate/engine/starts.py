@@ -1,4 +1,4 @@
-"""What a run begins with besides tilt and tilt rate."""
+"""What a run begins with besides tilt and tilt rate, and what it cannot begin with."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,8 +8,11 @@ import numpy as np
 
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.forcing import common_line
-from stylobate.errors import ParameterError, require_finite, require_not_negative, require_vector
+from stylobate.engine.motion_checks import check_kinds
+from stylobate.errors import ParameterError, UnsupportedError, require_finite, require_not_negative, require_vector
 from stylobate.models import Model
+from stylobate.models.consistency import check_once
+from stylobate.results import OutcomeRules
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,3 +121,25 @@ def out_of_plane(model: Model, tilt: Sequence[float], tilt_rate: Sequence[float]
         "give all of them the same direction"
     )
     return ParameterError(message)
+
+
+def require_nouns(model: Model, motion: BaseMotion | None, rules: OutcomeRules | None) -> None:
+    """Raise ParameterError if one of these is not what its name says."""
+    if not isinstance(model, Model):
+        message = f"model must be a model such as Slender(column), got {model!r}"
+        raise ParameterError(message)
+    check_once(model)
+    if motion is not None and not isinstance(motion, BaseMotion):
+        message = f"motion must be a base motion such as Harmonic.circular(...) or None, got {motion!r}"
+        raise ParameterError(message)
+    if motion is not None:
+        check_kinds(motion)
+    if rules is not None and not isinstance(rules, OutcomeRules):
+        message = f"rules must be OutcomeRules(...) or None, got {rules!r}"
+        raise ParameterError(message)
+
+
+def cannot_depart(model: Model) -> UnsupportedError:
+    """Return what is said of a model that does not tell how a column departs from rest."""
+    message = f"model {model.name} does not say how a column departs from rest: give it `departure`, or start it moving"
+    return UnsupportedError(message)

@@ -15,8 +15,7 @@ from stylobate.engine.lanes.columns import LOG, NOTE, STATE, Log, Setup, Status
 from stylobate.engine.lanes.expansion import series_integrals
 from stylobate.engine.lanes.kernels import kernel_of
 from stylobate.engine.lanes.shape import Shape
-from stylobate.engine.resting import cannot_depart
-from stylobate.engine.starts import out_of_plane, refuse_spin
+from stylobate.engine.starts import cannot_depart, out_of_plane, refuse_spin
 from stylobate.engine.thresholds import is_rest, rest_energy_for_good, usual_rest_energy
 from stylobate.engine.tolerances import ATOL_SHARE, FIRST_STEP_OFF, PARALLEL_ULP
 from stylobate.models import Model

@@ -17,9 +17,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+import lazy_loader
 import numpy as np
 import xarray as xr
-import zarr
 
 from stylobate.errors import FileError
 from stylobate.files import written_aside
@@ -32,6 +32,9 @@ from stylobate.studies.sweeps.quantities import attributes_of
 from stylobate.studies.sweeps.resuming import differences
 from stylobate.studies.sweeps.sweep import Sweep
 from stylobate.text import plural
+
+zarr: Any = lazy_loader.load("zarr")
+"""Loaded when the first store is opened: a tenth of a second that other sweeps need not wait."""
 
 _log = logging.getLogger("stylobate")
 
@@ -201,7 +204,7 @@ def open_sweep(path: str | Path, *, load: bool = False) -> xr.Dataset:
     return data.load() if load else data
 
 
-def _fill_new(group: zarr.Group, sweep: Sweep, layout: Layout, blocks: Blocks) -> None:
+def _fill_new(group: Any, sweep: Sweep, layout: Layout, blocks: Blocks) -> None:
     for variable in layout.variables:
         group.create_array(
             variable.name,
@@ -320,5 +323,5 @@ def _plain(attributes: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in attributes.items()}
 
 
-def _array(group: zarr.Group, name: str) -> Any:
+def _array(group: Any, name: str) -> Any:
     return group[name]
