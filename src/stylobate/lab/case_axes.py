@@ -26,8 +26,8 @@ _MOVED = ("angular_frequency", "acceleration")
 
 
 def units_of(name: str) -> str:
-    """Return the unit of a number that describes a case."""
-    return next(part[name].cf_units for part in CASE_NUMBERS.values() if name in part)
+    """Return the unit of a number that describes a case; of what the study refuses, none."""
+    return next((part[name].cf_units for part in CASE_NUMBERS.values() if name in part), "")
 
 
 def case_numbers(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[str, tuple[str, ...]]:

@@ -15,7 +15,7 @@ from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
 from stylobate.models.model import Balance, Floats, Output, Push
 from stylobate.models.numbers import Damping, PassageTilt, Restitution, RollingResistance, SpinDamping
-from stylobate.models.tilt_vector import LEAN, TiltVectorModel, from_plane_without_spin
+from stylobate.models.tilt_vector import SpinningModel
 
 
 def balance(
@@ -207,7 +207,7 @@ def impact_map(
 
 
 @dataclass(frozen=True, slots=True)
-class Rolling(TiltVectorModel):
+class Rolling(SpinningModel):
     """The rigid column that rolls without slip on the rim of its base, at any tilt below π/2, and may turn.
 
     Its state is the tilt vector α = θ(cos β, sin β), its rate and the spin w3, the angular velocity about its axis;
@@ -256,15 +256,12 @@ class Rolling(TiltVectorModel):
     passage_tilt: PassageTilt | None = None
 
     name: ClassVar[str] = "rolling"
-    state_names: ClassVar[tuple[str, ...]] = (*LEAN, "spin")
-    spin_state: ClassVar[int | None] = 4
     carried_names: ClassVar[tuple[str, ...]] = ("twist", "footprint_x", "footprint_y")
 
     rates = staticmethod(rates)
     contact = staticmethod(contact)
     carried_rates = staticmethod(carried_rates)
     planar_rates = staticmethod(planar_rates)
-    from_plane = staticmethod(from_plane_without_spin)
     rest_energy = staticmethod(rest_energy)
     departure = staticmethod(departure)
     passage = staticmethod(passage)

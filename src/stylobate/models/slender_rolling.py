@@ -14,7 +14,7 @@ from stylobate.models.closed_form import ClosedForm, RollingLaw
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.model import Balance, Floats, Output, Push
 from stylobate.models.numbers import Damping, SpinDamping
-from stylobate.models.tilt_vector import LEAN, TiltVectorModel, from_plane_without_spin
+from stylobate.models.tilt_vector import SpinningModel
 from stylobate.quantities import Quantity
 
 # As in the slender model: keeps 1/|α| finite at the upright itself.
@@ -141,7 +141,7 @@ def passage(
 
 
 @dataclass(frozen=True, slots=True)
-class SlenderRolling(TiltVectorModel):
+class SlenderRolling(SpinningModel):
     """A slender column that rolls without slip: small tilt, the twist free.
 
     With σ = w3/ω0, κ = m h²/J0, i_a = I_a/(m r²), D = 1 + i_a − κ, û = α/|α|, n across it, a_n = a_h·n, and contact
@@ -182,15 +182,12 @@ class SlenderRolling(TiltVectorModel):
     couples: Couples = "contact"
 
     name: ClassVar[str] = "slender rolling"
-    state_names: ClassVar[tuple[str, ...]] = (*LEAN, "spin")
-    spin_state: ClassVar[int | None] = 4
     carried_names: ClassVar[tuple[str, ...]] = ("twist", "footprint_x", "footprint_y")
 
     rates = staticmethod(rates)
     contact = staticmethod(contact)
     carried_rates = staticmethod(carried_rates)
     planar_rates = staticmethod(planar_rates)
-    from_plane = staticmethod(from_plane_without_spin)
     rest_energy = staticmethod(rest_energy)
     departure = staticmethod(departure)
     passage = staticmethod(passage)

@@ -24,7 +24,7 @@ def from_plane_without_spin(tilt: Any, rate: Any, ux: float, uy: float, *_: floa
 
 
 class TiltVectorModel(Model):
-    """A model whose state is the tilt vector and its rate; what a subclass adds to `state_names` begins with zero."""
+    """A model whose state is the tilt vector and its rate."""
 
     __slots__ = ()
 
@@ -34,6 +34,21 @@ class TiltVectorModel(Model):
     from_plane = staticmethod(from_plane)
 
     def start(self, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, ...]:
-        """Return the state with this tilt vector [rad] and its rate [rad/s]; all else is zero."""
-        scale, more = self.time_scale, len(self.state_names) - len(LEAN)
-        return tilt[0], tilt[1], tilt_rate[0] * scale, tilt_rate[1] * scale, *(0.0 * tilt[0],) * more
+        """Return the state with this tilt vector [rad] and its rate [rad/s]."""
+        scale = self.time_scale
+        return tilt[0], tilt[1], tilt_rate[0] * scale, tilt_rate[1] * scale
+
+
+class SpinningModel(TiltVectorModel):
+    """A model with the spin as its fifth state."""
+
+    __slots__ = ()
+
+    state_names: ClassVar[tuple[str, ...]] = (*LEAN, "spin")
+    spin_state: ClassVar[int | None] = len(LEAN)
+
+    from_plane = staticmethod(from_plane_without_spin)
+
+    def start(self, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, ...]:
+        """Return the state with this tilt vector [rad] and its rate [rad/s], without spin."""
+        return *TiltVectorModel.start(self, tilt, tilt_rate), 0.0 * tilt[0]
