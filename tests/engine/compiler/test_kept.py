@@ -1,6 +1,7 @@
 """Compiled code: from the cache if it is whole and ours, compiled otherwise, and the same bits each time."""
 
 import errno
+import linecache
 import threading
 import time
 
@@ -157,6 +158,13 @@ def test_what_cannot_be_compiled_is_named_and_not_kept(folder):
     with pytest.raises(UnsupportedError, match=r"model model cannot be compiled; .*too many positional arguments"):
         sum_of(squares(TEXT.replace("rates(x[i])", "rates(x[i], 2.0)")))
     assert list(folder.glob("*.code")) == []
+
+
+def test_written_text_is_found_when_others_forget_it(folder, compilations):
+    compiled = squares()
+    assert compiled.module
+    linecache.clearcache()
+    assert sum_of(compiled) == np.sum(X**2)
 
 
 def test_plain_python_computes_the_same_without_compiling(folder, compilations, monkeypatch):

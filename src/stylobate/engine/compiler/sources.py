@@ -4,7 +4,6 @@ import ast
 import builtins
 import copy
 import inspect
-import linecache
 import textwrap
 import types
 from collections.abc import Callable, Iterator
@@ -14,6 +13,7 @@ from typing import Any
 
 from stylobate.engine.compiler.marks import is_fast
 from stylobate.engine.compiler.refusal import CompileError
+from stylobate.engine.compiler.written import lines_of
 
 _Node = ast.FunctionDef | ast.Lambda
 _Functions = dict[tuple[str, int], tuple[list[_Node], types.CodeType | None]]
@@ -89,8 +89,7 @@ def _content(cell: types.CellType) -> Any:
 
 
 def _node_of(code: types.CodeType) -> _Node:
-    linecache.checkcache(code.co_filename)
-    lines = linecache.getlines(code.co_filename)
+    lines = lines_of(code.co_filename)
     place = (code.co_name, code.co_firstlineno)
     nodes, written = _functions_of("".join(lines), code.co_filename).get(place) or _within_other_text(lines, *place)
     if len(nodes) != 1 or written is None or not _is_same(written, code):
