@@ -318,3 +318,62 @@ def test_functions_that_the_user_compiled_already_are_taken_and_told_apart(writt
     data = expect_as_alone(one(COLUMN, drag=5.0), CIRCLE, **TURNING)
     same = sb.simulate_ensemble(written(dragged()).Dragged(COLUMN, drag=5.0), CIRCLE, **TURNING)
     np.testing.assert_allclose(data["end_tilt"], same["end_tilt"][0], atol=1e-9)
+
+
+MORE = """
+from collections import namedtuple
+from enum import IntEnum
+
+from stylobate.engine.compiler.marks import fast
+
+
+class Law:
+    G = 1.0
+
+    class Deep:
+        K = 2.0
+
+
+class Color(IntEnum):
+    RED = 3
+
+
+Pair = namedtuple("Pair", "one other", defaults=(0.5,))
+COUNTED = range(3)
+
+
+def made(factor):
+    return lambda v: v * factor
+
+
+low, high = made(1.0), made(3.0)
+
+
+def plain(v):
+    return v
+
+
+def shown(v, *, shift=0.25):
+    pair = Pair(v)
+    return Law.G * Law.Deep.K + Color.RED * pair.one + shift + low(v) * high(v) + plain(v) + len(COUNTED)
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("G = 1.0", "G = 1.5"),
+        ("K = 2.0", "K = 2.5"),
+        ("RED = 3", "RED = 4"),
+        ('"one other"', '"other one"'),
+        ("defaults=(0.5,)", "defaults=(0.75,)"),
+        ("range(3)", "range(4)"),
+        ("made(3.0)", "made(4.0)"),
+        ("shift=0.25", "shift=0.5"),
+        ("def plain", "@fast\ndef plain"),
+    ],
+)
+def test_constants_of_classes_and_marks_are_part_of_the_fingerprint(written, old, new):
+    assert MORE.count(old) == 1
+    assert fingerprint(written(MORE).shown) != fingerprint(written(MORE.replace(old, new)).shown)
+    assert fingerprint(written(MORE).shown) == fingerprint(written(MORE).shown)

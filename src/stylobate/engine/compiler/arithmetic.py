@@ -12,6 +12,7 @@ from typing import Any
 from stylobate.engine.compiler.refusal import Refusal
 from stylobate.engine.compiler.text import FunctionText, ModuleText
 from stylobate.engine.compiler.values import (
+    Array,
     Kind,
     LaneIndex,
     Number,
@@ -52,6 +53,7 @@ _COMPARED = {
     ast.NotEq: ("une", "ne"),
 }
 
+_BEYOND = 2**63
 MOST_FACTORS = 16
 """A power up to this one, a whole number that is known, is made by multiplications."""
 
@@ -88,6 +90,9 @@ class Arithmetic:
             message = f"a number is wanted, not {_described(value)}"
             raise Refusal(message)
         own = kind_of(value)
+        if own is Kind.INTEGER and abs(value) >= _BEYOND:
+            message = f"whole numbers have 64 bits, {value} has more"
+            raise Refusal(message)
         if kind is not None and kind < own and kind is Kind.INTEGER:
             message = f"a whole number is wanted, not {value}"
             raise Refusal(message)
@@ -157,13 +162,14 @@ class Arithmetic:
 
     def _divided(self, operation: ast.operator, x: Number, y: Number) -> Number:
         # LLVM rounds quotients of whole numbers towards zero, Python down.
-        rest = Number(Kind.INTEGER, self.text.value(f"srem {x.operand}, {y.text}"))
+        y = self.number(self.chosen(self.compared(ast.Eq(), y, 0), 1, y))  # by zero the processor would stop
+        rest = Number(Kind.INTEGER, self.text.value(f"srem {x.operand}, {y.text}"), x.lanes)
         apart = self.text.value(f"xor {rest.operand}, {y.text}")
-        opposite = self.compared(ast.Lt(), Number(Kind.INTEGER, apart), 0)
+        opposite = self.compared(ast.Lt(), Number(Kind.INTEGER, apart, x.lanes), 0)
         one_off = self.both(self.compared(ast.NotEq(), rest, 0), opposite)
         if isinstance(operation, ast.Mod):
             return self.number(self.chosen(one_off, self.binary(ast.Add(), rest, y), rest))
-        whole = Number(Kind.INTEGER, self.text.value(f"sdiv {x.operand}, {y.text}"))
+        whole = Number(Kind.INTEGER, self.text.value(f"sdiv {x.operand}, {y.text}"), x.lanes)
         return self.number(self.chosen(one_off, self.binary(ast.Sub(), whole, 1), whole))
 
     def _power(self, base: Value, exponent: Value) -> Value:
@@ -190,6 +196,7 @@ class Arithmetic:
 
     def opposite(self, value: Value) -> Value:
         """Return whether a condition does not hold."""
+        _refuse_lanes(value)
         if not isinstance(value, Number):
             return not value
         number = self.truth(value)
@@ -198,6 +205,11 @@ class Arithmetic:
 
     def compared(self, operation: ast.cmpop, a: Value, b: Value) -> Value:
         """Return whether two numbers stand to each other as the operation says."""
+        _refuse_lanes(a, b)
+        if isinstance(operation, ast.Is | ast.IsNot) and (a is None or b is None):
+            return (a is b) is isinstance(operation, ast.Is)
+        if isinstance(a, tuple) and isinstance(b, tuple):
+            return self._compared_tuples(operation, a, b)
         if not isinstance(a, Number) and not isinstance(b, Number):
             return _KNOWN[type(operation)](a, b)
         if type(operation) not in _COMPARED:
@@ -210,6 +222,15 @@ class Arithmetic:
         else:
             text = self.text.value(f"icmp {of_integers} {x.operand}, {y.text}")
         return Number(Kind.BOOLEAN, text, x.lanes)
+
+    def _compared_tuples(self, operation: ast.cmpop, a: tuple[Value, ...], b: tuple[Value, ...]) -> Value:
+        if not isinstance(operation, ast.Eq | ast.NotEq):
+            message = "tuples are compared by == and != only"
+            raise Refusal(message)
+        equal: Value = len(a) == len(b)
+        for one, other in zip(a, b, strict=False):
+            equal = self.both(equal, self.compared(ast.Eq(), one, other))
+        return equal if isinstance(operation, ast.Eq) else self.opposite(equal)
 
     def both(self, a: Value, b: Value) -> Value:
         """Return whether both conditions hold."""
@@ -232,6 +253,9 @@ class Arithmetic:
         if not isinstance(condition, Number):
             return a if condition else b
         if isinstance(a, tuple) or isinstance(b, tuple):
+            if type(a) is not type(b) or len(a) != len(b):
+                message = "one of two tuples is chosen where they have the same length and class"
+                raise Refusal(message)
             made = [self.chosen(condition, *pair) for pair in zip(a, b, strict=True)]
             return type(a)(*made) if hasattr(a, "_fields") else tuple(made)
         x, y = self.alike(a, b)
@@ -280,6 +304,12 @@ class Arithmetic:
         return Number(Kind.INTEGER, self.text.value(f"call i64 {function}({value.operand})"))
 
 
+def _refuse_lanes(*values: Value) -> None:
+    if any(isinstance(value, LaneIndex) for value in values):
+        message = "a condition on the index of a loop over lanes; keep it in a row of the array"
+        raise Refusal(message)
+
+
 def _moved(operation: ast.operator, a: Value, b: Value) -> LaneIndex:
     index, step = (a, b) if isinstance(a, LaneIndex) else (b, a)
     if not isinstance(operation, ast.Add) or not isinstance(step, int):
@@ -297,4 +327,6 @@ def _quotient(a: float, b: float) -> float:
 def _described(value: Value) -> str:
     if isinstance(value, LaneIndex):
         return "the index of a loop over lanes"
+    if isinstance(value, Array):
+        return "an array"
     return f"a {type(value).__name__}" if isinstance(value, tuple) else repr(value)

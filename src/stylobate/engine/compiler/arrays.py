@@ -3,6 +3,7 @@
 import ast
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -37,7 +38,8 @@ def view(arithmetic: Arithmetic, array: Array, indices: Sequence[Value]) -> Arra
     if known:
         pointer = _moved(arithmetic, pointer, constant(known, Kind.INTEGER), array.element)
     rest = len(indices)
-    return Array(pointer, (*shape, *array.shape[rest:]), (*strides, *array.strides[rest:]), array.element)
+    shape, strides = [*shape, *array.shape[rest:]], [*strides, *array.strides[rest:]]
+    return replace(array, pointer=pointer, shape=tuple(shape), strides=tuple(strides))
 
 
 def room(arithmetic: Arithmetic, shape: Value) -> Array:
@@ -57,7 +59,7 @@ def room(arithmetic: Arithmetic, shape: Value) -> Array:
 def copy(arithmetic: Arithmetic, target: Array, source: Value) -> None:
     """Put the numbers of an array into another one of the same shape, both without gaps."""
     alike = isinstance(source, Array) and source.shape == target.shape and source.strides == target.strides
-    if not alike or target.strides != _without_gaps(target.shape):
+    if not alike or not target.writable or target.strides != _without_gaps(target.shape):
         message = "arrays are copied as a whole where shapes are known and equal, without gaps; write a loop"
         raise Refusal(message)
     move = arithmetic.module.declared("llvm.memmove.p0.p0.i64", "void", ["ptr", "ptr", "i64", "i1"])
@@ -78,7 +80,10 @@ def flat(arithmetic: Arithmetic, array: Array) -> Array:
     size: Value = 1
     for length in array.shape:
         size = arithmetic.binary(ast.Mult(), size, length)
-    return Array(array.pointer, (size,), (1,), array.element)
+    if _is_known(array.shape) and array.strides != _without_gaps(array.shape):
+        message = "only an array without gaps is one row"
+        raise Refusal(message)
+    return replace(array, shape=(size,), strides=(1,))
 
 
 def place(arithmetic: Arithmetic, array: Array, indices: Sequence[Value]) -> tuple[Array, int]:
@@ -95,8 +100,12 @@ def place(arithmetic: Arithmetic, array: Array, indices: Sequence[Value]) -> tup
     if array.strides[len(outer)] != 1:
         message = "the index of a loop over lanes belongs in the last axis"
         raise Refusal(message)
-    row = view(arithmetic, array, [*outer, last.offset])
-    return Array(_moved(arithmetic, row.pointer, last.first, array.element), (), (), array.element), arithmetic.lanes
+    if last.offset < 0:
+        message = "the first lanes would lie before the array"
+        raise Refusal(message)
+    row = view(arithmetic, array, outer)
+    shifted = arithmetic.binary(ast.Add(), last.first, last.offset) if last.offset else last.first
+    return replace(row, pointer=_moved(arithmetic, row.pointer, shifted, array.element), shape=()), arithmetic.lanes
 
 
 def load(arithmetic: Arithmetic, element: Array, lanes: int) -> Number:
@@ -110,8 +119,8 @@ def load(arithmetic: Arithmetic, element: Array, lanes: int) -> Number:
 
 def store(arithmetic: Arithmetic, element: Array, lanes: int, value: Value) -> None:
     """Put a number at a `place`."""
-    if element.element is Element.SIGNAL:
-        message = "signals are read only"
+    if element.element is Element.SIGNAL or not element.writable:
+        message = "signals, and arrays of a module, are read only"
         raise Refusal(message)
     number = arithmetic.number(value, Kind.FLOAT)
     if number.lanes and not lanes:
@@ -124,7 +133,7 @@ def store(arithmetic: Arithmetic, element: Array, lanes: int, value: Value) -> N
 def table(arithmetic: Arithmetic, values: np.ndarray) -> Array:
     """Return a constant array of the module that is compiled."""
     numbers = [constant(float(value), Kind.FLOAT).operand for value in values.ravel()]
-    return Array(arithmetic.module.table(numbers), values.shape, _without_gaps(values.shape))
+    return Array(arithmetic.module.table(numbers), values.shape, _without_gaps(values.shape), writable=False)
 
 
 def _is_known(shape: tuple[Value, ...]) -> bool:
@@ -145,6 +154,9 @@ def _ends(arithmetic: Arithmetic, index: slice, length: Value) -> tuple[Value, V
     if index.step is not None:
         message = "slices take every element; write a loop"
         raise Refusal(message)
+    if isinstance(length, int) and not any(isinstance(end, Number) for end in (index.start, index.stop)):
+        start, end, _ = index.indices(length)
+        return start, max(start, end)
     start = 0 if index.start is None else index.start
     end = length if index.stop is None else _from_the_start(arithmetic, index.stop, length)
     return _from_the_start(arithmetic, start, length), end
@@ -158,6 +170,9 @@ def _from_the_start(arithmetic: Arithmetic, index: Value, length: Value) -> Valu
         raise Refusal(message)
     if not isinstance(index, int | np.integer):
         message = f"an index is a whole number, not {index!r}"
+        raise Refusal(message)
+    if isinstance(length, int) and not -length <= index <= length:
+        message = f"index {index} lies beyond an array of length {length}"
         raise Refusal(message)
     return int(index) if index >= 0 else arithmetic.binary(ast.Add(), length, int(index))
 

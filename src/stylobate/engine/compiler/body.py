@@ -6,8 +6,9 @@ from typing import Any, Protocol
 
 from stylobate.engine.compiler import arrays, marks, slots
 from stylobate.engine.compiler.arithmetic import Arithmetic
-from stylobate.engine.compiler.names import Names
+from stylobate.engine.compiler.names import Names, assigned_in
 from stylobate.engine.compiler.refusal import Refusal, at_its_place
+from stylobate.engine.compiler.slots import has_array
 from stylobate.engine.compiler.sources import Source
 from stylobate.engine.compiler.text import Block
 from stylobate.engine.compiler.values import Kind, LaneIndex, Number, Value, constant
@@ -49,6 +50,9 @@ class Body(Names):
         self.exit = self.text.new_block()
         self._loops: list[tuple[Block, Block]] = []
         self._returned = False
+        self._over = False
+        """Whether instructions are those of a loop over lanes of this function, not of one that calls it."""
+        self._results: set[bool] = set()
         self._at: ast.AST = source.arguments
 
     # Running
@@ -69,6 +73,9 @@ class Body(Names):
             self._block(self.source.body)
         except Refusal as refusal:
             raise at_its_place(refusal, self._at, self.source.file, self.source.name) from refusal
+        except (ArithmeticError, LookupError, TypeError, ValueError, AttributeError) as error:  # of what is known
+            reason = f"{type(error).__name__}: {error}"
+            raise at_its_place(reason, self._at, self.source.file, self.source.name) from error
         if self.arithmetic.lanes:
             return
         if RESULT in self._slots and not self.text.block.ended:
@@ -80,6 +87,11 @@ class Body(Names):
     def call(self, function: Callable[..., Any], values: list[Value], keywords: dict[str, Value]) -> Value:
         """Return the result of a function written in Python."""
         return self.callees.call(self, function, values, keywords)
+
+    @property
+    def in_loop(self) -> bool:
+        """Whether instructions are those of a pass of a loop."""
+        return bool(self._loops)
 
     # Statements
 
@@ -131,9 +143,19 @@ class Body(Names):
         arrays.store(self.arithmetic, element, lanes, new)
 
     def _return(self, value: Value) -> None:
+        if self._over:
+            message = "return within lanes"
+            raise Refusal(message)
         if self.arithmetic.lanes:
             self.result, self._returned = value, True
             return
+        self._results.add(value is None)
+        if len(self._results) > 1:
+            message = "some ways through it return a value, others none"
+            raise Refusal(message)
+        if has_array(value):
+            message = "arrays are not returned; pass one in which the results are put"
+            raise Refusal(message)
         if value is not None:
             self.put(RESULT, value)
         self.text.jump(self.exit)
@@ -143,13 +165,14 @@ class Body(Names):
         return self.result if self.arithmetic.lanes else slots.load(self.arithmetic, self._slots.get(RESULT))
 
     def _if(self, node: ast.If) -> None:
-        condition = self.value(node.test)
+        condition = self.condition(node.test)
         if not isinstance(condition, Number):
             self._block(node.body if condition else node.orelse)
             return
         self._outside_lanes("a condition on lanes; write a if condition else b")
+        self.settle(node)
         yes, no, done = (self.text.new_block() for _ in range(3))
-        self.text.branch(self.arithmetic.truth(condition).text, yes, no)
+        self.text.branch(condition.text, yes, no)
         for block, statements in ((yes, node.body), (no, node.orelse)):
             self.text.begin(block)
             self._while_running(statements)
@@ -163,12 +186,13 @@ class Body(Names):
 
     def _while(self, node: ast.While) -> None:
         self._outside_lanes()
+        self.settle(node)
         head, body, done = (self.text.new_block() for _ in range(3))
         self.text.jump(head)
         self.text.begin(head)
-        condition = self.value(node.test)
+        condition = self.condition(node.test)
         if isinstance(condition, Number):
-            self.text.branch(self.arithmetic.truth(condition).text, body, done)
+            self.text.branch(condition.text, body, done)
         else:
             self.text.jump(body if condition else done)
         self.text.begin(body)
@@ -209,6 +233,7 @@ class Body(Names):
             self._unrolled(node, range(*ends))
             return
         self._outside_lanes()
+        self.settle(node)
         start, stop, *step = ends if len(ends) > 1 else [0, *ends]
         if step and step != [1]:
             message = "a range whose step is not 1; write a while loop"
@@ -233,23 +258,35 @@ class Body(Names):
 
     def _unrolled(self, node: ast.For, items: Iterable[Value]) -> None:
         done = self.text.new_block()
+        left_early = any(isinstance(part, ast.Break | ast.Continue) for one in node.body for part in ast.walk(one))
+        if left_early and not self.arithmetic.lanes:
+            self.settle(node)
         for item in items:
             onward = self.text.new_block()
-            if isinstance(node.target, ast.Name):
-                self._bound[node.target.id] = item
-            else:
-                self.assign_to(node.target, item)
+            self._take_item(node, item)
             self._loops.append((onward, done))
+            self._depth += left_early
             self._block(node.body)
+            self._depth -= left_early
             self._loops.pop()
             if not self.arithmetic.lanes:
                 self.text.jump(onward)
                 self.text.begin(onward)
-        if isinstance(node.target, ast.Name):  # a loop that was left early left it with another value
-            self._bound.pop(node.target.id, None)
+        if isinstance(node.target, ast.Name) and not self.arithmetic.lanes:
+            self._bound.pop(node.target.id, None)  # it has room, where the value stands with which the loop was left
         if not self.arithmetic.lanes:
             self.text.jump(done)
             self.text.begin(done)
+
+    def _take_item(self, node: ast.For, item: Value) -> None:
+        """Give the target of an unrolled loop its value: known in the body, unless that assigns to it."""
+        name = node.target.id if isinstance(node.target, ast.Name) else ""
+        if not name or name in assigned_in(node.body) or self.arithmetic.lanes:
+            self.assign_to(node.target, item)
+            return
+        if slots.can_be_stored(item):
+            self.put(name, item)
+        self._bound[name] = item
 
     def _picks_from_tuples(self, node: ast.For) -> bool:
         """Return whether the loop's index picks from tuples: each pass has then instructions of its own."""
@@ -282,18 +319,18 @@ class Body(Names):
         ):
             message = f"a loop over lanes stands by itself and has a multiple of {width} passes"
             raise Refusal(message)
-        before = dict(self._bound)
         head, done = self.text.new_block(), self.text.new_block()
         self.text.jump(head)
         begun = self.text.block
         self.text.begin(head)
         first, onward = self.text.name(), self.text.name()
         position = len(head.lines)
-        self.arithmetic.lanes = width
+        self.arithmetic.lanes, self._over = width, True
+        self.forget(node)
         self._bound[node.target.id] = LaneIndex(Number(Kind.INTEGER, first))
         self._block(node.body)
-        self.arithmetic.lanes = 0
-        self._bound = before
+        self.forget(node)
+        self.arithmetic.lanes, self._over = 0, False
         self.text.line(f"{onward} = add nuw nsw i64 {first}, {constant(width, Kind.INTEGER).text}")
         more = self.text.value(f"icmp ult i64 {onward}, {count}")
         end = self.text.block

@@ -83,9 +83,8 @@ class Compiled:
     def _code(self) -> Callable[..., int]:
         texts = [Path(module.__file__ or "").read_text(encoding="utf-8") for module in self.imported]
         try:
-            engine = kept.code_of(
-                self._words, [self.text, *texts], self.functions, self._written, description=self.description
-            )
+            parts = [repr((self.name, self.arguments, self.fast)), self.text, *texts]
+            engine = kept.code_of(self._words, parts, self.functions, self._written, description=self.description)
         except CompileError as error:
             message = f"model {self.model} cannot be compiled; single runs by simulate need no compiling: {error}"
             raise UnsupportedError(message) from error

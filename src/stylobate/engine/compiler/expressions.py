@@ -23,6 +23,11 @@ class Expressions(ABC):
         self.arithmetic = arithmetic
         self.text = arithmetic.text
 
+    @property
+    @abstractmethod
+    def in_loop(self) -> bool:
+        """Whether instructions are those of a pass of a loop."""
+
     @abstractmethod
     def read(self, name: str) -> Value:
         """Return what a name means here."""
@@ -47,7 +52,7 @@ class Expressions(ABC):
             case ast.BinOp():
                 return self.arithmetic.binary(node.op, self.value(node.left), self.value(node.right))
             case ast.BoolOp():
-                return self._all_or_any(node)
+                return self._all_or_any(node, condition=False)
             case ast.Compare():
                 return self._comparison(node)
             case ast.IfExp():
@@ -83,7 +88,8 @@ class Expressions(ABC):
         owner = self.value(node.value)
         if isinstance(owner, Array) and node.attr == "shape":
             return owner.shape
-        if isinstance(owner, Array | Number | LaneIndex) or not hasattr(owner, node.attr):
+        foreign = isinstance(owner, tuple) and node.attr not in getattr(owner, "_fields", ())
+        if isinstance(owner, Array | Number | LaneIndex) or foreign or not hasattr(owner, node.attr):
             message = f"{ast.unparse(node)} is not known while compiling"
             raise Refusal(message)
         return self._usable(getattr(owner, node.attr))
@@ -106,39 +112,65 @@ class Expressions(ABC):
             raise Refusal(message)
         return tuple(value)
 
+    @staticmethod
+    def _tuple(value: Value) -> Value:
+        if isinstance(value, Array | Number):
+            message = "only tuples are enumerated, zipped and reversed; write a loop over range(len(...))"
+            raise Refusal(message)
+        return value
+
     def _unary(self, node: ast.UnaryOp) -> Value:
-        value = self.value(node.operand)
         match node.op:
             case ast.USub():
-                return self.arithmetic.negative(value)
+                return self.arithmetic.negative(self.value(node.operand))
             case ast.Not():
-                return self.arithmetic.opposite(value)
+                return self.arithmetic.opposite(self.condition(node.operand))
             case ast.UAdd():
-                return value
+                return self.value(node.operand)
             case _:
                 message = "bits of whole numbers are not compiled"
                 raise Refusal(message)
 
-    def _all_or_any(self, node: ast.BoolOp) -> Value:
+    def condition(self, node: ast.expr) -> Value:
+        """Return whether an expression holds: what is not zero does."""
+        if isinstance(node, ast.BoolOp):
+            return self._all_or_any(node, condition=True)
+        value = self.value(node)
+        if isinstance(value, Array | LaneIndex):
+            message = f"{ast.unparse(node)} is no condition"
+            raise Refusal(message)
+        return self.arithmetic.truth(value) if isinstance(value, Number) else bool(value)
+
+    def _all_or_any(self, node: ast.BoolOp, *, condition: bool) -> Value:
         """Evaluate `and` or `or`: of a single run no more than is needed, as Python does."""
         joined = self.arithmetic.both if isinstance(node.op, ast.And) else self.arithmetic.either
         decisive = isinstance(node.op, ast.Or)
+        part = self.condition if condition else self._boolean
         if self.arithmetic.lanes:
-            result = self.value(node.values[0])
-            for part in node.values[1:]:
-                result = joined(result, self.value(part))
+            result = part(node.values[0])
+            for other in node.values[1:]:
+                result = joined(result, part(other))
             return result
-        for position, part in enumerate(node.values):
-            value = self.value(part)
+        value: Value = not decisive
+        for position, one in enumerate(node.values):
+            value = part(one)
             if isinstance(value, Number):
-                return self._in_turn(value, node.values[position + 1 :], decisive=decisive)
+                return self._in_turn(value, node.values[position + 1 :], part, decisive=decisive)
             if bool(value) is decisive:
-                return decisive
-        return not decisive
+                return value
+        return value
 
-    def _in_turn(self, first: Number, others: list[ast.expr], *, decisive: bool) -> Value:
-        if not others:
-            return self.arithmetic.truth(first)
+    def _boolean(self, node: ast.expr) -> Value:
+        """Return an operand of `and` or `or` whose value is used: of a number it would be the number itself."""
+        value = self.value(node)
+        if isinstance(value, Number) and value.kind is not Kind.BOOLEAN:
+            message = f"the value of and, or is used: {ast.unparse(node)} is a number; write a if condition else b"
+            raise Refusal(message)
+        return value
+
+    def _in_turn(
+        self, first: Number, others: list[ast.expr], part: Callable[[ast.expr], Value], *, decisive: bool
+    ) -> Value:
         result, done = self.text.allocated("i1"), self.text.new_block()
         value = self.arithmetic.truth(first)
         for other in others:
@@ -146,7 +178,7 @@ class Expressions(ABC):
             more = self.text.new_block()
             self.text.branch(value.text, *((done, more) if decisive else (more, done)))
             self.text.begin(more)
-            value = self.arithmetic.truth(self.value(other))
+            value = self.arithmetic.truth(part(other))
         self.text.line(f"store {value.operand}, ptr {result}")
         self.text.jump(done)
         self.text.begin(done)
@@ -169,7 +201,7 @@ class Expressions(ABC):
         return self.arithmetic.opposite(found) if isinstance(operation, ast.NotIn) else found
 
     def _conditional(self, node: ast.IfExp) -> Value:
-        condition = self.value(node.test)
+        condition = self.condition(node.test)
         if not isinstance(condition, Number):
             return self.value(node.body if condition else node.orelse)
         branches = (node.body, node.orelse)
@@ -177,7 +209,7 @@ class Expressions(ABC):
         if self.arithmetic.lanes or not costly:
             return self.arithmetic.chosen(condition, self.value(node.body), self.value(node.orelse))
         yes, no, done = (self.text.new_block() for _ in range(3))
-        self.text.branch(self.arithmetic.truth(condition).text, yes, no)
+        self.text.branch(condition.text, yes, no)
         self.text.begin(yes)
         first = self.value(node.body)
         end_of_yes = self.text.block
@@ -204,6 +236,9 @@ class Expressions(ABC):
         return arrays.load(self.arithmetic, *arrays.place(self.arithmetic, owner, indices))
 
     def _of_tuple(self, items: tuple[Value, ...], index: Value) -> Value:
+        if isinstance(index, LaneIndex):
+            message = "the index of a loop over lanes picks from no tuple"
+            raise Refusal(message)
         if not isinstance(index, Number):
             return items[index]
         result = items[-1]
@@ -219,16 +254,21 @@ class Expressions(ABC):
             return mathematics.call(self.arithmetic, function, values)
         if isinstance(function, type) and hasattr(function, "_fields"):
             return function(*values, **keywords)
-        if function in _OF_ARRAYS:
+        if function in _OF_ARRAYS and not keywords:
+            if function is np.zeros and self.in_loop:
+                message = "an array made in each pass of a loop; make one before it"
+                raise Refusal(message)
             return _OF_ARRAYS[function](self.arithmetic, *values)
         if function in _OVER_TUPLES:
-            return tuple(function(*map(self.items, values)))
+            return tuple(function(*map(self._tuple, values), **keywords))
         return self.call(function, values, keywords)
 
 
 def _wider(a: Value, b: Value) -> Value:
     """Return of two values of one structure numbers of the kinds that hold both."""
-    if isinstance(a, tuple) and isinstance(b, tuple):
+    if isinstance(a, tuple) and isinstance(b, tuple) and type(a) is type(b) and len(a) == len(b):
         made = [_wider(*pair) for pair in zip(a, b, strict=True)]
         return type(a)(*made) if hasattr(a, "_fields") else tuple(made)
+    if isinstance(a, Array | tuple) or isinstance(b, Array | tuple):
+        return a
     return max(a, b, key=kind_of)

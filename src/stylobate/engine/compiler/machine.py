@@ -49,7 +49,8 @@ def attributes() -> str:
 def described() -> str:
     """Return all that machine code depends on besides its text."""
     machine = _target()
-    return repr((machine.triple, llvm.get_host_cpu_name(), str(machine.target_data), llvm.llvm_version_info))
+    features = llvm.get_host_cpu_features().flatten()
+    return repr((machine.triple, llvm.get_host_cpu_name(), features, str(machine.target_data), llvm.llvm_version_info))
 
 
 def optimised(text: str) -> llvm.ModuleRef:

@@ -128,7 +128,7 @@ def _length_of_vector(arithmetic: Arithmetic, *values: Value) -> Value:
     result, *others = values
     for value in others:
         result = arithmetic.called_in_library("hypot", result, value)
-    return result
+    return result if others else _absolute(arithmetic, result)
 
 
 def _logarithm(arithmetic: Arithmetic, value: Value, base: Value = None) -> Value:

@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from stylobate.engine.compiler.marks import is_fast
+
 Function = Callable[..., Any]
 
 # What stands in these packages is taken as it is.
@@ -21,51 +23,63 @@ _number = itertools.count()
 def fingerprint(function: Function) -> str:
     """Return a digest of what `function` computes: its code, the constants and the functions that it uses."""
     digest = hashlib.sha256()
-    for said in _parts(plain_function(function), set()):
-        digest.update(said.encode())
+    for part in _parts(plain_function(function), set()):
+        digest.update(part.encode())
         digest.update(b"\0")
     return digest.hexdigest()
 
 
-def _parts(function: types.FunctionType, seen: set[types.CodeType]) -> Iterator[str]:
-    code = function.__code__
-    if code in seen:
+def _parts(function: types.FunctionType, seen: set[int]) -> Iterator[str]:
+    if id(function) in seen:
         return
-    seen.add(code)
+    seen.add(id(function))
+    code = function.__code__
     yield from _code_parts(code)
-    yield repr(function.__defaults__)
+    yield f"fast {is_fast(function)}"
+    yield from _value_parts(function.__defaults__ or (), seen)
+    yield from _value_parts(tuple(sorted((function.__kwdefaults__ or {}).items())), seen)
     for cell in function.__closure__ or ():
         yield from _value_parts(cell.cell_contents, seen)
-    for name in code.co_names:
-        value = function.__globals__.get(name)
-        yield name
-        if isinstance(value, types.ModuleType):
-            for attribute in code.co_names:
-                if hasattr(value, attribute):
-                    yield from _value_parts(getattr(value, attribute), seen)
-        else:
+    for dotted in _global_names(code):
+        yield dotted
+        for value in _along(function.__globals__, dotted):
             yield from _value_parts(value, seen)
-    for name, called in called_functions(function):
-        yield name
-        yield from _value_parts(called, seen)
 
 
-def _value_parts(value: object, seen: set[types.CodeType]) -> Iterator[str]:
+def _along(names: Mapping[str, Any], dotted: str) -> Iterator[object]:
+    """Yield what a name such as f, module.f or Class.constant leads to, step by step."""
+    root, *path = dotted.split(".")
+    value = names.get(root)
+    yield value
+    for attribute in path:
+        value = getattr(value, attribute, None)
+        yield value
+
+
+def _value_parts(value: object, seen: set[int]) -> Iterator[str]:
     plain = getattr(value, "py_func", value)
     if isinstance(plain, types.FunctionType):
         yield from _parts(plain, seen)
+    elif isinstance(plain, tuple):
+        yield f"{type(plain).__name__} of {len(plain)}"
+        for part in plain:
+            yield from _value_parts(part, seen)
+    elif isinstance(plain, type) and hasattr(plain, "_fields"):
+        yield f"{plain.__name__} {plain._fields}"
+        yield from _value_parts(tuple(plain._field_defaults.items()), seen)  # type: ignore[attr-defined]
     else:
-        yield _said(value)
+        yield _described(plain)
 
 
-def _said(value: object) -> str:
-    """Return what tells a constant from another one; functions are told by what they say elsewhere."""
+def _described(value: object) -> str:
+    """Return what tells a constant from another one."""
     if isinstance(value, np.ndarray):
         return f"{value.dtype} {value.shape} {value.tobytes().hex()}"
-    if isinstance(value, tuple):
-        return f"({', '.join(map(_said, value))})"
-    said = isinstance(value, (bool, int, float, complex, str, np.generic, Enum))
-    return repr(value) if said else type(value).__name__
+    if isinstance(value, Enum):
+        return f"{value!r} {value.value!r}"
+    if isinstance(value, bool | int | float | complex | str | np.generic | range | None):
+        return repr(value)
+    return str(getattr(value, "__qualname__", type(value).__qualname__))
 
 
 def _code_parts(code: types.CodeType) -> Iterator[str]:

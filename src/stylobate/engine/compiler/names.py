@@ -10,6 +10,9 @@ from stylobate.engine.compiler.refusal import Refusal
 from stylobate.engine.compiler.sources import Source
 from stylobate.engine.compiler.values import Array, Kind, Value
 
+_NOTHING = object()
+"""Stands for the value of a name that has none any more."""
+
 
 class Names(Expressions):
     """The names that a function assigns to, and those of its module.
@@ -32,15 +35,16 @@ class Names(Expressions):
         self._bound: dict[str, Value] = {}
         self._slots: dict[str, Value] = {}
         self._chosen = _assigned_by_control_flow(source.body)
-        self._own = _assigned(source.body) | set(source.signature.parameters)
+        self._own = assigned_in(source.body) | set(source.signature.parameters)
         self._depth = 0
         """Of conditions and loops that are decided while running."""
 
     def read(self, name: str) -> Value:
         """Return what a name means here."""
-        if name in self._bound:
-            return self._bound[name]
-        if name in self._slots:
+        value = self._bound.get(name, _NOTHING)
+        if value is not _NOTHING:
+            return value
+        if name in self._slots and name not in self._bound:
             return slots.load(self.arithmetic, self._slots[name])
         if name in self._own:
             message = f"{name} has no value here, or one in lanes only"
@@ -59,6 +63,28 @@ class Names(Expressions):
             return
         self._bound.pop(name, None)
         self.put(name, value)
+
+    def settle(self, node: ast.AST) -> None:
+        """Put into their room the names that are known here and that a condition or loop may assign to.
+
+        Raises
+        ------
+        Refusal
+            If what one means has no room: while running it cannot be told from what is assigned.
+        """
+        for name in assigned_in([node]) & self._bound.keys():
+            if self._bound[name] is _NOTHING:
+                continue
+            value = self._bound.pop(name)
+            if not slots.can_be_stored(value):
+                message = f"{name} means {value!r}, and control flow assigns to it; begin with a number"
+                raise Refusal(message)
+            self.put(name, value)
+
+    def forget(self, node: ast.AST) -> None:
+        """Take the values from the names that are assigned to here: passes side by side hand none on."""
+        for name in assigned_in([node]):
+            self._bound[name] = _NOTHING
 
     def put(self, name: str, value: Value) -> None:
         """Put a value into the room of a name."""
@@ -114,7 +140,8 @@ def _is_slice(index: Value) -> bool:
     return isinstance(index, slice)
 
 
-def _assigned(statements: Iterable[ast.AST]) -> set[str]:
+def assigned_in(statements: Iterable[ast.AST]) -> set[str]:
+    """Return the names that statements assign to."""
     return {
         part.id
         for statement in statements
@@ -124,4 +151,4 @@ def _assigned(statements: Iterable[ast.AST]) -> set[str]:
 
 
 def _assigned_by_control_flow(statements: Iterable[ast.stmt]) -> set[str]:
-    return _assigned(statement for statement in statements if isinstance(statement, ast.If | ast.While | ast.For))
+    return assigned_in(statement for statement in statements if isinstance(statement, ast.If | ast.While | ast.For))

@@ -1,5 +1,7 @@
 """Room in memory for names that control flow assigns to; LLVM keeps most of it in registers."""
 
+from dataclasses import replace
+
 from stylobate.engine.compiler.arithmetic import Arithmetic
 from stylobate.engine.compiler.refusal import Refusal
 from stylobate.engine.compiler.values import (
@@ -31,6 +33,11 @@ def can_be_stored(value: Value) -> bool:
     return isinstance(value, Number | Array) or is_known_number(value)
 
 
+def has_array(value: Value) -> bool:
+    """Return whether a value is an array, or holds one."""
+    return any(map(has_array, value)) if isinstance(value, tuple) else isinstance(value, Array)
+
+
 def slot_for(arithmetic: Arithmetic, value: Value, least: Kind = Kind.BOOLEAN) -> Value:
     """Return room for a value of this structure, each number of it at least of a kind."""
 
@@ -39,7 +46,7 @@ def slot_for(arithmetic: Arithmetic, value: Value, least: Kind = Kind.BOOLEAN) -
             numbers = ((size if isinstance(size, int) else room(size)) for size in (*part.shape, *part.strides))
             sizes = tuple(numbers)
             axes = len(part.shape)
-            return Array(arithmetic.text.allocated("ptr"), sizes[:axes], sizes[axes:], part.element)
+            return replace(part, pointer=arithmetic.text.allocated("ptr"), shape=sizes[:axes], strides=sizes[axes:])
         kind = max(kind_of(part), least)
         return Slot(kind, arithmetic.text.allocated(kind.type))
 
@@ -64,10 +71,14 @@ def store(arithmetic: Arithmetic, slot: Value, value: Value) -> None:
             if kind_of(value) > slot.kind:
                 raise WiderKindError(kind_of(value))
             arithmetic.text.line(f"store {arithmetic.number(value, slot.kind).operand}, ptr {slot.pointer}")
-        case tuple(), tuple() if len(slot) == len(value):
+        case tuple(), tuple() if len(slot) == len(value) and type(slot) is type(value):
             for room, part in zip(slot, value, strict=True):
                 store(arithmetic, room, part)
-        case Array(), Array() if len(slot.shape) == len(value.shape):
+        case Array(), Array() if (len(slot.shape), slot.element, slot.writable) == (
+            len(value.shape),
+            value.element,
+            value.writable,
+        ):
             arithmetic.text.line(f"store ptr {value.pointer}, ptr {slot.pointer}")
             for room, size in zip((*slot.shape, *slot.strides), (*value.shape, *value.strides), strict=True):
                 if isinstance(room, Slot):
@@ -86,7 +97,9 @@ def load(arithmetic: Arithmetic, slot: Value) -> Value:
             return Number(part.kind, arithmetic.text.value(f"load {part.kind.type}, ptr {part.pointer}"))
         if isinstance(part, Array):
             pointer = arithmetic.text.value(f"load ptr, ptr {part.pointer}")
-            return Array(pointer, tuple(map(found, part.shape)), tuple(map(found, part.strides)), part.element)
+            return replace(
+                part, pointer=pointer, shape=tuple(map(found, part.shape)), strides=tuple(map(found, part.strides))
+            )
         return part
 
     return rebuilt(slot, found)

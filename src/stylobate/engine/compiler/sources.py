@@ -70,14 +70,15 @@ def source_of(function: Callable[..., Any]) -> Source:
     if plain.__closure__:
         names = {**names, **dict(zip(plain.__code__.co_freevars, map(_content, plain.__closure__), strict=True))}
     body = (ast.Return(node.body, lineno=node.lineno),) if isinstance(node, ast.Lambda) else tuple(node.body)
-    return Source(
-        plain.__name__, plain.__code__.co_filename, node.args, body, inspect.signature(plain), names, is_fast(plain)
-    )
+    signature = inspect.signature(plain, follow_wrapped=False)
+    return Source(plain.__name__, plain.__code__.co_filename, node.args, body, signature, names, is_fast(plain))
 
 
 def plain_function(function: Callable[..., Any]) -> types.FunctionType:
     """Return the Python function behind a static method, or one that another library compiled."""
-    plain = inspect.unwrap(getattr(function, "py_func", function))
+    plain: Any = function
+    while not isinstance(plain, types.FunctionType) and (hasattr(plain, "py_func") or hasattr(plain, "__wrapped__")):
+        plain = getattr(plain, "py_func", None) or plain.__wrapped__
     if not isinstance(plain, types.FunctionType):
         message = f"{getattr(function, '__name__', repr(function))} is no function written in Python"
         raise CompileError(message)
@@ -91,8 +92,11 @@ def _content(cell: types.CellType) -> Any:
 def _node_of(code: types.CodeType) -> _Node:
     lines = lines_of(code.co_filename)
     place = (code.co_name, code.co_firstlineno)
-    nodes, written = _functions_of("".join(lines), code.co_filename).get(place) or _within_other_text(lines, *place)
-    if len(nodes) != 1 or written is None or not _is_same(written, code):
+    nodes, written = _functions_of("".join(lines), code.co_filename).get(place, ([], None))
+    exact = bool(nodes)
+    if not nodes:
+        nodes, written = _within_other_text(lines, *place)
+    if len(nodes) != 1 or written is None or not _is_same(written, code, exact=exact):
         message = (
             f"the text of {code.co_name} cannot be found in {code.co_filename}; write it in a file, or in a cell of a "
             "notebook, one function to a line; if the file has changed since it was imported, start again"
@@ -101,13 +105,17 @@ def _node_of(code: types.CodeType) -> _Node:
     return nodes[0]
 
 
-def _is_same(a: types.CodeType, b: types.CodeType) -> bool:
-    """Return whether two codes use the same names and constants in the same lines."""
+def _is_same(a: types.CodeType, b: types.CodeType, *, exact: bool) -> bool:
+    """Return whether two codes do the same; else whether they use the same names and constants in the same lines.
+
+    Within a module Python writes calls of its imported names otherwise than by themselves.
+    """
 
     def described(code: types.CodeType) -> tuple[object, ...]:
         lines = [line and line - code.co_firstlineno for _, _, line in code.co_lines()]
         constants = [repr(one) for one in code.co_consts if not isinstance(one, types.CodeType)]
-        return (code.co_names, code.co_varnames, constants, sorted({line for line in lines if line}))
+        used = (code.co_names, code.co_varnames, code.co_freevars, constants, sorted({line for line in lines if line}))
+        return (*used, code.co_code) if exact else used
 
     return described(a) == described(b)
 

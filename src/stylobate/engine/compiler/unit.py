@@ -3,7 +3,7 @@
 import ast
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import FunctionType
 from typing import Any
 
@@ -57,6 +57,7 @@ class Unit:
         self._fast = {plain_function(function) for function in fast}
         self._sources: dict[FunctionType, Source] = {}
         self._made: dict[tuple[Any, ...], _Made] = {}
+        self._known: list[Sequence[Value]] = []
         self._within: list[FunctionType] = []
 
     def export(self, function: Callable[..., Any], name: str, arguments: Sequence[ArrayArgument | Kind]) -> None:
@@ -69,6 +70,9 @@ class Unit:
         arithmetic = Arithmetic(self.module, text, fast=False)
         values = [_argument(arithmetic, argument, head) for argument in arguments]
         result = _called(arithmetic, self._specialised(plain_function(function), values, fast=False), values)
+        if result is not None and not (isinstance(result, Number) and result.kind < Kind.FLOAT):
+            message = f"{name} returns a whole number, a condition or nothing when it is called from outside"
+            raise CompileError(message)
         text.end("ret i64 0" if result is None else f"ret {arithmetic.number(result, Kind.INTEGER).operand}")
         self.module.define(f"i64 @{name}({', '.join(head)})", text.body())
 
@@ -98,6 +102,7 @@ class Unit:
 
     def _specialised(self, function: FunctionType, values: Sequence[Value], *, fast: bool) -> _Made:
         key = (function, fast, *map(_structure, values))
+        self._known.append(values)  # alive, so that no other object takes the identity of one in a key
         if key not in self._made:
             source = self._source(function)
             with self._entered(function):
@@ -162,7 +167,9 @@ def _parameter(value: Value, head: list[str]) -> Value:
         if isinstance(part, Array):
             pointer = f"%x{len(head)}"
             head.append(f"ptr {pointer}")
-            return Array(pointer, tuple(map(passed, part.shape)), tuple(map(passed, part.strides)), part.element)
+            return replace(
+                part, pointer=pointer, shape=tuple(map(passed, part.shape)), strides=tuple(map(passed, part.strides))
+            )
         return part
 
     return rebuilt(value, passed)
@@ -187,7 +194,7 @@ def _structure(value: Value) -> Any:
         case Number():
             return value.kind
         case Array():
-            return (*map(_structure, value.shape), *map(_structure, value.strides), value.element)
+            return (*map(_structure, (*value.shape, *value.strides)), value.element, value.writable)
         case tuple():
             return (type(value), *map(_structure, value))
         case bool() | int() | float() | str():

@@ -68,12 +68,16 @@ class Element(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Array:
-    """An array, or a view into one: a pointer, and for each axis the length and the stride in elements."""
+    """An array, or a view into one: a pointer, and for each axis the length and the stride in elements.
+
+    Constants of a module are not writable.
+    """
 
     pointer: str
     shape: tuple["int | Number", ...]
     strides: tuple["int | Number", ...]
     element: Element = Element.FLOAT
+    writable: bool = True
 
 
 @dataclass(frozen=True, slots=True)

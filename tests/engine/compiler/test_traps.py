@@ -1,0 +1,230 @@
+"""Python that is easily compiled wrong: its result is that of Python, or it is refused."""
+
+import functools
+from collections import namedtuple
+
+import numpy as np
+import pytest
+
+from stylobate.engine.compiler.marks import lanes
+from stylobate.engine.compiler.refusal import CompileError
+
+from .calling import both_ways, text_of
+
+X = np.array([0.7, -1.3, 2.0, 0.0, -0.0, 1e-300, 3.5, -2.5, 0.25, 9.0])
+TABLE = np.arange(6.0).reshape(2, 3)
+A, B = namedtuple("A", "one other"), namedtuple("B", "other one")  # noqa: PYI024
+
+
+def loop_left_early(x, out):
+    k = -1
+    for k in (0, 1, 2):
+        if x[k] < 0.0:
+            break
+    out[0] = k
+    for k in (0, 1, 2):
+        out[k + 1] = k
+    out[4] = k
+
+
+def target_assigned_in_the_body(x, out):
+    for k in (0, 1, 2):
+        if x[k] < 0.0:
+            k = 9  # noqa: PLW2901
+        out[k] = 1.0
+    for k in (0, 1):
+        while k < 3 and x[k] < 5.0:
+            k += 1  # noqa: PLW2901
+        out[4] += k
+
+
+def slices_are_cut(x, out):
+    row = TABLE[0]
+    out[0], out[1] = len(row[1:50]), len(row[-50:])
+    out[2] = len(row[2:1])
+
+
+def enumerated_from_one(x, out):
+    for place, value in enumerate((x[0], x[1]), start=1):
+        out[place] = value
+
+
+def tuples_compared(x, out):
+    out[0] = (x[0], x[3]) == (0.7, 0.0)
+    out[1] = (x[0], 1.0) in ((0.5, 1.0), (0.7, 1.0))
+    out[2] = (x[0], x[1]) != (x[0], x[1])
+
+
+def division_beside_zero(x, out):
+    k = int(x[3])
+    out[0] = 6 // k if k != 0 else -1
+    out[1] = 6 % k if k != 0 else -1
+
+
+def doubled(function):
+    @functools.wraps(function)
+    def inner(a):
+        return function(a) * 2.0
+
+    return inner
+
+
+@doubled
+def raised(a):
+    return a + 1.0
+
+
+def decorated(x, out):
+    out[0] = raised(x[0])
+
+
+def of_none(x, out):
+    out[0] = with_none(x[0])
+    out[1] = with_none(x[0], x[1])
+
+
+def with_none(a, b=None):
+    if b is None:
+        b = 2.5
+    return a * b
+
+
+def conditions_of_numbers(x, out):
+    count = 0
+    for i in range(10):
+        if x[i] and not (x[i] > 1.0 or count):
+            count += 1
+    out[0] = count
+    known = None or 3.0  # noqa: SIM222
+    out[1] = known
+
+
+RIGHT = [
+    *(loop_left_early, target_assigned_in_the_body, slices_are_cut, enumerated_from_one, tuples_compared),
+    *(division_beside_zero, decorated, of_none, conditions_of_numbers),
+]
+
+
+@pytest.mark.parametrize("function", RIGHT, ids=lambda function: function.__name__)
+def test_the_result_is_that_of_python(function):
+    (compiled, _), (plain, _) = both_ways(function, X, np.zeros(12))
+    np.testing.assert_array_equal(compiled[1], plain[1])
+
+
+def value_of_or(x):
+    x[0] = x[1] or 5.0
+
+
+def none_before_a_loop(x):
+    found = None
+    for i in range(10):
+        if x[i] > 1.0:
+            found = i + 1
+    if found:
+        x[0] = found
+
+
+def chosen_function(x):
+    law = abs
+    for k in (max, min):
+        if x[0] > 0.0:
+            break
+        law = k
+    x[0] = law(x[0], 1.0)
+
+
+def index_of_lanes_in_a_condition(x):
+    for i in lanes(8):
+        x[i] = 1.0 if i == 0 else 2.0
+
+
+def before_the_row(x):
+    for i in lanes(8):
+        x[i] = x[i + -1]
+
+
+def sum_over_lanes(x):
+    total = 0.0
+    for i in lanes(8):
+        total += x[i]
+    x[0] = total
+
+
+def return_in_lanes(x):
+    for i in lanes(8):
+        x[i] = 1.0
+        return
+
+
+def array_in_a_loop(x):
+    for i in range(3):
+        room = np.zeros(2)
+        room[0] = x[i]
+
+
+def sometimes_nothing(x):
+    if maybe(x):
+        x[0] = 1.0
+
+
+def maybe(x):
+    if x[0] > 0.0:
+        return None
+    return 1
+
+
+def returned_array(x):
+    x[0] = row_of(x)[0]
+
+
+def row_of(x):
+    return x[1:]
+
+
+def constant_written(x):
+    TABLE[0, 0] = x[0]
+
+
+def another_tuple(x):
+    pair = A(x[0], x[1])
+    if x[0] > 0.0:
+        pair = B(x[1], x[0])
+    x[2] = pair.one
+
+
+def enumerated_array(x):
+    for k, value in enumerate(x):
+        x[k + 1] = value
+
+
+def mistake_in_what_is_known(x):
+    x[0] = (1.0, 2.0)[5]  # noqa: PLE0643
+
+
+def number_too_large(x):
+    x[0] = x[1] + 10**20
+
+
+REFUSED = {
+    value_of_or: "the value of and, or is used",
+    none_before_a_loop: "found means None, and control flow assigns to it",
+    chosen_function: "law means .*, and control flow assigns to it",
+    index_of_lanes_in_a_condition: "a condition on the index of a loop over lanes",
+    before_the_row: "the first lanes would lie before the array",
+    sum_over_lanes: "total has no value here, or one in lanes only",
+    return_in_lanes: "return within lanes",
+    array_in_a_loop: "an array made in each pass of a loop",
+    sometimes_nothing: "some ways through it return a value, others none",
+    returned_array: "arrays are not returned",
+    constant_written: "arrays of a module, are read only",
+    another_tuple: "values of different structure",
+    enumerated_array: "only tuples are enumerated",
+    mistake_in_what_is_known: "IndexError",
+    number_too_large: "whole numbers have 64 bits",
+}
+
+
+@pytest.mark.parametrize("function", REFUSED, ids=lambda function: function.__name__)
+def test_what_would_be_compiled_wrong_is_refused(function):
+    with pytest.raises(CompileError, match=REFUSED[function]):
+        text_of(function, X)
