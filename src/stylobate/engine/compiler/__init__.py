@@ -21,7 +21,9 @@ The accepted language
 
 All else is refused with file, line and a remedy (`CompileError`).
 
-Numbers are those of Python to the bit, with these differences: division by zero gives infinity or not a number; small
-whole powers are products; `hypot` is that of the C library; functions marked `fast` may fuse products with sums and
-divide by reciprocals.
+Numbers are those of Python to the bit, with these differences: division by zero, a root of a negative number and the
+like give infinity or not a number, and zero for whole numbers; `int` of what 64 bits do not hold gives the nearest that
+they do; small whole powers are products; other powers and the functions of NumPy are those of the C library; functions
+marked `fast` may fuse products with sums and divide by reciprocals. A name is assigned on every way to its use: this is
+not checked.
 """
