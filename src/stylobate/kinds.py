@@ -146,7 +146,7 @@ def _module_of_file(path: Path) -> ModuleType:
         assert spec.loader is not None
         module = module_from_spec(spec)
         setattr(module, _FILE, str(path))
-        sys.modules[name] = module  # dataclasses, pickle and Numba look the module up by its name
+        sys.modules[name] = module  # dataclasses and pickle look the module up by its name
         try:
             spec.loader.exec_module(module)
         except BaseException:

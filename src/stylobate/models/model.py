@@ -83,9 +83,10 @@ class Model(Declared, ABC):
     everything below them in this class has a default. Without `rest_energy` a column never comes to rest, without
     `planar_rates` coplanar motion is integrated in space, without `no_return_tilt` a stated limit decides overturning.
 
-    What ensembles compile must be what Numba can compile: arithmetic, `math`, calls of functions that keep to the
-    same. `rates` and `planar_rates` run several columns at a time where they are free of branches and of `math`'s
-    transcendental functions; `math.sqrt`, `abs`, `min`, `max` and a choice `a if condition else b` are fine.
+    Ensembles compile these functions: arithmetic, `math`, conditions, loops, tuples and calls of functions that keep
+    to the same; what is not compiled is named with its line. `rates` and `planar_rates` run several columns at a time:
+    they have no branches, a choice is `a if condition else b`; `math.sqrt`, `abs`, `min` and `max` cost little there,
+    transcendental functions more.
     """
 
     __slots__ = ()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.compiler.model_code import fingerprint
+from stylobate.engine.compiler.fingerprint import fingerprint
 from stylobate.errors import UnsupportedError
 
 COLUMN = sb.Column.dimensionless(0.1)

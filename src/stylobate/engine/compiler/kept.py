@@ -13,7 +13,7 @@ from typing import Any
 from llvmlite import binding as llvm
 
 from stylobate.engine.compiler import machine
-from stylobate.engine.compiler.model_code import fingerprint
+from stylobate.engine.compiler.fingerprint import fingerprint
 from stylobate.engine.compiler.trusted_cache import VARIABLE, TrustedCache
 from stylobate.errors import FileError
 

@@ -1,16 +1,23 @@
 """Recording a model's equations: what its function computes, as expressions."""
 
+import itertools
 import math
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
-from stylobate.engine.compiler.model_code import called_functions, plain_function, with_functions
+from stylobate.engine.compiler.fingerprint import global_names
+from stylobate.engine.compiler.sources import plain_function
 from stylobate.engine.equations.expressions import FUNCTIONS, Expression, Recording
 
 Function = Callable[..., Any]
+
+# What stands in these packages is taken as it is.
+_LIBRARIES = ("numpy",)
+
+_number = itertools.count()
 
 
 def recorded(function: Function, arguments: tuple[Any, ...]) -> Any:
@@ -27,10 +34,51 @@ def recorded(function: Function, arguments: tuple[Any, ...]) -> Any:
 def _for_expressions(function: Function) -> Function:
     """Return a copy of `function`, and of the functions it calls, whose mathematics takes expressions."""
     plain = plain_function(function)
-    called = {name: _for_expressions(value) for name, value in called_functions(plain)}
+    called = {name: _for_expressions(value) for name, value in _called_functions(plain)}
     names = {name: _recording_value(value) for name, value in plain.__globals__.items()}
-    names = with_functions(names, called, plain.__code__)
+    names = _with_functions(names, called, plain.__code__)
     return types.FunctionType(plain.__code__, names, plain.__name__, plain.__defaults__, plain.__closure__)
+
+
+def _called_functions(function: types.FunctionType) -> list[tuple[str, Function]]:
+    """Return the plain functions that `function` calls, by names of its module such as f, module.f or Class.f."""
+    found: dict[str, Function] = {}
+    for name in global_names(function.__code__):
+        root, *path = name.split(".")
+        value = function.__globals__.get(root)
+        for attribute in path:
+            value = getattr(value, attribute, None) if isinstance(value, (types.ModuleType, type)) else None
+        plain = getattr(value, "py_func", value)
+        if isinstance(plain, types.FunctionType) and plain.__module__.split(".")[0] not in _LIBRARIES:
+            found[name] = plain
+    return list(found.items())
+
+
+def _with_functions(
+    names: Mapping[str, Any], functions: Mapping[str, Function], code: types.CodeType
+) -> dict[str, Any]:
+    """Return `names` with these functions in their places.
+
+    For a function called as Class.f, or as module.f, a module takes the place of what it stands in, with all that the
+    `code` uses of it: the class itself stays as it is.
+    """
+    names = dict(names)
+    spaces: dict[str, types.ModuleType] = {}
+
+    def space(path: str) -> types.ModuleType:
+        if path not in spaces:
+            outer, _, name = path.rpartition(".")
+            holder = vars(space(outer)) if outer else names
+            original = holder.get(name)
+            made = types.ModuleType(f"{name} {next(_number)}")
+            vars(made).update((part, getattr(original, part)) for part in code.co_names if hasattr(original, part))
+            holder[name] = spaces[path] = made
+        return spaces[path]
+
+    for dotted, function in functions.items():
+        path, _, name = dotted.rpartition(".")
+        (vars(space(path)) if path else names)[name] = function
+    return names
 
 
 def _recording_value(value: Any) -> Any:

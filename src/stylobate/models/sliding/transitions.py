@@ -46,7 +46,7 @@ def reaction(
     numbers
         Parameters of the model.
     """
-    rim = state.contact == ROLLING or state.contact == SLIPPING  # noqa: PLR1714  this is what Numba knows
+    rim = state.contact in (ROLLING, SLIPPING)
     flies = state.contact == FLYING
     if rim and event == _STROKE:
         return stroke(state, now, later, ahead, rest, numbers)

@@ -1,8 +1,7 @@
-"""A model's functions as code: compiled with all that they call, and told apart by what they say."""
+"""What sets a model's functions apart from others: their code, and the constants and functions that they use."""
 
 import dis
 import hashlib
-import itertools
 import types
 from collections.abc import Callable, Iterator, Mapping
 from enum import Enum
@@ -11,13 +10,9 @@ from typing import Any
 import numpy as np
 
 from stylobate.engine.compiler.marks import is_fast
+from stylobate.engine.compiler.sources import plain_function
 
 Function = Callable[..., Any]
-
-# What stands in these packages is taken as it is.
-_LIBRARIES = ("numpy",)
-
-_number = itertools.count()
 
 
 def fingerprint(function: Function) -> str:
@@ -40,7 +35,7 @@ def _parts(function: types.FunctionType, seen: set[int]) -> Iterator[str]:
     yield from _value_parts(tuple(sorted((function.__kwdefaults__ or {}).items())), seen)
     for cell in function.__closure__ or ():
         yield from _value_parts(cell.cell_contents, seen)
-    for dotted in _global_names(code):
+    for dotted in global_names(code):
         yield dotted
         for value in _along(function.__globals__, dotted):
             yield from _value_parts(value, seen)
@@ -93,21 +88,7 @@ def _code_parts(code: types.CodeType) -> Iterator[str]:
             yield repr(constant)
 
 
-def called_functions(function: types.FunctionType) -> list[tuple[str, Function]]:
-    """Return the plain functions that `function` calls, by names of its module such as f, module.f or Class.f."""
-    found: dict[str, Function] = {}
-    for name in _global_names(function.__code__):
-        root, *path = name.split(".")
-        value = function.__globals__.get(root)
-        for attribute in path:
-            value = getattr(value, attribute, None) if isinstance(value, (types.ModuleType, type)) else None
-        plain = getattr(value, "py_func", value)
-        if isinstance(plain, types.FunctionType) and plain.__module__.split(".")[0] not in _LIBRARIES:
-            found[name] = plain
-    return list(found.items())
-
-
-def _global_names(code: types.CodeType) -> Iterator[str]:
+def global_names(code: types.CodeType) -> Iterator[str]:
     """Return the names that `code` looks up in its module, with the attributes that it takes of them: `math.pi`."""
     name = ""
     for instruction in dis.get_instructions(code):
@@ -120,35 +101,3 @@ def _global_names(code: types.CodeType) -> Iterator[str]:
         elif name:
             yield name
             name = ""
-
-
-def with_functions(names: Mapping[str, Any], functions: Mapping[str, Function], code: types.CodeType) -> dict[str, Any]:
-    """Return `names` with these functions in their places.
-
-    Numba looks into modules, not into classes: for a function called as Class.f, or as module.f, a module takes the
-    place of what it stands in, with all that the `code` uses of it.
-    """
-    names = dict(names)
-    spaces: dict[str, types.ModuleType] = {}
-
-    def space(path: str) -> types.ModuleType:
-        if path not in spaces:
-            outer, _, name = path.rpartition(".")
-            holder = vars(space(outer)) if outer else names
-            original = holder.get(name)
-            made = types.ModuleType(f"{name} {next(_number)}")
-            vars(made).update((part, getattr(original, part)) for part in code.co_names if hasattr(original, part))
-            holder[name] = spaces[path] = made
-        return spaces[path]
-
-    for dotted, function in functions.items():
-        path, _, name = dotted.rpartition(".")
-        (vars(space(path)) if path else names)[name] = function
-    return names
-
-
-def plain_function(function: Function) -> types.FunctionType:
-    """Return the Python function behind one that the user compiled already."""
-    plain = getattr(function, "py_func", function)
-    assert isinstance(plain, types.FunctionType)
-    return plain
