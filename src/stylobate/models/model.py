@@ -84,9 +84,9 @@ class Model(Declared, ABC):
     `planar_rates` coplanar motion is integrated in space, without `no_return_tilt` a stated limit decides overturning.
 
     Ensembles compile these functions: arithmetic, `math`, conditions, loops, tuples and calls of functions that keep
-    to the same; what is not compiled is named with its line. `rates` and `planar_rates` run several columns at a time:
-    they have no branches, a choice is `a if condition else b`; `math.sqrt`, `abs`, `min` and `max` cost little there,
-    transcendental functions more.
+    to the same; what is not compiled is named with its line. `rates` and `planar_rates` run several columns at a time
+    where they have no branches and loops: a choice is `a if condition else b`; `math.sqrt`, `abs`, `min` and `max` cost
+    little there, transcendental functions more.
     """
 
     __slots__ = ()

@@ -61,6 +61,27 @@ def test_functions_of_the_library_are_called_for_each_lane():
     np.testing.assert_allclose(compiled[1], plain[1], rtol=4e-16)
 
 
+def branching(a, b):
+    if a > b:
+        return a, 1
+    while b < 4.0:
+        b = abs(b) * 2.0 + 1.0
+    return helper(b)[0], 2
+
+
+def calls_what_branches(x, out):
+    for i in lanes(WIDTH):
+        a, kind = branching(x[0, i], x[1, i])
+        out[0, i] = a + 1.0
+        out[1, i] = kind
+
+
+@pytest.mark.parametrize("count", [2, 8])
+def test_functions_with_branches_are_called_for_each_lane(count):
+    (compiled, _), (plain, _) = both_ways(calls_what_branches, X, np.ones((3, WIDTH)), lanes=count)
+    np.testing.assert_array_equal(compiled[1], plain[1])
+
+
 @fast
 def fused(x, out):
     for i in lanes(WIDTH):

@@ -174,6 +174,19 @@ def test_a_model_whose_functions_call_helpers_and_read_constants_of_their_module
     assert np.abs(changed["end_tilt"] - data["end_tilt"]).max() > 1e-5
 
 
+def test_a_model_whose_functions_branch(written):
+    before = (
+        "def resistance(vx, vy, k):\n    speed = math.hypot(vx, vy)\n    if speed > 0.05:\n        return k * speed\n"
+    )
+    before += "    return 0.0\n"
+    model = written(dragged("resistance(vx, vy, k)", before)).Dragged(COLUMN, drag=5.0)
+    chosen = written(dragged("(k * math.hypot(vx, vy) if math.hypot(vx, vy) > 0.05 else 0.0)")).Dragged(
+        COLUMN, drag=5.0
+    )
+    runs, expected = (sb.simulate_ensemble(one, CIRCLE, **TURNING) for one in (model, chosen))
+    np.testing.assert_allclose(runs["end_tilt"], expected["end_tilt"], rtol=0.0, atol=1e-9)
+
+
 FURTHER = """
 @dataclass(frozen=True, slots=True)
 class Counted(sb.Slender):

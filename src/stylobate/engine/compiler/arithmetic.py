@@ -20,6 +20,7 @@ from stylobate.engine.compiler.values import (
     constant,
     is_known_number,
     kind_of,
+    rebuilt,
     type_of,
 )
 
@@ -290,6 +291,31 @@ class Arithmetic:
             single = self.text.value(f"call double {function}({', '.join(f'double {one}' for one in singles)})")
             result = self.text.value(f"insertelement {kind} {result}, double {single}, i32 {lane}")
         return Number(Kind.FLOAT, result, lanes)
+
+    def of_lane(self, value: Value, lane: int) -> Value:
+        """Return what a value is in one lane."""
+
+        def single(part: Value) -> Value:
+            if isinstance(part, LaneIndex):
+                return self.binary(ast.Add(), part.first, part.offset + lane)
+            if not isinstance(part, Number) or not part.lanes:
+                return part
+            return Number(part.kind, self.text.value(f"extractelement {part.operand}, i32 {lane}"))
+
+        return rebuilt(value, single)
+
+    def in_lanes(self, values: list[Value]) -> Value:
+        """Return values of one structure, one for each lane, as one value."""
+        first = values[0]
+        if isinstance(first, tuple):
+            made = [self.in_lanes(list(parts)) for parts in zip(*values, strict=True)]
+            return type(first)(*made) if hasattr(first, "_fields") else tuple(made)
+        if not isinstance(first, Number):
+            return first
+        kind, result = type_of(first.kind, len(values)), "poison"
+        for lane, value in enumerate(values):
+            result = self.text.value(f"insertelement {kind} {result}, {value.operand}, i32 {lane}")
+        return Number(first.kind, result, len(values))
 
     def whole(self, value: Value) -> Value:
         """Return a number without its fraction, as `int` does; beyond 64 bits the largest, 0 where it is none."""

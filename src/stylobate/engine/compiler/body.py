@@ -7,7 +7,7 @@ from typing import Any, Protocol
 from stylobate.engine.compiler import arrays, marks, slots
 from stylobate.engine.compiler.arithmetic import Arithmetic
 from stylobate.engine.compiler.names import Names, assigned_in
-from stylobate.engine.compiler.refusal import Refusal, at_its_place
+from stylobate.engine.compiler.refusal import LanesRefusal, Refusal, at_its_place
 from stylobate.engine.compiler.slots import has_array
 from stylobate.engine.compiler.sources import Source
 from stylobate.engine.compiler.text import Block
@@ -64,6 +64,8 @@ class Body(Names):
         ------
         CompileError
             If something in it is not compiled.
+        LanesRefusal
+            If something in it is not compiled in lanes, of a function that is called there.
         slots.WiderKindError
             If a name needs room of another kind, noted in its `name`.
         """
@@ -72,6 +74,8 @@ class Body(Names):
                 self.assign(name, value)
             self._block(self.source.body)
         except Refusal as refusal:
+            if isinstance(refusal, LanesRefusal) and not self._over:
+                raise  # the caller makes one lane after the other
             raise at_its_place(refusal, self._at, self.source.file, self.source.name) from refusal
         except (ArithmeticError, LookupError, TypeError, ValueError, AttributeError) as error:  # of what is known
             reason = f"{type(error).__name__}: {error}"
@@ -207,7 +211,7 @@ class Body(Names):
 
     def _outside_lanes(self, reason: str = "a loop whose length is not known, within lanes") -> None:
         if self.arithmetic.lanes:
-            raise Refusal(reason)
+            raise LanesRefusal(reason)
 
     # Loops
 

@@ -17,6 +17,10 @@ class Refusal(Exception):  # noqa: N818  becomes a CompileError where the place 
     """
 
 
+class LanesRefusal(Refusal):
+    """Something is refused in lanes only."""
+
+
 def at_its_place(reason: object, node: ast.AST, file: str, function: str) -> CompileError:
     """Return the error of a refusal, with file and line."""
     return CompileError(f"{file}:{getattr(node, 'lineno', '?')}: in {function}: {reason}")

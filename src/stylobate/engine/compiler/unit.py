@@ -9,7 +9,7 @@ from typing import Any
 
 from stylobate.engine.compiler.arithmetic import Arithmetic
 from stylobate.engine.compiler.body import Body
-from stylobate.engine.compiler.refusal import CompileError, Refusal
+from stylobate.engine.compiler.refusal import CompileError, LanesRefusal, Refusal
 from stylobate.engine.compiler.slots import WiderKindError
 from stylobate.engine.compiler.sources import Source, plain_function, source_of
 from stylobate.engine.compiler.text import FunctionText, ModuleText
@@ -90,10 +90,25 @@ class Unit:
         if not arithmetic.lanes:
             ordered = list(bound.values())
             return _called(arithmetic, self._specialised(plain, ordered, fast=fast), ordered)
-        with self._entered(plain):
-            body = Body(self, source, arithmetic, {})
-            body.run(bound)
-        return body.finished()
+        begun = len(arithmetic.text.block.lines)
+        try:
+            with self._entered(plain):
+                body = Body(self, source, arithmetic, {})
+                body.run(bound)
+            return body.finished()
+        except LanesRefusal:
+            del arithmetic.text.block.lines[begun:]
+            return self._lane_by_lane(arithmetic, plain, list(bound.values()), fast=fast)
+
+    def _lane_by_lane(
+        self, arithmetic: Arithmetic, function: FunctionType, values: Sequence[Value], *, fast: bool
+    ) -> Value:
+        """Return the results of calls for each lane by itself: slowly, of a function with branches or loops."""
+        results = []
+        for lane in range(arithmetic.lanes):
+            single = [arithmetic.of_lane(value, lane) for value in values]
+            results.append(_called(arithmetic, self._specialised(function, single, fast=fast), single))
+        return arithmetic.in_lanes(results)
 
     def _source(self, function: FunctionType) -> Source:
         if function not in self._sources:
