@@ -38,6 +38,8 @@ class Compiled:
         Modules from which it takes functions.
     fast
         Names of functions of the model whose arithmetic is fast; see `marks.fast`.
+    brief
+        Whether it is compiled so soon that nobody need be told.
     """
 
     name: str
@@ -48,6 +50,7 @@ class Compiled:
     description: str
     imported: Sequence[types.ModuleType] = ()
     fast: Sequence[str] = field(default=())
+    brief: bool = False
 
     def __call__(self, *values: Any) -> int:
         """Return what it returns for these arrays, without gaps, and numbers.
@@ -84,7 +87,8 @@ class Compiled:
         texts = [Path(module.__file__ or "").read_text(encoding="utf-8") for module in self.imported]
         try:
             parts = [repr((self.name, self.arguments, self.fast)), self.text, *texts]
-            engine = kept.code_of(self._words, parts, self.functions, self._written, description=self.description)
+            told = None if self.brief else self.description
+            engine = kept.code_of(self._words, parts, self.functions, self._written, told)
         except CompileError as error:
             message = f"model {self.model} cannot be compiled; single runs by simulate need no compiling: {error}"
             raise UnsupportedError(message) from error

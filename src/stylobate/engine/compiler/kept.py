@@ -34,8 +34,7 @@ def code_of(
     parts: Iterable[str],
     functions: Mapping[str, Callable[..., Any]],
     write: Callable[[], str],
-    *,
-    description: str,
+    description: str | None,
 ) -> llvm.ExecutionEngine:
     """Return machine code, loaded: from disk, or newly compiled.
 
@@ -50,7 +49,7 @@ def code_of(
     write
         Returns the text of its module of LLVM.
     description
-        What is compiled, in words.
+        What is compiled, in words that the user is told; None for silence.
 
     Raises
     ------
@@ -69,7 +68,8 @@ def code_of(
                 code = folder.read(entry)
                 if code is None:
                     # A warning, seen where no logging is set up: seconds may pass, once.
-                    _log.warning("compiling %s; kept in %s", description, folder.folder)
+                    if description is not None:
+                        _log.warning("compiling %s; kept in %s", description, folder.folder)
                     code = machine.object_code(write())
                     _keep(folder, entry, code)
         return machine.linked(code)

@@ -1,7 +1,8 @@
 """A part of an ensemble on its way: the table that kernels read and write, and its passage through them."""
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -22,6 +23,13 @@ from stylobate.models import Model
 
 Floats = npt.NDArray[np.float64]
 
+Halt = npt.NDArray[np.uint8]
+
+
+def _nothing(_steps: float, _time: float) -> None:
+    """Take no notice of a pause."""
+
+
 WIDTH = 24
 """Lanes of a kernel: three vectors of AVX-512, whose latencies overlap; the buffer still fits the nearest cache."""
 
@@ -33,13 +41,15 @@ SWITCHING_WIDTH = 8
 class Plan:
     """What is the same for all runs of an ensemble, decided before the first.
 
-    `rest_share` is a factor of the energy below which rest is entered where the base motion can release the column.
+    `rest_share` is a factor of the energy below which rest is entered where the base motion can release the column;
+    `traces` is how many entries of a trace are kept before they are taken out, 0 for none.
     """
 
     model: Model
     motion: MotionPlan
     options: Options
     rest_share: float = 1.0
+    traces: int = 0
 
     def repeated(self) -> "Plan":
         """Return the plan by which runs in doubt are repeated: a finer rest threshold, another tolerance, no notes."""
@@ -47,7 +57,7 @@ class Plan:
         rtol = other_tolerance(own.rtol)
         atol = None if own.atol is None else own.atol * (rtol / own.rtol)
         options = replace(own, rtol=rtol, atol=atol, samples=0, strobes=0, recheck=False)
-        return replace(self, options=options, rest_share=FINER_REST)
+        return replace(self, options=options, rest_share=FINER_REST, traces=0)
 
     def shape(self, *, planar: bool) -> Shape:
         """Return what sets the kernel of motion in a plane, or in space, apart from others."""
@@ -77,7 +87,8 @@ class Plan:
 class Batch:
     """Some runs in the units of their models.
 
-    `planar` tells which runs begin in a plane, and when they have run, which ended in one.
+    `planar` tells which runs begin in a plane, and when they have run, which ended in one; `traces` holds what was
+    taken out of the trace of a single run.
     """
 
     plan: Plan
@@ -86,6 +97,7 @@ class Batch:
     rest_energy: Floats
     planar: npt.NDArray[np.bool_]
     table: Floats
+    traces: list[Floats] = field(default_factory=list)
 
     @classmethod
     def of(cls, plan: Plan, runs: Runs) -> "Batch":
@@ -105,7 +117,7 @@ class Batch:
         motions = MotionColumns.of(plan.motion, runs.values, models)
         energy = plan.rest_share * _rest_energy(plan.options, models, motions)
         table = _empty_table(plan, len(runs), motions.breaks.shape[1])
-        _fill_setup(table, plan.options, runs, models, motions, energy)
+        _fill_setup(table, plan, runs, models, motions, energy)
         planar = _fill_starts(table, plan.model, runs, models, motions)
         shape = plan.layout
         table[:, shape.parameters_at : shape.motion_at] = models.parameters
@@ -130,24 +142,43 @@ class Batch:
         first += NOTE * options.samples if strobes else 0
         return self.table[:, first : first + NOTE * count].reshape(len(self.table), count, NOTE)
 
-    def advance(self, halt: npt.NDArray[np.uint8]) -> bool:
-        """Run to the end; return whether it got there before `halt[0]` was set."""
-        finished = self._through(planar=False, chosen=~self.planar, halt=halt)
+    def advance(self, halt: Halt, paused: Callable[[float, float], None] = _nothing) -> bool:
+        """Run to the end; return whether it got there before `halt[0]` was set.
+
+        Where a trace is kept, `paused` is told steps and time [s] whenever it is full.
+        """
+        finished = self._through(halt, paused, planar=False, chosen=~self.planar)
         released = self.log(Log.STATUS) == Status.TO_PLANE
         self._to_plane(released)
         self.planar[released] = True
-        return self._through(planar=True, chosen=self.planar, halt=halt) and finished
+        return self._through(halt, paused, planar=True, chosen=self.planar) and finished
 
-    def _through(self, *, planar: bool, chosen: npt.NDArray[np.bool_], halt: npt.NDArray[np.uint8]) -> bool:
+    def _through(
+        self, halt: Halt, paused: Callable[[float, float], None], *, planar: bool, chosen: npt.NDArray[np.bool_]
+    ) -> bool:
         if not chosen.any():
             return True
         table = np.ascontiguousarray(self.table[chosen])
         kernel = kernel_of(type(self.plan.model), self.plan.shape(planar=planar))
-        finished = kernel.advance(table, self.plan.motion.pieces, halt)
+        buffer = kernel.buffer()
+        while not (finished := kernel.advance(table, self.plan.motion.pieces, halt, buffer)) and not halt[0]:
+            self._take_trace(table)
+            rows, first = kernel.shape.rows(), buffer[:: kernel.shape.width]
+            paused(first[rows["steps"]], first[rows["time"]] * self.models.time_scale[0])
+        self._take_trace(table)
         self.table[chosen] = table
         if np.any(self.log(Log.STATUS) == Status.CANNOT_DEPART):
             raise cannot_depart(self.plan.model)
         return finished
+
+    def _take_trace(self, table: Floats) -> None:
+        """Take out what a trace holds of the only run in the `table`."""
+        if self.plan.traces:
+            width = self.plan.layout.trace_width
+            at = table.shape[1] - self.plan.traces * width
+            count = int(table[0, LOG + Log.NEXT_TRACE])
+            self.traces.append(table[0, at : at + count * width].reshape(count, width).copy())
+            table[0, LOG + Log.NEXT_TRACE] = 0.0
 
     def _to_plane(self, chosen: npt.NDArray[np.bool_]) -> None:
         """Take the state of these runs from space to tilt and rate along their line."""
@@ -185,8 +216,9 @@ def _rest_energy_for_good(options: Options, models: ModelColumns, motions: Motio
 def _empty_table(plan: Plan, count: int, breaks: int) -> Floats:
     options = plan.options
     notes = plan.layout.breaks_at + breaks
-    table = np.zeros((count, notes + NOTE * (options.samples + options.strobes)))
-    table[:, notes:] = np.nan
+    traces = notes + NOTE * (options.samples + options.strobes)
+    table = np.zeros((count, traces + plan.traces * plan.layout.trace_width))
+    table[:, notes:traces] = np.nan
     for column in (Log.FIRST_AZIMUTH, Log.LAST_AZIMUTH):
         table[:, LOG + column] = np.nan
     for column in (Log.LEAST_TILT, Log.LEAST_PASSAGE, Log.NORMAL):
@@ -195,8 +227,9 @@ def _empty_table(plan: Plan, count: int, breaks: int) -> Floats:
 
 
 def _fill_setup(
-    table: Floats, options: Options, runs: Runs, models: ModelColumns, motions: MotionColumns, energy: Floats
+    table: Floats, plan: Plan, runs: Runs, models: ModelColumns, motions: MotionColumns, energy: Floats
 ) -> None:
+    options, traces = plan.options, plan.traces
     atol = ATOL_SHARE * options.rtol * models.slenderness if options.atol is None else options.atol
     with np.errstate(divide="ignore"):
         # Half the shortest period: no step can miss the forcing.
@@ -224,6 +257,7 @@ def _fill_setup(
         Setup.BREAKS: motions.breaks.shape[1],
         Setup.SAMPLES: options.samples,
         Setup.STROBES: options.strobes,
+        Setup.TRACES: traces,
         Setup.PASSAGE_TILT: models.loss_tilt,
         **dict(zip((Setup.SLOPE_X, Setup.SLOPE_Y, Setup.SLOPE_Z), models.slope.T, strict=True)),
     }

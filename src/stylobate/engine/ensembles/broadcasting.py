@@ -85,6 +85,11 @@ def broadcast(
     )
 
 
+def one_run(tilt: tuple[float, float], tilt_rate: tuple[float, float], spin: float, duration: float) -> Runs:
+    """Return a single run, its arguments checked before."""
+    return Runs((RUN,), (1,), np.array([tilt]), np.array([tilt_rate]), np.array([spin]), np.array([duration]), {}, {})
+
+
 def _numbers(name: str, value: ArrayLike) -> xr.DataArray:
     if isinstance(value, xr.DataArray):
         return _as_float(name, value)

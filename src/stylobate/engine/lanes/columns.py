@@ -2,7 +2,7 @@
 
 The table is one float64 array with a row for each run. A row holds `Setup`, then `Log`, two windows, the looks of a
 period, the state, `Change` where the model knows it, the model's parameters, the numbers of the base motion, its
-breaks, samples and strobes.
+breaks, samples, strobes, and the trace of the run where one is kept.
 """
 
 from enum import IntEnum, auto
@@ -51,6 +51,8 @@ class Setup(_FromZero):
     SAMPLES = auto()
     STROBES = auto()
     """How many columns of breaks, and sets of five columns of samples and strobes, the row of the run has."""
+    TRACES = auto()
+    """How many entries of a trace, in columns behind these, it has room for; 0 where none is kept."""
     PASSAGE_TILT = auto()
     """Least tilt below which a passage of the upright out of a plane loses energy; 0 where none does."""
     LINE_X = auto()
@@ -100,6 +102,8 @@ class Log(_FromZero):
     SAMPLES_AT = auto()
     NEXT_STROBE = auto()
     STROBES_AT = auto()
+    NEXT_TRACE = auto()
+    """Number of the next entry of the trace."""
     LIFTS_AT = auto()
     """When the base begins to drop away; infinite if never."""
     FRICTION = auto()
@@ -180,8 +184,45 @@ STATE = LAST_LOOKS + 4 * LOOKS
 SLACK = 1e-12
 """A run is as long as a number of periods to this part."""
 
+TRACE_TERMS = 8
+"""Vectors of an entry of a trace: the state at its start, and seven coefficients."""
+TRACE_ROOM = 16
+"""Entries that must be free before a lane is dealt with: that is more than are made at once."""
+
 NOTE = 5
 """Columns of a sample or a strobe: tilt x and y, their rates, time."""
+
+
+class Trace(_FromZero):
+    """What the columns of an entry of a trace hold; behind them stand the state at its start and a polynomial.
+
+    An entry lasts until the next one begins. The polynomial is that of the dense output of DOP853, see `dense_source`,
+    in the share of the entry's length that is over: seven coefficients, each of all states.
+    """
+
+    KIND = auto()
+    START = auto()
+    LENGTH = auto()
+    AZIMUTH = auto()
+    END_AZIMUTH = auto()
+    """Of the lean at both ends, followed round [turns]; out of a plane."""
+
+
+class TraceKind(_FromZero):
+    """What an entry of a trace is: a stretch of motion, or an event."""
+
+    STEP = auto()
+    PLANE_STEP = auto()
+    """A step in a vertical plane: its state is tilt and rate."""
+    LEAP = auto()
+    """A short time passed in closed form."""
+    STAND = auto()
+    """The column stands on its base."""
+    RELEASE = auto()
+    REST = auto()
+    IMPACT = auto()
+    PASSAGE = auto()
+    """Events: only their time, START, has a meaning."""
 
 
 class Status(_FromZero):

@@ -13,33 +13,44 @@ _EXTRA = ("extra0_", "extra1_", "extra2_")
 
 
 def dense_source(shape: Shape, rows: Rows) -> str:
-    """Return the source of `set_dense(buf, i)` and `dense_state(buf, i, u)`, the state at a part of the step tried."""
+    """Return the source of `set_dense` and `dense_state`.
+
+    `set_dense(buf, i, state, slope, t, h)` sets the polynomial of the step over h from the time t, whose state and
+    slope at its start lie in the rows from `state` and `slope` on; `dense_state(buf, i, u)` is the state at the part u
+    of the step just tried.
+    """
+    head = "def set_dense(buf, i, state, slope, t, h):"
+    if shape.series:
+        return f"{head}\n    pass\n"
 
     def row(name: str) -> str:
         return f"buf[{rows[f'{name}0']} + j, i]"
 
-    stages = [row(f"k{stage}_") for stage in range(STAGES + 1)] + [row(name) for name in _EXTRA]
-    lines = ["def set_dense(buf, i):", f"    h = {rows.of_lane('tried')}", f"    t = {rows.of_lane('time')}"]
+    start = "buf[state + j, i]"
+    stages = ["buf[slope + j, i]"]
+    stages += [row(f"k{stage}_") for stage in range(1, STAGES + 1)] + [row(name) for name in _EXTRA]
+    lines = [head]
     made = f"row_state(buf, i, {rows['dense0_0']})"
     for number, (weights, fraction, name) in enumerate(zip(dop853.A_EXTRA, dop853.C_EXTRA, _EXTRA, strict=True)):
         known = STAGES + 1 + number
         lines += [
             "    for j in range(ORDER):",
-            f"        {row('dense0_')} = {row('y')} + h * ({combination(weights[:known], stages[:known])})",
+            f"        {row('dense0_')} = {start} + h * ({combination(weights[:known], stages[:known])})",
             f"    slopes = rates_at(buf, i, t + {float(fraction)!r} * h, {made})",
             "    for j in range(ORDER):",
             f"        {row(name)} = slopes[j]",
         ]
     lines += [
         "    for j in range(ORDER):",
-        f"        change = {row('new')} - {row('y')}",
+        f"        change = {row('new')} - {start}",
         f"        {row('dense0_')} = change",
         f"        {row('dense1_')} = h * {stages[0]} - change",
         f"        {row('dense2_')} = 2.0 * change - h * ({stages[0]} + {stages[STAGES]})",
         *(f"        {row(f'dense{3 + k}_')} = h * ({combination(d, stages)})" for k, d in enumerate(dop853.D)),
     ]
-    lines += ["", "", "def dense_state(buf, i, u):", "    v = 1.0 - u"]
-    lines.append(f"    return ({', '.join(_within(rows, j) for j in range(shape.order))})")
+    if shape.guards:
+        lines += ["", "", "def dense_state(buf, i, u):", "    v = 1.0 - u"]
+        lines.append(f"    return ({', '.join(_within(rows, j) for j in range(shape.order))})")
     return "\n".join(lines) + "\n"
 
 

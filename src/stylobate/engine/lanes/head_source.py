@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
-from stylobate.engine.lanes.columns import NOTE, SLACK, STATE
+from stylobate.engine.lanes.columns import NOTE, SLACK, STATE, TRACE_ROOM, TRACE_TERMS
 from stylobate.engine.lanes.series_source import polynomial, state_polynomial
 from stylobate.engine.lanes.shape import MARGIN_PLACES, SERIES_ORDER, Shape
 from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET, HOPS_APART, SLIP_SHARE, SLIP_SHORTER, SLIP_TURNS, STILL
@@ -34,6 +34,10 @@ def constants_source(model: type[Model], shape: Shape, has: Mapping[str, bool], 
         "PARAMETERS_AT": shape.parameters_at,
         "MOTION_AT": shape.motion_at,
         "BREAKS_AT": shape.breaks_at,
+        "TRACE_ROOM": TRACE_ROOM,
+        "TRACE_STATES": max(shape.states, 2),
+        "TRACE_TERMS": TRACE_TERMS,
+        "TRACE_WIDTH": shape.trace_width,
         "HOP_FROM": HOP_FROM,
         "HOP_OFFSET": HOP_OFFSET,
         "HOPS_APART": HOPS_APART,

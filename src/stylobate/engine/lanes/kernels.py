@@ -16,10 +16,10 @@ from stylobate.engine.compiler.compiled import Compiled
 from stylobate.engine.compiler.unit import ArrayArgument
 from stylobate.engine.compiler.values import Element
 from stylobate.engine.lanes import pattern, roots
-from stylobate.engine.lanes.columns import LOOKS, Status, Window
+from stylobate.engine.lanes.columns import LOOKS, Status, Trace, TraceKind, Window
 from stylobate.engine.lanes.dense_source import dense_source
 from stylobate.engine.lanes.head_source import OPTIONAL, SWITCHING, constants_source, model_source
-from stylobate.engine.lanes.layout import Table
+from stylobate.engine.lanes.layout import Row, Table
 from stylobate.engine.lanes.margin_source import margins_source, reaction_source, window_source
 from stylobate.engine.lanes.observation_source import observation_source
 from stylobate.engine.lanes.shape import DEMANDS, STAGES, Shape
@@ -42,12 +42,15 @@ class Kernel:
     shape: Shape
     compiled: Compiled
 
-    def advance(self, table: Table, pieces: Table, halt: npt.NDArray[np.uint8]) -> bool:
-        """Run a batch to its end, or until `halt[0]` is set; return whether it got there. See the driver."""
-        rows, width = len(self.shape.rows()), self.shape.width
-        room = np.zeros(rows * width + _EDGE)
-        flat = room[(-room.ctypes.data // room.itemsize) % _EDGE :][: rows * width]
-        return bool(self.compiled(table, pieces, halt, flat.reshape(rows, width), flat))
+    def buffer(self) -> Row:
+        """Return a new buffer, in which no batch has begun."""
+        size = len(self.shape.rows()) * self.shape.width
+        room = np.full(size + _EDGE, np.nan)
+        return room[(-room.ctypes.data // room.itemsize) % _EDGE :][:size]
+
+    def advance(self, table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buffer: Row) -> bool:
+        """Run a batch to its end, until `halt[0]` is set or a trace is full; return whether it is at its end."""
+        return bool(self.compiled(table, pieces, halt, buffer.reshape(-1, self.shape.width), buffer))
 
 
 @cache
@@ -125,7 +128,7 @@ def _functions(model: type[Model], shape: Shape) -> dict[str, Callable[..., Any]
 def _contact_sources(shape: Shape) -> list[str]:
     """Return what the driver of a model that changes between kinds of contact calls."""
     rows, writers = shape.rows(), (margins_source, reaction_source, dense_source, stability_source)
-    return [write(shape, rows) for write in writers] if shape.guards else []
+    return [write(shape, rows) for write in writers] if shape.guards else [dense_source(shape, rows)]
 
 
 def _driver_text(shape: Shape) -> str:
@@ -151,6 +154,7 @@ def _with_numbers(text: str, shape: Shape) -> str:
 
     slopes = {"SLOPE": "k0_0", "SLOPE_NEW": f"k{STAGES}_0", "LAST_SLOPE": "last_slope0"}
     # Steps by series have no slopes; what reads them is left out by the compiler, as what is not followed.
+    slopes["DENSE"] = "dense0_0"
     special |= {name: 0 if shape.series else rows[row] for name, row in slopes.items()}
     if shape.guards:
         special |= {"CONTACT": rows[f"y{shape.order - 1}"]}
@@ -160,10 +164,13 @@ def _with_numbers(text: str, shape: Shape) -> str:
         table, name = match.groups()
         if table == "R":
             return str(special[name] if name in special else rows[name.lower()])
-        return str(int((Window if table == "Window" else Status)[name]))
+        return str(int(_NAMED[table][name]))
 
-    numbered = re.sub(r"\b(R|Window|Status)\.([A-Z_]+)\b", number, text)
-    return re.sub(r"\bLOOKS\b", str(LOOKS), numbered)
+    numbered = re.sub(rf"\b(R|{'|'.join(_NAMED)})\.([A-Z_]+)\b", number, text)
+    return re.sub(r"\bLOOKS\b", str(LOOKS), numbered).replace("len(Trace)", str(len(Trace)))
+
+
+_NAMED = {"Window": Window, "Status": Status, "Trace": Trace, "TraceKind": TraceKind}
 
 
 def _kind(shape: Shape) -> str:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from stylobate.engine.lanes.columns import LOOKS, STATE, Change, Log, Setup, Window
+from stylobate.engine.lanes.columns import LOOKS, STATE, TRACE_TERMS, Change, Log, Setup, Trace, Window
 from stylobate.engine.lanes.forcing_source import ForcingSource
 from stylobate.engine.lanes.layout import Rows
 
@@ -73,6 +73,11 @@ class Shape:
         return self.motion_at + self.forcing.columns
 
     @property
+    def trace_width(self) -> int:
+        """Columns of an entry of a trace, the same for motion in space and in a plane."""
+        return len(Trace) + TRACE_TERMS * max(self.states, 2)
+
+    @property
     def order(self) -> int:
         """Number of equations."""
         return 2 if self.planar else self.states
@@ -113,22 +118,25 @@ class Shape:
             rows.add_many(name, self.order)
         if self.demands:
             rows.add(*(f"{name}_{place}" for place in ("now", 1, 2, 3, 4) for name in DEMANDS))
-        if self.series:
-            rows.add("proposed", *(f"node_{name}" for name in OBSERVED))
-            rows.add_many("square", SERIES_ORDER + 1)
-            for j in self.expanded:
-                rows.add(*(f"c{k}_{j}" for k in range(1, self.degree(j) + 1)))
-        else:
-            for stage in range(STAGES + 1):
-                rows.add_many(f"k{stage}_", self.order)
-            rows.add_many("last_slope", self.order)
+        (self._add_series if self.series else self._add_stages)(rows)
+        return rows
+
+    def _add_series(self, rows: Rows) -> None:
+        rows.add("proposed", *(f"node_{name}" for name in OBSERVED))
+        rows.add_many("square", SERIES_ORDER + 1)
+        for j in self.expanded:
+            rows.add(*(f"c{k}_{j}" for k in range(1, self.degree(j) + 1)))
+
+    def _add_stages(self, rows: Rows) -> None:
+        for stage in range(STAGES + 1):
+            rows.add_many(f"k{stage}_", self.order)
+        rows.add_many("last_slope", self.order)
         if self.guards:
             rows.add("last_margin", "margin_now", "broken", "stiff_looks", "stiff_look_at")
             for name in ("stage", "rate", "step"):
                 rows.add_many(name, self.order)
-            for name in ("extra0_", "extra1_", "extra2_", *(f"dense{power}_" for power in range(DENSE_TERMS))):
-                rows.add_many(name, self.order)
-        return rows
+        for name in ("extra0_", "extra1_", "extra2_", *(f"dense{power}_" for power in range(DENSE_TERMS))):
+            rows.add_many(name, self.order)
 
 
 DEMANDS = ("normal", "friction", "pivoting")
@@ -142,5 +150,6 @@ _LANE_ROWS = (
     "atol_now", "grown", "rest_tilt", "rest_square", "slow_square", "no_return",
     "tilt", "radial", "momentum", "x", "y", "vx", "vy",
     "turns", "low", "slow", "peak", "flag", "error", "ok", "held", "go", "reached",
+    "trace_azimuth",
     "new_x", "new_y", "new_vx", "new_vy", "new_tilt", "new_radial", "per_turn",
 )  # fmt: skip

@@ -1,5 +1,6 @@
 """A batch of runs through the lanes."""
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +13,7 @@ from stylobate.engine.lanes.pattern.events import handle
 from stylobate.engine.lanes.pattern.moving import azimuth_now, square_of_speed
 from stylobate.engine.lanes.pattern.starting import begin
 from stylobate.engine.lanes.pattern.stops import passes_knot, set_break, set_look, set_sample, set_strobe
+from stylobate.engine.lanes.pattern.tracing import trace_steps
 
 if TYPE_CHECKING:
     from stylobate.engine.lanes.pattern.head import (
@@ -98,16 +100,39 @@ def fill(buf: Table, i: int, table: Table, pieces: Table, waiting: int) -> int:
     return waiting
 
 
+def begin_or_go_on(buf: Table, table: Table, pieces: Table) -> int:
+    """Fill the lanes of a new buffer, or take up one of a batch that was paused; return the run that waits next."""
+    waiting = 0
+    if math.isnan(buf[R.RUN, 0]):
+        for i in range(WIDTH):
+            quiet(buf, i)
+            waiting = fill(buf, i, table, pieces, waiting)
+        return waiting
+    for i in range(WIDTH):
+        run = int(buf[R.RUN, i])
+        waiting = max(waiting, run + 1)
+        if run >= 0:
+            buf[R.NEXT_TRACE, i] = table[run, R.NEXT_TRACE]
+    return waiting
+
+
+def pause(buf: Table, table: Table) -> bool:
+    """Let the traces be taken out of the table; return False, as `advance` does that has not come to its end."""
+    for i in range(WIDTH):
+        if buf[R.RUN, i] >= 0.0:
+            table[int(buf[R.RUN, i]), R.NEXT_TRACE] = buf[R.NEXT_TRACE, i]
+    return False
+
+
 def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table, flat: Row) -> bool:
     """Run a batch to its end; return whether it got there.
 
-    `table` has a row for each run, see `columns`; `halt[0]` set to 1 from another thread ends the batch early. `buf`
-    and `flat` are one piece of memory, as a table of rows and as one row.
+    It does not where `halt[0]` is set to 1 from another thread, or a trace is full: then the same buffer goes on, once
+    the trace has been emptied. `table` has a row for each run, see `columns`; `buf` and `flat` are one piece of memory,
+    as a table of rows and as one row, NaN before the first run.
     """
-    waiting = 0
-    for i in range(WIDTH):
-        quiet(buf, i)
-        waiting = fill(buf, i, table, pieces, waiting)
+    waiting = begin_or_go_on(buf, table, pieces)
+    traced = table[0, R.TRACES] > 0.0
     while True:
         live = False
         for i in range(WIDTH):
@@ -117,6 +142,8 @@ def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table
         met = False
         while not met:
             step(flat)
+            full = traced and trace_steps(buf, table)
+            met = full
             for i in range(WIDTH):
                 if buf[R.WATCHED, i] > 0.0 and buf[R.GO, i] > 0.0:
                     observe(flat, i)
@@ -131,3 +158,5 @@ def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table
                     leave(buf, i, table, status)
                     quiet(buf, i)
                     waiting = fill(buf, i, table, pieces, waiting)
+        if full:
+            return pause(buf, table)

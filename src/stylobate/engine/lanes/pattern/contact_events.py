@@ -95,7 +95,7 @@ def handle(buf: Table, i: int, table: Table, pieces: Table) -> int:
 
 def held_back(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Find what ended the kind of contact in the step that was held back, and go on from there."""
-    set_dense(buf, i)
+    set_dense(buf, i, R.STATE, R.SLOPE, buf[R.TIME, i], buf[R.TRIED, i])
     elapsed, number = first_end(buf, i)
     if number < 0:  # it only seemed so on the cubics: the step is made again, and taken
         buf[R.H, i] = buf[R.TRIED, i]

@@ -10,6 +10,7 @@ from stylobate.engine.lanes.pattern.passages import cross_upright, hop, hops, lo
 from stylobate.engine.lanes.pattern.peaks import closest_within, measure_peak, take_back
 from stylobate.engine.lanes.pattern.resting import rest_within_step, settle
 from stylobate.engine.lanes.pattern.stops import go_on, meet_stop
+from stylobate.engine.lanes.pattern.tracing import untrace
 from stylobate.engine.lanes.pattern.within import set_within
 from stylobate.engine.lanes.roots import first_growth_past, first_return
 
@@ -138,7 +139,7 @@ def arrived(buf: Table, i: int, table: Table, pieces: Table) -> int:
     return Status.LIMIT if buf[R.TILT_LIMIT, i] <= buf[R.NO_RETURN, i] else Status.OVERTURNED
 
 
-def near_upright(buf: Table, i: int) -> float:
+def near_upright(buf: Table, i: int, table: Table) -> float:
     """Deal with a passage near the upright, out of a plane; return when the column came to rest there, or NaN."""
     if CAN_LOSE and loses(buf, i):
         aim(buf, i, -closest_within(buf, i))
@@ -149,7 +150,7 @@ def near_upright(buf: Table, i: int) -> float:
         if not math.isnan(rest):
             return rest
     if CAN_PASS and hops(buf, i):
-        hop(buf, i)
+        hop(buf, i, table)
     return math.nan
 
 
@@ -163,6 +164,7 @@ def handle(buf: Table, i: int, table: Table, pieces: Table) -> int:
         ahead = measure_peak(buf, i)
         if ahead > 0.0 and buf[R.AIMED, i] == 0.0:  # the limit lies between the ends of the step and its peak
             take_back(buf, i)
+            untrace(buf, i)
             aim(buf, i, ahead)
             return Status.WAITING
     if buf[R.AIMED, i] > 0.0:
@@ -170,7 +172,7 @@ def handle(buf: Table, i: int, table: Table, pieces: Table) -> int:
     if buf[R.STEPS, i] >= buf[R.MOST_STEPS, i]:
         return Status.STEP_LIMIT
     if not PLANAR:
-        rest = near_upright(buf, i)
+        rest = near_upright(buf, i, table)
         if not math.isnan(rest):
             return settle(buf, i, table, pieces, rest)
         if buf[R.AIMED, i] > 0.0:

@@ -22,6 +22,12 @@ DEGREE: int
 PARAMETERS_AT: int
 MOTION_AT: int
 BREAKS_AT: int
+TRACE_ROOM: int
+TRACE_STATES: int
+TRACE_TERMS: int
+TRACE_WIDTH: int
+"""See `lanes.columns`; the second is the most states that an entry of a trace has."""
+NOTE: int
 """Columns of the table at which the parameters, the numbers of the base motion and its breaks begin."""
 CAN_REST: bool
 CAN_DEPART: bool

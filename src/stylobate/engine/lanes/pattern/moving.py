@@ -97,6 +97,7 @@ def set_off(buf: Table, i: int, t: float, wanted: float) -> None:
         buf[R.TURNS, i] = azimuth - here
         if math.isnan(buf[R.FIRST_AZIMUTH, i]):
             buf[R.FIRST_AZIMUTH, i] = azimuth
+        buf[R.TRACE_AZIMUTH, i] = azimuth
     atol = buf[R.ATOL, i]
     buf[R.ATOL_NOW, i] = min(atol, buf[R.RTOL, i] * tilt) if tilt > 0.0 else atol
     if tilt > buf[R.LARGEST_TILT, i]:

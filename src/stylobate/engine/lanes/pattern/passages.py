@@ -3,10 +3,12 @@
 import math
 from typing import TYPE_CHECKING
 
+from stylobate.engine.lanes.columns import TraceKind
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.moving import azimuth_now, set_lean, set_off, set_state
 from stylobate.engine.lanes.pattern.resting import rest_margin, settle
 from stylobate.engine.lanes.pattern.stops import next_stop, resume
+from stylobate.engine.lanes.pattern.tracing import trace_event, trace_leap
 from stylobate.engine.lanes.pattern.within import set_within
 
 if TYPE_CHECKING:
@@ -36,7 +38,9 @@ def cross_upright(buf: Table, i: int, table: Table, pieces: Table) -> int:
     rests = CAN_REST and buf[R.REST_ENERGY, i] > 0.0 and rest_margin(buf, i, t, 0.0, abs(speed)) > 0.0
     if speed == 0.0 or rests:
         return settle(buf, i, table, pieces, t)
-    if CAN_LOSE and buf[R.PASSAGE_TILT, i] > 0.0:
+    costs = CAN_LOSE and buf[R.PASSAGE_TILT, i] > 0.0
+    trace_event(buf, i, table, TraceKind.IMPACT if costs else TraceKind.PASSAGE, t)
+    if costs:
         set_state(buf, i, model_struck(buf, i))
     set_off(buf, i, t, buf[R.HELD_STEP, i])
     return resume(buf, i, table, pieces)
@@ -54,6 +58,7 @@ def loses(buf: Table, i: int) -> bool:
 
 def strike(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Take the loss of a passage, at the least tilt; return as `resume` does."""
+    trace_event(buf, i, table, TraceKind.IMPACT, buf[R.TIME, i])
     set_state(buf, i, model_struck(buf, i))
     set_off(buf, i, buf[R.TIME, i], buf[R.WANTED, i])
     buf[R.ATOL_NOW, i] = buf[R.ATOL, i]
@@ -67,7 +72,7 @@ def hops(buf: Table, i: int) -> bool:
     return near and abs(buf[R.MOMENTUM, i]) < HOP_OFFSET * c * speed
 
 
-def hop(buf: Table, i: int) -> None:
+def hop(buf: Table, i: int, table: Table) -> None:
     """Make the passage, if it ends before the next stop."""
     t = buf[R.TIME, i]
     ax, ay, az = accelerations(buf, i, t)
@@ -77,8 +82,10 @@ def hop(buf: Table, i: int) -> None:
     momentum, speed = buf[R.MOMENTUM, i], math.hypot(buf[R.VX, i], buf[R.VY, i])
     # Half a turn on the side on which the momentum says it passes.
     azimuth = azimuth_now(buf, i) + math.copysign(0.5, momentum)
+    trace_leap(buf, i, table, elapsed, state, azimuth)
     set_state(buf, i, state)
     if CAN_LOSE and buf[R.PASSAGE_TILT, i] > 0.0:
+        trace_event(buf, i, table, TraceKind.IMPACT, t + elapsed)
         set_state(buf, i, model_struck(buf, i))
     set_lean(buf, i)
     closest = abs(momentum) / speed

@@ -3,13 +3,14 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.lanes.columns import Status
+from stylobate.engine.lanes.columns import Status, TraceKind
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import forcing_rate, held_for_good, least_force
 from stylobate.engine.lanes.pattern.moving import at_upright, azimuth_now, set_off, set_state
 from stylobate.engine.lanes.pattern.release import RELEASE_MARGIN, release_time
 from stylobate.engine.lanes.pattern.standing import bear_standing
 from stylobate.engine.lanes.pattern.stops import go_on, leg_end, meet_stop, next_stop, stand_to_the_end
+from stylobate.engine.lanes.pattern.tracing import trace_event, trace_stand
 from stylobate.engine.lanes.pattern.within import set_within
 from stylobate.models.model import Push
 
@@ -89,6 +90,7 @@ def settle(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
     if not PLANAR:
         buf[R.LAST_AZIMUTH, i] = azimuth_now(buf, i)
     set_state(buf, i, model_at_rest(buf, i))
+    trace_event(buf, i, table, TraceKind.REST, t)
     buf[R.STANDS, i] = 1.0
     buf[R.RESTS, i] += 1.0
     buf[R.TOUCHED_UPRIGHT, i] = 1.0
@@ -97,6 +99,7 @@ def settle(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
 
 def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
     """Stand from `t` until released; return WAITING when moving again, else the status with which the run ends."""
+    trace_stand(buf, i, table, t)
     release = release_within_leg(buf, i, t)
     while True:
         if held_for_good(buf, i):
@@ -112,6 +115,7 @@ def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
                 return Status.CANNOT_DEPART
             t = min(depart(buf, i, release), buf[R.END, i])
             if t < buf[R.END, i] and not at_upright(buf, i):
+                trace_event(buf, i, table, TraceKind.RELEASE, release)
                 return take_off(buf, i, table, pieces, t)
         buf[R.TIME, i] = t
         # The search is not cut at stops that leave the base motion as it is: what is looked at does not change a run.

@@ -1,0 +1,63 @@
+"""A function of a model at many places: compiled, and called for one row of numbers after another."""
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.engine.compiler.compiled import Compiled
+from stylobate.engine.compiler.unit import ArrayArgument
+from stylobate.errors import UnsupportedError
+
+Floats = npt.NDArray[np.float64]
+
+# For fewer rows than this nothing is compiled.
+_FEW = 64
+
+
+def over_rows(function: Callable[..., Any], rows: Floats, *, name: str) -> Floats:
+    """Return what `function` gives for each row of numbers, shape (n, results).
+
+    Parameters
+    ----------
+    function
+        Of floats; returns a tuple of them. One that cannot be compiled is called as it is.
+    rows
+        Its arguments, shape (n, arguments).
+    name
+        What it belongs to, for messages.
+    """
+    if not len(rows):
+        return np.empty((0, 0))
+    results = len(function(*rows[0].tolist()))
+    if len(rows) >= _FEW:
+        out = np.empty((len(rows), results))
+        try:
+            _compiled(function, rows.shape[1], results, name)(np.ascontiguousarray(rows), out)
+        except UnsupportedError:
+            pass
+        else:
+            return out
+    return np.array([function(*row) for row in rows.tolist()], dtype=float)
+
+
+@cache
+def _compiled(function: Callable[..., Any], arguments: int, results: int, name: str) -> Compiled:
+    numbers = ", ".join(f"rows[k, {j}]" for j in range(arguments))
+    lines = [
+        "def over_rows(rows, out):",
+        "    for k in range(len(rows)):",
+        f"        found = function({numbers})",
+        *(f"        out[k, {j}] = found[{j}]" for j in range(results)),
+    ]
+    return Compiled(
+        name="over_rows",
+        text="\n".join(lines) + "\n",
+        functions={"function": function},
+        arguments=(ArrayArgument((None, arguments)), ArrayArgument((None, results))),
+        model=name,
+        description=f"{name}, {getattr(function, '__name__', 'function')} along runs",
+        brief=True,
+    )

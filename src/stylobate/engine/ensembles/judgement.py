@@ -1,0 +1,154 @@
+"""The outcomes of runs, and what their last periods show, from what kernels noted of them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.engine.end_of_motion import energy_over_balance, has_ended
+from stylobate.engine.ensembles.batch import Batch
+from stylobate.engine.ensembles.contacts import upright_outcomes
+from stylobate.engine.lanes.columns import BEFORE, LATE, LOOKS, SLACK, STATE, Log, Setup, Status, Window
+from stylobate.engine.verdict import Evidence, Ground, grounds, outcome_on
+from stylobate.errors import Outcome
+
+Floats = npt.NDArray[np.float64]
+
+_ENDINGS = {
+    Status.RESTED: Outcome.AT_REST,
+    Status.OVERTURNED: Outcome.OVERTURNED,
+    Status.LIMIT: Outcome.LIMIT_REACHED,
+    Status.LIFTED: Outcome.LIFTED_OFF,
+    Status.STEP_LIMIT: Outcome.FAILED,
+    Status.STEP_TOO_SMALL: Outcome.FAILED,
+    Status.ENDLESS: Outcome.FAILED,
+    Status.JAMMED: Outcome.FAILED,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Late:
+    """The last periods of each run: NaN where they were not looked at to the end."""
+
+    span: Floats
+    turned: Floats
+    mean_tilt: Floats
+    phase: Floats
+    least_tilt: Floats
+    repetition: Floats
+    repetition_before: Floats
+    drift: Floats
+
+
+def late_periods(batch: Batch) -> Late:
+    """Return what the last periods of each run show."""
+    n = batch.plan.options.rules.periods
+    period, end = batch.motions.period, batch.table[:, Setup.END]
+    end = end * (1.0 + SLACK)
+    seen = (batch.log(Log.STATUS) == Status.STOPPED) & (period > 0.0) & (end >= (n + 1) * period)
+    before = seen & (end >= (2 * n + 1) * period)
+
+    def known(values: Floats, where: npt.NDArray[np.bool_] = seen) -> Floats:
+        return np.where(where, values, np.nan)
+
+    span = known(n * period)
+    turned = _window(batch, LATE, Window.LAST_AZIMUTH) - _window(batch, LATE, Window.FIRST_AZIMUTH)
+    turned = np.where(batch.planar, 0.0, turned)
+    forward = turned >= 0.0
+    lag = np.where(forward, Window.LAG_FORWARD, Window.LAG_BACKWARD)
+    lags = [
+        np.take_along_axis(batch.table, (first + lag)[:, np.newaxis], axis=1)[:, 0] / (n * LOOKS)
+        for first in (LATE, BEFORE)
+    ]
+    parts = {
+        name: batch.log(Log[f"{name}_COS"]) + 1j * batch.log(Log[f"{name}_SIN"]) for name in ("FORWARD", "BACKWARD")
+    }
+    phase = np.where(
+        forward,
+        np.angle(parts["FORWARD"]) - _reference(batch, batch.motions.forward),
+        _reference(batch, batch.motions.backward) - np.angle(parts["BACKWARD"]),
+    )
+    mean_tilt = known(batch.log(Log.MEAN_TILT)) / span
+    return Late(
+        span=span,
+        turned=known(turned),
+        mean_tilt=mean_tilt,
+        phase=known(np.angle(np.exp(1j * phase))),
+        least_tilt=known(batch.log(Log.LATE_LEAST)),
+        repetition=known(_repetition(batch, LATE, mean_tilt)),
+        repetition_before=known(_repetition(batch, BEFORE, mean_tilt), before),
+        drift=known(np.abs(lags[0] - lags[1]), before),
+    )
+
+
+def _reference(batch: Batch, azimuth: Floats) -> Floats:
+    """Return the azimuth of a circular part of the forcing, measured along the line for motion in a plane."""
+    line = np.arctan2(batch.table[:, Setup.LINE_Y], batch.table[:, Setup.LINE_X])
+    return np.where(batch.planar, azimuth - line, azimuth)
+
+
+def _window(batch: Batch, first: int, column: Window) -> Floats:
+    return batch.table[:, first + column]
+
+
+def _repetition(batch: Batch, first: int, mean_tilt: Floats) -> Floats:
+    """Return the largest difference of states one period apart, over the largest tilt or rate.
+
+    All looks may fall on passages of the upright: then tilts are told by the mean tilt of the last periods.
+    Infinite where the looks saw nothing but a column that stands: what it does between them is not known to repeat.
+    """
+    tilt_size, rate_size = _window(batch, first, Window.TILT_SIZE), _window(batch, first, Window.RATE_SIZE)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        tilt = _window(batch, first, Window.TILT_CHANGE) / np.fmax(tilt_size, mean_tilt)
+        rate = _window(batch, first, Window.RATE_CHANGE) / rate_size
+    found = np.fmax(np.nan_to_num(tilt), np.nan_to_num(rate))
+    return np.where((tilt_size > 0.0) | (rate_size > 0.0), found, np.inf)
+
+
+def _survive(batch: Batch, moving: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """Return which of the runs that are `moving` at their end have outlived a base motion that ends: see `survival`."""
+    lasts = batch.motions.duration
+    survive = moving & (batch.log(Log.STATUS) == Status.STOPPED) & (batch.log(Log.STANDS) == 0.0)
+    survive &= (lasts > 0.0) & has_ended(batch.log(Log.TIME) * batch.models.time_scale, lasts)
+    states = _states(batch) if survive.any() else np.empty((0, 0))
+    for changed, runs in batch.models.kinds:
+        if survive[runs].any():
+            survive[runs] &= energy_over_balance(changed, states[:, runs]) < 1.0
+    return np.asarray(survive)
+
+
+def _states(batch: Batch) -> Floats:
+    """Return the states in three dimensions, shape (number of states, n)."""
+    model = batch.plan.model
+    states = batch.table[:, STATE : STATE + len(model.state_names)].T
+    if not batch.planar.any():
+        return states
+    assert model.from_plane is not None
+    line = batch.table[:, [Setup.LINE_X, Setup.LINE_Y]].T
+    lifted = np.broadcast_arrays(*model.from_plane(states[0], states[1], *line, *batch.models.parameters.T))
+    return np.where(batch.planar, np.stack(lifted), states)
+
+
+def grounds_of(batch: Batch, late: Late) -> npt.NDArray[np.int8]:
+    """Return on which `Ground` the outcome of each run rests that moves at its end."""
+    evidence = Evidence(
+        turned=np.nan_to_num(late.turned),
+        least_tilt=np.nan_to_num(late.least_tilt) / batch.models.slenderness,
+        repetition=np.nan_to_num(late.repetition, nan=np.inf),
+        repetition_before=late.repetition_before,
+        drift=late.drift,
+    )
+    ground = np.where(np.isnan(late.span), Ground.SHORT, grounds(evidence, batch.plan.options.rules))
+    return np.where(batch.motions.period > 0.0, ground, Ground.NO_PERIOD)
+
+
+def outcomes(batch: Batch, late: Late) -> npt.NDArray[np.int8]:
+    """Return the codes of the outcomes."""
+    status = batch.log(Log.STATUS)
+    codes = np.array([outcome_on(kind) for kind in Ground], dtype=np.int8)[grounds_of(batch, late)]
+    codes = np.where(_survive(batch, codes == Outcome.STILL_MOVING), Outcome.SURVIVED, codes)
+    codes = np.where(batch.log(Log.STANDS) > 0.0, Outcome.AT_REST, codes)
+    for ending, outcome in _ENDINGS.items():
+        codes = np.where(status == ending, outcome, codes)
+    codes = codes.astype(np.int8)
+    return upright_outcomes(batch, late.span, codes) if batch.plan.model.switches else codes
