@@ -15,7 +15,7 @@ from stylobate.results import Event
 Floats = npt.NDArray[np.float64]
 
 TRACES = 1000 + TRACE_ROOM
-"""Entries of a trace that are kept before they are taken out, and the user is told how far the run is."""
+"""Entries of a trace that are kept before they are taken out and progress is reported."""
 
 _EVENTS = {
     TraceKind.RELEASE: "release",
@@ -53,7 +53,7 @@ class Followed:
         carried
             What is carried along, at the start.
         paused
-            Is told steps and time [s] now and then.
+            Called as `paused(steps, time [s])` whenever the trace is full.
         """
         batch = Batch.of(plan, run)
         batch.advance(np.zeros(1, dtype=np.uint8), paused)

@@ -2,16 +2,12 @@
 
 import re
 
-import numpy as np
 import pytest
 from llvmlite import binding as llvm
 
 import stylobate as sb
 from stylobate.engine.compiler.unit import ArrayArgument, Unit
 from stylobate.engine.compiler.values import Element
-from stylobate.engine.ensembles.batch import Plan
-from stylobate.engine.ensembles.motion_columns import MotionPlan
-from stylobate.engine.ensembles.options import Options
 from stylobate.engine.lanes.kernels import kernel_of
 
 # Number of lanes and features of each; a thread of a graphics processor makes one run.
@@ -26,23 +22,12 @@ TARGETS = {
 
 
 @pytest.fixture(scope="module")
-def texts():
+def texts(plan_of):
     """The text of a kernel for LLVM, driver and events included, by the number of lanes."""
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
-    options = Options.checked(
-        method="dop853",
-        rtol=1e-8,
-        atol=None,
-        tilt_limit=None,
-        rest_energy=None,
-        max_steps=1000,
-        samples=None,
-        strobes=0,
-        rules=None,
-    )
     motion = sb.Harmonic.circular(acceleration=0.6, angular_frequency=2.2)
-    plan = Plan(sb.Rolling(sb.Column.dimensionless(0.2)), MotionPlan.of(motion, {}, np.ones(1)), options)
+    plan = plan_of(sb.Rolling(sb.Column.dimensionless(0.2)), motion)
     kernel = kernel_of(sb.Rolling, plan.shape(planar=False))
     rows, width, table = len(kernel.shape.rows()), kernel.shape.width, ArrayArgument((None, None))
     signal, buf, flat = (

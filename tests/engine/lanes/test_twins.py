@@ -8,9 +8,6 @@ import pytest
 import stylobate as sb
 from stylobate.engine.compiler import machine
 from stylobate.engine.compiler.unit import ArrayArgument
-from stylobate.engine.ensembles.batch import Plan
-from stylobate.engine.ensembles.motion_columns import MotionPlan
-from stylobate.engine.ensembles.options import Options
 from stylobate.engine.lanes.kernels import kernel_of
 
 COLUMN = sb.Column.solid(radius=0.5, height=3.0, density=2700.0)
@@ -31,9 +28,9 @@ CASES = {
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_steps_have_the_bits_of_plain_python(case):
+def test_steps_have_the_bits_of_plain_python(case, plan_of):
     model, motion, options = CASES[case]
-    plan = Plan(model, MotionPlan.of(motion, {}, np.ones(1)), _options(**options))
+    plan = plan_of(model, motion, **options)
     kernel = kernel_of(type(model), plan.shape(planar=case.endswith("plane")))
     rows, width = kernel.shape.rows(), kernel.shape.width
     unit = kernel.compiled.unit(exact=True)
@@ -54,18 +51,3 @@ def test_steps_have_the_bits_of_plain_python(case):
     changed = (other != buf.ravel()).reshape(len(rows), width).any(axis=1)
     assert changed.sum() > 40
     np.testing.assert_array_equal(one.reshape(len(rows), width), other.reshape(len(rows), width))
-
-
-def _options(*, method="dop853", demands=False):
-    return Options.checked(
-        method=method,
-        rtol=1e-8,
-        atol=None,
-        tilt_limit=None,
-        rest_energy=None,
-        max_steps=1000,
-        samples=None,
-        strobes=0,
-        rules=None,
-        demands=demands,
-    )

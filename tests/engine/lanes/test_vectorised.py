@@ -2,9 +2,7 @@
 
 import collections
 import re
-from dataclasses import replace
 
-import numpy as np
 import pytest
 from llvmlite import binding as llvm
 
@@ -12,24 +10,10 @@ import stylobate as sb
 from stylobate.engine.compiler import machine
 from stylobate.engine.compiler.unit import ArrayArgument
 from stylobate.engine.compiler.values import Kind
-from stylobate.engine.ensembles.batch import Plan
-from stylobate.engine.ensembles.motion_columns import MotionPlan
-from stylobate.engine.ensembles.options import Options
 from stylobate.engine.lanes.kernels import kernel_of
 from stylobate.models.sliding import Sliding
 
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=3.0)
-OPTIONS = Options.checked(
-    method="dop853",
-    rtol=1e-8,
-    atol=None,
-    tilt_limit=None,
-    rest_energy=None,
-    max_steps=1000,
-    samples=None,
-    strobes=0,
-    rules=None,
-)
 
 # A mnemonic of floating arithmetic with its suffix: pd works on all lanes of a register, sd on one number.
 ARITHMETIC = re.compile(r"^\s+v?((?:add|sub|mul|div|sqrt|min|max|fn?m(?:add|sub)\d*)(?:pd|sd))\s(.*)$", re.MULTILINE)
@@ -72,15 +56,19 @@ KERNELS = [
 ]
 
 
-def assembly_of(name, motion, method, planar, model=sb.Slender, *, demands=False, after=()):
-    """Return a function of a kernel for the processor; behind the buffer it takes whole numbers or these arguments."""
-    options = replace(OPTIONS, method=method, demands=demands)
-    plan = Plan(model(sb.Column.dimensionless(0.1)), MotionPlan.of(MOTIONS[motion], {}, np.ones(1)), options)
-    shape = plan.shape(planar=planar)
-    compiled = kernel_of(model, shape).compiled
-    unit = compiled.unit()
-    unit.export(getattr(compiled.module, name), name, [ArrayArgument((len(shape.rows()) * shape.width,)), *after])
-    return machine.assembly(unit.module.text(machine.attributes()))
+@pytest.fixture(scope="module")
+def assembly_of(plan_of):
+    """Make a function of a kernel for the processor; behind the buffer it takes whole numbers or these arguments."""
+
+    def made(name, motion, method, planar, model=sb.Slender, *, demands=False, after=()):
+        plan = plan_of(model(sb.Column.dimensionless(0.1)), MOTIONS[motion], method=method, demands=demands)
+        shape = plan.shape(planar=planar)
+        compiled = kernel_of(model, shape).compiled
+        unit = compiled.unit()
+        unit.export(getattr(compiled.module, name), name, [ArrayArgument((len(shape.rows()) * shape.width,)), *after])
+        return machine.assembly(unit.module.text(machine.attributes()))
+
+    return made
 
 
 @pytest.mark.parametrize(
@@ -97,7 +85,7 @@ def assembly_of(name, motion, method, planar, model=sb.Slender, *, demands=False
         pytest.param("vertical", "dop853", False, sb.Rolling, marks=pytest.mark.slow),
     ],
 )
-def test_steps_work_on_all_lanes_at_once(motion, method, planar, model):
+def test_steps_work_on_all_lanes_at_once(motion, method, planar, model, assembly_of):
     counts, registers = arithmetic_of(assembly_of("step", motion, method, planar, model))
     assert counts["pd"] > 100
     assert counts["sd"] == 0, counts
@@ -113,7 +101,7 @@ def test_steps_work_on_all_lanes_at_once(motion, method, planar, model):
         pytest.param(sb.Slender, False, marks=pytest.mark.slow),
     ],
 )
-def test_steps_that_follow_loads_work_on_all_lanes_at_once(model, planar):
+def test_steps_that_follow_loads_work_on_all_lanes_at_once(model, planar, assembly_of):
     counts, _ = arithmetic_of(assembly_of("step", "harmonic", "dop853", planar, model, demands=True))
     assert counts["pd"] > 100
     assert counts["sd"] == 0, counts
@@ -121,7 +109,7 @@ def test_steps_that_follow_loads_work_on_all_lanes_at_once(model, planar):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "arguments"), [("evaluate", (Kind.FLOAT,)), ("guard", (Kind.FLOAT,)), ("step", ())])
-def test_equations_and_margins_of_changing_contact_work_on_all_lanes_at_once(name, arguments):
+def test_equations_and_margins_of_changing_contact_work_on_all_lanes_at_once(name, arguments, assembly_of):
     counts, _ = arithmetic_of(assembly_of(name, "harmonic", "dop853", False, Sliding, after=arguments))
     assert counts["pd"] > 100
     assert counts["sd"] == 0, counts
@@ -133,7 +121,7 @@ INSTRUCTIONS_AT_NODES = 40
 
 
 @pytest.mark.parametrize(("motion", "method", "planar"), [kernel for kernel in KERNELS if kernel.values[1] == "taylor"])
-def test_observation_works_on_all_nodes_at_once(motion, method, planar):
+def test_observation_works_on_all_nodes_at_once(motion, method, planar, assembly_of):
     assembly = assembly_of("observe", motion, method, planar, after=(Kind.INTEGER,))
     counts, registers = arithmetic_of(assembly)
     assert counts["pd"] >= INSTRUCTIONS_AT_NODES, counts

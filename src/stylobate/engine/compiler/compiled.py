@@ -39,7 +39,7 @@ class Compiled:
     fast
         Names of functions of the model whose arithmetic is fast; see `marks.fast`.
     brief
-        Whether it is compiled so soon that nobody need be told.
+        Whether compiling takes too little time to be logged.
     """
 
     name: str
@@ -87,8 +87,8 @@ class Compiled:
         texts = [Path(module.__file__ or "").read_text(encoding="utf-8") for module in self.imported]
         try:
             parts = [repr((self.name, self.arguments, self.fast)), self.text, *texts]
-            told = None if self.brief else self.description
-            engine = kept.code_of(self._words, parts, self.functions, self._written, told)
+            logged = None if self.brief else self.description
+            engine = kept.code_of(self._words, parts, self.functions, self._written, logged)
         except CompileError as error:
             message = f"model {self.model} cannot be compiled; single runs by simulate need no compiling: {error}"
             raise UnsupportedError(message) from error

@@ -49,7 +49,7 @@ def code_of(
     write
         Returns the text of its module of LLVM.
     description
-        What is compiled, in words that the user is told; None for silence.
+        What is compiled, in words for the log; None logs nothing.
 
     Raises
     ------

@@ -145,7 +145,7 @@ class Batch:
     def advance(self, halt: Halt, paused: Callable[[float, float], None] = _nothing) -> bool:
         """Run to the end; return whether it got there before `halt[0]` was set.
 
-        Where a trace is kept, `paused` is told steps and time [s] whenever it is full.
+        Where a trace is kept, `paused(steps, time [s])` is called whenever it is full.
         """
         finished = self._through(halt, paused, planar=False, chosen=~self.planar)
         released = self.log(Log.STATUS) == Status.TO_PLANE
@@ -178,7 +178,7 @@ class Batch:
             at = table.shape[1] - self.plan.traces * width
             count = int(table[0, LOG + Log.NEXT_TRACE])
             self.traces.append(table[0, at : at + count * width].reshape(count, width).copy())
-            table[0, LOG + Log.NEXT_TRACE] = 0.0
+            table[0, at:] = table[0, LOG + Log.NEXT_TRACE] = 0.0
 
     def _to_plane(self, chosen: npt.NDArray[np.bool_]) -> None:
         """Take the state of these runs from space to tilt and rate along their line."""

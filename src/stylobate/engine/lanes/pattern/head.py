@@ -22,13 +22,14 @@ DEGREE: int
 PARAMETERS_AT: int
 MOTION_AT: int
 BREAKS_AT: int
-TRACE_ROOM: int
-TRACE_STATES: int
-TRACE_TERMS: int
-TRACE_WIDTH: int
-"""See `lanes.columns`; the second is the most states that an entry of a trace has."""
-NOTE: int
 """Columns of the table at which the parameters, the numbers of the base motion and its breaks begin."""
+NOTE: int
+TRACE_ROOM: int
+TRACE_TERMS: int
+"""See `lanes.columns`."""
+TRACE_STATES: int
+TRACE_WIDTH: int
+"""Most states of an entry of a trace, and its columns."""
 CAN_REST: bool
 CAN_DEPART: bool
 CAN_PASS: bool

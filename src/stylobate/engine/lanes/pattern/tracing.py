@@ -1,4 +1,4 @@
-"""The trace of a run: its steps, and what happened between them, for those who want all of it."""
+"""The trace of a run: the dense output of its steps, and its events. Steps by series leave none."""
 
 from typing import TYPE_CHECKING
 
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
         TRACE_WIDTH,
         WIDTH,
         R,
-        row_state,
         set_dense,
     )
 
@@ -48,7 +47,7 @@ def trace_step(buf: Table, i: int, table: Table) -> None:
             table[run, at + j] = buf[R.LAST_STATE + j, i]
             for k in range(1, TRACE_TERMS):
                 table[run, at + k * TRACE_STATES + j] = buf[R.DENSE + (k - 1) * ORDER + j, i]
-    buf[R.TRACE_AZIMUTH, i] = branch_of(buf, i)
+    buf[R.TRACE_AZIMUTH, i] = azimuth_of(buf, i)
 
 
 def trace_leap(buf: Table, i: int, table: Table, elapsed: float, state: tuple[float, ...], azimuth: float) -> None:
@@ -73,9 +72,8 @@ def trace_stand(buf: Table, i: int, table: Table, t: float) -> None:
     run = int(buf[R.RUN, i])
     for j in range(TRACE_STATES * TRACE_TERMS):
         table[run, at + j] = 0.0
-    state = row_state(buf, i, R.STATE)
     for j in range(ORDER):
-        table[run, at + j] = state[j]
+        table[run, at + j] = buf[R.STATE + j, i]
 
 
 def trace_event(buf: Table, i: int, table: Table, kind: int, t: float) -> None:
@@ -93,17 +91,17 @@ def trace_entry(buf: Table, i: int, table: Table, kind: int, start: float, lengt
     table[run, at + Trace.START] = start
     table[run, at + Trace.LENGTH] = length
     table[run, at + Trace.AZIMUTH] = buf[R.TRACE_AZIMUTH, i]
-    table[run, at + Trace.END_AZIMUTH] = branch_of(buf, i)
+    table[run, at + Trace.END_AZIMUTH] = azimuth_of(buf, i)
     return at + len(Trace)
 
 
-def branch_of(buf: Table, i: int) -> float:
+def azimuth_of(buf: Table, i: int) -> float:
     """Return the azimuth of the lean [turns]."""
     return 0.0 if PLANAR else buf[R.TURNS, i] + turns_of(buf[R.X, i], buf[R.Y, i])
 
 
 def untrace(buf: Table, i: int) -> None:
     """Take back the last entry, of a step that was taken back."""
-    if buf[R.TRACES, i] > 0.0:
+    if buf[R.TRACES, i] > 0.0 and not SERIES:
         buf[R.NEXT_TRACE, i] -= 1.0
-        buf[R.TRACE_AZIMUTH, i] = branch_of(buf, i)
+        buf[R.TRACE_AZIMUTH, i] = azimuth_of(buf, i)

@@ -94,7 +94,7 @@ def _window(batch: Batch, first: int, column: Window) -> Floats:
 def _repetition(batch: Batch, first: int, mean_tilt: Floats) -> Floats:
     """Return the largest difference of states one period apart, over the largest tilt or rate.
 
-    All looks may fall on passages of the upright: then tilts are told by the mean tilt of the last periods.
+    All looks may fall on passages of the upright: then tilts are compared with the mean tilt of the last periods.
     Infinite where the looks saw nothing but a column that stands: what it does between them is not known to repeat.
     """
     tilt_size, rate_size = _window(batch, first, Window.TILT_SIZE), _window(batch, first, Window.RATE_SIZE)
