@@ -204,18 +204,10 @@ def _followed(
     done = 0
 
     def compute(part: slice, halt: Halt) -> None:
-        chosen = runs.part(part)
-        batch = Batch.of(plan, chosen)
+        batch = Batch.of(plan, runs.part(part))
         batch.advance(halt)
-        _put(arrays, part, batch)
-        stiff = np.flatnonzero(batch.stiff)
-        if stiff.size:
-            from stylobate.engine.ensembles.alone import follow_alone  # noqa: PLC0415  SciPy, for these runs only
-
-            chosen = chosen.part(stiff)
-            batch = Batch.of(plan, chosen)
-            follow_alone(batch, chosen, halt)
-            _put(arrays, part.start + stiff, batch)
+        for name, values in summaries(batch).items():
+            arrays[name][part] = values
 
     def count(part: slice) -> None:
         nonlocal done
@@ -240,11 +232,6 @@ def _rechecked(plan: Plan, runs: Runs, arrays: Arrays, threads: int) -> bool:
     changed |= other["outcome"] == Outcome.FAILED
     arrays["uncertain"][places] |= changed & (other["outcome"] != NOT_COMPUTED)
     return finished
-
-
-def _put(arrays: Arrays, places: slice | npt.NDArray[np.intp], batch: Batch) -> None:
-    for name, values in summaries(batch).items():
-        arrays[name][places] = values
 
 
 def _provenance(model: Model, motion: BaseMotion, options: Options, same: Mapping[str, Any]) -> dict[str, Any]:

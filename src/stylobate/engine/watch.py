@@ -36,8 +36,6 @@ class Reason(Enum):
     FAILED = auto()
     TERMINATED = auto()
     """A terminal event function of the user."""
-    HALTED = auto()
-    """Who asked for it wants it no more."""
 
 
 @dataclass(frozen=True, slots=True)

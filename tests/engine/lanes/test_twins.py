@@ -1,6 +1,7 @@
 """Steps of compiled kernels have the bits of their plain-Python twins, where no arithmetic is fast."""
 
 import ctypes
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,9 @@ import pytest
 import stylobate as sb
 from stylobate.engine.compiler import machine
 from stylobate.engine.compiler.unit import ArrayArgument
+from stylobate.engine.ensembles.batch import Batch
+from stylobate.engine.ensembles.broadcasting import broadcast
+from stylobate.engine.lanes.columns import LOG, Log
 from stylobate.engine.lanes.kernels import kernel_of
 
 COLUMN = sb.Column.solid(radius=0.5, height=3.0, density=2700.0)
@@ -51,3 +55,41 @@ def test_steps_have_the_bits_of_plain_python(case, plan_of):
     changed = (other != buf.ravel()).reshape(len(rows), width).any(axis=1)
     assert changed.sum() > 40
     np.testing.assert_array_equal(one.reshape(len(rows), width), other.reshape(len(rows), width))
+
+
+def test_a_run_with_implicit_steps_has_the_bits_of_plain_python(plan_of):
+    # A base that stands for 0.068 s and then slides, under a load that turns.
+    line = sb.Harmonic.elliptic(amplitude=(1.2, 0.6), phase=1.0, angular_frequency=2.0, start_phase=-1.0)
+    model = sb.Sliding(sb.Column.solid(radius=1.0, height=2.0, density=2700.0), 0.1)
+    plan = plan_of(model, line)
+    batch = Batch.of(plan, broadcast((0.0, 0.0), (0.0, 0.0), 0.0, np.array([0.07]), {}))
+    kernel = kernel_of(sb.Sliding, plan.shape(planar=False))
+    rows = kernel.shape.rows()
+    # Looks come early, so that few steps are explicit; stretches are counted in a row that has no other use here.
+    text = kernel.compiled.text
+    for old, new in (
+        ("NEAR_BOUNDARY = 500.0, 50.0, 20.0, ", "NEAR_BOUNDARY = 5.0, 5.0, 2.0, "),
+        ("    for _ in range(STRETCH):", f"    buf[{rows['normal']}, i] += 1.0\n    for _ in range(STRETCH):"),
+    ):
+        assert old in text
+        text = text.replace(old, new)
+    batch.log(Log.NORMAL)[:] = 0.0
+
+    compiled = replace(kernel.compiled, text=text)
+    unit = compiled.unit(exact=True)
+    unit.export(compiled.module.advance, "advance", compiled.arguments)
+    engine = machine.linked(machine.object_code(unit.module.text(machine.attributes())))
+    tables, halt = (batch.table.copy(), batch.table.copy()), np.zeros(1, dtype=np.uint8)
+    room, pieces = kernel.buffer(), plan.motion.pieces
+    passed = [
+        *(tables[0].ctypes.data, *tables[0].shape),
+        *(pieces.ctypes.data, *pieces.shape),
+        *(array.ctypes.data for array in (halt, room, room)),
+    ]
+    advance = ctypes.CFUNCTYPE(ctypes.c_int64, *(ctypes.c_int64 for _ in passed))
+    advance(engine.get_function_address("advance"))(*passed)
+    room = kernel.buffer()
+    with np.errstate(all="ignore"):
+        compiled.module.advance(tables[1], pieces, halt, room.reshape(len(rows), -1), room)
+    assert tables[0][0, LOG + Log.NORMAL] > 0.0
+    np.testing.assert_array_equal(*tables)

@@ -129,11 +129,6 @@ class Batch:
         """Return what was noted of all runs."""
         return self.table[:, LOG + column]
 
-    @property
-    def stiff(self) -> npt.NDArray[np.bool_]:
-        """Which runs were given up because stability alone cuts their steps."""
-        return np.asarray(self.log(Log.STATUS) == Status.STIFF)
-
     def notes(self, *, strobes: bool) -> Floats:
         """Return the samples or strobes, shape (n, number, 5): tilt x and y, their rates, time; NaN where none."""
         options = self.plan.options

@@ -123,8 +123,7 @@ def _bytes_of_a_run(none: npt.NDArray[Any]) -> int:
 def summaries(batch: Batch) -> Arrays:
     """Return the results of the runs of `batch`; those that have not ended keep what stands for nothing."""
     arrays = empty(batch.plan.model, batch.plan.options, len(batch.table))
-    status = batch.log(Log.STATUS)
-    ended = (status != Status.WAITING) & (status != Status.STIFF)
+    ended = batch.log(Log.STATUS) != Status.WAITING
     for name, values in _all(batch).items():
         arrays[name][ended] = values[ended]
     return arrays

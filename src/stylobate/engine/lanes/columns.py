@@ -245,5 +245,3 @@ class Status(_FromZero):
     """Its contact changed without end."""
     JAMMED = auto()
     """Its contact can neither stick nor slip nor open."""
-    STIFF = auto()
-    """Stability alone cuts its steps: an implicit method is to follow it."""

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from stylobate.engine.lanes.columns import NOTE, SLACK, STATE, TRACE_ROOM, TRACE_TERMS
 from stylobate.engine.lanes.series_source import polynomial, state_polynomial
-from stylobate.engine.lanes.shape import MARGIN_PLACES, SERIES_ORDER, Shape
+from stylobate.engine.lanes.shape import DENSE_TERMS, MARGIN_PLACES, SERIES_ORDER, Shape
 from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET, HOPS_APART, SLIP_SHARE, SLIP_SHORTER, SLIP_TURNS, STILL
 from stylobate.models import Model
 
@@ -71,6 +71,7 @@ def _contact_constants(model: type[Model], shape: Shape) -> dict[str, float]:
         "LAST": shape.guards - 1,
         "LIMIT": shape.guards,
         "PARTS": MARGIN_PLACES,
+        "DENSE_TERMS": DENSE_TERMS,
         **{kind.name: kind.value for kind in model.contact_kinds},
     }
 

@@ -15,10 +15,11 @@ from stylobate.engine import elementary
 from stylobate.engine.compiler.compiled import Compiled
 from stylobate.engine.compiler.unit import ArrayArgument
 from stylobate.engine.compiler.values import Element
-from stylobate.engine.lanes import pattern, roots
+from stylobate.engine.lanes import linear_equations, pattern, roots
 from stylobate.engine.lanes.columns import LOOKS, Status, Trace, TraceKind, Window
 from stylobate.engine.lanes.dense_source import dense_source
 from stylobate.engine.lanes.head_source import OPTIONAL, SWITCHING, constants_source, model_source
+from stylobate.engine.lanes.implicit_source import implicit_source
 from stylobate.engine.lanes.layout import Row, Table
 from stylobate.engine.lanes.margin_source import margins_source, reaction_source, window_source
 from stylobate.engine.lanes.observation_source import observation_source
@@ -70,7 +71,7 @@ def kernel_of(model: type[Model], shape: Shape) -> Kernel:
         ),
         model=model.name,
         description=_in_words(model, shape),
-        imported=(elementary, roots),
+        imported=(elementary, linear_equations, roots),
         fast=_IN_LANES,
     )
     return Kernel(shape, compiled)
@@ -107,6 +108,7 @@ import numpy.typing as npt
 from stylobate.engine.compiler.marks import fast, flat, lanes
 from stylobate.engine.elementary import cos_turns, turning_point, winding
 from stylobate.engine.lanes.layout import Row, Table
+from stylobate.engine.lanes.linear_equations import NewtonRoom, factor, solve
 from stylobate.engine.lanes.roots import cubic, first_growth_past, first_return, nearest_turn, quintic, turns_of
 from stylobate.models.model import Push
 """
@@ -127,7 +129,7 @@ def _functions(model: type[Model], shape: Shape) -> dict[str, Callable[..., Any]
 
 def _contact_sources(shape: Shape) -> list[str]:
     """Return what the driver of a model that changes between kinds of contact calls."""
-    rows, writers = shape.rows(), (margins_source, reaction_source, dense_source, stability_source)
+    rows, writers = shape.rows(), (margins_source, reaction_source, dense_source, stability_source, implicit_source)
     return [write(shape, rows) for write in writers] if shape.guards else [dense_source(shape, rows)]
 
 

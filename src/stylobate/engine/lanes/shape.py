@@ -132,7 +132,7 @@ class Shape:
             rows.add_many(f"k{stage}_", self.order)
         rows.add_many("last_slope", self.order)
         if self.guards:
-            rows.add("last_margin", "margin_now", "broken", "stiff_looks", "stiff_look_at")
+            rows.add("last_margin", "margin_now", "broken", "stiff_looks", "stiff_look_at", "stiff_wait")
             for name in ("stage", "rate", "step"):
                 rows.add_many(name, self.order)
         for name in ("extra0_", "extra1_", "extra2_", *(f"dense{power}_" for power in range(DENSE_TERMS))):

@@ -48,20 +48,6 @@ _MOST_AT_ONCE = 100
 _MOMENT = 1e-12
 
 
-@dataclass(frozen=True, slots=True)
-class Switch:
-    """A change of the kind of contact: when, by which margin or −1 at the start, from what to what."""
-
-    time: float
-    margin: int
-    before: int
-    after: int
-
-
-def _never() -> bool:
-    return False
-
-
 def _moment(time: float) -> float:
     return _MOMENT * max(1.0, abs(time))
 
@@ -74,12 +60,6 @@ class SwitchingCourse:
     ----------
     pieces, events, contacts, times
         What has been computed; `contacts` has the kind of contact of each piece, `times` the ends of its steps.
-    switches
-        The changes between kinds of contact, with those from which no motion followed.
-    left
-        The state at the end.
-    halted
-        Asked before each step whether to stop there.
     ended, failure
         Why the run ended; STOP when its time was up.
     planar, least_passage, crossed
@@ -96,9 +76,6 @@ class SwitchingCourse:
     times: list[Floats] = field(default_factory=list)
     contacts: list[int] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
-    switches: list[Switch] = field(default_factory=list)
-    left: tuple[float, ...] = ()
-    halted: Callable[[], bool] = _never
     ended: Reason = Reason.STOP
     failure: str = ""
     planar: bool = False
@@ -140,9 +117,6 @@ class SwitchingCourse:
             now = self._stand(now) if self._kind(now).name == "RESTING" else self._move(now)
         if not self.pieces:
             self._rest(state, 0.0)
-        if now is None:
-            now = tuple(self.trajectory.states(np.array([self._time]))[:, 0].tolist())
-        self.left = now
 
     def _contact(self, state: tuple[float, ...]) -> int:
         return int(state[-1])
@@ -222,13 +196,9 @@ class SwitchingCourse:
         """Return whether no step more is to be made."""
         left = self.method.max_steps - self._steps - len(steps.dense)
         report(left, self.method.max_steps, steps.times[-1] * self.model.time_scale, self.stop * self.model.time_scale)
-        if self.halted():
-            self._take(steps, contact)
-            self.ended = Reason.HALTED
-        elif left <= 0:
-            self._fail(steps, contact, step_limit(self.method.max_steps))
-        else:
+        if left > 0:
             return False
+        self._fail(steps, contact, step_limit(self.method.max_steps))
         return True
 
     def _stepper(self, state: tuple[float, ...], stop: float) -> Stepper:
@@ -270,7 +240,6 @@ class SwitchingCourse:
         elapsed, after = model.reset_map(
             *state, float(number), *now, *later, ahead, self.thresholds.rest_energy, *model.parameters
         )
-        self.switches.append(Switch(time, number, self._contact(state), self._contact(after)))
         kind = model.event_of(name, self._contact(state), self._contact(after))
         # Slip that goes on at once along another heading has not ended.
         goes_on = name == "friction" and elapsed == 0.0 and self._contact(after) == self._contact(state)

@@ -35,6 +35,9 @@ SWITCHING_ORDER = (
     "contact_ends",
     "contact_changes",
     "contact_stiffness",
+    "contact_steps",
+    "implicit_step",
+    "contact_implicit",
     "contact_events",
     "batch",
 )

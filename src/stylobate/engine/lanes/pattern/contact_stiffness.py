@@ -1,8 +1,7 @@
-"""Whether steps of a lane are cut by stability alone, as where a patch creeps, and giving it up for that."""
+"""Whether steps of a lane are cut by stability alone, as where a patch creeps."""
 
 from typing import TYPE_CHECKING
 
-from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
 
 if TYPE_CHECKING:
@@ -10,29 +9,16 @@ if TYPE_CHECKING:
 
 # --- the kernel's text begins here ---
 
-# Steps from one look to the next. So many looks that find a step near the boundary of stability, at hλ = 6, take a lane
-# a second or two: about as long as an implicit method takes for the whole run.
-LOOK_EVERY, MOST_STIFF_LOOKS, NEAR_BOUNDARY = 500.0, 1000.0, 3.0
+# Steps from one look to the next, and in runs that have been stiff. From a step near the boundary of stability, at
+# hλ = 6, each step is looked at until so many in turn are near it: one may be so by chance.
+LOOK_EVERY, LOOK_AGAIN, STIFF_STEPS, NEAR_BOUNDARY = 500.0, 50.0, 20.0, 3.0
 
 
-def look_whether_stiff(buf: Table, i: int) -> None:
-    """Look now and then whether stability cuts the steps of a contact that slips; the step was just made.
-
-    Steps that it cuts do not count among those a run may take.
-    """
+def found_stiff(buf: Table, i: int) -> bool:
+    """Look now and then whether stability cuts the steps of a contact that slips; the step was just made."""
     if buf[R.STEPS, i] < buf[R.STIFF_LOOK_AT, i]:
-        return
-    buf[R.STIFF_LOOK_AT, i] = buf[R.STEPS, i] + LOOK_EVERY
-    if buf[R.CONTACT, i] in (SLIDING, SLIPPING) and stability(buf, i) > NEAR_BOUNDARY:
-        buf[R.STIFF_LOOKS, i] += 1.0
-        buf[R.MOST_STEPS, i] += LOOK_EVERY
-
-
-def stiff_for_long(buf: Table, i: int) -> bool:
-    return buf[R.STIFF_LOOKS, i] >= MOST_STIFF_LOOKS
-
-
-def out_of_steps(buf: Table, i: int) -> int:
-    """Return the status of a run whose steps are used up: stiff if that took half of them."""
-    stiff = 2.0 * LOOK_EVERY * buf[R.STIFF_LOOKS, i] >= buf[R.STEPS, i]
-    return Status.STIFF if stiff else Status.STEP_LIMIT
+        return False
+    near = buf[R.CONTACT, i] in (SLIDING, SLIPPING) and stability(buf, i) > NEAR_BOUNDARY
+    buf[R.STIFF_LOOKS, i] = buf[R.STIFF_LOOKS, i] + 1.0 if near else 0.0
+    buf[R.STIFF_LOOK_AT, i] = buf[R.STEPS, i] + (1.0 if near else buf[R.STIFF_WAIT, i])
+    return buf[R.STIFF_LOOKS, i] >= STIFF_STEPS

@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
+from stylobate.engine.lanes.layout import Row, Table
+
 WIDTH: int
 ORDER: int
 """Number of equations."""
@@ -60,6 +62,16 @@ SLIP_TURNS: float
 """See `engine.tolerances`."""
 PARTS: int
 """Parts of a step at the ends of which guards are looked at."""
+DENSE_TERMS: int
+"""Terms of the polynomial of `dense_state`."""
+RADAU_STAGES: int
+CHANGES: int
+"""Numbers that make up an implicit step: as many states as it has stages."""
+RADAU_NODES: Row
+RADAU_SLOPES: Table
+RADAU_EIGENVECTOR: Row
+RADAU_ERROR: Row
+"""See `engine.radau`."""
 RESTING: int
 SLIDING: int
 ROLLING: int
@@ -88,6 +100,7 @@ model_passage: Callable[..., tuple[float, tuple[float, ...]]]
 model_rest_energy: Callable[..., float]
 margins_at: Callable[..., tuple[float, ...]]
 model_react: Callable[..., tuple[float, tuple[float, ...]]]
+model_project: Callable[..., tuple[float, ...]]
 note_window: Callable[..., None]
 """Notes where and how the column is as the last periods begin, of a model that changes between kinds of contact."""
 stability: Callable[..., float]
