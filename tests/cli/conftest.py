@@ -1,5 +1,6 @@
 """Saved results, and Ctrl-C in the middle of many runs."""
 
+import logging
 import signal
 from contextlib import contextmanager
 from importlib import import_module
@@ -27,6 +28,12 @@ ROOMS = (
 def _saved(path):
     with xr.open_dataset(path, engine="h5netcdf") as data:
         return data.load()
+
+
+@pytest.fixture(autouse=True)
+def _without_notices_of_compiling(monkeypatch):
+    """Whether a kernel lies in the cache already shows in no output."""
+    monkeypatch.setattr(logging.getLogger("stylobate.compiling"), "disabled", True)
 
 
 @pytest.fixture

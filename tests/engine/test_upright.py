@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.moving import Mover
-from stylobate.engine.watch import Reason
 
 C = 0.1
 
@@ -140,19 +138,11 @@ def test_a_close_passage_is_uncertain_out_of_a_plane_and_certain_within_one():
     assert not within.uncertain
 
 
-def test_a_passage_at_the_very_end_of_a_run_ends_it(monkeypatch):
+def test_a_passage_at_the_very_end_of_a_run_ends_it():
     model = sb.SlenderRolling(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
-    start = {"tilt": (0.03, 0.0), "tilt_rate": (0.0, 1e-9)}
-    followed, legs = Mover.in_space, []
-
-    def noted(self, *arguments, **options):
-        legs.append(followed(self, *arguments, **options))
-        return legs[-1]
-
-    monkeypatch.setattr(Mover, "in_space", noted)
-    sb.simulate(model, duration=30.0, **start)
-    first = next(leg for leg in legs if leg.reason is Reason.CROSSED)
-    monkeypatch.setattr(Mover, "in_space", lambda *_, **__: first)
-    run = sb.simulate(model, duration=first.piece.end, **start)
+    start = {"tilt": (0.03, 0.0), "tilt_rate": (-0.001, 0.0)}
+    passage = next(event for event in sb.simulate(model, duration=30.0, **start).events if event.kind == "passage")
+    run = sb.simulate(model, duration=passage.time, **start)
     assert run.outcome is sb.Outcome.STILL_MOVING
-    assert float(run.data["time"][-1]) == first.piece.end
+    assert float(run.data["time"][-1]) == passage.time
+    assert float(run.data["amplitude"][-1]) == pytest.approx(0.0, abs=1e-10)

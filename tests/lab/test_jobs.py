@@ -27,7 +27,8 @@ PLANE = {
 ENDLESS = {**CIRCLE, "duration": 3000.0, "tilt": [0.03, 0.0], "map": {p: {**PLANE[p], "number": 150} for p in "xy"}}
 
 
-SLOW = {**CIRCLE, "model": {"kind": "slender_rolling", "damping": 0.1}, "tilt": [0.02, 0.0], "duration": 3000.0}
+SLIDING = {"kind": "sliding", "friction_coefficient": 0.5, "damping": 0.1}
+SLOW = {**CIRCLE, "model": SLIDING, "tilt": [0.02, 0.0], "duration": 3000.0}
 
 
 def begun(client, kind, description):

@@ -1,18 +1,21 @@
 """Find the largest demands on the contact in a run, and warn of what a real contact would not have borne."""
 
-import math
 from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
 import xarray as xr
-from scipy.optimize import minimize_scalar
 
+from stylobate.engine.compiler.over_rows import over_rows
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.standing import loads_while_standing
 from stylobate.engine.trajectory import Trajectory
 from stylobate.models import Model
 from stylobate.models.contact import contact_outputs, per_normal_force
+
+# About the largest load known, so often so many equal parts are looked at, of the two about the largest before.
+_NARROWINGS, _PARTS = 6, 16
+_HALVINGS = 50
 
 
 class Load(IntEnum):
@@ -115,7 +118,7 @@ class _Loads:
     @classmethod
     def of(cls, model: Model, forcing: Forcing, trajectory: Trajectory, data: xr.Dataset) -> "_Loads":
         """Take the loads at the samples in `data`, at the ends of the steps, and closely where the column stands."""
-        steps = np.concatenate([piece.nodes for piece in trajectory.pieces])
+        steps = np.append(trajectory.starts, trajectory.end)
         outputs = contact_outputs(model, trajectory.states(steps), forcing.along(steps), trajectory.resting(steps))
         weight = model.column.mass * model.column.gravity
         moving = np.stack(
@@ -124,7 +127,7 @@ class _Loads:
                 for name, unit in (("friction_demand", 1.0), ("pivoting_demand", 1.0), ("normal_force", -weight))
             ]
         )
-        stands = [loads_while_standing(forcing, piece.start, piece.end) for piece in trajectory.pieces if piece.resting]
+        stands = [loads_while_standing(forcing, start, end) for start, end in trajectory.standing]
         still = [np.stack([one.friction, np.zeros_like(one.friction), -one.normal]) for one in stands]
         times = [data["time"].to_numpy() / model.time_scale, steps, *(one.tau for one in stands)]
         tau, order = np.unique(np.concatenate(times), return_index=True)
@@ -138,12 +141,14 @@ class _Loads:
         if not np.isfinite(at_top):
             return at_top
         low, high = float(self.tau[max(top - 1, 0)]), float(self.tau[min(top + 1, self.tau.size - 1)])
-        bounds = (low, min(high, self.trajectory.end))
-        with np.errstate(invalid="ignore", over="ignore"):  # infinite next to rest, and where the ground would pull
-            found = minimize_scalar(
-                lambda t: -self.at(load, t), bounds=bounds, method="bounded", options={"xatol": 1e-9}
-            )
-        return max(at_top, -float(found.fun))
+        for _ in range(_NARROWINGS):
+            tau = np.linspace(low, min(high, self.trajectory.end), _PARTS + 1)
+            with np.errstate(invalid="ignore", over="ignore"):  # infinite next to rest, and where the ground would pull
+                near = self.at(load, tau)
+            top = int(np.argmax(near))
+            at_top = max(at_top, float(near[top]))
+            low, high = float(tau[max(top - 1, 0)]), float(tau[min(top + 1, _PARTS)])
+        return at_top
 
     def first_beyond(self, load: Load, limit: float) -> float | None:
         """Return when a load first exceeds a limit [s]; None if it does so between two of the times only."""
@@ -155,24 +160,23 @@ class _Loads:
         low = float(self.tau[first - 1]) if first else high
         for _ in range(_HALVINGS):
             middle = 0.5 * (low + high)
-            if self.at(load, middle) > limit:
+            if self.at(load, np.array([middle]))[0] > limit:
                 high = middle
             else:
                 low = middle
         return high * self.model.time_scale
 
-    def at(self, load: Load, tau: float) -> float:
-        """Return a load at any time of the run."""
-        model, push = self.model, self.forcing.at(tau)
-        if bool(self.trajectory.resting(np.array([tau]))[0]):
-            normal, friction, moment = 1.0 + push[2], math.hypot(push[0], push[1]), 0.0
-        else:
-            assert model.contact is not None
-            state = self.trajectory.states(np.array([tau]))[: len(model.state_names), 0].tolist()
-            normal, friction, moment = model.contact(*state, *push, *model.parameters)
+    def at(self, load: Load, tau: Floats) -> Floats:
+        """Return a load at any times of the run."""
+        model, push = self.model, self.forcing.along(tau)
+        assert model.contact is not None
+        states = self.trajectory.states(tau)[: len(model.state_names)]
+        parameters = np.broadcast_to(model.parameters, (tau.size, len(model.parameters)))
+        rows = np.hstack([states.T, push.T, parameters])
+        normal, friction, moment = over_rows(model.contact, rows, name=model.name).T
+        resting = self.trajectory.resting(tau)
+        normal = np.where(resting, 1.0 + push[2], normal)
         if load is Load.PULL:
-            return -normal
-        return float(per_normal_force(np.array(friction if load is Load.FRICTION else moment), np.array(normal)))
-
-
-_HALVINGS = 50
+            return np.asarray(-normal)
+        force = np.where(resting, np.hypot(*push[:2]), friction) if load is Load.FRICTION else moment
+        return per_normal_force(np.where(resting & (load is Load.PIVOTING), 0.0, force), normal)

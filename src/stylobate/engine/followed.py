@@ -9,7 +9,7 @@ import numpy.typing as npt
 from stylobate.engine.ensembles.batch import Batch, Plan
 from stylobate.engine.ensembles.broadcasting import Runs
 from stylobate.engine.lanes.columns import STATE, TRACE_ROOM, TRACE_TERMS, Log, Setup, Status, Trace, TraceKind
-from stylobate.engine.traced import Trajectory
+from stylobate.engine.trajectory import Trajectory
 from stylobate.results import Event
 
 Floats = npt.NDArray[np.float64]
@@ -29,6 +29,7 @@ _LAST_EVENTS = {
     Status.LIFTED: "lifted",
     Status.STEP_LIMIT: "failed",
     Status.STEP_TOO_SMALL: "failed",
+    Status.UNSEEN: "failed",
 }
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
-from scipy.optimize import minimize_scalar
 
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.demands import Demands
@@ -23,7 +22,7 @@ _FEWEST, _MOST = 1001, 50_001
 
 @dataclass(frozen=True, slots=True)
 class Recorded:
-    """The samples of a run, its summary numbers, warnings, and the means to take samples at other times."""
+    """The samples of a run, the demands on its contact, warnings, and the means to take samples at other times."""
 
     data: xr.Dataset
     measures: dict[str, float]
@@ -37,12 +36,11 @@ def history(
     trajectory: Trajectory,
     samples: int | None,
     *,
-    planar: bool,
     friction_coefficient: float | None,
 ) -> Recorded:
     """Return the samples of a run at equal steps, `samples` of them or enough to draw every swing."""
     end = trajectory.end * model.time_scale
-    count = _default_count(model, motion, trajectory.end) if samples is None else samples
+    count = default_count(model, motion, trajectory.end) if samples is None else samples
 
     def sampler(time: npt.ArrayLike) -> xr.Dataset:
         t = np.atleast_1d(np.asarray(time, dtype=float))
@@ -53,11 +51,10 @@ def history(
 
     data = sampler(np.linspace(0.0, end, count))
     # What is measured does not depend on how many samples are kept.
-    usual = _default_count(model, motion, trajectory.end)
+    usual = default_count(model, motion, trajectory.end)
     seen = data if count == usual else sampler(np.linspace(0.0, end, usual))
     demands = Demands.of(model, Forcing.of(model, motion), trajectory, seen, friction_coefficient)
-    measures = _measures(model, trajectory, seen, planar=planar) | demands.measures
-    return Recorded(data, measures, demands.warnings, sampler)
+    return Recorded(data, demands.measures, demands.warnings, sampler)
 
 
 def _dataset(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Floats) -> xr.Dataset:
@@ -102,35 +99,6 @@ def _dataset(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Flo
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
 
-def _measures(model: Model, trajectory: Trajectory, data: xr.Dataset, *, planar: bool) -> dict[str, float]:
-    amplitude = data["amplitude"].to_numpy()
-    largest, when = _largest_tilt(model, trajectory, amplitude, data["time"].to_numpy() / model.time_scale)
-    # In a plane the lean changes sides; the contact point does not travel round the rim.
-    moving = [] if planar else [piece.azimuths for piece in trajectory.pieces if piece.azimuths.size]
-    return {
-        "largest_tilt": largest,
-        "largest_tilt_over_c": largest / model.column.slenderness,
-        "time_of_largest_tilt": when * model.time_scale,
-        "least_tilt": float(amplitude.min()),
-        "turns": float(moving[-1][-1] - moving[0][0]) / (2.0 * math.pi) if moving else 0.0,
-        "steps": float(trajectory.steps),
-    }
-
-
-def _largest_tilt(model: Model, trajectory: Trajectory, amplitude: Floats, tau: Floats) -> tuple[float, float]:
-    """Return the largest tilt and when it is reached, sought on dense output about the largest sample."""
-    top = int(np.argmax(amplitude))
-    low, high = float(tau[max(top - 1, 0)]), min(float(tau[min(top + 1, tau.size - 1)]), trajectory.end)
-
-    def below(time: float) -> float:
-        return -float(np.hypot(*model.tilt(trajectory.states(np.array([time]))))[0])
-
-    found = minimize_scalar(below, bounds=(low, high), method="bounded", options={"xatol": 1e-9 * (high - low)})
-    if -found.fun > amplitude[top]:
-        return -float(found.fun), float(found.x)
-    return float(amplitude[top]), float(tau[top])
-
-
 def _along_time(values: Floats, units: str, long_name: str) -> xr.Variable:
     return xr.Variable("time", values, {"units": units, "long_name": long_name})
 
@@ -139,6 +107,7 @@ def _along_axis(values: Floats, units: str, long_name: str) -> xr.Variable:
     return xr.Variable(("time", "axis"), values, {"units": units, "long_name": long_name})
 
 
-def _default_count(model: Model, motion: BaseMotion, end: float) -> int:
+def default_count(model: Model, motion: BaseMotion, end: float) -> int:
+    """Return how many samples are kept of a run, where nobody asks for another number."""
     periods = end * motion.highest_frequency * model.time_scale / (2.0 * math.pi)
     return int(np.clip(math.ceil(_PER_PERIOD * periods + _PER_UNIT * end) + 1, _FEWEST, _MOST))

@@ -51,7 +51,6 @@ def announce(expected: float, most: int) -> None:
         )
 
 
-def report(left: int, most: int, time: float, end: float) -> None:
-    """Log how far a run is at every 1000th of its steps, with so many `left` of `most`; times in s."""
-    if (most - left) % EVERY == 0 and left < most:
-        LOG.info("%d steps of at most %d, at %.4g of %.4g s", most - left, most, time, end)
+def report(steps: int, most: int, time: float, end: float) -> None:
+    """Log how far a run is, after so many `steps` of at most so many; times in s."""
+    LOG.info("%d steps of at most %d, at %.4g of %.4g s", steps, most, time, end)

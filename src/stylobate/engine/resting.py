@@ -7,8 +7,8 @@ from scipy.optimize import brentq, minimize_scalar
 
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.starts import cannot_depart
+from stylobate.engine.switching.pieces import Piece
 from stylobate.engine.tolerances import SAMPLES_PER_PERIOD
-from stylobate.engine.trajectory import Piece
 from stylobate.models import Model, Push
 
 # Samples looked at together.

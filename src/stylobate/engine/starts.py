@@ -64,14 +64,11 @@ class Turning:
             raise ParameterError(message)
         return cls(spin, twist, (x, y), (vx, vy, vz), clearance)
 
-    def added_to(self, model: Model, state: tuple[float, ...]) -> tuple[float, ...]:
-        """Return the `state` of a start without spin with them."""
-        begun = list(state)
-        if model.spin_state is not None:
-            begun[model.spin_state] = self.spin * model.time_scale
-        if model.carried_names:
-            begun += [self.twist, self.position[0] / model.column.radius, self.position[1] / model.column.radius]
-        return tuple(begun)
+    def carried(self, model: Model) -> tuple[float, ...]:
+        """Return what a run of `model` carries along from the start."""
+        if not model.carried_names:
+            return ()
+        return self.twist, self.position[0] / model.column.radius, self.position[1] / model.column.radius
 
     def begun(self, model: Model, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, ...]:
         """Return the state of a start of a model that changes between kinds of contact."""
@@ -90,6 +87,16 @@ class Turning:
         given: dict[str, Any] = {"spin": self.spin, "twist": self.twist, "position": self.position}
         given |= {"velocity": self.velocity, "clearance": self.clearance}
         return {name: value for name, value in given.items() if np.any(value)}
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """How a single run begins, tilt [rad] and tilt rate [rad/s] and what else there is, and its duration [s]."""
+
+    tilt: tuple[float, float]
+    tilt_rate: tuple[float, float]
+    turning: Turning
+    duration: float
 
 
 def refuse_spin(model: Model, spin: float, *, standing: bool) -> None:

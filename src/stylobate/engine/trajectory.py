@@ -1,103 +1,174 @@
-"""A computed motion: pieces of dense output, each in its own phase, evaluated as one."""
+"""The computed motion of one run: a polynomial for each step, from the trace that its kernel kept."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.engine.compiler.over_rows import over_rows
+from stylobate.engine.lanes.columns import TRACE_TERMS, Trace, TraceKind
+from stylobate.models import Model
+
 Floats = npt.NDArray[np.float64]
 
+# Nodes of Gauss's rule in each step, by which what is carried along is integrated.
+_NODES = 0.5 + 0.5 * np.polynomial.legendre.leggauss(8)[0]
+# Row k holds the integrals from 0 to 1 … of the polynomial through the nodes that is 1 at node k, by powers of u.
+_ANTIDERIVATIVES = np.array(
+    [
+        np.polynomial.Polynomial.fit(_NODES, row, len(_NODES) - 1, domain=(0.0, 1.0), window=(0.0, 1.0)).integ().coef
+        for row in np.eye(len(_NODES))
+    ]
+)
 
-@dataclass(frozen=True, slots=True)
-class Piece:
-    """A stretch of motion between two events.
+
+@dataclass(frozen=True)
+class Trajectory:
+    """The motion between the start of a run and its end, as a function of dimensionless time.
 
     Parameters
     ----------
-    start, end
-        Dimensionless times.
-    states
-        Evaluates the state at times inside, shape (number of states, n).
-    resting
-        Whether the column stands on its base throughout.
-    nodes, azimuths
-        Times and azimuths of the lean along the piece [rad], unwrapped: the true angle lies within ±π of the last
-        node before it. Empty while the column stands.
-    steps
-        Integration steps taken.
+    model
+        Whose states they are.
+    stretches
+        Entries of the trace that are no events, shape (n, columns).
+    line
+        Unit vector of the line of motion in a plane.
+    carried
+        What is carried along, at the start.
+    end
+        When the run ended.
     """
 
-    start: float
+    model: Model
+    stretches: Floats
+    line: tuple[float, float]
+    carried: tuple[float, ...]
     end: float
-    states: Callable[[Floats], Floats]
-    resting: bool
-    nodes: Floats
-    azimuths: Floats
-    steps: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class Trajectory:
-    """Consecutive pieces."""
-
-    pieces: Sequence[Piece]
-    n_states: int
-
-    @property
-    def end(self) -> float:
-        """Dimensionless time of the end."""
-        return self.pieces[-1].end
 
     @property
     def steps(self) -> int:
-        """Integration steps taken in all."""
-        return sum(piece.steps for piece in self.pieces)
+        """Integration steps taken."""
+        return int(np.isin(self._kinds, (TraceKind.STEP, TraceKind.PLANE_STEP)).sum())
 
-    def states(self, tau: Floats) -> Floats:
-        """Return the states, shape (number of states, n), at times between the start and the end."""
-        out = np.empty((self.n_states, tau.size))
-        which = self._piece_at(tau)
-        for index in np.unique(which):
-            here = which == index
-            out[:, here] = self.pieces[index].states(tau[here])
-        return out
+    @property
+    def starts(self) -> Floats:
+        """When each stretch begins."""
+        return self.stretches[:, Trace.START]
+
+    @property
+    def ends(self) -> Floats:
+        """When each stretch ends: as the next one begins."""
+        return np.append(self.starts[1:], self.end)
+
+    @property
+    def standing(self) -> list[tuple[float, float]]:
+        """From when to when the column stood on its base."""
+        stands = self._kinds == TraceKind.STAND
+        return list(zip(self.starts[stands].tolist(), self.ends[stands].tolist(), strict=True))
+
+    def until(self, end: float) -> "Trajectory":
+        """Return the motion up to an earlier `end`."""
+        begun = self.starts < end
+        return replace(self, stretches=self.stretches[begun] if begun.any() else self.stretches[:1], end=end)
+
+    def states(self, tau: Floats, stretch: int | None = None) -> Floats:
+        """Return the states, shape (number of states, n), at times between the start and the end.
+
+        Where one stretch ends and the next begins with other velocities, after an impact, they are those of the next,
+        or of the `stretch` of this number.
+        """
+        which = self._at(tau) if stretch is None else np.full(tau.shape, stretch)
+        states = self._lifted(self._within(which, self._share(which, tau)), which)
+        if not self.carried:
+            return states
+        return np.concatenate([states, self._carried_at(which, tau)])
 
     def resting(self, tau: Floats) -> npt.NDArray[np.bool_]:
         """Return where the column stands on its base, shape (n,)."""
-        return np.array([piece.resting for piece in self.pieces])[self._piece_at(tau)]
+        return np.asarray((self._kinds == TraceKind.STAND)[self._at(tau)])
 
     def azimuth(self, tau: Floats, tilt: Floats) -> Floats:
-        """Return the unwrapped azimuth of the lean [rad] of the `tilt` vectors, shape (2, n), at `tau`.
+        """Return the azimuth of the lean [rad], followed round, of the `tilt` vectors, shape (2, n), at `tau`.
 
-        NaN where the column stands upright.
+        NaN where the column stands upright; in a plane it is not followed.
         """
-        out = np.full(tau.size, np.nan)
-        which = self._piece_at(tau)
-        for index in np.unique(which):
-            piece, here = self.pieces[index], which == index
-            if piece.resting:
-                continue
-            left = np.clip(np.searchsorted(piece.nodes, tau[here], side="right") - 1, 0, None)
-            known = piece.azimuths[left]
-            x, y = tilt[:, here]
-            turned = (np.arctan2(y, x) - known + np.pi) % (2.0 * np.pi) - np.pi
-            out[here] = np.where(np.hypot(x, y) > 0.0, known + turned, np.nan)
-        return out
+        which = self._at(tau)
+        x, y = tilt
+        here = np.arctan2(y, x) / (2.0 * np.pi)
+        # Within a stretch the lean turns one way, by less than a turn.
+        middle = 0.5 * (self.stretches[:, Trace.AZIMUTH] + self.stretches[:, Trace.END_AZIMUTH])[which]
+        kinds = self._kinds[which]
+        turns = np.where(kinds == TraceKind.PLANE_STEP, 0.0, np.round(middle - here))
+        known = (kinds != TraceKind.STAND) & (np.hypot(x, y) > 0.0)
+        return np.where(known, 2.0 * np.pi * (here + turns), np.nan)
 
-    def _piece_at(self, tau: Floats) -> npt.NDArray[np.intp]:
-        starts = np.array([piece.start for piece in self.pieces])
-        return np.clip(np.searchsorted(starts, tau, side="right") - 1, 0, None)
+    @property
+    def _kinds(self) -> Floats:
+        return self.stretches[:, Trace.KIND]
 
+    @cached_property
+    def _terms(self) -> Floats:
+        """The states at the starts, and the coefficients, shape (n, 8, number of states)."""
+        return self.stretches[:, len(Trace) :].reshape(len(self.stretches), TRACE_TERMS, -1)
 
-def unwrapped_azimuths(tilt: Floats, first: float) -> Floats:
-    """Return the azimuths of consecutive `tilt` vectors, shape (2, n), counted on from the azimuth `first` [rad]."""
-    x, y = tilt
-    cross = x[:-1] * y[1:] - y[:-1] * x[1:]
-    dot = x[:-1] * x[1:] + y[:-1] * y[1:]
-    return first + np.concatenate([[0.0], np.cumsum(np.arctan2(cross, dot))])
+    def _at(self, tau: Floats) -> npt.NDArray[np.intp]:
+        return np.clip(np.searchsorted(self.starts, tau, side="right") - 1, 0, None)
 
+    def _share(self, which: npt.NDArray[np.intp], tau: Floats) -> Floats:
+        return np.asarray((tau - self.starts[which]) / self.stretches[which, Trace.LENGTH])
 
-def nearest_turn(angle: float, to: float | None) -> float:
-    """Return `angle` plus the whole turns that bring it nearest to the angle `to`, where there is one."""
-    return angle if to is None else angle + 2.0 * np.pi * round((to - angle) / (2.0 * np.pi))
+    def _within(self, which: npt.NDArray[np.intp], share: Floats) -> Floats:
+        """Return what the polynomials of these stretches give; states by their own numbers, in a plane tilt and rate.
+
+        E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., section II.6.
+        """
+        terms = self._terms[which]
+        out = np.zeros(terms[:, 0].shape)
+        for power in reversed(range(1, TRACE_TERMS)):
+            factor = share if power % 2 else 1.0 - share
+            out = (out + terms[:, power]) * factor[:, np.newaxis]
+        return np.asarray((terms[:, 0] + out).T)
+
+    def _lifted(self, states: Floats, which: npt.NDArray[np.intp]) -> Floats:
+        """Return the `states` of the model, out of those of these stretches."""
+        planar = self._kinds[which] == TraceKind.PLANE_STEP
+        if not planar.any():
+            return states[: len(self.model.state_names)]
+        assert self.model.from_plane is not None
+        lifted = self.model.from_plane(states[0], states[1], *self.line, *self.model.parameters)
+        count = len(self.model.state_names)
+        return np.where(planar, np.stack(np.broadcast_arrays(*lifted)), states[:count])
+
+    def _carried_at(self, which: npt.NDArray[np.intp], tau: Floats) -> Floats:
+        begun, terms = self._carried
+        powers = self._share(which, tau)[:, np.newaxis] ** np.arange(terms.shape[1])
+        length = self.stretches[which, Trace.LENGTH][:, np.newaxis]
+        return np.asarray((begun[which] + length * np.einsum("np,npc->nc", powers, terms[which])).T)
+
+    @cached_property
+    def _carried(self) -> tuple[Floats, Floats]:
+        """What is carried along at the start of each stretch (n, c), and its integrals by powers of the share."""
+        assert self.model.carried_rates is not None
+        count, carried = len(self.stretches), len(self.carried)
+        terms = np.zeros((count, len(_NODES) + 1, carried))
+        steps = np.flatnonzero(self._kinds == TraceKind.STEP)
+        if steps.size:
+            each, nodes = np.repeat(steps, len(_NODES)), np.tile(_NODES, steps.size)
+            rates = self._carried_rates(self._within(each, nodes).T).reshape(steps.size, len(_NODES), carried)
+            terms[steps] = np.einsum("nkc,kp->npc", rates, _ANTIDERIVATIVES)
+        leaps = np.flatnonzero(self._kinds == TraceKind.LEAP)
+        if leaps.size:
+            terms[leaps, 1] = self._carried_rates(self._terms[leaps, 0])
+        share = self._share(np.arange(count), self.ends)
+        gained = np.einsum("np,npc->nc", share[:, np.newaxis] ** np.arange(terms.shape[1]), terms)
+        gained *= self.stretches[:, Trace.LENGTH][:, np.newaxis]
+        begun = np.array(self.carried) + np.cumsum(np.vstack([np.zeros(carried), gained[:-1]]), axis=0)
+        return begun, terms
+
+    def _carried_rates(self, states: Floats) -> Floats:
+        assert self.model.carried_rates is not None
+        parameters = np.broadcast_to(self.model.parameters, (len(states), len(self.model.parameters)))
+        rows = np.hstack([states[:, : len(self.model.state_names)], parameters])
+        return over_rows(self.model.carried_rates, rows, name=self.model.name)

@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
+from stylobate.base_motions import BaseMotion
 from stylobate.engine.forcing import Floats, Forcing
+from stylobate.engine.trajectory import Trajectory
 from stylobate.errors import ParameterError, as_float, require_whole
 from stylobate.models import Model
 from stylobate.results import Event
@@ -124,6 +126,21 @@ class _State(dict[str, Any]):
             message = f"events: no variable {name!r} in the state. Use one of {', '.join(self)}."
             raise ParameterError(message)
         return self[name]
+
+
+def own_events(
+    functions: Sequence[EventFunction], model: Model, motion: BaseMotion, trajectory: Trajectory
+) -> tuple[list[Event], float | None]:
+    """Return the events of a user's `functions` in a run, in their order, and the time of one that ends it [s]."""
+    recorder = EventRecorder(tuple(functions), model, Forcing.of(model, motion), [])
+    if functions:
+        resting = trajectory.resting(trajectory.starts)
+        for number, (start, end, rests) in enumerate(zip(trajectory.starts, trajectory.ends, resting, strict=True)):
+            states = partial(trajectory.states, stretch=number)
+            ended = recorder.search(float(start), float(end), states, resting=bool(rests))
+            if ended is not None:
+                return recorder.events, ended * model.time_scale
+    return recorder.events, None
 
 
 @dataclass(slots=True)

@@ -40,11 +40,11 @@ def acceleration_of(table, time):
 
 @every_pulse
 def test_each_run_is_that_under_the_pulse_of_its_frequency(pulse):
-    runs = sb.simulate_ensemble(MODEL, pulse, duration=6.0, parameters={"angular_frequency": FREQUENCIES})
+    runs = sb.simulate_ensemble(MODEL, pulse, duration=7.0, parameters={"angular_frequency": FREQUENCIES})
     moved = 0
     for run, frequency in zip((runs.isel(run=i) for i in range(runs.sizes["run"])), FREQUENCIES, strict=True):
         alone = sb.simulate(
-            MODEL, with_numbers(pulse, {"angular_frequency": float(frequency)}), duration=6.0, recheck=False
+            MODEL, with_numbers(pulse, {"angular_frequency": float(frequency)}), duration=7.0, recheck=False
         )
         assert sb.Outcome(int(run["outcome"])) == alone.outcome
         if alone.outcome is not sb.Outcome.OVERTURNED:  # else it ends with a step of the method's

@@ -61,12 +61,16 @@ class Compiled:
             If the model cannot be compiled.
         """
         if kept.runs_plain():
-            with np.errstate(all="ignore"):  # numbers that are not used may be none
-                return int(getattr(self.module, self.name)(*values) or 0)
+            return self.plain(*values)
         passed: list[Any] = []
         for argument, value in zip(self.arguments, values, strict=True):
             passed += [value] if isinstance(argument, Kind) else _passed(argument, value)
         return int(self._code(*passed))
+
+    def plain(self, *values: Any) -> int:
+        """Return the same by plain Python, uncompiled."""
+        with np.errstate(all="ignore"):  # numbers that are not used may be none
+            return int(getattr(self.module, self.name)(*values) or 0)
 
     @cached_property
     def module(self) -> types.ModuleType:
@@ -90,7 +94,7 @@ class Compiled:
             logged = None if self.brief else self.description
             engine = kept.code_of(self._words, parts, self.functions, self._written, logged)
         except CompileError as error:
-            message = f"model {self.model} cannot be compiled; single runs by simulate need no compiling: {error}"
+            message = f"model {self.model} cannot be compiled; simulate follows single runs of it uncompiled: {error}"
             raise UnsupportedError(message) from error
         kinds = [kind for argument in self.arguments for kind in _types_of(argument)]
         function = ctypes.CFUNCTYPE(ctypes.c_int64, *kinds)(engine.get_function_address(self.name))

@@ -21,6 +21,7 @@ PLAIN_VARIABLE = "STYLOBATE_PLAIN"
 """With this set to 1, what would be compiled runs as plain Python: slowly, and step by step in a debugger."""
 
 _log = logging.getLogger("stylobate")
+_notices = logging.getLogger("stylobate.compiling")
 _loading = threading.RLock()
 
 
@@ -69,7 +70,7 @@ def code_of(
                 if code is None:
                     # A warning, seen where no logging is set up: seconds may pass, once.
                     if description is not None:
-                        _log.warning("compiling %s; kept in %s", description, folder.folder)
+                        _notices.warning("compiling %s; kept in %s", description, folder.folder)
                     code = machine.object_code(write())
                     _keep(folder, entry, code)
         return machine.linked(code)

@@ -42,7 +42,8 @@ class Plan:
     """What is the same for all runs of an ensemble, decided before the first.
 
     `rest_share` is a factor of the energy below which rest is entered where the base motion can release the column;
-    `traces` is how many entries of a trace are kept before they are taken out, 0 for none.
+    `traces` is how many entries of a trace are kept before they are taken out, 0 for none; `plain` whether kernels run
+    as plain Python, one run at a time, for a model that cannot be compiled.
     """
 
     model: Model
@@ -50,6 +51,7 @@ class Plan:
     options: Options
     rest_share: float = 1.0
     traces: int = 0
+    plain: bool = False
 
     def repeated(self) -> "Plan":
         """Return the plan by which runs in doubt are repeated: a finer rest threshold, another tolerance, no notes."""
@@ -70,7 +72,7 @@ class Plan:
             parameters=parameters,
             planar=planar,
             forcing=forcing,
-            width=SWITCHING_WIDTH if self.model.switches else WIDTH,
+            width=1 if self.plain else SWITCHING_WIDTH if self.model.switches else WIDTH,
             series=series_integrals(type(self.model), states, parameters, vertical=vertical) if by_series else (),
             demands=self.options.demands,
             guards=len(self.model.guard_names),
@@ -156,7 +158,8 @@ class Batch:
         table = np.ascontiguousarray(self.table[chosen])
         kernel = kernel_of(type(self.plan.model), self.plan.shape(planar=planar))
         buffer = kernel.buffer()
-        while not (finished := kernel.advance(table, self.plan.motion.pieces, halt, buffer)) and not halt[0]:
+        pieces, plain = self.plan.motion.pieces, self.plan.plain
+        while not (finished := kernel.advance(table, pieces, halt, buffer, plain=plain)) and not halt[0]:
             self._take_trace(table)
             rows, first = kernel.shape.rows(), buffer[:: kernel.shape.width]
             paused(first[rows["steps"]], first[rows["time"]] * self.models.time_scale[0])

@@ -21,6 +21,7 @@ _ENDINGS = {
     Status.LIFTED: Outcome.LIFTED_OFF,
     Status.STEP_LIMIT: Outcome.FAILED,
     Status.STEP_TOO_SMALL: Outcome.FAILED,
+    Status.UNSEEN: Outcome.FAILED,
     Status.ENDLESS: Outcome.FAILED,
     Status.JAMMED: Outcome.FAILED,
 }

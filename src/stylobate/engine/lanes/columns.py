@@ -237,6 +237,8 @@ class Status(_FromZero):
     LIFTED = auto()
     STEP_LIMIT = auto()
     STEP_TOO_SMALL = auto()
+    UNSEEN = auto()
+    """It stood for as many periods of the base motion as its steps allow to search, and there are more."""
     CANNOT_DEPART = auto()
     """It was released from rest, and its model does not say how it departs."""
     TO_PLANE = auto()

@@ -49,9 +49,12 @@ class Kernel:
         room = np.full(size + _EDGE, np.nan)
         return room[(-room.ctypes.data // room.itemsize) % _EDGE :][:size]
 
-    def advance(self, table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buffer: Row) -> bool:
+    def advance(
+        self, table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buffer: Row, *, plain: bool = False
+    ) -> bool:
         """Run a batch to its end, until `halt[0]` is set or a trace is full; return whether it is at its end."""
-        return bool(self.compiled(table, pieces, halt, buffer.reshape(-1, self.shape.width), buffer))
+        advance = self.compiled.plain if plain else self.compiled
+        return bool(advance(table, pieces, halt, buffer.reshape(-1, self.shape.width), buffer))
 
 
 @cache

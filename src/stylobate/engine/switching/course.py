@@ -11,18 +11,17 @@ from scipy.integrate import OdeSolution
 from scipy.optimize import brentq
 
 from stylobate.engine.forcing import Floats, Forcing
-from stylobate.engine.moving import Method
 from stylobate.engine.pace import report, step_limit, unseen
 from stylobate.engine.resting import departure_lapse, release_within, rest_piece, stays_for_good
 from stylobate.engine.steps import Steps, just_before
+from stylobate.engine.switching.following import Method, Reason
 from stylobate.engine.switching.guard import Guard
 from stylobate.engine.switching.inclined import InclinedForcing
+from stylobate.engine.switching.pieces import Piece, Trajectory, nearest_turn, unwrapped_azimuths
 from stylobate.engine.switching.solvers import Stepper
 from stylobate.engine.thresholds import Thresholds
 from stylobate.engine.tolerances import SLIP_SHORTER
-from stylobate.engine.trajectory import Piece, Trajectory, nearest_turn, unwrapped_azimuths
 from stylobate.engine.user_events import EventFunction, EventRecorder
-from stylobate.engine.watch import Reason
 from stylobate.models import Model
 from stylobate.models.model import RELEASE_MARGIN
 from stylobate.results import Event

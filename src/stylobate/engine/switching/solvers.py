@@ -12,8 +12,8 @@ import numpy as np
 from scipy.integrate import DOP853, Radau
 
 from stylobate.engine.forcing import Floats
-from stylobate.engine.moving import Method
 from stylobate.engine.steps import attempted, with_finite_step
+from stylobate.engine.switching.following import Method
 from stylobate.engine.tolerances import SLIP_SHARE, SLIP_TURNS
 
 # E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", section IV.2: the boundary of stability of DOP853

@@ -9,9 +9,10 @@ import numpy as np
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.forcing import Floats
 from stylobate.engine.switching.course import SwitchingCourse
+from stylobate.engine.switching.following import Reason
 from stylobate.engine.switching.guard import Guard
-from stylobate.engine.verdict import Verdict, long_term
-from stylobate.engine.watch import Reason
+from stylobate.engine.switching.long_term import long_term
+from stylobate.engine.verdict import Verdict
 from stylobate.errors import Outcome
 from stylobate.models import Contact, Model
 from stylobate.models.sliding.equations import JAM

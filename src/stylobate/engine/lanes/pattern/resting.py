@@ -11,13 +11,14 @@ from stylobate.engine.lanes.pattern.release import RELEASE_MARGIN, release_time
 from stylobate.engine.lanes.pattern.standing import bear_standing
 from stylobate.engine.lanes.pattern.stops import go_on, leg_end, meet_stop, next_stop, stand_to_the_end
 from stylobate.engine.lanes.pattern.tracing import trace_event, trace_stand
-from stylobate.engine.lanes.pattern.within import set_within
+from stylobate.engine.lanes.pattern.within import set_dense_output, set_within, set_within_closely
 from stylobate.models.model import Push
 
 if TYPE_CHECKING:
     from stylobate.engine.lanes.pattern.head import (
         CAN_DEPART,
         CAN_GO_TO_PLANE,
+        DEGREE,
         HOPS_APART,
         PLANAR,
         STILL,
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
 
 # Time after release, in units of the fastest time scale, at which the departure series hands over.
 DEPARTURE = 1e-3
+# So many periods show what a motion that repeats does, whatever the phase at which they begin.
+PERIODS_KNOWN = 2.0
 
 
 def holding_force(buf: Table, i: int, ax: float, ay: float, az: float) -> float:
@@ -56,33 +59,53 @@ def rest_margin(buf: Table, i: int, t: float, tilt: float, speed: float) -> floa
 
 
 def rest_within_step(buf: Table, i: int) -> float:
-    """Return when the column came to rest within the step just made, or NaN."""
+    """Return when the column came to rest within the step just made, or NaN.
+
+    Whether it may have is asked of cubics; whether and when it did, of the step's dense output.
+    """
     h = buf[R.MADE, i]
     start = buf[R.TIME, i] - h
     before = 0.0
+    closely = False
     for k in range(5):
         u = 0.25 * k
-        if margin_within_step(buf, i, start, h, u) > 0.0:
-            low, high = before, u
-            for _ in range(40 if k > 0 else 0):
-                middle = 0.5 * (low + high)
-                if margin_within_step(buf, i, start, h, middle) > 0.0:
-                    high = middle
-                else:
-                    low = middle
-            return start + high * h
+        rests = margin_within_step(buf, i, start, h, u, closely) > 0.0
+        if rests and k == 0:
+            return start
+        if rests and not closely:
+            set_dense_output(buf, i)
+            closely = True
+            rests = margin_within_step(buf, i, start, h, u, closely) > 0.0
+        if rests:
+            return start + first_rest(buf, i, start, h, before, u) * h
         before = u
     return math.nan
 
 
-def margin_within_step(buf: Table, i: int, start: float, h: float, u: float) -> float:
-    ax, ay, az = accelerations(buf, i, start + u * h)
+def first_rest(buf: Table, i: int, start: float, h: float, low: float, high: float) -> float:
+    """Return at which part of the step the column came to rest, between two parts of it."""
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        if margin_within_step(buf, i, start, h, middle, True) > 0.0:
+            high = middle
+        else:
+            low = middle
+    return high
+
+
+def margin_within_step(buf: Table, i: int, start: float, h: float, u: float, closely: bool) -> float:
+    """Return the margin of rest at a part of the step, closely where its dense output is there."""
+    t = start + u * h
+    ax, ay, az = accelerations(buf, i, t)
     force = holding_force(buf, i, ax, ay, az)
     if force <= 0.0:  # so is the margin
         return force
-    set_within(buf, i, u * h)
+    if closely:
+        set_within_closely(buf, i, u * h)
+    else:
+        set_within(buf, i, u * h)
     x, y, vx, vy = lean_of_new(buf, i)
-    return rest_margin(buf, i, start + u * h, math.hypot(x, y), math.hypot(vx, vy))
+    return rest_margin(buf, i, t, math.hypot(x, y), math.hypot(vx, vy))
 
 
 def settle(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
@@ -105,6 +128,9 @@ def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
         if held_for_good(buf, i):
             buf[R.DECIDED, i] = t
             return stand_to_the_end(buf, i, table, pieces, t)
+        if math.isnan(release):
+            buf[R.TIME, i] = search_end(buf, i, t)
+            return Status.UNSEEN
         stop = next_stop(buf, i)
         t = stop
         if release < stop:
@@ -114,9 +140,11 @@ def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
             if not CAN_DEPART:
                 return Status.CANNOT_DEPART
             t = min(depart(buf, i, release), buf[R.END, i])
-            if t < buf[R.END, i] and not at_upright(buf, i):
+            if t < buf[R.END, i]:
+                buf[R.RELEASES, i] += 1.0
                 trace_event(buf, i, table, TraceKind.RELEASE, release)
-                return take_off(buf, i, table, pieces, t)
+                if not at_upright(buf, i):
+                    return take_off(buf, i, table, pieces, t)
         buf[R.TIME, i] = t
         # The search is not cut at stops that leave the base motion as it is: what is looked at does not change a run.
         again = release < stop or t >= leg_end(buf, i)
@@ -131,12 +159,28 @@ def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
 def release_within_leg(buf: Table, i: int, t: float) -> float:
     """Return when the base motion releases the column before the leg ends, or infinity; note what it bears till then.
 
-    Loads are followed by legs, not by stops: what is looked at changes none of them.
+    Loads are followed by legs, not by stops: what is looked at changes none of them. NaN where that cannot be known:
+    so many periods are searched as a run may take steps, for a column that moves takes two in each.
     """
-    end = leg_end(buf, i)
+    end = search_end(buf, i, t)
     release = release_time(buf, i, t, end)
     bear_standing(buf, i, t, min(release, end))
-    return release
+    return math.nan if release > end and end < leg_end(buf, i) and not repeats_to_the_end(buf, i) else release
+
+
+def search_end(buf: Table, i: int, t: float) -> float:
+    """Return until when a release is sought from `t` on within the leg."""
+    end, frequency = leg_end(buf, i), buf[R.FREQUENCY, i]
+    if DEGREE == 1 or frequency == 0.0:
+        return end
+    most = t + buf[R.MOST_STEPS, i] * (2.0 * math.pi / frequency)
+    known = t + PERIODS_KNOWN * buf[R.PERIOD, i]
+    return min(end, known if end > most and known < most and repeats_to_the_end(buf, i) else most)
+
+
+def repeats_to_the_end(buf: Table, i: int) -> bool:
+    """Return whether the base motion has a period from now to the end of the run."""
+    return buf[R.PERIOD, i] > 0.0 and min(buf[R.LEG_ENDS, i], buf[R.BREAKS_AT, i]) >= buf[R.END, i]
 
 
 def depart(buf: Table, i: int, release: float) -> float:
@@ -162,7 +206,6 @@ def take_off(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
     # Looks within the departure, which moves the column by the third power of its duration, see it stand.
     while next_stop(buf, i) <= t:
         meet_stop(buf, i, table, pieces, next_stop(buf, i))
-    buf[R.RELEASES, i] += 1.0
     if buf[R.RESTS, i] > 0.0:
         buf[R.RELEASED_FROM_REST, i] = 1.0
     buf[R.TIME, i] = t

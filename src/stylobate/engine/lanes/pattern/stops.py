@@ -170,8 +170,8 @@ def take_look(buf: Table, i: int, t: float) -> None:
     x, y, vx, vy = lean_now(buf, i)
     azimuth = azimuth_now(buf, i)
     place = R.LOOK + 4 * (index % LOOKS)
-    change = max(abs(x - buf[place, i]), abs(y - buf[place + 1, i]))
-    rate_change = max(abs(vx - buf[place + 2, i]), abs(vy - buf[place + 3, i]))
+    change = math.hypot(x - buf[place, i], y - buf[place + 1, i])
+    rate_change = math.hypot(vx - buf[place + 2, i], vy - buf[place + 3, i])
     buf[place, i] = x
     buf[place + 1, i] = y
     buf[place + 2, i] = vx
@@ -189,8 +189,8 @@ def take_look(buf: Table, i: int, t: float) -> None:
         for column, value in (
             (Window.TILT_CHANGE, change),
             (Window.RATE_CHANGE, rate_change),
-            (Window.TILT_SIZE, max(abs(x), abs(y))),
-            (Window.RATE_SIZE, max(abs(vx), abs(vy))),
+            (Window.TILT_SIZE, math.hypot(x, y)),
+            (Window.RATE_SIZE, math.hypot(vx, vy)),
         ):
             buf[first + column, i] = max(buf[first + column, i], value)
         weight = 0.5 if index in (begin, end) else 1.0

@@ -6,9 +6,32 @@ from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.roots import cubic
 
 if TYPE_CHECKING:
-    from stylobate.engine.lanes.pattern.head import ORDER, SERIES, R, series_within
+    from stylobate.engine.lanes.pattern.head import ORDER, SERIES, TRACE_TERMS, R, series_within, set_dense
 
 # --- the kernel's text begins here ---
+
+
+def set_dense_output(buf: Table, i: int) -> None:
+    """Prepare the dense output of the step just made."""
+    if not SERIES:
+        for j in range(ORDER):
+            buf[R.NEW + j, i] = buf[R.STATE + j, i]
+        h = buf[R.MADE, i]
+        set_dense(buf, i, R.LAST_STATE, R.LAST_SLOPE, buf[R.TIME, i] - h, h)
+
+
+def set_within_closely(buf: Table, i: int, elapsed: float) -> None:
+    """Do as `set_within`, to the order of the method: the dense output of the step is there."""
+    if SERIES:
+        set_within(buf, i, elapsed)
+        return
+    u = elapsed / buf[R.MADE, i]
+    for j in range(ORDER):
+        change = 0.0
+        for k in range(TRACE_TERMS - 1):
+            term = TRACE_TERMS - 2 - k
+            change = (change + buf[R.DENSE + term * ORDER + j, i]) * (u if term % 2 == 0 else 1.0 - u)
+        buf[R.NEW + j, i] = buf[R.LAST_STATE + j, i] + change
 
 
 def set_within(buf: Table, i: int, elapsed: float) -> None:

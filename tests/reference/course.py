@@ -7,15 +7,16 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from stylobate.engine.forcing import Forcing, common_line
-from stylobate.engine.moving import Leg, Mover
 from stylobate.engine.pace import unseen
 from stylobate.engine.resting import departure, release_within, rest_piece, stays_for_good
+from stylobate.engine.switching.following import Reason
+from stylobate.engine.switching.pieces import Piece, Trajectory, nearest_turn
 from stylobate.engine.tolerances import FIRST_STEP_OFF
-from stylobate.engine.trajectory import Piece, Trajectory, nearest_turn
-from stylobate.engine.watch import Reason
 from stylobate.models import Model
 from stylobate.models.model import RELEASE_MARGIN
 from stylobate.results import Event
+
+from .moving import Leg, Mover
 
 Line = tuple[float, float]
 

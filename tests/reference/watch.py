@@ -3,13 +3,13 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from enum import Enum, auto
 from functools import partial
 
 import numpy as np
 from scipy.optimize import brentq
 
 from stylobate.engine.forcing import Floats, Forcing
+from stylobate.engine.switching.following import Reason
 from stylobate.engine.thresholds import Thresholds
 from stylobate.engine.tolerances import HOPS_APART, STILL
 from stylobate.models import Model
@@ -18,24 +18,6 @@ from stylobate.models import Model
 _SAMPLES = 5
 # For lift-off, which depends on the base motion alone and may be short.
 _LIFT_SAMPLES = 65
-
-
-class Reason(Enum):
-    """Why a stretch of motion ended."""
-
-    STOP = auto()
-    """The time was up."""
-    RESTED = auto()
-    OVERTURNED = auto()
-    LIMIT = auto()
-    LIFTED = auto()
-    CROSSED = auto()
-    """The upright was passed in a plane, or came so near that it is passed in closed form."""
-    STRUCK = auto()
-    """The upright was passed so closely, out of a plane, that the passage costs energy."""
-    FAILED = auto()
-    TERMINATED = auto()
-    """A terminal event function of the user."""
 
 
 @dataclass(frozen=True, slots=True)

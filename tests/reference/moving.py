@@ -11,12 +11,15 @@ from scipy.optimize import brentq
 
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.pace import report, step_limit
-from stylobate.engine.steps import Steps, attempted, back_at_upright, just_before, with_finite_step
+from stylobate.engine.steps import Steps, attempted, just_before, with_finite_step
+from stylobate.engine.switching.following import Method, Reason
+from stylobate.engine.switching.pieces import Piece, unwrapped_azimuths
 from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET
-from stylobate.engine.trajectory import Piece, unwrapped_azimuths
 from stylobate.engine.user_events import EventRecorder
-from stylobate.engine.watch import Reason, Watch
 from stylobate.models import Model
+
+from .upright import back_at_upright
+from .watch import Watch
 
 # A motion that begins at a far smaller tilt is followed with a finer tolerance up to this one [units of c].
 _GROWN = 1e-3
@@ -29,17 +32,6 @@ _JUST_MET = 1e-6
 
 # The contact point is followed in turns of at most this angle [rad], each step cut into at most so many parts.
 _NODE_TURN, _MOST_PARTS = 0.5, 64
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Method:
-    """How to integrate: tolerances of DOP853, its longest step, the most steps and the end of a run."""
-
-    rtol: float
-    atol: float
-    max_step: float
-    max_steps: int
-    end: float = math.inf
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,105 @@
+"""Why the outcome of a single run is what it is, in one line, and the numbers that it rests on."""
+
+import math
+
+import numpy as np
+
+from stylobate.base_motions import BaseMotion
+from stylobate.engine.end_of_motion import survival
+from stylobate.engine.ensembles.outcomes import Late, grounds_of, late_periods
+from stylobate.engine.followed import Followed
+from stylobate.engine.lanes.columns import Log, Status
+from stylobate.engine.pace import step_limit, unseen
+from stylobate.engine.verdict import Ground, reason_on
+from stylobate.errors import Outcome
+from stylobate.models import Model
+from stylobate.text import plural
+
+_ENDINGS = {
+    Status.OVERTURNED: "its tilt grows beyond the tilt from which it could come back",
+    Status.LIMIT: "its tilt reached tilt_limit",
+    Status.LIFTED: "the base accelerates downwards faster than gravity",
+    Status.RESTED: "it stands, and the base motion to come cannot release it",
+}
+_FAILURES = {Status.STEP_LIMIT: step_limit, Status.UNSEEN: unseen}
+_UNPROVED = "its tilt reached π/2, which counts as overturned"
+_RELEASED = "it may yet be released: follow it longer"
+_TOO_SMALL = "its step became smaller than the rounding of the time"
+_RACING = (
+    "; it passes the vertical so closely that the contact point races round the rim, and no passage costs energy: "
+    "set restitution below 1"
+)
+# Passages of the vertical closer than this take many steps [units of c].
+_RACES = 1e-3
+
+
+def reason_of(model: Model, motion: BaseMotion, followed: Followed, outcome: Outcome) -> str:
+    """Return the reason of the `outcome` of a run."""
+    status = followed.status
+    if outcome is Outcome.FAILED:
+        most = int(followed.batch.plan.options.max_steps)
+        failure = _FAILURES[status](most) if status in _FAILURES else _TOO_SMALL
+        return f"the integration stopped: {failure}{_RACING if _races(model, followed) else ''}"
+    if outcome is Outcome.OVERTURNED and math.isinf(model.least_safe_tilt(*bounds_of(followed))):
+        return _UNPROVED
+    if status in _ENDINGS:
+        return _ENDINGS[status]
+    if outcome is Outcome.AT_REST:
+        return _standing(model, motion, followed)
+    if outcome in (Outcome.STILL_MOVING, Outcome.SURVIVED) and math.isfinite(motion.duration):
+        return survival(model, motion, followed.trajectory)[1]
+    late = late_periods(followed.batch)
+    ground = Ground(int(grounds_of(followed.batch, late)[0]))
+    return reason_on(ground, followed.batch.plan.options.rules.periods, motion.period or 0.0)
+
+
+def _standing(model: Model, motion: BaseMotion, followed: Followed) -> str:
+    releases = int(followed.log(Log.RELEASES))
+    before = f", released {plural(releases, 'time')} before" if releases else ""
+    left = motion.duration - followed.trajectory.end * model.time_scale
+    to_come = math.isfinite(left) and left > 0.0
+    stops = f", {left:.4g} s before the base motion stops; {_RELEASED}" if to_come else ""
+    return f"it stands at the end of the run{before}{stops}"
+
+
+def _races(model: Model, followed: Followed) -> bool:
+    """Return whether close passages without loss, which the model could have, explain the number of steps."""
+    lossless = model.impact_map is not None and model.loss_tilt == 0.0
+    return lossless and followed.log(Log.LEAST_PASSAGE) < _RACES * model.column.slenderness
+
+
+def bounds_of(followed: Followed) -> tuple[float, float]:
+    """Return sup |a_h| and inf a_z [g] of a whole run."""
+    motions = followed.batch.motions
+    return float(motions.largest[0]), float(motions.least_vertical[0])
+
+
+def late_measures(followed: Followed) -> dict[str, float]:
+    """Return what is measured over the last periods, where they were looked at."""
+    late = late_periods(followed.batch)
+    if np.isnan(late.span[0]):
+        return {}
+    scale = followed.trajectory.model.time_scale
+    periods = followed.batch.plan.options.rules.periods
+    measures = {
+        "mean_rolling_rate": 2.0 * math.pi * float(late.turned[0] / (late.span[0] * scale)),
+        "repetition": float(late.repetition[0]),
+        "mean_tilt_late": float(late.mean_tilt[0]),
+        "least_tilt_late": float(late.least_tilt[0]),
+        "largest_tilt_late": _largest_tilt(followed, late),
+    }
+    before = float(late.repetition_before[0])
+    if not math.isnan(before):
+        change = abs(measures["repetition"] / before - 1.0) if before > 0.0 else 0.0
+        measures |= {"modulation_change": change, "rolling_rate_error": float(late.drift[0]) / periods}
+    return measures
+
+
+# Samples to each of the last periods, of which the largest tilt in them is the largest.
+_SAMPLES = 64
+
+
+def _largest_tilt(followed: Followed, late: Late) -> float:
+    trajectory, periods = followed.trajectory, followed.batch.plan.options.rules.periods
+    tau = np.linspace(trajectory.end - float(late.span[0]), trajectory.end, periods * _SAMPLES + 1)
+    return float(np.hypot(*trajectory.model.tilt(trajectory.states(tau))).max())

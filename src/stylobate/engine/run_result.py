@@ -1,0 +1,130 @@
+"""The result of a single run: its outcome, why, its motion, and what was measured."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from stylobate.base_motions import BaseMotion
+from stylobate.engine.doubt import FALLEN
+from stylobate.engine.ensembles.batch import Batch, Plan
+from stylobate.engine.ensembles.broadcasting import Runs, one_run
+from stylobate.engine.ensembles.motion_columns import MotionPlan
+from stylobate.engine.ensembles.options import Options
+from stylobate.engine.ensembles.summaries import summaries
+from stylobate.engine.followed import TRACES, Followed
+from stylobate.engine.lanes.columns import Log, Setup
+from stylobate.engine.pace import LOG, report
+from stylobate.engine.reasons import bounds_of, late_measures, reason_of
+from stylobate.engine.starts import Start
+from stylobate.engine.trajectory import Trajectory
+from stylobate.engine.user_events import EventFunction, own_events
+from stylobate.errors import Outcome, UnsupportedError
+from stylobate.models import Model
+from stylobate.results import Event
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunResult:
+    """What became of a run.
+
+    Parameters
+    ----------
+    outcome, reason, decided_at, uncertain, planar, events, thresholds, measures
+        As in a `Response`.
+    trajectory
+        Its motion.
+    atol
+        Absolute tolerance [rad].
+    repeated
+        Repeats a run in doubt; returns a warning if it then has another outcome.
+    """
+
+    outcome: Outcome
+    reason: str
+    decided_at: float
+    uncertain: bool
+    planar: bool
+    events: tuple[Event, ...]
+    thresholds: dict[str, float]
+    measures: dict[str, float]
+    trajectory: Trajectory
+    atol: float
+    repeated: Callable[[], tuple[str, ...]]
+
+
+def run_result(
+    model: Model, motion: BaseMotion, options: Options, start: Start, functions: Sequence[EventFunction]
+) -> RunResult:
+    """Follow a run by the kernels of ensembles, and return what became of it."""
+    run = one_run(start.tilt, start.tilt_rate, start.turning.spin, start.duration)
+    plan = Plan(model, MotionPlan.of(motion, {}, run.duration), options, traces=TRACES)
+    carried = start.turning.carried(model)
+
+    def paused(steps: float, time: float) -> None:
+        report(int(steps), options.max_steps, time, start.duration)
+
+    try:
+        followed = Followed.of(plan, run, carried, paused)
+    except UnsupportedError as error:
+        LOG.warning("%s", error)
+        plan = replace(plan, plain=True)
+        followed = Followed.of(plan, run, carried, paused)
+    own, stopped_at = own_events(functions, model, motion, followed.trajectory)
+    whole = None
+    if stopped_at is not None:
+        whole = followed.trajectory
+        run = one_run(start.tilt, start.tilt_rate, start.turning.spin, stopped_at)
+        followed = Followed.of(plan, run, carried, paused)
+    arrays = {name: values[0] for name, values in summaries(followed.batch).items()}
+    outcome = Outcome(int(arrays["outcome"]))
+    reason = reason_of(model, motion, followed, outcome)
+    if stopped_at is not None:
+        outcome, reason = Outcome.STOPPED, f"its event {own[-1].kind!r} ended the run"
+    events = tuple(sorted([*own, *followed.events], key=lambda event: event.time))
+    table = followed.batch.table[0]
+    return RunResult(
+        outcome=outcome,
+        reason=reason,
+        decided_at=float(arrays["decided_at"]),
+        uncertain=bool(arrays["uncertain"]),
+        planar=bool(arrays["planar"]),
+        events=events,
+        thresholds={
+            "passage_tilt": model.loss_tilt,
+            "no_return_tilt": model.least_safe_tilt(*bounds_of(followed)),
+            "rest_energy": float(followed.batch.rest_energy[0]),
+            "rest_energy_for_good": float(table[Setup.REST_ENERGY_FOR_GOOD]),
+            "tilt_limit": float(table[Setup.TILT_LIMIT]),
+            "overturned_tilt": options.overturned_tilt,
+        },
+        measures={
+            "largest_tilt": float(arrays["largest_tilt"]),
+            "largest_tilt_over_c": float(arrays["largest_tilt"]) / model.column.slenderness,
+            "time_of_largest_tilt": float(arrays["time_of_largest_tilt"]),
+            "least_tilt": float(arrays["least_tilt"]),
+            "turns": float(arrays["turns"]),
+            "steps": float(arrays["steps"]),
+            "least_passage": followed.log(Log.LEAST_PASSAGE),
+            "impacts": float(sum(event.kind == "impact" for event in events)),
+            **late_measures(followed),
+        },
+        trajectory=followed.trajectory if whole is None else whole.until(followed.trajectory.end),
+        atol=float(table[Setup.ATOL]),
+        repeated=partial(_repeated, plan, run, outcome) if arrays["in_doubt"] and stopped_at is None else tuple,
+    )
+
+
+def _repeated(plan: Plan, run: Runs, outcome: Outcome) -> tuple[str, ...]:
+    """Repeat a run in doubt; return a warning if it then has another outcome."""
+    again = plan.repeated()
+    batch = Batch.of(again, run)
+    batch.advance(np.zeros(1, dtype=np.uint8))
+    other = Outcome(int(summaries(batch)["outcome"][0]))
+    if other is Outcome.FAILED or (other in FALLEN) == (outcome in FALLEN):
+        return ()
+    return (
+        f"the outcome depends on numbers of the integration: with rest_energy {float(batch.rest_energy[0]):.2g} "
+        f"and rtol {again.options.rtol:.2g} it is {other.name}",
+    )

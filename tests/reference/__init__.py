@@ -1,0 +1,44 @@
+"""An integration that shares neither steps nor event search with the kernels: SciPy's DOP853 and `brentq`.
+
+It is what tests compare single runs and ensembles with.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from stylobate.base_motions import BaseMotion
+from stylobate.engine.forcing import Forcing
+from stylobate.engine.switching.single import method_of
+from stylobate.engine.thresholds import thresholds_of
+from stylobate.engine.user_events import EventRecorder
+from stylobate.models import Model
+
+from .course import Course
+from .moving import Mover
+from .watch import Watch
+
+
+def integrated(
+    model: Model,
+    motion: BaseMotion,
+    *,
+    tilt: Sequence[float],
+    tilt_rate: Sequence[float] = (0.0, 0.0),
+    spin: float = 0.0,
+    duration: float,
+    rtol: float = 1e-8,
+    max_steps: int = 200_000,
+    tilt_limit: float | None = None,
+    rest_energy: float | None = None,
+) -> Course:
+    """Return a run from a start to its end; arguments as for `simulate`."""
+    state = list(model.start(tuple(tilt), tuple(tilt_rate)))
+    if model.spin_state is not None:
+        state[model.spin_state] = spin * model.time_scale
+    forcing = Forcing.of(model, motion)
+    end = duration / model.time_scale
+    method = replace(method_of(model, motion, rtol, None, max_steps), end=end)
+    watch = Watch(model, forcing, thresholds_of(model, forcing, tilt_limit, rest_energy))
+    course = Course(model, forcing, Mover(model, forcing, watch, method, EventRecorder((), model, forcing, [])), end)
+    course.follow((*state, *(0.0 for _ in model.carried_names)))
+    return course
