@@ -14,9 +14,8 @@ from stylobate.engine.ensembles.options import Options
 from stylobate.engine.history import history
 from stylobate.engine.motion_checks import check_motion
 from stylobate.engine.pace import announce, expected_steps
-from stylobate.engine.run_result import run_result
+from stylobate.engine.run_result import RunResult, run_result
 from stylobate.engine.starts import Start, Turning, require_nouns, require_plane
-from stylobate.engine.switching.single import switching_result
 from stylobate.engine.thresholds import is_rest, without_dust
 from stylobate.engine.tolerances import CLOSE_PASSAGE
 from stylobate.engine.user_events import EventFunction, checked_events
@@ -156,7 +155,7 @@ def simulate(
     require_plane(model, moved, start_tilt, start_rate)
     announce(expected_steps(model, moved.highest_frequency * model.time_scale, duration / model.time_scale), max_steps)
     start = Start(start_tilt, start_rate, turning, duration)
-    result = (switching_result if model.switches else run_result)(model, moved, options, start, functions)
+    result = _following(model)(model, moved, options, start, functions)
     recorded = history(model, moved, result.trajectory, samples, friction_coefficient=friction_coefficient)
     doubts = result.repeated() if recheck else ()
     return Response(
@@ -189,6 +188,15 @@ def simulate(
         ),
         sampler=recorded.sampler,
     )
+
+
+def _following(model: Model) -> Callable[..., RunResult]:
+    """Return what follows a run of `model`."""
+    if not model.switches:
+        return run_result
+    from stylobate.engine.switching.single import switching_result  # noqa: PLC0415  SciPy takes a while to load
+
+    return switching_result
 
 
 def _pair(name: str, value: Sequence[float], unit: str) -> tuple[float, float]:

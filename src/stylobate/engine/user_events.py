@@ -7,7 +7,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.forcing import Floats, Forcing
@@ -217,4 +216,8 @@ def _crosses(old: float, new: float, direction: float) -> bool:
 
 def _root(value: Callable[[float], float], low: float, high: float) -> float:
     """Return the zero in a bracket, which is empty where an impact changes the sign."""
-    return low if low == high else float(brentq(value, low, high, xtol=4e-15 * max(1.0, abs(high))))
+    if low == high:
+        return low
+    from scipy.optimize import brentq  # noqa: PLC0415  SciPy takes a while to load
+
+    return float(brentq(value, low, high, xtol=4e-15 * max(1.0, abs(high))))
