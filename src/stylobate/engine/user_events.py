@@ -54,7 +54,7 @@ class EventFunction:
     >>> half = sb.EventFunction("half", lambda time, state: state["amplitude"] - 0.025, direction=-1, terminal=True)
     >>> run = sb.simulate(model, tilt=(0.05, 0.0), duration=10.0, events=[half])
     >>> run.outcome, run.events
-    (<Outcome.STOPPED: 'stopped'>, (Event(kind='half', time=0.96242365...),))
+    (<Outcome.STOPPED: 'stopped'>, (Event(kind='half', time=0.962423...),))
     """
 
     name: str
