@@ -153,6 +153,21 @@ def test_a_step_that_is_taken_back_leaves_no_trace():
     assert run.trajectory.steps == len(run.trajectory.stretches) < whole.trajectory.steps
 
 
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+def test_a_run_may_end_at_or_within_a_leap(share):
+    model, motion, tilt, rate, _, _ = CASES["leaps past the upright"]
+    whole = followed("leaps past the upright")[0].trajectory
+    leap = whole.stretches[whole.stretches[:, Trace.KIND] == TraceKind.LEAP][0]
+    end = leap[Trace.START] + share * leap[Trace.LENGTH]
+    duration = end * model.time_scale
+    plan = plan_of(model, motion, duration, traces=TRACES, rtol=RTOL)
+    run = Followed.of(plan, one_run(tilt, rate, 0.0, duration), (), lambda _steps, _time: None)
+    assert run.status == Status.STOPPED
+    assert run.trajectory.end == pytest.approx(end, rel=1e-14)
+    lean, expected = (model.tilt(one.states(np.array([end]))) for one in (run.trajectory, whole))
+    np.testing.assert_allclose(lean, expected, atol=1e-6 * C)
+
+
 def test_a_run_that_ends_where_it_begins_has_a_state():
     model = sb.Slender(COLUMN)
     plan, run = plan_of(model, CIRCLE, traces=TRACES), one_run((1.4, 0.0), (0.5, 0.0), 0.0, 1.0)

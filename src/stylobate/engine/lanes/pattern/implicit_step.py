@@ -1,7 +1,7 @@
 """One implicit step of a lane, by Radau IIA: E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", IV.8.
 
-A step is told by the changes of the state from its start to each of three nodes, of which the last is its end: `change`
-has the states at the first node, then those at the second and the third.
+A step consists of the changes of the state from its start to each of three nodes, the last of which is its end:
+`change` has the states at the first node, then those at the second and the third.
 """
 
 import math
