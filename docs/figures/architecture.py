@@ -28,6 +28,8 @@ DUTIES = {
     "results": "what computations return; saving and loading",
     "column": "geometry, inertia, gravity",
     "quantities": "the declaration of a number: symbol, unit, bounds",
+    "compiler": "plain Python functions of numbers to machine code",
+    "kinds": "names of classes in files",
     "files": "files written whole, with checksums",
     "processes": "worker processes",
     "errors": "exceptions, checks, outcomes",

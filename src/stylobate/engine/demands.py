@@ -6,7 +6,7 @@ from enum import IntEnum
 import numpy as np
 import xarray as xr
 
-from stylobate.engine.compiler.over_rows import over_rows
+from stylobate.compiler.over_rows import over_rows
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.standing import loads_while_standing
 from stylobate.engine.trajectory import Trajectory

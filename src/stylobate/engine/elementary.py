@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from stylobate.engine.compiler.marks import fast
+from stylobate.compiler.marks import fast
 
 
 @fast

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.compiler.over_rows import over_rows
+from stylobate.compiler.over_rows import over_rows
 from stylobate.engine.lanes.columns import TRACE_TERMS, Trace, TraceKind
 from stylobate.models import Model
 

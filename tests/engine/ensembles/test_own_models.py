@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.compiler.fingerprint import fingerprint
+from stylobate.compiler.fingerprint import fingerprint
 from stylobate.errors import UnsupportedError
 
 COLUMN = sb.Column.dimensionless(0.1)
@@ -337,7 +337,7 @@ MORE = """
 from collections import namedtuple
 from enum import IntEnum
 
-from stylobate.engine.compiler.marks import fast
+from stylobate.compiler.marks import fast
 
 
 class Law:

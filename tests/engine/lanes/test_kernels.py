@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.compiler.kept import cache_folder
+from stylobate.compiler.kept import cache_folder
 from stylobate.engine.lanes import kernels
 
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)

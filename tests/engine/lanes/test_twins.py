@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.compiler import machine
-from stylobate.engine.compiler.unit import ArrayArgument
+from stylobate.compiler import machine
+from stylobate.compiler.unit import ArrayArgument
 from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.ensembles.broadcasting import broadcast
 from stylobate.engine.lanes.columns import LOG, Log

@@ -7,9 +7,9 @@ import pytest
 from llvmlite import binding as llvm
 
 import stylobate as sb
-from stylobate.engine.compiler import machine
-from stylobate.engine.compiler.unit import ArrayArgument
-from stylobate.engine.compiler.values import Kind
+from stylobate.compiler import machine
+from stylobate.compiler.unit import ArrayArgument
+from stylobate.compiler.values import Kind
 from stylobate.engine.lanes.kernels import kernel_of
 from stylobate.models.sliding import Sliding
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from stylobate.engine.compiler.fingerprint import global_names
-from stylobate.engine.compiler.sources import plain_function
+from stylobate.compiler.fingerprint import global_names
+from stylobate.compiler.sources import plain_function
 from stylobate.engine.equations.expressions import FUNCTIONS, Expression, Recording
 
 Function = Callable[..., Any]

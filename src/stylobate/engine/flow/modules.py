@@ -6,10 +6,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from stylobate.compiler.compiled import Compiled
+from stylobate.compiler.unit import ArrayArgument
+from stylobate.compiler.values import Kind
 from stylobate.engine import elementary
-from stylobate.engine.compiler.compiled import Compiled
-from stylobate.engine.compiler.unit import ArrayArgument
-from stylobate.engine.compiler.values import Kind
 from stylobate.engine.equations.expressions import Expression, Recording
 from stylobate.engine.equations.recording import recorded
 from stylobate.engine.flow import tableau

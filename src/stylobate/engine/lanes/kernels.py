@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.compiler.compiled import Compiled
+from stylobate.compiler.unit import ArrayArgument
+from stylobate.compiler.values import Element
 from stylobate.engine import elementary
-from stylobate.engine.compiler.compiled import Compiled
-from stylobate.engine.compiler.unit import ArrayArgument
-from stylobate.engine.compiler.values import Element
 from stylobate.engine.lanes import linear_equations, pattern, roots
 from stylobate.engine.lanes.columns import LOOKS, Status, Trace, TraceKind, Window
 from stylobate.engine.lanes.dense_source import dense_source
@@ -108,7 +108,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.compiler.marks import fast, flat, lanes
+from stylobate.compiler.marks import fast, flat, lanes
 from stylobate.engine.elementary import cos_turns, turning_point, winding
 from stylobate.engine.lanes.layout import Row, Table
 from stylobate.engine.lanes.linear_equations import NewtonRoom, factor, solve

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from stylobate.engine.compiler.fingerprint import fingerprint
+from stylobate.compiler.fingerprint import fingerprint
 from stylobate.models import Model
 
 # Packages whose classes are identified by their versions.

@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.engine.compiler.marks import flat
+from stylobate.compiler.marks import flat
 from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import held_for_good

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from stylobate.engine.compiler.marks import is_fast
-from stylobate.engine.compiler.sources import plain_function
+from stylobate.compiler.marks import is_fast
+from stylobate.compiler.sources import plain_function
 
 Function = Callable[..., Any]
 
@@ -67,7 +67,7 @@ def _value_parts(value: object, seen: set[int]) -> Iterator[str]:
 
 
 def _described(value: object) -> str:
-    """Return what tells a constant from another one."""
+    """Return a text that differs between constants that differ."""
     if isinstance(value, np.ndarray):
         return f"{value.dtype} {value.shape} {value.tobytes().hex()}"
     if isinstance(value, Enum):

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from stylobate.engine.compiler.marks import flat
+from stylobate.compiler.marks import flat
 
 from .calling import both_ways, call_compiled
 

@@ -8,10 +8,10 @@ import time
 import numpy as np
 import pytest
 
-from stylobate.engine.compiler import machine
-from stylobate.engine.compiler.compiled import Compiled
-from stylobate.engine.compiler.trusted_cache import TrustedCache
-from stylobate.engine.compiler.unit import ArrayArgument
+from stylobate.compiler import machine
+from stylobate.compiler.compiled import Compiled
+from stylobate.compiler.trusted_cache import TrustedCache
+from stylobate.compiler.unit import ArrayArgument
 from stylobate.errors import FileError, UnsupportedError
 
 TEXT = '''"""The sum of a function over an array."""

@@ -6,8 +6,8 @@ import pytest
 from llvmlite import binding as llvm
 
 import stylobate as sb
-from stylobate.engine.compiler.unit import ArrayArgument, Unit
-from stylobate.engine.compiler.values import Element
+from stylobate.compiler.unit import ArrayArgument, Unit
+from stylobate.compiler.values import Element
 from stylobate.engine.lanes.kernels import kernel_of
 
 # Number of lanes and features of each; a thread of a graphics processor makes one run.

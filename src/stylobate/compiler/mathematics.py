@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from stylobate.engine.compiler.arithmetic import Arithmetic
-from stylobate.engine.compiler.refusal import Refusal
-from stylobate.engine.compiler.values import Array, Kind, Number, Value, is_known_number
+from stylobate.compiler.arithmetic import Arithmetic
+from stylobate.compiler.refusal import Refusal
+from stylobate.compiler.values import Array, Kind, Number, Value, is_known_number
 
 _OF_LLVM = (
     *("sqrt", "fabs", "sin", "cos", "exp", "exp2", "log", "log2", "log10", "pow", "copysign", "floor", "ceil", "trunc"),

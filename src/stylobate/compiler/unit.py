@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 from types import FunctionType
 from typing import Any
 
-from stylobate.engine.compiler.arithmetic import Arithmetic
-from stylobate.engine.compiler.body import Body
-from stylobate.engine.compiler.refusal import CompileError, LanesRefusal, Refusal
-from stylobate.engine.compiler.slots import WiderKindError
-from stylobate.engine.compiler.sources import Source, plain_function, source_of
-from stylobate.engine.compiler.text import FunctionText, ModuleText
-from stylobate.engine.compiler.values import Array, Element, Kind, Number, Value, parts, rebuilt
+from stylobate.compiler.arithmetic import Arithmetic
+from stylobate.compiler.body import Body
+from stylobate.compiler.refusal import CompileError, LanesRefusal, Refusal
+from stylobate.compiler.slots import WiderKindError
+from stylobate.compiler.sources import Source, plain_function, source_of
+from stylobate.compiler.text import FunctionText, ModuleText
+from stylobate.compiler.values import Array, Element, Kind, Number, Value, parts, rebuilt
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,7 +204,7 @@ def _operands(value: Value) -> Iterator[str]:
 
 
 def _structure(value: Value) -> Any:
-    """Return what sets an argument apart from others for which a function is compiled anew."""
+    """Return the structure of an argument: a function is compiled once for each."""
     match value:
         case Number():
             return value.kind

@@ -7,8 +7,8 @@ import stat
 
 import pytest
 
-from stylobate.engine.compiler import trusted_cache
-from stylobate.engine.compiler.trusted_cache import TrustedCache
+from stylobate.compiler import trusted_cache
+from stylobate.compiler.trusted_cache import TrustedCache
 from stylobate.errors import FileError
 
 NAME, DATA = "kernel.code", b"machine code " * 40

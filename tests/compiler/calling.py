@@ -4,9 +4,9 @@ import ctypes
 
 import numpy as np
 
-from stylobate.engine.compiler import machine
-from stylobate.engine.compiler.unit import ArrayArgument, Unit
-from stylobate.engine.compiler.values import Element
+from stylobate.compiler import machine
+from stylobate.compiler.unit import ArrayArgument, Unit
+from stylobate.compiler.values import Element
 
 
 def text_of(function, *arrays, lanes=8, fast=()):

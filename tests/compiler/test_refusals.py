@@ -5,8 +5,8 @@ import re
 import numpy as np
 import pytest
 
-from stylobate.engine.compiler.marks import lanes
-from stylobate.engine.compiler.refusal import CompileError
+from stylobate.compiler.marks import lanes
+from stylobate.compiler.refusal import CompileError
 
 from .calling import text_of
 

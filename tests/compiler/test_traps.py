@@ -6,8 +6,8 @@ from collections import namedtuple
 import numpy as np
 import pytest
 
-from stylobate.engine.compiler.marks import lanes
-from stylobate.engine.compiler.refusal import CompileError
+from stylobate.compiler.marks import lanes
+from stylobate.compiler.refusal import CompileError
 
 from .calling import both_ways, text_of
 

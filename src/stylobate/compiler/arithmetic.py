@@ -9,9 +9,9 @@ import operator
 from collections.abc import Callable
 from typing import Any
 
-from stylobate.engine.compiler.refusal import Refusal
-from stylobate.engine.compiler.text import FunctionText, ModuleText
-from stylobate.engine.compiler.values import (
+from stylobate.compiler.refusal import Refusal
+from stylobate.compiler.text import FunctionText, ModuleText
+from stylobate.compiler.values import (
     Array,
     Kind,
     LaneIndex,

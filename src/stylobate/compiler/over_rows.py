@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.compiler.compiled import Compiled
-from stylobate.engine.compiler.unit import ArrayArgument
+from stylobate.compiler.compiled import Compiled
+from stylobate.compiler.unit import ArrayArgument
 from stylobate.errors import UnsupportedError
 
 Floats = npt.NDArray[np.float64]

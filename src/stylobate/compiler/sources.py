@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-from stylobate.engine.compiler.marks import is_fast
-from stylobate.engine.compiler.refusal import CompileError
-from stylobate.engine.compiler.written import lines_of
+from stylobate.compiler.marks import is_fast
+from stylobate.compiler.refusal import CompileError
+from stylobate.compiler.written import lines_of
 
 _Node = ast.FunctionDef | ast.Lambda
 _Functions = dict[tuple[str, int], tuple[list[_Node], types.CodeType | None]]

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from stylobate.engine.compiler import arrays, marks, mathematics, slots
-from stylobate.engine.compiler.arithmetic import Arithmetic
-from stylobate.engine.compiler.refusal import Refusal
-from stylobate.engine.compiler.values import Array, Kind, LaneIndex, Number, Value, kind_of
+from stylobate.compiler import arrays, marks, mathematics, slots
+from stylobate.compiler.arithmetic import Arithmetic
+from stylobate.compiler.refusal import Refusal
+from stylobate.compiler.values import Array, Kind, LaneIndex, Number, Value, kind_of
 
 _OVER_TUPLES = (zip, enumerate, reversed, tuple)
 _OF_ARRAYS: dict[Any, Callable[..., Array]] = {marks.flat: arrays.flat, np.zeros: arrays.room}

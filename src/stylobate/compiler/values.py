@@ -63,7 +63,7 @@ class Element(IntEnum):
 
     FLOAT = 8
     SIGNAL = 1
-    """Bytes that another thread may set meanwhile: read anew each time."""
+    """Bytes that another thread may set meanwhile: read each time."""
 
 
 @dataclass(frozen=True, slots=True)

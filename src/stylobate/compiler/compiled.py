@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from stylobate.engine.compiler import kept, machine
-from stylobate.engine.compiler.refusal import CompileError
-from stylobate.engine.compiler.unit import ArrayArgument, Unit
-from stylobate.engine.compiler.values import Element, Kind
-from stylobate.engine.compiler.written import written_module
+from stylobate.compiler import kept, machine
+from stylobate.compiler.refusal import CompileError
+from stylobate.compiler.unit import ArrayArgument, Unit
+from stylobate.compiler.values import Element, Kind
+from stylobate.compiler.written import written_module
 from stylobate.errors import UnsupportedError
 
 

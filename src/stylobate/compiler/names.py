@@ -3,12 +3,12 @@
 import ast
 from collections.abc import Iterable, Mapping
 
-from stylobate.engine.compiler import arrays, slots
-from stylobate.engine.compiler.arithmetic import Arithmetic
-from stylobate.engine.compiler.expressions import Expressions
-from stylobate.engine.compiler.refusal import Refusal
-from stylobate.engine.compiler.sources import Source
-from stylobate.engine.compiler.values import Array, Kind, Value
+from stylobate.compiler import arrays, slots
+from stylobate.compiler.arithmetic import Arithmetic
+from stylobate.compiler.expressions import Expressions
+from stylobate.compiler.refusal import Refusal
+from stylobate.compiler.sources import Source
+from stylobate.compiler.values import Array, Kind, Value
 
 _NOTHING = object()
 """Stands for the value of a name that has none any more."""
@@ -70,7 +70,7 @@ class Names(Expressions):
         Raises
         ------
         Refusal
-            If what one means has no room: while running it cannot be told from what is assigned.
+            If the value of one has no room: it could not be chosen while running.
         """
         for name in assigned_in([node]) & self._bound.keys():
             if self._bound[name] is _NOTHING:

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from stylobate.engine.compiler.arithmetic import Arithmetic
-from stylobate.engine.compiler.refusal import Refusal
-from stylobate.engine.compiler.values import Array, Element, Kind, LaneIndex, Number, Value, constant, type_of
+from stylobate.compiler.arithmetic import Arithmetic
+from stylobate.compiler.refusal import Refusal
+from stylobate.compiler.values import Array, Element, Kind, LaneIndex, Number, Value, constant, type_of
 
 MOST_IN_FUNCTION = 4096
 """Numbers that an array made in a function may hold."""

@@ -6,8 +6,8 @@ import re
 import numpy as np
 import pytest
 
-from stylobate.engine.compiler import machine
-from stylobate.engine.compiler.marks import fast, lanes
+from stylobate.compiler import machine
+from stylobate.compiler.marks import fast, lanes
 
 from .calling import both_ways, text_of
 

@@ -12,9 +12,9 @@ from typing import Any
 
 from llvmlite import binding as llvm
 
-from stylobate.engine.compiler import machine
-from stylobate.engine.compiler.fingerprint import fingerprint
-from stylobate.engine.compiler.trusted_cache import VARIABLE, TrustedCache
+from stylobate.compiler import machine
+from stylobate.compiler.fingerprint import fingerprint
+from stylobate.compiler.trusted_cache import VARIABLE, TrustedCache
 from stylobate.errors import FileError
 
 PLAIN_VARIABLE = "STYLOBATE_PLAIN"

@@ -2,9 +2,9 @@
 
 from dataclasses import replace
 
-from stylobate.engine.compiler.arithmetic import Arithmetic
-from stylobate.engine.compiler.refusal import Refusal
-from stylobate.engine.compiler.values import (
+from stylobate.compiler.arithmetic import Arithmetic
+from stylobate.compiler.refusal import Refusal
+from stylobate.compiler.values import (
     Array,
     Kind,
     LaneIndex,

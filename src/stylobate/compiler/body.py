@@ -4,14 +4,14 @@ import ast
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Protocol
 
-from stylobate.engine.compiler import arrays, marks, slots
-from stylobate.engine.compiler.arithmetic import Arithmetic
-from stylobate.engine.compiler.names import Names, assigned_in
-from stylobate.engine.compiler.refusal import LanesRefusal, Refusal, at_its_place
-from stylobate.engine.compiler.slots import has_array
-from stylobate.engine.compiler.sources import Source
-from stylobate.engine.compiler.text import Block
-from stylobate.engine.compiler.values import Kind, LaneIndex, Number, Value, constant
+from stylobate.compiler import arrays, marks, slots
+from stylobate.compiler.arithmetic import Arithmetic
+from stylobate.compiler.names import Names, assigned_in
+from stylobate.compiler.refusal import LanesRefusal, Refusal, at_its_place
+from stylobate.compiler.slots import has_array
+from stylobate.compiler.sources import Source
+from stylobate.compiler.text import Block
+from stylobate.compiler.values import Kind, LaneIndex, Number, Value, constant
 
 RESULT = "return"
 """The name under which the room of a function's result is kept."""
