@@ -5,11 +5,11 @@ import math
 import time
 
 import pytest
+from tests.reference.resting import release_time, release_within
 
 import stylobate as sb
 from stylobate.engine.forcing import Forcing
 from stylobate.engine.pace import expected_steps
-from stylobate.engine.resting import release_time, release_within
 
 COLUMN = sb.Column.dimensionless(slenderness=0.1)
 MODEL = sb.Slender(COLUMN, damping=0.1)

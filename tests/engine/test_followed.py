@@ -2,14 +2,17 @@
 
 import numpy as np
 import pytest
-from tests.reference import integrated
+from tests.reference import integrated, switched
 
 import stylobate as sb
 from stylobate.base_motions import BASE_AT_REST
 from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.ensembles.broadcasting import one_run
-from stylobate.engine.followed import TRACES, Followed
-from stylobate.engine.lanes.columns import LOG, TRACE_ROOM, Log, Setup, Status, Trace, TraceKind
+from stylobate.engine.ensembles.contacts import Contacts
+from stylobate.engine.followed import Followed
+from stylobate.engine.lanes.columns import LOG, TRACE_ROOM, Change, Log, Setup, Status, Trace, TraceKind
+from stylobate.engine.starts import Start, Turning
+from stylobate.models.sliding import Contact
 
 from .plans import plan_of
 
@@ -45,15 +48,15 @@ CASES = {
 RTOL = 1e-10
 
 
-def followed(case, *, traces=TRACES, **options):
+def ignored(_steps, _time):
+    """Take no notice of a pause."""
+
+
+def followed(case, **options):
     model, motion, tilt, rate, duration, _ = CASES[case]
     pauses = []
-    run = Followed.of(
-        plan_of(model, motion, duration, traces=traces, rtol=RTOL, **options),
-        one_run(tilt, rate, 0.0, duration),
-        (0.0,) * len(model.carried_names),
-        lambda *progress: pauses.append(progress),
-    )
+    plan = plan_of(model, motion, duration, rtol=RTOL, **options)
+    run = Followed.of(plan, one_run(Start(tilt, rate, duration)), lambda *progress: pauses.append(progress))
     return run, pauses
 
 
@@ -77,7 +80,8 @@ def test_states_and_events_agree_with_an_independent_integration(case):
 def assert_alike(model, run, other):
     assert [event.kind for event in run.events] == [event.kind for event in other.events]
     times = [np.array([event.time for event in one.events]) for one in (run, other)]
-    np.testing.assert_allclose(*times, atol=1e-6)
+    # A leap past the upright is right to a part of 1e-6 of its speed, which shifts what comes after it.
+    np.testing.assert_allclose(*times, rtol=0.0, atol=3e-6)
     time = np.linspace(0.0, run.trajectory.end * model.time_scale * (1.0 - 1e-9), 400)
     apart = np.abs(time[:, np.newaxis] - times[0]).min(axis=1, initial=1.0)
     smooth = time[apart > 1e-5]  # a rate jumps where a swing ends
@@ -87,8 +91,14 @@ def assert_alike(model, run, other):
     np.testing.assert_allclose(model.tilt_rate(states), model.tilt_rate(expected), atol=1e-5 * C)
     np.testing.assert_array_equal(run.trajectory.resting(tau), other.trajectory.resting(tau))
     if run.log(Log.IN_SPACE) and TraceKind.PLANE_STEP not in run.trajectory.stretches[:, Trace.KIND]:
-        azimuth = run.trajectory.azimuth(tau, model.tilt(states))
-        np.testing.assert_allclose(azimuth, other.trajectory.azimuth(tau, model.tilt(expected)), atol=1e-4)
+        azimuth, known = (
+            one.trajectory.azimuth(tau, model.tilt(seen)) for one, seen in ((run, states), (other, expected))
+        )
+        np.testing.assert_array_equal(np.isnan(azimuth), np.isnan(known))  # while it stands
+        difference = (azimuth - known)[~np.isnan(known)]
+        if np.abs(run.trajectory.stretches[:, len(Trace) : len(Trace) + 2]).min(axis=1).max() == 0.0:
+            difference = (difference + np.pi) % (2.0 * np.pi) - np.pi  # from one side to the other, either way round
+        np.testing.assert_allclose(difference, 0.0, atol=1e-4)
 
 
 @pytest.mark.parametrize("make", [sb.Slender, sb.SlenderRolling, sb.Wobbling, sb.Rolling, sb.PlanarRocking])
@@ -105,13 +115,8 @@ def test_runs_at_random_agree_with_an_independent_integration(make, seed):
     )
     lean = direction if make is sb.PlanarRocking else random.uniform(0.0, 2.0 * np.pi)
     tilt, duration = 0.4 * C * random.random() * np.array([np.cos(lean), np.sin(lean)]), 3.0
-    start = one_run(tuple(tilt), STILL, 0.0, duration)
-    run = Followed.of(
-        plan_of(model, motion, duration, traces=TRACES, rtol=RTOL),
-        start,
-        (0.0,) * len(model.carried_names),
-        lambda _steps, _time: None,
-    )
+    plan = plan_of(model, motion, duration, rtol=RTOL)
+    run = Followed.of(plan, one_run(Start(tuple(tilt), STILL, duration)), ignored)
     assert_alike(model, run, integrated(model, motion, tilt=tilt, duration=duration, rtol=RTOL))
 
 
@@ -126,7 +131,7 @@ def test_twist_and_footprint_agree_with_an_independent_integration(case):
 def test_a_trace_changes_no_bit_of_a_run(case):
     model, motion, tilt, rate, duration, _ = CASES[case]
     run, _ = followed(case)
-    batch = Batch.of(plan_of(model, motion, duration, rtol=RTOL), one_run(tilt, rate, 0.0, duration))
+    batch = Batch.of(plan_of(model, motion, duration, rtol=RTOL), one_run(Start(tilt, rate, duration)))
     batch.advance(np.zeros(1, dtype=np.uint8))
     columns = np.arange(batch.table.shape[1])
     columns = columns[(columns != LOG + Log.NEXT_TRACE) & (columns != Setup.TRACES)]
@@ -160,8 +165,8 @@ def test_a_run_may_end_at_or_within_a_leap(share):
     leap = whole.stretches[whole.stretches[:, Trace.KIND] == TraceKind.LEAP][0]
     end = leap[Trace.START] + share * leap[Trace.LENGTH]
     duration = end * model.time_scale
-    plan = plan_of(model, motion, duration, traces=TRACES, rtol=RTOL)
-    run = Followed.of(plan, one_run(tilt, rate, 0.0, duration), (), lambda _steps, _time: None)
+    plan = plan_of(model, motion, duration, rtol=RTOL)
+    run = Followed.of(plan, one_run(Start(tilt, rate, duration)), ignored)
     assert run.status == Status.STOPPED
     assert run.trajectory.end == pytest.approx(end, rel=1e-14)
     lean, expected = (model.tilt(one.states(np.array([end]))) for one in (run.trajectory, whole))
@@ -170,8 +175,7 @@ def test_a_run_may_end_at_or_within_a_leap(share):
 
 def test_a_run_that_ends_where_it_begins_has_a_state():
     model = sb.Slender(COLUMN)
-    plan, run = plan_of(model, CIRCLE, traces=TRACES), one_run((1.4, 0.0), (0.5, 0.0), 0.0, 1.0)
-    ended = Followed.of(plan, run, (), lambda _steps, _time: None)
+    ended = Followed.of(plan_of(model, CIRCLE), one_run(Start((1.4, 0.0), (0.5, 0.0), 1.0)), ignored)
     assert ended.events[-1].kind == "overturned"
     assert model.tilt(ended.trajectory.states(np.zeros(1)))[:, 0] == pytest.approx([1.4, 0.0])
 
@@ -192,3 +196,77 @@ def test_a_model_that_cannot_be_compiled_is_followed_in_plain_python(caplog):
     assert "simulate follows single runs of it uncompiled" in caplog.text
     # Sums are rounded otherwise in machine code, in the last digits.
     np.testing.assert_allclose(*(run.data["tilt"].values for run in runs), rtol=0.0, atol=1e-13)
+
+
+# The same for a column that slips: model, motion, tilt, tilt rate, what else it begins with, duration, and its events.
+LEANS = (0.3 * C, 0.1 * C)
+SHAKEN = sb.Harmonic.oblique(acceleration=14.0, angular_frequency=25.0, angle=1.2)
+SLIDING = {
+    "slides on its base": (
+        *(sb.Sliding(COLUMN, friction_coefficient=0.25), STRONG, STILL, STILL, Turning(), 1.5),
+        "slide stop",
+    ),
+    "turns on its base": (sb.Sliding(COLUMN), BASE_AT_REST, STILL, STILL, Turning(spin=2.0), 1.0, "stop"),
+    "slips on its rim": (
+        *(sb.Sliding(COLUMN, friction_coefficient=0.2), CIRCLE, (0.5 * C, 0.1 * C), (0.0, 0.1), Turning(), 1.0),
+        "slip stick",
+    ),
+    "strikes its base": (
+        *(sb.Sliding(COLUMN, friction_coefficient=0.4), CIRCLE, LEANS, STILL, Turning(twist=0.3), 1.2),
+        "stroke stick",
+    ),
+    "is thrown": (
+        sb.Sliding(COLUMN, friction_coefficient=0.5, normal_restitution=0.2),
+        *(CIRCLE, LEANS, STILL, Turning(0.1, 0.2, (0.3, -0.1), (0.2, 0.1, 0.5), 0.02), 0.4),
+        "land",
+    ),
+    "hops": (sb.Sliding(COLUMN, friction_coefficient=0.6), SHAKEN, STILL, STILL, Turning(), 0.35, "lift land"),
+    "creeps on a patch": (
+        *(sb.Sliding(COLUMN, friction_coefficient=0.3, patch=0.1), CIRCLE, LEANS, (0.0, 0.3), Turning(), 0.5),
+        "stick",
+    ),
+    "rests and is released": (
+        *(sb.Sliding(COLUMN, friction_coefficient=0.6), STRONG.delayed(1.5), (0.0, 0.02 * C), STILL, Turning(), 1.9),
+        "stroke rest release",
+    ),
+    "overturns": (sb.Sliding(COLUMN), BASE_AT_REST, (1.2 * C, 0.0), (0.3, 0.1), Turning(), 9.0, "overturned"),
+}
+
+
+def slid(case):
+    model, motion, tilt, rate, turning, duration, _ = SLIDING[case]
+    return Followed.of(
+        plan_of(model, motion, duration, rtol=RTOL), one_run(Start(tilt, rate, duration, turning)), ignored
+    )
+
+
+@pytest.mark.parametrize("case", SLIDING)
+def test_a_run_that_slips_agrees_with_an_independent_integration(case):
+    model, motion, tilt, rate, turning, duration, kinds = SLIDING[case]
+    run = slid(case)
+    other = switched(model, motion, tilt=tilt, tilt_rate=rate, duration=duration, rtol=RTOL, **turning.values())
+    assert {event.kind for event in run.events} >= set(kinds.split())
+    assert_alike(model, run, other)
+
+
+@pytest.mark.parametrize("case", SLIDING)
+def test_what_is_counted_of_contacts_is_what_the_trace_shows(case):
+    run = slid(case)
+    kinds = [event.kind for event in run.events]
+    told = Contacts.of(run.batch)
+    assert told.noted[0, Change.SLIPS] == sum(kind in ("slip", "slide", "reverse") for kind in kinds)
+    assert told.noted[0, Change.IMPACTS] == sum(kind in ("land", "stroke") for kind in kinds)
+    trajectory = run.trajectory
+    # A short time in which one kind becomes another counts to that.
+    leaps = np.flatnonzero(trajectory.stretches[:, Trace.KIND] == TraceKind.LEAP)
+    contacts, lengths = trajectory.contacts.copy(), trajectory.ends - trajectory.starts
+    contacts[leaps] = contacts[leaps + 1]
+    for kind, times in zip((k for k in Contact if k is not Contact.JAMMED), told.times.values(), strict=True):
+        lasted = lengths[contacts == kind].sum()
+        assert times[0] == pytest.approx(lasted, rel=1e-9, abs=1e-12)
+
+
+def test_a_column_that_rocks_in_a_plane_does_not_travel_round():
+    run = slid("rests and is released")
+    assert sum(event.kind == "stroke" for event in run.events) > 10
+    assert abs(run.log(Log.LAST_AZIMUTH) - run.log(Log.FIRST_AZIMUTH)) <= 0.5

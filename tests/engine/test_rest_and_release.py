@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
+from tests.reference.resting import departure, release_time
 
 import stylobate as sb
 from stylobate.engine.forcing import Forcing
-from stylobate.engine.resting import departure, release_time
 
 C = 0.1
 

@@ -8,15 +8,15 @@ import numpy as np
 
 from stylobate.engine.forcing import Forcing, common_line
 from stylobate.engine.pace import unseen
-from stylobate.engine.resting import departure, release_within, rest_piece, stays_for_good
-from stylobate.engine.switching.following import Reason
-from stylobate.engine.switching.pieces import Piece, Trajectory, nearest_turn
 from stylobate.engine.tolerances import FIRST_STEP_OFF
 from stylobate.models import Model
 from stylobate.models.model import RELEASE_MARGIN
 from stylobate.results import Event
 
+from .following import Reason
 from .moving import Leg, Mover
+from .pieces import Piece, Trajectory, nearest_turn
+from .resting import departure, release_within, rest_piece, stays_for_good
 
 Line = tuple[float, float]
 

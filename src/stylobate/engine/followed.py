@@ -1,21 +1,21 @@
 """One run through the kernels, with the trace of its motion and its events."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.engine.ensembles.batch import Batch, Plan
 from stylobate.engine.ensembles.broadcasting import Runs
-from stylobate.engine.lanes.columns import STATE, TRACE_ROOM, TRACE_TERMS, Log, Setup, Status, Trace, TraceKind
+from stylobate.engine.lanes.columns import STATE, TRACE_TERMS, Log, Setup, Status, Trace, TraceKind
+from stylobate.engine.pace import EVERY
+from stylobate.engine.starts import Turning
 from stylobate.engine.trajectory import Trajectory
+from stylobate.models import Model
 from stylobate.results import Event
 
 Floats = npt.NDArray[np.float64]
-
-TRACES = 1000 + TRACE_ROOM
-"""Entries of a trace that are kept before they are taken out and progress is reported."""
 
 _EVENTS = {
     TraceKind.RELEASE: "release",
@@ -30,32 +30,34 @@ _LAST_EVENTS = {
     Status.STEP_LIMIT: "failed",
     Status.STEP_TOO_SMALL: "failed",
     Status.UNSEEN: "failed",
+    Status.ENDLESS: "failed",
 }
 
 
 @dataclass(frozen=True, slots=True)
 class Followed:
-    """A run that was followed to its end: as a batch of one, its motion, and its events."""
+    """A run that was followed to its end: as a batch of one, its motion, and its events.
+
+    `last_guard` is the number of the guard that ended a kind of contact last; −1 for none.
+    """
 
     batch: Batch
     trajectory: Trajectory
     events: tuple[Event, ...]
+    last_guard: int
 
     @classmethod
-    def of(
-        cls, plan: Plan, run: Runs, carried: tuple[float, ...], paused: Callable[[float, float], None]
-    ) -> "Followed":
+    def of(cls, plan: Plan, run: Runs, paused: Callable[[float, float], None]) -> "Followed":
         """Follow the only run of `run`.
 
         Parameters
         ----------
         plan, run
-            As for ensembles; the plan keeps a trace.
-        carried
-            What is carried along, at the start.
+            As for ensembles.
         paused
-            Called as `paused(steps, time [s])` whenever the trace is full.
+            Called as `paused(steps, time [s])` after some steps each, when the trace is taken out.
         """
+        plan = plan if plan.traces else replace(plan, traces=EVERY + plan.layout.trace_room)
         batch = Batch.of(plan, run)
         batch.advance(np.zeros(1, dtype=np.uint8), paused)
         entries = np.concatenate([*batch.traces, np.empty((0, plan.layout.trace_width))])
@@ -63,13 +65,14 @@ class Followed:
         stretches = entries[~happened] if not happened.all() else _nothing_moved(batch)
         line = batch.table[0, [Setup.LINE_X, Setup.LINE_Y]].tolist()
         end = float(batch.log(Log.TIME)[0])
+        carried = (run.turning or Turning()).carried(plan.model)
         trajectory = Trajectory(plan.model, stretches, (line[0], line[1]), carried, end)
         scale = plan.model.time_scale
-        events = [Event(_EVENTS[TraceKind(int(entry[0]))], entry[1] * scale) for entry in entries[happened]]
-        last = _LAST_EVENTS.get(Status(int(batch.log(Log.STATUS)[0])))
-        if last is not None:
-            events.append(Event(last, end * scale))
-        return cls(batch, trajectory, tuple(events))
+        named = [(_event_in(plan.model, entry), float(entry[Trace.START])) for entry in entries[happened]]
+        named.append((_LAST_EVENTS.get(Status(int(batch.log(Log.STATUS)[0])), ""), end))
+        events = tuple(Event(name, time * scale) for name, time in named if name)
+        changes = entries[entries[:, Trace.KIND] == TraceKind.CONTACT]
+        return cls(batch, trajectory, events, int(changes[-1, len(Trace)]) if len(changes) else -1)
 
     @property
     def status(self) -> Status:
@@ -79,6 +82,15 @@ class Followed:
     def log(self, column: Log) -> float:
         """Return what the kernel noted."""
         return float(self.batch.log(column)[0])
+
+
+def _event_in(model: Model, entry: Floats) -> str:
+    """Return the name of the event of an entry; "" for none."""
+    kind = TraceKind(int(entry[Trace.KIND]))
+    if kind is not TraceKind.CONTACT:
+        return _EVENTS[kind]
+    number, before, after = entry[len(Trace) : len(Trace) + 3].astype(int).tolist()
+    return model.event_of(model.guard_names[number], before, after)
 
 
 def _nothing_moved(batch: Batch) -> Floats:

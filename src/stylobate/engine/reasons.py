@@ -19,9 +19,13 @@ _ENDINGS = {
     Status.OVERTURNED: "its tilt grows beyond the tilt from which it could come back",
     Status.LIMIT: "its tilt reached tilt_limit",
     Status.LIFTED: "the base accelerates downwards faster than gravity",
-    Status.RESTED: "it stands, and the base motion to come cannot release it",
 }
-_FAILURES = {Status.STEP_LIMIT: step_limit, Status.UNSEEN: unseen}
+_STANDS = {True: "can neither tip nor move it", False: "cannot release it"}
+_JAMMED = "its contact jams: with friction as large as this no motion of a rigid body follows (Painlevé's paradox)"
+_UPRIGHT = {
+    Outcome.SLID: "it stands upright, and its base slides on the plane to the end",
+    Outcome.LIFTED_OFF: "it stays upright, and leaves the plane again and again",
+}
 _UNPROVED = "its tilt reached π/2, which counts as overturned"
 _RELEASED = "it may yet be released: follow it longer"
 _TOO_SMALL = "its step became smaller than the rounding of the time"
@@ -37,13 +41,16 @@ def reason_of(model: Model, motion: BaseMotion, followed: Followed, outcome: Out
     """Return the reason of the `outcome` of a run."""
     status = followed.status
     if outcome is Outcome.FAILED:
-        most = int(followed.batch.plan.options.max_steps)
-        failure = _FAILURES[status](most) if status in _FAILURES else _TOO_SMALL
-        return f"the integration stopped: {failure}{_RACING if _races(model, followed) else ''}"
+        return f"the integration stopped: {_failure(model, followed)}{_RACING if _races(model, followed) else ''}"
     if outcome is Outcome.OVERTURNED and math.isinf(model.least_safe_tilt(*bounds_of(followed))):
         return _UNPROVED
-    if status in _ENDINGS:
-        return _ENDINGS[status]
+    if status is Status.RESTED:
+        return f"it stands, and the base motion to come {_STANDS[model.switches]}"
+    return _ENDINGS.get(status) or _UPRIGHT.get(outcome) or _at_its_end(model, motion, followed, outcome)
+
+
+def _at_its_end(model: Model, motion: BaseMotion, followed: Followed, outcome: Outcome) -> str:
+    """Return the reason of the outcome of a run whose time was up."""
     if outcome is Outcome.AT_REST:
         return _standing(model, motion, followed)
     if outcome in (Outcome.STILL_MOVING, Outcome.SURVIVED) and math.isfinite(motion.duration):
@@ -51,6 +58,22 @@ def reason_of(model: Model, motion: BaseMotion, followed: Followed, outcome: Out
     late = late_periods(followed.batch)
     ground = Ground(int(grounds_of(followed.batch, late)[0]))
     return reason_on(ground, followed.batch.plan.options.rules.periods, motion.period or 0.0)
+
+
+def _failure(model: Model, followed: Followed) -> str:
+    """Return why the integration of a run failed."""
+    most = int(followed.batch.plan.options.max_steps)
+    match followed.status:
+        case Status.STEP_LIMIT:
+            return step_limit(most)
+        case Status.UNSEEN:
+            return unseen(most)
+        case Status.ENDLESS:
+            return f"its contact changes without end ({model.guard_names[followed.last_guard]})"
+        case Status.JAMMED:
+            return _JAMMED
+        case _:
+            return _TOO_SMALL
 
 
 def _standing(model: Model, motion: BaseMotion, followed: Followed) -> str:

@@ -7,13 +7,14 @@ from functools import partial
 import numpy as np
 
 from stylobate.base_motions import BaseMotion
+from stylobate.engine.contact_measures import contact_measures
 from stylobate.engine.doubt import FALLEN
 from stylobate.engine.ensembles.batch import Batch, Plan
 from stylobate.engine.ensembles.broadcasting import Runs, one_run
 from stylobate.engine.ensembles.motion_columns import MotionPlan
 from stylobate.engine.ensembles.options import Options
 from stylobate.engine.ensembles.summaries import summaries
-from stylobate.engine.followed import TRACES, Followed
+from stylobate.engine.followed import Followed
 from stylobate.engine.lanes.columns import Log, Setup
 from stylobate.engine.pace import LOG, report
 from stylobate.engine.reasons import bounds_of, late_measures, reason_of
@@ -58,25 +59,24 @@ def run_result(
     model: Model, motion: BaseMotion, options: Options, start: Start, functions: Sequence[EventFunction]
 ) -> RunResult:
     """Follow a run by the kernels of ensembles, and return what became of it."""
-    run = one_run(start.tilt, start.tilt_rate, start.turning.spin, start.duration)
-    plan = Plan(model, MotionPlan.of(motion, {}, run.duration), options, traces=TRACES)
-    carried = start.turning.carried(model)
+    run = one_run(start)
+    plan = Plan(model, MotionPlan.of(motion, {}, run.duration), options)
 
     def paused(steps: float, time: float) -> None:
         report(int(steps), options.max_steps, time, start.duration)
 
     try:
-        followed = Followed.of(plan, run, carried, paused)
+        followed = Followed.of(plan, run, paused)
     except UnsupportedError as error:
         LOG.warning("%s", error)
         plan = replace(plan, plain=True)
-        followed = Followed.of(plan, run, carried, paused)
+        followed = Followed.of(plan, run, paused)
     own, stopped_at = own_events(functions, model, motion, followed.trajectory)
     whole = None
     if stopped_at is not None:
         whole = followed.trajectory
-        run = one_run(start.tilt, start.tilt_rate, start.turning.spin, stopped_at)
-        followed = Followed.of(plan, run, carried, paused)
+        run = one_run(replace(start, duration=stopped_at))
+        followed = Followed.of(plan, run, paused)
     arrays = {name: values[0] for name, values in summaries(followed.batch).items()}
     outcome = Outcome(int(arrays["outcome"]))
     reason = reason_of(model, motion, followed, outcome)
@@ -84,6 +84,7 @@ def run_result(
         outcome, reason = Outcome.STOPPED, f"its event {own[-1].kind!r} ended the run"
     events = tuple(sorted([*own, *followed.events], key=lambda event: event.time))
     table = followed.batch.table[0]
+    trajectory = followed.trajectory if whole is None else whole.until(followed.trajectory.end)
     return RunResult(
         outcome=outcome,
         reason=reason,
@@ -109,8 +110,9 @@ def run_result(
             "least_passage": followed.log(Log.LEAST_PASSAGE),
             "impacts": float(sum(event.kind == "impact" for event in events)),
             **late_measures(followed),
+            **(contact_measures(arrays, motion, trajectory) if model.switches else {}),
         },
-        trajectory=followed.trajectory if whole is None else whole.until(followed.trajectory.end),
+        trajectory=trajectory,
         atol=float(table[Setup.ATOL]),
         repeated=partial(_repeated, plan, run, outcome) if arrays["in_doubt"] and stopped_at is None else tuple,
     )

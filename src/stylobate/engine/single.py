@@ -14,7 +14,7 @@ from stylobate.engine.ensembles.options import Options
 from stylobate.engine.history import history
 from stylobate.engine.motion_checks import check_motion
 from stylobate.engine.pace import announce, expected_steps
-from stylobate.engine.run_result import RunResult, run_result
+from stylobate.engine.run_result import run_result
 from stylobate.engine.starts import Start, Turning, require_nouns, require_plane
 from stylobate.engine.thresholds import is_rest, without_dust
 from stylobate.engine.tolerances import CLOSE_PASSAGE
@@ -52,7 +52,7 @@ def simulate(
     Integrates with DOP853 (Hairer, Nørsett, Wanner, "Solving Ordinary Differential Equations I"), piece by piece
     between events: release from rest, coming to rest, overturning, the tilt limit, lift-off. Start and base motion that
     lie in one vertical plane to 8 ulp are integrated in that plane. It is compiled at the first use of a model, and has
-    the bits of `simulate_ensemble`; `Sliding` is followed by SciPy.
+    the bits of `simulate_ensemble`.
 
     Parameters
     ----------
@@ -154,8 +154,7 @@ def simulate(
         start_tilt = start_rate = (0.0, 0.0)
     require_plane(model, moved, start_tilt, start_rate)
     announce(expected_steps(model, moved.highest_frequency * model.time_scale, duration / model.time_scale), max_steps)
-    start = Start(start_tilt, start_rate, turning, duration)
-    result = _following(model)(model, moved, options, start, functions)
+    result = run_result(model, moved, options, Start(start_tilt, start_rate, duration, turning), functions)
     recorded = history(model, moved, result.trajectory, samples, friction_coefficient=friction_coefficient)
     doubts = result.repeated() if recheck else ()
     return Response(
@@ -188,15 +187,6 @@ def simulate(
         ),
         sampler=recorded.sampler,
     )
-
-
-def _following(model: Model) -> Callable[..., RunResult]:
-    """Return what follows a run of `model`."""
-    if not model.switches:
-        return run_result
-    from stylobate.engine.switching.single import switching_result  # noqa: PLC0415  SciPy takes a while to load
-
-    return switching_result
 
 
 def _pair(name: str, value: Sequence[float], unit: str) -> tuple[float, float]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.forcing import common_line
@@ -14,14 +15,16 @@ from stylobate.models import Model
 from stylobate.models.consistency import check_once
 from stylobate.results import OutcomeRules
 
+Floats = npt.NDArray[np.float64]
+
 
 @dataclass(frozen=True, slots=True)
 class Turning:
     """Spin [rad/s], twist [rad], position [m], velocity [m/s] and clearance [m] at the start of a run."""
 
-    spin: float
-    twist: float
-    position: tuple[float, float]
+    spin: float = 0.0
+    twist: float = 0.0
+    position: tuple[float, float] = (0.0, 0.0)
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
     clearance: float = 0.0
 
@@ -70,16 +73,24 @@ class Turning:
             return ()
         return self.twist, self.position[0] / model.column.radius, self.position[1] / model.column.radius
 
-    def begun(self, model: Model, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, ...]:
-        """Return the state of a start of a model that changes between kinds of contact."""
-        return model.begun(
-            tilt,
-            tilt_rate,
-            spin=self.spin,
-            twist=self.twist,
-            position=self.position,
-            velocity=self.velocity,
-            clearance=self.clearance,
+    def begun(self, model: Model, state: Floats) -> Floats:
+        """Return the state of a start without twist, position, velocity and clearance with these.
+
+        It is that of a model that changes between kinds of contact.
+        """
+        if not (self.twist or any(self.position) or any(self.velocity) or self.clearance):
+            return state
+        x, y, vx, vy = map(float, model.tilt_of(*state, *model.parameters))
+        return np.array(
+            model.begun(
+                (x, y),
+                (vx / model.time_scale, vy / model.time_scale),
+                spin=self.spin,
+                twist=self.twist,
+                position=self.position,
+                velocity=self.velocity,
+                clearance=self.clearance,
+            )
         )
 
     def values(self) -> dict[str, Any]:
@@ -95,8 +106,8 @@ class Start:
 
     tilt: tuple[float, float]
     tilt_rate: tuple[float, float]
-    turning: Turning
     duration: float
+    turning: Turning = Turning()
 
 
 def refuse_spin(model: Model, spin: float, *, standing: bool) -> None:

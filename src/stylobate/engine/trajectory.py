@@ -62,6 +62,17 @@ class Trajectory:
         """When each stretch ends: as the next one begins."""
         return np.append(self.starts[1:], self.end)
 
+    @cached_property
+    def on_base(self) -> npt.NDArray[np.bool_]:
+        """In which stretches the column stands on its base, at rest or sliding."""
+        stands = np.asarray(self._kinds == TraceKind.STAND)
+        return stands | (self.contacts <= 1) if self.model.switches else stands
+
+    @property
+    def contacts(self) -> npt.NDArray[np.int8]:
+        """The kind of contact in each stretch, of a model that changes between kinds of contact."""
+        return self._terms[:, 0, len(self.model.state_names) - 1].astype(np.int8)
+
     @property
     def standing(self) -> list[tuple[float, float]]:
         """From when to when the column stood on its base."""
@@ -87,7 +98,7 @@ class Trajectory:
 
     def resting(self, tau: Floats) -> npt.NDArray[np.bool_]:
         """Return where the column stands on its base, shape (n,)."""
-        return np.asarray((self._kinds == TraceKind.STAND)[self._at(tau)])
+        return np.asarray(self.on_base[self._at(tau)])
 
     def azimuth(self, tau: Floats, tilt: Floats) -> Floats:
         """Return the azimuth of the lean [rad], followed round, of the `tilt` vectors, shape (2, n), at `tau`.

@@ -151,8 +151,14 @@ class Model(Declared, ABC):
     slip_states: ClassVar[tuple[int, ...]] = ()
     """Which states are the velocity of slip, integrated more finely while a contact slips: its direction matters."""
 
+    kept_states: ClassVar[tuple[int, ...]] = ()
+    """Which states do not change within a step: what `project` brings up to date, and the kind of contact."""
+
     contact_kinds: ClassVar[type[IntEnum] | None] = None
-    """The kinds of contact, of which the last state is one; the first is standing at rest, RESTING."""
+    """The kinds of contact, of which the last state is one.
+
+    The first two are those of a column that stands on its base, at rest (RESTING) and sliding (SLIDING).
+    """
 
     jacobian: ClassVar[Callable[..., tuple[tuple[float, ...], ...]] | None] = None
     """(state…, ax, ay, az, parameters…) → for each rate its derivatives by state, accelerations and parameters.

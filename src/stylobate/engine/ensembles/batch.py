@@ -77,6 +77,7 @@ class Plan:
             demands=self.options.demands,
             guards=len(self.model.guard_names),
             slip=self.model.slip_states,
+            kept=self.model.kept_states,
         )
 
     @property
@@ -287,6 +288,8 @@ def _fill_starts(
         states[upright] = columns.states[upright]
     if model.contact_kinds is not None:  # what stands on its base begins as if it slid; the model tells how it goes on
         states[stands, -1] = model.contact_kinds["SLIDING"]
+        if runs.turning is not None:
+            states[0] = runs.turning.begun(model, states[0])
     table[:, STATE : STATE + states.shape[1]] = states
     table[planar, STATE] = np.sum(runs.tilt * line, axis=1)[planar]
     table[planar, STATE + 1] = np.sum(rate * line, axis=1)[planar]

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from stylobate.engine.starts import Start, Turning
 from stylobate.engine.thresholds import without_dust
 from stylobate.errors import ParameterError, require_size
 
@@ -38,6 +39,8 @@ class Runs:
         Parameters by name, shape (n,).
     coordinates
         What labels the results.
+    turning
+        What else a single run begins with; None in ensembles.
     """
 
     dims: tuple[str, ...]
@@ -48,6 +51,7 @@ class Runs:
     duration: Floats
     values: Mapping[str, Floats]
     coordinates: Mapping[str, xr.DataArray]
+    turning: Turning | None = None
 
     def __len__(self) -> int:
         return math.prod(self.shape)
@@ -85,9 +89,11 @@ def broadcast(
     )
 
 
-def one_run(tilt: tuple[float, float], tilt_rate: tuple[float, float], spin: float, duration: float) -> Runs:
+def one_run(start: Start) -> Runs:
     """Return a single run, its arguments checked before."""
-    return Runs((RUN,), (1,), np.array([tilt]), np.array([tilt_rate]), np.array([spin]), np.array([duration]), {}, {})
+    vectors = (np.array([start.tilt]), np.array([start.tilt_rate]))
+    numbers = (np.array([start.turning.spin]), np.array([start.duration]))
+    return Runs((RUN,), (1,), *vectors, *numbers, {}, {}, start.turning)
 
 
 def _numbers(name: str, value: ArrayLike) -> xr.DataArray:

@@ -189,6 +189,9 @@ TRACE_TERMS = 8
 TRACE_ROOM = 16
 """Entries that must be free before a lane is dealt with: that is more than are made at once."""
 
+SWITCHING_TRACE_ROOM = 1500
+"""The same where kinds of contact change: a stretch of implicit steps, and changes at one moment, are made at once."""
+
 NOTE = 5
 """Columns of a sample or a strobe: tilt x and y, their rates, time."""
 
@@ -223,6 +226,8 @@ class TraceKind(_FromZero):
     IMPACT = auto()
     PASSAGE = auto()
     """Events: only their time, START, has a meaning."""
+    CONTACT = auto()
+    """The event that ends a kind of contact: behind it the number of its guard, and the kinds before and after."""
 
 
 class Status(_FromZero):

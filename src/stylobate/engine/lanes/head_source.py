@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
-from stylobate.engine.lanes.columns import NOTE, SLACK, STATE, TRACE_ROOM, TRACE_TERMS
+from stylobate.engine.lanes.columns import NOTE, SLACK, STATE, TRACE_TERMS
 from stylobate.engine.lanes.series_source import polynomial, state_polynomial
 from stylobate.engine.lanes.shape import DENSE_TERMS, MARGIN_PLACES, SERIES_ORDER, Shape
 from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET, HOPS_APART, SLIP_SHARE, SLIP_SHORTER, SLIP_TURNS, STILL
@@ -34,7 +34,8 @@ def constants_source(model: type[Model], shape: Shape, has: Mapping[str, bool], 
         "PARAMETERS_AT": shape.parameters_at,
         "MOTION_AT": shape.motion_at,
         "BREAKS_AT": shape.breaks_at,
-        "TRACE_ROOM": TRACE_ROOM,
+        "TRACE_ROOM": shape.trace_room,
+        "KEPT_STATES": shape.kept,
         "TRACE_STATES": max(shape.states, 2),
         "TRACE_TERMS": TRACE_TERMS,
         "TRACE_WIDTH": shape.trace_width,
@@ -64,6 +65,7 @@ def _contact_constants(model: type[Model], shape: Shape) -> dict[str, float]:
         "GUARDS": shape.guards,
         "FALLEN": names.index("fallen"),
         "FRICTION": names.index("friction"),
+        "JAM": names.index("jam"),
         "SLIP_SHARE": SLIP_SHARE,
         "SLIP_SHORTER": SLIP_SHORTER,
         "SLIP_TURNS": SLIP_TURNS,

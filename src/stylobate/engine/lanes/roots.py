@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 _BISECTIONS = 52
 # A first return is sought from this fraction of the step on, doubled up to the second number, then at equal steps.
 _FIRST_FRACTION, _EQUAL = 2.0**-40, 1.0 / 16.0
@@ -121,10 +123,14 @@ def _falling_root(
 
 
 def turns_of(x: float, y: float) -> float:
-    """Return the azimuth of (x, y) in turns, −½ to ½."""
-    return math.atan2(y, x) / (2.0 * math.pi)
+    """Return the azimuth of (x, y) in turns, −½ to ½; that of y = −0 is that of y = 0, as in `winding`."""
+    return math.atan2(y + 0.0, x) / (2.0 * math.pi)
 
 
 def nearest_turn(azimuth: float, previous: float) -> float:
-    """Return `azimuth` [turns] plus the whole turns that bring it nearest to the `previous` one; NaN there is none."""
-    return azimuth if math.isnan(previous) else azimuth + math.floor(previous - azimuth + 0.5)
+    """Return `azimuth` [turns] plus the whole turns that bring it nearest to the `previous` one; NaN there is none.
+
+    Of two that are equally near the even one is taken: what goes to and fro through the upright does not travel round.
+    """
+    turns: float = np.rint(previous - azimuth)
+    return azimuth if math.isnan(previous) else azimuth + turns

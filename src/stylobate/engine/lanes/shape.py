@@ -2,7 +2,18 @@
 
 from dataclasses import dataclass
 
-from stylobate.engine.lanes.columns import LOOKS, STATE, TRACE_TERMS, Change, Log, Setup, Trace, Window
+from stylobate.engine.lanes.columns import (
+    LOOKS,
+    STATE,
+    SWITCHING_TRACE_ROOM,
+    TRACE_ROOM,
+    TRACE_TERMS,
+    Change,
+    Log,
+    Setup,
+    Trace,
+    Window,
+)
 from stylobate.engine.lanes.forcing_source import ForcingSource
 from stylobate.engine.lanes.layout import Rows
 
@@ -43,8 +54,8 @@ class Shape:
         Whether it follows what the contact must bear.
     guards
         How many guards guard a kind of contact, of a model that changes between kinds; else 0.
-    slip
-        Which of its states are the velocity of slip.
+    slip, kept
+        Which of its states are the velocity of slip, and which do not change within a step.
     """
 
     states: int
@@ -56,6 +67,7 @@ class Shape:
     demands: bool = False
     guards: int = 0
     slip: tuple[int, ...] = ()
+    kept: tuple[int, ...] = ()
 
     @property
     def parameters_at(self) -> int:
@@ -76,6 +88,11 @@ class Shape:
     def trace_width(self) -> int:
         """Columns of an entry of a trace, the same for motion in space and in a plane."""
         return len(Trace) + TRACE_TERMS * max(self.states, 2)
+
+    @property
+    def trace_room(self) -> int:
+        """Entries of a trace that must be free before a lane is dealt with."""
+        return SWITCHING_TRACE_ROOM if self.guards else TRACE_ROOM
 
     @property
     def order(self) -> int:

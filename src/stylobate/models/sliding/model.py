@@ -112,6 +112,9 @@ class Sliding(Model):
     state_names: ClassVar[tuple[str, ...]] = State._fields
     spin_state: ClassVar[int | None] = State._fields.index("spin")
     slip_states: ClassVar[tuple[int, ...]] = tuple(map(State._fields.index, ("velocity_x", "velocity_y")))
+    kept_states: ClassVar[tuple[int, ...]] = tuple(
+        map(State._fields.index, ("heading_x", "heading_y", "heading_z", "contact"))
+    )
     guard_names: ClassVar[tuple[str, ...]] = GUARDS
     contact_kinds: ClassVar[type[IntEnum] | None] = Contact
 

@@ -4,13 +4,15 @@ import math
 from typing import TYPE_CHECKING
 
 from stylobate.compiler.marks import flat
-from stylobate.engine.lanes.columns import Status
+from stylobate.engine.lanes.columns import Status, TraceKind
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import held_for_good
 from stylobate.engine.lanes.pattern.contact_ends import broken_now
 from stylobate.engine.lanes.pattern.moving import azimuth_now, first_step, set_lean, set_rates, set_state
-from stylobate.engine.lanes.pattern.release import RELEASE_MARGIN, release_time
+from stylobate.engine.lanes.pattern.release import RELEASE_MARGIN
+from stylobate.engine.lanes.pattern.release_search import next_release, search_end
 from stylobate.engine.lanes.pattern.stops import leg_end, meet_stop, next_stop, resume, stand_to_the_end
+from stylobate.engine.lanes.pattern.tracing import trace_entry, trace_leap, trace_stand
 from stylobate.engine.lanes.roots import nearest_turn, turns_of
 
 if TYPE_CHECKING:
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
         FALLEN,
         FLYING,
         FRICTION,
+        JAM,
         JAMMED,
         LAST,
         LIMIT,
@@ -28,6 +31,7 @@ if TYPE_CHECKING:
         SLIPPING,
         R,
         accelerations,
+        lean_of_new,
         margins_at,
         model_react,
         observe,
@@ -54,7 +58,7 @@ def go_through(buf: Table, i: int, table: Table, pieces: Table, number: int) -> 
             return Status.LIMIT
         if endless(buf, i):
             return Status.ENDLESS
-        change(buf, i, number)
+        change(buf, i, table, number)
         if buf[R.CONTACT, i] == JAMMED:
             return Status.JAMMED
         if buf[R.CONTACT, i] == RESTING:
@@ -62,11 +66,9 @@ def go_through(buf: Table, i: int, table: Table, pieces: Table, number: int) -> 
             if status != Status.WAITING:
                 return status
         else:
-            set_lean(buf, i)
             number = broken_now(buf, i)
             if number < 0:
-                set_going(buf, i)
-                return resume(buf, i, table, pieces)
+                return set_moving(buf, i, table, pieces)
 
 
 def endless(buf: Table, i: int) -> bool:
@@ -78,7 +80,7 @@ def endless(buf: Table, i: int) -> bool:
     return buf[R.AT_ONCE, i] > MOST_AT_ONCE
 
 
-def change(buf: Table, i: int, number: int) -> None:
+def change(buf: Table, i: int, table: Table, number: int) -> None:
     """Let the model tell how it goes on from a broken margin; put that into the state, and note it."""
     t, before = buf[R.TIME, i], int(buf[R.CONTACT, i])
     if buf[R.TILT, i] > 0.0:
@@ -86,6 +88,11 @@ def change(buf: Table, i: int, number: int) -> None:
     ahead = DEPARTURE / (1.0 + buf[R.FREQUENCY, i])
     now, later = accelerations(buf, i, t), accelerations(buf, i, t + ahead)
     elapsed, state = model_react(buf, i, float(number), now, later, ahead)
+    lapses = elapsed > 0.0 and t + elapsed < buf[R.END, i]
+    if buf[R.TRACES, i] > 0.0:
+        trace_change(buf, i, table, number, elapsed, state)
+        if lapses:
+            trace_lapse(buf, i, table, elapsed, state)
     for j in range(ORDER):
         buf[R.LAST_STATE + j, i] = buf[R.STATE + j, i]
     set_state(buf, i, state)
@@ -94,8 +101,31 @@ def change(buf: Table, i: int, number: int) -> None:
     if number >= 0:
         count(buf, i, number, before, int(buf[R.CONTACT, i]), elapsed)
     buf[R.STANDS, i] = 0.0
-    if elapsed > 0.0 and t + elapsed < buf[R.END, i]:
+    if lapses:
         pass_lapse(buf, i, elapsed)
+    set_lean(buf, i)
+
+
+def trace_change(buf: Table, i: int, table: Table, number: int, elapsed: float, state: tuple[float, ...]) -> None:
+    """Add to the trace the event with which the present state becomes this one, so much later."""
+    before, after = int(buf[R.CONTACT, i]), int(state[ORDER - 1])
+    if number >= 0 and not goes_on(number, before, after, elapsed):
+        at = trace_entry(buf, i, table, TraceKind.CONTACT, buf[R.TIME, i], 0.0)
+        run = int(buf[R.RUN, i])
+        table[run, at] = number
+        table[run, at + 1] = before
+        table[run, at + 2] = after
+
+
+def trace_lapse(buf: Table, i: int, table: Table, elapsed: float, state: tuple[float, ...]) -> None:
+    """Add to the trace the time in which the present state becomes this one."""
+    for j in range(ORDER):
+        buf[R.NEW + j, i] = state[j]
+    x, y, _, _ = lean_of_new(buf, i)
+    last = buf[R.LAST_AZIMUTH, i]
+    azimuth = nearest_turn(turns_of(x, y), last) if x != 0.0 or y != 0.0 else last
+    buf[R.TRACE_AZIMUTH, i] = last if buf[R.TILT, i] > 0.0 else azimuth
+    trace_leap(buf, i, table, elapsed, state, azimuth)
 
 
 def pass_lapse(buf: Table, i: int, elapsed: float) -> None:
@@ -108,13 +138,18 @@ def pass_lapse(buf: Table, i: int, elapsed: float) -> None:
         observe(flat(buf), i)
 
 
+def goes_on(number: int, before: int, after: int, elapsed: float) -> bool:
+    """Return whether a slip goes on at once along another heading: it has not ended."""
+    return number == FRICTION and before == after and elapsed == 0.0
+
+
 def count(buf: Table, i: int, number: int, before: int, after: int, elapsed: float) -> None:
     """Count impacts, slips that begin, rests and releases."""
-    # Slip that goes on at once along another heading has not ended.
-    reverses = number == FRICTION and before == after and elapsed > 0.0
+    gives_way = (before == RESTING and after == SLIDING) or (before == ROLLING and after == SLIPPING)
+    reverses = after in (SLIDING, SLIPPING) and before == after and not goes_on(number, before, after, elapsed)
     if before == FLYING or number == LAST:
         buf[R.IMPACTS, i] += 1.0
-    if after in (SLIDING, SLIPPING) and (before in (RESTING, ROLLING) or reverses):
+    if number not in (JAM, LAST) and (gives_way or reverses):
         buf[R.SLIPS, i] += 1.0
     if after == RESTING and before != RESTING:
         buf[R.RESTS, i] += 1.0
@@ -124,8 +159,11 @@ def count(buf: Table, i: int, number: int, before: int, after: int, elapsed: flo
             buf[R.RELEASED_FROM_REST, i] = 1.0
 
 
-def set_going(buf: Table, i: int) -> None:
-    """Begin to integrate from the state in the buffer, whose lean is set: with the step wanted before, if any."""
+def set_moving(buf: Table, i: int, table: Table, pieces: Table) -> int:
+    """Begin to integrate from the state in the buffer, whose lean is set: with the step wanted before, if any.
+
+    Return as `resume` does.
+    """
     x, y, tilt, t = buf[R.X, i], buf[R.Y, i], buf[R.TILT, i], buf[R.TIME, i]
     last = buf[R.LAST_AZIMUTH, i]
     if tilt > 0.0:
@@ -137,6 +175,7 @@ def set_going(buf: Table, i: int) -> None:
     else:
         buf[R.TURNS, i] = 0.0 if math.isnan(last) else last
         buf[R.TOUCHED_UPRIGHT, i] = 1.0
+    buf[R.TRACE_AZIMUTH, i] = azimuth_now(buf, i)
     if tilt > buf[R.LARGEST_TILT, i]:
         buf[R.LARGEST_TILT, i] = tilt
         buf[R.LARGEST_AT, i] = t
@@ -147,6 +186,7 @@ def set_going(buf: Table, i: int) -> None:
     buf[R.REJECTED, i] = 0.0
     if buf[R.WANTED, i] <= 0.0:
         buf[R.WANTED, i] = first_step(buf, i, t)
+    return resume(buf, i, table, pieces)
 
 
 def stand(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int]:
@@ -154,8 +194,8 @@ def stand(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int]:
     buf[R.STANDS, i] = 1.0
     buf[R.TOUCHED_UPRIGHT, i] = 1.0
     buf[R.WANTED, i] = 0.0
-    set_lean(buf, i)
     t = buf[R.TIME, i]
+    trace_stand(buf, i, table, t)
     searched, release = False, math.inf
     while True:
         while next_stop(buf, i) <= t:
@@ -168,8 +208,11 @@ def stand(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int]:
             return stand_to_the_end(buf, i, table, pieces, t), BEGINS
         # The search is not cut at stops that leave the base motion as it is: what is looked at does not change a run.
         if not searched:
-            release = release_time(buf, i, t, leg_end(buf, i))
+            release = next_release(buf, i, t)
             searched = True
+        if math.isnan(release):
+            buf[R.TIME, i] = search_end(buf, i, t)
+            return Status.UNSEEN, BEGINS
         t = min(release, next_stop(buf, i))
         buf[R.TIME, i] = t
         if release <= t:

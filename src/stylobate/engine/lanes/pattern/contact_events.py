@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 from stylobate.engine.lanes.columns import Status
 from stylobate.engine.lanes.layout import Table
-from stylobate.engine.lanes.pattern.contact_changes import BEGINS, go_through
-from stylobate.engine.lanes.pattern.contact_ends import first_end, nearly_broken
+from stylobate.engine.lanes.pattern.contact_changes import BEGINS, go_through, set_moving
+from stylobate.engine.lanes.pattern.contact_ends import broken_now, first_end, nearly_broken
 from stylobate.engine.lanes.pattern.contact_implicit import follow_implicitly
 from stylobate.engine.lanes.pattern.contact_steps import (
     end_at_limit,
@@ -21,7 +21,7 @@ from stylobate.engine.lanes.pattern.peaks import measure_peak
 from stylobate.engine.lanes.pattern.stops import go_on
 
 if TYPE_CHECKING:
-    from stylobate.engine.lanes.pattern.head import FRICTION, SLIP_SHORTER, R, set_dense
+    from stylobate.engine.lanes.pattern.head import FLYING, FRICTION, SLIP_SHORTER, R, set_dense
 
 # --- the kernel's text begins here ---
 
@@ -38,7 +38,11 @@ def begin(buf: Table, i: int, table: Table, pieces: Table) -> int:
     set_lean(buf, i)
     if buf[R.TILT, i] > buf[R.TILT_LIMIT, i]:
         return Status.LIMIT
-    return go_through(buf, i, table, pieces, BEGINS)
+    if buf[R.CONTACT, i] != FLYING:
+        return go_through(buf, i, table, pieces, BEGINS)
+    buf[R.STANDS, i] = 0.0
+    number = broken_now(buf, i)
+    return set_moving(buf, i, table, pieces) if number < 0 else go_through(buf, i, table, pieces, number)
 
 
 def handle(buf: Table, i: int, table: Table, pieces: Table) -> int:

@@ -118,7 +118,7 @@ def take(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int]:
     """Take the step that is ready; return WAITING and the margin that its end breaks, or −1, or the final status."""
     h, stop = buf[R.TRIED, i], buf[R.STOP, i]
     reached = h >= stop - buf[R.TIME, i]
-    beyond = come_to(buf, i, h)
+    beyond = come_to(buf, i, table, h)
     if beyond > 0.0:
         return end_at_limit(buf, i, beyond), -1
     if reached:

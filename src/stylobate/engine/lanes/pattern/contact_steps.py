@@ -12,6 +12,7 @@ from stylobate.engine.lanes.pattern.contact_ends import broken_now
 from stylobate.engine.lanes.pattern.moving import set_lean, set_rates, set_state
 from stylobate.engine.lanes.pattern.peaks import measure_peak
 from stylobate.engine.lanes.pattern.stops import leg_end, meet_stop
+from stylobate.engine.lanes.pattern.tracing import trace_part
 from stylobate.engine.lanes.pattern.within import set_within
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ def turns(buf: Table, i: int, elapsed: float) -> bool:
     return math.hypot(state[SLIP_X], state[SLIP_Y]) > SLIP_TURNS * tolerance
 
 
-def come_to(buf: Table, i: int, elapsed: float) -> float:
+def come_to(buf: Table, i: int, table: Table, elapsed: float) -> float:
     """Take the step of the dense output up to this time, and note what happened in it; return as `measure_peak`."""
     x0, y0, tilt0 = buf[R.X, i], buf[R.Y, i], buf[R.TILT, i]
     momentum, radial = buf[R.MOMENTUM, i], buf[R.RADIAL, i]
@@ -59,6 +60,7 @@ def come_to(buf: Table, i: int, elapsed: float) -> float:
     set_lean(buf, i)
     x1, y1, tilt1 = buf[R.X, i], buf[R.Y, i], buf[R.TILT, i]
     buf[R.TURNS, i] += winding(x0, y0, x1, y1, momentum + buf[R.MOMENTUM, i])
+    trace_part(buf, i, table)
     note_tilt(buf, i)
     low, beyond = min(tilt0, tilt1), 0.0
     slope0, slope1 = 2.0 * elapsed * radial, 2.0 * elapsed * buf[R.RADIAL, i]
@@ -83,7 +85,7 @@ def note_tilt(buf: Table, i: int) -> None:
 def end_contact(buf: Table, i: int, table: Table, pieces: Table, elapsed: float, number: int) -> int:
     """Go on from where the step breaks this margin, so long after its start; return as `go_through` does."""
     if elapsed > 0.0:
-        come_to(buf, i, elapsed)
+        come_to(buf, i, table, elapsed)
     if number == LAST:
         buf[R.LEAST_TILT, i] = min(buf[R.LEAST_TILT, i], buf[R.TILT, i])
     if number == LAST or buf[R.CONTACT, i] == FLYING:

@@ -10,6 +10,8 @@ ORDER: int
 """Number of equations."""
 KEPT: int
 """Number of columns of the state, with what is noted of changes between kinds of contact."""
+KEPT_STATES: tuple[int, ...]
+"""States that a step keeps, among them the kind of contact."""
 PARAMETERS: int
 PLANAR: bool
 SERIES: int
@@ -26,9 +28,10 @@ MOTION_AT: int
 BREAKS_AT: int
 """Columns of the table at which the parameters, the numbers of the base motion and its breaks begin."""
 NOTE: int
-TRACE_ROOM: int
 TRACE_TERMS: int
 """See `lanes.columns`."""
+TRACE_ROOM: int
+"""Entries of a trace that must be free before a lane is dealt with."""
 TRACE_STATES: int
 TRACE_WIDTH: int
 """Most states of an entry of a trace, and its columns."""
@@ -52,7 +55,8 @@ LIMIT: int
 FALLEN: int
 """Number of the margin of a column that has overturned."""
 FRICTION: int
-"""Number of the margin of friction."""
+JAM: int
+"""Numbers of the margins of friction, and of friction that jams."""
 SLIP_X: int
 SLIP_Y: int
 """Places of the velocity of slip in the state."""

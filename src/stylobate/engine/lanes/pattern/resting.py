@@ -7,7 +7,8 @@ from stylobate.engine.lanes.columns import Status, TraceKind
 from stylobate.engine.lanes.layout import Table
 from stylobate.engine.lanes.pattern.base_motion import forcing_rate, held_for_good, least_force
 from stylobate.engine.lanes.pattern.moving import at_upright, azimuth_now, set_off, set_state
-from stylobate.engine.lanes.pattern.release import RELEASE_MARGIN, release_time
+from stylobate.engine.lanes.pattern.release import RELEASE_MARGIN
+from stylobate.engine.lanes.pattern.release_search import next_release, search_end
 from stylobate.engine.lanes.pattern.standing import bear_standing
 from stylobate.engine.lanes.pattern.stops import go_on, leg_end, meet_stop, next_stop, stand_to_the_end
 from stylobate.engine.lanes.pattern.tracing import trace_event, trace_stand
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from stylobate.engine.lanes.pattern.head import (
         CAN_DEPART,
         CAN_GO_TO_PLANE,
-        DEGREE,
         HOPS_APART,
         PLANAR,
         STILL,
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
 
 # Time after release, in units of the fastest time scale, at which the departure series hands over.
 DEPARTURE = 1e-3
-# So many periods show what a motion that repeats does, whatever the phase at which they begin.
-PERIODS_KNOWN = 2.0
 
 
 def holding_force(buf: Table, i: int, ax: float, ay: float, az: float) -> float:
@@ -157,30 +155,14 @@ def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
 
 
 def release_within_leg(buf: Table, i: int, t: float) -> float:
-    """Return when the base motion releases the column before the leg ends, or infinity; note what it bears till then.
+    """Return `next_release`, and note what the column bears until then.
 
-    Loads are followed by legs, not by stops: what is looked at changes none of them. NaN where that cannot be known:
-    so many periods are searched as a run may take steps, for a column that moves takes two in each.
+    Loads are followed by legs, not by stops: what is looked at changes none of them.
     """
-    end = search_end(buf, i, t)
-    release = release_time(buf, i, t, end)
-    bear_standing(buf, i, t, min(release, end))
-    return math.nan if release > end and end < leg_end(buf, i) and not repeats_to_the_end(buf, i) else release
-
-
-def search_end(buf: Table, i: int, t: float) -> float:
-    """Return until when a release is sought from `t` on within the leg."""
-    end, frequency = leg_end(buf, i), buf[R.FREQUENCY, i]
-    if DEGREE == 1 or frequency == 0.0:
-        return end
-    most = t + buf[R.MOST_STEPS, i] * (2.0 * math.pi / frequency)
-    known = t + PERIODS_KNOWN * buf[R.PERIOD, i]
-    return min(end, known if end > most and known < most and repeats_to_the_end(buf, i) else most)
-
-
-def repeats_to_the_end(buf: Table, i: int) -> bool:
-    """Return whether the base motion has a period from now to the end of the run."""
-    return buf[R.PERIOD, i] > 0.0 and min(buf[R.LEG_ENDS, i], buf[R.BREAKS_AT, i]) >= buf[R.END, i]
+    release = next_release(buf, i, t)
+    # NaN, where no release was seen, is not less.
+    bear_standing(buf, i, t, min(search_end(buf, i, t), release))
+    return release
 
 
 def depart(buf: Table, i: int, release: float) -> float:

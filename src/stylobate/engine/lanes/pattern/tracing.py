@@ -9,6 +9,7 @@ from stylobate.engine.lanes.roots import turns_of
 if TYPE_CHECKING:
     from stylobate.engine.lanes.pattern.head import (
         BREAKS_AT,
+        KEPT_STATES,
         NOTE,
         ORDER,
         PLANAR,
@@ -41,13 +42,25 @@ def trace_step(buf: Table, i: int, table: Table) -> None:
     if h > 0.0 and not SERIES:
         start = buf[R.TIME, i] - h
         set_dense(buf, i, R.LAST_STATE, R.LAST_SLOPE, start, h)
-        at = trace_entry(buf, i, table, TraceKind.PLANE_STEP if PLANAR else TraceKind.STEP, start, h)
-        run = int(buf[R.RUN, i])
-        for j in range(ORDER):
-            table[run, at + j] = buf[R.LAST_STATE + j, i]
-            for k in range(1, TRACE_TERMS):
-                table[run, at + k * TRACE_STATES + j] = buf[R.DENSE + (k - 1) * ORDER + j, i]
+        trace_dense(buf, i, table, start, h)
     buf[R.TRACE_AZIMUTH, i] = azimuth_of(buf, i)
+
+
+def trace_dense(buf: Table, i: int, table: Table, start: float, length: float) -> None:
+    """Add a step of this length whose dense output is there, from the state before it."""
+    at = trace_entry(buf, i, table, TraceKind.PLANE_STEP if PLANAR else TraceKind.STEP, start, length)
+    run = int(buf[R.RUN, i])
+    for j in range(ORDER):
+        table[run, at + j] = buf[R.LAST_STATE + j, i]
+        for k in range(1, TRACE_TERMS):
+            table[run, at + k * TRACE_STATES + j] = buf[R.DENSE + (k - 1) * ORDER + j, i]
+
+
+def trace_part(buf: Table, i: int, table: Table) -> None:
+    """Add the step that the lane has taken up to an event within it, or by an implicit method."""
+    if buf[R.TRACES, i] > 0.0:
+        trace_dense(buf, i, table, buf[R.TIME, i] - buf[R.MADE, i], buf[R.TRIED, i])
+        buf[R.TRACE_AZIMUTH, i] = azimuth_of(buf, i)
 
 
 def trace_leap(buf: Table, i: int, table: Table, elapsed: float, state: tuple[float, ...], azimuth: float) -> None:
@@ -61,6 +74,8 @@ def trace_leap(buf: Table, i: int, table: Table, elapsed: float, state: tuple[fl
         table[run, at + TRACE_STATES + j] = state[j] - buf[R.STATE + j, i]
         for k in range(2, TRACE_TERMS):
             table[run, at + k * TRACE_STATES + j] = 0.0
+    for j in KEPT_STATES:
+        table[run, at + TRACE_STATES + j] = 0.0
     table[run, at - len(Trace) + Trace.END_AZIMUTH] = azimuth
 
 

@@ -4,6 +4,10 @@ import math
 from dataclasses import dataclass
 from enum import Enum, auto
 
+from stylobate.base_motions import BaseMotion
+from stylobate.engine.tolerances import ATOL_SHARE
+from stylobate.models import Model
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Method:
@@ -32,3 +36,12 @@ class Reason(Enum):
     FAILED = auto()
     TERMINATED = auto()
     """A terminal event function of the user."""
+
+
+def method_of(model: Model, motion: BaseMotion, rtol: float, max_steps: int, end: float) -> Method:
+    """Return how a run is integrated up to the dimensionless time `end`."""
+    # Half the shortest period: no step can miss the forcing.
+    frequency = motion.highest_frequency * model.time_scale
+    longest = math.pi / frequency if frequency > 0.0 else math.inf
+    atol = ATOL_SHARE * rtol * model.column.slenderness
+    return Method(rtol=rtol, atol=atol, max_step=longest, max_steps=max_steps, end=end)

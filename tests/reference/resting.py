@@ -7,9 +7,10 @@ from scipy.optimize import brentq, minimize_scalar
 
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.starts import cannot_depart
-from stylobate.engine.switching.pieces import Piece
 from stylobate.engine.tolerances import SAMPLES_PER_PERIOD
 from stylobate.models import Model, Push
+
+from .pieces import Piece
 
 # Samples looked at together.
 _BLOCK = 4096

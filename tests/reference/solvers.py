@@ -12,9 +12,10 @@ import numpy as np
 from scipy.integrate import DOP853, Radau
 
 from stylobate.engine.forcing import Floats
-from stylobate.engine.steps import attempted, with_finite_step
-from stylobate.engine.switching.following import Method
 from stylobate.engine.tolerances import SLIP_SHARE, SLIP_TURNS
+
+from .following import Method
+from .steps import attempted, with_finite_step
 
 # E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", section IV.2: the boundary of stability of DOP853
 # along the negative axis is at hλ = 6.1; so many steps near it in turn count as stiff.

@@ -1,1 +1,0 @@
-"""Single runs of models that change between kinds of contact."""
