@@ -15,7 +15,7 @@ from sybil.parsers.myst import PythonCodeBlockParser, SkipParser
 import stylobate.studies  # noqa: F401
 
 # Parts of kernels make sense behind the head that is written for each kernel only.
-collect_ignore_glob = ["src/stylobate/engine/lanes/pattern/*", "src/stylobate/engine/flow/pattern.py"]
+collect_ignore_glob = ["src/stylobate/engine/kernel/driver/*", "src/stylobate/engine/flow/pattern.py"]
 
 
 def _enter_folder(namespace: dict[str, Any]) -> None:

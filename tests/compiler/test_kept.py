@@ -10,6 +10,7 @@ import pytest
 
 from stylobate.compiler import machine
 from stylobate.compiler.compiled import Compiled
+from stylobate.compiler.programs import Written
 from stylobate.compiler.trusted_cache import TrustedCache
 from stylobate.compiler.unit import ArrayArgument
 from stylobate.errors import FileError, UnsupportedError
@@ -51,7 +52,7 @@ def compilations(monkeypatch):
 def squares(text=TEXT):
     """Return what is compiled as in a process of its own."""
     arguments = (ArrayArgument((None,)), ArrayArgument((1,)))
-    return Compiled("advance", text, {"rates": square}, arguments, model="model", description="squares")
+    return Compiled("advance", Written(text), {"rates": square}, arguments, model="model", description="squares")
 
 
 def sum_of(compiled):

@@ -27,7 +27,7 @@ _GROWN = 1e-3
 # Passages of the upright closer than this are measured [units of c].
 _PASSAGE = 0.1
 
-# A tilt that falls by less than this part of its speed does not fall: it is least there, as `pattern/passages` has it.
+# A tilt that falls by less than this part of its speed does not fall: it is least there, as `driver/passages` has it.
 _JUST_MET = 1e-6
 
 # The contact point is followed in turns of at most this angle [rad], each step cut into at most so many parts.

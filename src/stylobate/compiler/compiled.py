@@ -5,28 +5,27 @@ import types
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from stylobate.compiler import kept, machine
+from stylobate.compiler.programs import Program
 from stylobate.compiler.refusal import CompileError
 from stylobate.compiler.unit import ArrayArgument, Unit
 from stylobate.compiler.values import Element, Kind
-from stylobate.compiler.written import written_module
 from stylobate.errors import UnsupportedError
 
 
 @dataclass(frozen=True, eq=False)
 class Compiled:
-    """A function of a module whose text is written for a model.
+    """A function of a module that is made for a model.
 
     Parameters
     ----------
     name
         The function.
-    text
+    program
         Its module.
     functions
         Functions of the model, by the names under which they stand in the module.
@@ -34,8 +33,6 @@ class Compiled:
         What it is called with.
     model, description
         What messages call the model, and what is compiled.
-    imported
-        Modules from which it takes functions.
     fast
         Names of functions of the model whose arithmetic is fast; see `marks.fast`.
     brief
@@ -43,12 +40,11 @@ class Compiled:
     """
 
     name: str
-    text: str
+    program: Program
     functions: Mapping[str, Callable[..., Any]]
     arguments: Sequence[ArrayArgument | Kind]
     model: str
     description: str
-    imported: Sequence[types.ModuleType] = ()
     fast: Sequence[str] = field(default=())
     brief: bool = False
 
@@ -75,7 +71,7 @@ class Compiled:
     @cached_property
     def module(self) -> types.ModuleType:
         """The module, of plain Python."""
-        return written_module(f"{self._words}_{id(self)}", self.text, self.functions)
+        return self.program.module(f"{self._words}_{id(self)}", self.functions)
 
     def unit(self, *, exact: bool = False) -> Unit:
         """Return a unit to which functions of the module can be added."""
@@ -88,9 +84,8 @@ class Compiled:
 
     @cached_property
     def _code(self) -> Callable[..., int]:
-        texts = [Path(module.__file__ or "").read_text(encoding="utf-8") for module in self.imported]
         try:
-            parts = [repr((self.name, self.arguments, self.fast)), self.text, *texts]
+            parts = [repr((self.name, self.arguments, self.fast)), *self.program.texts]
             logged = None if self.brief else self.description
             engine = kept.code_of(self._words, parts, self.functions, self._written, logged)
         except CompileError as error:

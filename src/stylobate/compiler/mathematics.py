@@ -72,9 +72,9 @@ def _name_of(function: Any) -> str | None:
 def _length(value: Value) -> Value:
     if isinstance(value, Array):
         return value.shape[0]
-    if isinstance(value, tuple):
+    if hasattr(value, "__len__"):
         return len(value)
-    message = "len(...) is known of arrays and tuples only"
+    message = "len(...) is known of arrays and of what is known while compiling only"
     raise Refusal(message)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.compiler.compiled import Compiled
+from stylobate.compiler.programs import Written
 from stylobate.compiler.unit import ArrayArgument
 from stylobate.errors import UnsupportedError
 
@@ -54,7 +55,7 @@ def _compiled(function: Callable[..., Any], arguments: int, results: int, name: 
     ]
     return Compiled(
         name="over_rows",
-        text="\n".join(lines) + "\n",
+        program=Written("\n".join(lines) + "\n"),
         functions={"function": function},
         arguments=(ArrayArgument((None, arguments)), ArrayArgument((None, results))),
         model=name,

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from stylobate.base_motions import BaseMotion
 from stylobate.config.simulation import duration_with_tail
 from stylobate.engine.forcing import Floats
-from stylobate.engine.lanes.columns import SLACK
+from stylobate.engine.kernel.columns import SLACK
 from stylobate.engine.trajectory import Trajectory
 from stylobate.errors import Outcome, ParameterError, require_positive
 from stylobate.models import Model

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from stylobate.engine.ensembles.batch import Batch, Plan
 from stylobate.engine.ensembles.broadcasting import Runs
-from stylobate.engine.lanes.columns import STATE, TRACE_TERMS, Log, Setup, Status, Trace, TraceKind
+from stylobate.engine.kernel.columns import STATE, TRACE_TERMS, Log, Setup, Status, Trace, TraceKind
 from stylobate.engine.pace import EVERY
 from stylobate.engine.starts import Turning
 from stylobate.engine.trajectory import Trajectory

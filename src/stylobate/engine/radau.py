@@ -6,17 +6,19 @@ fulfils the equations at three nodes, the last of which is the end of the step.
 
 import math
 
+import numpy as np
+
 _ROOT = math.sqrt(6.0)
 
 STAGES = 3
 
-NODES = ((4.0 - _ROOT) / 10.0, (4.0 + _ROOT) / 10.0, 1.0)
+NODES = np.array([(4.0 - _ROOT) / 10.0, (4.0 + _ROOT) / 10.0, 1.0])
 """Fractions of a step at which the equations hold."""
 
 
 def _slopes() -> tuple[tuple[float, ...], ...]:
     """Return the slopes at the nodes of cubics that are 0 at the start and 1 at one node: barycentric formula."""
-    places = (0.0, *NODES)
+    places = [0.0, *NODES.tolist()]
     weights = [1.0 / math.prod(x - other for other in places if other != x) for x in places]
     return tuple(
         tuple(
@@ -27,11 +29,11 @@ def _slopes() -> tuple[tuple[float, ...], ...]:
     )
 
 
-SLOPES = _slopes()
+SLOPES = np.array(_slopes())
 """A⁻¹: slopes at the nodes, in units of 1/h, of the cubic through these changes since the start."""
 
-EIGENVECTOR = (0.09443876248897524, 0.25021312296533332, 1.0)
+EIGENVECTOR = np.array([0.09443876248897524, 0.25021312296533332, 1.0])
 """Of A⁻¹, for its real eigenvalue γ₀⁻¹ = 3 + 3^⅔ − 3^⅓."""
 
-ERROR = (-(13.0 + 7.0 * _ROOT) / 3.0, -(13.0 - 7.0 * _ROOT) / 3.0, -1.0 / 3.0)
+ERROR = np.array([-(13.0 + 7.0 * _ROOT) / 3.0, -(13.0 - 7.0 * _ROOT) / 3.0, -1.0 / 3.0])
 """Weights of the changes at the nodes in the estimate of the error, of order 3."""

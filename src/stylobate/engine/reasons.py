@@ -8,7 +8,7 @@ from stylobate.base_motions import BaseMotion
 from stylobate.engine.end_of_motion import survival
 from stylobate.engine.ensembles.outcomes import Late, grounds_of, late_periods
 from stylobate.engine.followed import Followed
-from stylobate.engine.lanes.columns import Log, Status
+from stylobate.engine.kernel.columns import Log, Status
 from stylobate.engine.pace import step_limit, unseen
 from stylobate.engine.verdict import Ground, reason_on
 from stylobate.errors import Outcome

@@ -15,7 +15,7 @@ from stylobate.engine.ensembles.motion_columns import MotionPlan
 from stylobate.engine.ensembles.options import Options
 from stylobate.engine.ensembles.summaries import summaries
 from stylobate.engine.followed import Followed
-from stylobate.engine.lanes.columns import Log, Setup
+from stylobate.engine.kernel.columns import Log, Setup
 from stylobate.engine.pace import LOG, report
 from stylobate.engine.reasons import bounds_of, late_measures, reason_of
 from stylobate.engine.starts import Start

@@ -7,7 +7,7 @@ from enum import IntEnum
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.lanes.columns import SLACK
+from stylobate.engine.kernel.columns import SLACK
 from stylobate.errors import Outcome
 from stylobate.results import OutcomeRules
 

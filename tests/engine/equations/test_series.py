@@ -15,8 +15,8 @@ import stylobate as sb
 from stylobate.engine.equations.expressions import Expression, Recording
 from stylobate.engine.equations.recording import recorded
 from stylobate.engine.equations.series import Series
-from stylobate.engine.lanes.expansion import Expansion, series_integrals
-from stylobate.engine.lanes.shape import SERIES_ORDER
+from stylobate.engine.kernel.expansion import Expansion, series_integrals
+from stylobate.engine.kernel.shape import SERIES_ORDER
 from stylobate.errors import UnsupportedError
 
 COUNT = SERIES_ORDER + 1

@@ -12,10 +12,10 @@ from stylobate.engine.ensembles.broadcasting import Runs
 from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.motion_columns import MotionColumns, MotionPlan
 from stylobate.engine.ensembles.options import Options
-from stylobate.engine.lanes.columns import LOG, NOTE, STATE, Log, Setup, Status
-from stylobate.engine.lanes.expansion import series_integrals
-from stylobate.engine.lanes.kernels import kernel_of
-from stylobate.engine.lanes.shape import Shape
+from stylobate.engine.kernel.columns import LOG, NOTE, STATE, Log, Setup, Status
+from stylobate.engine.kernel.expansion import series_integrals
+from stylobate.engine.kernel.kernels import kernel_of
+from stylobate.engine.kernel.shape import Shape
 from stylobate.engine.starts import cannot_depart, out_of_plane, refuse_spin
 from stylobate.engine.thresholds import is_rest, rest_energy_for_good, usual_rest_energy
 from stylobate.engine.tolerances import ATOL_SHARE, FIRST_STEP_OFF, PARALLEL_ULP

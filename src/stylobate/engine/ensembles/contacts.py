@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.engine.ensembles.batch import Batch
-from stylobate.engine.lanes.columns import SLACK, STATE, Change, Log, Status
+from stylobate.engine.kernel.columns import SLACK, STATE, Change, Log, Status
 from stylobate.errors import Outcome
 
 Floats = npt.NDArray[np.float64]

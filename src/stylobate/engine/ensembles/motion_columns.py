@@ -15,7 +15,7 @@ from stylobate.engine.ensembles.harmonics import Term, Terms, factors, terms_of
 from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.polynomials import Table, one_after_another, tabulated
 from stylobate.engine.ensembles.stretched import tabulated_alike
-from stylobate.engine.lanes.forcing_source import ForcingSource, Harmonics, Polynomials
+from stylobate.engine.kernel.forcing_source import ForcingSource, Harmonics, Polynomials
 from stylobate.engine.parameters import changed_motion, declared_names, largest_acceleration
 from stylobate.engine.thresholds import least_rest_energy
 

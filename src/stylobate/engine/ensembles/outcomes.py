@@ -8,7 +8,7 @@ import numpy.typing as npt
 from stylobate.engine.end_of_motion import energy_over_balance, has_ended
 from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.ensembles.contacts import upright_outcomes
-from stylobate.engine.lanes.columns import BEFORE, LATE, LOOKS, SLACK, STATE, Log, Setup, Status, Window
+from stylobate.engine.kernel.columns import BEFORE, LATE, LOOKS, SLACK, STATE, Log, Setup, Status, Window
 from stylobate.engine.verdict import Evidence, Ground, grounds, outcome_on
 from stylobate.errors import Outcome
 

@@ -13,7 +13,7 @@ from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.ensembles.contacts import CONTACT_KINDS, contact_arrays
 from stylobate.engine.ensembles.options import Options
 from stylobate.engine.ensembles.outcomes import late_periods, outcomes
-from stylobate.engine.lanes.columns import STATE, Log, Setup, Status
+from stylobate.engine.kernel.columns import STATE, Log, Setup, Status
 from stylobate.engine.memory import require_memory
 from stylobate.engine.thresholds import coarse
 from stylobate.engine.tolerances import CLOSE_PASSAGE

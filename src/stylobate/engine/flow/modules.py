@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from stylobate.compiler.compiled import Compiled
+from stylobate.compiler.programs import Written
 from stylobate.compiler.unit import ArrayArgument
 from stylobate.compiler.values import Kind
 from stylobate.engine import elementary
@@ -73,7 +74,7 @@ def flow_of(model: type[Model], states: int, numbers: int, *, planar: bool) -> C
     terms = ArrayArgument((None, 1 + 2 * len(arguments.accelerations)))
     return Compiled(
         name="flow",
-        text=text,
+        program=Written(text, (elementary, tableau)),
         functions=functions,
         arguments=(
             ArrayArgument((order, order + 2)),
@@ -87,7 +88,6 @@ def flow_of(model: type[Model], states: int, numbers: int, *, planar: bool) -> C
         ),
         model=model.name,
         description=f"{model.name}, flow in {kind} with its derivatives",
-        imported=(elementary, tableau),
     )
 
 

@@ -1,0 +1,45 @@
+"""The driver of a kernel: fills lanes with runs, meets the events of single lanes, takes the runs out at their end.
+
+Functions take the buffer and a lane, and where they need them the table of the batch and the polynomials of the base
+motion. They are ordinary functions; what differs between kernels they take from `bound`, which each kernel binds to a
+model and a kind of base motion: equations, numbers of rows (`R.TIME`), what there is.
+"""
+
+from types import ModuleType
+
+from stylobate.engine.kernel.driver import (
+    base_motion,
+    batch,
+    contact_changes,
+    contact_ends,
+    contact_events,
+    contact_implicit,
+    contact_steps,
+    contact_stiffness,
+    events,
+    implicit_step,
+    lift_off,
+    moving,
+    passages,
+    peaks,
+    release,
+    release_search,
+    resting,
+    standing,
+    starting,
+    stops,
+    tracing,
+    within,
+)
+
+_COMMON = (base_motion, moving, within, tracing, stops, release, release_search, standing, peaks, batch)
+_SMOOTH = (resting, lift_off, passages, events, starting)
+_SWITCHING = (
+    *(contact_ends, contact_changes, contact_stiffness, contact_steps),
+    *(implicit_step, contact_implicit, contact_events),
+)
+
+
+def modules(*, switching: bool) -> tuple[ModuleType, ...]:
+    """Return the modules of the driver, for models that change between kinds of contact or for others."""
+    return _COMMON + (_SWITCHING if switching else _SMOOTH)

@@ -1,0 +1,171 @@
+"""The base motion in a lane: its leg, and bounds from now on."""
+
+import math
+
+from stylobate.engine.kernel.bound import (
+    CAN_PROVE_NO_RETURN,
+    DEGREE,
+    FIRST_FORCING,
+    FORCING_ROWS,
+    MOTION_AT,
+    PLANAR,
+    TERMS,
+    VERTICAL,
+    WINDOWED,
+    R,
+    model_no_return,
+)
+from stylobate.engine.kernel.layout import Table
+
+# Where the coefficients of a piece begin in its row, and the place that tells whether it goes on without a jump.
+COEFFICIENTS_AT, GOES_ON = 6, 5
+
+
+def set_leg(buf: Table, i: int, table: Table, pieces: Table, t: float) -> None:
+    """Set the rows of the base motion for the leg that begins at `t`."""
+    motion = table[int(buf[R.RUN, i]), MOTION_AT:]
+    buf[R.LEG_ENDS, i] = math.inf
+    if DEGREE >= 0:
+        set_piece(buf, i, motion, pieces, t)
+    else:
+        set_terms(buf, i, motion, t)
+
+
+def set_terms(buf: Table, i: int, motion: Table, t: float) -> None:
+    columns = 7 + 3 * WINDOWED
+    for term in range(TERMS):
+        source = term * columns
+        row = FIRST_FORCING + term * FORCING_ROWS
+        buf[row, i] = motion[source]
+        if PLANAR:
+            # Both components along the line: a sum of two cosines of one frequency.
+            ux, uy = buf[R.LINE_X, i], buf[R.LINE_Y, i]
+            fx, fy = 2.0 * math.pi * motion[source + 2], 2.0 * math.pi * motion[source + 4]
+            cos = ux * motion[source + 1] * math.cos(fx) + uy * motion[source + 3] * math.cos(fy)
+            sin = ux * motion[source + 1] * math.sin(fx) + uy * motion[source + 3] * math.sin(fy)
+            buf[row + 1, i] = math.hypot(cos, sin)
+            buf[row + 2, i] = math.atan2(sin, cos) / (2.0 * math.pi)
+            row += 3
+        else:
+            for k in range(4):
+                buf[row + 1 + k, i] = motion[source + 1 + k]
+            row += 5
+        if VERTICAL:
+            buf[row, i] = motion[source + 5]
+            buf[row + 1, i] = motion[source + 6]
+            row += 2
+        if WINDOWED:
+            onset, begins, ends = motion[source + 7], motion[source + 8], motion[source + 9]
+            full = 0.0 if t < onset else 0.5 if t < ends else 1.0
+            per_turn = 0.5 / (ends - begins) if ends > begins else 0.0
+            buf[row, i] = full
+            buf[row + 1, i] = 0.5 if full == 0.5 else 0.0  # noqa: PLR2004
+            buf[row + 2, i] = per_turn
+            buf[row + 3, i] = -per_turn * begins
+
+
+def set_piece(buf: Table, i: int, motion: Table, pieces: Table, t: float) -> None:
+    """Load the polynomial that holds from `t` on."""
+    delay, first, last = motion[4], int(motion[5]), int(motion[5] + motion[6]) - 1
+    scale = buf[R.TIME_SCALE, i]
+    time = t * scale * (1.0 + 4e-16)  # a leg that begins at a knot has passed it
+    if time < delay:
+        for row in range(FIRST_FORCING, FIRST_FORCING + 2 + (2 - PLANAR + VERTICAL) * FORCING_ROWS):
+            buf[row, i] = 0.0
+        buf[R.LEG_ENDS, i] = delay / scale
+        return
+    load_piece(buf, i, motion, pieces, piece_at(pieces, first + int(buf[R.PIECE, i]), first, last, delay, time))
+
+
+def load_piece(buf: Table, i: int, motion: Table, pieces: Table, index: int) -> None:
+    """Load the polynomial in row `index`, and the bounds of the base motion from its start on."""
+    factor, cos, sin, vertical, delay = motion[0], motion[1], motion[2], motion[3], motion[4]
+    first, count = int(motion[5]), int(motion[6])
+    scale = buf[R.TIME_SCALE, i]
+    piece = pieces[index]
+    start, end = piece[0], piece[1]
+    buf[R.PIECE, i] = index - first
+    buf[FIRST_FORCING, i] = (0.5 * (start + end) + delay) / scale
+    buf[FIRST_FORCING + 1, i] = 2.0 * scale / (end - start)
+    for k in range(FORCING_ROWS):
+        x, y = piece[COEFFICIENTS_AT + k], piece[COEFFICIENTS_AT + FORCING_ROWS + k]
+        x, y = factor * (cos * x - sin * y), factor * (sin * x + cos * y)
+        row = FIRST_FORCING + 2 + k
+        if PLANAR:
+            buf[row, i] = x * buf[R.LINE_X, i] + y * buf[R.LINE_Y, i]
+        else:
+            buf[row, i] = x
+            row += FORCING_ROWS
+            buf[row, i] = y
+        if VERTICAL:
+            buf[row + FORCING_ROWS, i] = vertical * piece[COEFFICIENTS_AT + 2 * FORCING_ROWS + k]
+    largest, up, down = abs(factor) * piece[2], vertical * piece[3], vertical * piece[4]
+    least = min(up, down)
+    changed = largest != buf[R.LARGEST_HORIZONTAL, i] or least != buf[R.LEAST_VERTICAL, i]
+    buf[R.LARGEST_HORIZONTAL, i] = largest
+    buf[R.LEAST_VERTICAL, i] = least
+    buf[R.LARGEST_VERTICAL, i] = max(up, down)
+    if changed:
+        set_no_return(buf, i)
+    buf[R.LEG_ENDS, i] = (end + delay) / scale if index - first < count - 1 else math.inf
+
+
+def goes_on_in_next_piece(buf: Table, i: int, table: Table, pieces: Table) -> bool:
+    """Load the next piece if it goes on at the end of this leg without a jump, so that slopes hold; return whether."""
+    motion = table[int(buf[R.RUN, i]), MOTION_AT:]
+    delay, index = motion[4], int(motion[5] + buf[R.PIECE, i])
+    leg_end = buf[R.LEG_ENDS, i]
+    # Before a delayed motion begins no piece is loaded; very short ones end where they begin, by rounding.
+    if (pieces[index, 1] + delay) / buf[R.TIME_SCALE, i] != leg_end or pieces[index + 1, GOES_ON] == 0.0:
+        return False
+    load_piece(buf, i, motion, pieces, index + 1)
+    return buf[R.LEG_ENDS, i] > leg_end
+
+
+def piece_at(pieces: Table, near: int, first: int, last: int, delay: float, time: float) -> int:
+    """Return the last piece that begins at a time or before: most often the one behind the last that was asked for."""
+    if pieces[near, 0] + delay <= time:
+        first = near
+        if near == last or pieces[near + 1, 0] + delay > time:
+            return near
+        if near + 1 == last or pieces[near + 2, 0] + delay > time:
+            return near + 1
+    while first < last:
+        middle = (first + last + 1) // 2
+        if pieces[middle, 0] + delay <= time:
+            first = middle
+        else:
+            last = middle - 1
+    return first
+
+
+def set_no_return(buf: Table, i: int) -> None:
+    bound = math.inf
+    if CAN_PROVE_NO_RETURN:
+        bound = model_no_return(buf, i, buf[R.LARGEST_HORIZONTAL, i], buf[R.LEAST_VERTICAL, i])
+    buf[R.NO_RETURN, i] = bound if bound < math.inf else buf[R.OVERTURNED_TILT, i]
+
+
+def forcing_rate(buf: Table, i: int) -> float:
+    """Return the largest rate at which the force on a column near rest can change; exactly, where it is linear."""
+    if DEGREE == 1:
+        per_half = buf[FIRST_FORCING + 1, i]
+        x, row = buf[FIRST_FORCING + 3, i], FIRST_FORCING + 5
+        y = 0.0
+        if not PLANAR:
+            y = buf[row, i]
+            row += 2
+        z = buf[row, i] if VERTICAL else 0.0
+        return per_half * (math.hypot(x, y) + buf[R.SLENDERNESS, i] * abs(z))
+    vertical = max(abs(buf[R.LEAST_VERTICAL, i]), abs(buf[R.LARGEST_VERTICAL, i]))
+    return buf[R.FREQUENCY, i] * (buf[R.LARGEST_HORIZONTAL, i] + buf[R.SLENDERNESS, i] * vertical)
+
+
+def least_force(buf: Table, i: int) -> float:
+    """Return the least force that holds a standing column down from now on; below zero where it can be released."""
+    pushed = buf[R.LARGEST_HORIZONTAL, i] + math.hypot(buf[R.SLOPE_X, i], buf[R.SLOPE_Y, i])
+    return buf[R.CAPACITY, i] * (1.0 + buf[R.LEAST_VERTICAL, i] + buf[R.SLOPE_Z, i]) - pushed
+
+
+def held_for_good(buf: Table, i: int) -> bool:
+    return least_force(buf, i) >= 0.0 and 1.0 + buf[R.LEAST_VERTICAL, i] + buf[R.SLOPE_Z, i] > 0.0

@@ -1,0 +1,148 @@
+"""A batch of runs through the lanes."""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.engine.kernel.bound import KEPT, PARAMETERS, PARAMETERS_AT, PLANAR, WIDTH, R, observe, step
+from stylobate.engine.kernel.columns import STATE, Status
+from stylobate.engine.kernel.driver.base_motion import set_leg, set_no_return
+from stylobate.engine.kernel.driver.events import handle
+from stylobate.engine.kernel.driver.moving import azimuth_now, square_of_speed
+from stylobate.engine.kernel.driver.starting import begin
+from stylobate.engine.kernel.driver.stops import passes_knot, set_break, set_look, set_sample, set_strobe
+from stylobate.engine.kernel.driver.tracing import trace_steps
+from stylobate.engine.kernel.layout import Row, Table
+
+# A motion that begins is followed finely up to this tilt [units of c].
+GROWN = 1e-3
+
+
+def enter(buf: Table, i: int, table: Table, pieces: Table, run: int) -> int:
+    """Take a run into lane `i`; return WAITING when it moves, else the status with which it ends at once."""
+    for column in range(STATE):
+        buf[column, i] = table[run, column]
+    for j in range(KEPT):
+        buf[R.STATE + j, i] = table[run, STATE + j]
+    for j in range(PARAMETERS):
+        buf[R.PARAMETER + j, i] = table[run, PARAMETERS_AT + j]
+    buf[R.RUN, i] = run
+    buf[R.PIECE, i] = 0.0
+    c, t = buf[R.SLENDERNESS, i], buf[R.TIME, i]
+    buf[R.GROWN, i] = GROWN * c
+    most = max(buf[R.REST_ENERGY, i], buf[R.REST_ENERGY_FOR_GOOD, i])
+    buf[R.REST_TILT, i] = most * c
+    buf[R.SLOW_SQUARE, i] = square_of_speed(buf, i, most)
+    buf[R.REST_SQUARE, i] = square_of_speed(buf, i, buf[R.REST_ENERGY, i])
+    buf[R.PER_TURN, i] = 1.0 / buf[R.PERIOD, i] if buf[R.PERIOD, i] > 0.0 else 0.0
+    set_look(buf, i)
+    set_sample(buf, i)
+    set_strobe(buf, i)
+    set_break(buf, i, table)
+    set_no_return(buf, i)
+    set_leg(buf, i, table, pieces, t)
+    return begin(buf, i, table, pieces)
+
+
+def leave(buf: Table, i: int, table: Table, status: int) -> None:
+    """Note the run of lane `i` as it is now."""
+    run = int(buf[R.RUN, i])
+    buf[R.STATUS, i] = status
+    if status not in (Status.RESTED, Status.TO_PLANE):
+        buf[R.DECIDED, i] = buf[R.TIME, i]
+    if not PLANAR and buf[R.STANDS, i] == 0.0 and status != Status.TO_PLANE:
+        buf[R.LAST_AZIMUTH, i] = azimuth_now(buf, i)
+    for column in range(R.STATUS, STATE):
+        table[run, column] = buf[column, i]
+    for j in range(KEPT):
+        table[run, STATE + j] = buf[R.STATE + j, i]
+
+
+def quiet(buf: Table, i: int) -> None:
+    """Fill an idle lane with numbers that do no harm."""
+    for row in range(len(buf)):
+        buf[row, i] = 0.0
+    for row in (R.STATE, R.TILT, R.X, R.SLENDERNESS, R.SIDE, R.ATOL, R.ATOL_NOW):
+        buf[row, i] = 1.0
+    for row in (R.STOP, R.NO_RETURN, R.TILT_LIMIT, R.LARGEST_TILT):
+        buf[row, i] = 1e300
+    for j in range(PARAMETERS):
+        buf[R.PARAMETER + j, i] = 0.1
+    buf[R.RUN, i] = -1.0
+
+
+def fill(buf: Table, i: int, table: Table, pieces: Table, waiting: int) -> int:
+    """Take the first run from `waiting` on that does not end at once into lane `i`; return which waits next."""
+    while waiting < len(table):
+        run = waiting
+        waiting += 1
+        if table[run, R.STATUS] == Status.WAITING:
+            status = enter(buf, i, table, pieces, run)
+            if status == Status.WAITING:
+                break
+            leave(buf, i, table, status)
+            quiet(buf, i)
+    return waiting
+
+
+def begin_or_go_on(buf: Table, table: Table, pieces: Table) -> int:
+    """Fill the lanes of a new buffer, or take up one of a batch that was paused; return the run that waits next."""
+    waiting = 0
+    if math.isnan(buf[R.RUN, 0]):
+        for i in range(WIDTH):
+            quiet(buf, i)
+            waiting = fill(buf, i, table, pieces, waiting)
+        return waiting
+    for i in range(WIDTH):
+        run = int(buf[R.RUN, i])
+        waiting = max(waiting, run + 1)
+        if run >= 0:
+            buf[R.NEXT_TRACE, i] = table[run, R.NEXT_TRACE]
+    return waiting
+
+
+def pause(buf: Table, table: Table) -> bool:
+    """Let the traces be taken out of the table; return False, as `advance` does that has not come to its end."""
+    for i in range(WIDTH):
+        if buf[R.RUN, i] >= 0.0:
+            table[int(buf[R.RUN, i]), R.NEXT_TRACE] = buf[R.NEXT_TRACE, i]
+    return False
+
+
+def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table, flat: Row) -> bool:
+    """Run a batch to its end; return whether it got there.
+
+    It does not where `halt[0]` is set to 1 from another thread, or a trace is full: then the same buffer goes on, once
+    the trace has been emptied. `table` has a row for each run, see `columns`; `buf` and `flat` are one piece of memory,
+    as a table of rows and as one row, NaN before the first run.
+    """
+    waiting = begin_or_go_on(buf, table, pieces)
+    traced = table[0, R.TRACES] > 0.0
+    while True:
+        live = False
+        for i in range(WIDTH):
+            live = live or buf[R.RUN, i] >= 0.0
+        if not live:
+            return True
+        met = False
+        while not met:
+            step(flat)
+            full = traced and trace_steps(buf, table)
+            met = full
+            for i in range(WIDTH):
+                if buf[R.WATCHED, i] > 0.0 and buf[R.GO, i] > 0.0:
+                    observe(flat, i)
+                if buf[R.FLAG, i] > 0.0 and not passes_knot(buf, i, table, pieces):
+                    met = True
+            if halt[0] != 0:
+                return False
+        for i in range(WIDTH):
+            if buf[R.FLAG, i] > 0.0 and buf[R.RUN, i] >= 0.0:
+                status = handle(buf, i, table, pieces)
+                if status != Status.WAITING:
+                    leave(buf, i, table, status)
+                    quiet(buf, i)
+                    waiting = fill(buf, i, table, pieces, waiting)
+        if full:
+            return pause(buf, table)

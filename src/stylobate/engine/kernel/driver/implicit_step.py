@@ -1,0 +1,194 @@
+"""One implicit step of a lane, by Radau IIA: E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", IV.8.
+
+A step consists of the changes of the state from its start to each of three nodes, the last of which is its end:
+`change` has the states at the first node, then those at the second and the third.
+"""
+
+import math
+
+import numpy as np
+
+from stylobate.engine import radau
+from stylobate.engine.kernel.bound import CHANGES, ORDER, SLIP_X, SLIP_Y, R, dense_state, rates_at, row_state
+from stylobate.engine.kernel.layout import Row, Table
+from stylobate.engine.kernel.linear_equations import NewtonRoom, factor, solve
+from stylobate.engine.kernel.shape import DENSE_TERMS
+from stylobate.engine.tolerances import SLIP_SHARE
+
+# A state is changed by this part of the slip to see how the rates change, for their direction turns with it, and by no
+# more than the second number. The third is the least for states that are no slip, by whose roundings rates jump.
+PART_OF_SLIP, LARGEST_DIFFERENCE, LEAST_DIFFERENCE = 1e-3, 1e-7, 1e-12
+# So many iterations by Newton's method at most; they end below the first part of the tolerance, or its root if that is
+# less, but not below so many roundings of the second.
+MOST_ITERATIONS, WELL_SOLVED, SOLVED_ROUNDINGS = 7, 0.03, 2e-15
+# Products with the Jacobian before the growth is taken from four more: what is not fastest has faded by then.
+FADING = 4
+
+
+def set_jacobian(buf: Table, i: int, jacobian: Table) -> None:
+    """Set the derivatives of the rates by differences; the slopes belong to the state. The kind of contact is kept."""
+    t = buf[R.TIME, i]
+    slip = max(math.hypot(buf[R.STATE + SLIP_X, i], buf[R.STATE + SLIP_Y, i]), SLIP_SHARE * buf[R.ATOL_NOW, i])
+    small = min(PART_OF_SLIP * slip, LARGEST_DIFFERENCE)
+    for j in range(ORDER):
+        buf[R.NEW + j, i] = buf[R.STATE + j, i]
+    for column in range(ORDER - 1):
+        here = buf[R.STATE + column, i]
+        least = 0.0 if column in (SLIP_X, SLIP_Y) else LEAST_DIFFERENCE * (1.0 + abs(here))
+        buf[R.NEW + column, i] = here + max(small, least)
+        per = 1.0 / (buf[R.NEW + column, i] - here)
+        rates = rates_at(buf, i, t, row_state(buf, i, R.NEW))
+        for j in range(ORDER):
+            jacobian[j, column] = (rates[j] - buf[R.SLOPE + j, i]) * per
+        buf[R.NEW + column, i] = here
+
+
+def fastest_rate(jacobian: Table) -> float:
+    """Return about the largest modulus of the eigenvalues of the Jacobian, by its powers."""
+    vector, product = np.zeros(ORDER), np.zeros(ORDER)
+    for j in range(ORDER):
+        vector[j] = 1.0
+    growth = 1.0
+    for power in range(FADING + 4):
+        square = 0.0
+        for j in range(ORDER):
+            total = 0.0
+            for k in range(ORDER):
+                total += jacobian[j, k] * vector[k]
+            product[j] = total
+            square += total * total
+        size = math.sqrt(square)
+        if not 0.0 < size < math.inf:
+            return size
+        for j in range(ORDER):
+            vector[j] = product[j] / size
+        if power >= FADING:
+            growth *= math.sqrt(math.sqrt(size))
+    return growth
+
+
+def solve_step(buf: Table, i: int, h: float, room: NewtonRoom) -> int:
+    """Solve the equations of a step from a guess of its changes; return the number of iterations, or 0."""
+    _, matrix, pivots, change, correction = room
+    set_matrix(h, room)
+    if not factor(matrix, pivots):
+        return 0
+    rtol = buf[R.RTOL, i]
+    tolerance = max(SOLVED_ROUNDINGS / rtol, min(WELL_SOLVED, math.sqrt(rtol)))
+    before = math.inf
+    for iteration in range(1, MOST_ITERATIONS + 1):
+        set_defect(buf, i, h, change, correction)
+        solve(matrix, pivots, correction)
+        size = size_of_correction(buf, i, correction)
+        ratio = size / before
+        ahead = size if iteration == 1 else size * ratio / (1.0 - ratio)
+        if not ratio < 1.0 or ahead * ratio ** float(MOST_ITERATIONS - iteration) > tolerance:
+            return 0
+        for n in range(CHANGES):
+            change[n] += correction[n]
+        if ahead < tolerance and (iteration > 1 or size == 0.0):
+            return iteration
+        before = size
+    return 0
+
+
+def set_matrix(h: float, room: NewtonRoom) -> None:
+    """Set the matrix of Newton's method, A⁻¹/h ⊗ I − I ⊗ J."""
+    jacobian, matrix, _, _, _ = room
+    for row in range(CHANGES):
+        for column in range(CHANGES):
+            matrix[row, column] = 0.0
+    for stage in range(radau.STAGES):
+        first = stage * ORDER
+        for j in range(ORDER):
+            for k in range(ORDER):
+                matrix[first + j, first + k] = -jacobian[j, k]
+            for other in range(radau.STAGES):
+                matrix[first + j, other * ORDER + j] += radau.SLOPES[stage, other] / h
+
+
+def set_defect(buf: Table, i: int, h: float, change: Row, defect: Row) -> None:
+    """Set by how much the rates at the nodes exceed the slopes of the cubic through these changes."""
+    t = buf[R.TIME, i]
+    for stage in range(radau.STAGES):
+        first = stage * ORDER
+        for j in range(ORDER):
+            buf[R.NEW + j, i] = buf[R.STATE + j, i] + change[first + j]
+        rates = rates_at(buf, i, t + radau.NODES[stage] * h, row_state(buf, i, R.NEW))
+        for j in range(ORDER):
+            slope = 0.0
+            for other in range(radau.STAGES):
+                slope += radau.SLOPES[stage, other] * change[other * ORDER + j]
+            defect[first + j] = rates[j] - slope / h
+
+
+def absolute_tolerance(buf: Table, i: int, j: int) -> float:
+    """Return the absolute tolerance of a state while a contact slips."""
+    return buf[R.ATOL_NOW, i] * (SLIP_SHARE if j in (SLIP_X, SLIP_Y) else 1.0)
+
+
+def size_of_correction(buf: Table, i: int, correction: Row) -> float:
+    """Return the mean size of corrections to all changes, in tolerances."""
+    total = 0.0
+    for j in range(ORDER):
+        scale = absolute_tolerance(buf, i, j) + buf[R.RTOL, i] * abs(buf[R.STATE + j, i])
+        for stage in range(radau.STAGES):
+            part = correction[stage * ORDER + j] / scale
+            total += part * part
+    return math.sqrt(total / CHANGES)
+
+
+def error_of_changes(buf: Table, i: int, h: float, slopes: tuple[float, ...], room: NewtonRoom) -> float:
+    """Return the error of a step in tolerances, and leave it in the last third of `correction`.
+
+    `slopes` are the rates at the start. The embedded formula needs (γ₀⁻¹/h − J)⁻¹: on multiples of the eigenvector of
+    A⁻¹ the matrix of all stages is that.
+    """
+    _, matrix, pivots, change, correction = room
+    for j in range(ORDER):
+        defect = slopes[j]
+        for stage in range(radau.STAGES):
+            defect += radau.ERROR[stage] * change[stage * ORDER + j] / h
+        for stage in range(radau.STAGES):
+            correction[stage * ORDER + j] = radau.EIGENVECTOR[stage] * defect
+    solve(matrix, pivots, correction)
+    total, last = 0.0, CHANGES - ORDER
+    for j in range(ORDER):
+        here = buf[R.STATE + j, i]
+        size = max(abs(here), abs(here + change[last + j]))
+        part = correction[last + j] / (absolute_tolerance(buf, i, j) + buf[R.RTOL, i] * size)
+        total += part * part
+    return math.sqrt(total / ORDER)
+
+
+def damped_error(buf: Table, i: int, h: float, room: NewtonRoom) -> float:
+    """Return the error that is left where the estimate itself is stiff: from the rates at the start, once corrected."""
+    for j in range(ORDER):
+        buf[R.NEW + j, i] = buf[R.STATE + j, i] + room.correction[CHANGES - ORDER + j]
+    slopes = rates_at(buf, i, buf[R.TIME, i], row_state(buf, i, R.NEW))
+    return error_of_changes(buf, i, h, slopes, room)
+
+
+def set_cubic(buf: Table, i: int, change: Row) -> None:
+    """Set the dense output of a step to the cubic through its changes; see `dense_state` for the form."""
+    c0, c1 = radau.NODES[0], radau.NODES[1]
+    for j in range(ORDER):
+        whole = change[2 * ORDER + j]
+        first = (change[j] / c0 - whole) / (1.0 - c0)
+        second = (change[ORDER + j] / c1 - whole) / (1.0 - c1)
+        bend = (first - second) / (c0 - c1)
+        buf[R.DENSE + j, i] = whole
+        buf[R.DENSE + ORDER + j, i] = first - c0 * bend
+        buf[R.DENSE + 2 * ORDER + j, i] = bend
+        for power in range(3, DENSE_TERMS):
+            buf[R.DENSE + power * ORDER + j, i] = 0.0
+
+
+def guess_changes(buf: Table, i: int, ratio: float, change: Row) -> None:
+    """Guess the changes of a step from the cubic of the one before, of which it is `ratio` times as long; 0 if none."""
+    for n in range(CHANGES):
+        change[n] = 0.0
+    for stage in range(radau.STAGES if ratio > 0.0 else 0):
+        ahead = dense_state(buf, i, 1.0 + radau.NODES[stage] * ratio)
+        for j in range(ORDER):
+            change[stage * ORDER + j] = ahead[j] - (buf[R.STATE + j, i] + buf[R.DENSE + j, i])

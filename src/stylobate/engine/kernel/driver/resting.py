@@ -1,0 +1,193 @@
+"""Coming to rest, standing, and departing from rest."""
+
+import math
+
+from stylobate.engine.kernel.bound import (
+    CAN_DEPART,
+    CAN_GO_TO_PLANE,
+    PLANAR,
+    R,
+    accelerations,
+    lean_of_new,
+    model_at_rest,
+    model_departure,
+    model_rest_energy,
+)
+from stylobate.engine.kernel.columns import Status, TraceKind
+from stylobate.engine.kernel.driver.base_motion import forcing_rate, held_for_good, least_force
+from stylobate.engine.kernel.driver.moving import at_upright, azimuth_now, set_off, set_state
+from stylobate.engine.kernel.driver.release import RELEASE_MARGIN
+from stylobate.engine.kernel.driver.release_search import next_release, search_end
+from stylobate.engine.kernel.driver.standing import bear_standing
+from stylobate.engine.kernel.driver.stops import go_on, leg_end, meet_stop, next_stop, stand_to_the_end
+from stylobate.engine.kernel.driver.tracing import trace_event, trace_stand
+from stylobate.engine.kernel.driver.within import set_dense_output, set_within, set_within_closely
+from stylobate.engine.kernel.layout import Table
+from stylobate.engine.tolerances import HOPS_APART, STILL
+from stylobate.models.model import Push
+
+# Time after release, in units of the fastest time scale, at which the departure series hands over.
+DEPARTURE = 1e-3
+
+
+def holding_force(buf: Table, i: int, ax: float, ay: float, az: float) -> float:
+    """Return the force that holds a standing column down: the least from now on, if that holds it for good."""
+    force = least_force(buf, i)
+    return force if force >= 0.0 else buf[R.CAPACITY, i] * (1.0 + az) - math.hypot(ax, ay)
+
+
+def rest_margin(buf: Table, i: int, t: float, tilt: float, speed: float) -> float:
+    """Return what is positive where a column of this tilt and speed comes to rest at `t`."""
+    ax, ay, az = accelerations(buf, i, t)
+    energy = model_rest_energy(buf, i, tilt, speed, az)
+    force = holding_force(buf, i, ax, ay, az)
+    change = 2.0 * math.sqrt(2.0 * max(energy, 0.0)) * forcing_rate(buf, i)
+    square = buf[R.SLENDERNESS, i] ** 2
+    dies = force - math.sqrt(HOPS_APART * change)
+    if least_force(buf, i) < 0.0:
+        return min(buf[R.REST_ENERGY, i] * square - energy, dies)
+    share = buf[R.REST_ENERGY_FOR_GOOD, i]
+    return max(min(share, STILL) * square - energy, min(share * square - energy, dies))
+
+
+def rest_within_step(buf: Table, i: int) -> float:
+    """Return when the column came to rest within the step just made, or NaN.
+
+    Whether it may have is asked of cubics; whether and when it did, of the step's dense output.
+    """
+    h = buf[R.MADE, i]
+    start = buf[R.TIME, i] - h
+    before = 0.0
+    closely = False
+    for k in range(5):
+        u = 0.25 * k
+        rests = margin_within_step(buf, i, start, h, u, closely) > 0.0
+        if rests and k == 0:
+            return start
+        if rests and not closely:
+            set_dense_output(buf, i)
+            closely = True
+            rests = margin_within_step(buf, i, start, h, u, closely) > 0.0
+        if rests:
+            return start + first_rest(buf, i, start, h, before, u) * h
+        before = u
+    return math.nan
+
+
+def first_rest(buf: Table, i: int, start: float, h: float, low: float, high: float) -> float:
+    """Return at which part of the step the column came to rest, between two parts of it."""
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        if margin_within_step(buf, i, start, h, middle, True) > 0.0:
+            high = middle
+        else:
+            low = middle
+    return high
+
+
+def margin_within_step(buf: Table, i: int, start: float, h: float, u: float, closely: bool) -> float:
+    """Return the margin of rest at a part of the step, closely where its dense output is there."""
+    t = start + u * h
+    ax, ay, az = accelerations(buf, i, t)
+    force = holding_force(buf, i, ax, ay, az)
+    if force <= 0.0:  # so is the margin
+        return force
+    if closely:
+        set_within_closely(buf, i, u * h)
+    else:
+        set_within(buf, i, u * h)
+    x, y, vx, vy = lean_of_new(buf, i)
+    return rest_margin(buf, i, t, math.hypot(x, y), math.hypot(vx, vy))
+
+
+def settle(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
+    """Come to rest at `t`; return as `stand` does."""
+    if not PLANAR:
+        buf[R.LAST_AZIMUTH, i] = azimuth_now(buf, i)
+    set_state(buf, i, model_at_rest(buf, i))
+    trace_event(buf, i, table, TraceKind.REST, t)
+    buf[R.STANDS, i] = 1.0
+    buf[R.RESTS, i] += 1.0
+    buf[R.TOUCHED_UPRIGHT, i] = 1.0
+    return stand(buf, i, table, pieces, t)
+
+
+def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
+    """Stand from `t` until released; return WAITING when moving again, else the status with which the run ends."""
+    trace_stand(buf, i, table, t)
+    release = release_within_leg(buf, i, t)
+    while True:
+        if held_for_good(buf, i):
+            buf[R.DECIDED, i] = t
+            return stand_to_the_end(buf, i, table, pieces, t)
+        if math.isnan(release):
+            buf[R.TIME, i] = search_end(buf, i, t)
+            return Status.UNSEEN
+        stop = next_stop(buf, i)
+        t = stop
+        if release < stop:
+            if 1.0 + accelerations(buf, i, release)[2] <= RELEASE_MARGIN:  # not released but lifted
+                buf[R.TIME, i] = release
+                return Status.LIFTED
+            if not CAN_DEPART:
+                return Status.CANNOT_DEPART
+            t = min(depart(buf, i, release), buf[R.END, i])
+            if t < buf[R.END, i]:
+                buf[R.RELEASES, i] += 1.0
+                trace_event(buf, i, table, TraceKind.RELEASE, release)
+                if not at_upright(buf, i):
+                    return take_off(buf, i, table, pieces, t)
+        buf[R.TIME, i] = t
+        # The search is not cut at stops that leave the base motion as it is: what is looked at does not change a run.
+        again = release < stop or t >= leg_end(buf, i)
+        while next_stop(buf, i) <= t:
+            status = meet_stop(buf, i, table, pieces, next_stop(buf, i))
+            if status != Status.WAITING:
+                return status
+        if again:
+            release = release_within_leg(buf, i, t)
+
+
+def release_within_leg(buf: Table, i: int, t: float) -> float:
+    """Return `next_release`, and note what the column bears until then.
+
+    Loads are followed by legs, not by stops: what is looked at changes none of them.
+    """
+    release = next_release(buf, i, t)
+    # NaN, where no release was seen, is not less.
+    bear_standing(buf, i, t, min(search_end(buf, i, t), release))
+    return release
+
+
+def depart(buf: Table, i: int, release: float) -> float:
+    """Put the state a short time after the release into the buffer, and return that time."""
+    elapsed = DEPARTURE / (1.0 + buf[R.FREQUENCY, i])
+    ax, ay, az = accelerations(buf, i, release)
+    bx, by, bz = accelerations(buf, i, release + elapsed)
+    ux, uy = buf[R.LINE_X, i], buf[R.LINE_Y, i]
+    if PLANAR:
+        ax, ay, bx, by = ax * ux, ax * uy, bx * ux, bx * uy
+    here, there = math.hypot(ax, ay), math.hypot(bx, by)
+    c = buf[R.SLENDERNESS, i]
+    over = max(here - c * (1.0 + az), 0.0)
+    rate = (there - c * (1.0 + bz) - over) / elapsed
+    turning = math.atan2(ax * by - ay * bx, ax * bx + ay * by) / elapsed
+    push = Push((-ax / here, -ay / here), here, over, rate, turning)
+    set_state(buf, i, model_departure(buf, i, push, elapsed, ux, uy))
+    return release + elapsed
+
+
+def take_off(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
+    """Go on, moving, from the departure at `t`."""
+    # Looks within the departure, which moves the column by the third power of its duration, see it stand.
+    while next_stop(buf, i) <= t:
+        meet_stop(buf, i, table, pieces, next_stop(buf, i))
+    if buf[R.RESTS, i] > 0.0:
+        buf[R.RELEASED_FROM_REST, i] = 1.0
+    buf[R.TIME, i] = t
+    if CAN_GO_TO_PLANE and (buf[R.LINE_X, i] != 0.0 or buf[R.LINE_Y, i] != 0.0):
+        buf[R.STANDS, i] = 0.0
+        return Status.TO_PLANE
+    set_off(buf, i, t, 0.0)
+    go_on(buf, i)
+    return Status.WAITING

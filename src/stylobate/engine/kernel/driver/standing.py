@@ -1,0 +1,51 @@
+"""What the contact bears while the column stands."""
+
+import math
+
+from stylobate.engine.kernel.bound import DEGREE, DEMANDS, R, accelerations
+from stylobate.engine.kernel.driver.release import SAMPLES_PER_PERIOD
+from stylobate.engine.kernel.layout import Table
+
+# A smaller part of the weight counts as this much: the demand is as good as infinite.
+LEAST_WEIGHT = 1e-12
+
+
+def bear_standing(buf: Table, i: int, start: float, end: float) -> None:
+    """Note the largest friction demand |a_h|/(1 + a_z), and the least normal force, of standing from start to end.
+
+    Where the acceleration is linear in time both are reached at an end: the demand is quasi-convex there. Otherwise
+    peaks are those of parabolas through three of the samples by which a release is sought.
+    """
+    if not DEMANDS or end <= start:
+        return
+    parts = 1
+    if DEGREE != 1:
+        frequency = buf[R.FREQUENCY, i]
+        spacing = 2.0 * math.pi / (frequency * SAMPLES_PER_PERIOD) if frequency > 0.0 else end - start
+        parts = max(2, math.ceil((end - start) / spacing))
+    d0, n0 = standing_load(buf, i, start)
+    d1, n1 = d0, n0
+    most, least = d0, n0
+    for k in range(1, parts + 1):
+        d2, n2 = standing_load(buf, i, end if k == parts else start + (end - start) * (k / parts))
+        most = max(most, d2)
+        least = min(least, n2)
+        if k > 1:
+            most = max(most, crest(d0, d1, d2))
+            least = min(least, -crest(-n0, -n1, -n2))
+        d0, n0, d1, n1 = d1, n1, d2, n2
+    buf[R.FRICTION, i] = max(buf[R.FRICTION, i], most)
+    buf[R.NORMAL, i] = min(buf[R.NORMAL, i], least)
+
+
+def standing_load(buf: Table, i: int, t: float) -> tuple[float, float]:
+    """Return the friction demand and the normal force over the weight of a column that stands at `t`."""
+    ax, ay, az = accelerations(buf, i, t)
+    return math.hypot(ax, ay) / max(1.0 + az, LEAST_WEIGHT), 1.0 + az
+
+
+def crest(before: float, here: float, after: float) -> float:
+    """Return the height of the parabola through three equidistant values where it has a crest, else the middle one."""
+    bend = before - 2.0 * here + after
+    slant = after - before
+    return here - slant * slant / (8.0 * bend) if abs(slant) < -2.0 * bend else here

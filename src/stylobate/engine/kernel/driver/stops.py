@@ -1,0 +1,198 @@
+"""The times at which a lane must stop, and what is done there: looks, samples, strobes, legs of the base motion."""
+
+import math
+
+from stylobate.engine.kernel.bound import BREAKS_AT, DEGREE, PLANAR, R, note_window
+from stylobate.engine.kernel.columns import LOOKS, NOTE, SLACK, Status, Window
+from stylobate.engine.kernel.driver.base_motion import goes_on_in_next_piece, set_leg
+from stylobate.engine.kernel.driver.moving import azimuth_now, set_rates
+from stylobate.engine.kernel.driver.standing import bear_standing
+from stylobate.engine.kernel.layout import Table
+
+
+def look_count(buf: Table, i: int) -> float:
+    """Return the number of the last look: two windows and one period more, one and one more, or −1 for none."""
+    end, period, periods = buf[R.END, i], buf[R.PERIOD, i], buf[R.PERIODS, i]
+    end *= 1.0 + SLACK
+    if period <= 0.0 or end < (periods + 1) * period:
+        return -1.0
+    return LOOKS * (2 * periods + 1 if end >= (2 * periods + 1) * period else periods + 1)
+
+
+def set_look(buf: Table, i: int) -> None:
+    """Set the time of the next look."""
+    last, index = look_count(buf, i), buf[R.NEXT_LOOK, i]
+    buf[R.LOOKS_AT, i] = math.inf
+    if index <= last:
+        buf[R.LOOKS_AT, i] = buf[R.END, i] - (last - index) * (buf[R.PERIOD, i] / LOOKS)
+
+
+def set_sample(buf: Table, i: int) -> None:
+    """Set the time of the next sample."""
+    index, end, samples = buf[R.NEXT_SAMPLE, i], buf[R.END, i], buf[R.SAMPLES, i]
+    buf[R.SAMPLES_AT, i] = math.inf
+    if index < samples:
+        buf[R.SAMPLES_AT, i] = end if index == samples - 1 else index * (end / (samples - 1))
+
+
+def set_strobe(buf: Table, i: int) -> None:
+    """Set the time of the next strobe; those kept are the last ones before the end."""
+    buf[R.STROBES_AT, i] = math.inf
+    period, end, strobes = buf[R.PERIOD, i], buf[R.END, i], buf[R.STROBES, i]
+    if buf[R.NEXT_STROBE, i] >= strobes or period <= 0.0:
+        return
+    last = math.floor((end * (1.0 + SLACK) - buf[R.STROBE, i]) / period)
+    # Places for strobes before the run began stay empty.
+    buf[R.NEXT_STROBE, i] = max(buf[R.NEXT_STROBE, i], strobes - 1.0 - last)
+    if buf[R.NEXT_STROBE, i] < strobes:
+        number = last + 1.0 - strobes + buf[R.NEXT_STROBE, i]
+        buf[R.STROBES_AT, i] = min(buf[R.STROBE, i] + number * period, end)
+
+
+def set_break(buf: Table, i: int, table: Table) -> None:
+    index = int(buf[R.NEXT_BREAK, i])
+    buf[R.BREAKS_AT, i] = math.inf
+    if index < buf[R.BREAKS, i]:
+        buf[R.BREAKS_AT, i] = table[int(buf[R.RUN, i]), BREAKS_AT + index]
+
+
+def leg_end(buf: Table, i: int) -> float:
+    """Return until when the base motion is what it is now."""
+    return min(buf[R.END, i], buf[R.LIFTS_AT, i], buf[R.LEG_ENDS, i], buf[R.BREAKS_AT, i])
+
+
+def next_stop(buf: Table, i: int) -> float:
+    return min(leg_end(buf, i), buf[R.LOOKS_AT, i], buf[R.SAMPLES_AT, i], buf[R.STROBES_AT, i])
+
+
+def go_on(buf: Table, i: int) -> None:
+    """Set the next stop, and the step towards it."""
+    stop = next_stop(buf, i)
+    buf[R.STOP, i] = stop
+    buf[R.H, i] = min(buf[R.WANTED, i], stop - buf[R.TIME, i])
+
+
+def passes_knot(buf: Table, i: int, table: Table, pieces: Table) -> bool:
+    """Go on where a piece of the base motion ends and the next goes on, and nothing else is due; return whether."""
+    # A flag of 1 that is due to a stop reached has no other cause.
+    if DEGREE < 0 or buf[R.FLAG, i] != 1.0 or buf[R.REACHED, i] != 1.0 or buf[R.RUN, i] < 0.0:
+        return False
+    t, leg_end = buf[R.TIME, i], buf[R.LEG_ENDS, i]
+    others = min(buf[R.END, i], buf[R.LIFTS_AT, i], buf[R.BREAKS_AT, i], buf[R.LOOKS_AT, i])
+    if t != leg_end or t >= min(others, buf[R.SAMPLES_AT, i], buf[R.STROBES_AT, i]):
+        return False
+    if not goes_on_in_next_piece(buf, i, table, pieces):
+        return False
+    buf[R.FLAG, i] = 0.0
+    go_on(buf, i)
+    return True
+
+
+def meet_stop(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
+    """Do what is due at the stop `t`; return the status of a run that ends there, or WAITING."""
+    while buf[R.LOOKS_AT, i] <= t:
+        take_look(buf, i, t)
+        buf[R.NEXT_LOOK, i] += 1.0
+        set_look(buf, i)
+    while buf[R.SAMPLES_AT, i] <= t:
+        note_lean(buf, i, table, t, int(buf[R.NEXT_SAMPLE, i]))
+        buf[R.NEXT_SAMPLE, i] += 1.0
+        set_sample(buf, i)
+    while buf[R.STROBES_AT, i] <= t:
+        note_lean(buf, i, table, t, int(buf[R.SAMPLES, i] + buf[R.NEXT_STROBE, i]))
+        buf[R.NEXT_STROBE, i] += 1.0
+        set_strobe(buf, i)
+    if t >= buf[R.LIFTS_AT, i]:
+        return Status.LIFTED
+    if t >= buf[R.END, i]:
+        return Status.STOPPED
+    if t >= buf[R.LEG_ENDS, i] or t >= buf[R.BREAKS_AT, i]:
+        while buf[R.BREAKS_AT, i] <= t:
+            buf[R.NEXT_BREAK, i] += 1.0
+            set_break(buf, i, table)
+        set_leg(buf, i, table, pieces, t)
+        if buf[R.STANDS, i] == 0.0:
+            set_rates(buf, i, t)
+    return Status.WAITING
+
+
+def resume(buf: Table, i: int, table: Table, pieces: Table) -> int:
+    """Go on from an event, which may have been met a rounding beyond a stop; return as `meet_stop` does."""
+    while next_stop(buf, i) <= buf[R.TIME, i]:
+        status = meet_stop(buf, i, table, pieces, next_stop(buf, i))
+        if status != Status.WAITING:
+            return status
+    go_on(buf, i)
+    return Status.WAITING
+
+
+def stand_to_the_end(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
+    """Note the rest of a run that stands for good, and what it bears in the legs to come."""
+    while t < buf[R.END, i]:
+        leg_ends = leg_end(buf, i)
+        t = next_stop(buf, i)
+        meet_stop(buf, i, table, pieces, t)
+        if t >= leg_ends:
+            bear_standing(buf, i, t, leg_end(buf, i))
+    buf[R.TIME, i] = t
+    return Status.RESTED
+
+
+def lean_now(buf: Table, i: int) -> tuple[float, float, float, float]:
+    if buf[R.STANDS, i] > 0.0:
+        return 0.0, 0.0, 0.0, 0.0
+    return buf[R.X, i], buf[R.Y, i], buf[R.VX, i], buf[R.VY, i]
+
+
+def note_lean(buf: Table, i: int, table: Table, t: float, index: int) -> None:
+    """Note the lean as the sample or strobe of this index; strobes follow the samples."""
+    x, y, vx, vy = lean_now(buf, i)
+    if PLANAR:
+        ux, uy = buf[R.LINE_X, i], buf[R.LINE_Y, i]
+        x, y, vx, vy = x * ux, x * uy, vx * ux, vx * uy
+    run = int(buf[R.RUN, i])
+    column = BREAKS_AT + int(buf[R.BREAKS, i]) + NOTE * index
+    table[run, column] = x
+    table[run, column + 1] = y
+    table[run, column + 2] = vx
+    table[run, column + 3] = vy
+    table[run, column + 4] = t
+
+
+def take_look(buf: Table, i: int, t: float) -> None:
+    """Note the lean at one of the looks in the last periods, and its change since one period before."""
+    index, last, span = int(buf[R.NEXT_LOOK, i]), int(look_count(buf, i)), int(buf[R.PERIODS, i]) * LOOKS
+    x, y, vx, vy = lean_now(buf, i)
+    azimuth = azimuth_now(buf, i)
+    place = R.LOOK + 4 * (index % LOOKS)
+    change = math.hypot(x - buf[place, i], y - buf[place + 1, i])
+    rate_change = math.hypot(vx - buf[place + 2, i], vy - buf[place + 3, i])
+    buf[place, i] = x
+    buf[place + 1, i] = y
+    buf[place + 2, i] = vx
+    buf[place + 3, i] = vy
+    middle = last - span
+    for late in range(2):
+        first = R.LATE if late == 1 else R.BEFORE
+        begin = middle if late == 1 else middle - span
+        end = begin + span
+        if begin < LOOKS or index < begin or index > end:
+            continue
+        if index == begin:
+            buf[first + Window.FIRST_AZIMUTH, i] = azimuth
+        buf[first + Window.LAST_AZIMUTH, i] = azimuth
+        for column, value in (
+            (Window.TILT_CHANGE, change),
+            (Window.RATE_CHANGE, rate_change),
+            (Window.TILT_SIZE, math.hypot(x, y)),
+            (Window.RATE_SIZE, math.hypot(vx, vy)),
+        ):
+            buf[first + column, i] = max(buf[first + column, i], value)
+        weight = 0.5 if index in (begin, end) else 1.0
+        forced = t / buf[R.PERIOD, i]
+        buf[first + Window.LAG_FORWARD, i] += weight * (azimuth - forced)
+        buf[first + Window.LAG_BACKWARD, i] += weight * (azimuth + forced)
+    if index == middle:
+        buf[R.WATCHED, i] = 1.0
+        buf[R.LATE_LEAST, i] = math.hypot(x, y)
+        note_window(buf, i, t)

@@ -1,0 +1,45 @@
+"""The state within the step just made."""
+
+from stylobate.engine.kernel.bound import ORDER, SERIES, R, series_within, set_dense
+from stylobate.engine.kernel.columns import TRACE_TERMS
+from stylobate.engine.kernel.layout import Table
+from stylobate.engine.kernel.roots import cubic
+
+
+def set_dense_output(buf: Table, i: int) -> None:
+    """Prepare the dense output of the step just made."""
+    if not SERIES:
+        for j in range(ORDER):
+            buf[R.NEW + j, i] = buf[R.STATE + j, i]
+        h = buf[R.MADE, i]
+        set_dense(buf, i, R.LAST_STATE, R.LAST_SLOPE, buf[R.TIME, i] - h, h)
+
+
+def set_within_closely(buf: Table, i: int, elapsed: float) -> None:
+    """Do as `set_within`, to the order of the method: the dense output of the step is there."""
+    if SERIES:
+        set_within(buf, i, elapsed)
+        return
+    u = elapsed / buf[R.MADE, i]
+    for j in range(ORDER):
+        change = 0.0
+        for k in range(TRACE_TERMS - 1):
+            term = TRACE_TERMS - 2 - k
+            change = (change + buf[R.DENSE + term * ORDER + j, i]) * (u if term % 2 == 0 else 1.0 - u)
+        buf[R.NEW + j, i] = buf[R.LAST_STATE + j, i] + change
+
+
+def set_within(buf: Table, i: int, elapsed: float) -> None:
+    """Put the state at this time after the step just made began into the rows of the new state.
+
+    It is that of the step's series, or of cubics through its ends.
+    """
+    if SERIES:
+        state = series_within(buf, i, elapsed)
+        for j in range(ORDER):
+            buf[R.NEW + j, i] = state[j]
+        return
+    h = buf[R.MADE, i]
+    for j in range(ORDER):
+        slope, end_slope = h * buf[R.LAST_SLOPE + j, i], h * buf[R.SLOPE + j, i]
+        buf[R.NEW + j, i] = cubic(elapsed / h, buf[R.LAST_STATE + j, i], buf[R.STATE + j, i], slope, end_slope)

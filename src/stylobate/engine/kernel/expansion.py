@@ -1,0 +1,102 @@
+"""A model's equations as Taylor series."""
+
+from functools import cache
+
+from stylobate.engine.equations.expressions import Expression, Recording
+from stylobate.engine.equations.recording import recorded
+from stylobate.engine.equations.series import Series
+from stylobate.engine.kernel.shape import SERIES_ORDER, Shape
+from stylobate.errors import UnsupportedError
+from stylobate.models import Model
+
+
+class Expansion:
+    """The series of a model's equations: of its states and of the square of its tilt.
+
+    Coefficient k of state j is called `s{j}_{k}`; those of the base's accelerations `ax_{k}` …, parameters `p{j}`.
+
+    Parameters
+    ----------
+    model
+        The class of the model.
+    states, parameters
+        How many it has.
+    vertical
+        Whether the base moves vertically too.
+
+    Raises
+    ------
+    UnsupportedError
+        If the equations cannot be recorded, or hold operations without a recurrence.
+    """
+
+    def __init__(self, model: type[Model], states: int, parameters: int, *, vertical: bool) -> None:
+        record = Recording()
+        self._names = [f"s{j}" for j in range(states)]
+        pushes = ["ax", "ay", *(["az"] if vertical else [])]
+        moving = {name: record.input(name) for name in (*self._names, *pushes)}
+        numbers = tuple(record.input(f"p{j}") for j in range(parameters))
+        state = tuple(moving[name] for name in self._names)
+        rates = recorded(model.rates, (*state, *(moving.get(name, 0.0) for name in ("ax", "ay", "az")), *numbers))
+        self._rates: list[Expression] = [record.known(rate) for rate in rates]
+        x, y, _, _ = recorded(model.tilt_of, (*state, *numbers))
+        self._series = Series(record, [*self._rates, record.known(x * x + y * y)], moving)
+
+    @property
+    def integrals(self) -> tuple[int, ...]:
+        """Of each state the one whose rate it is, or itself: the coefficients of that one tell those of both."""
+        out = list(range(len(self._names)))
+        for j, rate in enumerate(self._rates):
+            if rate.name in self._names:
+                rate_of = self._names.index(rate.name)
+                if out[rate_of] == rate_of and self._rates[rate_of].name not in self._names:
+                    out[rate_of] = j
+        return tuple(out)
+
+    def coefficient_lines(self, k: int) -> list[str]:
+        """Return lines that find coefficients `k` of rates and square, and from them what follows of the states."""
+        out = self._series.lines(k)
+        if k == SERIES_ORDER:
+            return out
+        integrals = self.integrals
+        for j, integral in enumerate(integrals):
+            rate = self.rate(j, k)
+            if integral != j:
+                out.append(f"s{integral}_{k + 2} = {rate} * {1.0 / ((k + 1) * (k + 2))!r}")
+                out.append(f"s{j}_{k + 1} = {float(k + 2)!r} * s{integral}_{k + 2}")
+            elif j not in (integrals[:j] + integrals[j + 1 :]):
+                out.append(f"s{j}_{k + 1} = {rate} * {1.0 / (k + 1)!r}")
+        return out
+
+    def rate(self, j: int, k: int) -> str:
+        """Return coefficient `k` of the rate of state `j`."""
+        return self._series.result(j, k)
+
+    def square(self, k: int) -> str:
+        """Return coefficient `k` of the square of the tilt."""
+        return self._series.result(len(self._names), k)
+
+
+@cache
+def series_integrals(model: type[Model], states: int, parameters: int, *, vertical: bool) -> tuple[int, ...]:
+    """Return the `integrals` of a model's equations.
+
+    Raises
+    ------
+    UnsupportedError
+        If they have no series.
+    """
+    try:
+        return Expansion(model, states, parameters, vertical=vertical).integrals
+    except UnsupportedError as error:
+        message = (
+            f"the equations of model {model.name} hold more than sums, products, quotients and square roots, for which "
+            "Taylor series are written; use method='dop853'"
+        )
+        raise UnsupportedError(message) from error
+
+
+def expansion_of(model: type[Model], shape: Shape) -> Expansion:
+    """Return the series by which a kernel of this shape makes its steps."""
+    vertical = "az" in shape.forcing.components
+    return Expansion(model, shape.states, shape.parameters, vertical=vertical)

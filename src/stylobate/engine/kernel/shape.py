@@ -1,0 +1,172 @@
+"""What sets one kernel apart from another, and the layout of its buffer and table."""
+
+from dataclasses import dataclass
+
+from stylobate.engine.kernel.columns import (
+    LOOKS,
+    STATE,
+    SWITCHING_TRACE_ROOM,
+    TRACE_ROOM,
+    TRACE_TERMS,
+    Change,
+    Log,
+    Setup,
+    Trace,
+    Window,
+)
+from stylobate.engine.kernel.forcing_source import ForcingSource
+from stylobate.engine.kernel.layout import Rows
+
+STAGES = 12
+"""Stages of DOP853; one more gives the slope at the end of a step."""
+
+DENSE_TERMS = 7
+"""Terms of the polynomial that tells the state within a step of DOP853."""
+
+MARGIN_PLACES = 4
+"""Equal parts of a step, at the ends of which guards are looked at."""
+
+SERIES_ORDER = 16
+"""Order of Taylor series."""
+
+NODES = 8
+"""Places within a step at which it is observed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """What sets one kernel apart from another.
+
+    Parameters
+    ----------
+    states, parameters
+        How many the model has.
+    planar
+        Whether it integrates motion in a vertical plane, with two states.
+    forcing
+        How the base moves.
+    width
+        Lanes.
+    series
+        Where steps are made by Taylor series: of each state the one whose rate it is, or itself. Empty where they are
+        made by DOP853.
+    demands
+        Whether it follows what the contact must bear.
+    guards
+        How many guards guard a kind of contact, of a model that changes between kinds; else 0.
+    slip, kept
+        Which of its states are the velocity of slip, and which do not change within a step.
+    """
+
+    states: int
+    parameters: int
+    planar: bool
+    forcing: ForcingSource
+    width: int
+    series: tuple[int, ...] = ()
+    demands: bool = False
+    guards: int = 0
+    slip: tuple[int, ...] = ()
+    kept: tuple[int, ...] = ()
+
+    @property
+    def parameters_at(self) -> int:
+        """Column of the table at which the model's parameters begin, behind the state and what is noted of changes."""
+        return STATE + max(self.states, 2) + len(self.changes)
+
+    @property
+    def motion_at(self) -> int:
+        """Column at which the numbers of the base motion begin."""
+        return self.parameters_at + self.parameters
+
+    @property
+    def breaks_at(self) -> int:
+        """Column at which its breaks begin."""
+        return self.motion_at + self.forcing.columns
+
+    @property
+    def trace_width(self) -> int:
+        """Columns of an entry of a trace, the same for motion in space and in a plane."""
+        return len(Trace) + TRACE_TERMS * max(self.states, 2)
+
+    @property
+    def trace_room(self) -> int:
+        """Entries of a trace that must be free before a lane is dealt with."""
+        return SWITCHING_TRACE_ROOM if self.guards else TRACE_ROOM
+
+    @property
+    def order(self) -> int:
+        """Number of equations."""
+        return 2 if self.planar else self.states
+
+    @property
+    def changes(self) -> list[str]:
+        """Rows behind the state: what is noted of changes between kinds of contact."""
+        return [column.name.lower() for column in Change] if self.guards else []
+
+    @property
+    def expanded(self) -> list[int]:
+        """The states whose Taylor coefficients are kept: all that are not the rate of another."""
+        return [j for j, integral in enumerate(self.series) if integral == j]
+
+    @property
+    def paired(self) -> set[int]:
+        """Those whose rate is a state too."""
+        return {integral for j, integral in enumerate(self.series) if integral != j}
+
+    def degree(self, j: int) -> int:
+        """Return the degree of the polynomial that an expanded state is told by."""
+        return SERIES_ORDER + (j in self.paired)
+
+    def rows(self) -> Rows:
+        """Return the layout of the buffer: the tables' columns first, under their names in small letters."""
+        rows = Rows()
+        rows.add(*(column.name.lower() for column in Setup), *(column.name.lower() for column in Log))
+        for window in ("before", "late"):
+            rows.add(*(f"{window}_{column.name.lower()}" for column in Window))
+        rows.add_many("look", 4 * LOOKS)
+        rows.add_many("y", self.order)
+        rows.add(*self.changes)
+        rows.add(*_LANE_ROWS)
+        rows.add_many("p", self.parameters)
+        self.forcing.reserve(rows)
+        rows.add(*(f"end_{name}" for name in self.forcing.components))
+        for name in ("new", "last"):
+            rows.add_many(name, self.order)
+        if self.demands:
+            rows.add(*(f"{name}_{place}" for place in ("now", 1, 2, 3, 4) for name in DEMANDS))
+        (self._add_series if self.series else self._add_stages)(rows)
+        return rows
+
+    def _add_series(self, rows: Rows) -> None:
+        rows.add("proposed", *(f"node_{name}" for name in OBSERVED))
+        rows.add_many("square", SERIES_ORDER + 1)
+        for j in self.expanded:
+            rows.add(*(f"c{k}_{j}" for k in range(1, self.degree(j) + 1)))
+
+    def _add_stages(self, rows: Rows) -> None:
+        for stage in range(STAGES + 1):
+            rows.add_many(f"k{stage}_", self.order)
+        rows.add_many("last_slope", self.order)
+        if self.guards:
+            rows.add("last_margin", "margin_now", "broken", "stiff_looks", "stiff_look_at", "stiff_wait")
+            for name in ("stage", "rate", "step"):
+                rows.add_many(name, self.order)
+        for name in ("extra0_", "extra1_", "extra2_", *(f"dense{power}_" for power in range(DENSE_TERMS))):
+            rows.add_many(name, self.order)
+
+
+DEMANDS = ("normal", "friction", "pivoting")
+"""What the contact must bear: normal force over m g, friction and moment over it."""
+
+OBSERVED = ("mean_tilt", "forward_cos", "forward_sin", "backward_cos", "backward_sin")
+"""Rows of the integrals over the last periods."""
+
+_LANE_ROWS = (
+    "run", "piece", "h", "tried", "held_step", "by_tilt", "stop", "wanted", "made", "aimed", "rejected", "side",
+    "atol_now", "grown", "rest_tilt", "rest_square", "slow_square", "no_return",
+    "tilt", "radial", "momentum", "x", "y", "vx", "vy",
+    "turns", "low", "slow", "peak", "flag", "error", "ok", "held", "go", "reached",
+    "trace_azimuth",
+    "new_x", "new_y", "new_vx", "new_vy", "new_tilt", "new_radial", "per_turn",
+)  # fmt: skip
