@@ -56,6 +56,15 @@ def whole_numbers(x, out):
     return (total * 3 - 5) // 2
 
 
+def generators(x, out):
+    j = 3.0
+    for i in range(len(x)):
+        squares = tuple(x[i] * k for k in range(4) if k != 2)
+        out[i] = sum(weight * value for weight, value in zip(LIMITS[1], squares, strict=False)) + squares[-1]
+        out[i] += max(sum(a - j for j in (x[i], 0.5)) for a in squares) + j
+    return len(tuple(range(5)))
+
+
 def conditions(x, out):
     for i in range(len(x)):
         if x[i] > 1.0:
@@ -267,7 +276,16 @@ def documented(x, out):
 
 
 CONSTRUCTS = [
-    *(arithmetic, divisions_by_zero, powers, whole_numbers, conditions, chained_comparisons, conditional_expressions),
+    *(
+        arithmetic,
+        divisions_by_zero,
+        powers,
+        whole_numbers,
+        generators,
+        conditions,
+        chained_comparisons,
+        conditional_expressions,
+    ),
     *(of_what_is_not_looked_at, loops, a_number_that_becomes_a_fraction, calls_early_end, tuples, chosen_from_a_tuple),
     *(tuple_in_a_loop, arguments, closures, enumerations, views, arrays_of_its_own, mathematics),
     *(of_what_is_no_number, what_is_known, documented),

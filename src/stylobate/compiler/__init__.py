@@ -9,7 +9,8 @@ The accepted language
 ---------------------
 * Numbers: floats, whole numbers of 64 bits, truth values; arithmetic, comparisons, `and`, `or`, `not`, conditional
   expressions; functions of `math`, the same of NumPy, and abs, min, max, sum, int, float, bool, len.
-* Tuples and NamedTuples: made, taken to pieces, unrolled by `for`, `zip` and `enumerate`, picked from by an index.
+* Tuples and NamedTuples: made, taken to pieces, unrolled by `for`, `zip` and `enumerate`, picked from by an index; a
+  generator over one, or over a range that is known, is a tuple.
 * Arrays of floats: elements, slices and rows as views, rows copied whole, `np.zeros` of a small known shape. Indices
   that are not known lie between 0 and the length; they are not checked.
 * `if`, `while`, `for` over `range` and over tuples, `break`, `continue`, `return`; assignments, also to several names.

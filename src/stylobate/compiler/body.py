@@ -251,7 +251,9 @@ class Body(Names):
         index = Number(Kind.INTEGER, self.text.value(f"load i64, ptr {counter}"))
         self.text.branch(self.arithmetic.compared(ast.Lt(), index, end).text, body, done)
         self.text.begin(body)
+        self._depth += 1
         self.assign_to(node.target, index)
+        self._depth -= 1
         self._pass(node.body, onward, done)
         self.text.jump(onward)
         self.text.begin(onward)
@@ -267,9 +269,9 @@ class Body(Names):
             self.settle(node)
         for item in items:
             onward = self.text.new_block()
+            self._depth += left_early
             self._take_item(node, item)
             self._loops.append((onward, done))
-            self._depth += left_early
             self._block(node.body)
             self._depth -= left_early
             self._loops.pop()

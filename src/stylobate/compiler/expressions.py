@@ -36,7 +36,11 @@ class Expressions(ABC):
     def call(self, function: Callable[..., Any], values: list[Value], keywords: dict[str, Value]) -> Value:
         """Return the result of a function written in Python."""
 
-    def value(self, node: ast.expr) -> Value:  # noqa: C901, PLR0911  one case for each form
+    @abstractmethod
+    def generated(self, node: ast.GeneratorExp) -> tuple[Value, ...]:
+        """Return the values of a generator, as a tuple."""
+
+    def value(self, node: ast.expr) -> Value:  # noqa: C901, PLR0911, PLR0912  one case for each form
         """Return the value of an expression."""
         match node:
             case ast.Constant():
@@ -61,6 +65,8 @@ class Expressions(ABC):
                 return self._element(node)
             case ast.Call():
                 return self._called(node)
+            case ast.GeneratorExp():
+                return self.generated(node)
             case _:
                 message = f"{type(node).__name__} is not compiled; write it with loops, conditions and calls"
                 raise Refusal(message)
@@ -259,6 +265,8 @@ class Expressions(ABC):
                 message = "an array made in each pass of a loop; make one before it"
                 raise Refusal(message)
             return _OF_ARRAYS[function](self.arithmetic, *values)
+        if function is range and all(isinstance(value, int) for value in values):
+            return range(*values)
         if function in _OVER_TUPLES:
             return tuple(function(*map(self._tuple, values), **keywords))
         return self.call(function, values, keywords)

@@ -8,7 +8,7 @@ from stylobate.compiler.arithmetic import Arithmetic
 from stylobate.compiler.expressions import Expressions
 from stylobate.compiler.refusal import Refusal
 from stylobate.compiler.sources import Source
-from stylobate.compiler.values import Array, Kind, Value
+from stylobate.compiler.values import Array, Kind, Number, Value
 
 _NOTHING = object()
 """Stands for the value of a name that has none any more."""
@@ -17,7 +17,8 @@ _NOTHING = object()
 class Names(Expressions):
     """The names that a function assigns to, and those of its module.
 
-    A name that control flow assigns to has room in memory; any other one means its value.
+    A name to which a condition or loop assigns that is decided while running has room in memory, from the beginning of
+    that until something else is assigned to it; any other one means its value.
 
     Parameters
     ----------
@@ -57,8 +58,7 @@ class Names(Expressions):
 
     def assign(self, name: str, value: Value) -> None:
         """Give a name a value."""
-        lanes = self.arithmetic.lanes
-        if lanes or name not in self._chosen or (not self._depth and not slots.can_be_stored(value)):
+        if self.arithmetic.lanes or name not in self._chosen or not self._depth:
             self._bound[name] = value
             return
         self._bound.pop(name, None)
@@ -95,6 +95,33 @@ class Names(Expressions):
         except slots.WiderKindError as error:
             error.name = name
             raise
+
+    def generated(self, node: ast.GeneratorExp) -> tuple[Value, ...]:
+        """Return the values of a generator, as a tuple; its names mean nothing outside of it."""
+        if len(node.generators) > 1:
+            message = "a generator with two loops; write one in the other"
+            raise Refusal(message)
+        one = node.generators[0]
+        outside, out = dict(self._bound), []
+        for item in self.items(self.value(one.iter)):
+            self._bind(one.target, item)
+            conditions = [self.condition(test) for test in one.ifs]
+            if any(isinstance(condition, Number) for condition in conditions):
+                message = "the conditions of a generator are known while compiling"
+                raise Refusal(message)
+            if all(conditions):
+                out.append(self.value(node.elt))
+        self._bound = outside
+        return tuple(out)
+
+    def _bind(self, target: ast.expr, item: Value) -> None:
+        """Let the names of a generator mean the parts of an item."""
+        if isinstance(target, ast.Name):
+            self._bound[target.id] = item
+            return
+        assert isinstance(target, ast.Tuple)
+        for part, value in zip(target.elts, self.items(item), strict=True):
+            self._bind(part, value)
 
     def assign_to(self, target: ast.expr, value: Value) -> None:
         """Give what stands on the left of an assignment a value."""
@@ -141,12 +168,13 @@ def _is_slice(index: Value) -> bool:
 
 
 def assigned_in(statements: Iterable[ast.AST]) -> set[str]:
-    """Return the names that statements assign to."""
+    """Return the names that statements assign to; those of generators stay in them."""
+    parts = [part for statement in statements for part in ast.walk(statement)]
+    inner = {id(name) for part in parts if isinstance(part, ast.comprehension) for name in ast.walk(part.target)}
     return {
         part.id
-        for statement in statements
-        for part in ast.walk(statement)
-        if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)
+        for part in parts
+        if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store) and id(part) not in inner
     }
 
 

@@ -57,42 +57,49 @@ class Bound:
     Parameters
     ----------
     modules
-        Their functions see each other, and what is bound, instead of what they import.
+        Their functions call each other, and what is bound, instead of what they import.
     names
-        What the names that are `Unbound` mean.
+        What names mean, those that are `Unbound` and any others; a name that is not here means a function of the model,
+        of the written part, or of one of the modules.
     written
-        A part whose text is written, whose functions are bound too.
+        A part whose text is written, whose functions are bound too; None for no such part.
     imported
         Modules whose functions and constants they use as they are.
     """
 
     modules: Sequence[types.ModuleType]
     names: Mapping[str, Any]
-    written: Written
+    written: Written | None = None
     imported: Sequence[types.ModuleType] = field(default=())
 
     @property
     def texts(self) -> Sequence[str]:
         """The texts of all modules, and what is bound in words."""
         words = repr(sorted((name, repr(value)) for name, value in self.names.items()))
-        return [words, *self.written.texts, *map(text_of, (*self.modules, *self.imported))]
+        written = self.written.texts if self.written is not None else ()
+        return [words, *written, *map(text_of, (*self.modules, *self.imported))]
 
     def module(self, name: str, functions: Functions) -> types.ModuleType:
-        """Return one module with the functions of all; tracebacks and debuggers find their lines where they stand."""
+        """Return a module with the functions of all; tracebacks and debuggers find their lines where they stand."""
+        written = {} if self.written is None else vars(self.written.module(f"{name}_written", functions))
+        scopes: dict[str, dict[str, Any]] = {module.__name__: {} for module in self.modules}
+        own = {
+            (module.__name__, key): _with_names(value, scopes[module.__name__])
+            for module in self.modules
+            for key, value in vars(module).items()
+            if _belongs_to(value, {module.__name__})
+        }
+        meanings = {**{key: function for (_, key), function in own.items()}, **written, **functions, **self.names}
+        for module in self.modules:
+            for key, value in vars(module).items():
+                if key in self.names or isinstance(value, Unbound):
+                    scopes[module.__name__][key] = meanings.get(key, value)
+                elif _belongs_to(value, set(scopes)):
+                    scopes[module.__name__][key] = own[value.__module__, value.__name__]
+                elif not key.startswith("__"):
+                    scopes[module.__name__][key] = value
         made = types.ModuleType(name)
-        bound = vars(made)
-        own = {module.__name__ for module in self.modules}
-        for module in self.modules:
-            for key, value in vars(module).items():
-                if not key.startswith("__") and not isinstance(value, Unbound) and not _belongs_to(value, own):
-                    bound[key] = value
-        head = vars(self.written.module(f"{name}_written", functions))
-        bound |= {key: value for key, value in head.items() if not key.startswith("__")}
-        bound |= self.names
-        for module in self.modules:
-            for key, value in vars(module).items():
-                if _belongs_to(value, {module.__name__}):
-                    bound[key] = _with_names(value, bound)
+        vars(made).update({key: function for (_, key), function in own.items()})
         return made
 
 

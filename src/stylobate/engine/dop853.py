@@ -6,9 +6,6 @@ their program dop853.f. They stand here so that kernels are written without load
 
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-import numpy.typing as npt
-
 Weights = Mapping[int, float]
 """By stage; none of the others."""
 
@@ -19,12 +16,8 @@ EXTRA_STAGES = 3
 """More for the dense output."""
 
 
-def _table(rows: Sequence[Weights], columns: int) -> npt.NDArray[np.float64]:
-    table = np.zeros((len(rows), columns))
-    for row, weights in enumerate(rows):
-        for stage, weight in weights.items():
-            table[row, stage] = weight
-    return table
+def _table(rows: Sequence[Weights], columns: int) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(weights.get(stage, 0.0) for stage in range(columns)) for weights in rows)
 
 
 # fmt: off
@@ -55,8 +48,8 @@ B = _table(({0: 0.054293734116568765, 5: 4.450312892752409, 6: 1.891517899314500
          11: 0.04471061572777259},), STAGES)[0]
 """Weights of the slopes in a step."""
 
-C = np.array([0.0, 0.05260015195876773, 0.0789002279381516, 0.1183503419072274, 0.2816496580927726,
-    0.3333333333333333, 0.25, 0.3076923076923077, 0.6512820512820513, 0.6, 0.8571428571428571, 1.0])
+C = (0.0, 0.05260015195876773, 0.0789002279381516, 0.1183503419072274, 0.2816496580927726,
+    0.3333333333333333, 0.25, 0.3076923076923077, 0.6512820512820513, 0.6, 0.8571428571428571, 1.0)
 """Parts of the step at which stages stand."""
 
 E3, E5 = _table((
@@ -81,7 +74,7 @@ A_EXTRA = _table((
 ), STAGES + 1 + EXTRA_STAGES)
 """Weights of the slopes in the stages of the dense output, shape (3, 16)."""
 
-C_EXTRA = np.array([0.1, 0.2, 0.7777777777777778])
+C_EXTRA = (0.1, 0.2, 0.7777777777777778)
 """Parts of the step at which these stand."""
 
 D = _table((

@@ -30,15 +30,11 @@ def texts(plan_of):
     plan = plan_of(sb.Rolling(sb.Column.dimensionless(0.2)), motion)
     kernel = kernel_of(sb.Rolling, plan.shape(planar=False))
     rows, width, table = len(kernel.shape.rows()), kernel.shape.width, ArrayArgument((None, None))
-    signal, buf, flat = (
-        ArrayArgument((1,), Element.SIGNAL),
-        ArrayArgument((rows, width)),
-        ArrayArgument((rows * width,)),
-    )
+    signal, buf = ArrayArgument((1,), Element.SIGNAL), ArrayArgument((rows, width))
 
     def text(lanes):
         unit = Unit(lanes=lanes)
-        unit.export(kernel.compiled.module.advance, "advance", [table, table, signal, buf, flat])
+        unit.export(kernel.compiled.module.advance, "advance", [table, table, signal, buf])
         return unit.module.text("nounwind")
 
     return {lanes: text(lanes) for lanes in {lanes for lanes, _ in TARGETS.values()}}

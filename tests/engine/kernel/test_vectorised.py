@@ -65,7 +65,7 @@ def assembly_of(plan_of):
         shape = plan.shape(planar=planar)
         compiled = kernel_of(model, shape).compiled
         unit = compiled.unit()
-        unit.export(getattr(compiled.module, name), name, [ArrayArgument((len(shape.rows()) * shape.width,)), *after])
+        unit.export(getattr(compiled.module, name), name, [ArrayArgument((len(shape.rows()), shape.width)), *after])
         return machine.assembly(unit.module.text(machine.attributes()))
 
     return made

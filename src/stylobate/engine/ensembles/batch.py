@@ -162,8 +162,8 @@ class Batch:
         pieces, plain = self.plan.motion.pieces, self.plan.plain
         while not (finished := kernel.advance(table, pieces, halt, buffer, plain=plain)) and not halt[0]:
             self._take_trace(table)
-            rows, first = kernel.shape.rows(), buffer[:: kernel.shape.width]
-            paused(first[rows["steps"]], first[rows["time"]] * self.models.time_scale[0])
+            rows = kernel.shape.rows()
+            paused(buffer[rows["steps"], 0], buffer[rows["time"], 0] * self.models.time_scale[0])
         self._take_trace(table)
         self.table[chosen] = table
         if np.any(self.log(Log.STATUS) == Status.CANNOT_DEPART):

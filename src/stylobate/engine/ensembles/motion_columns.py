@@ -15,7 +15,7 @@ from stylobate.engine.ensembles.harmonics import Term, Terms, factors, terms_of
 from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.polynomials import Table, one_after_another, tabulated
 from stylobate.engine.ensembles.stretched import tabulated_alike
-from stylobate.engine.kernel.forcing_source import ForcingSource, Harmonics, Polynomials
+from stylobate.engine.kernel.forcing import Harmonics, KernelForcing, Polynomials
 from stylobate.engine.parameters import changed_motion, declared_names, largest_acceleration
 from stylobate.engine.thresholds import least_rest_energy
 
@@ -101,7 +101,7 @@ class MotionPlan:
             return np.searchsorted(self.combinations, _combination(self.levels, places))
         return values["motion"].astype(np.intp) if "motion" in values else np.zeros(count, dtype=np.intp)
 
-    def source(self, *, planar: bool) -> ForcingSource:
+    def source(self, *, planar: bool) -> KernelForcing:
         """Return how kernels evaluate it."""
         components = (*(("ah",) if planar else ("ax", "ay")), *(("az",) if self.vertical else ()))
         if self.terms is not None:

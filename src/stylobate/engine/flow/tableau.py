@@ -8,10 +8,10 @@ from stylobate.engine import dop853
 
 STAGES = 12
 
-DOP_A = np.vstack([np.pad(dop853.A[:STAGES, :STAGES], ((0, 0), (0, 1))), np.pad(dop853.B, (0, 1))])
+DOP_A = np.vstack([np.pad(dop853.A, ((0, 0), (0, 1))), np.pad(dop853.B, (0, 1))])
 """Weights of the slopes in each stage, shape (13, 13); the last stage is the end of the step."""
-DOP_C = np.append(dop853.C[:STAGES], 1.0)
-DOP_E3, DOP_E5 = dop853.E3, dop853.E5
+DOP_C = np.append(dop853.C, 1.0)
+DOP_E3, DOP_E5 = np.array(dop853.E3), np.array(dop853.E5)
 
 
 class Status(IntEnum):

@@ -17,8 +17,17 @@ KEPT_STATES: tuple[int, ...]
 """States that a step keeps, among them the kind of contact."""
 PARAMETERS: int
 PLANAR: bool
+COMPONENTS: int
+"""Of the acceleration that are followed: one along the line of a plane or two, and the vertical one if there is any."""
 SERIES: int
 """Order of the series by which steps are made; 0 where they are made by stages."""
+INTEGRALS: tuple[int, ...]
+"""Of each state the one whose rate it is, or itself, where steps are made by series."""
+RATES_OF: tuple[int, ...]
+"""Of each state the one that is its rate, or −1."""
+DEGREES: tuple[int, ...]
+COEFFICIENTS: tuple[int, ...]
+"""Of each expanded state the degree of its polynomial, and the row of its first coefficient."""
 VERTICAL: bool
 TERMS: int
 WINDOWED: int
@@ -41,9 +50,14 @@ CAN_PASS: bool
 CAN_PROVE_NO_RETURN: bool
 CAN_GO_TO_PLANE: bool
 CAN_LOSE: bool
+KEEPS_AT_REST: bool
+"""Whether the model has a function `at_rest` that says in which state it rests."""
+SWITCHING: bool
+"""Whether the model changes between kinds of contact."""
 DEMANDS: bool
 
 
+GUARDS: int
 LAST: int
 LIMIT: int
 """Numbers of the last margin, and of that of the tilt limit behind it."""
@@ -55,6 +69,8 @@ JAM: int
 SLIP_X: int
 SLIP_Y: int
 """Places of the velocity of slip in the state."""
+WINDOW_ENDS: tuple[int, int, int]
+"""Places of footprint and twist in the state."""
 CHANGES: int
 """Numbers that make up an implicit step: as many states as it has stages."""
 RESTING: int
@@ -66,32 +82,30 @@ JAMMED: int
 """Kinds of contact."""
 
 R: Any
-"""Rows of the buffer."""
+"""Numbers of the rows of the buffer."""
 
-step: Callable[..., None]
-observe: Callable[..., None]
-accelerations: Callable[..., tuple[float, float, float]]
-rates_at: Callable[..., tuple[float, ...]]
-series_within: Callable[..., tuple[float, ...]]
-row_state: Callable[..., tuple[float, ...]]
-model_lean: Callable[..., tuple[float, float, float, float]]
-lean_of_new: Callable[..., tuple[float, float, float, float]]
-model_struck: Callable[..., tuple[float, ...]]
-model_contact: Callable[..., tuple[float, float, float]]
-model_at_rest: Callable[..., tuple[float, ...]]
-model_departure: Callable[..., tuple[float, ...]]
-model_no_return: Callable[..., float]
-model_passage: Callable[..., tuple[float, tuple[float, ...]]]
-model_rest_energy: Callable[..., float]
-margins_at: Callable[..., tuple[float, ...]]
-model_react: Callable[..., tuple[float, tuple[float, ...]]]
-model_project: Callable[..., tuple[float, ...]]
-note_window: Callable[..., None]
-"""Notes where and how the column is as the last periods begin, of a model that changes between kinds of contact."""
-stability: Callable[..., float]
-"""hλ of the step just made, by a method of Runge and Kutta."""
-set_dense: Callable[..., None]
-dense_state: Callable[..., tuple[float, ...]]
+rates: Callable[..., tuple[float, ...]]
+tilt_of: Callable[..., tuple[float, float, float, float]]
+contact: Callable[..., tuple[float, float, float]]
+impact_map: Callable[..., tuple[float, ...]]
+from_plane: Callable[..., tuple[float, ...]]
+rest_energy: Callable[..., float]
+no_return_tilt: Callable[..., float]
+departure: Callable[..., tuple[float, ...]]
+passage: Callable[..., tuple[float, tuple[float, ...]]]
+at_rest: Callable[..., tuple[float, ...]]
+guards: Callable[..., tuple[float, ...]]
+reset_map: Callable[..., tuple[float, tuple[float, ...]]]
+project: Callable[..., tuple[float, ...]]
+"""The model's functions: see `Model`."""
+
+expand: Callable[..., tuple[tuple[tuple[float, ...], ...], tuple[tuple[float, ...], ...], tuple[float, ...]]]
+"""Taylor coefficients of a step; written for the model, see `expansion`."""
+
+begin: Callable[..., int]
+"""Sets the run of a lane going; returns WAITING when it moves, else the status with which it ends at once."""
+handle: Callable[..., int]
+"""Deals with a lane that needs it; returns the status of a run that ends, or WAITING."""
 
 
 def __getattr__(name: str) -> Any:

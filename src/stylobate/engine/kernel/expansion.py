@@ -1,5 +1,6 @@
 """A model's equations as Taylor series."""
 
+from collections.abc import Iterable
 from functools import cache
 
 from stylobate.engine.equations.expressions import Expression, Recording
@@ -96,7 +97,31 @@ def series_integrals(model: type[Model], states: int, parameters: int, *, vertic
         raise UnsupportedError(message) from error
 
 
-def expansion_of(model: type[Model], shape: Shape) -> Expansion:
-    """Return the series by which a kernel of this shape makes its steps."""
+def expand_source(model: type[Model], shape: Shape) -> str:
+    """Return the source of `expand(start, pushes, numbers)`: Taylor coefficients of a step.
+
+    From the states at its start, the coefficients of each component of the push and the parameters it finds those of
+    each state, those of the rates, and those of the square of the tilt.
+    """
     vertical = "az" in shape.forcing.components
-    return Expansion(model, shape.states, shape.parameters, vertical=vertical)
+    expansion = Expansion(model, shape.states, shape.parameters, vertical=vertical)
+    states, orders = range(shape.states), range(SERIES_ORDER + 1)
+    lines = [f"s{j}_0 = start[{j}]" for j in states]
+    lines += [f"s{integral}_1 = s{j}_0" for j, integral in enumerate(shape.series) if integral != j]
+    lines += [f"p{j} = numbers[{j}]" for j in range(shape.parameters)]
+    lines += [f"{name}_{k} = pushes[{c}][{k}]" for c, name in enumerate(shape.forcing.components) for k in orders]
+    for k in orders:
+        lines += expansion.coefficient_lines(k)
+    degrees = [shape.degree(j) if j in shape.expanded else SERIES_ORDER for j in states]
+    results = (
+        _nested([f"s{j}_{k}" for k in range(degrees[j] + 1)] for j in states),
+        _nested([expansion.rate(j, k) for k in range(SERIES_ORDER)] for j in states),
+        f"({', '.join(expansion.square(k) for k in orders)})",
+    )
+    body = "\n".join(f"    {line}" for line in [*lines, f"return {', '.join(results)}"])
+    return f"import math\n\n\ndef expand(start, pushes, numbers):\n{body}\n"
+
+
+def _nested(rows: Iterable[Iterable[str]]) -> str:
+    tuples = (f"({', '.join(row)})" for row in rows)
+    return f"({', '.join(tuples)})"

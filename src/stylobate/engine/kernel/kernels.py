@@ -1,9 +1,8 @@
-"""Kernels: written for a model and a kind of base motion."""
+"""Kernels: the driver bound to a model and a kind of base motion."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from importlib.metadata import version
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,15 +15,10 @@ from stylobate.compiler.unit import ArrayArgument
 from stylobate.compiler.values import Element
 from stylobate.engine import dop853, elementary, radau, tolerances
 from stylobate.engine.kernel import columns, driver, linear_equations, roots
-from stylobate.engine.kernel.dense_source import dense_source
-from stylobate.engine.kernel.head_source import OPTIONAL, SWITCHING, constants_source, model_source
-from stylobate.engine.kernel.implicit_source import implicit_source
+from stylobate.engine.kernel import shape as shapes
+from stylobate.engine.kernel.expansion import expand_source
 from stylobate.engine.kernel.layout import Row, Table
-from stylobate.engine.kernel.margin_source import margins_source, reaction_source, window_source
-from stylobate.engine.kernel.observation_source import observation_source
-from stylobate.engine.kernel.shape import STAGES, Shape
-from stylobate.engine.kernel.stability_source import stability_source
-from stylobate.engine.kernel.step_source import accelerations_source, rates_source, step_source
+from stylobate.engine.kernel.shape import SERIES_ORDER, STAGES, Shape
 from stylobate.models import Model
 
 _EDGE = 8
@@ -32,6 +26,11 @@ _EDGE = 8
 
 _IN_LANES = ("rates", "tilt_of", "contact", "guards", "project")
 """Functions of a model that steps call for all lanes."""
+
+_OPTIONAL = ("rest_energy", "no_return_tilt", "departure", "passage", "at_rest", "impact_map")
+"""Functions that a model may lack."""
+
+_USED_AS_THEY_ARE = (columns, dop853, elementary, linear_equations, radau, roots, shapes, tolerances)
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,40 +40,34 @@ class Kernel:
     shape: Shape
     compiled: Compiled
 
-    def buffer(self) -> Row:
+    def buffer(self) -> Table:
         """Return a new buffer, in which no batch has begun."""
-        size = len(self.shape.rows()) * self.shape.width
-        room = np.full(size + _EDGE, np.nan)
-        return room[(-room.ctypes.data // room.itemsize) % _EDGE :][:size]
+        rows, width = len(self.shape.rows()), self.shape.width
+        room: Row = np.full(rows * width + _EDGE, np.nan)
+        return room[(-room.ctypes.data // room.itemsize) % _EDGE :][: rows * width].reshape(rows, width)
 
     def advance(
-        self, table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buffer: Row, *, plain: bool = False
+        self, table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buffer: Table, *, plain: bool = False
     ) -> bool:
         """Run a batch to its end, until `halt[0]` is set or a trace is full; return whether it is at its end."""
         advance = self.compiled.plain if plain else self.compiled
-        return bool(advance(table, pieces, halt, buffer.reshape(-1, self.shape.width), buffer))
+        return bool(advance(table, pieces, halt, buffer))
 
 
 @cache
 def kernel_of(model: type[Model], shape: Shape) -> Kernel:
     """Return the kernel of a class of models for this shape."""
-    rows, width, table = len(shape.rows()), shape.width, ArrayArgument((None, None))
+    table = ArrayArgument((None, None))
     compiled = Compiled(
         name="advance",
         program=Bound(
-            modules=driver.modules(switching=bool(shape.guards)),
-            names=_names(shape),
-            written=Written(kernel_source(model, shape), (elementary,)),
-            imported=(columns, dop853, linear_equations, radau, roots, tolerances),
+            modules=driver.modules(switching=shape.guards > 0),
+            names={"R": _rows(shape), **_constants(model, shape)},
+            written=Written(expand_source(model, shape)) if shape.series else None,
+            imported=_USED_AS_THEY_ARE,
         ),
         functions=_functions(model, shape),
-        arguments=(
-            table,
-            table,
-            ArrayArgument((1,), Element.SIGNAL),
-            ArrayArgument((rows, width)),
-            ArrayArgument((rows * width,)),
-        ),
+        arguments=(table, table, ArrayArgument((1,), Element.SIGNAL), ArrayArgument((len(shape.rows()), shape.width))),
         model=model.name,
         description=_in_words(model, shape),
         fast=_IN_LANES,
@@ -82,82 +75,114 @@ def kernel_of(model: type[Model], shape: Shape) -> Kernel:
     return Kernel(shape, compiled)
 
 
-def kernel_source(model: type[Model], shape: Shape) -> str:
-    """Return the source of the module of a kernel."""
-    has = {name: getattr(model, name) is not None for name in OPTIONAL}
-    to_plane = not shape.planar and model.planar_rates is not None
-    return "\n\n".join(
-        [
-            f'"""Written by stylobate {version("stylobate")}: {model.name}, {_kind(shape)}."""\n',
-            _IMPORTS,
-            constants_source(model, shape, has, to_plane=to_plane),
-            accelerations_source(shape),
-            rates_source(shape),
-            model_source(shape, has),
-            step_source(model, shape),
-            observation_source(shape),
-            *_contact_sources(shape),
-            window_source(model, shape, shape.rows()),
-        ]
-    )
+def _rows(shape: Shape) -> SimpleNamespace:
+    """Return the numbers of the rows of the buffer, by their names in capitals; the first rows of blocks by others."""
+    rows = shape.rows()
+    blocks = {
+        "STATE": "y0",
+        "NEW": "new0",
+        "LAST_STATE": "last0",
+        "SLOPE": "k0_0",
+        "SLOPE_NEW": f"k{STAGES}_0",
+        "LAST_SLOPE": "last_slope0",
+        "EXTRA": "extra0_0",
+        "DENSE": "dense0_0",
+        "STAGE": "stage0",
+        "RATE": "rate0",
+        "STEP": "step0",
+        "SQUARE": "square0",
+        "BEFORE": "before_tilt_change",
+        "LATE": "late_tilt_change",
+        "LOOK": "look0",
+        "PARAMETER": "p0",
+        "CONTACT": f"y{shape.order - 1}",
+        "LOADS": "normal_now",
+        "END_PUSH": f"end_{shape.forcing.components[0]}",
+    }
+    # What reads rows that a kernel lacks is left out by the compiler.
+    first = {name: rows.get(row) for name, row in blocks.items()}
+    return SimpleNamespace(**{name.upper(): rows[name] for name in rows}, **first)
 
 
-_IMPORTS = """\
-import math
+def _constants(model: type[Model], shape: Shape) -> dict[str, Any]:
+    """Return what else the driver leaves open."""
+    has = {name: getattr(model, name) is not None for name in _OPTIONAL}
+    return {
+        "WIDTH": shape.width,
+        "ORDER": shape.order,
+        "PARAMETERS": shape.parameters,
+        "PLANAR": shape.planar,
+        "COMPONENTS": len(shape.forcing.components),
+        "VERTICAL": "az" in shape.forcing.components,
+        "PARAMETERS_AT": shape.parameters_at,
+        "MOTION_AT": shape.motion_at,
+        "BREAKS_AT": shape.breaks_at,
+        "TRACE_ROOM": shape.trace_room,
+        "TRACE_STATES": max(shape.states, 2),
+        "TRACE_WIDTH": shape.trace_width,
+        "CAN_REST": has["rest_energy"],
+        "CAN_DEPART": has["departure"],
+        "CAN_PASS": has["passage"] and not shape.planar,
+        "CAN_PROVE_NO_RETURN": has["no_return_tilt"],
+        "CAN_GO_TO_PLANE": not shape.planar and model.planar_rates is not None,
+        "CAN_LOSE": has["impact_map"],
+        "KEEPS_AT_REST": has["at_rest"] and not shape.planar,
+        "DEMANDS": shape.demands,
+        "KEPT": shape.order + len(shape.changes),
+        **shape.forcing.constants(shape.rows()),
+        **_series_constants(shape),
+        **_contact_constants(model, shape),
+    }
 
-import numpy as np
 
-from stylobate.compiler.marks import fast, lanes
-from stylobate.engine.elementary import cos_turns, turning_point, winding
-"""
+def _series_constants(shape: Shape) -> dict[str, Any]:
+    """Return which states steps by series expand, of which degree, and where their coefficients lie."""
+    rows, states = shape.rows(), range(len(shape.series))
+    rates_of = [next((m for m, integral in enumerate(shape.series) if integral == j != m), -1) for j in states]
+    return {
+        "SERIES": SERIES_ORDER if shape.series else 0,
+        "INTEGRALS": shape.series,
+        "RATES_OF": tuple(rates_of),
+        "DEGREES": tuple(shape.degree(j) for j in states),
+        "COEFFICIENTS": tuple(rows.get(f"c1_{j}") for j in states),
+    }
+
+
+def _contact_constants(model: type[Model], shape: Shape) -> dict[str, Any]:
+    """Return numbers of guards and of kinds of contact; −1 where there are none. The tilt limit is a margin too."""
+    names, kinds = model.guard_names, model.contact_kinds
+    places = {"FALLEN": "fallen", "FRICTION": "friction", "JAM": "jam"}
+    states = ("footprint_x", "footprint_y", "twist") if shape.guards else ()
+    return {
+        "SWITCHING": shape.guards > 0,
+        "GUARDS": shape.guards,
+        "LAST": shape.guards - 1,
+        "LIMIT": shape.guards,
+        **{name: names.index(guard) if guard in names else -1 for name, guard in places.items()},
+        **dict(zip(("SLIP_X", "SLIP_Y"), shape.slip or (-1, -1), strict=True)),
+        "KEPT_STATES": shape.kept,
+        "CHANGES": radau.STAGES * shape.order,
+        "WINDOW_ENDS": tuple(model.state_names.index(name) for name in states),
+        **dict.fromkeys(("RESTING", "SLIDING", "ROLLING", "SLIPPING", "FLYING", "JAMMED"), -1),
+        **{kind.name: kind.value for kind in kinds or ()},
+    }
 
 
 def _functions(model: type[Model], shape: Shape) -> dict[str, Callable[..., Any]]:
     """Return the model's functions as a kernel of this shape uses them, by name."""
     functions = {"rates": model.planar_rates if shape.planar else model.rates, "tilt_of": model.tilt_of}
-    functions |= {name: getattr(model, name) for name in OPTIONAL}
+    functions |= {name: getattr(model, name) for name in _OPTIONAL}
     if shape.demands:
         functions["contact"] = model.contact
     if shape.guards:
-        functions |= {name: getattr(model, name) for name in SWITCHING}
+        functions |= {name: getattr(model, name) for name in ("guards", "reset_map", "project")}
     if shape.planar and (shape.demands or model.impact_map is not None):
         functions["from_plane"] = model.from_plane
     return {name: function for name, function in functions.items() if function is not None}
 
 
-def _contact_sources(shape: Shape) -> list[str]:
-    """Return what the driver of a model that changes between kinds of contact calls."""
-    rows, writers = shape.rows(), (margins_source, reaction_source, dense_source, stability_source, implicit_source)
-    return [write(shape, rows) for write in writers] if shape.guards else [dense_source(shape, rows)]
-
-
-def _names(shape: Shape) -> dict[str, Any]:
-    """Return what the driver calls the rows of the buffer."""
-    rows = shape.rows()
-    special = {
-        "STATE": "y0",
-        "NEW": "new0",
-        "LAST_STATE": "last0",
-        "BEFORE": "before_tilt_change",
-        "LATE": "late_tilt_change",
-        "LOOK": "look0",
-        "PARAMETER": "p0",
-        "SLOPE": "k0_0",
-        "SLOPE_NEW": f"k{STAGES}_0",
-        "LAST_SLOPE": "last_slope0",
-        "DENSE": "dense0_0",
-        "CONTACT": f"y{shape.order - 1}",
-    }
-    # What reads rows that a kernel lacks is left out by the compiler.
-    numbers = {name: rows.get(row) for name, row in special.items()}
-    return {"R": SimpleNamespace(**{name.upper(): rows[name] for name in rows}, **numbers)}
-
-
-def _kind(shape: Shape) -> str:
-    return f"{'plane' if shape.planar else 'space'} motion, {shape.forcing.tag}, {shape.width} lanes"
-
-
 def _in_words(model: type[Model], shape: Shape) -> str:
     """Describe a kernel so that its description differs from those of the other kernels of a model."""
+    kind = f"{'plane' if shape.planar else 'space'} motion, {shape.forcing.tag}, {shape.width} lanes"
     options = (", by Taylor series" if shape.series else "", ", with contact demands" if shape.demands else "")
-    return f"{model.name}, {_kind(shape)}{''.join(options)}"
+    return f"{model.name}, {kind}{''.join(options)}"

@@ -14,7 +14,7 @@ from stylobate.engine.kernel.columns import (
     Trace,
     Window,
 )
-from stylobate.engine.kernel.forcing_source import ForcingSource
+from stylobate.engine.kernel.forcing import KernelForcing
 from stylobate.engine.kernel.layout import Rows
 
 STAGES = 12
@@ -61,7 +61,7 @@ class Shape:
     states: int
     parameters: int
     planar: bool
-    forcing: ForcingSource
+    forcing: KernelForcing
     width: int
     series: tuple[int, ...] = ()
     demands: bool = False

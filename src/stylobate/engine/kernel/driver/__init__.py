@@ -16,23 +16,36 @@ from stylobate.engine.kernel.driver import (
     contact_implicit,
     contact_steps,
     contact_stiffness,
+    demands,
+    equations,
     events,
+    guards,
     implicit_step,
+    judgement,
     lift_off,
     moving,
+    observation,
     passages,
     peaks,
+    push,
     release,
     release_search,
     resting,
+    series,
+    stages,
     standing,
     starting,
+    step,
     stops,
+    sums,
     tracing,
     within,
 )
 
-_COMMON = (base_motion, moving, within, tracing, stops, release, release_search, standing, peaks, batch)
+_COMMON = (
+    *(sums, push, equations, stages, series, guards, judgement, demands, observation, step),
+    *(base_motion, moving, within, tracing, stops, release, release_search, standing, peaks, batch),
+)
 _SMOOTH = (resting, lift_off, passages, events, starting)
 _SWITCHING = (
     *(contact_ends, contact_changes, contact_stiffness, contact_steps),

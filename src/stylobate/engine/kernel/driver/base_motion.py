@@ -13,8 +13,8 @@ from stylobate.engine.kernel.bound import (
     VERTICAL,
     WINDOWED,
     R,
-    model_no_return,
 )
+from stylobate.engine.kernel.driver.equations import model_no_return
 from stylobate.engine.kernel.layout import Table
 
 # Where the coefficients of a piece begin in its row, and the place that tells whether it goes on without a jump.

@@ -5,15 +5,15 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.kernel.bound import KEPT, PARAMETERS, PARAMETERS_AT, PLANAR, WIDTH, R, observe, step
+from stylobate.engine.kernel.bound import KEPT, PARAMETERS, PARAMETERS_AT, PLANAR, WIDTH, R, begin, handle
 from stylobate.engine.kernel.columns import STATE, Status
 from stylobate.engine.kernel.driver.base_motion import set_leg, set_no_return
-from stylobate.engine.kernel.driver.events import handle
 from stylobate.engine.kernel.driver.moving import azimuth_now, square_of_speed
-from stylobate.engine.kernel.driver.starting import begin
+from stylobate.engine.kernel.driver.observation import observe
+from stylobate.engine.kernel.driver.step import step
 from stylobate.engine.kernel.driver.stops import passes_knot, set_break, set_look, set_sample, set_strobe
 from stylobate.engine.kernel.driver.tracing import trace_steps
-from stylobate.engine.kernel.layout import Row, Table
+from stylobate.engine.kernel.layout import Table
 
 # A motion that begins is followed finely up to this tilt [units of c].
 GROWN = 1e-3
@@ -110,12 +110,11 @@ def pause(buf: Table, table: Table) -> bool:
     return False
 
 
-def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table, flat: Row) -> bool:
+def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table) -> bool:
     """Run a batch to its end; return whether it got there.
 
     It does not where `halt[0]` is set to 1 from another thread, or a trace is full: then the same buffer goes on, once
-    the trace has been emptied. `table` has a row for each run, see `columns`; `buf` and `flat` are one piece of memory,
-    as a table of rows and as one row, NaN before the first run.
+    the trace has been emptied. `table` has a row for each run, see `columns`; `buf` is NaN before the first run.
     """
     waiting = begin_or_go_on(buf, table, pieces)
     traced = table[0, R.TRACES] > 0.0
@@ -127,12 +126,12 @@ def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table
             return True
         met = False
         while not met:
-            step(flat)
+            step(buf)
             full = traced and trace_steps(buf, table)
             met = full
             for i in range(WIDTH):
                 if buf[R.WATCHED, i] > 0.0 and buf[R.GO, i] > 0.0:
-                    observe(flat, i)
+                    observe(buf, i)
                 if buf[R.FLAG, i] > 0.0 and not passes_knot(buf, i, table, pieces):
                     met = True
             if halt[0] != 0:

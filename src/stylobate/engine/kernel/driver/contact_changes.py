@@ -2,7 +2,6 @@
 
 import math
 
-from stylobate.compiler.marks import flat
 from stylobate.engine.kernel.bound import (
     FALLEN,
     FLYING,
@@ -17,17 +16,15 @@ from stylobate.engine.kernel.bound import (
     SLIDING,
     SLIPPING,
     R,
-    accelerations,
-    lean_of_new,
-    margins_at,
-    model_react,
-    observe,
-    row_state,
 )
 from stylobate.engine.kernel.columns import Status, TraceKind
 from stylobate.engine.kernel.driver.base_motion import held_for_good
 from stylobate.engine.kernel.driver.contact_ends import broken_now
+from stylobate.engine.kernel.driver.equations import lean_of_new, row_state
+from stylobate.engine.kernel.driver.guards import margins_at, model_react
 from stylobate.engine.kernel.driver.moving import azimuth_now, first_step, set_lean, set_rates, set_state
+from stylobate.engine.kernel.driver.observation import observe
+from stylobate.engine.kernel.driver.push import accelerations
 from stylobate.engine.kernel.driver.release import RELEASE_MARGIN
 from stylobate.engine.kernel.driver.release_search import next_release, search_end
 from stylobate.engine.kernel.driver.stops import leg_end, meet_stop, next_stop, resume, stand_to_the_end
@@ -130,7 +127,7 @@ def pass_lapse(buf: Table, i: int, elapsed: float) -> None:
         set_lean(buf, i)
         buf[R.MADE, i] = elapsed
         buf[R.LOW, i] = buf[R.TILT, i]
-        observe(flat(buf), i)
+        observe(buf, i)
 
 
 def goes_on(number: int, before: int, after: int, elapsed: float) -> bool:

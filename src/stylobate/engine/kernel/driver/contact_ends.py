@@ -2,7 +2,10 @@
 
 import math
 
-from stylobate.engine.kernel.bound import LAST, LIMIT, R, dense_state, margins_at, row_state
+from stylobate.engine.kernel.bound import LAST, LIMIT, R
+from stylobate.engine.kernel.driver.equations import row_state
+from stylobate.engine.kernel.driver.guards import margins_at
+from stylobate.engine.kernel.driver.stages import dense_state
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.shape import MARGIN_PLACES
 

@@ -2,7 +2,7 @@
 
 import math
 
-from stylobate.engine.kernel.bound import FLYING, FRICTION, R, set_dense
+from stylobate.engine.kernel.bound import FLYING, FRICTION, R
 from stylobate.engine.kernel.columns import Status
 from stylobate.engine.kernel.driver.contact_changes import BEGINS, go_through, set_moving
 from stylobate.engine.kernel.driver.contact_ends import broken_now, first_end, nearly_broken
@@ -17,6 +17,7 @@ from stylobate.engine.kernel.driver.contact_steps import (
 from stylobate.engine.kernel.driver.contact_stiffness import LOOK_EVERY, found_stiff
 from stylobate.engine.kernel.driver.moving import set_lean
 from stylobate.engine.kernel.driver.peaks import measure_peak
+from stylobate.engine.kernel.driver.stages import set_dense
 from stylobate.engine.kernel.driver.stops import go_on
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.tolerances import SLIP_SHORTER

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from stylobate.engine.kernel.bound import CHANGES, FRICTION, ORDER, R, model_project, row_state
+from stylobate.engine.kernel.bound import CHANGES, FRICTION, ORDER, R
 from stylobate.engine.kernel.columns import Status
 from stylobate.engine.kernel.driver.contact_changes import go_through
 from stylobate.engine.kernel.driver.contact_ends import broken_now, first_end
@@ -16,6 +16,8 @@ from stylobate.engine.kernel.driver.contact_steps import (
     turns,
 )
 from stylobate.engine.kernel.driver.contact_stiffness import LOOK_AGAIN, LOOK_EVERY, NEAR_BOUNDARY
+from stylobate.engine.kernel.driver.equations import row_state
+from stylobate.engine.kernel.driver.guards import model_project
 from stylobate.engine.kernel.driver.implicit_step import (
     MOST_ITERATIONS,
     damped_error,

@@ -2,26 +2,16 @@
 
 import math
 
-from stylobate.compiler.marks import flat
 from stylobate.engine.elementary import turning_point, winding
-from stylobate.engine.kernel.bound import (
-    FLYING,
-    LAST,
-    ORDER,
-    SLIDING,
-    SLIP_X,
-    SLIP_Y,
-    SLIPPING,
-    R,
-    dense_state,
-    observe,
-    row_state,
-)
+from stylobate.engine.kernel.bound import FLYING, LAST, ORDER, SLIDING, SLIP_X, SLIP_Y, SLIPPING, R
 from stylobate.engine.kernel.columns import Status
 from stylobate.engine.kernel.driver.contact_changes import ONE_MOMENT, go_through
 from stylobate.engine.kernel.driver.contact_ends import broken_now
+from stylobate.engine.kernel.driver.equations import row_state
 from stylobate.engine.kernel.driver.moving import set_lean, set_rates, set_state
+from stylobate.engine.kernel.driver.observation import observe
 from stylobate.engine.kernel.driver.peaks import measure_peak
+from stylobate.engine.kernel.driver.stages import dense_state
 from stylobate.engine.kernel.driver.stops import leg_end, meet_stop
 from stylobate.engine.kernel.driver.tracing import trace_part
 from stylobate.engine.kernel.driver.within import set_within
@@ -66,7 +56,7 @@ def come_to(buf: Table, i: int, table: Table, elapsed: float) -> float:
         beyond = measure_peak(buf, i)
     if buf[R.WATCHED, i] > 0.0:
         buf[R.LOW, i] = low
-        observe(flat(buf), i)
+        observe(buf, i)
     return beyond
 
 

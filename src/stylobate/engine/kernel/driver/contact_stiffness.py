@@ -1,6 +1,7 @@
 """Whether steps of a lane are cut by stability alone, as where a patch creeps."""
 
-from stylobate.engine.kernel.bound import SLIDING, SLIPPING, R, stability
+from stylobate.engine.kernel.bound import SLIDING, SLIPPING, R
+from stylobate.engine.kernel.driver.stages import stability
 from stylobate.engine.kernel.layout import Table
 
 # Steps from one look to the next, and in runs that have been stiff. From a step near the boundary of stability, at

@@ -2,8 +2,9 @@
 
 import math
 
-from stylobate.engine.kernel.bound import CAN_LOSE, CAN_PASS, CAN_REST, ORDER, PLANAR, SERIES, R, lean_of_new, row_state
+from stylobate.engine.kernel.bound import CAN_LOSE, CAN_PASS, CAN_REST, ORDER, PLANAR, SERIES, R
 from stylobate.engine.kernel.columns import Status
+from stylobate.engine.kernel.driver.equations import lean_of_new, row_state
 from stylobate.engine.kernel.driver.moving import set_lean, set_state
 from stylobate.engine.kernel.driver.passages import cross_upright, hop, hops, loses, strike
 from stylobate.engine.kernel.driver.peaks import closest_within, measure_peak, take_back

@@ -9,7 +9,9 @@ import math
 import numpy as np
 
 from stylobate.engine import radau
-from stylobate.engine.kernel.bound import CHANGES, ORDER, SLIP_X, SLIP_Y, R, dense_state, rates_at, row_state
+from stylobate.engine.kernel.bound import CHANGES, ORDER, SLIP_X, SLIP_Y, R
+from stylobate.engine.kernel.driver.equations import rates_at, row_state
+from stylobate.engine.kernel.driver.stages import dense_state
 from stylobate.engine.kernel.layout import Row, Table
 from stylobate.engine.kernel.linear_equations import NewtonRoom, factor, solve
 from stylobate.engine.kernel.shape import DENSE_TERMS

@@ -2,19 +2,10 @@
 
 import math
 
-from stylobate.engine.kernel.bound import (
-    DEMANDS,
-    ORDER,
-    PLANAR,
-    SERIES,
-    R,
-    accelerations,
-    model_contact,
-    model_lean,
-    model_rest_energy,
-    rates_at,
-    row_state,
-)
+from stylobate.engine.kernel.bound import DEMANDS, ORDER, PLANAR, SERIES, R
+from stylobate.engine.kernel.driver.demands import LOADS
+from stylobate.engine.kernel.driver.equations import loads_of, model_lean, model_rest_energy, rates_at, row_state
+from stylobate.engine.kernel.driver.push import accelerations
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.roots import nearest_turn, turns_of
 
@@ -59,12 +50,9 @@ def set_rates(buf: Table, i: int, t: float) -> None:
 
 def set_loads(buf: Table, i: int, t: float) -> None:
     """Note the loads of the contact at the beginning of a step."""
-    ax, ay, az = accelerations(buf, i, t)
-    normal, force, moment = model_contact(buf, i, ax, ay, az)
-    per = 1.0 / max(normal, 1e-12)
-    buf[R.NORMAL_NOW, i] = normal
-    buf[R.FRICTION_NOW, i] = force * per
-    buf[R.PIVOTING_NOW, i] = moment * per
+    loads = loads_of(buf, i, row_state(buf, i, R.STATE), accelerations(buf, i, t))
+    for load in range(LOADS):
+        buf[R.LOADS + load, i] = loads[load]
 
 
 def set_state(buf: Table, i: int, state: tuple[float, ...]) -> None:

@@ -2,9 +2,11 @@
 
 import math
 
-from stylobate.engine.kernel.bound import CAN_LOSE, CAN_REST, R, accelerations, lean_of_new, model_passage, model_struck
+from stylobate.engine.kernel.bound import CAN_LOSE, CAN_REST, R
 from stylobate.engine.kernel.columns import TraceKind
+from stylobate.engine.kernel.driver.equations import lean_of_new, model_passage, model_struck
 from stylobate.engine.kernel.driver.moving import azimuth_now, set_lean, set_off, set_state
+from stylobate.engine.kernel.driver.push import accelerations
 from stylobate.engine.kernel.driver.resting import rest_margin, settle
 from stylobate.engine.kernel.driver.stops import next_stop, resume
 from stylobate.engine.kernel.driver.tracing import trace_event, trace_leap

@@ -3,7 +3,8 @@
 import math
 
 from stylobate.engine.elementary import winding
-from stylobate.engine.kernel.bound import ORDER, PLANAR, SERIES, R, lean_of_new, row_state
+from stylobate.engine.kernel.bound import ORDER, PLANAR, SERIES, R
+from stylobate.engine.kernel.driver.equations import lean_of_new, row_state
 from stylobate.engine.kernel.driver.moving import set_lean
 from stylobate.engine.kernel.driver.within import set_within
 from stylobate.engine.kernel.layout import Table

@@ -2,8 +2,9 @@
 
 import math
 
-from stylobate.engine.kernel.bound import DEGREE, R, accelerations
+from stylobate.engine.kernel.bound import DEGREE, R
 from stylobate.engine.kernel.driver.base_motion import held_for_good
+from stylobate.engine.kernel.driver.push import accelerations
 from stylobate.engine.kernel.layout import Table
 
 # Samples to the shortest period of the base motion, as in the search for single runs.

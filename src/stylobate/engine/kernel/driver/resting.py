@@ -2,20 +2,12 @@
 
 import math
 
-from stylobate.engine.kernel.bound import (
-    CAN_DEPART,
-    CAN_GO_TO_PLANE,
-    PLANAR,
-    R,
-    accelerations,
-    lean_of_new,
-    model_at_rest,
-    model_departure,
-    model_rest_energy,
-)
+from stylobate.engine.kernel.bound import CAN_DEPART, CAN_GO_TO_PLANE, PLANAR, R
 from stylobate.engine.kernel.columns import Status, TraceKind
 from stylobate.engine.kernel.driver.base_motion import forcing_rate, held_for_good, least_force
+from stylobate.engine.kernel.driver.equations import lean_of_new, model_at_rest, model_departure, model_rest_energy
 from stylobate.engine.kernel.driver.moving import at_upright, azimuth_now, set_off, set_state
+from stylobate.engine.kernel.driver.push import accelerations
 from stylobate.engine.kernel.driver.release import RELEASE_MARGIN
 from stylobate.engine.kernel.driver.release_search import next_release, search_end
 from stylobate.engine.kernel.driver.standing import bear_standing

@@ -2,7 +2,8 @@
 
 import math
 
-from stylobate.engine.kernel.bound import DEGREE, DEMANDS, R, accelerations
+from stylobate.engine.kernel.bound import DEGREE, DEMANDS, R
+from stylobate.engine.kernel.driver.push import accelerations
 from stylobate.engine.kernel.driver.release import SAMPLES_PER_PERIOD
 from stylobate.engine.kernel.layout import Table
 

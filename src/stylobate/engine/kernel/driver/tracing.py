@@ -11,9 +11,9 @@ from stylobate.engine.kernel.bound import (
     TRACE_WIDTH,
     WIDTH,
     R,
-    set_dense,
 )
 from stylobate.engine.kernel.columns import NOTE, TRACE_TERMS, Trace, TraceKind
+from stylobate.engine.kernel.driver.stages import set_dense
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.roots import turns_of
 

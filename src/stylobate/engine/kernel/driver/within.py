@@ -1,7 +1,8 @@
 """The state within the step just made."""
 
-from stylobate.engine.kernel.bound import ORDER, SERIES, R, series_within, set_dense
-from stylobate.engine.kernel.columns import TRACE_TERMS
+from stylobate.engine.kernel.bound import ORDER, SERIES, R
+from stylobate.engine.kernel.driver.series import series_within
+from stylobate.engine.kernel.driver.stages import dense_change, set_dense
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.roots import cubic
 
@@ -22,11 +23,7 @@ def set_within_closely(buf: Table, i: int, elapsed: float) -> None:
         return
     u = elapsed / buf[R.MADE, i]
     for j in range(ORDER):
-        change = 0.0
-        for k in range(TRACE_TERMS - 1):
-            term = TRACE_TERMS - 2 - k
-            change = (change + buf[R.DENSE + term * ORDER + j, i]) * (u if term % 2 == 0 else 1.0 - u)
-        buf[R.NEW + j, i] = buf[R.LAST_STATE + j, i] + change
+        buf[R.NEW + j, i] = buf[R.LAST_STATE + j, i] + dense_change(buf, i, u, j)
 
 
 def set_within(buf: Table, i: int, elapsed: float) -> None:

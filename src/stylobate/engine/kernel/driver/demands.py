@@ -1,0 +1,80 @@
+"""The loads of the contact within a step, for all lanes side by side: at quarters of it, extremes by parabolas."""
+
+from stylobate.compiler.marks import fast, lanes
+from stylobate.engine.kernel.bound import ORDER, SERIES, WIDTH, R
+from stylobate.engine.kernel.driver.equations import State, loads_of
+from stylobate.engine.kernel.driver.push import accelerations
+from stylobate.engine.kernel.driver.series import series_within
+from stylobate.engine.kernel.layout import Table
+
+PLACES = tuple(range(1, 5))
+"""Equal parts of a step, at the ends of which the loads are looked at."""
+LOADS = 3
+"""Normal force, friction demand and pivoting demand, in the order of their rows."""
+
+
+@fast
+def follow_demands(buf: Table) -> None:
+    """Note the extremes of the loads within the step just made; those at its start are kept from the step before."""
+    for place in PLACES:  # a loop that evaluated several places would be too long
+        look_at_loads(buf, place)
+    for i in lanes(WIDTH):
+        note_extreme(buf, i, 0, R.NORMAL, -1.0)
+        note_extreme(buf, i, 1, R.FRICTION, 1.0)
+        note_extreme(buf, i, 2, R.PIVOTING, 1.0)
+
+
+@fast
+def look_at_loads(buf: Table, place: int) -> None:
+    """Find the loads at a place of the step."""
+    for i in lanes(WIDTH):
+        share = place / len(PLACES)
+        h, t = buf[R.MADE, i], buf[R.TIME, i]
+        time = t if place == len(PLACES) else t - (1.0 - share) * h
+        loads = loads_of(buf, i, state_within(buf, i, share), accelerations(buf, i, time))
+        for load in range(LOADS):
+            buf[R.LOADS + LOADS * place + load, i] = loads[load]
+
+
+def state_within(buf: Table, i: int, share: float) -> State:
+    """Return the state at this part of the step: by cubics through its ends, or its series."""
+    if share == 1.0:
+        return tuple(buf[R.STATE + j, i] for j in range(ORDER))
+    h = buf[R.MADE, i]
+    if SERIES:
+        return series_within(buf, i, share * h)
+    return tuple(
+        cubic_within(
+            share, h, buf[R.LAST_STATE + j, i], buf[R.STATE + j, i], buf[R.LAST_SLOPE + j, i], buf[R.SLOPE + j, i]
+        )
+        for j in range(ORDER)
+    )
+
+
+def cubic_within(share: float, h: float, start: float, end: float, slope: float, end_slope: float) -> float:
+    """Return the cubic with these values and slopes at the ends of a step, at this part of it."""
+    rest = 1.0 - share
+    value = rest * rest * (1.0 + 2.0 * share) * start + share * share * (3.0 - 2.0 * share) * end
+    return value + h * (share * rest * rest * slope + -share * share * rest * end_slope)
+
+
+def note_extreme(buf: Table, i: int, load: int, row: int, sign: float) -> None:
+    """Note the largest value of a load, or with the sign −1 the least, within the step just made."""
+    values = tuple(buf[R.LOADS + LOADS * place + load, i] for place in range(len(PLACES) + 1))
+    top = values[0]
+    for first in range(0, len(PLACES), 2):
+        start, middle, end = values[first], values[first + 1], values[first + 2]
+        bend = start - 2.0 * middle + end
+        slant = end - start
+        # The parabola has its extreme within these two parts, and of the right kind.
+        inside = 1.0 if abs(slant) < -2.0 * sign * bend else 0.0
+        peak = middle - slant * slant / (8.0 * (bend if inside > 0.0 else 1.0))
+        peak = peak if inside > 0.0 else middle
+        top = farther(farther(top, peak, sign), end, sign)
+    go, before = buf[R.GO, i], buf[row, i]
+    buf[row, i] = farther(before, top, sign) if go > 0.0 else before
+    buf[R.LOADS + load, i] = values[-1] if go > 0.0 else values[0]
+
+
+def farther(a: float, b: float, sign: float) -> float:
+    return min(a, b) if sign < 0.0 else max(a, b)

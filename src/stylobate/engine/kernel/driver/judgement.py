@@ -1,0 +1,308 @@
+"""What a step that was tried amounts to, in all lanes side by side: its error, events in it, extremes, the next step.
+
+Straight-line code with selects; what one part finds goes to the next in rows, conditions as numbers 0 and 1.
+"""
+
+import math
+
+from stylobate.compiler.marks import fast, lanes
+from stylobate.engine.dop853 import E3, E5, STAGES
+from stylobate.engine.elementary import turning_point, winding
+from stylobate.engine.kernel.bound import ORDER, PLANAR, SERIES, SLIDING, SLIP_X, SLIP_Y, SLIPPING, SWITCHING, WIDTH, R
+from stylobate.engine.kernel.driver.equations import lean_of_new
+from stylobate.engine.kernel.driver.series import extremes_by_series, falls_and_rises, rises_and_falls
+from stylobate.engine.kernel.driver.stages import slopes_of
+from stylobate.engine.kernel.driver.sums import reciprocals, weighted
+from stylobate.engine.kernel.layout import Table
+from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET, SLIP_SHARE
+
+# Step control as SciPy's: safety 0.9, a step changes by 0.2 to 10, an error below the last number counts as that.
+SAFETY, LEAST_FACTOR, LARGEST_FACTOR, LEAST_ERROR = 0.9, 0.2, 10.0, 1e-12
+# A step by series that ran into NaN is tried again with this part of it.
+RETRY = 0.5
+# A step shorter than this part of the time cannot be made.
+SHORTEST = 2.3e-15
+# A largest tilt within a step is measured if it may exceed the largest so far by this part.
+NEW_PEAK = 1.0 + 1e-7
+# Added where a divisor may be zero.
+TINY = 1e-300
+
+
+@fast
+def judge(buf: Table) -> None:
+    """Accept or reject the step of each lane, note what happened in it, and choose the next."""
+    # A loop that does too little at once would not fill the registers, one that does too much would spill them.
+    for i in lanes(WIDTH):
+        if not SERIES:  # whose error is known with the step
+            find_error(buf, i)
+        accept(buf, i)
+    for i in lanes(WIDTH):
+        note_extremes(buf, i)
+        if not PLANAR:
+            follow_azimuth(buf, i)
+    for i in lanes(WIDTH):
+        keep_step(buf, i)
+        choose_next_step(buf, i)
+        suspect(buf, i)
+
+
+# Error
+
+
+def find_error(buf: Table, i: int) -> None:
+    """Find the error of the step, in tolerances."""
+    scales = reciprocals(tuple(scale_of(buf, i, j) for j in range(ORDER)))
+    e5 = e3 = 0.0
+    for j in range(ORDER):
+        slopes = slopes_of(buf, i, j)
+        of_order_5, of_order_3 = weighted(E5, slopes) * scales[j], weighted(E3, slopes) * scales[j]
+        e5 = e5 + of_order_5 * of_order_5
+        e3 = e3 + of_order_3 * of_order_3
+    spread = e5 + 0.01 * e3
+    buf[R.ERROR, i] = abs(buf[R.H, i]) * e5 / math.sqrt(spread * float(ORDER) + TINY)
+
+
+def scale_of(buf: Table, i: int, j: int) -> float:
+    """Return the tolerance of a state."""
+    size = max(abs(buf[R.STATE + j, i]), abs(buf[R.NEW + j, i]))
+    return absolute_tolerance(buf, i, j) + buf[R.RTOL, i] * size
+
+
+def absolute_tolerance(buf: Table, i: int, j: int) -> float:
+    """Return the absolute tolerance of a state: that of slip is finer while a contact slips."""
+    atol = buf[R.ATOL_NOW, i]
+    if not SWITCHING:
+        return atol
+    if j not in (SLIP_X, SLIP_Y):
+        return atol
+    kind = buf[R.CONTACT, i]
+    return SLIP_SHARE * atol if kind in (SLIPPING, SLIDING) else atol
+
+
+# Acceptance
+
+
+def accept(buf: Table, i: int) -> None:
+    """Find the new lean, and whether the step is good, and taken or held back by an event."""
+    x, y, vx, vy = lean_of_new(buf, i)
+    tilt = math.sqrt(x * x + y * y)
+    radial = x * vx + y * vy
+    past = overshoot(buf, i, x, vx, tilt, radial)
+    ok = 1.0 if buf[R.ERROR, i] < 1.0 else 0.0
+    ahead = (1.0 if past > 0.0 else 0.0) * (0.0 if buf[R.AIMED, i] > 0.0 else 1.0)
+    buf[R.OK, i] = ok
+    buf[R.HELD, i] = ok * ahead
+    buf[R.GO, i] = ok * (1.0 - ahead)
+    buf[R.NEW_X, i] = x
+    buf[R.NEW_Y, i] = y
+    buf[R.NEW_VX, i] = vx
+    buf[R.NEW_VY, i] = vy
+    buf[R.NEW_TILT, i] = tilt
+    buf[R.NEW_RADIAL, i] = radial
+
+
+def overshoot(buf: Table, i: int, x: float, vx: float, tilt: float, radial: float) -> float:
+    """Return source for an indicator that is positive if the step goes beyond an event."""
+    if SWITCHING:  # its guards have been looked at
+        return buf[R.BROKEN, i]
+    past = min(tilt - buf[R.NO_RETURN, i], radial)
+    past = max(past, tilt - buf[R.TILT_LIMIT, i])
+    if not PLANAR:
+        return past
+    side, h = buf[R.SIDE, i], buf[R.H, i]
+    s0, s1 = side * buf[R.X, i], side * x
+    v0, v1 = side * buf[R.VX, i], side * vx
+    _, lowest = turning_point(s0, s1, v0 * h, v1 * h, -1.0)
+    lowest = lowest if v0 < 0.0 else s1
+    lowest = lowest if v1 > 0.0 else s1
+    return max(past, -min(s1, lowest))
+
+
+# Extremes
+
+
+def note_extremes(buf: Table, i: int) -> None:
+    """Note the least and the largest tilt within the step.
+
+    They are those of the square of the tilt, whose least value at a passage of the upright is kept; in a plane of the
+    tilt itself, which may begin at the upright.
+    """
+    h, go = buf[R.H, i], buf[R.GO, i]
+    tilt0, tilt1 = buf[R.TILT, i], buf[R.NEW_TILT, i]
+    if SERIES:
+        falls, lowest, rises, highest, share = extremes_by_series(buf, i)
+    else:
+        falls, rises, share, highest = extreme_by_cubic(buf, i)
+        lowest = highest
+    low = lowest if falls > 0.0 else min(tilt0, tilt1)
+    buf[R.LOW, i] = low
+    # A step towards an event may go beyond it: its ends do not count yet.
+    ends = 0.0 if buf[R.AIMED, i] > 0.0 else max(tilt0, tilt1)
+    largest = buf[R.LARGEST_TILT, i]
+    # An extreme that may be above all others so far is measured by the driver, which looks at aimed steps anyway.
+    highest = highest if rises > 0.0 else 0.0
+    above = max(2.0 * highest - ends - largest * NEW_PEAK, buf[R.AIMED, i])
+    peak = go * rises * (1.0 if above > 0.0 else 0.0)
+    buf[R.PEAK, i] = peak
+    seen = max(ends, highest) * (1.0 - peak)
+    seen = seen if go > 0.0 else 0.0
+    now = buf[R.TIME, i] + h * (share if rises > 0.0 else (1.0 if tilt1 > tilt0 else 0.0))
+    before = buf[R.LARGEST_AT, i]
+    buf[R.LARGEST_AT, i] = now if seen > largest else before
+    buf[R.LARGEST_TILT, i] = max(largest, seen)
+    note_least(buf, i, R.LEAST_TILT, low, go * falls)
+    if not PLANAR:
+        # Passages as slow as rest do not count.
+        square = buf[R.NEW_VX, i] * buf[R.NEW_VX, i] + buf[R.NEW_VY, i] * buf[R.NEW_VY, i]
+        falls = falls if square > buf[R.REST_SQUARE, i] else 0.0
+        note_least(buf, i, R.LEAST_PASSAGE, low, go * falls)
+    if not PLANAR and not SWITCHING:
+        mark_slow(buf, i, h)
+
+
+def extreme_by_cubic(buf: Table, i: int) -> tuple[float, float, float, float]:
+    """Return whether a cubic through the ends has a minimum or a maximum, at which part of the step, and the tilt."""
+    h = buf[R.H, i]
+    if PLANAR:
+        side = buf[R.SIDE, i]
+        start, end = side * buf[R.X, i], side * buf[R.NEW_X, i]
+        slope, end_slope = side * buf[R.VX, i] * h, side * buf[R.NEW_VX, i] * h
+    else:
+        tilt0, tilt1 = buf[R.TILT, i], buf[R.NEW_TILT, i]
+        start, end = tilt0 * tilt0, tilt1 * tilt1
+        slope, end_slope = 2.0 * buf[R.RADIAL, i] * h, 2.0 * buf[R.NEW_RADIAL, i] * h
+    falls, rises = falls_and_rises(slope, end_slope), rises_and_falls(slope, end_slope)
+    share, value = turning_point(start, end, slope, end_slope, rises - falls)
+    value = max(value, 0.0)
+    return falls, rises, share, value if PLANAR else math.sqrt(value)
+
+
+def note_least(buf: Table, i: int, row: int, low: float, counts: float) -> None:
+    least = buf[row, i]
+    closer = low if counts > 0.0 else least
+    buf[row, i] = min(least, closer)
+
+
+def mark_slow(buf: Table, i: int, h: float) -> None:
+    """Mark the lanes in which the column may have been slow enough to come to rest within the step.
+
+    Its speed within lies no further below that at the ends than it changed, or its weight may have changed it. A step
+    by series may be long: it is always looked at.
+    """
+    if SERIES:
+        buf[R.SLOW, i] = 1.0
+        return
+    pull = h * buf[R.SLENDERNESS, i]
+    x = buf[R.NEW_VX, i] - buf[R.VX, i]
+    y = buf[R.NEW_VY, i] - buf[R.VY, i]
+    change = x * x + y * y + pull * pull
+    before = buf[R.VX, i] * buf[R.VX, i] + buf[R.VY, i] * buf[R.VY, i]
+    after = buf[R.NEW_VX, i] * buf[R.NEW_VX, i] + buf[R.NEW_VY, i] * buf[R.NEW_VY, i]
+    slowest = min(before, after)
+    buf[R.SLOW, i] = 1.0 if slowest < 2.0 * (change + buf[R.SLOW_SQUARE, i]) else 0.0
+
+
+def follow_azimuth(buf: Table, i: int) -> None:
+    """Follow the azimuth of the lean round, and end a finer tolerance."""
+    go = buf[R.GO, i]
+    x1, y1 = buf[R.NEW_X, i], buf[R.NEW_Y, i]
+    before, after = buf[R.MOMENTUM, i], x1 * buf[R.NEW_VY, i] - y1 * buf[R.NEW_VX, i]
+    buf[R.TURNS, i] = buf[R.TURNS, i] + go * winding(buf[R.X, i], buf[R.Y, i], x1, y1, before + after)
+    buf[R.MOMENTUM, i] = after if go > 0.0 else before
+    # A motion that has grown, or turned back, is followed with the usual tolerance.
+    grown = max(buf[R.NEW_TILT, i] - buf[R.GROWN, i], -buf[R.NEW_RADIAL, i]) * go
+    full, now = buf[R.ATOL, i], buf[R.ATOL_NOW, i]
+    buf[R.ATOL_NOW, i] = full if grown > 0.0 else now
+
+
+# Keeping the step, and the next one
+
+
+def keep_step(buf: Table, i: int) -> None:
+    """Take the new state, where the step is taken."""
+    go = buf[R.GO, i]
+    for j in range(ORDER):
+        buf[R.LAST_STATE + j, i] = buf[R.STATE + j, i]
+        keep(buf, i, R.STATE + j, R.NEW + j, go)
+        if not SERIES:
+            buf[R.LAST_SLOPE + j, i] = buf[R.SLOPE + j, i]
+            keep(buf, i, R.SLOPE + j, R.SLOPE + STAGES * ORDER + j, go)
+    keep(buf, i, R.TILT, R.NEW_TILT, go)
+    keep(buf, i, R.RADIAL, R.NEW_RADIAL, go)
+    keep(buf, i, R.X, R.NEW_X, go)
+    keep(buf, i, R.Y, R.NEW_Y, go)
+    keep(buf, i, R.VX, R.NEW_VX, go)
+    keep(buf, i, R.VY, R.NEW_VY, go)
+
+
+def keep(buf: Table, i: int, target: int, source: int, go: float) -> None:
+    """Put one row into another where a step is taken."""
+    new, old = buf[source, i], buf[target, i]
+    buf[target, i] = new if go > 0.0 else old
+
+
+def choose_next_step(buf: Table, i: int) -> None:
+    """Go on in time where the step is taken, and choose the next one."""
+    h, t = buf[R.H, i], buf[R.TIME, i]
+    go, ok, stop = buf[R.GO, i], buf[R.OK, i], buf[R.STOP, i]
+    # By a rounding a step shorter than what remains may reach the stop too.
+    reached = go * (1.0 if max(h - (stop - t), t + h - stop) >= 0.0 else 0.0)
+    buf[R.REACHED, i] = reached
+    buf[R.TRIED, i] = h
+    buf[R.MADE, i] = h * go
+    now = t + h * go
+    now = stop if reached > 0.0 else now
+    buf[R.TIME, i] = now
+    wanted = min(wanted_by_series(buf, i, h, ok) if SERIES else wanted_by_error(buf, i, h), buf[R.LONGEST_STEP, i])
+    buf[R.REJECTED, i] = 1.0 - ok
+    buf[R.AIMED, i] = buf[R.AIMED, i] * ok
+    buf[R.WANTED, i] = wanted
+    buf[R.H, i] = min(wanted, stop - now)
+    buf[R.STEPS, i] = buf[R.STEPS, i] + go
+
+
+def wanted_by_error(buf: Table, i: int, h: float) -> float:
+    """Return the next step that the error of this one allows, before stops cut it."""
+    error = max(buf[R.ERROR, i], LEAST_ERROR)
+    most = 1.0 if buf[R.REJECTED, i] > 0.0 else LARGEST_FACTOR
+    # Of a step that ran into NaN the factor is NaN: the first of two is taken where the second is no number.
+    return h * min(most, max(LEAST_FACTOR, SAFETY / math.sqrt(math.sqrt(math.sqrt(error)))))
+
+
+def wanted_by_series(buf: Table, i: int, h: float, ok: float) -> float:
+    """Return the same of a step by series, whose last terms propose it."""
+    proposed = buf[R.PROPOSED, i]
+    return proposed if ok > 0.0 else RETRY * h
+
+
+# Lanes for the driver
+
+
+def suspect(buf: Table, i: int) -> None:
+    """Mark the lanes that the driver must look at.
+
+    Those held back by an event, at a stop, aimed at an event, out of steps or stuck; in space also those perhaps
+    coming to rest, or so near the upright that they pass it in closed form, where no guards say so.
+    """
+    near = 0.0 if PLANAR or SWITCHING else near_upright_now(buf, i)
+    most = min(buf[R.MOST_STEPS, i], buf[R.STIFF_LOOK_AT, i]) if SWITCHING else buf[R.MOST_STEPS, i]
+    over = 1.0 if buf[R.STEPS, i] >= most else 0.0
+    stuck = 1.0 if abs(buf[R.TRIED, i]) < SHORTEST * abs(buf[R.TIME, i]) + TINY else 0.0
+    met = buf[R.REACHED, i] + buf[R.AIMED, i] + buf[R.PEAK, i] + near + over
+    flag = buf[R.HELD, i] + stuck * buf[R.REJECTED, i] + buf[R.GO, i] * met
+    if SWITCHING:  # of a lane without a run, guards say nothing
+        flag = flag * (0.0 if buf[R.RUN, i] < 0.0 else 1.0)
+    buf[R.FLAG, i] = flag
+
+
+def near_upright_now(buf: Table, i: int) -> float:
+    """Return what is positive where the step passed the upright closely, or heads straight for it."""
+    c = buf[R.SLENDERNESS, i]
+    square = buf[R.VX, i] * buf[R.VX, i] + buf[R.VY, i] * buf[R.VY, i]
+    lowest = buf[R.SLOW, i] * buf[R.REST_TILT, i]
+    near = 1.0 if buf[R.LOW, i] < max(lowest, buf[R.PASSAGE_TILT, i]) else 0.0
+    inward = 1.0 if buf[R.RADIAL, i] < 0.0 else 0.0
+    tilt, momentum = buf[R.TILT, i], buf[R.MOMENTUM, i]
+    close = 1.0 if tilt * tilt < HOP_FROM**2 * min(c * c, square) else 0.0
+    straight = 1.0 if momentum * momentum < HOP_OFFSET**2 * c * c * square else 0.0
+    return near + inward * close * straight

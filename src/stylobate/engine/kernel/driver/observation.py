@@ -1,0 +1,90 @@
+"""Integrals over the last periods: the mean tilt, and the parts of the lean that turn with the forcing and against it.
+
+Few lanes are in their last periods at one time. Each is observed by itself; where steps are made by series, which are
+long, a loop runs over the nodes of Gauss's rule within the step.
+"""
+
+import math
+
+import numpy as np
+
+from stylobate.compiler.marks import fast, lanes
+from stylobate.engine.elementary import cos_turns
+from stylobate.engine.kernel.bound import ORDER, PLANAR, SERIES, R
+from stylobate.engine.kernel.driver.equations import lean_of, row_state
+from stylobate.engine.kernel.driver.series import series_terms
+from stylobate.engine.kernel.driver.sums import polynomial
+from stylobate.engine.kernel.layout import Table
+from stylobate.engine.kernel.shape import NODES
+
+_GAUSS = np.polynomial.legendre.leggauss(NODES)  # on −1 … 1
+PLACES, WEIGHTS = 0.5 + 0.5 * _GAUSS[0], 0.5 * _GAUSS[1]
+OBSERVED = 5
+"""Rows of the integrals: mean tilt, forward along the cosine and the sine, backward along both."""
+TINY = 1e-300
+
+Observed = tuple[float, float, float, float, float]
+
+
+@fast
+def observe(buf: Table, i: int) -> None:
+    """Add the integrals over the step just made of the tilt, and of the lean times e^{∓2πi t/T}, T being the period."""
+    if SERIES:
+        observe_by_nodes(buf, i)
+    else:
+        observe_by_ends(buf, i)
+    buf[R.LATE_LEAST, i] = min(buf[R.LATE_LEAST, i], buf[R.LOW, i])
+
+
+def observe_by_nodes(buf: Table, i: int) -> None:
+    """Integrate by Gauss's rule, the states at its nodes being those of the step's series."""
+    h, w = buf[R.MADE, i], buf[R.PER_TURN, i]
+    start = w * (buf[R.TIME, i] - h)
+    terms = tuple(series_terms(buf, i, j) for j in range(ORDER))
+    # Sums would have to be taken in order: products are kept, and added afterwards.
+    for node in lanes(NODES):
+        u = PLACES[node]
+        x, y, _, _ = lean_of(buf, i, tuple(polynomial(one, u * h) for one in terms))
+        turns = start + w * (u * h)
+        cos, sin = cos_turns(turns), cos_turns(turns - 0.25)
+        weight = h * WEIGHTS[node]
+        values = (math.sqrt(x * x + y * y), *turning_parts(x, y, cos, sin))
+        for k in range(OBSERVED):
+            buf[R.NODE_MEAN_TILT + k, node] = weight * values[k]
+    for node in range(NODES):
+        for k in range(OBSERVED):
+            buf[R.MEAN_TILT + k, i] += buf[R.NODE_MEAN_TILT + k, node]
+
+
+def turning_parts(x: float, y: float, cos: float, sin: float) -> tuple[float, float, float, float]:
+    """Return the components of a vector in frames that turn with the forcing and against it."""
+    return x * cos + y * sin, y * cos - x * sin, x * cos - y * sin, y * cos + x * sin
+
+
+def observe_by_ends(buf: Table, i: int) -> None:
+    """Integrate by the trapezoidal rule with its end correction, exact for cubics.
+
+    Tilt and lean are those in a frame that turns with the forcing, or against it, where steady rolling stands still.
+    """
+    h, w = buf[R.MADE, i], buf[R.PER_TURN, i]
+    start = w * (buf[R.TIME, i] - h)
+    weight, correction = 0.5 * h, h * h * (1.0 / 12.0)
+    values0, slopes0 = seen_at(buf, i, R.LAST_STATE, start, w)
+    values1, slopes1 = seen_at(buf, i, R.STATE, start + w * h, w)
+    for k in tuple(range(OBSERVED)):
+        whole = weight * (values0[k] + values1[k]) + correction * (slopes0[k] - slopes1[k])
+        buf[R.MEAN_TILT + k, i] += whole
+
+
+def seen_at(buf: Table, i: int, row: int, turns: float, w: float) -> tuple[Observed, Observed]:
+    """Return what is integrated, and its rates, at an end of the step: the state from this row on."""
+    x, y, vx, vy = lean_of(buf, i, row_state(buf, i, row))
+    cos, sin = cos_turns(turns), cos_turns(turns - 0.25)
+    turning = 6.283185307179586 * w
+    tilt = math.sqrt(x * x + y * y)
+    # In a plane a tilt begins at the upright with some speed.
+    rate = buf[R.SIDE, i] * vx if PLANAR else (x * vx + y * vy) / (tilt + TINY)
+    along, across, against, other = turning_parts(x, y, cos, sin)
+    forward = turning_parts(vx + turning * y, vy - turning * x, cos, sin)
+    backward = turning_parts(vx - turning * y, vy + turning * x, cos, sin)
+    return (tilt, along, across, against, other), (rate, forward[0], forward[1], backward[2], backward[3])

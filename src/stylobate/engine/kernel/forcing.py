@@ -1,0 +1,114 @@
+"""Kinds of base motion that kernels evaluate, and the rows in which their numbers stand; see `driver/push`."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from stylobate.engine.kernel.layout import Rows
+
+
+class KernelForcing(Protocol):
+    """A kind of base motion that kernels can evaluate."""
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the accelerations: "ax" and "ay", or "ah" in a plane, and "az" where the base moves vertically."""
+
+    @property
+    def tag(self) -> str:
+        """A short name for file names."""
+
+    def reserve(self, rows: Rows) -> None:
+        """Add the rows of its numbers."""
+
+    def constants(self, rows: Rows) -> dict[str, int]:
+        """Return what the driver must know to fill the rows."""
+
+    @property
+    def columns(self) -> int:
+        """How many numbers describe the motion in the table of a batch."""
+
+
+@dataclass(frozen=True, slots=True)
+class Harmonics(KernelForcing):
+    """A sum of harmonic terms: in each, one frequency, and an amplitude and phase for each component.
+
+    Parameters
+    ----------
+    terms
+        Number of terms.
+    windowed
+        Whether the terms may begin later or rise over a time: each is multiplied by α − β cos(window phase).
+    components
+        ("ax", "ay"), with "az" where the base moves vertically; in a plane "ah" in place of the two.
+    """
+
+    terms: int
+    windowed: bool
+    components: tuple[str, ...]
+
+    @property
+    def tag(self) -> str:
+        """Such as `h1`, `h2w`; a vertical component shows as `z`."""
+        return f"h{self.terms}{'w' * self.windowed}{'z' * ('az' in self.components)}"
+
+    @property
+    def columns(self) -> int:
+        """Of each term the frequency, amplitude and phase along x, y, z; onset, begin and end of its rise."""
+        return self.terms * (7 + 3 * self.windowed)
+
+    def reserve(self, rows: Rows) -> None:
+        """Add the rows of all the terms, those of one after those of another."""
+        for term in range(self.terms):
+            rows.add(f"turns{term}")
+            for component in self.components:
+                rows.add(f"{component}_amplitude{term}")
+                rows.add(f"{component}_phase{term}")
+            if self.windowed:
+                for name in ("full", "depth", "window_turns", "window_phase"):
+                    rows.add(f"{name}{term}")
+
+    def constants(self, rows: Rows) -> dict[str, int]:
+        """Return the number of terms, and how their rows lie."""
+        return {
+            "TERMS": self.terms,
+            "WINDOWED": int(self.windowed),
+            "FIRST_FORCING": rows["turns0"] if self.terms else 0,
+            "FORCING_ROWS": 1 + 2 * len(self.components) + 4 * self.windowed,
+            "DEGREE": -1,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Polynomials(KernelForcing):
+    """A motion tabulated as one polynomial after another, all of the same `degree`; steps end where pieces do."""
+
+    degree: int
+    components: tuple[str, ...]
+
+    @property
+    def tag(self) -> str:
+        """Such as `p1`, `p15`; a vertical component shows as `z`."""
+        return f"p{self.degree}{'z' * ('az' in self.components)}"
+
+    @property
+    def columns(self) -> int:
+        """Factor, cos and sin of a rotation, vertical factor, delay [s], first piece, number of pieces."""
+        return 7
+
+    def reserve(self, rows: Rows) -> None:
+        """Add the rows of the present piece."""
+        rows.add("middle")
+        rows.add("per_half")
+        for component in self.components:
+            for power in range(self.degree + 1):
+                rows.add(f"{component}{power}")
+
+    def constants(self, rows: Rows) -> dict[str, int]:
+        """Return the degree, and where the rows begin."""
+        return {
+            "TERMS": 0,
+            "WINDOWED": 0,
+            "FIRST_FORCING": rows["middle"],
+            "FORCING_ROWS": self.degree + 1,
+            "DEGREE": self.degree,
+        }
