@@ -176,6 +176,19 @@ def test_help_imports_nothing_heavy():
     assert not any(f"'{name}'" in shown for name in ("scipy", "xarray", "matplotlib", "pydantic.main"))
 
 
+def test_the_table_of_a_run_imports_nothing_that_only_data_and_figures_need(capsys):
+    command = ["simulate", *COLUMN, *START]
+    run(command)  # the compiled code is kept
+    code = (
+        "import sys; from stylobate.cli.main import run; run(sys.argv[1:]); "
+        "heavy = {'xarray', 'pandas', 'dask', 'zarr', 'h5py', 'scipy', 'sympy', 'matplotlib', 'filelock', 'asyncio'}; "
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    shown = subprocess.run([sys.executable, "-c", code, *command], capture_output=True, text=True, check=True).stdout
+    assert shown.splitlines()[-1] == "[]"
+    assert shown.startswith(capsys.readouterr().out)
+
+
 def test_an_interrupt_ends_without_a_traceback(monkeypatch, capsys):
     def interrupted(*_, **__):
         raise KeyboardInterrupt
