@@ -96,7 +96,7 @@ class TrustedCache:
     @contextmanager
     def held(self, name: str) -> Iterator[None]:
         """Hold an entry, so that other processes that make the same one wait; without locks they do not wait."""
-        from filelock import FileLock  # noqa: PLC0415  reading needs none, and it takes a while to load
+        from filelock import FileLock  # noqa: PLC0415  only compiling needs locks; filelock takes long to load
 
         lock = FileLock(self.folder / f"{name}.lock")
         try:

@@ -12,9 +12,9 @@ from stylobate.models import Model
 from stylobate.models.contact import contact_loads
 from stylobate.results.samples import Samples
 
-# About the largest load known, so often so many equal parts are looked at, of the two about the largest before.
+# The largest load is sought in narrower and narrower intervals about it, each divided into so many equal parts.
 _NARROWINGS, _PARTS = 3, 128
-# Before a load first exceeds a limit, so often so many equal parts are looked at: down to 2⁻⁵⁰ of the first.
+# When a load first exceeds a limit is sought in the same way: five divisions leave 2⁻⁵⁰ of the first interval.
 _DIVISIONS, _DIVIDED = 5, 1024
 
 

@@ -102,7 +102,10 @@ class Response:
     decided_at: float
     uncertain: bool
     planar: bool
-    data: _Data = _Data()
+    if TYPE_CHECKING:
+        data: _Data = _Data()
+    else:
+        data: "xr.Dataset" = _Data()
     events: tuple[Event, ...]
     thresholds: Mapping[str, float]
     measures: Mapping[str, float]

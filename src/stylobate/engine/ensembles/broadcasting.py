@@ -93,7 +93,7 @@ def one_run(tilt: tuple[float, float], tilt_rate: tuple[float, float], spin: flo
 
 
 def _numbers(name: str, value: ArrayLike) -> "xr.DataArray":
-    import xarray as xr  # noqa: PLC0415  a single run needs none
+    import xarray as xr  # noqa: PLC0415  a single run needs no labels
 
     if isinstance(value, xr.DataArray):
         return _as_float(name, value)
@@ -105,7 +105,7 @@ def _numbers(name: str, value: ArrayLike) -> "xr.DataArray":
 
 
 def _vectors(name: str, value: ArrayLike) -> "xr.DataArray":
-    import xarray as xr  # noqa: PLC0415  a single run needs none
+    import xarray as xr  # noqa: PLC0415  a single run needs no labels
 
     if isinstance(value, xr.DataArray):
         if value.sizes.get(AXIS) != 2:  # noqa: PLR2004
