@@ -11,6 +11,7 @@ import pytest
 import stylobate as sb
 from stylobate.cli.commands import COMMANDS
 from stylobate.cli.main import run
+from stylobate.cli.output import print_table
 
 COLUMN = ["--slenderness", "0.1", "--damping", "0.1"]
 MOTION = ["--motion", "circular", "--acceleration", "0.065", "--angular-frequency", "1.8"]
@@ -187,6 +188,12 @@ def test_the_table_of_a_run_imports_nothing_that_only_data_and_figures_need(caps
     shown = subprocess.run([sys.executable, "-c", code, *command], capture_output=True, text=True, check=True).stdout
     assert shown.splitlines()[-1] == "[]"
     assert shown.startswith(capsys.readouterr().out)
+
+
+def test_a_table_shows_texts_as_they_are(capsys):
+    print_table("names", [[":boom:.toml", "[red]", "π/2"]])
+    shown = capsys.readouterr().out
+    assert all(text in shown for text in (":boom:.toml", "[red]", "π/2"))
 
 
 def test_an_interrupt_ends_without_a_traceback(monkeypatch, capsys):
