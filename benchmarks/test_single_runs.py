@@ -31,3 +31,24 @@ def test_scipy_on_the_bare_equations(benchmark):
     start = [*START["tilt"], *START["tilt_rate"]]
     flow = benchmark(solve_ivp, equations_1, (0.0, DURATION), start, method="DOP853", rtol=1e-8, atol=1e-11)
     assert flow.success
+
+
+COLUMN = sb.Column.dimensionless(C)
+STONE = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)
+RUNS = {
+    "slender, 60 periods": (MODEL, MOTION, {**START, "duration": 60.0 * MOTION.period}),
+    "rolling, t = 300": (
+        sb.Rolling(COLUMN, damping=ETA, spin_damping=0.1),
+        MOTION,
+        {"tilt": (0.04, 0.0), "tilt_rate": (0.0, 0.07), "duration": 300.0},
+    ),
+    "wobbling, El Centro": (sb.Wobbling(STONE, damping=0.03), sb.sample_record("el centro 1940"), {}),
+}
+
+
+@pytest.mark.benchmark(group="single runs with events, outcome and history")
+@pytest.mark.parametrize("name", RUNS)
+def test_simulate(benchmark, name):
+    model, motion, options = RUNS[name]
+    run = benchmark(sb.simulate, model, motion, **options)
+    assert run.outcome is not sb.Outcome.FAILED

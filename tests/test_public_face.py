@@ -21,7 +21,7 @@ def test_every_public_name_resolves_and_is_explained(name):
 
 def public_members(cls):
     # `rates` is the equations, described by its class.
-    return [name for name in vars(cls) if name[0] != "_" and name != "rates" and callable(getattr(cls, name))]
+    return [name for name in vars(cls) if name[0] != "_" and name != "rates" and callable(getattr(cls, name, None))]
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ import pytest
 import stylobate as sb
 from stylobate.cli.commands import COMMANDS
 from stylobate.cli.main import run
+from stylobate.cli.output import print_table
 
 COLUMN = ["--slenderness", "0.1", "--damping", "0.1"]
 MOTION = ["--motion", "circular", "--acceleration", "0.065", "--angular-frequency", "1.8"]
@@ -174,6 +175,25 @@ def test_help_imports_nothing_heavy():
     code = "import sys; from stylobate.cli.main import run; run(['--help']); print(sorted(sys.modules))"
     shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert not any(f"'{name}'" in shown for name in ("scipy", "xarray", "matplotlib", "pydantic.main"))
+
+
+def test_the_table_of_a_run_imports_nothing_that_only_data_and_figures_need(capsys):
+    command = ["simulate", *COLUMN, *START]
+    run(command)  # the compiled code is kept
+    code = (
+        "import sys; from stylobate.cli.main import run; run(sys.argv[1:]); "
+        "heavy = {'xarray', 'pandas', 'dask', 'zarr', 'h5py', 'scipy', 'sympy', 'matplotlib', 'filelock', 'asyncio'}; "
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    shown = subprocess.run([sys.executable, "-c", code, *command], capture_output=True, text=True, check=True).stdout
+    assert shown.splitlines()[-1] == "[]"
+    assert shown.startswith(capsys.readouterr().out)
+
+
+def test_a_table_shows_texts_as_they_are(capsys):
+    print_table("names", [[":boom:.toml", "[red]", "π/2"]])
+    shown = capsys.readouterr().out
+    assert all(text in shown for text in (":boom:.toml", "[red]", "π/2"))
 
 
 def test_an_interrupt_ends_without_a_traceback(monkeypatch, capsys):

@@ -5,9 +5,9 @@ import logging
 import os
 import stat
 
+import filelock
 import pytest
 
-from stylobate.compiler import trusted_cache
 from stylobate.compiler.trusted_cache import TrustedCache
 from stylobate.errors import FileError
 
@@ -131,13 +131,13 @@ def test_a_folder_that_cannot_lock_is_used_without_locks(cache, monkeypatch):
     def refused(*_, **__):
         raise OSError(errno.EROFS, "Read-only file system")
 
-    monkeypatch.setattr(trusted_cache.FileLock, "acquire", refused)
+    monkeypatch.setattr(filelock.FileLock, "acquire", refused)
     with cache.held(NAME):
         assert cache.read(NAME) == DATA
 
 
 def test_a_held_entry_makes_another_process_wait(cache):
-    other = trusted_cache.FileLock(cache.folder / f"{NAME}.lock", timeout=0)
+    other = filelock.FileLock(cache.folder / f"{NAME}.lock", timeout=0)
     with cache.held(NAME), pytest.raises(TimeoutError):
         other.acquire()
     other.acquire()

@@ -6,6 +6,12 @@ import numpy as np
 import pytest
 
 import stylobate as sb
+from stylobate.compiler import over_rows
+from stylobate.models.contact import contact_loads, per_normal_force
+from stylobate.models.sliding.balance import balance
+from stylobate.models.sliding.forces_along import forces_along
+from stylobate.models.sliding.phases import State
+from stylobate.models.sliding.posture import forces
 
 C, ETA, A0, THETA = 0.1, 0.1, 0.065, 3.0
 COLUMN = sb.Column.dimensionless(C)
@@ -62,3 +68,44 @@ def test_free_rocking_needs_friction_kappa_c_near_the_upright():
     run = sb.simulate(sb.Slender(COLUMN), tilt=(1e-4, 0.0), tilt_rate=(0.0, 0.0), duration=0.02)
     np.testing.assert_allclose(run.data["friction_demand"], 0.75 * C, rtol=2e-3)
     np.testing.assert_allclose(run.data["pivoting_demand"], 0.0, atol=1e-15)
+
+
+SIX = {
+    "slender": sb.Slender(COLUMN, damping=ETA),
+    "slender rolling": sb.SlenderRolling(COLUMN, damping=ETA, spin_damping=0.2),
+    "wobbling": sb.Wobbling(COLUMN, damping=ETA),
+    "rolling": sb.Rolling(COLUMN, damping=ETA, spin_damping=0.2),
+    "planar rocking": sb.PlanarRocking(COLUMN, damping=ETA),
+    "sliding": sb.Sliding(COLUMN, friction_coefficient=0.3, patch=0.05, damping=ETA, spin_damping=0.2),
+}
+
+
+@pytest.mark.parametrize("name", SIX)
+def test_loads_along_a_run_are_those_of_each_moment_and_are_compiled(name):
+    model, rng = SIX[name], np.random.default_rng(7)
+    states = 0.1 * rng.normal(size=(len(model.state_names), 100))
+    if name == "sliding":
+        states[-1] = np.arange(100) % (sb.Contact.FLYING + 1)
+    push, still = 0.1 * rng.normal(size=(3, 100)), np.zeros(100, dtype=bool)
+    expected = np.array(
+        [model.contact(*state, *now, *model.parameters) for state, now in zip(states.T, push.T, strict=True)]
+    )
+    normal, friction, moment = expected.T
+    loads = contact_loads(model, states, push, still)
+    np.testing.assert_array_equal(loads.normal, normal)
+    np.testing.assert_array_equal(loads.friction, per_normal_force(friction, normal))
+    np.testing.assert_array_equal(loads.pivoting, per_normal_force(moment, normal))
+    arguments = len(states) + 3 + len(model.parameters)
+    assert over_rows._compiled(model.contact, arguments, 3, model.name)._code
+
+
+def test_the_forces_of_a_column_that_slides_are_those_of_each_moment_and_are_compiled():
+    model, rng = SIX["sliding"], np.random.default_rng(8)
+    states, push = 0.1 * rng.normal(size=(16, 100)), 0.1 * rng.normal(size=(3, 100))
+    states[-1] = np.arange(100) % (sb.Contact.FLYING + 1)
+    expected = [
+        forces(State(*state), tuple(now), model.numbers)
+        for state, now in zip(states.T.tolist(), push.T.tolist(), strict=True)
+    ]
+    np.testing.assert_array_equal(forces_along(states, push, model.numbers), np.transpose(expected))
+    assert over_rows._compiled(balance, 26, 16, "sliding")._code

@@ -1,6 +1,8 @@
 """The result of a run: its data, saved and loaded, sampled, and run again."""
 
+import dataclasses
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -8,6 +10,7 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import FileError, ParameterError, UnsupportedError
+from stylobate.results.samples import Samples
 
 MODEL = sb.Slender(sb.Column.solid(radius=0.5, height=10.0, density=2700.0), damping=0.1)
 MOTION = sb.Harmonic.circular(acceleration=0.7, angular_frequency=2.5, ramp=2.0).delayed(1.0) + sb.Harmonic.vertical(
@@ -55,6 +58,31 @@ def test_saving_leaves_the_run_as_it_is(run, tmp_path):
     before = run.data.copy(deep=True)
     run.save(str(tmp_path / "run.nc"))
     xr.testing.assert_identical(run.data, before)
+
+
+def test_the_dataset_of_a_run_is_made_when_it_is_used_and_stays_the_same():
+    run = sb.simulate(MODEL, MOTION, tilt=(0.03, 0.01), duration=1.0)
+    sent = pickle.loads(pickle.dumps(run))  # noqa: S301  of our own
+    assert isinstance(vars(run)["data"], Samples)
+    assert isinstance(vars(sent)["data"], Samples)
+    run.data.attrs["note"] = "of the user"
+    assert run.data is run.data
+    assert run.data.attrs.pop("note") == "of the user"
+    xr.testing.assert_identical(sent.data, run.data)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        run.data = run.data
+
+
+def test_a_run_is_changed_into_one_with_another_dataset(run):
+    last = run.data.isel(time=[-1])
+    assert dataclasses.replace(run, data=last).data is last
+    assert run.data.sizes["time"] > 1
+
+
+def test_a_response_without_data_cannot_be_made(run):
+    kept = {name: value for name, value in vars(run).items() if name != "data"}
+    with pytest.raises(TypeError, match="'data'"):
+        sb.Response(**kept)
 
 
 def test_numbers_of_other_kinds_can_be_saved(tmp_path):

@@ -37,7 +37,8 @@ def print_table(title: str, rows: Sequence[Sequence[str]], header: Sequence[str]
         table.add_column(name, overflow="fold")
     for row in rows:
         table.add_row(*row)
-    console = Console(width=None if sys.stdout.isatty() else _PLAIN_WIDTH, markup=False, highlight=False)
+    width = None if sys.stdout.isatty() else _PLAIN_WIDTH
+    console = Console(width=width, markup=False, emoji=False, highlight=False)
     console.print(table)
     if header is not None:
         console.print(title, soft_wrap=True)

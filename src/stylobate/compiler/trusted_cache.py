@@ -14,8 +14,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from filelock import FileLock
-
 from stylobate.errors import FileError
 from stylobate.files import written_aside
 
@@ -98,6 +96,8 @@ class TrustedCache:
     @contextmanager
     def held(self, name: str) -> Iterator[None]:
         """Hold an entry, so that other processes that make the same one wait; without locks they do not wait."""
+        from filelock import FileLock  # noqa: PLC0415  only compiling needs locks; filelock takes long to load
+
         lock = FileLock(self.folder / f"{name}.lock")
         try:
             self.folder.mkdir(mode=stat.S_IRWXU, parents=True, exist_ok=True)

@@ -3,6 +3,7 @@
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Self
@@ -163,12 +164,17 @@ def built_rules(rules: Mapping[str, Any]) -> OutcomeRules:
 def provenance_of_run(model: Model, motion: BaseMotion, **options: Any) -> dict[str, Any]:
     """Return what is needed to repeat a run, as plain values: `SimulationConfig` but for the version."""
     return {
-        "version": version("stylobate"),
+        "version": _version(),
         "column": describe_column(model.column).values(),
         "model": _described(lambda: describe_model(model), model),
         "motion": _described(lambda: describe_motion(motion), motion),
         **{name: list(value) if isinstance(value, tuple) else value for name, value in options.items()},
     }
+
+
+@cache
+def _version() -> str:
+    return version("stylobate")
 
 
 def config_of(provenance: Mapping[str, Any]) -> SimulationConfig:

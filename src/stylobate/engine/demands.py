@@ -4,18 +4,18 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
-import xarray as xr
 
-from stylobate.compiler.over_rows import over_rows
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.standing import loads_while_standing
 from stylobate.engine.trajectory import Trajectory
 from stylobate.models import Model
-from stylobate.models.contact import contact_outputs, per_normal_force
+from stylobate.models.contact import contact_loads
+from stylobate.results.samples import Samples
 
-# About the largest load known, so often so many equal parts are looked at, of the two about the largest before.
-_NARROWINGS, _PARTS = 6, 16
-_HALVINGS = 50
+# The largest load is sought in narrower and narrower intervals about it, each divided into so many equal parts.
+_NARROWINGS, _PARTS = 3, 128
+# When a load first exceeds a limit is sought in the same way: five divisions leave 2⁻⁵⁰ of the first interval.
+_DIVISIONS, _DIVIDED = 5, 1024
 
 
 class Load(IntEnum):
@@ -48,17 +48,17 @@ class Demands:
         model: Model,
         forcing: Forcing,
         trajectory: Trajectory,
-        data: xr.Dataset,
+        samples: Samples,
         friction_coefficient: float | None,
     ) -> "Demands":
-        """Return the demands of a run, sought on dense output about the largest at the samples in `data` and the steps.
+        """Return the demands of a run, sought on dense output about the largest at the `samples` and the steps.
 
         Close to the vertical the contact bears most for a moment that steps resolve and samples may miss.
         """
-        if model.contact is None or model.switches or "friction_demand" not in data:
+        if model.contact is None or model.switches or "friction_demand" not in samples.variables:
             return cls({}, ())
-        loads = _Loads.of(model, forcing, trajectory, data)
-        friction, pivoting, pull = (loads.largest(load) for load in Load)
+        loads = _Loads.of(model, forcing, trajectory, samples)
+        friction, pivoting, pull = loads.largest().tolist()
         measures = {
             "largest_friction_demand": friction,
             "largest_pivoting_demand": pivoting,
@@ -116,39 +116,36 @@ class _Loads:
     values: Floats
 
     @classmethod
-    def of(cls, model: Model, forcing: Forcing, trajectory: Trajectory, data: xr.Dataset) -> "_Loads":
-        """Take the loads at the samples in `data`, at the ends of the steps, and closely where the column stands."""
+    def of(cls, model: Model, forcing: Forcing, trajectory: Trajectory, samples: Samples) -> "_Loads":
+        """Take the loads at the samples, at the ends of the steps, and closely where the column stands."""
         steps = np.append(trajectory.starts, trajectory.end)
-        outputs = contact_outputs(model, trajectory.states(steps), forcing.along(steps), trajectory.resting(steps))
         weight = model.column.mass * model.column.gravity
-        moving = np.stack(
-            [
-                np.append(data[name].to_numpy(), outputs[name].values) / unit
-                for name, unit in (("friction_demand", 1.0), ("pivoting_demand", 1.0), ("normal_force", -weight))
-            ]
-        )
+        sampled = [
+            samples.variables[name].values / unit
+            for name, unit in (("friction_demand", 1.0), ("pivoting_demand", 1.0), ("normal_force", -weight))
+        ]
         stands = [loads_while_standing(forcing, start, end) for start, end in trajectory.standing]
         still = [np.stack([one.friction, np.zeros_like(one.friction), -one.normal]) for one in stands]
-        times = [data["time"].to_numpy() / model.time_scale, steps, *(one.tau for one in stands)]
+        times = [samples.time / model.time_scale, steps, *(one.tau for one in stands)]
+        values = [np.stack(sampled), _loads(model, forcing, trajectory, steps), *still]
         tau, order = np.unique(np.concatenate(times), return_index=True)
-        return cls(model, forcing, trajectory, tau, np.concatenate([moving, *still], axis=1)[:, order])
+        return cls(model, forcing, trajectory, tau, np.concatenate(values, axis=1)[:, order])
 
-    def largest(self, load: Load) -> float:
-        """Return the largest value of a load, sought about the largest one known."""
-        values = self.values[load]
-        top = int(np.argmax(values))
-        at_top = float(values[top])
-        if not np.isfinite(at_top):
-            return at_top
-        low, high = float(self.tau[max(top - 1, 0)]), float(self.tau[min(top + 1, self.tau.size - 1)])
-        for _ in range(_NARROWINGS):
-            tau = np.linspace(low, min(high, self.trajectory.end), _PARTS + 1)
-            with np.errstate(invalid="ignore", over="ignore"):  # infinite next to rest, and where the ground would pull
-                near = self.at(load, tau)
-            top = int(np.argmax(near))
-            at_top = max(at_top, float(near[top]))
-            low, high = float(tau[max(top - 1, 0)]), float(tau[min(top + 1, _PARTS)])
-        return at_top
+    def largest(self) -> Floats:
+        """Return the largest value of each load, shape (3,), each sought about the largest one known."""
+        loads, last = np.arange(len(Load)), self.tau.size - 1
+        top = np.argmax(self.values, axis=1)
+        largest: Floats = self.values[loads, top]
+        bounded = np.isfinite(largest)
+        low = self.tau[np.maximum(top - 1, 0)]
+        high = np.minimum(self.tau[np.minimum(top + 1, last)], self.trajectory.end)
+        for _ in range(_NARROWINGS if bounded.any() else 0):
+            tau = np.linspace(low, high, _PARTS + 1, axis=1)
+            near = self.at(tau.ravel()).reshape(len(Load), *tau.shape)[loads, loads]
+            top = np.argmax(near, axis=1)
+            largest = np.where(bounded, np.fmax(largest, near[loads, top]), largest)
+            low, high = tau[loads, np.maximum(top - 1, 0)], tau[loads, np.minimum(top + 1, _PARTS)]
+        return largest
 
     def first_beyond(self, load: Load, limit: float) -> float | None:
         """Return when a load first exceeds a limit [s]; None if it does so between two of the times only."""
@@ -156,27 +153,22 @@ class _Loads:
         if not beyond.size:
             return None
         first = int(beyond[0])
-        high = float(self.tau[first])
-        low = float(self.tau[first - 1]) if first else high
-        for _ in range(_HALVINGS):
-            middle = 0.5 * (low + high)
-            if self.at(load, np.array([middle]))[0] > limit:
-                high = middle
-            else:
-                low = middle
-        return high * self.model.time_scale
+        low, high = self.tau[max(first - 1, 0)], self.tau[first]
+        for _ in range(_DIVISIONS):
+            tau = np.linspace(low, high, _DIVIDED + 1)
+            exceeds = self.at(tau)[load] > limit
+            exceeds[-1] = True  # known, but for rounding
+            first = int(np.argmax(exceeds))
+            low, high = tau[max(first - 1, 0)], tau[first]
+        return float(high) * self.model.time_scale
 
-    def at(self, load: Load, tau: Floats) -> Floats:
-        """Return a load at any times of the run."""
-        model, push = self.model, self.forcing.along(tau)
-        assert model.contact is not None
-        states = self.trajectory.states(tau)[: len(model.state_names)]
-        parameters = np.broadcast_to(model.parameters, (tau.size, len(model.parameters)))
-        rows = np.hstack([states.T, push.T, parameters])
-        normal, friction, moment = over_rows(model.contact, rows, name=model.name).T
-        resting = self.trajectory.resting(tau)
-        normal = np.where(resting, 1.0 + push[2], normal)
-        if load is Load.PULL:
-            return np.asarray(-normal)
-        force = np.where(resting, np.hypot(*push[:2]), friction) if load is Load.FRICTION else moment
-        return per_normal_force(np.where(resting & (load is Load.PIVOTING), 0.0, force), normal)
+    def at(self, tau: Floats) -> Floats:
+        """Return the loads at any times of the run, shape (3, n)."""
+        return _loads(self.model, self.forcing, self.trajectory, tau)
+
+
+def _loads(model: Model, forcing: Forcing, trajectory: Trajectory, tau: Floats) -> Floats:
+    """Return the loads at times of a run, shape (3, n), numbered by `Load`."""
+    with np.errstate(invalid="ignore", over="ignore"):  # infinite next to rest, and where the ground would pull
+        loads = contact_loads(model, trajectory.states(tau), forcing.along(tau), trajectory.resting(tau))
+    return np.stack([loads.friction, loads.pivoting, -loads.normal])

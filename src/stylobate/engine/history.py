@@ -1,12 +1,12 @@
-"""A trajectory as a labelled dataset in SI units."""
+"""A trajectory as labelled arrays in SI units."""
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.demands import Demands
@@ -14,6 +14,10 @@ from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.trajectory import Trajectory
 from stylobate.errors import ParameterError
 from stylobate.models import Model
+from stylobate.results.samples import Labelled, Samples
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # Default samples: this many to each period of the forcing and unit of the column's own time, within the bounds.
 _PER_PERIOD, _PER_UNIT = 48, 24
@@ -24,10 +28,10 @@ _FEWEST, _MOST = 1001, 50_001
 class Recorded:
     """The samples of a run, the demands on its contact, warnings, and the means to take samples at other times."""
 
-    data: xr.Dataset
+    data: Samples
     measures: dict[str, float]
     warnings: tuple[str, ...]
-    sampler: Callable[[npt.ArrayLike], xr.Dataset]
+    sampler: Callable[[npt.ArrayLike], "xr.Dataset"]
 
 
 def history(
@@ -40,24 +44,26 @@ def history(
 ) -> Recorded:
     """Return the samples of a run at equal steps, `samples` of them or enough to draw every swing."""
     end = trajectory.end * model.time_scale
-    count = default_count(model, motion, trajectory.end) if samples is None else samples
+    usual = default_count(model, motion, trajectory.end)
 
-    def sampler(time: npt.ArrayLike) -> xr.Dataset:
+    def sampler(time: npt.ArrayLike) -> "xr.Dataset":
         t = np.atleast_1d(np.asarray(time, dtype=float))
         if t.size and not (t.min() >= 0.0 and t.max() <= end * (1.0 + 1e-12)):
             message = f"time must lie within the run, 0 to {end!r} s, got {t.min()!r} to {t.max()!r} s"
             raise ParameterError(message)
-        return _dataset(model, motion, trajectory, t)
+        return _samples(model, motion, trajectory, t).as_dataset()
 
-    data = sampler(np.linspace(0.0, end, count))
+    def spread(count: int) -> Samples:
+        return _samples(model, motion, trajectory, np.linspace(0.0, end, count))
+
     # What is measured does not depend on how many samples are kept.
-    usual = default_count(model, motion, trajectory.end)
-    seen = data if count == usual else sampler(np.linspace(0.0, end, usual))
+    seen = spread(usual)
+    data = seen if samples in (None, usual) else spread(samples)
     demands = Demands.of(model, Forcing.of(model, motion), trajectory, seen, friction_coefficient)
     return Recorded(data, demands.measures, demands.warnings, sampler)
 
 
-def _dataset(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Floats) -> xr.Dataset:
+def _samples(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Floats) -> Samples:
     tau = np.minimum(time / model.time_scale, trajectory.end)
     states, resting = trajectory.states(tau), trajectory.resting(tau)
     tilt, rate = model.tilt(states), model.tilt_rate(states) / model.time_scale
@@ -72,39 +78,33 @@ def _dataset(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Flo
         "amplitude_rate": _along_time(radial, "rad s-1", "rate of the tilt angle"),
         "azimuth": _along_time(trajectory.azimuth(tau, tilt), "rad", "azimuth of the lean"),
         "rolling_rate": _along_time(rolling, "rad s-1", "rate of the azimuth"),
-        "resting": xr.Variable("time", resting, {"long_name": "stands on its base"}),
+        "resting": Labelled(("time",), resting, {"long_name": "stands on its base"}),
+        "base_displacement": _of_base(motion.displacement(time), "m", "base displacement"),
+        "base_velocity": _of_base(motion.velocity(time), "m s-1", "base velocity"),
+        "base_acceleration": _of_base(motion.acceleration(time), "m s-2", "base acceleration"),
     }
-    for name, values, units in (
-        ("base_displacement", motion.displacement(time), "m"),
-        ("base_velocity", motion.velocity(time), "m s-1"),
-        ("base_acceleration", motion.acceleration(time), "m s-2"),
-    ):
-        variables[name] = xr.Variable(
-            ("time", "direction"), values, {"units": units, "long_name": name.replace("_", " ")}
-        )
     for name, output in model.outputs(states, Forcing.of(model, motion).along(tau), resting).items():
         make = _along_time if output.values.ndim == 1 else _along_axis
         variables[name] = make(output.values, output.units, output.long_name)
-    coordinates = {
-        "time": xr.Variable("time", time, {"units": "s", "long_name": "time"}),
-        "axis": ["x", "y"],
-        "direction": ["x", "y", "z"],
-    }
     column = model.column
     attributes = {
         "slenderness": column.slenderness,
         "base_radius": column.radius,
         "release_acceleration": column.slenderness * column.gravity,
     }
-    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+    return Samples(time, variables, attributes)
 
 
-def _along_time(values: Floats, units: str, long_name: str) -> xr.Variable:
-    return xr.Variable("time", values, {"units": units, "long_name": long_name})
+def _along_time(values: Floats, units: str, long_name: str) -> Labelled:
+    return Labelled(("time",), values, {"units": units, "long_name": long_name})
 
 
-def _along_axis(values: Floats, units: str, long_name: str) -> xr.Variable:
-    return xr.Variable(("time", "axis"), values, {"units": units, "long_name": long_name})
+def _along_axis(values: Floats, units: str, long_name: str) -> Labelled:
+    return Labelled(("time", "axis"), values, {"units": units, "long_name": long_name})
+
+
+def _of_base(values: Floats, units: str, long_name: str) -> Labelled:
+    return Labelled(("time", "direction"), values, {"units": units, "long_name": long_name})
 
 
 def default_count(model: Model, motion: BaseMotion, end: float) -> int:

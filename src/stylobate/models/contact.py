@@ -1,5 +1,7 @@
 """What the contact must bear along a run, and where it lies."""
 
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 
@@ -26,6 +28,44 @@ def per_normal_force(force: Floats, normal: Floats) -> Floats:
     return np.where(presses, ratio, np.where(force > LEAST_FORCE, np.inf, 0.0))
 
 
+class ContactLoads(NamedTuple):
+    """What the contact bears along a run, each of shape (n,).
+
+    Parameters
+    ----------
+    normal
+        Normal force over the weight.
+    friction
+        Friction force over the normal force.
+    pivoting
+        Moment about the vertical over normal force and radius.
+    """
+
+    normal: Floats
+    friction: Floats
+    pivoting: Floats
+
+
+def contact_loads(model: Model, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> ContactLoads:
+    """Compute what the contact bears along a run of a model with `contact`; of a standing column no moment.
+
+    Parameters
+    ----------
+    model, states, accelerations, resting
+        As for `contact_outputs`.
+    """
+    from stylobate.compiler.over_rows import over_rows  # noqa: PLC0415  building a model needs no compiler
+
+    assert model.contact is not None
+    arguments = (*states[: len(model.state_names)], *accelerations, *model.parameters)
+    rows = np.column_stack(np.broadcast_arrays(*arguments))
+    normal, friction, moment = over_rows(model.contact, rows, name=model.name).reshape(-1, 3).T
+    normal = np.where(resting, 1.0 + accelerations[2], normal)
+    friction = np.where(resting, np.hypot(*accelerations[:2]), friction)
+    moment = np.where(resting, 0.0, moment)
+    return ContactLoads(normal, per_normal_force(friction, normal), per_normal_force(moment, normal))
+
+
 def contact_outputs(
     model: Model, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]
 ) -> dict[str, Output]:
@@ -43,20 +83,12 @@ def contact_outputs(
     """
     if model.contact is None:
         return {}
-    column, moving, parameters = model.column, states[: len(model.state_names)], model.parameters
-    found = [
-        model.contact(*state, *push, *parameters)
-        for state, push in zip(moving.T.tolist(), accelerations.T.tolist(), strict=True)
-    ]
-    normal, friction, moment = np.array(found).reshape(-1, 3).T
-    normal = np.where(resting, 1.0 + accelerations[2], normal)
-    friction = np.where(resting, np.hypot(*accelerations[:2]), friction)
-    moment = np.where(resting, 0.0, moment)
-    demands = [per_normal_force(force, normal) for force in (friction, moment)]
+    loads = contact_loads(model, states, accelerations, resting)
+    weight = model.column.mass * model.column.gravity
     return {
-        "normal_force": Output(column.mass * column.gravity * normal, "N", "normal force at the contact"),
-        "friction_demand": Output(demands[0], "1", "friction force over normal force"),
-        "pivoting_demand": Output(demands[1], "1", "moment about the vertical over normal force and radius"),
+        "normal_force": Output(weight * loads.normal, "N", "normal force at the contact"),
+        "friction_demand": Output(loads.friction, "1", "friction force over normal force"),
+        "pivoting_demand": Output(loads.pivoting, "1", "moment about the vertical over normal force and radius"),
     }
 
 

@@ -291,7 +291,9 @@ class Wobbling(TiltVectorModel):
 
     def energy(self, states: Floats) -> Floats:
         """Return ½Kθ̇² + ½Mβ̇² + c sin θ − (1 − cos θ) in units of m g h [J]."""
-        falling, around, moment = self._motion(states)
+        return self._energy(states, *self._motion(states))
+
+    def _energy(self, states: Floats, falling: Floats, around: Floats, moment: Floats) -> Floats:
         kappa, c = self.column.inertia_ratio, self.column.slenderness
         kinetic = (1.0 + kappa * c * c) * falling**2 + moment * around**2
         energy: Floats = 0.5 * kinetic + finite_tilt.potential(np.hypot(*states[:2]), c)
@@ -320,10 +322,10 @@ class Wobbling(TiltVectorModel):
         Under pure tilt the angular momentum Mβ̇ [kg m²/s] belongs to the azimuth of the lean; without friction a base
         at rest keeps both it and the energy.
         """
-        column, (_, around, moment) = self.column, self._motion(states)
+        column, (falling, around, moment) = self.column, self._motion(states)
         unit = column.base_inertia * column.frequency_scale
         outputs = {
-            "energy": Output(self.energy(states), "J", "energy above rest"),
+            "energy": Output(self._energy(states, falling, around, moment), "J", "energy above rest"),
             "angular_momentum": Output(moment * around * unit, "kg m2 s-1", "angular momentum of the azimuth"),
             "twist": Output(states[4], "rad", "angle of turn about the axis"),
             **path_outputs(self, states, column.radius * states[5:7].T),

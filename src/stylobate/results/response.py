@@ -1,16 +1,19 @@
 """The result of one run."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy.typing as npt
-import xarray as xr
 
 from stylobate.errors import Outcome, UnsupportedError
 from stylobate.results.plain import plain_value
+from stylobate.results.samples import Samples
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _PLAIN = ("decided_at", "uncertain", "planar", "thresholds", "measures", "provenance", "warnings")
 """Fields of a response that hold plain Python values, whatever computed them."""
@@ -45,7 +48,22 @@ class Event:
         return self.kind in ("impact", "passage")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+class _Data:
+    """The field `data` of a response: a Dataset, made of its samples when it is first used."""
+
+    def __get__(self, response: "Response | None", owner: type | None = None) -> "xr.Dataset":
+        if response is None:  # dataclasses asks the class for a default: there is none
+            raise AttributeError
+        data: xr.Dataset | Samples = vars(response)["data"]
+        if isinstance(data, Samples):
+            data = vars(response)["data"] = data.as_dataset()
+        return data
+
+    def __set__(self, response: "Response", data: "xr.Dataset | Samples") -> None:
+        vars(response)["data"] = data
+
+
+@dataclass(frozen=True, kw_only=True)
 class Response:
     """The motion of one column: its outcome and its history.
 
@@ -84,19 +102,22 @@ class Response:
     decided_at: float
     uncertain: bool
     planar: bool
-    data: xr.Dataset
+    if TYPE_CHECKING:
+        data: _Data = _Data()
+    else:
+        data: "xr.Dataset" = _Data()
     events: tuple[Event, ...]
     thresholds: Mapping[str, float]
     measures: Mapping[str, float]
     provenance: Mapping[str, Any]
     warnings: tuple[str, ...] = ()
-    sampler: Callable[[npt.ArrayLike], xr.Dataset] | None = field(default=None, repr=False, compare=False)
+    sampler: Callable[[npt.ArrayLike], "xr.Dataset"] | None = field(default=None, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         for name in _PLAIN:
             object.__setattr__(self, name, plain_value(getattr(self, name)))
 
-    def sample(self, time: npt.ArrayLike) -> xr.Dataset:
+    def sample(self, time: npt.ArrayLike) -> "xr.Dataset":
         """Return the data at other times [s], from the integrator's dense output.
 
         Raises
@@ -135,7 +156,7 @@ class Response:
 
     def __reduce__(self) -> tuple[Any, ...]:
         # The integrator's dense output stays behind: a run sent to another process has its samples only.
-        kept = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "sampler"}
+        kept = {name: value for name, value in vars(self).items() if name != "sampler"}
         return partial(Response, **kept), ()
 
     def __repr__(self) -> str:

@@ -3,18 +3,20 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from stylobate.engine.starts import Start, Turning
 from stylobate.engine.thresholds import without_dust
 from stylobate.errors import ParameterError, require_size
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 Floats = npt.NDArray[np.float64]
-ArrayLike = npt.ArrayLike | xr.DataArray
+ArrayLike: TypeAlias = "npt.ArrayLike | xr.DataArray"
 
 RUN, AXIS = "run", "axis"
 _TILT_LIMIT = math.pi / 2.0
@@ -50,7 +52,7 @@ class Runs:
     spin: Floats
     duration: Floats
     values: Mapping[str, Floats]
-    coordinates: Mapping[str, xr.DataArray]
+    coordinates: Mapping[str, "xr.DataArray"]
     turning: Turning | None = None
 
     def __len__(self) -> int:
@@ -96,7 +98,9 @@ def one_run(start: Start) -> Runs:
     return Runs((RUN,), (1,), *vectors, *numbers, {}, {}, start.turning)
 
 
-def _numbers(name: str, value: ArrayLike) -> xr.DataArray:
+def _numbers(name: str, value: ArrayLike) -> "xr.DataArray":
+    import xarray as xr  # noqa: PLC0415  a single run needs no labels
+
     if isinstance(value, xr.DataArray):
         return _as_float(name, value)
     array = _array(name, value)
@@ -106,7 +110,9 @@ def _numbers(name: str, value: ArrayLike) -> xr.DataArray:
     return xr.DataArray(array, dims=(RUN,) * array.ndim)
 
 
-def _vectors(name: str, value: ArrayLike) -> xr.DataArray:
+def _vectors(name: str, value: ArrayLike) -> "xr.DataArray":
+    import xarray as xr  # noqa: PLC0415  a single run needs no labels
+
     if isinstance(value, xr.DataArray):
         if value.sizes.get(AXIS) != 2:  # noqa: PLR2004
             message = f'{name} must have a dimension "{AXIS}" of length 2, got {dict(value.sizes)}'
@@ -127,11 +133,11 @@ def _array(name: str, value: Any) -> Floats:
         raise ParameterError(message) from None
 
 
-def _as_float(name: str, value: xr.DataArray) -> xr.DataArray:
+def _as_float(name: str, value: "xr.DataArray") -> "xr.DataArray":
     return value.copy(data=_array(name, value.to_numpy()))
 
 
-def _common(given: Mapping[str, xr.DataArray]) -> tuple[tuple[str, ...], tuple[int, ...]]:
+def _common(given: Mapping[str, "xr.DataArray"]) -> tuple[tuple[str, ...], tuple[int, ...]]:
     labels: dict[str, tuple[str, xr.DataArray]] = {}
     for name, array in given.items():
         for dim in set(array.dims) & set(array.coords):
@@ -152,7 +158,7 @@ def _common(given: Mapping[str, xr.DataArray]) -> tuple[tuple[str, ...], tuple[i
     return tuple(sizes), tuple(sizes.values())
 
 
-def _flat(array: xr.DataArray, dims: tuple[str, ...], shape: tuple[int, ...]) -> Floats:
+def _flat(array: "xr.DataArray", dims: tuple[str, ...], shape: tuple[int, ...]) -> Floats:
     own = [dim for dim in dims if dim in array.dims]
     tail = (AXIS,) if AXIS in array.dims else ()
     values = array.transpose(*own, *tail).to_numpy()

@@ -63,7 +63,7 @@ class MotionPlan:
             for value in (values[name].min(initial=math.inf), values[name].max(initial=-math.inf)):
                 if math.isfinite(value):
                     numbers_of(motion)[own].quantity.checked(name, float(value))
-        for number in np.unique(values.get("motion", ())):
+        for number in np.unique(values["motion"]) if "motion" in values else ():
             changed_motion(motion, {"motion": float(number)})
         terms = terms_of(motion) if all(name == own for name, own in declared.items()) else None
         names = () if terms is not None or not len(duration) else tuple(declared)

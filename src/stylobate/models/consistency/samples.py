@@ -35,7 +35,7 @@ class Subject:
         """c = r/h of the column, the scale of tilts."""
         return self.model.column.slenderness
 
-    def generator(self) -> np.random.Generator:
+    def generator(self) -> "np.random.Generator":
         """Return the same random numbers every time."""
         return np.random.default_rng(20)
 

@@ -25,17 +25,14 @@ from stylobate.models.numbers import (
     StaticFrictionCoefficient,
 )
 from stylobate.models.sliding.equations import GUARDS, contact_loads, guards, rates
+from stylobate.models.sliding.forces_along import forces_along
 from stylobate.models.sliding.lift_off import lifted
 from stylobate.models.sliding.phases import Contact, Numbers, State
-from stylobate.models.sliding.posture import forces
 from stylobate.models.sliding.reactions import project, reset_map
 from stylobate.quantities import Quantity
 
 # A least tilt counts as a stroke of the base below this, unless the user sets another [c].
 _PASSAGE = 0.01
-
-# How many numbers `forces` returns for a state.
-_FORCES = 16
 
 
 @dataclass(frozen=True, slots=True)
@@ -239,19 +236,14 @@ class Sliding(Model):
         del resting
         column, scale, numbers = self.column, self.time_scale, self.numbers
         length, named = column.mass_height, State(*states)
-        found = np.array(
-            [
-                forces(State(*state), (push[0], push[1], push[2]), numbers)
-                for state, push in zip(states.T.tolist(), accelerations.T.tolist(), strict=True)
-            ]
-        ).reshape(len(states.T), _FORCES)
+        forces = forces_along(states, accelerations, numbers)
+        pressing, friction, turning = forces[5], forces[6:8], forces[8]
         kind, weight = states[15].astype(np.int8), column.mass * column.gravity
         touches = kind != Contact.FLYING
         slip = np.where(touches, states[8:10], 0.0).T * length / scale
-        normal = weight * found[:, 5]
         demand, pivoting = (
-            np.where(touches, per_normal_force(load, found[:, 5]), np.nan)
-            for load in (np.hypot(found[:, 6], found[:, 7]), np.abs(found[:, 8]) / numbers.c)
+            np.where(touches, per_normal_force(load, pressing), np.nan)
+            for load in (np.hypot(*friction), np.abs(turning) / numbers.c)
         )
         return {
             "contact": Output(
@@ -263,11 +255,11 @@ class Sliding(Model):
             "clearance": Output(length * self._gap(named), "m", "height of the lowest point above the plane"),
             "slip_velocity": Output(slip, "m s-1", "velocity of the contact along the plane"),
             "energy": Output(self._energy(named), "J", "energy above rest, relative to the plane"),
-            "normal_force": Output(normal, "N", "normal force at the contact"),
-            "friction_force": Output(weight * found[:, 6:8], "N", "friction force at the contact"),
+            "normal_force": Output(weight * pressing, "N", "normal force at the contact"),
+            "friction_force": Output(weight * friction.T, "N", "friction force at the contact"),
             "friction_demand": Output(demand, "1", "friction force over normal force"),
             "pivoting_demand": Output(pivoting, "1", "moment about the vertical over normal force and radius"),
-            "painleve_denominator": Output(found[:, 11], "1", "Painlevé's denominator, 1 without slip on the rim"),
+            "painleve_denominator": Output(forces[11], "1", "Painlevé's denominator, 1 without slip on the rim"),
         }
 
     def _gap(self, state: State) -> Floats:
