@@ -71,7 +71,7 @@ class Trajectory:
     @property
     def contacts(self) -> npt.NDArray[np.int8]:
         """The kind of contact in each stretch, of a model that changes between kinds of contact."""
-        return self._terms[:, 0, len(self.model.state_names) - 1].astype(np.int8)
+        return np.asarray(self._terms[0, len(self.model.state_names) - 1], dtype=np.int8)
 
     @property
     def standing(self) -> list[tuple[float, float]]:
@@ -121,8 +121,9 @@ class Trajectory:
 
     @cached_property
     def _terms(self) -> Floats:
-        """The states at the starts, and the coefficients, shape (n, 8, number of states)."""
-        return self.stretches[:, len(Trace) :].reshape(len(self.stretches), TRACE_TERMS, -1)
+        """The states at the starts, and the coefficients, shape (8, number of states, n): quick to pick from."""
+        terms = self.stretches[:, len(Trace) :].reshape(len(self.stretches), TRACE_TERMS, -1)
+        return np.ascontiguousarray(terms.transpose(1, 2, 0))
 
     def _at(self, tau: Floats) -> npt.NDArray[np.intp]:
         return np.clip(np.searchsorted(self.starts, tau, side="right") - 1, 0, None)
@@ -135,12 +136,11 @@ class Trajectory:
 
         E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., section II.6.
         """
-        terms = self._terms[which]
-        out = np.zeros(terms[:, 0].shape)
+        change = np.zeros((self._terms.shape[1], which.size))
         for power in reversed(range(1, TRACE_TERMS)):
-            factor = share if power % 2 else 1.0 - share
-            out = (out + terms[:, power]) * factor[:, np.newaxis]
-        return np.asarray((terms[:, 0] + out).T)
+            change += np.take(self._terms[power], which, axis=1)
+            change *= share if power % 2 else 1.0 - share
+        return np.asarray(np.take(self._terms[0], which, axis=1) + change)
 
     def _lifted(self, states: Floats, which: npt.NDArray[np.intp]) -> Floats:
         """Return the `states` of the model, out of those of these stretches."""
@@ -154,9 +154,8 @@ class Trajectory:
 
     def _carried_at(self, which: npt.NDArray[np.intp], tau: Floats) -> Floats:
         begun, terms = self._carried
-        powers = self._share(which, tau)[:, np.newaxis] ** np.arange(terms.shape[1])
-        length = self.stretches[which, Trace.LENGTH][:, np.newaxis]
-        return np.asarray((begun[which] + length * np.einsum("np,npc->nc", powers, terms[which])).T)
+        gained = _polynomials(terms, which, self._share(which, tau))
+        return np.asarray((begun[which] + self.stretches[which, Trace.LENGTH][:, np.newaxis] * gained).T)
 
     @cached_property
     def _carried(self) -> tuple[Floats, Floats]:
@@ -171,9 +170,9 @@ class Trajectory:
             terms[steps] = np.einsum("nkc,kp->npc", rates, _ANTIDERIVATIVES)
         leaps = np.flatnonzero(self._kinds == TraceKind.LEAP)
         if leaps.size:
-            terms[leaps, 1] = self._carried_rates(self._terms[leaps, 0])
-        share = self._share(np.arange(count), self.ends)
-        gained = np.einsum("np,npc->nc", share[:, np.newaxis] ** np.arange(terms.shape[1]), terms)
+            terms[leaps, 1] = self._carried_rates(self._terms[0][:, leaps].T)
+        each = np.arange(count)
+        gained = _polynomials(terms, each, self._share(each, self.ends))
         gained *= self.stretches[:, Trace.LENGTH][:, np.newaxis]
         begun = np.array(self.carried) + np.cumsum(np.vstack([np.zeros(carried), gained[:-1]]), axis=0)
         return begun, terms
@@ -183,3 +182,11 @@ class Trajectory:
         parameters = np.broadcast_to(self.model.parameters, (len(states), len(self.model.parameters)))
         rows = np.hstack([states[:, : len(self.model.state_names)], parameters])
         return over_rows(self.model.carried_rates, rows, name=self.model.name)
+
+
+def _polynomials(terms: Floats, which: npt.NDArray[np.intp], share: Floats) -> Floats:
+    """Return the polynomials of these numbers, coefficients of shape (n, powers, c), at shares, one for each."""
+    value = np.zeros((which.size, terms.shape[2]))
+    for power in reversed(range(terms.shape[1])):
+        value = value * share[:, np.newaxis] + terms[which, power]
+    return value
