@@ -151,7 +151,7 @@ def simulate_ensemble(
         recheck=recheck,
     )
     if demands and model.contact is None:
-        message = f"model {model.name} does not tell what its contact bears: give it `contact`, or leave out demands"
+        message = f"model {model.name} has no forces of its contact. Give it `contact`, or leave out demands."
         raise UnsupportedError(message)
     if model.switches and (demands or options.method != "dop853"):
         asked = "demands" if demands else f"method {options.method!r}"

@@ -28,7 +28,7 @@ from stylobate.results import Event
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunResult:
-    """What became of a run.
+    """The result of a run.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class RunResult:
 def run_result(
     model: Model, motion: BaseMotion, options: Options, start: Start, functions: Sequence[EventFunction]
 ) -> RunResult:
-    """Follow a run by the kernels of ensembles, and return what became of it."""
+    """Follow a run by the kernels of ensembles, and return its result."""
     run = one_run(start)
     plan = Plan(model, MotionPlan.of(motion, {}, run.duration), options)
 

@@ -40,7 +40,7 @@ class Turning:
         *,
         standing: bool,
     ) -> "Turning":
-        """Return them; `standing` tells whether the column starts upright, without a tilt or a rate of it.
+        """Return them; `standing` says whether the column starts upright, without a tilt or a rate of it.
 
         Raises
         ------
@@ -158,6 +158,6 @@ def require_nouns(model: Model, motion: BaseMotion | None, rules: OutcomeRules |
 
 
 def cannot_depart(model: Model) -> UnsupportedError:
-    """Return what is said of a model that does not tell how a column departs from rest."""
+    """Return the error of a model that does not say how a column departs from rest."""
     message = f"model {model.name} does not say how a column departs from rest: give it `departure`, or start it moving"
     return UnsupportedError(message)

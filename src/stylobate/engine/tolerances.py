@@ -27,5 +27,8 @@ HOPS_APART = 5.0
 STILL = 1e-5
 """A column of less energy than this [c²] that nothing to come can release is at rest however its force may change."""
 
+DEPARTURE = 1e-3
+"""Time after a release, in units of the fastest time scale, at which the series of a departure hands over."""
+
 SAMPLES_PER_PERIOD = 64
 """Samples to the shortest period of the base motion by which releases and loads of a standing column are sought."""

@@ -25,7 +25,7 @@ class Verdict:
 
 
 class Ground(IntEnum):
-    """On what an outcome rests that is told from the last periods."""
+    """On what an outcome rests that the last periods decide."""
 
     NO_PERIOD = 0
     SHORT = 1
@@ -42,14 +42,14 @@ _VERDICTS = {
     Ground.NO_PERIOD: (Outcome.STILL_MOVING, "it moved to the end of the run"),
     Ground.SHORT: (
         Outcome.STILL_MOVING,
-        "the run is shorter than the {more} periods of the base motion by which a steady motion is told; "
+        "the run is shorter than the {more} periods of the base motion that show a steady motion; "
         "set duration to at least {steady:.4g} s",
     ),
     Ground.ROLLS: (Outcome.ROLLING, "it rolled once round in each of the last {n} periods and repeats"),
     Ground.ROCKS: (Outcome.ROCKING, "it repeats over the last {n} periods without travelling round"),
     Ground.SHORT_FOR_MODULATION: (
         Outcome.STILL_MOVING,
-        "the run is shorter than the {twice} periods of the base motion by which modulation is told; "
+        "the run is shorter than the {twice} periods of the base motion that show modulation; "
         "set duration to at least {modulated:.4g} s",
     ),
     Ground.DRIFTS: (Outcome.STILL_MOVING, "its last {both} periods are no steady motion"),
@@ -126,7 +126,7 @@ def grounds(evidence: Evidence, rules: OutcomeRules) -> npt.NDArray[np.int8]:
 
 
 def reason_on(ground: Ground, n: int, period: float) -> str:
-    """Return the reason that rests on `ground`, told by n periods of the base motion of this length [s]."""
+    """Return the reason that rests on `ground`; periods of the base motion have this length [s]."""
     needed = {"steady": _rounded_up((n + 1) * period), "modulated": _rounded_up((2 * n + 1) * period)}
     return _VERDICTS[ground][1].format(n=n, more=n + 1, both=2 * n, twice=2 * n + 1, **needed)
 

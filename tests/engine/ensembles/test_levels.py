@@ -159,13 +159,13 @@ def test_spin_has_its_dimension_like_any_other_argument():
 
 
 class Silent(sb.Slender):
-    """A model that does not tell what its contact bears."""
+    """A model without forces of its contact."""
 
     contact = None
 
 
 def test_demands_are_refused_of_a_model_that_tells_none():
-    with pytest.raises(UnsupportedError, match=r"^model slender does not tell what its contact bears"):
+    with pytest.raises(UnsupportedError, match=r"^model slender has no forces of its contact"):
         sb.simulate_ensemble(Silent(COLUMN), CIRCLE, tilt=(0.05, 0.0), duration=1.0, demands=True)
 
 

@@ -90,7 +90,7 @@ class Plan:
 class Batch:
     """Some runs in the units of their models.
 
-    `planar` tells which runs begin in a plane, and when they have run, which ended in one; `traces` holds what was
+    `planar` says which runs begin in a plane, and when they have run, which ended in one; `traces` holds what was
     taken out of the trace of a single run.
     """
 
@@ -286,7 +286,7 @@ def _fill_starts(
         moved.tilt[upright] = off
         columns = ModelColumns.of(model, runs.values, moved.tilt, runs.tilt_rate, runs.spin)
         states[upright] = columns.states[upright]
-    if model.contact_kinds is not None:  # what stands on its base begins as if it slid; the model tells how it goes on
+    if model.contact_kinds is not None:  # what stands begins as if it slid: the model decides how it goes on
         states[stands, -1] = model.contact_kinds["SLIDING"]
         if runs.turning is not None:
             states[0] = runs.turning.begun(model, states[0])

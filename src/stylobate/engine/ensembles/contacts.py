@@ -1,4 +1,4 @@
-"""What is told of runs whose model changes between kinds of contact."""
+"""Results of runs whose model changes between kinds of contact."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -53,33 +53,33 @@ def contact_arrays(batch: Batch, span: Floats) -> dict[str, npt.NDArray[Any]]:
     `span` is the length of the last periods, NaN where they were not looked at; so for `upright_outcomes`.
     """
     names, scale, length = batch.plan.model.state_names, batch.models.time_scale, batch.models.length
-    told = Contacts.of(batch)
+    contacts = Contacts.of(batch)
     places = [names.index(name) for name in ("footprint_x", "footprint_y", "twist")]
-    begun = told.noted[:, [Change.WINDOW_X, Change.WINDOW_Y, Change.WINDOW_TWIST]].T
-    span = np.where(np.isnan(span), np.nan, batch.log(Log.TIME) - told.noted[:, Change.WINDOW_AT])
+    begun = contacts.noted[:, [Change.WINDOW_X, Change.WINDOW_Y, Change.WINDOW_TWIST]].T
+    span = np.where(np.isnan(span), np.nan, batch.log(Log.TIME) - contacts.noted[:, Change.WINDOW_AT])
     with np.errstate(divide="ignore", invalid="ignore"):
-        vx, vy, turning = (told.state[places] - begun) / (span * scale)
+        vx, vy, turning = (contacts.state[places] - begun) / (span * scale)
     return {
-        "end_footprint": (told.state[places[:2]] * length).T,
-        "end_twist": told.state[places[2]],
-        "end_contact": told.kind,
+        "end_footprint": (contacts.state[places[:2]] * length).T,
+        "end_twist": contacts.state[places[2]],
+        "end_contact": contacts.kind,
         "mean_velocity": np.stack([vx, vy], axis=-1) * length[:, np.newaxis],
         "mean_twist_rate": turning,
-        "impacts": told.noted[:, Change.IMPACTS],
-        "slips": told.noted[:, Change.SLIPS],
-        **{f"time_{name}": times * scale for name, times in told.times.items()},
+        "impacts": contacts.noted[:, Change.IMPACTS],
+        "slips": contacts.noted[:, Change.SLIPS],
+        **{f"time_{name}": times * scale for name, times in contacts.times.items()},
     }
 
 
 def upright_outcomes(batch: Batch, span: Floats, codes: npt.NDArray[np.int8]) -> npt.NDArray[np.int8]:
     """Return the outcomes with those of columns that stay upright in the last periods, or at the end without any."""
-    told = Contacts.of(batch)
+    contacts = Contacts.of(batch)
     seen, decided = ~np.isnan(span), batch.log(Log.STATUS) == Status.STOPPED
     names = [kind.name for kind in batch.plan.model.contact_kinds or ()]
-    upright = ~np.any(told.state[:2], axis=0)
-    rim = np.where(seen, told.late("rim"), ~upright)
-    flies = np.where(seen, told.late("flying"), told.kind == names.index("FLYING"))
-    slides = np.where(seen, told.late("sliding"), told.kind == names.index("SLIDING"))
+    upright = ~np.any(contacts.state[:2], axis=0)
+    rim = np.where(seen, contacts.late("rim"), ~upright)
+    flies = np.where(seen, contacts.late("flying"), contacts.kind == names.index("FLYING"))
+    slides = np.where(seen, contacts.late("sliding"), contacts.kind == names.index("SLIDING"))
     hops = decided & ~rim & flies
     codes = np.where(hops, Outcome.LIFTED_OFF, codes)
     return np.where(decided & ~rim & ~flies & slides, Outcome.SLID, codes).astype(np.int8)

@@ -145,8 +145,8 @@ class MotionColumns:
         count = len(models.gravity)
         which = plan.member(values, count)
 
-        def each(tell: Callable[[BaseMotion], Any]) -> Floats:
-            return np.array([tell(member) for member in plan.members], dtype=float)[which]
+        def each(get: Callable[[BaseMotion], Any]) -> Floats:
+            return np.array([get(member) for member in plan.members], dtype=float)[which]
 
         factor = factors(values, plan.base_acceleration[which])
         factor = np.ones(count) if factor is None else factor

@@ -57,6 +57,6 @@ def _meets(table: Table, motion: BaseMotion, size: float) -> bool:
     middle, half = 0.5 * table.rows[:, :2].sum(axis=1), 0.5 * (table.rows[:, 1] - table.rows[:, 0])
     times = middle[:, np.newaxis] + half[:, np.newaxis] * _LOOKED_AT
     powers = _LOOKED_AT ** np.arange(table.degree + 1)[:, np.newaxis]
-    told = table.coefficients @ powers  # piece, axis, time
+    tabulated_values = table.coefficients @ powers  # piece, axis, time
     wanted = np.stack(motion.derivative(times.ravel(), ACCELERATION)).reshape(3, *times.shape).transpose(1, 0, 2)
-    return bool(np.abs(told - wanted).max() <= _MEETS * size)
+    return bool(np.abs(tabulated_values - wanted).max() <= _MEETS * size)

@@ -1,4 +1,4 @@
-"""What is told of each run: from a batch that has run to arrays in SI units."""
+"""Convert a batch that has run to results of each run, arrays in SI units."""
 
 import math
 from collections.abc import Mapping

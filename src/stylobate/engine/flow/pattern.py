@@ -40,7 +40,7 @@ FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 0.01, 0.125, 1e-13
 MOST_STEPS = 200_000
 # A crossing of the upright is met to this part of the slenderness.
 MET, MOST_TRIES = 1e-15, 60
-# Part of a change of the model's numbers by whose effect on the loss at a crossing its derivative is told.
+# Part of a change of the model's numbers by whose effect on the loss at a crossing its derivative is taken.
 LOSS_STEP = 1e-6
 
 
@@ -134,7 +134,7 @@ def error_of(y: Table, new: Table, h: float, k: npt.NDArray[np.float64], rtol: f
     return abs(h) * e5 / math.sqrt(spread * ORDER * (ORDER + 1)) if spread > 0.0 else 0.0
 
 
-def note_tilt(y: Table, new: Table, duration: float, numbers: Vector, told: Vector) -> float:
+def note_tilt(y: Table, new: Table, duration: float, numbers: Vector, noted: Vector) -> float:
     """Note the least and the largest tilt of a step, by a cubic through the squares at its ends.
 
     Return where in the step the cubic turns, or 0 where it does not.
@@ -147,16 +147,16 @@ def note_tilt(y: Table, new: Table, duration: float, numbers: Vector, told: Vect
     if slope * end_slope < 0.0:
         at, extreme = turning_point(start, end, slope, end_slope, 1.0 if slope > 0.0 else -1.0)
         least, largest = min(least, extreme), max(largest, extreme)
-    told[0] = min(told[0], math.sqrt(max(least, 0.0)))
-    told[1] = max(told[1], math.sqrt(largest))
+    noted[0] = min(noted[0], math.sqrt(max(least, 0.0)))
+    noted[1] = max(noted[1], math.sqrt(largest))
     return at
 
 
-def note_turning(y: Table, new: Table, numbers: Vector, told: Vector) -> None:
+def note_turning(y: Table, new: Table, numbers: Vector, noted: Vector) -> None:
     """Count how often the lean passes the negative x axis, anticlockwise less clockwise."""
     x0, y0, vx0, vy0 = lean_of(y[:, 0], numbers)
     x1, y1, vx1, vy1 = lean_of(new[:, 0], numbers)
-    told[4] += winding(x0, y0, x1, y1, x0 * vy0 - y0 * vx0 + x1 * vy1 - y1 * vx1)
+    noted[4] += winding(x0, y0, x1, y1, x0 * vy0 - y0 * vx0 + x1 * vy1 - y1 * vx1)
 
 
 def note_extremes(
@@ -174,20 +174,20 @@ def note_extremes(
     new: Table,
     near: npt.NDArray[np.float64],
     middle: Table,
-    told: Vector,
+    noted: Vector,
 ) -> None:
     """Note the extremes of the tilt within a step; `near` and `middle` are room for another one.
 
     A cubic over the whole step is right to 1e-4 only: an extreme is looked at again from a state near it.
     """
-    least, largest = told[0], told[1]
-    at = note_tilt(y, new, period * h, numbers, told)
+    least, largest = noted[0], noted[1]
+    at = note_tilt(y, new, period * h, numbers, noted)
     if 0.0 < at < 1.0:
-        told[0], told[1] = least, largest
+        noted[0], noted[1] = least, largest
         near[0] = k[0]
         stages_into(y, s, at * h, side, period, terms, numbers, change, term_change, work, near, middle)
-        note_tilt(y, middle, period * at * h, numbers, told)
-        note_tilt(middle, new, period * (1.0 - at) * h, numbers, told)
+        note_tilt(y, middle, period * at * h, numbers, noted)
+        note_tilt(middle, new, period * (1.0 - at) * h, numbers, noted)
 
 
 def step_to_upright(
@@ -261,11 +261,11 @@ def flow(
     change: Vector,
     term_change: Table,
     limits: Vector,
-    told: Vector,
+    noted: Vector,
 ) -> int:
     """Carry `y` from `begin` to `end` [turns of the base motion]; return how that went.
 
-    `limits`: relative and absolute tolerance, least and largest tilt. `told`: least and largest tilt met, number of
+    `limits`: relative and absolute tolerance, least and largest tilt. `noted`: least and largest tilt met, number of
     steps, side of the upright on which it leans (for motion in a plane), passages of the negative x axis.
     """
     rtol, atol, least, largest = limits
@@ -273,13 +273,13 @@ def flow(
     work = np.zeros((3 + ORDER, ORDER + ACCELERATIONS + NUMBERS))
     new = np.zeros((ORDER, ORDER + 2))
     near, middle = np.zeros((13, ORDER, ORDER + 2)), np.zeros((ORDER, ORDER + 2))
-    side = told[3]
+    side = noted[3]
     s, h = begin, min(FIRST_STEP, end - begin)
     rejected = False
     slopes_into(y, s, side, period, terms, numbers, change, term_change, work, k[0])
     while s < end:
         too_short = h < SHORTEST_STEP * max(1.0, abs(s)) and end - s > h
-        if too_short or told[2] >= MOST_STEPS:
+        if too_short or noted[2] >= MOST_STEPS:
             return Status.FAILED
         last = h >= end - s
         h = end - s if last else h
@@ -292,29 +292,29 @@ def flow(
         passed = PLANAR and side * new[0, 0] < 0.0
         if passed:
             h = step_to_upright(y, s, h, side, period, terms, numbers, change, term_change, work, k, new)
-        note_extremes(y, s, h, side, period, terms, numbers, change, term_change, work, k, new, near, middle, told)
+        note_extremes(y, s, h, side, period, terms, numbers, change, term_change, work, k, new, near, middle, noted)
         if passed:
-            told[0] = 0.0
-            told[2] += 1
+            noted[0] = 0.0
+            noted[2] += 1
             s += h
             y[:, :] = new
             if not cross(y, s, side, terms, numbers, change, work):
                 return Status.LOST
-            side = told[3] = -side
+            side = noted[3] = -side
             slopes_into(y, s, side, period, terms, numbers, change, term_change, work, k[0])
             h = FIRST_STEP
             continue
         if not PLANAR:
-            note_turning(y, new, numbers, told)
+            note_turning(y, new, numbers, noted)
         s = end if last else s + h
-        told[2] += 1
+        noted[2] += 1
         y[:, :] = new
         k[0] = k[12]
         factor = min(LARGEST_FACTOR, max(LEAST_FACTOR, SAFETY / max(error, LEAST_ERROR) ** 0.125))
         h = min(h * (min(factor, 1.0) if rejected else factor), LONGEST_STEP)
         rejected = False
-        if told[1] > largest:
+        if noted[1] > largest:
             return Status.GONE
-        if told[0] < least and not PLANAR:
+        if noted[0] < least and not PLANAR:
             return Status.LOST
     return Status.DONE

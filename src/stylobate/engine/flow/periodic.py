@@ -23,7 +23,7 @@ LOST_TILT = 1e-6
 """Nearer to the upright than this [units of c] the direction of lean is lost, and with it the orbit."""
 
 # A motion that is no sum of harmonic ones is taken by so many samples of a period, and given up if its Fourier series
-# has not fallen below this part of its largest term by half of what they can tell.
+# has not fallen below this part of its largest term by half of their digits.
 _SAMPLES, _LEFT_OUT = 512, 1e-12
 _HARMONIC = 1e-9
 # Derivatives of the dimensionless numbers by a named parameter, which are closed forms of it: five-point differences
@@ -198,7 +198,7 @@ class PeriodicSystem:
         )
         if self.planar and side == 0.0:
             side = math.copysign(1.0, state[0] if state[0] != 0.0 else state[1])
-        told = np.array([math.inf, 0.0, 0.0, side, 0.0])
+        noted = np.array([math.inf, 0.0, 0.0, side, 0.0])
         status = flow(
             table,
             begin,
@@ -209,18 +209,18 @@ class PeriodicSystem:
             np.concatenate([[change.period], change.parameters]),
             change.terms,
             limits,
-            told,
+            noted,
         )
         return Flow(
             Status(status),
             table[:, 0].copy(),
             table[:, 1 : order + 1].copy(),
             table[:, order + 1].copy(),
-            float(told[0]),
-            float(told[1]),
-            int(told[2]),
-            float(told[3]),
-            float(told[4]) + self._azimuth(table[:, 0]) - self._azimuth(state),
+            float(noted[0]),
+            float(noted[1]),
+            int(noted[2]),
+            float(noted[3]),
+            float(noted[4]) + self._azimuth(table[:, 0]) - self._azimuth(state),
         )
 
     def _azimuth(self, state: Floats) -> float:

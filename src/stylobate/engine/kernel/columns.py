@@ -16,7 +16,7 @@ class _FromZero(IntEnum):
 
 
 class Setup(_FromZero):
-    """What a kernel is told of a run, in dimensionless time and g."""
+    """What a kernel reads of a run, in dimensionless time and g."""
 
     END = auto()
     """Duration."""
@@ -46,7 +46,7 @@ class Setup(_FromZero):
     STROBE = auto()
     """First time at which the base motion has phase zero."""
     PERIODS = auto()
-    """How many of the last periods the outcome is told by."""
+    """How many of the last periods decide the outcome."""
     BREAKS = auto()
     SAMPLES = auto()
     STROBES = auto()
@@ -72,7 +72,7 @@ class Log(_FromZero):
     STANDS = auto()
     """1 while the column stands on its base."""
     DECIDED = auto()
-    """When what became of it was decided."""
+    """When its outcome was decided."""
     STEPS = auto()
     RELEASES = auto()
     RESTS = auto()
@@ -97,7 +97,7 @@ class Log(_FromZero):
     BREAKS_AT = auto()
     NEXT_LOOK = auto()
     LOOKS_AT = auto()
-    """Index and time of the next look in the last periods, by which the outcome is told."""
+    """Index and time of the next look in the last periods, which decide the outcome."""
     NEXT_SAMPLE = auto()
     SAMPLES_AT = auto()
     NEXT_STROBE = auto()

@@ -45,7 +45,7 @@ class Expansion:
 
     @property
     def integrals(self) -> tuple[int, ...]:
-        """Of each state the one whose rate it is, or itself: the coefficients of that one tell those of both."""
+        """Of each state the one whose rate it is, or itself: the coefficients of that one give those of both."""
         out = list(range(len(self._names)))
         for j, rate in enumerate(self._rates):
             if rate.name in self._names:

@@ -1,4 +1,4 @@
-"""Where a step of a lane meets an event, told from the values and slopes at its two ends."""
+"""Where a step of a lane meets an event, from the values and slopes at its two ends."""
 
 import math
 
@@ -69,10 +69,10 @@ def quintic(
 def first_return(h: float, s0: float, v0: float, a0: float, s1: float, v1: float, a1: float) -> float:
     """Return the time in (0, h] at which a height s > 0 first falls below zero, 0 if at once, h if not.
 
-    Told from the quintic with the heights, speeds and accelerations at both ends; right at the start it has the
+    By the quintic with the heights, speeds and accelerations at both ends; right at the start it has the
     relative accuracy of the acceleration there.
     """
-    # From the upright it cannot be back before half the time that speed and acceleration at the start tell.
+    # From the upright it cannot be back before half the time that speed and acceleration at the start give.
     p1, p2 = v0 * h, 0.5 * a0 * h * h
     u = _EQUAL
     if s0 == 0.0 and p2 < 0.0:

@@ -21,7 +21,7 @@ STAGES = 12
 """Stages of DOP853; one more gives the slope at the end of a step."""
 
 DENSE_TERMS = 7
-"""Terms of the polynomial that tells the state within a step of DOP853."""
+"""Terms of the polynomial that gives the state within a step of DOP853."""
 
 MARGIN_PLACES = 4
 """Equal parts of a step, at the ends of which guards are looked at."""
@@ -115,7 +115,7 @@ class Shape:
         return {integral for j, integral in enumerate(self.series) if integral != j}
 
     def degree(self, j: int) -> int:
-        """Return the degree of the polynomial that an expanded state is told by."""
+        """Return the degree of the polynomial of an expanded state."""
         return SERIES_ORDER + (j in self.paired)
 
     def rows(self) -> Rows:

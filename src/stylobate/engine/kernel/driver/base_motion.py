@@ -17,7 +17,7 @@ from stylobate.engine.kernel.bound import (
 from stylobate.engine.kernel.driver.equations import model_no_return
 from stylobate.engine.kernel.layout import Table
 
-# Where the coefficients of a piece begin in its row, and the place that tells whether it goes on without a jump.
+# Where the coefficients of a piece begin in its row, and the place that says whether it goes on without a jump.
 COEFFICIENTS_AT, GOES_ON = 6, 5
 
 

@@ -31,9 +31,8 @@ from stylobate.engine.kernel.driver.stops import leg_end, meet_stop, next_stop, 
 from stylobate.engine.kernel.driver.tracing import trace_entry, trace_leap, trace_stand
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.roots import nearest_turn, turns_of
+from stylobate.engine.tolerances import DEPARTURE
 
-# Time after release, in units of the fastest time scale, at which the departure series hands over.
-DEPARTURE = 1e-3
 # So many changes of contact without a step between them are no motion; closer than the second number they are at one
 # moment [units of the larger of 1 and the time].
 MOST_AT_ONCE, ONE_MOMENT = 100, 1e-12
@@ -73,7 +72,7 @@ def endless(buf: Table, i: int) -> bool:
 
 
 def change(buf: Table, i: int, table: Table, number: int) -> None:
-    """Let the model tell how it goes on from a broken margin; put that into the state, and note it."""
+    """Let the model decide how it goes on from a broken margin; put that into the state, and note it."""
     t, before = buf[R.TIME, i], int(buf[R.CONTACT, i])
     if buf[R.TILT, i] > 0.0:
         buf[R.LAST_AZIMUTH, i] = azimuth_now(buf, i)

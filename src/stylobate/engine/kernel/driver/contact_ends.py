@@ -11,16 +11,16 @@ from stylobate.engine.kernel.shape import MARGIN_PLACES
 
 # Two times closer than this are one [units of the larger of 1 and the time].
 ROUNDING = 4e-15
-# A margin counts as broken below this: what follows from it is told by other arithmetic, with roundings of its own.
+# A margin counts as broken below this: what follows from it is found by other arithmetic, with roundings of its own.
 BROKEN = -1e-14
 # So many secants at most lead to an end before the interval is halved instead, and so many steps in all.
 SECANTS, MOST_LOOKS = 20, 100
 # A margin below this is all but broken.
-NEXT_TO_NOUGHT = 1e-8
+NEARLY_BROKEN = 1e-8
 
 
 def margins_within(buf: Table, i: int, elapsed: float) -> tuple[float, ...]:
-    """Return the guards at a time within the step that was held back, told by its dense output."""
+    """Return the guards at a time within the step that was held back, on its dense output."""
     return margins_at(buf, i, buf[R.TIME, i] + elapsed, dense_state(buf, i, elapsed / buf[R.TRIED, i]))
 
 
@@ -90,4 +90,4 @@ def nearly_broken(buf: Table, i: int) -> int:
     for k in range(1, LAST):
         if guards[k] < guards[least]:
             least = k
-    return least if guards[least] < NEXT_TO_NOUGHT else -1
+    return least if guards[least] < NEARLY_BROKEN else -1

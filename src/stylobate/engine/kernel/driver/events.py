@@ -72,7 +72,7 @@ def miss(buf: Table, i: int) -> float:
 
 
 def creep(buf: Table, i: int, h: float) -> None:
-    """Go on by a time so short that the step's series, or two terms of another, tells the state."""
+    """Go on by a time so short that the step's series, or two terms of another, give the state."""
     if SERIES:
         set_within(buf, i, buf[R.MADE, i] + h)
         set_state(buf, i, row_state(buf, i, R.NEW))
@@ -89,7 +89,7 @@ def held_back(buf: Table, i: int, table: Table, pieces: Table) -> int:
     h = buf[R.TRIED, i]
     buf[R.HELD_STEP, i] = h
     ahead = event_ahead(buf, i)
-    if ahead <= 0.0:  # a swing that begins and ends within a part of the step too small to be told
+    if ahead <= 0.0:  # a swing that begins and ends within a part of the step too small to be resolved
         buf[R.STATE, i] = 0.0
         return settle(buf, i, table, pieces, buf[R.TIME, i])
     aim(buf, i, ahead)

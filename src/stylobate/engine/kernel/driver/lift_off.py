@@ -5,9 +5,9 @@ import math
 from stylobate.engine.kernel.bound import DEGREE, VERTICAL, R
 from stylobate.engine.kernel.driver.base_motion import set_leg
 from stylobate.engine.kernel.driver.push import accelerations
-from stylobate.engine.kernel.driver.release import SAMPLES_PER_PERIOD
 from stylobate.engine.kernel.driver.stops import set_break
 from stylobate.engine.kernel.layout import Table
+from stylobate.engine.tolerances import SAMPLES_PER_PERIOD
 
 
 def find_lift(buf: Table, i: int, table: Table, pieces: Table) -> None:

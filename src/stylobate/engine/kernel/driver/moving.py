@@ -115,5 +115,5 @@ def first_step(buf: Table, i: int, t: float) -> float:
     still = d1 <= 1e-15 and d2 <= 1e-15  # noqa: PLR2004
     other = max(1e-6, h * 1e-3) if still else (0.01 / max(d1, d2)) ** 0.125
     found = min(100.0 * h, other, longest)
-    # Where the rates overflow it is nought or NaN: the whole way then, which is shortened until the run has failed.
+    # Where the rates overflow it is zero or NaN: the whole way then, which is shortened until the run has failed.
     return found if found > 0.0 else longest

@@ -10,7 +10,7 @@ from stylobate.engine.kernel.driver.within import set_within
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.roots import quintic
 
-# Time over which accelerations of the lean are told by differences.
+# Time over which accelerations of the lean are taken by differences.
 DIFFERENCE = 1e-5
 
 

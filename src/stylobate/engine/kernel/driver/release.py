@@ -6,9 +6,8 @@ from stylobate.engine.kernel.bound import DEGREE, R
 from stylobate.engine.kernel.driver.base_motion import held_for_good
 from stylobate.engine.kernel.driver.push import accelerations
 from stylobate.engine.kernel.layout import Table
+from stylobate.engine.tolerances import SAMPLES_PER_PERIOD
 
-# Samples to the shortest period of the base motion, as in the search for single runs.
-SAMPLES_PER_PERIOD = 64
 # What counts as the same moment [samples].
 MOMENT = 1e-6
 # Weight that counts as none.

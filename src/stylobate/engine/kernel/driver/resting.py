@@ -15,11 +15,8 @@ from stylobate.engine.kernel.driver.stops import go_on, leg_end, meet_stop, next
 from stylobate.engine.kernel.driver.tracing import trace_event, trace_stand
 from stylobate.engine.kernel.driver.within import set_dense_output, set_within, set_within_closely
 from stylobate.engine.kernel.layout import Table
-from stylobate.engine.tolerances import HOPS_APART, STILL
+from stylobate.engine.tolerances import DEPARTURE, HOPS_APART, STILL
 from stylobate.models.model import Push
-
-# Time after release, in units of the fastest time scale, at which the departure series hands over.
-DEPARTURE = 1e-3
 
 
 def holding_force(buf: Table, i: int, ax: float, ay: float, az: float) -> float:

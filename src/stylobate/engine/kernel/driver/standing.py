@@ -3,12 +3,10 @@
 import math
 
 from stylobate.engine.kernel.bound import DEGREE, DEMANDS, R
+from stylobate.engine.kernel.driver.equations import LEAST_NORMAL
 from stylobate.engine.kernel.driver.push import accelerations
-from stylobate.engine.kernel.driver.release import SAMPLES_PER_PERIOD
 from stylobate.engine.kernel.layout import Table
-
-# A smaller part of the weight counts as this much: the demand is as good as infinite.
-LEAST_WEIGHT = 1e-12
+from stylobate.engine.tolerances import SAMPLES_PER_PERIOD
 
 
 def bear_standing(buf: Table, i: int, start: float, end: float) -> None:
@@ -42,7 +40,7 @@ def bear_standing(buf: Table, i: int, start: float, end: float) -> None:
 def standing_load(buf: Table, i: int, t: float) -> tuple[float, float]:
     """Return the friction demand and the normal force over the weight of a column that stands at `t`."""
     ax, ay, az = accelerations(buf, i, t)
-    return math.hypot(ax, ay) / max(1.0 + az, LEAST_WEIGHT), 1.0 + az
+    return math.hypot(ax, ay) / max(1.0 + az, LEAST_NORMAL), 1.0 + az
 
 
 def crest(before: float, here: float, after: float) -> float:
