@@ -3,6 +3,7 @@
 import ast
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -210,9 +211,7 @@ class Expressions(ABC):
         condition = self.condition(node.test)
         if not isinstance(condition, Number):
             return self.value(node.body if condition else node.orelse)
-        branches = (node.body, node.orelse)
-        costly = any(isinstance(part, ast.Call | ast.Subscript) for one in branches for part in ast.walk(one))
-        if self.arithmetic.lanes or not costly:
+        if self.arithmetic.lanes or not (_is_costly(node.body) or _is_costly(node.orelse)):
             return self.arithmetic.chosen(condition, self.value(node.body), self.value(node.orelse))
         yes, no, done = (self.text.new_block() for _ in range(3))
         self.text.branch(condition.text, yes, no)
@@ -270,6 +269,12 @@ class Expressions(ABC):
         if function in _OVER_TUPLES:
             return tuple(function(*map(self._tuple, values), **keywords))
         return self.call(function, values, keywords)
+
+
+@cache
+def _is_costly(node: ast.expr) -> bool:
+    """Return whether a value takes so long that it is found only where it is chosen."""
+    return any(isinstance(part, ast.Call | ast.Subscript) for part in ast.walk(node))
 
 
 def _wider(a: Value, b: Value) -> Value:

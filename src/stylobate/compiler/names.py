@@ -2,6 +2,7 @@
 
 import ast
 from collections.abc import Iterable, Mapping
+from functools import cache
 
 from stylobate.compiler import arrays, slots
 from stylobate.compiler.arithmetic import Arithmetic
@@ -169,13 +170,18 @@ def _is_slice(index: Value) -> bool:
 
 def assigned_in(statements: Iterable[ast.AST]) -> set[str]:
     """Return the names that statements assign to; those of generators stay in them."""
-    parts = [part for statement in statements for part in ast.walk(statement)]
+    return set().union(*map(_assigned_by, statements))
+
+
+@cache
+def _assigned_by(statement: ast.AST) -> frozenset[str]:
+    parts = list(ast.walk(statement))
     inner = {id(name) for part in parts if isinstance(part, ast.comprehension) for name in ast.walk(part.target)}
-    return {
+    return frozenset(
         part.id
         for part in parts
         if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store) and id(part) not in inner
-    }
+    )
 
 
 def _assigned_by_control_flow(statements: Iterable[ast.stmt]) -> set[str]:

@@ -11,7 +11,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.compiler.kept import cache_folder
-from stylobate.engine.kernel import kernels
+from stylobate.engine.kernel import bound, kernels
 
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
 START = {"tilt": (0.04, 0.0), "tilt_rate": (0.0, 0.07), "duration": 20.0}
@@ -169,3 +169,17 @@ def test_the_kernels_that_one_model_needs_are_described_in_different_words(monke
         with pytest.raises(FoundError):
             sb.simulate_ensemble(model, CIRCLE, **START, **options)
     assert len(set(words)) == len(words) == 3
+
+
+def test_every_name_that_the_driver_leaves_open_is_bound_by_some_kernel(plan_of):
+    column = sb.Column.dimensionless(0.1)
+    # Of the driver itself, of the written part, and of models of a user's own.
+    given = {"begin", "handle", "expand", "at_rest"}
+    for model, options, planar in (
+        (sb.Slender(column), {"method": "taylor"}, False),
+        (sb.Wobbling(column), {"demands": True}, True),
+        (sb.Sliding(column), {}, False),
+    ):
+        compiled = kernels.kernel_of(type(model), plan_of(model, CIRCLE, **options).shape(planar=planar)).compiled
+        given |= {*compiled.program.names, *compiled.functions}
+    assert set(bound.__annotations__) == given
