@@ -16,7 +16,8 @@ The accepted language
 * `if`, `while`, `for` over `range` and over tuples, `break`, `continue`, `return`; assignments, also to several names.
 * Calls of functions that are written in Python: of modules, static methods of classes, closures and lambdas; default
   values, keywords and `*arguments`.
-* `for i in lanes(n)`: straight-line code with conditional expressions, made for as many `i` at once as fit a vector. A
+* `for i in lanes(n)`: straight-line code with conditional expressions, made for as many `i` at once as fit a vector; an
+  `n` that is known only while running is positive and a multiple of that. A
   function that is called there and has branches or loops is called for each lane by itself, which is slow.
 * What is known while compiling, such as constants of modules, enumerations and classes, is evaluated there; of an `if`
   on what is known only one branch is compiled.

@@ -317,14 +317,11 @@ class Body(Names):
     def _over_lanes(self, node: ast.For, count: Value) -> None:
         """Make the passes of a loop side by side, as many at once as fit into a vector."""
         width = self.callees.lanes
-        if (
-            self.arithmetic.lanes
-            or not isinstance(count, int)
-            or count % width
-            or not isinstance(node.target, ast.Name)
-        ):
+        whole = count % width == 0 if isinstance(count, int) else isinstance(count, Number)
+        if self.arithmetic.lanes or not whole or not isinstance(node.target, ast.Name):
             message = f"a loop over lanes stands by itself and has a multiple of {width} passes"
             raise Refusal(message)
+        end = self.arithmetic.number(count, Kind.INTEGER)
         head, done = self.text.new_block(), self.text.new_block()
         self.text.jump(head)
         begun = self.text.block
@@ -338,8 +335,8 @@ class Body(Names):
         self.forget(node)
         self.arithmetic.lanes, self._over = 0, False
         self.text.line(f"{onward} = add nuw nsw i64 {first}, {constant(width, Kind.INTEGER).text}")
-        more = self.text.value(f"icmp ult i64 {onward}, {count}")
-        end = self.text.block
-        head.lines.insert(position, f"{first} = phi i64 [ 0, %{begun.label} ], [ {onward}, %{end.label} ]")
+        more = self.text.value(f"icmp ult i64 {onward}, {end.text}")
+        last = self.text.block
+        head.lines.insert(position, f"{first} = phi i64 [ 0, %{begun.label} ], [ {onward}, %{last.label} ]")
         self.text.branch(more, head, done)
         self.text.begin(done)

@@ -9,6 +9,8 @@ from typing import Any
 from stylobate.compiler.programs import Unbound
 
 WIDTH: int
+GRAIN: int
+"""A step takes a multiple of so many lanes."""
 ORDER: int
 """Number of equations."""
 KEPT: int

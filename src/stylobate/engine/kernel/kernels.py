@@ -21,6 +21,9 @@ from stylobate.engine.kernel.layout import Row, Table
 from stylobate.engine.kernel.shape import SERIES_ORDER, STAGES, Shape
 from stylobate.models import Model
 
+_GRAIN = 8
+"""Lanes of a step: the longest vector that a processor has."""
+
 _EDGE = 8
 """Numbers in a line of the processor's cache: a vector that lies across two lines costs twice."""
 
@@ -109,6 +112,7 @@ def _constants(model: type[Model], shape: Shape) -> dict[str, Any]:
     has = {name: getattr(model, name) is not None for name in _OPTIONAL}
     return {
         "WIDTH": shape.width,
+        "GRAIN": shape.width if shape.guards else min(shape.width, _GRAIN),
         "ORDER": shape.order,
         "PARAMETERS": shape.parameters,
         "PLANAR": shape.planar,

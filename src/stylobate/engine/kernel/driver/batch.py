@@ -5,7 +5,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.kernel.bound import KEPT, PARAMETERS, PARAMETERS_AT, PLANAR, WIDTH, R, begin, handle
+from stylobate.engine.kernel.bound import GRAIN, KEPT, PARAMETERS, PARAMETERS_AT, PLANAR, WIDTH, R, begin, handle
 from stylobate.engine.kernel.columns import STATE, Status
 from stylobate.engine.kernel.driver.base_motion import set_leg, set_no_return
 from stylobate.engine.kernel.driver.moving import azimuth_now, square_of_speed
@@ -65,7 +65,7 @@ def quiet(buf: Table, i: int) -> None:
         buf[row, i] = 0.0
     for row in (R.STATE, R.TILT, R.X, R.SLENDERNESS, R.SIDE, R.ATOL, R.ATOL_NOW):
         buf[row, i] = 1.0
-    for row in (R.STOP, R.NO_RETURN, R.TILT_LIMIT, R.LARGEST_TILT):
+    for row in (R.STOP, R.NO_RETURN, R.TILT_LIMIT, R.LARGEST_TILT, R.MOST_STEPS):
         buf[row, i] = 1e300
     for j in range(PARAMETERS):
         buf[R.PARAMETER + j, i] = 0.1
@@ -102,6 +102,19 @@ def begin_or_go_on(buf: Table, table: Table, pieces: Table) -> int:
     return waiting
 
 
+def gather(buf: Table) -> int:
+    """Move the runs to the first lanes; return how many lanes a step takes, whole vectors of them: 0 without a run."""
+    live = 0
+    for i in range(WIDTH):
+        if buf[R.RUN, i] >= 0.0:
+            if i > live:
+                for row in range(len(buf)):
+                    buf[row, live] = buf[row, i]
+                quiet(buf, i)
+            live += 1
+    return GRAIN * ((live + GRAIN - 1) // GRAIN)
+
+
 def pause(buf: Table, table: Table) -> bool:
     """Let the traces be taken out of the table; return False, as `advance` does that has not come to its end."""
     for i in range(WIDTH):
@@ -119,24 +132,22 @@ def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table
     waiting = begin_or_go_on(buf, table, pieces)
     traced = table[0, R.TRACES] > 0.0
     while True:
-        live = False
-        for i in range(WIDTH):
-            live = live or buf[R.RUN, i] >= 0.0
-        if not live:
+        width = gather(buf)
+        if width == 0:
             return True
         met = False
         while not met:
-            step(buf)
+            step(buf, width)
             full = traced and trace_steps(buf, table)
             met = full
-            for i in range(WIDTH):
+            for i in range(width):
                 if buf[R.WATCHED, i] > 0.0 and buf[R.GO, i] > 0.0:
                     observe(buf, i)
                 if buf[R.FLAG, i] > 0.0 and not passes_knot(buf, i, table, pieces):
                     met = True
             if halt[0] != 0:
                 return False
-        for i in range(WIDTH):
+        for i in range(width):
             if buf[R.FLAG, i] > 0.0 and buf[R.RUN, i] >= 0.0:
                 status = handle(buf, i, table, pieces)
                 if status != Status.WAITING:

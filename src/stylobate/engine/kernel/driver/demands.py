@@ -1,7 +1,7 @@
 """The loads of the contact within a step, for all lanes side by side: at quarters of it, extremes by parabolas."""
 
 from stylobate.compiler.marks import fast, lanes
-from stylobate.engine.kernel.bound import ORDER, SERIES, WIDTH, R
+from stylobate.engine.kernel.bound import ORDER, SERIES, R
 from stylobate.engine.kernel.driver.equations import State, loads_of
 from stylobate.engine.kernel.driver.push import accelerations
 from stylobate.engine.kernel.driver.series import series_within
@@ -14,20 +14,20 @@ LOADS = 3
 
 
 @fast
-def follow_demands(buf: Table) -> None:
+def follow_demands(buf: Table, width: int) -> None:
     """Note the extremes of the loads within the step just made; those at its start are kept from the step before."""
     for place in PLACES:  # a loop that evaluated several places would be too long
-        look_at_loads(buf, place)
-    for i in lanes(WIDTH):
+        look_at_loads(buf, place, width)
+    for i in lanes(width):
         note_extreme(buf, i, 0, R.NORMAL, -1.0)
         note_extreme(buf, i, 1, R.FRICTION, 1.0)
         note_extreme(buf, i, 2, R.PIVOTING, 1.0)
 
 
 @fast
-def look_at_loads(buf: Table, place: int) -> None:
+def look_at_loads(buf: Table, place: int, width: int) -> None:
     """Find the loads at a place of the step."""
-    for i in lanes(WIDTH):
+    for i in lanes(width):
         share = place / len(PLACES)
         h, t = buf[R.MADE, i], buf[R.TIME, i]
         time = t if place == len(PLACES) else t - (1.0 - share) * h

@@ -8,7 +8,7 @@ import math
 from stylobate.compiler.marks import fast, lanes
 from stylobate.engine.dop853 import E3, E5, STAGES
 from stylobate.engine.elementary import turning_point, winding
-from stylobate.engine.kernel.bound import ORDER, PLANAR, SERIES, SLIDING, SLIP_X, SLIP_Y, SLIPPING, SWITCHING, WIDTH, R
+from stylobate.engine.kernel.bound import ORDER, PLANAR, SERIES, SLIDING, SLIP_X, SLIP_Y, SLIPPING, SWITCHING, R
 from stylobate.engine.kernel.driver.equations import lean_of_new
 from stylobate.engine.kernel.driver.series import extremes_by_series, falls_and_rises, rises_and_falls
 from stylobate.engine.kernel.driver.stages import slopes_of
@@ -29,18 +29,18 @@ TINY = 1e-300
 
 
 @fast
-def judge(buf: Table) -> None:
+def judge(buf: Table, width: int) -> None:
     """Accept or reject the step of each lane, note what happened in it, and choose the next."""
     # A loop that does too little at once would not fill the registers, one that does too much would spill them.
-    for i in lanes(WIDTH):
+    for i in lanes(width):
         if not SERIES:  # whose error is known with the step
             find_error(buf, i)
         accept(buf, i)
-    for i in lanes(WIDTH):
+    for i in lanes(width):
         note_extremes(buf, i)
         if not PLANAR:
             follow_azimuth(buf, i)
-    for i in lanes(WIDTH):
+    for i in lanes(width):
         keep_step(buf, i)
         choose_next_step(buf, i)
         suspect(buf, i)

@@ -10,7 +10,7 @@ import math
 
 from stylobate.compiler.marks import fast, lanes
 from stylobate.engine.elementary import turning_point
-from stylobate.engine.kernel.bound import COEFFICIENTS, DEGREES, INTEGRALS, ORDER, RATES_OF, WIDTH, R, expand
+from stylobate.engine.kernel.bound import COEFFICIENTS, DEGREES, INTEGRALS, ORDER, RATES_OF, R, expand
 from stylobate.engine.kernel.driver.equations import State, numbers, rates_at
 from stylobate.engine.kernel.driver.push import push_series
 from stylobate.engine.kernel.driver.sums import polynomial, reciprocals, value_and_slope
@@ -24,9 +24,9 @@ LEAST_SHARE = 1e-3
 
 
 @fast
-def make_series_step(buf: Table) -> None:
+def make_series_step(buf: Table, width: int) -> None:
     """Find coefficients, the length of the step, the new state and its error."""
-    for i in lanes(WIDTH):
+    for i in lanes(width):
         t = buf[R.TIME, i]
         start = tuple(buf[R.STATE + j, i] for j in range(ORDER))
         states, rates, squares = expand(start, push_series(buf, i, t, SERIES_ORDER + 1), numbers(buf, i))

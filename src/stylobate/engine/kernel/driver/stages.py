@@ -26,9 +26,9 @@ def slopes_of(buf: Table, i: int, j: int) -> tuple[float, ...]:
 
 
 @fast
-def make_stage(buf: Table, stage: int) -> None:
+def make_stage(buf: Table, stage: int, width: int) -> None:
     """Evaluate the equations in a stage; the last one gives the new state and the slope there."""
-    for i in lanes(WIDTH):
+    for i in lanes(width):
         h, t = buf[R.H, i], buf[R.TIME, i]
         state = tuple(
             buf[R.STATE + j, i] + h * weighted(STAGE_WEIGHTS[stage], slopes_of(buf, i, j)) for j in range(ORDER)

@@ -1,4 +1,4 @@
-"""One attempt at a step in every lane."""
+"""One attempt at a step in the lanes that have runs."""
 
 from stylobate.compiler.marks import fast, lanes
 from stylobate.engine.kernel.bound import DEMANDS, ORDER, SERIES, SWITCHING, WIDTH, R
@@ -11,20 +11,20 @@ from stylobate.engine.kernel.layout import Table
 
 
 @fast
-def step(buf: Table) -> None:
-    """Try a step in every lane, and take it where its error allows and no event lies within."""
+def step(buf: Table, width: int) -> None:
+    """Try a step in each of the first lanes, and take it where its error allows and no event lies within."""
     if SERIES:
-        make_series_step(buf)
+        make_series_step(buf, width)
     elif SWITCHING:
         make_long_step(buf)
     else:
         for stage in STAGE_NUMBERS:
-            make_stage(buf, stage)
-    judge(buf)
+            make_stage(buf, stage, width)
+    judge(buf, width)
     if SWITCHING:
         bring_up_to_date(buf)
     if DEMANDS:
-        follow_demands(buf)
+        follow_demands(buf, width)
 
 
 @fast
