@@ -86,7 +86,10 @@ bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks, beside the engines that c
 	$(BIN)/python -m pytest benchmarks --benchmark-enable --benchmark-only
 	$(BIN)/python -m benchmarks.ensembles
 	$(BIN)/python -m benchmarks.ensembles.levels
+	$(BIN)/python -m benchmarks.ensembles.shares
+	$(BIN)/python -m benchmarks.ensembles.precision
 	$(BIN)/python -m benchmarks.ensembles.contacts
+	$(BIN)/python -m benchmarks.ensembles.sliding
 	$(BIN)/python -m benchmarks.ensembles.records
 	$(BIN)/python -m benchmarks.orbits
 

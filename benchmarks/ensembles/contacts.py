@@ -15,7 +15,9 @@ import xarray as xr
 
 import stylobate as sb
 
+from . import peak
 from .one_core import use_one_core
+from .tables import number
 
 _FOLDER = Path(__file__).parents[2] / "docs" / "_static" / "benchmarks"
 _PERIODS, _SINGLE = 20.0, 24
@@ -86,7 +88,8 @@ def main() -> None:
             found[case.name] = _timed(case.lanes, seconds[case.name])
     rows = [_row(case, min(seconds[case.name]), found[case.name], min(seconds[held.name])) for case in cases]
     head = "| one core | trajectories/s | × `Rolling` | steps a run | µs a step | × single runs | other outcome |"
-    text = "\n".join([head, "|---|---|---|---|---|---|---|", *rows]) + "\n"
+    note = f"\n{peak.in_words(peak.measured_peak())}.\n"
+    text = "\n".join([head, "|---|---|---|---|---|---|---|", *rows]) + "\n" + note
     arguments.into.mkdir(parents=True, exist_ok=True)
     (arguments.into / "contacts.txt").write_text(text, encoding="utf-8")
     print(text)
@@ -125,9 +128,9 @@ def _row(case: Case, seconds: float, runs: xr.Dataset, of_rolling: float) -> str
     codes = runs["outcome"].to_numpy()[:_SINGLE]
     others = sum(sb.Outcome(code) is not run.outcome for code, run in zip(codes, alone, strict=True))
     return (
-        f"| {case.name} | {count / seconds:,.0f} | {of_rolling / seconds:.2g} | {steps:,.0f} "
-        f"| {1e6 * seconds / (count * steps):.2g} | {each * count / seconds:,.0f} | {others} of {_SINGLE} |"
-    ).replace(",", " ")
+        f"| {case.name} | {number(count / seconds)} | {of_rolling / seconds:.2g} | {number(steps)} "
+        f"| {1e6 * seconds / (count * steps):.2g} | {number(each * count / seconds)} | {others} of {_SINGLE} |"
+    )
 
 
 if __name__ == "__main__":

@@ -13,13 +13,13 @@ LANES = 1024
 NAME = f"diffrax, {LANES} lanes"
 
 
-def prepare(workload: Workload) -> Callable[[Workload], Answer]:
+def prepare(workload: Workload, *, rtol: float = RTOL, atol: float = ATOL) -> Callable[[Workload], Answer]:
     """Compile the solver and return what computes a workload of this kind."""
-    solver = _solver(circular=workload.circular)
+    solver = _solver(circular=workload.circular, rtol=rtol, atol=atol)
     return partial(_solve, solver)
 
 
-def _solver(*, circular: bool) -> Any:
+def _solver(*, circular: bool, rtol: float, atol: float) -> Any:
     import diffrax  # noqa: PLC0415  it need not be installed
     import jax  # noqa: PLC0415
     import jax.numpy as jnp  # noqa: PLC0415
@@ -56,7 +56,7 @@ def _solver(*, circular: bool) -> Any:
             y0=start,
             args=args,
             saveat=diffrax.SaveAt(t1=True),
-            stepsize_controller=diffrax.PIDController(rtol=RTOL, atol=ATOL),
+            stepsize_controller=diffrax.PIDController(rtol=rtol, atol=atol),
             event=event,
             max_steps=None,
             throw=False,

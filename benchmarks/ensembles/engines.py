@@ -5,12 +5,11 @@ from dataclasses import dataclass
 from functools import partial
 from importlib.util import find_spec
 
-from . import diffrax_lanes, heyoka_batch, ours, scipy_loop
+from . import diffrax_lanes, heyoka_batch, numba_loops, ours, scipy_loop
 from .answers import Answer
 from .workloads import MIX_DISTINCT, Workload
 
 Solve = Callable[[Workload], Answer]
-
 
 _OWN_COUNTS = {"rolling": 16384, "mix": 128 * MIX_DISTINCT}
 
@@ -28,7 +27,11 @@ class Engine:
     prepare
         Compiles for a workload; returns what computes it.
     counts
-        Runs timed of each workload, about one second of them.
+        Runs timed of each workload that it can compute, about one second of them.
+    lanes
+        Runs that it computes side by side, at least.
+    warm_up
+        Runs of the first call, which is not timed; by default all of them.
     needs
         Packages without which it is skipped.
     dop853
@@ -37,9 +40,11 @@ class Engine:
 
     name: str
     key: str
-    prepare: Callable[[Workload], Solve]
+    prepare: Callable[..., Solve]
     counts: Mapping[str, int]
     needs: tuple[str, ...] = ()
+    lanes: int = 1
+    warm_up: int | None = None
     dop853: bool = False
 
     @property
@@ -51,26 +56,68 @@ class Engine:
 def all_engines() -> list[Engine]:
     """Return the engines, the slowest first."""
     return [
-        Engine(scipy_loop.NAME, "scipy", scipy_loop.prepare, {"rolling": 32, "mix": MIX_DISTINCT}, dop853=True),
         Engine(
-            diffrax_lanes.NAME,
-            "diffrax",
-            diffrax_lanes.prepare,
-            {"rolling": diffrax_lanes.LANES, "mix": 2 * MIX_DISTINCT},
-            needs=("diffrax", "jax"),
+            scipy_loop.NAME,
+            "scipy",
+            scipy_loop.prepare,
+            {"rolling": 32, "mix": MIX_DISTINCT},
+            warm_up=4,
+            dop853=True,
         ),
-        *(
-            Engine(
-                heyoka_batch.name(width),
-                f"heyoka{width}",
-                partial(heyoka_batch.prepare, width=width),
-                {"rolling": 8192, "mix": 32 * MIX_DISTINCT},
-                needs=("heyoka",),
-            )
-            for width in (8, 16)
+        _diffrax(),
+        *(_heyoka(width) for width in (8, 16)),
+        *_ours(),
+    ]
+
+
+def engines_by_tolerance() -> list[Engine]:
+    """Return the engines whose `prepare` also takes tolerances, the slowest first."""
+    return [
+        Engine(
+            numba_loops.SCIPY_NAME,
+            "scipy-numba",
+            numba_loops.prepare_scipy,
+            {"rolling": 64, "mix": 1024},
+            needs=("numba",),
+            warm_up=4,
         ),
-        *(
-            Engine(name, method, partial(ours.prepare, method=method), _OWN_COUNTS, dop853=method == "dop853")
-            for method, name in ours.NAMES.items()
+        Engine(
+            numba_loops.CYRK_NAME,
+            "cyrk",
+            numba_loops.prepare_cyrk,
+            {"rolling": 1024},
+            needs=("CyRK", "numba"),
+            warm_up=4,
         ),
+        _diffrax(),
+        _heyoka(8),
+        *_ours(),
+    ]
+
+
+def _diffrax() -> Engine:
+    return Engine(
+        diffrax_lanes.NAME,
+        "diffrax",
+        diffrax_lanes.prepare,
+        {"rolling": diffrax_lanes.LANES, "mix": 2 * MIX_DISTINCT},
+        needs=("diffrax", "jax"),
+        lanes=diffrax_lanes.LANES,
+    )
+
+
+def _heyoka(width: int) -> Engine:
+    return Engine(
+        heyoka_batch.name(width),
+        f"heyoka{width}",
+        partial(heyoka_batch.prepare, width=width),
+        {"rolling": 8192, "mix": 32 * MIX_DISTINCT},
+        needs=("heyoka",),
+    )
+
+
+def _ours() -> list[Engine]:
+    return [
+        Engine(name, method, partial(ours.prepare, method=method), _OWN_COUNTS, dop853=method == "dop853")
+        for method, name in ours.NAMES.items()
     ]

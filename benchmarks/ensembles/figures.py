@@ -4,9 +4,10 @@ from collections.abc import Mapping, Sequence
 
 from matplotlib.figure import Figure
 
-from stylobate.plots.style import BLUE, GREY, VERMILION, new_figure, styled
+from stylobate.plots.style import BLACK, BLUE, DASHES, GREEN, GREY, ORANGE, PURPLE, VERMILION, new_figure, styled
 
 from .ours import NAMES
+from .precision import Point
 from .scaling import Cost
 from .timing import Timing
 
@@ -46,6 +47,40 @@ def engines_figure(names: Mapping[str, str], found: Sequence[Timing], limits: Ma
         axes.tick_params(axis="y", length=0)
     panels[0].set_yticks(range(len(keys)), [names[key] for key in keys])
     return figure
+
+
+@styled
+def precision_figure(names: Mapping[str, str], found: Sequence[Point]) -> Figure:
+    """Draw the processor time of a run against its error, a curve for each engine, a panel for each workload."""
+    figure = new_figure(3.9)
+    panels = figure.subplots(1, 2, sharex=True)
+    looks = zip(names, (BLACK, PURPLE, GREEN, BLUE, VERMILION, ORANGE), "^vDsoP", DASHES[::-1], strict=True)
+    for key, color, marker, dashes in looks:
+        own = key in NAMES
+        for axes, workload in zip(panels, _TITLES, strict=True):
+            points = [point for point in found if (point.engine, point.workload) == (key, workload)]
+            axes.plot(
+                [point.error for point in points],
+                [1e6 * point.seconds for point in points],
+                color=color,
+                marker=marker,
+                markersize=5 if own else 4,
+                linestyle="-" if own else dashes,
+                linewidth=2.0 if own else 1.2,
+                label=names[key] if workload == "rolling" else None,
+            )
+    for axes, (workload, title) in zip(panels, _TITLES.items(), strict=True):
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        axes.set_title(title)
+        axes.set_xlabel(f"{_ERRORS[workload]} error of tilt and rate at the end [1]")
+    panels[0].set_ylabel("processor time of a run [µs], one core")
+    panels[0].invert_xaxis()
+    figure.legend(loc="outside lower center", ncols=3)
+    return figure
+
+
+_ERRORS = {"rolling": "largest", "mix": "median"}
 
 
 @styled

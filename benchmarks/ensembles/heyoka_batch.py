@@ -11,9 +11,7 @@ from typing import Any
 import numpy as np
 
 from .answers import Answer
-from .workloads import ETA, ROLLING_ACCELERATION, C, Workload
-
-TOLERANCE = 1e-8
+from .workloads import ATOL, ETA, ROLLING_ACCELERATION, RTOL, C, Workload
 
 
 def name(width: int) -> str:
@@ -21,13 +19,16 @@ def name(width: int) -> str:
     return f"heyoka, batch of {width}"
 
 
-def prepare(workload: Workload, *, width: int = 8) -> Callable[[Workload], Answer]:
-    """Compile the integrator and return what computes a workload of this kind."""
-    integrator = _integrator(workload, width)
+def prepare(
+    workload: Workload, *, width: int = 8, rtol: float = RTOL, atol: float = ATOL
+) -> Callable[[Workload], Answer]:
+    """Compile the integrator, which has one tolerance, and return what computes a workload of this kind."""
+    del atol
+    integrator = _integrator(workload, width, rtol)
     return partial(_solve, integrator)
 
 
-def _integrator(workload: Workload, width: int) -> Any:
+def _integrator(workload: Workload, width: int, tolerance: float) -> Any:
     import heyoka as hy  # noqa: PLC0415  it need not be installed
 
     x, y, vx, vy = hy.make_vars("x", "y", "vx", "vy")
@@ -46,7 +47,7 @@ def _integrator(workload: Workload, width: int) -> Any:
         np.ones((4, width)),
         pars=np.ones((2 if workload.circular else 6, width)),
         t_events=[overturning],
-        tol=TOLERANCE,
+        tol=tolerance,
         fast_math=True,
     )
 

@@ -2,8 +2,10 @@
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 import stylobate as sb
 
@@ -14,13 +16,23 @@ NAMES = {"dop853": "stylobate, DOP853", "taylor": "stylobate, Taylor"}
 MODEL = sb.Slender(COLUMN, damping=ETA)
 
 
-def prepare(workload: Workload, *, method: str) -> Callable[[Workload], Answer]:
+def prepare(workload: Workload, *, method: str, rtol: float = RTOL, atol: float = ATOL) -> Callable[[Workload], Answer]:
     """Return what computes a workload of this kind by this method."""
     del workload
-    return partial(solve, threads=1, method=method)
+    return partial(solve, threads=1, method=method, rtol=rtol, atol=atol)
 
 
-def solve(
+def solve(workload: Workload, **options: Any) -> Answer:
+    """Follow every run of the workload; the options are those of `simulate`."""
+    data = simulate(workload, **options)
+    parts = [data["end_tilt"].values, data["end_tilt_rate"].values]
+    if "end_spin" in data:
+        parts.append(data["end_spin"].values[:, np.newaxis])
+    overturned = data["outcome"].values == sb.Outcome.OVERTURNED
+    return Answer(np.concatenate(parts, axis=1), data["end_time"].values, overturned, int(data["steps"].values.sum()))
+
+
+def simulate(
     workload: Workload,
     *,
     threads: int,
@@ -29,9 +41,9 @@ def solve(
     demands: bool = False,
     rtol: float = RTOL,
     atol: float = ATOL,
-) -> Answer:
-    """Follow every run of the workload."""
-    data = sb.simulate_ensemble(
+) -> xr.Dataset:
+    """Return the results of every run of the workload."""
+    return sb.simulate_ensemble(
         model,
         workload.motion,
         tilt=workload.start[:, :2],
@@ -45,8 +57,3 @@ def solve(
         demands=demands,
         threads=threads,
     )
-    parts = [data["end_tilt"].values, data["end_tilt_rate"].values]
-    if "end_spin" in data:
-        parts.append(data["end_spin"].values[:, np.newaxis])
-    overturned = data["outcome"].values == sb.Outcome.OVERTURNED
-    return Answer(np.concatenate(parts, axis=1), data["end_time"].values, overturned, int(data["steps"].values.sum()))

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -13,6 +14,9 @@ from .workloads import ATOL, ETA, ROLLING_ACCELERATION, RTOL, C, Workload
 
 NAME = "SciPy, loop"
 
+Rates = Callable[..., Any]
+"""A right-hand side, of time and state."""
+
 
 def prepare(workload: Workload) -> Callable[[Workload], Answer]:
     """Return what computes a workload of this kind; rolling goes without an event, which makes it faster."""
@@ -20,13 +24,24 @@ def prepare(workload: Workload) -> Callable[[Workload], Answer]:
     return solve
 
 
-def solve(workload: Workload, *, rtol: float = RTOL, atol: float = ATOL) -> Answer:
+def plain_rates(workload: Workload, i: int) -> Rates:
+    """Return the right-hand side of a run in plain Python."""
+    return _rolling_rates(workload, i) if workload.circular else _rates(workload, i)
+
+
+def solve(
+    workload: Workload,
+    *,
+    rtol: float = RTOL,
+    atol: float = ATOL,
+    rates_of: Callable[[Workload, int], Rates] = plain_rates,
+) -> Answer:
     """Follow every run of the workload."""
     end, time = np.empty((len(workload), 4)), np.empty(len(workload))
     overturned = np.zeros(len(workload), bool)
     steps = 0
     for i in range(len(workload)):
-        rates = _rolling_rates(workload, i) if workload.circular else _rates(workload, i)
+        rates = rates_of(workload, i)
         events = None if workload.circular else _no_return(float(workload.no_return[i]))
         flow = solve_ivp(
             rates, (0.0, workload.duration[i]), workload.start[i], method="DOP853", rtol=rtol, atol=atol, events=events
@@ -48,7 +63,7 @@ def solve_model(model: sb.Model, workload: Workload) -> Answer:
     return Answer(end, workload.duration, np.zeros(len(workload), bool), steps)
 
 
-def _model_rates(model: sb.Model, workload: Workload, i: int) -> Callable[..., tuple[float, ...]]:
+def _model_rates(model: sb.Model, workload: Workload, i: int) -> Rates:
     theta, cos, sin = float(workload.theta[i]), math.cos, math.sin
     (cx, cy), (sx, sy) = workload.cos[i].tolist(), workload.sin[i].tolist()
     right_hand_side, parameters = model.rates, model.parameters
@@ -61,7 +76,7 @@ def _model_rates(model: sb.Model, workload: Workload, i: int) -> Callable[..., t
     return rates
 
 
-def _rolling_rates(workload: Workload, i: int) -> Callable[..., tuple[float, float, float, float]]:
+def _rolling_rates(workload: Workload, i: int) -> Rates:
     theta, cos, sin, hypot, a0 = float(workload.theta[i]), math.cos, math.sin, math.hypot, ROLLING_ACCELERATION
 
     def rates(tau, state):
@@ -73,7 +88,7 @@ def _rolling_rates(workload: Workload, i: int) -> Callable[..., tuple[float, flo
     return rates
 
 
-def _rates(workload: Workload, i: int) -> Callable[..., tuple[float, float, float, float]]:
+def _rates(workload: Workload, i: int) -> Rates:
     theta, cos, sin, hypot = float(workload.theta[i]), math.cos, math.sin, math.hypot
     (cx, cy), (sx, sy) = workload.cos[i].tolist(), workload.sin[i].tolist()
 

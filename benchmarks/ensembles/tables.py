@@ -1,6 +1,9 @@
 """The tables of the documentation's page on speed, as Markdown."""
 
+import itertools
+import math
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from .engines import Engine
 from .level_trials import Trial
@@ -8,6 +11,10 @@ from .ours import NAMES
 from .scaling import Cost
 from .timing import Timing
 from .workloads import MIX_DISTINCT
+
+if TYPE_CHECKING:
+    from .precision import Point
+    from .shares import Shares
 
 
 def engines_table(
@@ -27,7 +34,7 @@ def engines_table(
             )
             continue
         timing = _of(found, engine.key, workload)
-        cells = [engine.name, _number(timing.rate), _number(timing.rate / _of(found, "scipy", workload).rate)]
+        cells = [engine.name, number(timing.rate), number(timing.rate / _of(found, "scipy", workload).rate)]
         cells.append(_share(timing.rate / limits[workload]) if engine.dop853 else "–")
         cells.append(_power(timing.error))
         if timing.other_outcomes is not None:
@@ -51,7 +58,7 @@ def targets_table(found: Sequence[Timing], two_threads: Mapping[str, float] | No
         ("speed of two threads over one", "≥ 1.8", (threads, "")),
         ("error of the end state", f"SciPy's: {_power(scipy.error)}", [_power(timing.error) for timing in own]),
     ):
-        told = ["not measured" if v is None else v if isinstance(v, str) else _number(v) for v in values]
+        told = ["not measured" if v is None else v if isinstance(v, str) else number(v) for v in values]
         lines.append(f"| {what} | {aim} | {' | '.join(told)} |")
     return "\n".join(lines) + "\n"
 
@@ -67,11 +74,62 @@ def levels_table(trials: Sequence[Trial], found: Sequence[Timing], workload: str
         timing, beside = _of(found, trial.key, workload), _of(found, trial.beside, workload)
         demanding = None if trial.demanding is None else _of(found, trial.demanding, workload)
         rate = timing.fastest
-        cells = [trial.name, _number(rate), f"{rate / beside.fastest:.2g}"]
-        cells.append("–" if demanding is None else _number(demanding.fastest))
-        cells += [_number(timing.steps), f"{1e6 / (rate * timing.steps):.2g}", _power(timing.error)]
+        cells = [trial.name, number(rate), f"{rate / beside.fastest:.2g}"]
+        cells.append("–" if demanding is None else number(demanding.fastest))
+        cells += [number(timing.steps), f"{1e6 / (rate * timing.steps):.2g}", _power(timing.error)]
         if timing.other_outcomes is not None:
             cells.append(f"{timing.other_outcomes} of {MIX_DISTINCT}")
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def precision_table(engines: Sequence[Engine], found: Sequence["Point"], workload: str) -> str:
+    """Return one row an engine: the least processor time of a run at which it reaches each error."""
+    heads = [f"error 1e{math.log10(error):.0f}" for error in _ERRORS]
+    lines = [f"| {workload}, µs a run | {' | '.join(heads)} |", "|" + "---|" * (len(heads) + 1)]
+    for engine in engines:
+        points = [point for point in found if (point.engine, point.workload) == (engine.key, workload)]
+        cells = [engine.name]
+        if engine.missing:
+            cells += [f"not measured: {', '.join(engine.missing)} not installed", *[""] * (len(heads) - 1)]
+        elif not points:
+            continue
+        else:
+            times = (_time_of_error(points, error) for error in _ERRORS)
+            cells += ["–" if math.isnan(seconds) else number(1e6 * seconds) for seconds in times]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+_ERRORS = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
+
+
+def _time_of_error(points: Sequence["Point"], error: float) -> float:
+    """Return the least time of a run [s] with this error, interpolated between tolerances; NaN if none reaches it."""
+    times = [point.seconds for point in points if point.error <= error]
+    by_tolerance = sorted(points, key=lambda point: -point.rtol)
+    for loose, tight in itertools.pairwise(by_tolerance):
+        if tight.error <= error < loose.error:
+            share = math.log(loose.error / error) / math.log(loose.error / tight.error)
+            times.append(loose.seconds ** (1.0 - share) * tight.seconds**share)
+    return min(times, default=math.nan)
+
+
+_NOISE = 0.01
+
+
+def shares_table(found: Sequence["Shares"]) -> str:
+    """Return one row a method and workload: the parts of the processor time of a call."""
+    lines = [
+        "| 512 runs, one core | a call [ms] | steps | events, driver | observation | Python | lanes occupied "
+        "| steps alone: share of peak |",
+        "|" + "---|" * 8,
+    ]
+    for one in found:
+        shares = [part / one.call for part in (one.steps, one.events, one.observation, one.python)]
+        parts = ["< 1 %" if share < _NOISE else _share(share) for share in shares]
+        of_peak = "–" if one.of_peak is None else _share(one.of_peak)
+        cells = [f"{one.workload}: {NAMES[one.method]}", number(1e3 * one.call), *parts, _share(one.occupied), of_peak]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
@@ -83,7 +141,7 @@ def scaling_table(found: Sequence[Cost]) -> str:
         "|" + "---|" * 7,
     ]
     for count in sorted({cost.count for cost in found}):
-        cells = [_number(count)]
+        cells = [number(count)]
         for workload in ("rolling", "mix"):
             cost = next(c for c in found if (c.workload, c.count) == (workload, count))
             cells += [f"{cost.seconds:.3g}", f"{1e6 * cost.seconds / count:.3g}", f"{cost.peak / 1e6:.0f}"]
@@ -95,7 +153,7 @@ def _of(found: Sequence[Timing], engine: str, workload: str) -> Timing:
     return next(timing for timing in found if (timing.engine, timing.workload) == (engine, workload))
 
 
-def _number(value: float) -> str:
+def number(value: float) -> str:
     """Return three digits or all of the integer part, in groups of three."""
     return f"{value:.3g}" if value < 100.0 else f"{value:,.0f}".replace(",", " ")
 

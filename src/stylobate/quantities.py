@@ -226,9 +226,14 @@ def parameter_of(name: str, annotation: Any, default: Any) -> Parameter | None:
     return None if quantity is None else Parameter(name, quantity, _without_declaration(annotation), default)
 
 
+@cache
+def _argument_names(make: Callable[..., Any]) -> frozenset[str]:
+    return frozenset(inspect.signature(make).parameters)
+
+
 def is_declared(make: Callable[..., Any], *others: str) -> bool:
     """Return whether a dataclass is made by declared numbers and these `others` alone."""
-    return is_dataclass(make) and set(inspect.signature(make).parameters) <= {*parameters_of(make), *others}
+    return is_dataclass(make) and _argument_names(make) <= {*parameters_of(make), *others}
 
 
 def checked_arguments(make: Callable[_P, _T]) -> Callable[_P, _T]:

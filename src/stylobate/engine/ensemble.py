@@ -20,7 +20,7 @@ from stylobate.engine.ensembles.harmonics import terms_of
 from stylobate.engine.ensembles.motion_columns import MotionPlan
 from stylobate.engine.ensembles.options import Options
 from stylobate.engine.ensembles.pool import Halt, parts_of, run_parts, usual_threads
-from stylobate.engine.ensembles.summaries import QUANTITIES, Arrays, empty, fallen, summaries
+from stylobate.engine.ensembles.summaries import QUANTITIES, Arrays, empty, fallen, summarize_into
 from stylobate.engine.motion_checks import check_motion
 from stylobate.engine.pace import announce, expected_steps
 from stylobate.engine.parameters import changed_model, check_names, split
@@ -206,8 +206,7 @@ def _followed(
     def compute(part: slice, halt: Halt) -> None:
         batch = Batch.of(plan, runs.part(part))
         batch.advance(halt)
-        for name, values in summaries(batch).items():
-            arrays[name][part] = values
+        summarize_into({name: values[part] for name, values in arrays.items()}, batch)
 
     def count(part: slice) -> None:
         nonlocal done
@@ -248,7 +247,7 @@ def _dataset(
     declared: Mapping[str, Parameter],
 ) -> xr.Dataset:
     variables = {
-        name: xr.Variable(
+        name: (
             (*runs.dims, *QUANTITIES[name].dims),
             values.reshape(*runs.shape, *values.shape[1:]),
             dict(QUANTITIES[name].attributes),
@@ -267,6 +266,6 @@ def _dataset(
     )
     for name in runs.coordinates:
         known = declared.get(name.removeprefix("motion."))
-        if known is not None and not data[name].attrs:
-            data[name].attrs = {"long_name": known.quantity.text, "units": known.quantity.cf_units}
+        if known is not None and not data.variables[name].attrs:
+            data.variables[name].attrs = {"long_name": known.quantity.text, "units": known.quantity.cf_units}
     return data

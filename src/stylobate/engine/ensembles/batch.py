@@ -119,10 +119,10 @@ class Batch:
             models = ModelColumns.of(plan.model, runs.values, runs.tilt, runs.tilt_rate, runs.spin)
         motions = MotionColumns.of(plan.motion, runs.values, models)
         energy = plan.rest_share * _rest_energy(plan.options, models, motions)
-        table = _empty_table(plan, len(runs), motions.breaks.shape[1])
+        shape = plan.layout
+        table = _empty_table(plan, shape, len(runs), motions.breaks.shape[1])
         _fill_setup(table, plan, runs, models, motions, energy)
         planar = _fill_starts(table, plan.model, runs, models, motions)
-        shape = plan.layout
         table[:, shape.parameters_at : shape.motion_at] = models.parameters
         table[:, shape.motion_at : shape.breaks_at] = motions.columns
         table[:, shape.breaks_at : shape.breaks_at + motions.breaks.shape[1]] = motions.breaks
@@ -147,8 +147,9 @@ class Batch:
         """
         finished = self._through(halt, paused, planar=False, chosen=~self.planar)
         released = self.log(Log.STATUS) == Status.TO_PLANE
-        self._to_plane(released)
-        self.planar[released] = True
+        if released.any():
+            self._to_plane(released)
+            self.planar[released] = True
         return self._through(halt, paused, planar=True, chosen=self.planar) and finished
 
     def _through(
@@ -156,7 +157,8 @@ class Batch:
     ) -> bool:
         if not chosen.any():
             return True
-        table = np.ascontiguousarray(self.table[chosen])
+        every_run = bool(chosen.all())
+        table = self.table if every_run else np.ascontiguousarray(self.table[chosen])
         kernel = kernel_of(type(self.plan.model), self.plan.shape(planar=planar))
         buffer = kernel.buffer()
         pieces, plain = self.plan.motion.pieces, self.plan.plain
@@ -165,7 +167,8 @@ class Batch:
             rows = kernel.shape.rows()
             paused(buffer[rows["steps"], 0], buffer[rows["time"], 0] * self.models.time_scale[0])
         self._take_trace(table)
-        self.table[chosen] = table
+        if not every_run:
+            self.table[chosen] = table
         if np.any(self.log(Log.STATUS) == Status.CANNOT_DEPART):
             raise cannot_depart(self.plan.model)
         return finished
@@ -212,11 +215,11 @@ def _rest_energy_for_good(options: Options, models: ModelColumns, motions: Motio
     return np.where(models.comes_to_rest, energy, 0.0)
 
 
-def _empty_table(plan: Plan, count: int, breaks: int) -> Floats:
+def _empty_table(plan: Plan, shape: Shape, count: int, breaks: int) -> Floats:
     options = plan.options
-    notes = plan.layout.breaks_at + breaks
+    notes = shape.breaks_at + breaks
     traces = notes + NOTE * (options.samples + options.strobes)
-    table = np.zeros((count, traces + plan.traces * plan.layout.trace_width))
+    table = np.zeros((count, traces + plan.traces * shape.trace_width))
     table[:, notes:traces] = np.nan
     for column in (Log.FIRST_AZIMUTH, Log.LAST_AZIMUTH):
         table[:, LOG + column] = np.nan
@@ -270,15 +273,16 @@ def _fill_starts(
     """Set states and lines; return which runs begin in a plane."""
     states = models.states.copy()
     rate = runs.tilt_rate * models.time_scale[:, np.newaxis]
-    stands = ~(np.any(runs.tilt, axis=1) | np.any(rate, axis=1))
+    stands = ~(_not_zero(runs.tilt) | _not_zero(rate))
     base_line = common_lines(motions.directions)
     line = common_lines(np.concatenate([runs.tilt[:, np.newaxis], rate[:, np.newaxis], motions.directions], axis=1))
-    planar = np.any(line, axis=1) & (model.planar_rates is not None) & (runs.spin == 0.0)
+    in_a_plane = _not_zero(line)
+    planar = in_a_plane & (model.planar_rates is not None) & (runs.spin == 0.0)
     still = stands & ~np.any(motions.directions, axis=(1, 2))
-    _check_starts(model, runs, stands, np.any(line, axis=1) | still)
+    _check_starts(model, runs, stands, in_a_plane | still)
     table[:, [Setup.LINE_X, Setup.LINE_Y]] = np.where(planar[:, np.newaxis], line, base_line)
     table[:, LOG + Log.STANDS] = stands
-    upright = ~np.any(runs.tilt, axis=1) & ~stands & ~planar
+    upright = ~_not_zero(runs.tilt) & ~stands & ~planar
     if upright.any():
         speed = np.hypot(*rate[upright].T)[:, np.newaxis]
         off = FIRST_STEP_OFF * models.slenderness[upright, np.newaxis] * rate[upright] / speed
@@ -291,10 +295,16 @@ def _fill_starts(
         if runs.turning is not None:
             states[0] = runs.turning.begun(model, states[0])
     table[:, STATE : STATE + states.shape[1]] = states
-    table[planar, STATE] = np.sum(runs.tilt * line, axis=1)[planar]
-    table[planar, STATE + 1] = np.sum(rate * line, axis=1)[planar]
+    if planar.any():
+        table[planar, STATE] = np.sum(runs.tilt * line, axis=1)[planar]
+        table[planar, STATE + 1] = np.sum(rate * line, axis=1)[planar]
     table[:, LOG + Log.TOUCHED_UPRIGHT] = stands
     return np.asarray(planar)
+
+
+def _not_zero(vectors: Floats) -> npt.NDArray[np.bool_]:
+    """Return which of the `vectors`, shape (n, 2), are not zero."""
+    return np.logical_or(vectors[:, 0], vectors[:, 1])
 
 
 def _check_starts(model: Model, runs: Runs, stands: npt.NDArray[np.bool_], in_a_plane: npt.NDArray[np.bool_]) -> None:

@@ -161,7 +161,8 @@ def _common(given: Mapping[str, "xr.DataArray"]) -> tuple[tuple[str, ...], tuple
 def _flat(array: "xr.DataArray", dims: tuple[str, ...], shape: tuple[int, ...]) -> Floats:
     own = [dim for dim in dims if dim in array.dims]
     tail = (AXIS,) if AXIS in array.dims else ()
-    values = array.transpose(*own, *tail).to_numpy()
+    order = (*own, *tail)
+    values = (array if array.dims == order else array.transpose(*order)).to_numpy()
     lengths = [array.sizes[dim] if dim in own else 1 for dim in dims]
     wide = np.broadcast_to(values.reshape(*lengths, *values.shape[len(own) :]), (*shape, *values.shape[len(own) :]))
     return wide.reshape(math.prod(shape), *values.shape[len(own) :])

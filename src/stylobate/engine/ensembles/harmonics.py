@@ -126,10 +126,11 @@ class Terms:
         return self.start_phase - self.angular_frequency * self.shift
 
     def breaks(self) -> Floats:
-        """Return the times at which the acceleration is not smooth [s], shape (n, 2 terms), increasing; else inf."""
+        """Return the times at which the acceleration is not smooth [s], shape (n, breaks), increasing; else inf."""
         ramped = np.where(self.ramp > 0.0, self.shift + self.ramp, np.inf)
         times = np.concatenate([self.onset, ramped], axis=1)
-        return np.sort(np.where(times > 0.0, times, np.inf), axis=1)
+        times = np.sort(np.where(times > 0.0, times, np.inf), axis=1)
+        return times[:, np.any(np.isfinite(times), axis=0)]
 
     def columns(self, time_scale: Floats, gravity: Floats, *, windowed: bool) -> Floats:
         """Return what a kernel reads: in each term turns to a unit of time, amplitudes [g] and phases [turns]."""

@@ -155,8 +155,8 @@ class MotionColumns:
         rotation = values.get("rotation", np.zeros(count))
         if plan.terms is not None:
             terms = Terms.of(plan.terms, values, count, plan.base_acceleration[which])
-            columns, breaks = terms.columns(models.time_scale, models.gravity, windowed=plan.windowed), terms.breaks()
-            breaks = breaks[:, np.any(np.isfinite(breaks), axis=0)] if plan.windowed else breaks[:, :0]
+            columns = terms.columns(models.time_scale, models.gravity, windowed=plan.windowed)
+            breaks = terms.breaks() if plan.windowed else np.empty((count, 0))
             frequency, phase, forward, backward = _single_frequency(terms, plan.motion)
             mean_frequency = frequency
         else:

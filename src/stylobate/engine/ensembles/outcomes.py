@@ -14,6 +14,7 @@ from stylobate.errors import Outcome
 
 Floats = npt.NDArray[np.float64]
 
+# The outcomes of runs whose kernel ended them; what the others amount to, their last periods show.
 _ENDINGS = {
     Status.RESTED: Outcome.AT_REST,
     Status.OVERTURNED: Outcome.OVERTURNED,
@@ -25,6 +26,11 @@ _ENDINGS = {
     Status.ENDLESS: Outcome.FAILED,
     Status.JAMMED: Outcome.FAILED,
 }
+_OTHERS = -1
+_ENDING_OF_STATUS = np.array([_ENDINGS.get(status, _OTHERS) for status in Status], dtype=np.int8)
+
+
+_OUTCOME_OF_GROUND = np.array([outcome_on(kind) for kind in Ground], dtype=np.int8)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,9 +62,8 @@ def late_periods(batch: Batch) -> Late:
     turned = _window(batch, LATE, Window.LAST_AZIMUTH) - _window(batch, LATE, Window.FIRST_AZIMUTH)
     turned = np.where(batch.planar, 0.0, turned)
     forward = turned >= 0.0
-    lag = np.where(forward, Window.LAG_FORWARD, Window.LAG_BACKWARD)
     lags = [
-        np.take_along_axis(batch.table, (first + lag)[:, np.newaxis], axis=1)[:, 0] / (n * LOOKS)
+        np.where(forward, _window(batch, first, Window.LAG_FORWARD), _window(batch, first, Window.LAG_BACKWARD))
         for first in (LATE, BEFORE)
     ]
     parts = {
@@ -78,7 +83,7 @@ def late_periods(batch: Batch) -> Late:
         least_tilt=known(batch.log(Log.LATE_LEAST)),
         repetition=known(_repetition(batch, LATE, mean_tilt)),
         repetition_before=known(_repetition(batch, BEFORE, mean_tilt), before),
-        drift=known(np.abs(lags[0] - lags[1]), before),
+        drift=known(np.abs(lags[0] / (n * LOOKS) - lags[1] / (n * LOOKS)), before),
     )
 
 
@@ -145,11 +150,9 @@ def grounds_of(batch: Batch, late: Late) -> npt.NDArray[np.int8]:
 
 def outcomes(batch: Batch, late: Late) -> npt.NDArray[np.int8]:
     """Return the codes of the outcomes."""
-    status = batch.log(Log.STATUS)
-    codes = np.array([outcome_on(kind) for kind in Ground], dtype=np.int8)[grounds_of(batch, late)]
+    codes = _OUTCOME_OF_GROUND[grounds_of(batch, late)]
     codes = np.where(_survive(batch, codes == Outcome.STILL_MOVING), Outcome.SURVIVED, codes)
     codes = np.where(batch.log(Log.STANDS) > 0.0, Outcome.AT_REST, codes)
-    for ending, outcome in _ENDINGS.items():
-        codes = np.where(status == ending, outcome, codes)
-    codes = codes.astype(np.int8)
+    endings = _ENDING_OF_STATUS[batch.log(Log.STATUS).astype(np.intp)]
+    codes = np.where(endings == _OTHERS, codes, endings).astype(np.int8)
     return upright_outcomes(batch, late.span, codes) if batch.plan.model.switches else codes

@@ -11,13 +11,15 @@ from stylobate.processes import end_all
 
 Halt = npt.NDArray[np.uint8]
 
-# Parts: small enough that all threads end together and progress shows, large enough to fill the lanes.
-_FEWEST, _MOST, _PARTS_PER_THREAD = 256, 4096, 8
+# Parts: small enough that every thread has one, all threads end together and progress shows; large enough to fill the
+# lanes, and that Python's share of each is small.
+_FEWEST, _ENOUGH, _MOST, _PARTS_PER_THREAD = 128, 512, 4096, 8
 
 
 def parts_of(count: int, threads: int) -> list[slice]:
     """Return the slices in which `count` runs are computed."""
-    size = min(max(_FEWEST, -(-count // (threads * _PARTS_PER_THREAD))), _MOST)
+    share = -(-count // threads)
+    size = min(max(_FEWEST, min(share, _ENOUGH), -(-share // _PARTS_PER_THREAD)), _MOST)
     return [slice(start, min(start + size, count)) for start in range(0, count, size)]
 
 

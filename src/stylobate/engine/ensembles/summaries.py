@@ -28,15 +28,16 @@ Arrays = dict[str, npt.NDArray[Any]]
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A variable of the results: type, dimensions besides those of the runs, attributes."""
+    """A variable of the results: type, dimensions besides those of the runs, attributes, value if not computed."""
 
     dtype: type
     dims: tuple[str, ...]
     attributes: Mapping[str, Any]
+    none: float = 0
 
 
 def _numbers(long_name: str, units: str, *dims: str) -> Quantity:
-    return Quantity(np.float64, dims, {"long_name": long_name, "units": units})
+    return Quantity(np.float64, dims, {"long_name": long_name, "units": units}, np.nan)
 
 
 _CONTACTS = (
@@ -46,7 +47,7 @@ _CONTACTS = (
 
 
 QUANTITIES: Mapping[str, Quantity] = {
-    "outcome": Quantity(np.int8, (), outcome_attributes()),
+    "outcome": Quantity(np.int8, (), outcome_attributes(), NOT_COMPUTED),
     "decided_at": _numbers("time at which the outcome was decided", "s"),
     "end_time": _numbers("end of the run", "s"),
     "uncertain": Quantity(np.bool_, (), {"long_name": "a small change could alter the outcome"}),
@@ -101,32 +102,37 @@ _DEMANDS = ("largest_friction_demand", "largest_pivoting_demand", "least_normal_
 def empty(model: Model, options: Options, count: int) -> Arrays:
     """Return the results of `count` runs of which none has been computed."""
     sizes = {"axis": 2, "strobe": options.strobes, "sample": options.samples}
-    arrays, fills = Arrays(), dict[str, float]()
     left_out = {*(() if options.demands else _DEMANDS), *(("end_spin",) if model.spin_state is None else ())}
     left_out |= {*(() if model.switches else _CONTACTS)}
-    for name, quantity in QUANTITIES.items():
-        if name in left_out:
-            continue
-        shape = tuple(sizes[dim] for dim in quantity.dims)
-        if 0 not in shape:
-            fill = NOT_COMPUTED if name == "outcome" else np.nan if quantity.dtype is np.float64 else 0
-            arrays[name] = np.full((0, *shape), fill, dtype=quantity.dtype)
-            fills[name] = fill
-    require_memory(sum(map(_bytes_of_a_run, arrays.values())) * count, count, "Take fewer runs, samples or strobes")
-    return {name: np.full((count, *none.shape[1:]), fills[name], none.dtype) for name, none in arrays.items()}
-
-
-def _bytes_of_a_run(none: npt.NDArray[Any]) -> int:
-    return none.itemsize * math.prod(none.shape[1:])
+    shapes = {
+        name: tuple(sizes[dim] for dim in quantity.dims)
+        for name, quantity in QUANTITIES.items()
+        if name not in left_out
+    }
+    shapes = {name: shape for name, shape in shapes.items() if 0 not in shape}
+    bytes_of_a_run = sum(np.dtype(QUANTITIES[name].dtype).itemsize * math.prod(shape) for name, shape in shapes.items())
+    require_memory(bytes_of_a_run * count, count, "Take fewer runs, samples or strobes")
+    return {
+        name: np.full((count, *shape), QUANTITIES[name].none, QUANTITIES[name].dtype) for name, shape in shapes.items()
+    }
 
 
 def summaries(batch: Batch) -> Arrays:
     """Return the results of the runs of `batch`; those that have not ended keep what stands for nothing."""
     arrays = empty(batch.plan.model, batch.plan.options, len(batch.table))
-    ended = batch.log(Log.STATUS) != Status.WAITING
-    for name, values in _all(batch).items():
-        arrays[name][ended] = values[ended]
+    summarize_into(arrays, batch)
     return arrays
+
+
+def summarize_into(arrays: Arrays, batch: Batch) -> None:
+    """Write the results of the runs of `batch` that have ended into `arrays`, which have a row for each of its runs."""
+    ended = batch.log(Log.STATUS) != Status.WAITING
+    every_run = bool(ended.all())
+    for name, values in _all(batch).items():
+        if every_run:
+            arrays[name][:] = values
+        else:
+            arrays[name][ended] = values[ended]
 
 
 def _all(batch: Batch) -> Arrays:
@@ -192,7 +198,7 @@ def _all(batch: Batch) -> Arrays:
 
 def fallen(outcomes: npt.NDArray[np.int8]) -> npt.NDArray[np.bool_]:
     """Return which codes of outcomes are those of columns that overturned or reached the tilt limit."""
-    return np.asarray(np.isin(outcomes, FALLEN))
+    return np.asarray(np.logical_or.reduce([outcomes == code for code in FALLEN]))
 
 
 def _in_doubt(batch: Batch, outcome: npt.NDArray[np.int8]) -> npt.NDArray[np.bool_]:
@@ -210,9 +216,10 @@ def _leans(batch: Batch) -> tuple[Floats, Floats]:
     """Return tilt vectors [rad] and their rates in the time of the models, shape (n, 2)."""
     states = batch.table[:, STATE : STATE + len(batch.plan.model.state_names)].T
     leans = np.stack(batch.plan.model.tilt_of(*states, *batch.models.parameters.T), axis=-1)
-    line = batch.table[:, [Setup.LINE_X, Setup.LINE_Y]]
-    plane = np.concatenate([states[0][:, np.newaxis] * line, states[1][:, np.newaxis] * line], axis=1)
-    leans = np.where(batch.planar[:, np.newaxis], plane, leans)
+    if batch.planar.any():
+        line = batch.table[:, [Setup.LINE_X, Setup.LINE_Y]]
+        plane = np.concatenate([states[0][:, np.newaxis] * line, states[1][:, np.newaxis] * line], axis=1)
+        leans = np.where(batch.planar[:, np.newaxis], plane, leans)
     leans[batch.log(Log.STANDS) > 0.0] = 0.0
     return leans[:, :2], leans[:, 2:]
 

@@ -1,0 +1,249 @@
+"""Where the processor time of a call goes: `python -m benchmarks.ensembles.shares`, part of `make bench`.
+
+Every call follows the 512 runs of a workload. Kernels are written again without what is to be measured, or with a
+counter; each follows the same runs in turns with the others, and the medians of the rounds are compared.
+"""
+
+import argparse
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import cache, partial
+from pathlib import Path
+from statistics import median
+from types import ModuleType
+from unittest.mock import patch
+
+import numpy as np
+import xarray as xr
+
+from stylobate.compiler.programs import Bound, Functions, text_of
+from stylobate.compiler.unit import ArrayArgument
+from stylobate.compiler.values import Kind
+from stylobate.compiler.written import written_module
+from stylobate.engine.kernel.driver import batch
+from stylobate.engine.kernel.kernels import Kernel
+
+from . import ours, peak, tables
+from .one_core import use_one_core
+from .workloads import MIX_DISTINCT, WORKLOADS, Workload
+
+_FOLDER = Path(__file__).parents[2] / "docs" / "_static" / "benchmarks"
+_OBSERVATION, _STEP = "                    observe(buf, i)\n", "            step(buf)\n"
+# As many steps as all runs of "rolling" make before anything but steps is due.
+_STEPS = 1000
+_STEPS_ALONE = """
+
+def steps_alone(buf, count):
+    for _ in range(count):
+        step(buf)
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Shares:
+    """Processor time of a call [s], and of its parts.
+
+    Parameters
+    ----------
+    method, workload
+        What was computed.
+    call
+        The call of `simulate_ensemble`.
+    steps, events, observation, python
+        Attempts at steps; events and the driver between steps; integrals over the last periods; all outside kernels.
+    occupied
+        Accepted steps over those that all lanes could have made.
+    of_peak
+        Arithmetic of DOP853's steps, without events, over what a core could do in the time of an attempt.
+    """
+
+    method: str
+    workload: str
+    call: float
+    steps: float
+    events: float
+    observation: float
+    python: float
+    occupied: float
+    of_peak: float | None
+
+
+def main() -> None:
+    """Measure the shares, and write the table."""
+    arguments = _arguments()
+    print(use_one_core())
+    rounds = 1 if arguments.quick else arguments.rounds
+    arithmetic_peak = peak.measured_peak()
+    found = [_shares(method, workload, rounds, arithmetic_peak) for method in ours.NAMES for workload in WORKLOADS]
+    text = tables.shares_table(found) + f"\nMeasured with {peak.in_words(arithmetic_peak)}.\n"
+    arguments.into.mkdir(parents=True, exist_ok=True)
+    (arguments.into / "shares.txt").write_text(text, encoding="utf-8")
+    print(text)
+
+
+def _shares(method: str, name: str, rounds: int, arithmetic_peak: float) -> Shares:
+    follow = partial(ours.simulate, WORKLOADS[name](MIX_DISTINCT), threads=1, method=method)
+    made, attempts, width = _counted(follow)
+    steps_alone = _steps_alone(method)
+    calls, inside, unobserved, alone = [], [], [], []
+    _timed(follow, _without_observation)  # compiles
+    for _ in range(rounds):
+        call, within = _timed(follow, _as_it_is)
+        calls.append(call)
+        inside.append(within)
+        unobserved.append(_timed(follow, _without_observation)[1])
+        alone.append(steps_alone(attempts))
+    of_peak = (
+        peak.flops_of_a_step() * width * attempts / median(alone) / arithmetic_peak if method == "dop853" else None
+    )
+    return Shares(
+        method=method,
+        workload=name,
+        call=median(calls),
+        steps=median(alone),
+        events=_median_of_differences(unobserved, alone),
+        observation=_median_of_differences(inside, unobserved),
+        python=_median_of_differences(calls, inside),
+        occupied=made / (attempts * width),
+        of_peak=of_peak,
+    )
+
+
+def _timed(follow: Callable[[], xr.Dataset], change: Callable[[Kernel], Kernel]) -> tuple[float, float]:
+    """Return the processor time of a call whose kernels are changed, and of its kernels [s]."""
+    with _kernels(change) as within:
+        begun = time.process_time()
+        follow()
+        return time.process_time() - begun, within[0]
+
+
+def _median_of_differences(longer: Sequence[float], shorter: Sequence[float]) -> float:
+    return median(a - b for a, b in zip(longer, shorter, strict=True))
+
+
+@contextmanager
+def _kernels(change: Callable[[Kernel], Kernel], pieces: np.ndarray | None = None) -> Iterator[list[float]]:
+    """Replace the kernels of all calls, and the polynomials they read, which harmonic motion has none of.
+
+    What it yields holds the processor time spent within them [s].
+    """
+    own, within = Kernel.advance, [0.0]
+
+    def advance(kernel, table, polynomials, *others, **options):
+        changed = change(kernel)
+        begun = time.process_time()
+        try:
+            return own(changed, table, polynomials if pieces is None else pieces, *others, **options)
+        finally:
+            within[0] += time.process_time() - begun
+
+    with patch.object(Kernel, "advance", advance):
+        yield within
+
+
+def _as_it_is(kernel: Kernel) -> Kernel:
+    return kernel
+
+
+@cache
+def _without_observation(kernel: Kernel) -> Kernel:
+    return _rewritten(kernel, _OBSERVATION, _OBSERVATION.replace("observe(buf, i)", "pass"))
+
+
+@cache
+def _with_counter(kernel: Kernel) -> Kernel:
+    return _rewritten(kernel, _STEP, _STEP + _STEP.replace("step(buf)", "pieces[0, 0] += 1.0"))
+
+
+def _rewritten(kernel: Kernel, old: str, new: str) -> Kernel:
+    text = text_of(batch)
+    assert text.count(old) == 1, old
+    program = _OtherBatch(kernel.compiled.program, text.replace(old, new))
+    return replace(kernel, compiled=replace(kernel.compiled, program=program))
+
+
+@dataclass(frozen=True, eq=False)
+class _OtherBatch:
+    """The program of a kernel with another text of the module that takes a batch through the lanes."""
+
+    own: Bound
+    text: str
+
+    @property
+    def texts(self) -> list[str]:
+        return [*self.own.texts, self.text]
+
+    def module(self, name: str, functions: Functions) -> ModuleType:
+        other = written_module(f"{name}_batch", self.text, {})
+        modules = [other if module is batch else module for module in self.own.modules]
+        return replace(self.own, modules=modules).module(name, functions)
+
+
+def _counted(follow: Callable[[], xr.Dataset]) -> tuple[int, int, int]:
+    """Return the accepted steps of all runs, the attempts at a step of all lanes, and the number of lanes."""
+    counter, widths = np.zeros((1, 5)), []
+
+    def counting(kernel: Kernel) -> Kernel:
+        widths.append(kernel.shape.width)
+        return _with_counter(kernel)
+
+    with _kernels(counting, counter):
+        made = int(follow()["steps"].sum())
+    return made, int(counter[0, 0]), widths[0]
+
+
+def _steps_alone(method: str) -> Callable[[int], float]:
+    """Return what makes so many steps in lanes that all roll, nothing between them, and returns how long they took [s].
+
+    A step is code without branches: it takes as long in any run.
+    """
+    kernel, begun = _begun(method)
+    steps = replace(
+        kernel.compiled,
+        name="steps_alone",
+        program=_OtherBatch(kernel.compiled.program, text_of(batch) + _STEPS_ALONE),
+        arguments=(ArrayArgument(begun.shape), Kind.INTEGER),
+    )
+    buffer = kernel.buffer()
+
+    def timed(count: int) -> float:
+        taken = 0.0
+        for first in range(0, count, _STEPS):
+            buffer[:] = begun
+            start = time.process_time()
+            steps(buffer, min(_STEPS, count - first))
+            taken += time.process_time() - start
+        return taken
+
+    timed(1)  # compiles
+    return timed
+
+
+def _begun(method: str) -> tuple[Kernel, np.ndarray]:
+    """Return the kernel of "rolling" and its buffer after the first step."""
+    kept: list[tuple[Kernel, np.ndarray]] = []
+    own = Kernel.advance
+
+    def advance(kernel, table, pieces, halt, buffer, **options):
+        own(kernel, table, pieces, np.ones_like(halt), buffer, **options)
+        kept.append((kernel, buffer.copy()))
+        return True
+
+    runs: Workload = WORKLOADS["rolling"](MIX_DISTINCT)
+    with patch.object(Kernel, "advance", advance):
+        ours.simulate(runs, threads=1, method=method)
+    return kept[0]
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.ensembles.shares", description=__doc__)
+    parser.add_argument("--into", type=Path, default=_FOLDER, help="folder for the table")
+    parser.add_argument("--rounds", type=int, default=21, help="of which the median counts")
+    parser.add_argument("--quick", action="store_true", help="one round: to see that it works")
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    main()
