@@ -30,14 +30,14 @@ from .one_core import use_one_core
 from .workloads import MIX_DISTINCT, WORKLOADS, Workload
 
 _FOLDER = Path(__file__).parents[2] / "docs" / "_static" / "benchmarks"
-_OBSERVATION, _STEP = "                    observe(buf, i)\n", "            step(buf)\n"
+_OBSERVATION, _STEP = "                    observe(buf, i)\n", "            step(buf, width)\n"
 # As many steps as all runs of "rolling" make before anything but steps is due.
 _STEPS = 1000
 _STEPS_ALONE = """
 
 def steps_alone(buf, count):
     for _ in range(count):
-        step(buf)
+        step(buf, WIDTH)
 """
 
 
@@ -54,7 +54,7 @@ class Shares:
     steps, events, observation, python
         Attempts at steps; events and the driver between steps; integrals over the last periods; all outside kernels.
     occupied
-        Accepted steps over those that all lanes could have made.
+        Accepted steps over those that the lanes could have made which were stepped.
     of_peak
         Arithmetic of DOP853's steps, without events, over what a core could do in the time of an attempt.
     """
@@ -94,10 +94,8 @@ def _shares(method: str, name: str, rounds: int, arithmetic_peak: float) -> Shar
         calls.append(call)
         inside.append(within)
         unobserved.append(_timed(follow, _without_observation)[1])
-        alone.append(steps_alone(attempts))
-    of_peak = (
-        peak.flops_of_a_step() * width * attempts / median(alone) / arithmetic_peak if method == "dop853" else None
-    )
+        alone.append(steps_alone(round(attempts / width)))
+    of_peak = peak.flops_of_a_step() * attempts / median(alone) / arithmetic_peak if method == "dop853" else None
     return Shares(
         method=method,
         workload=name,
@@ -106,7 +104,7 @@ def _shares(method: str, name: str, rounds: int, arithmetic_peak: float) -> Shar
         events=_median_of_differences(unobserved, alone),
         observation=_median_of_differences(inside, unobserved),
         python=_median_of_differences(calls, inside),
-        occupied=made / (attempts * width),
+        occupied=made / attempts,
         of_peak=of_peak,
     )
 
@@ -154,7 +152,7 @@ def _without_observation(kernel: Kernel) -> Kernel:
 
 @cache
 def _with_counter(kernel: Kernel) -> Kernel:
-    return _rewritten(kernel, _STEP, _STEP + _STEP.replace("step(buf)", "pieces[0, 0] += 1.0"))
+    return _rewritten(kernel, _STEP, _STEP + _STEP.replace("step(buf, width)", "pieces[0, 0] += width"))
 
 
 def _rewritten(kernel: Kernel, old: str, new: str) -> Kernel:
@@ -182,7 +180,7 @@ class _OtherBatch:
 
 
 def _counted(follow: Callable[[], xr.Dataset]) -> tuple[int, int, int]:
-    """Return the accepted steps of all runs, the attempts at a step of all lanes, and the number of lanes."""
+    """Return the accepted steps of all runs, the attempts at a step in all lanes, and the number of lanes."""
     counter, widths = np.zeros((1, 5)), []
 
     def counting(kernel: Kernel) -> Kernel:

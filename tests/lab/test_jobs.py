@@ -27,8 +27,10 @@ PLANE = {
 ENDLESS = {**CIRCLE, "duration": 3000.0, "tilt": [0.03, 0.0], "map": {p: {**PLANE[p], "number": 150} for p in "xy"}}
 
 
-SLIDING = {"kind": "sliding", "friction_coefficient": 0.5, "damping": 0.1}
-SLOW = {**CIRCLE, "model": SLIDING, "tilt": [0.02, 0.0], "duration": 3000.0}
+# Slides for ever, and takes seconds for as many steps as there may be.
+SLIDING = {"kind": "sliding", "friction_coefficient": 0.02, "damping": 0.1}
+FAST = {**CIRCLE["motion"], "angular_frequency": 150.0}
+SLOW = {**CIRCLE, "model": SLIDING, "motion": FAST, "duration": 3000.0, "max_steps": 200_000}
 
 
 def begun(client, kind, description):
@@ -155,16 +157,16 @@ def test_a_job_that_nobody_asks_for_is_dropped():
 
 
 def test_a_run_beyond_its_time_and_one_without_a_process_get_two_answers():
-    limits = Limits(runs=1, run_time=5.0, wait=0.5)
+    limits = Limits(runs=1, run_time=2.0, wait=0.5)
     with laboratory(limits) as address, client_of(address) as client, ThreadPoolExecutor() as pool:
         while client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 503:
             pass  # the first process starts
         slow = pool.submit(client.post, "/api/simulate", json=SLOW)
-        time.sleep(1.0)
+        time.sleep(0.5)
         busy = client.post("/api/simulate", json={**CIRCLE, "duration": 1.0})
         assert (busy.status_code, "busy for 0.5 s" in busy.json()["problems"][0]) == (503, True)
         assert slow.result().status_code == 504
-        assert "given up after 5 s" in slow.result().json()["problems"][0]
+        assert "given up after 2 s" in slow.result().json()["problems"][0]
         while (answer := client.post("/api/simulate", json={**CIRCLE, "duration": 1.0})).status_code == 503:
             pass
         assert answer.status_code == 200

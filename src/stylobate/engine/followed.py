@@ -61,6 +61,7 @@ class Followed:
         batch = Batch.of(plan, run)
         batch.advance(np.zeros(1, dtype=np.uint8), paused)
         entries = np.concatenate([*batch.traces, np.empty((0, plan.layout.trace_width))])
+        batch.traces.clear()  # a long run takes much memory
         happened = entries[:, Trace.KIND] >= TraceKind.RELEASE
         stretches = entries[~happened] if not happened.all() else _nothing_moved(batch)
         line = batch.table[0, [Setup.LINE_X, Setup.LINE_Y]].tolist()
