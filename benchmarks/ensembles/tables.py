@@ -129,7 +129,13 @@ def shares_table(found: Sequence["Shares"]) -> str:
         shares = [part / one.call for part in (one.steps, one.events, one.observation, one.python)]
         parts = ["< 1 %" if share < _NOISE else _share(share) for share in shares]
         of_peak = "–" if one.of_peak is None else _share(one.of_peak)
-        cells = [f"{one.workload}: {NAMES[one.method]}", number(1e3 * one.call), *parts, _share(one.occupied), of_peak]
+        cells = [
+            f"{one.workload}: {NAMES[one.method]}",
+            number(1e3 * one.call),
+            *parts,
+            f"{100.0 * one.occupied:.0f} %",
+            of_peak,
+        ]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 

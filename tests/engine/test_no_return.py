@@ -38,13 +38,15 @@ def elliptic(draw):
 
 @st.composite
 def motions(draw):
-    motion = draw(elliptic())
-    if draw(st.booleans()):
-        motion = motion + draw(elliptic()).delayed(draw(numbers(-3.0, 6.0)))
-    if draw(st.booleans()):
-        motion = motion + sb.Harmonic.vertical(
-            acceleration=draw(numbers(0.0, 0.8)), angular_frequency=draw(frequencies), start_phase=draw(phases)
-        )
+    # One of the parts may be nothing: all of these need the same kernel.
+    motion = draw(elliptic()) + draw(elliptic()).delayed(draw(numbers(-3.0, 6.0))).scaled(
+        draw(st.sampled_from([0.0, 1.0]))
+    )
+    motion = motion + sb.Harmonic.vertical(
+        acceleration=draw(st.sampled_from([1e-9, 1.0])) * draw(numbers(0.001, 0.8)),
+        angular_frequency=draw(frequencies),
+        start_phase=draw(phases),
+    )
     if draw(st.booleans()):
         motion = motion.delayed(draw(numbers(-3.0, 5.0))).scaled(draw(numbers(-1.5, 1.5)), vertical=1.0)
     return motion

@@ -9,6 +9,7 @@ import pytest
 import stylobate as sb
 from stylobate.compiler import machine
 from stylobate.compiler.unit import ArrayArgument
+from stylobate.compiler.values import Kind
 from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.ensembles.broadcasting import broadcast
 from stylobate.engine.kernel.columns import TRACE_TERMS, Trace
@@ -38,9 +39,9 @@ def test_steps_have_the_bits_of_plain_python(case, plan_of):
     kernel = kernel_of(type(model), plan.shape(planar=case.endswith("plane")))
     rows, width = kernel.shape.rows(), kernel.shape.width
     unit = kernel.compiled.unit(exact=True)
-    unit.export(kernel.compiled.module.step, "step", [ArrayArgument((len(rows), width))])
+    unit.export(kernel.compiled.module.step, "step", [ArrayArgument((len(rows), width)), Kind.INTEGER])
     engine = machine.linked(machine.object_code(unit.module.text(machine.attributes())))
-    compiled = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p)(engine.get_function_address("step"))
+    compiled = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64)(engine.get_function_address("step"))
 
     buf = np.random.default_rng(8).normal(scale=0.05, size=(len(rows), width))
     for name in ("h", "rtol", "atol", "atol_now", "longest_step", "stop"):
@@ -48,9 +49,9 @@ def test_steps_have_the_bits_of_plain_python(case, plan_of):
     for j, number in enumerate(model.parameters):
         buf[rows[f"p{j}"]] = number
     one, other = buf.copy(), buf.copy()
-    compiled(one.ctypes.data)
+    compiled(one.ctypes.data, width)
     with np.errstate(all="ignore"):
-        kernel.compiled.module.step(other)
+        kernel.compiled.module.step(other, width)
     assert np.isfinite(other).mean() > 0.9
     assert (other != buf).any(axis=1).sum() > 40
     np.testing.assert_array_equal(one, other)

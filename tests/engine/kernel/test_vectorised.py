@@ -86,7 +86,7 @@ def assembly_of(plan_of):
     ],
 )
 def test_steps_work_on_all_lanes_at_once(motion, method, planar, model, assembly_of):
-    counts, registers = arithmetic_of(assembly_of("step", motion, method, planar, model))
+    counts, registers = arithmetic_of(assembly_of("step", motion, method, planar, model, after=(Kind.INTEGER,)))
     assert counts["pd"] > 100
     assert counts["sd"] == 0, counts
     assert registers["ymm"] + registers["zmm"] > registers["xmm"]
@@ -102,13 +102,17 @@ def test_steps_work_on_all_lanes_at_once(motion, method, planar, model, assembly
     ],
 )
 def test_steps_that_follow_loads_work_on_all_lanes_at_once(model, planar, assembly_of):
-    counts, _ = arithmetic_of(assembly_of("step", "harmonic", "dop853", planar, model, demands=True))
+    counts, _ = arithmetic_of(
+        assembly_of("step", "harmonic", "dop853", planar, model, demands=True, after=(Kind.INTEGER,))
+    )
     assert counts["pd"] > 100
     assert counts["sd"] == 0, counts
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "arguments"), [("evaluate", (Kind.FLOAT,)), ("guard", (Kind.FLOAT,)), ("step", ())])
+@pytest.mark.parametrize(
+    ("name", "arguments"), [("evaluate", (Kind.FLOAT,)), ("guard", (Kind.FLOAT,)), ("step", (Kind.INTEGER,))]
+)
 def test_equations_and_margins_of_changing_contact_work_on_all_lanes_at_once(name, arguments, assembly_of):
     counts, _ = arithmetic_of(assembly_of(name, "harmonic", "dop853", False, Sliding, after=arguments))
     assert counts["pd"] > 100

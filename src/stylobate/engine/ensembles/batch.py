@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.compiler.kept import runs_plain
 from stylobate.engine.doubt import FINER_REST, other_tolerance
 from stylobate.engine.ensembles.broadcasting import Runs
 from stylobate.engine.ensembles.model_columns import ModelColumns
@@ -72,13 +73,19 @@ class Plan:
             parameters=parameters,
             planar=planar,
             forcing=forcing,
-            width=1 if self.plain else SWITCHING_WIDTH if self.model.switches else WIDTH,
+            width=self._width,
             series=series_integrals(type(self.model), states, parameters, vertical=vertical) if by_series else (),
             demands=self.options.demands,
             guards=len(self.model.guard_names),
             slip=self.model.slip_states,
             kept=self.model.kept_states,
         )
+
+    @property
+    def _width(self) -> int:
+        if self.plain or runs_plain():
+            return 1
+        return SWITCHING_WIDTH if self.model.switches else WIDTH
 
     @property
     def layout(self) -> Shape:
