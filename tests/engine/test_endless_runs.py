@@ -5,10 +5,10 @@ import math
 import time
 
 import pytest
+from tests.reference.forcing import Forcing
 from tests.reference.resting import release_time, release_within
 
 import stylobate as sb
-from stylobate.engine.forcing import Forcing
 from stylobate.engine.pace import expected_steps
 
 COLUMN = sb.Column.dimensionless(slenderness=0.1)

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
+from tests.reference.forcing import Forcing
 from tests.reference.resting import departure, release_time
 
 import stylobate as sb
-from stylobate.engine.forcing import Forcing
 
 C = 0.1
 

@@ -5,10 +5,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from tests.reference.forcing import Forcing
 from tests.reference.resting import departure_lapse
 
 import stylobate as sb
-from stylobate.engine.forcing import Forcing
 from stylobate.models.sliding import Contact
 
 RTOL = 1e-9

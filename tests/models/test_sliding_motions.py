@@ -7,10 +7,10 @@ import math
 
 import numpy as np
 import pytest
+from tests.reference.forcing import Forcing
 from tests.reference.resting import departure_lapse
 
 import stylobate as sb
-from stylobate.engine.forcing import Forcing
 from stylobate.models.sliding.equations import STILL
 from stylobate.models.sliding.impacts import REST_SPEED
 

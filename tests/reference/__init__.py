@@ -6,15 +6,15 @@ It is what tests compare single runs and ensembles with.
 from collections.abc import Sequence
 
 from stylobate.base_motions import BaseMotion
-from stylobate.engine.forcing import Forcing
-from stylobate.engine.thresholds import thresholds_of
 from stylobate.engine.user_events import EventRecorder
 from stylobate.models import Model
 
 from .course import Course
 from .following import method_of
+from .forcing import Forcing
 from .moving import Mover
 from .switching_course import SwitchingCourse
+from .thresholds import thresholds_of
 from .watch import Watch
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from stylobate.engine.forcing import Forcing, common_line
+from stylobate.engine.forcing import common_line
 from stylobate.engine.pace import unseen
 from stylobate.engine.tolerances import FIRST_STEP_OFF
 from stylobate.models import Model
@@ -14,6 +14,7 @@ from stylobate.models.model import RELEASE_MARGIN
 from stylobate.results import Event
 
 from .following import Reason
+from .forcing import Forcing
 from .moving import Leg, Mover
 from .pieces import Piece, Trajectory, nearest_turn
 from .resting import departure, release_within, rest_piece, stays_for_good

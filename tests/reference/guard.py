@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 from scipy.optimize import brentq
 
-from stylobate.engine.forcing import Floats, Forcing
 from stylobate.models import Model
+
+from .forcing import Floats, Forcing
 
 # Parts of each step at whose ends the guards are looked at.
 _PARTS = 4

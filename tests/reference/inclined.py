@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from stylobate.base_motions import BaseMotion
-from stylobate.engine.forcing import Floats, Forcing
 from stylobate.models import Model
+
+from .forcing import Floats, Forcing
 
 
 @dataclass(frozen=True, slots=True)

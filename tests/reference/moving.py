@@ -9,13 +9,13 @@ import numpy as np
 from scipy.integrate import DOP853, OdeSolution
 from scipy.optimize import brentq
 
-from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.pace import report, step_limit
 from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET
 from stylobate.engine.user_events import EventRecorder
 from stylobate.models import Model
 
 from .following import Method, Reason
+from .forcing import Floats, Forcing
 from .pieces import Piece, unwrapped_azimuths
 from .steps import Steps, attempted, just_before, with_finite_step
 from .upright import back_at_upright

@@ -5,11 +5,11 @@ import math
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.starts import cannot_depart
 from stylobate.engine.tolerances import SAMPLES_PER_PERIOD
 from stylobate.models import Model, Push
 
+from .forcing import Floats, Forcing
 from .pieces import Piece
 
 # Samples looked at together.

@@ -10,9 +10,7 @@ import numpy as np
 from scipy.integrate import OdeSolution
 from scipy.optimize import brentq
 
-from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.pace import report, step_limit, unseen
-from stylobate.engine.thresholds import Thresholds
 from stylobate.engine.tolerances import SLIP_SHORTER
 from stylobate.engine.user_events import EventFunction, EventRecorder
 from stylobate.models import Model
@@ -20,12 +18,14 @@ from stylobate.models.model import RELEASE_MARGIN
 from stylobate.results import Event
 
 from .following import Method, Reason
+from .forcing import Floats, Forcing
 from .guard import Guard
 from .inclined import InclinedForcing
 from .pieces import Piece, Trajectory, nearest_turn, unwrapped_azimuths
 from .resting import departure_lapse, release_within, rest_piece, stays_for_good
 from .solvers import Stepper
 from .steps import Steps, just_before
+from .thresholds import Thresholds
 
 # The limit of the user and a terminal event of the user are no margins of the model.
 _LIMIT, _TERMINATED = -2, -3

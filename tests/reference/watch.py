@@ -8,12 +8,12 @@ from functools import partial
 import numpy as np
 from scipy.optimize import brentq
 
-from stylobate.engine.forcing import Floats, Forcing
-from stylobate.engine.thresholds import Thresholds
 from stylobate.engine.tolerances import HOPS_APART, STILL
 from stylobate.models import Model
 
 from .following import Reason
+from .forcing import Floats, Forcing
+from .thresholds import Thresholds
 
 # Points of each step at which conditions are looked at; a step of the integrator resolves the motion.
 _SAMPLES = 5

@@ -8,12 +8,9 @@ half of its tipping angle. Another tolerance changed three of them, each beyond 
 under long harmonic shaking those that overturned late or were still moving at the end.
 """
 
-from dataclasses import replace
-
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.thresholds import Thresholds
 from stylobate.engine.tolerances import RTOL_RANGE
 from stylobate.errors import Outcome
 
@@ -68,8 +65,3 @@ def in_doubt(
 def other_tolerance(rtol: float) -> float:
     """Return the relative tolerance with which a run is repeated: ten times that given, at most the largest allowed."""
     return min(_OTHER_TOLERANCE * rtol, RTOL_RANGE[1])
-
-
-def finer_rest(thresholds: Thresholds) -> Thresholds:
-    """Return the thresholds with which a run is repeated."""
-    return replace(thresholds, rest_energy=FINER_REST * thresholds.rest_energy)

@@ -13,9 +13,6 @@ from stylobate.models import Model
 
 Floats = npt.NDArray[np.float64]
 
-# Over this part of the shortest time in a motion that is linear its slope is taken.
-_AHEAD = 1e-6
-
 
 @dataclass(frozen=True, slots=True)
 class Forcing:
@@ -30,46 +27,14 @@ class Forcing:
         """Return `motion` as `model` sees it."""
         return cls(motion, model.time_scale, model.column.gravity)
 
-    def at(self, tau: float) -> tuple[float, float, float]:
-        """Return ax, ay, az [g] at one dimensionless time."""
-        x, y, z = self.motion.derivative(tau * self.time_scale, ACCELERATION)
-        return float(x) / self.gravity, float(y) / self.gravity, float(z) / self.gravity
-
     def along(self, tau: Floats) -> Floats:
         """Return ax, ay, az [g], shape (3, n), at dimensionless times."""
         return np.stack(self.motion.derivative(tau * self.time_scale, ACCELERATION)) / self.gravity
-
-    def largest_horizontal(self, since: float) -> float:
-        """Return a bound of |a_h| [g] from `since` on."""
-        return self.motion.largest_horizontal(since * self.time_scale) / self.gravity
-
-    def least_vertical(self, since: float) -> float:
-        """Return a bound of a_z [g] from `since` on."""
-        return self.vertical_range(since)[0]
-
-    def vertical_range(self, since: float) -> tuple[float, float]:
-        """Return bounds of a_z [g] from `since` on."""
-        low, high = self.motion.vertical_range(since * self.time_scale)
-        return low / self.gravity, high / self.gravity
 
     @property
     def highest_frequency(self) -> float:
         """Highest dimensionless frequency; 0 for a base at rest."""
         return self.motion.highest_frequency * self.time_scale
-
-    @property
-    def mean_frequency(self) -> float:
-        """Mean dimensionless frequency; 0 for a base at rest."""
-        return self.motion.mean_frequency * self.time_scale
-
-    def largest_rate(self, tau: float, slenderness: float) -> float:
-        """Return how fast the force on a column near rest may change about `tau`; exactly, where it is linear."""
-        if self.motion.degree is not None and self.motion.degree <= 1:
-            ahead = _AHEAD / max(self.highest_frequency, 1.0)
-            x, y, z = ((b - a) / ahead for a, b in zip(self.at(tau), self.at(tau + ahead), strict=True))
-            return math.hypot(x, y) + slenderness * abs(z)
-        vertical = max(map(abs, self.vertical_range(tau)))
-        return self.highest_frequency * (self.largest_horizontal(tau) + slenderness * vertical)
 
     def stops(self, end: float) -> tuple[float, ...]:
         """Return the times up to `end` at which an integration must stop: breaks of the acceleration, and `end`."""

@@ -1,5 +1,10 @@
 """Numbers that single runs and ensembles share, so that both decide alike."""
 
+import math
+
+OVERTURNED_TILT = math.pi / 2.0
+"""Tilt that counts as overturned where no rigorous criterion exists [rad]."""
+
 RTOL_RANGE = (1e-13, 1e-2)
 """Relative tolerances that can be asked for."""
 ATOL_SHARE = 0.01

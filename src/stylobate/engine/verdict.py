@@ -15,15 +15,6 @@ from stylobate.results import OutcomeRules
 _LESS_THAN_ONE_TURN = 0.5
 
 
-@dataclass(frozen=True, slots=True)
-class Verdict:
-    """An outcome, the line that explains it and the measures it rests on."""
-
-    outcome: Outcome
-    reason: str
-    measures: dict[str, float]
-
-
 class Ground(IntEnum):
     """On what an outcome rests that the last periods decide."""
 

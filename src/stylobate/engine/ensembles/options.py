@@ -2,8 +2,7 @@
 
 from dataclasses import dataclass
 
-from stylobate.engine.thresholds import Thresholds
-from stylobate.engine.tolerances import RTOL_RANGE
+from stylobate.engine.tolerances import OVERTURNED_TILT, RTOL_RANGE
 from stylobate.errors import (
     MOST_STEPS,
     ParameterError,
@@ -84,4 +83,4 @@ class Options:
     @property
     def overturned_tilt(self) -> float:
         """Tilt that counts as overturned where no criterion proves it [rad]."""
-        return Thresholds(rest_energy=0.0).overturned_tilt
+        return OVERTURNED_TILT
