@@ -151,5 +151,8 @@ def outcomes(batch: Batch, late: Late) -> npt.NDArray[np.int8]:
     codes = np.where(batch.log(Log.STANDS) > 0.0, Outcome.AT_REST, codes)
     for ending, outcome in _ENDINGS.items():
         codes = np.where(status == ending, outcome, codes)
+    reached = batch.converged
+    if reached is not None:
+        codes[reached.runs] = np.where(reached.turns == 0.0, Outcome.ROCKING, Outcome.ROLLING)
     codes = codes.astype(np.int8)
     return upright_outcomes(batch, late.span, codes) if batch.plan.model.switches else codes
