@@ -67,6 +67,10 @@ class KnownOrbit:
         """Return its numbers by name."""
         return {name: getattr(self, name) for name in self.__slots__}
 
+    def plain(self) -> dict[str, Any]:
+        """Return its numbers as plain values, without labels."""
+        return {name: np.asarray(value, dtype=float).tolist() for name, value in self.numbers().items()}
+
 
 KnownOrbits: TypeAlias = KnownOrbit | Sequence[KnownOrbit]
 

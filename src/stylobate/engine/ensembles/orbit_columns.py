@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.kernel.columns import ORBIT, Orbit
+from stylobate.engine.kernel.columns import ORBIT, Orbit, Setup
+from stylobate.engine.kernel.driver.convergence import CERTAIN, NEAR
 from stylobate.engine.known_orbits import OrbitsOfRuns
 from stylobate.results import OutcomeRules
 
@@ -21,18 +22,24 @@ FALL_OF_WINDOW = 0.5
 def fill_orbits(
     table: Floats, first: int, orbits: OrbitsOfRuns, period: Floats, time_scale: Floats, rules: OutcomeRules
 ) -> None:
-    """Set the columns of the known orbits, from the column `first` on; `period` is in the units of the models."""
+    """Set the columns of the known orbits, from the column `first` on; `period` is in the units of the models.
+
+    A run too short to converge in time from the distance at which it is near has no orbit.
+    """
     with np.errstate(divide="ignore", invalid="ignore"):
         decay = -np.log(orbits.multiplier)
         window = np.fmax(LEAST_WINDOW, np.ceil(math.log(1.0 / FALL_OF_WINDOW) / decay))
         turning = 2.0 * math.pi / period[:, np.newaxis]
+        periods = table[:, Setup.END] / period - rules.periods - 1.0
+        needed = math.log(NEAR / (CERTAIN * rules.repeat_tolerance)) / decay
+        known = periods[:, np.newaxis] > needed
         columns = {
             Orbit.X: orbits.tilt[..., 0],
             Orbit.Y: orbits.tilt[..., 1],
             Orbit.VX: orbits.tilt_rate[..., 0] * time_scale[:, np.newaxis],
             Orbit.VY: orbits.tilt_rate[..., 1] * time_scale[:, np.newaxis],
             Orbit.SPIN: orbits.spin * time_scale[:, np.newaxis],
-            Orbit.SIZE: np.where(np.isnan(decay), np.nan, orbits.mean_tilt),
+            Orbit.SIZE: np.where(known, orbits.mean_tilt, np.nan),
             Orbit.RATE: orbits.mean_tilt * turning,
             Orbit.WINDOW: window,
             Orbit.FALL: np.exp(-decay * window),

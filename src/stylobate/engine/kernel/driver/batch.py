@@ -70,6 +70,8 @@ def quiet(buf: Table, i: int) -> None:
         buf[row, i] = 1.0
     for row in (R.STOP, R.NO_RETURN, R.TILT_LIMIT, R.LARGEST_TILT):
         buf[row, i] = 1e300
+    if ORBITS:
+        buf[R.PHASE_ZERO_AT, i] = math.inf
     for j in range(PARAMETERS):
         buf[R.PARAMETER + j, i] = 0.1
     buf[R.RUN, i] = -1.0
@@ -124,8 +126,7 @@ def is_due(buf: Table, i: int, table: Table, pieces: Table) -> bool:
 
 def passes_phase_zero(buf: Table, i: int) -> bool:
     """Return whether the step just made took a run to phase zero of the base motion or beyond, and is not tentative."""
-    taken = buf[R.GO, i] > 0.0 and buf[R.AIMED, i] == 0.0
-    return taken and buf[R.RUN, i] >= 0.0 and buf[R.TIME, i] >= buf[R.PHASE_ZERO_AT, i]
+    return buf[R.TIME, i] >= buf[R.PHASE_ZERO_AT, i] and buf[R.GO, i] > 0.0 and buf[R.AIMED, i] == 0.0
 
 
 def status_of(buf: Table, i: int, table: Table, pieces: Table) -> int:

@@ -77,20 +77,29 @@ def is_certain(approach: Approach, fall_to_judgement: float, repeats: float) -> 
 def watch_from(buf: Table, i: int, table: Table) -> None:
     """Begin to watch the run of a lane."""
     run = int(buf[R.RUN, i])
+    known = False
     for k in range(ORBITS):
+        first = R.ORBIT + k * ORBIT
         for column in range(ORBIT):
-            buf[R.ORBIT + k * ORBIT + column, i] = table[run, ORBITS_AT + k * ORBIT + column]
+            buf[first + column, i] = table[run, ORBITS_AT + k * ORBIT + column]
         forget(buf, i, k)
+        known = known or buf[first + Orbit.SIZE, i] > 0.0
     buf[R.CONVERGED, i] = 0.0
-    set_phase_zero(buf, i)
+    buf[R.PHASE_ZERO_AT, i] = math.inf
+    if known:
+        set_phase_zero(buf, i)
 
 
 def set_phase_zero(buf: Table, i: int) -> None:
-    """Set the next time at which the base motion has phase zero."""
+    """Set the next time at which the base motion has phase zero; none too late for a run to end early."""
     t, period, first = buf[R.TIME, i], buf[R.PERIOD, i], buf[R.STROBE, i]
-    buf[R.PHASE_ZERO_AT, i] = math.inf
-    if period > 0.0:
-        buf[R.PHASE_ZERO_AT, i] = first + (math.floor((t - first) / period + SLACK) + 1.0) * period
+    following = first + (math.floor((t - first) / period + SLACK) + 1.0) * period
+    buf[R.PHASE_ZERO_AT, i] = following if following < judged_from(buf, i) else math.inf
+
+
+def judged_from(buf: Table, i: int) -> float:
+    """Return when the last periods begin, by which the outcome is judged."""
+    return buf[R.END, i] - (buf[R.PERIODS, i] + 1.0) * buf[R.PERIOD, i]
 
 
 def forget(buf: Table, i: int, k: int) -> None:
@@ -137,12 +146,12 @@ def distance_of_new(buf: Table, i: int, k: int) -> float:
     first = R.ORBIT + k * ORBIT
     x, y, vx, vy = lean_of_new(buf, i)
     size, rate = buf[first + Orbit.SIZE, i], buf[first + Orbit.RATE, i]
-    tilt_apart = math.hypot(x - buf[first + Orbit.X, i], y - buf[first + Orbit.Y, i]) / size
-    rate_apart = math.hypot(vx - buf[first + Orbit.VX, i], vy - buf[first + Orbit.VY, i]) / rate
-    apart = math.hypot(tilt_apart, rate_apart)
-    if SPIN < 0:
-        return apart
-    return math.hypot(apart, (buf[R.NEW + SPIN, i] - buf[first + Orbit.SPIN, i]) / rate)
+    x, y = (x - buf[first + Orbit.X, i]) / size, (y - buf[first + Orbit.Y, i]) / size
+    vx, vy = (vx - buf[first + Orbit.VX, i]) / rate, (vy - buf[first + Orbit.VY, i]) / rate
+    square = x * x + y * y + vx * vx + vy * vy
+    if SPIN >= 0:
+        square += ((buf[R.NEW + SPIN, i] - buf[first + Orbit.SPIN, i]) / rate) ** 2
+    return math.sqrt(square)
 
 
 def approaches(buf: Table, i: int, k: int, distance: float) -> bool:
@@ -152,7 +161,6 @@ def approaches(buf: Table, i: int, k: int, distance: float) -> bool:
     approach = buf[before, i], buf[before + 1, i], buf[before + 2, i], buf[before + 3, i]
     approach = approach_after(approach, distance, buf[first + Orbit.WINDOW, i], buf[first + Orbit.FALL, i])
     set_approach(buf, i, k, approach)
-    judged = buf[R.END, i] - (buf[R.PERIODS, i] + 1.0) * buf[R.PERIOD, i]
-    left = judged - buf[R.TIME, i]
+    left = judged_from(buf, i) - buf[R.TIME, i]
     fall = math.exp(-buf[first + Orbit.DECAY, i] * left)
     return left >= 0.0 and is_certain(approach, fall, buf[first + Orbit.REPEATS, i]) and repeats_to_the_end(buf, i)
