@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import stylobate as sb
 from stylobate import theory
@@ -93,6 +94,13 @@ def test_of_several_orbits_each_run_takes_its_own_and_nan_is_none():
 
 def test_rocking_is_said_of_an_orbit_that_does_not_travel_round():
     assert (both(near(0.05), rolling(turns=0.0))[1]["outcome"] == Outcome.ROCKING).all()
+
+
+@pytest.mark.parametrize("motion", [None, sb.Pulse.one_sine(acceleration=0.05, angular_frequency=2.0)])
+def test_without_a_period_no_run_is_compared(motion):
+    options = {**near(0.2), "duration": 200.0}
+    full, early = (sb.simulate_ensemble(MODEL, motion, known_orbits=known, **options) for known in (None, rolling()))
+    xr.testing.assert_equal(early, full)
 
 
 def test_what_is_no_stable_orbit_is_refused():

@@ -24,26 +24,27 @@ def fill_orbits(
 ) -> None:
     """Set the columns of the known orbits, from the column `first` on; `period` is in the units of the models.
 
-    A run too short to converge in time from the distance at which it is near has no orbit.
+    A run that is too short is not compared with an orbit: the latest time at which it must be near comes before it
+    begins.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         decay = -np.log(orbits.multiplier)
         window = np.fmax(LEAST_WINDOW, np.ceil(math.log(1.0 / FALL_OF_WINDOW) / decay))
         turning = 2.0 * math.pi / period[:, np.newaxis]
-        periods = table[:, Setup.END] / period - rules.periods - 1.0
-        needed = math.log(NEAR / (CERTAIN * rules.repeat_tolerance)) / decay
-        known = periods[:, np.newaxis] > needed
+        judged = table[:, [Setup.END]] - (rules.periods + 1.0) * period[:, np.newaxis]
+        latest = judged - math.log(NEAR / (CERTAIN * rules.repeat_tolerance)) / decay * period[:, np.newaxis]
         columns = {
             Orbit.X: orbits.tilt[..., 0],
             Orbit.Y: orbits.tilt[..., 1],
             Orbit.VX: orbits.tilt_rate[..., 0] * time_scale[:, np.newaxis],
             Orbit.VY: orbits.tilt_rate[..., 1] * time_scale[:, np.newaxis],
             Orbit.SPIN: orbits.spin * time_scale[:, np.newaxis],
-            Orbit.SIZE: np.where(known, orbits.mean_tilt, np.nan),
+            Orbit.SIZE: np.where(np.isnan(decay), np.nan, orbits.mean_tilt),
             Orbit.RATE: orbits.mean_tilt * turning,
             Orbit.WINDOW: window,
             Orbit.FALL: np.exp(-decay * window),
             Orbit.DECAY: decay * turning / (2.0 * math.pi),
+            Orbit.LATEST: np.where(np.isfinite(latest) & (period[:, np.newaxis] > 0.0), latest, -np.inf),
             Orbit.REPEATS: np.broadcast_to(rules.repeat_tolerance, decay.shape),
         }
     for k in range(decay.shape[1]):

@@ -171,6 +171,8 @@ class Orbit(_FromZero):
     """−ln ρ in the unit of time."""
     REPEATS = auto()
     """Largest difference of states one period apart of a motion that repeats."""
+    LATEST = auto()
+    """When the run must be near it to repeat in time; −∞ where it has no such orbit."""
     REACHED = auto()
     """1 once the run has converged to it."""
     BEFORE = auto()

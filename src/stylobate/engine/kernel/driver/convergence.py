@@ -77,16 +77,14 @@ def is_certain(approach: Approach, fall_to_judgement: float, repeats: float) -> 
 def watch_from(buf: Table, i: int, table: Table) -> None:
     """Begin to watch the run of a lane."""
     run = int(buf[R.RUN, i])
-    known = False
     for k in range(ORBITS):
         first = R.ORBIT + k * ORBIT
         for column in range(ORBIT):
             buf[first + column, i] = table[run, ORBITS_AT + k * ORBIT + column]
         forget(buf, i, k)
-        known = known or buf[first + Orbit.SIZE, i] > 0.0
     buf[R.CONVERGED, i] = 0.0
     buf[R.PHASE_ZERO_AT, i] = math.inf
-    if known:
+    if latest(buf, i) > buf[R.TIME, i]:
         set_phase_zero(buf, i)
 
 
@@ -126,6 +124,9 @@ def watch(buf: Table, i: int, table: Table) -> None:
     closest = math.inf
     for k in range(ORBITS):
         closest = min(closest, distance_of_new(buf, i, k))
+    if end > latest(buf, i) and closest > NEAR + OF_CUBICS:
+        buf[R.PHASE_ZERO_AT, i] = math.inf
+        return
     near = closest < FAR + OF_CUBICS
     if near:
         set_dense_output(buf, i)
@@ -139,6 +140,14 @@ def watch(buf: Table, i: int, table: Table) -> None:
                 buf[R.FLAG, i] = 2.0  # more than a stop reached, which may be a knot that is passed
         else:
             forget(buf, i, k)
+
+
+def latest(buf: Table, i: int) -> float:
+    """Return the last time at which a run that is not near an orbit can still converge to it before it is judged."""
+    last = -math.inf
+    for k in range(ORBITS):
+        last = max(last, buf[R.ORBIT + k * ORBIT + Orbit.LATEST, i])
+    return last
 
 
 def distance_of_new(buf: Table, i: int, k: int) -> float:
