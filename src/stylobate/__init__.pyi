@@ -15,7 +15,7 @@ from . import (
 from .base_motions import BaseMotion, Harmonic, OneOf, Pulse, Record, SineSweep, records
 from .base_motions.records import read_record, read_records, sample_record
 from .column import Column
-from .engine import EventFunction, simulate, simulate_ensemble, with_parameters
+from .engine import EventFunction, KnownOrbit, simulate, simulate_ensemble, with_parameters
 from .errors import Interrupted, Outcome
 from .models import Contact, Model, PlanarRocking, Rolling, Slender, SlenderRolling, Sliding, Wobbling
 from .plots import animate, plot
@@ -33,6 +33,7 @@ __all__ = [
     "EventFunction",
     "Harmonic",
     "Interrupted",
+    "KnownOrbit",
     "Model",
     "OneOf",
     "Outcome",

@@ -267,3 +267,20 @@ def test_warnings_of_the_library_are_told_on_stderr_one_to_a_line(capsys):
     assert captured.out == ""
     assert captured.err == f"stylobate: compiling {'a model ' * 40}\n"
     assert not log.handlers
+
+
+def test_runs_that_have_converged_end_early_and_a_saved_map_keeps_the_option(tmp_path, capsys):
+    saved = tmp_path / "map.nc"
+    options = "--slenderness 0.1 --damping 0.1 --motion circular --acceleration 0.065 --tilt 0.03 0 --periods 200"
+    axes = "--x angular-frequency 1.5 2.5 3 --y start-phase 0 1 2"
+    assert run(["map", *options.split(), *axes.split(), "--end-converged", "--output", str(saved)]) == 0
+    found = sb.load(saved)
+    rolling = found["outcome"] == sb.Outcome.ROLLING
+    assert (found["end_time"] < 0.5 * 200.0 * 2.0 * np.pi / found["angular_frequency"]).where(rolling, other=True).all()
+    assert rolling.any()
+    again = tmp_path / "again.nc"
+    assert run(["map", str(saved), "--rtol", "1e-9", "--output", str(again)]) == 0
+    assert json.loads(sb.load(again).attrs["provenance"])["end_converged"] is True
+    capsys.readouterr()
+    assert run(["map", *options.replace("circular", "straight").split(), *axes.split(), "--end-converged"]) != 0
+    assert "end_converged: the base motion must be circular" in capsys.readouterr().err

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from stylobate import config, studies
 from stylobate.cli.command import command
-from stylobate.cli.declarations import AXES, COMPUTING, OUTPUT_OR_STORE, RECORD, Group, Option, run_numbers
+from stylobate.cli.declarations import AXES, COMPUTING, EARLY_END, OUTPUT_OR_STORE, RECORD, Group, Option, run_numbers
 from stylobate.cli.many_runs import finish, run_study, study_values
 from stylobate.cli.options import Options
 from stylobate.cli.output import print_table
@@ -35,6 +35,7 @@ _INITIAL_CONDITIONS = Group.of(
         _INITIAL_CONDITIONS,
         run_numbers(SharedByRuns),
         run_numbers(Stroboscopic),
+        EARLY_END,
         COLUMN,
         MODEL_WITHOUT_SLIDING,
         MOTION,

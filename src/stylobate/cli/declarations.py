@@ -181,6 +181,10 @@ AXES = Group.of(
 )
 UNITS = Option("units", "unit of files that do not state it: g, m/s2 or cm/s2", str)
 STEP = Option("step", "time step of files that do not state it [s]")
+EARLY_END = Group.of(
+    "Run",
+    Option("end_converged", "end runs early that have converged to steady rolling; circular motion only", bool),
+)
 SINGLE = Option("single", "accept records of one component without a warning", bool)
 SAMPLE = 'record that comes with the package: "el centro 1940", or "el centro 1940 corrected"'
 

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 from stylobate import config, conveying, studies
 from stylobate.cli.command import command
-from stylobate.cli.declarations import AXES, COMPUTING, OUTPUT_OR_STORE, RECORD, run_numbers
+from stylobate.cli.declarations import AXES, COMPUTING, EARLY_END, OUTPUT_OR_STORE, RECORD, run_numbers
 from stylobate.cli.many_runs import check_axes, finish, run_study, study_values
 from stylobate.cli.options import Options
 from stylobate.cli.output import print_table
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @command(
     argument="TOML description, or a saved map (.nc) or store (.zarr) to show or repeat",
-    groups=(AXES, run_numbers(SharedByRuns), COLUMN, MODEL, MOTION, RECORD, COMPUTING, OUTPUT_OR_STORE),
+    groups=(AXES, run_numbers(SharedByRuns), EARLY_END, COLUMN, MODEL, MOTION, RECORD, COMPUTING, OUTPUT_OR_STORE),
 )
 def overturning_map(options: Options) -> None:
     """Compute the overturning map over two parameters.

@@ -57,6 +57,7 @@ class BasinConfig(Stroboscopic, ManyRuns):
     """Basins of attraction: `column`, `model`, `motion`, the arguments of a run, and the starts `basin`."""
 
     basin: Starts = Starts()
+    end_converged: bool = False
 
     @classmethod
     def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]]) -> Self:
@@ -97,5 +98,6 @@ class BasinConfig(Stroboscopic, ManyRuns):
         arguments = self.basin.arguments(problems)
         problems += self.problems_of_the_length(())
         model, motion, options = self.common(problems)
-        strobes = {} if self.strobes is None else {"strobes": self.strobes}
-        return Setup(model, motion, {**arguments, **options, **strobes, "confidence": self.confidence})
+        chosen = {} if self.strobes is None else {"strobes": self.strobes}
+        chosen |= {"end_converged": True} if self.end_converged else {}
+        return Setup(model, motion, {**arguments, **options, **chosen, "confidence": self.confidence})

@@ -103,7 +103,7 @@ def common_values(provenance: Mapping[str, Any]) -> dict[str, Any]:
         If it was made with a model or motion that descriptions do not know.
     """
     refuse_own_classes(provenance)
-    known = ("column", "model", "motion", "rules", *_SHARED)
+    known = ("column", "model", "motion", "rules", *_SHARED, "end_converged")
     return {name: with_places(provenance[name]) for name in known if provenance.get(name) is not None}
 
 

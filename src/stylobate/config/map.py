@@ -21,6 +21,7 @@ class MapConfig(ManyRuns):
     """An overturning map: `column`, `model`, `motion`, the arguments of a run, and `map.x`, `map.y`."""
 
     map: Plane
+    end_converged: bool = False
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
@@ -72,4 +73,5 @@ class MapConfig(ManyRuns):
             options["duration"] = duration_with_tail(
                 model, with_numbers(motion, {"angular_frequency": float(frequencies.min())})
             )
-        return Setup(model, motion, {"over": over, **options})
+        early = {"end_converged": True} if self.end_converged else {}
+        return Setup(model, motion, {"over": over, **options, **early})

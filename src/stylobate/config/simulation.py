@@ -119,7 +119,7 @@ def duration_with_tail(model: Model, motion: BaseMotion) -> float:
 
 OF_OTHER_COMMANDS = (
     *("map", "basin", "spectrum", "fragility", "records", "hierarchy", "periods"),
-    *("method", "strobes", "confidence", "angular_frequency_range", "points"),
+    *("method", "strobes", "confidence", "angular_frequency_range", "points", "end_converged"),
 )
 """What a description may say that is no argument of a single run."""
 

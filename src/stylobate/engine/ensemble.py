@@ -21,6 +21,7 @@ from stylobate.engine.ensembles.motion_columns import MotionPlan
 from stylobate.engine.ensembles.options import Options
 from stylobate.engine.ensembles.pool import Halt, parts_of, run_parts, usual_threads
 from stylobate.engine.ensembles.summaries import QUANTITIES, Arrays, empty, fallen, summarize_into
+from stylobate.engine.known_orbits import KnownOrbits, as_orbits
 from stylobate.engine.motion_checks import check_motion
 from stylobate.engine.pace import announce, expected_steps
 from stylobate.engine.parameters import changed_model, check_names, split
@@ -53,6 +54,7 @@ def simulate_ensemble(
     rules: OutcomeRules | None = None,
     demands: bool = False,
     recheck: bool = False,
+    known_orbits: KnownOrbits | None = None,
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> xr.Dataset:
@@ -95,6 +97,11 @@ def simulate_ensemble(
     recheck
         Repeat the runs in doubt as `simulate` does, and mark those `uncertain` of which the outcome changes. Of runs
         under earthquakes one in six is in doubt; in three dimensions repeating them takes about as long as all runs.
+    known_orbits
+        Stable periodic orbits to which runs may converge, each a `KnownOrbit`. A run ends early, as ROLLING or ROCKING,
+        if its distance from such an orbit falls as the orbit's multiplier demands, and it will thus repeat when its
+        outcome is judged at its full duration. Runs in a vertical plane are not compared with orbits. See
+        "Converged runs" on the page on ensembles.
     threads
         Threads to run on; by default all cores.
     progress
@@ -153,12 +160,13 @@ def simulate_ensemble(
     if demands and model.contact is None:
         message = f"model {model.name} has no forces of its contact. Give it `contact`, or leave out demands."
         raise UnsupportedError(message)
-    if model.switches and (demands or options.method != "dop853"):
-        asked = "demands" if demands else f"method {options.method!r}"
+    orbits = as_orbits(known_orbits)
+    if model.switches and (demands or orbits or options.method != "dop853"):
+        asked = "demands" if demands else "known_orbits" if orbits else f"method {options.method!r}"
         message = f"model {model.name} changes between kinds of contact: leave out {asked}"
         raise UnsupportedError(message)
     threads = usual_threads() if threads is None else require_whole("threads", threads, least=1, most=MOST_THREADS)
-    runs = broadcast(tilt, tilt_rate, spin, duration, changes)
+    runs = broadcast(tilt, tilt_rate, spin, duration, changes, orbits)
     if len(runs):
         frequency = moved.highest_frequency * model.time_scale
         longest = float(runs.duration.max()) / model.time_scale
@@ -171,7 +179,7 @@ def simulate_ensemble(
     if terms_of(moved) is None and len(runs):
         for member in members_of(moved):
             check_motion(member, float(runs.duration.max()))
-    plan = Plan(model, MotionPlan.of(moved, split(model, runs.values)[1], runs.duration), options)
+    plan = Plan(model, MotionPlan.of(moved, split(model, runs.values)[1], runs.duration), options, orbits=len(orbits))
 
     def result() -> xr.Dataset:
         declared = {**parameters_of(Column), **parameters_of(type(model)), **numbers_of(moved)}

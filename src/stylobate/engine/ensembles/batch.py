@@ -13,10 +13,12 @@ from stylobate.engine.ensembles.broadcasting import Runs
 from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.motion_columns import MotionColumns, MotionPlan
 from stylobate.engine.ensembles.options import Options
+from stylobate.engine.ensembles.orbit_columns import OrbitReached, fill_orbits, orbit_reached
 from stylobate.engine.kernel.columns import LOG, NOTE, STATE, Log, Setup, Status
 from stylobate.engine.kernel.expansion import series_integrals
 from stylobate.engine.kernel.kernels import kernel_of
 from stylobate.engine.kernel.shape import Shape
+from stylobate.engine.known_orbits import OrbitsOfRuns
 from stylobate.engine.starts import cannot_depart, out_of_plane, refuse_spin
 from stylobate.engine.thresholds import is_rest, rest_energy_for_good, usual_rest_energy
 from stylobate.engine.tolerances import ATOL_SHARE, FIRST_STEP_OFF, PARALLEL_ULP
@@ -44,7 +46,8 @@ class Plan:
 
     `rest_share` is a factor of the energy below which rest is entered where the base motion can release the column;
     `traces` is how many entries of a trace are kept before they are taken out, 0 for none; `plain` whether kernels run
-    as plain Python, one run at a time, for a model that cannot be compiled.
+    as plain Python, one run at a time, for a model that cannot be compiled; `orbits` is with how many known orbits each
+    run is compared.
     """
 
     model: Model
@@ -53,6 +56,7 @@ class Plan:
     rest_share: float = 1.0
     traces: int = 0
     plain: bool = False
+    orbits: int = 0
 
     def repeated(self) -> "Plan":
         """Return the plan by which runs in doubt are repeated: a finer rest threshold, another tolerance, no notes."""
@@ -79,6 +83,7 @@ class Plan:
             guards=len(self.model.guard_names),
             slip=self.model.slip_states,
             kept=self.model.kept_states,
+            orbits=self.orbits,
         )
 
     @property
@@ -107,6 +112,7 @@ class Batch:
     rest_energy: Floats
     planar: npt.NDArray[np.bool_]
     table: Floats
+    orbits: OrbitsOfRuns | None = None
     traces: list[Floats] = field(default_factory=list)
 
     @classmethod
@@ -130,14 +136,24 @@ class Batch:
         table = _empty_table(plan, shape, len(runs), motions.breaks.shape[1])
         _fill_setup(table, plan, runs, models, motions, energy)
         planar = _fill_starts(table, plan.model, runs, models, motions)
+        if runs.orbits is not None:
+            fill_orbits(table, shape.orbits_at, runs.orbits, motions.period, models.time_scale, plan.options.rules)
         table[:, shape.parameters_at : shape.motion_at] = models.parameters
         table[:, shape.motion_at : shape.breaks_at] = motions.columns
         table[:, shape.breaks_at : shape.breaks_at + motions.breaks.shape[1]] = motions.breaks
-        return cls(plan, models, motions, energy, planar, table)
+        return cls(plan, models, motions, energy, planar, table, runs.orbits)
 
     def log(self, column: Log) -> Floats:
         """Return what was noted of all runs."""
         return self.table[:, LOG + column]
+
+    @property
+    def converged(self) -> OrbitReached | None:
+        """The runs that have converged to a known orbit, and the orbit of each; None if none has."""
+        runs = np.flatnonzero(self.log(Log.STATUS) == Status.CONVERGED)
+        if self.orbits is None or not runs.size:
+            return None
+        return orbit_reached(self.table, self.plan.layout.orbits_at, self.orbits, runs)
 
     def notes(self, *, strobes: bool) -> Floats:
         """Return the samples or strobes, shape (n, number, 5): tilt x and y, their rates, time; NaN where none."""

@@ -1,13 +1,14 @@
 """Arguments of any shape as flat arrays over the runs, broadcast together by the names of their dimensions."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.engine.known_orbits import KnownOrbit, OrbitsOfRuns
 from stylobate.engine.starts import Start, Turning
 from stylobate.engine.thresholds import without_dust
 from stylobate.errors import ParameterError, require_size
@@ -43,6 +44,8 @@ class Runs:
         What labels the results.
     turning
         What else a single run begins with; None in ensembles.
+    orbits
+        The known orbits of each run; None without any.
     """
 
     dims: tuple[str, ...]
@@ -54,6 +57,7 @@ class Runs:
     values: Mapping[str, Floats]
     coordinates: Mapping[str, "xr.DataArray"]
     turning: Turning | None = None
+    orbits: OrbitsOfRuns | None = None
 
     def __len__(self) -> int:
         return math.prod(self.shape)
@@ -63,11 +67,17 @@ class Runs:
         length = len(self.duration[chosen])
         values = {name: value[chosen] for name, value in self.values.items()}
         starts = (self.tilt[chosen], self.tilt_rate[chosen], self.spin[chosen], self.duration[chosen])
-        return Runs((RUN,), (length,), *starts, values, {})
+        orbits = None if self.orbits is None else self.orbits.part(chosen)
+        return Runs((RUN,), (length,), *starts, values, {}, orbits=orbits)
 
 
 def broadcast(
-    tilt: ArrayLike, tilt_rate: ArrayLike, spin: ArrayLike, duration: ArrayLike, parameters: Mapping[str, ArrayLike]
+    tilt: ArrayLike,
+    tilt_rate: ArrayLike,
+    spin: ArrayLike,
+    duration: ArrayLike,
+    parameters: Mapping[str, ArrayLike],
+    known_orbits: Sequence[KnownOrbit] = (),
 ) -> Runs:
     """Return the runs that these arguments describe.
 
@@ -79,16 +89,29 @@ def broadcast(
     given = {"tilt": _vectors("tilt", tilt), "tilt_rate": _vectors("tilt_rate", tilt_rate)}
     given |= {"spin": _numbers("spin", spin), "duration": _numbers("duration", duration)}
     given |= {name: _numbers(name, value) for name, value in parameters.items()}
-    dims, shape = _common(given)
+    of_orbits = [_numbers_of_orbit(orbit, f"known_orbits[{k}]") for k, orbit in enumerate(known_orbits)]
+    dims, shape = _common({**given, **{name: array for orbit in of_orbits for name, array in orbit.items()}})
     if not dims:
         dims, shape = (RUN,), (1,)
     flat = {name: _flat(array, dims, shape) for name, array in given.items()}
     _check(flat)
     values = {name: flat[name] for name in parameters}
     coordinates = {name: array for name, array in given.items() if array.dims and array.dims != (AXIS,)}
+    orbits = [{name.split(".")[1]: _flat(array, dims, shape) for name, array in orbit.items()} for orbit in of_orbits]
     return Runs(
-        dims, shape, without_dust(flat["tilt"]), flat["tilt_rate"], flat["spin"], flat["duration"], values, coordinates
+        *(dims, shape, without_dust(flat["tilt"]), flat["tilt_rate"], flat["spin"], flat["duration"]),
+        *(values, coordinates),
+        orbits=OrbitsOfRuns.of(orbits) if orbits else None,
     )
+
+
+def _numbers_of_orbit(orbit: KnownOrbit, place: str) -> "dict[str, xr.DataArray]":
+    """Return the numbers of a known orbit, named by its place among the arguments."""
+    vectors = ("tilt", "tilt_rate")
+    return {
+        f"{place}.{name}": (_vectors if name in vectors else _numbers)(f"{place}.{name}", value)
+        for name, value in orbit.numbers().items()
+    }
 
 
 def one_run(start: Start) -> Runs:

@@ -155,4 +155,7 @@ def outcomes(batch: Batch, late: Late) -> npt.NDArray[np.int8]:
     codes = np.where(batch.log(Log.STANDS) > 0.0, Outcome.AT_REST, codes)
     endings = _ENDING_OF_STATUS[batch.log(Log.STATUS).astype(np.intp)]
     codes = np.where(endings == _OTHERS, codes, endings).astype(np.int8)
+    reached = batch.converged
+    if reached is not None:
+        codes[reached.runs] = np.where(reached.turns == 0.0, Outcome.ROCKING, Outcome.ROLLING)
     return upright_outcomes(batch, late.span, codes) if batch.plan.model.switches else codes

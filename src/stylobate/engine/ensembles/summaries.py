@@ -12,6 +12,7 @@ from stylobate.engine.doubt import FALLEN, in_doubt
 from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.ensembles.contacts import CONTACT_KINDS, contact_arrays
 from stylobate.engine.ensembles.options import Options
+from stylobate.engine.ensembles.orbit_columns import OrbitReached
 from stylobate.engine.ensembles.outcomes import late_periods, outcomes
 from stylobate.engine.kernel.columns import STATE, Log, Setup, Status
 from stylobate.engine.memory import require_memory
@@ -193,7 +194,27 @@ def _all(batch: Batch) -> Arrays:
             arrays[names[1]] = notes[..., 2:4] / scale[:, np.newaxis, np.newaxis]
         if notes.shape[1] and not strobes:
             arrays["sample_time"] = notes[..., 4] * scale[:, np.newaxis]
-    return arrays
+    reached = batch.converged
+    return arrays if reached is None else arrays | _of_orbits(batch, arrays, reached)
+
+
+def _of_orbits(batch: Batch, arrays: Arrays, reached: OrbitReached) -> Arrays:
+    """Return what the last periods show, and the strobes after the end, of runs that have converged to known orbits.
+
+    Both are those of the orbits.
+    """
+    runs, scale = reached.runs, batch.models.time_scale
+    period = batch.motions.period[runs] * scale[runs]
+    names = ("mean_tilt", "mean_rolling_rate", "strobe_tilt", "strobe_tilt_rate")
+    own = {name: arrays[name].copy() for name in names if name in arrays}
+    own["mean_tilt"][runs] = reached.mean_tilt
+    own["mean_rolling_rate"][runs] = 2.0 * math.pi * reached.turns / period
+    if "strobe_tilt" in own:
+        place = np.arange(own["strobe_tilt"].shape[1])
+        to_come = place >= batch.log(Log.NEXT_STROBE)[runs, np.newaxis]
+        for name, vector in (("strobe_tilt", reached.tilt), ("strobe_tilt_rate", reached.tilt_rate)):
+            own[name][runs] = np.where(to_come[..., np.newaxis], vector[:, np.newaxis], own[name][runs])
+    return own
 
 
 def fallen(outcomes: npt.NDArray[np.int8]) -> npt.NDArray[np.bool_]:

@@ -57,7 +57,11 @@ KEEPS_AT_REST: bool
 SWITCHING: bool
 """Whether the model changes between kinds of contact."""
 DEMANDS: bool
-
+ORBITS: int
+ORBITS_AT: int
+"""With how many known orbits a run is compared, and the column of the table at which they begin."""
+SPIN: int
+"""Number of the state that is the spin, or −1."""
 
 GUARDS: int
 LAST: int

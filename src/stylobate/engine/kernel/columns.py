@@ -1,8 +1,8 @@
 """Names for the columns of the table of a batch: what a kernel reads of a run, and what it notes.
 
 The table is one float64 array with a row for each run. A row holds `Setup`, then `Log`, two windows, the looks of a
-period, the state, `Change` where the model knows it, the model's parameters, the numbers of the base motion, its
-breaks, samples, strobes, and the trace of the run where one is kept.
+period, the state, `Change` where the model knows it, an `Orbit` for each that is known, the model's parameters, the
+numbers of the base motion, its breaks, samples, strobes, and the trace of the run where one is kept.
 """
 
 from enum import IntEnum, auto
@@ -152,6 +152,36 @@ class Change(_FromZero):
     """How long the base had slid by then, the rim touched, and nothing."""
 
 
+class Orbit(_FromZero):
+    """A periodic orbit that is known beforehand, and the approach of a run to it; behind `Change`."""
+
+    X = auto()
+    Y = auto()
+    VX = auto()
+    VY = auto()
+    SPIN = auto()
+    """Its state at phase zero of the base motion; NaN where the run has no such orbit."""
+    SIZE = auto()
+    RATE = auto()
+    """Units of distances from it: of tilts, and of rates and spin."""
+    WINDOW = auto()
+    FALL = auto()
+    """Periods m of a window, and ρ^m, the largest multiplier having the modulus ρ."""
+    DECAY = auto()
+    """−ln ρ in the unit of time."""
+    REPEATS = auto()
+    """Largest difference of states one period apart of a motion that repeats."""
+    LATEST = auto()
+    """When the run must be near it to repeat in time; −∞ where it has no such orbit."""
+    REACHED = auto()
+    """1 once the run has converged to it."""
+    BEFORE = auto()
+    LARGEST = auto()
+    AGE = auto()
+    FALLS = auto()
+    """The approach to it, see `convergence.Approach`."""
+
+
 class Window(_FromZero):
     """What is noted of a window of some periods, at equal looks."""
 
@@ -169,6 +199,9 @@ class Window(_FromZero):
 
 LOOKS = 2
 """Looks to a period in the windows."""
+
+ORBIT = len(Orbit)
+"""Columns of a known orbit."""
 
 LOG = len(Setup)
 """First column of the log."""
@@ -252,3 +285,5 @@ class Status(_FromZero):
     """Its contact changed without end."""
     JAMMED = auto()
     """Its contact can neither stick nor slip nor open."""
+    CONVERGED = auto()
+    """It has converged to a known orbit, see `convergence`."""

@@ -100,6 +100,7 @@ def _rows(shape: Shape) -> SimpleNamespace:
         "PARAMETER": "p0",
         "CONTACT": f"y{shape.order - 1}",
         "LOADS": "normal_now",
+        "ORBIT": "orbit0",
         "END_PUSH": f"end_{shape.forcing.components[0]}",
     }
     # What reads rows that a kernel lacks is left out by the compiler.
@@ -132,6 +133,10 @@ def _constants(model: type[Model], shape: Shape) -> dict[str, Any]:
         "CAN_LOSE": has["impact_map"],
         "KEEPS_AT_REST": has["at_rest"] and not shape.planar,
         "DEMANDS": shape.demands,
+        # In a plane the multipliers of an orbit do not apply: disturbances out of it are left out.
+        "ORBITS": 0 if shape.planar else shape.orbits,
+        "ORBITS_AT": shape.orbits_at,
+        "SPIN": -1 if model.spin_state is None else model.spin_state,
         "KEPT": shape.order + len(shape.changes),
         **shape.forcing.constants(shape.rows()),
         **_series_constants(shape),
@@ -188,5 +193,9 @@ def _functions(model: type[Model], shape: Shape) -> dict[str, Callable[..., Any]
 def _in_words(model: type[Model], shape: Shape) -> str:
     """Describe a kernel so that its description differs from those of the other kernels of a model."""
     kind = f"{'plane' if shape.planar else 'space'} motion, {shape.forcing.tag}, {shape.width} lanes"
-    options = (", by Taylor series" if shape.series else "", ", with contact demands" if shape.demands else "")
+    options = (
+        ", by Taylor series" if shape.series else "",
+        ", with contact demands" if shape.demands else "",
+        f", with known orbits: {shape.orbits}" if shape.orbits else "",
+    )
     return f"{model.name}, {kind}{''.join(options)}"

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from stylobate.engine.kernel.columns import (
     LOOKS,
+    ORBIT,
     STATE,
     SWITCHING_TRACE_ROOM,
     TRACE_ROOM,
@@ -56,6 +57,8 @@ class Shape:
         How many guards guard a kind of contact, of a model that changes between kinds; else 0.
     slip, kept
         Which of its states are the velocity of slip, and which do not change within a step.
+    orbits
+        With how many known orbits each run is compared.
     """
 
     states: int
@@ -68,11 +71,17 @@ class Shape:
     guards: int = 0
     slip: tuple[int, ...] = ()
     kept: tuple[int, ...] = ()
+    orbits: int = 0
+
+    @property
+    def orbits_at(self) -> int:
+        """Column of the table at which known orbits begin, behind the state and what is noted of changes."""
+        return STATE + max(self.states, 2) + len(self.changes)
 
     @property
     def parameters_at(self) -> int:
-        """Column of the table at which the model's parameters begin, behind the state and what is noted of changes."""
-        return STATE + max(self.states, 2) + len(self.changes)
+        """Column at which the model's parameters begin."""
+        return self.orbits_at + self.orbits * ORBIT
 
     @property
     def motion_at(self) -> int:
@@ -133,6 +142,9 @@ class Shape:
         rows.add(*(f"end_{name}" for name in self.forcing.components))
         for name in ("new", "last"):
             rows.add_many(name, self.order)
+        if self.orbits:
+            rows.add("phase_zero_at", "converged")
+            rows.add_many("orbit", self.orbits * ORBIT)
         if self.demands:
             rows.add(*(f"{name}_{place}" for place in ("now", 1, 2, 3, 4) for name in DEMANDS))
         (self._add_series if self.series else self._add_stages)(rows)

@@ -8,11 +8,13 @@ from typing import Unpack
 import numpy.typing as npt
 import xarray as xr
 
-from stylobate.base_motions import BaseMotion
+from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.errors import MOST_RUNS, ParameterError, require_whole
 from stylobate.models import Model
+from stylobate.orbits import PeriodicOrbit
 from stylobate.results.random_numbers import Rng
 from stylobate.studies.checks import require_starts, require_values
+from stylobate.studies.known_rolling import known_orbit_of
 from stylobate.studies.maps.attractors import label_attractors
 from stylobate.studies.maps.stroboscopic import AttractorRules
 from stylobate.studies.maps.stroboscopic_count import with_strobes
@@ -35,6 +37,7 @@ def basins(
     periods: float | None = None,
     attractor_rules: AttractorRules | None = None,
     confidence: float = 0.95,
+    orbits: Sequence[PeriodicOrbit] = (),
     store: str | Path | None = None,
     executor: Executor | None = None,
     resume: bool = False,
@@ -59,11 +62,15 @@ def basins(
         When states repeat, and when two orbits are one.
     confidence
         Of the intervals of the fractions.
+    orbits
+        Stable periodic orbits, of one period of the base motion, to which runs converge that can then end early, as of
+        `stylobate.orbits.periodic_orbit`. See "Converged runs" on the page on ensembles.
     store, executor, resume, progress
         As in `run_sweep`.
     **options
         What all runs have in common: tilt, tilt_rate (the start but for what varies), rtol, rules, strobes (by default
-        32, or half of what shorter runs hold) …
+        32, or half of what shorter runs hold) … With `end_converged=True` steady rolling in closed form, on a
+        circularly moving base, counts as a known orbit too.
 
     Returns
     -------
@@ -86,6 +93,8 @@ def basins(
     (['at rest', 'overturned'], [4, 2])
     """
     require_starts("over", over)
+    if orbits:
+        options["known_orbits"] = [known_orbit_of(orbit, model, motion or BASE_AT_REST) for orbit in orbits]
     if count is not None:
         ranges: Mapping[str, Sequence[float]] = over  # type: ignore[assignment]  # the sweep refuses what is no range
         sweep = Sweep.random(

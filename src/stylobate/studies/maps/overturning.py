@@ -50,6 +50,8 @@ def overturning_map(
         As in `run_sweep`.
     **options
         What all runs have in common: tilt [rad] and tilt_rate [rad/s] (the start, by default at rest), rtol, rules …
+        With `end_converged=True` runs on a circularly moving base end early once they have converged to steady rolling,
+        which the model must state in closed form; see "Converged runs" on the page on ensembles.
 
     Returns
     -------

@@ -9,13 +9,18 @@ import numpy as np
 
 from stylobate.base_motions import BaseMotion
 from stylobate.base_motions.one_of import members_of
+from stylobate.engine import KnownOrbit
 from stylobate.models import Model
 from stylobate.results import OutcomeRules
+from stylobate.studies.known_rolling import known_rolling
 from stylobate.studies.sweeps.quantities import OF_A_RUN, Floats
 
 
 class RunOptions(TypedDict, total=False):
-    """What all runs of a sweep have in common: the arguments of `simulate_ensemble` of these names."""
+    """What all runs of a sweep have in common: the arguments of `simulate_ensemble` of these names.
+
+    With `end_converged` each run is compared with steady rolling in closed form too, see `known_rolling`.
+    """
 
     tilt: Sequence[float]
     tilt_rate: Sequence[float]
@@ -31,6 +36,8 @@ class RunOptions(TypedDict, total=False):
     rules: OutcomeRules | None
     demands: bool
     recheck: bool
+    known_orbits: Sequence[KnownOrbit]
+    end_converged: bool
 
 
 DEFAULTS = RunOptions(
@@ -48,6 +55,8 @@ DEFAULTS = RunOptions(
     rules=None,
     demands=False,
     recheck=False,
+    known_orbits=(),
+    end_converged=False,
 )
 
 
@@ -71,6 +80,9 @@ class Recipe:
             chosen[name] = np.stack(parts, axis=-1)
         chosen["spin"] = values.get("spin", chosen["spin"])
         own = {name: array for name, array in values.items() if name not in OF_A_RUN}
+        if chosen.pop("end_converged") and count > 0:
+            rolling = known_rolling(self.model, self.motion, own, count)
+            chosen["known_orbits"] = (*chosen["known_orbits"], rolling)
         return {**chosen, "duration": self._durations(values), "parameters": own}
 
     def _durations(self, values: Mapping[str, Floats]) -> Floats | float:

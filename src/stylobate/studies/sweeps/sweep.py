@@ -15,11 +15,12 @@ from stylobate.kinds import names_code
 from stylobate.models import Model
 from stylobate.results import OutcomeRules
 from stylobate.results.random_numbers import Rng
+from stylobate.studies.known_rolling import require_closed_form
 from stylobate.studies.sweeps.blocks import Blocks
 from stylobate.studies.sweeps.designs import Box, Design, Grid, Points
 from stylobate.studies.sweeps.fingerprint import identity_of
 from stylobate.studies.sweeps.layout import Layout, bytes_on_disk, layout_of
-from stylobate.studies.sweeps.quantities import check_quantities
+from stylobate.studies.sweeps.quantities import OF_A_RUN, check_quantities
 from stylobate.studies.sweeps.recipe import DEFAULTS, Recipe, RunOptions
 
 
@@ -43,7 +44,8 @@ class Sweep:
         … or for how many periods of its base motion.
     options
         Further arguments of `simulate_ensemble`: tilt, tilt_rate, spin, method, rtol, atol, tilt_limit, rest_energy,
-        max_steps, samples, strobes, rules, demands.
+        max_steps, samples, strobes, rules, demands, known_orbits (a list); and end_converged, to end runs early that
+        have converged to steady rolling in closed form.
 
     Raises
     ------
@@ -86,6 +88,8 @@ class Sweep:
         options = {**DEFAULTS, **self.options}
         for name, unit in (("tilt", "rad"), ("tilt_rate", "rad/s")):
             options[name] = require_vector(name, options[name], 2, unit)  # type: ignore[arg-type]
+        if options["end_converged"]:
+            require_closed_form(self.model, self.motion, [name for name in self.design.names if name not in OF_A_RUN])
         object.__setattr__(self, "options", options)
 
     @classmethod
@@ -175,6 +179,10 @@ class Sweep:
         """Return the identity of this sweep, version included, as plain values."""
         options: dict[str, Any] = {**self.options}
         options["rules"] = asdict(options["rules"] or OutcomeRules())
+        options["known_orbits"] = [orbit.plain() for orbit in options["known_orbits"]]
+        for name in ("known_orbits", "end_converged"):  # stores made without them stay as they are
+            if not options[name]:
+                del options[name]
         provenance = provenance_of_run(self.model, self.motion, **options)
         for name, thing in (("model", self.model), ("motion", self.motion)):
             if provenance[name].get("kind") == "other":

@@ -16,6 +16,7 @@ from stylobate.engine.kernel.driver import (
     contact_implicit,
     contact_steps,
     contact_stiffness,
+    convergence,
     demands,
     equations,
     events,
@@ -44,7 +45,7 @@ from stylobate.engine.kernel.driver import (
 
 _COMMON = (
     *(sums, push, equations, stages, series, guards, judgement, demands, observation, step),
-    *(base_motion, moving, within, tracing, stops, release, release_search, standing, peaks, batch),
+    *(base_motion, moving, within, tracing, stops, release, release_search, standing, peaks, convergence, batch),
 )
 _SMOOTH = (resting, lift_off, passages, events, starting)
 _SWITCHING = (

@@ -5,9 +5,21 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.kernel.bound import GRAIN, KEPT, PARAMETERS, PARAMETERS_AT, PLANAR, WIDTH, R, begin, handle
+from stylobate.engine.kernel.bound import (
+    GRAIN,
+    KEPT,
+    ORBITS,
+    PARAMETERS,
+    PARAMETERS_AT,
+    PLANAR,
+    WIDTH,
+    R,
+    begin,
+    handle,
+)
 from stylobate.engine.kernel.columns import STATE, Status
 from stylobate.engine.kernel.driver.base_motion import set_leg, set_no_return
+from stylobate.engine.kernel.driver.convergence import watch, watch_from
 from stylobate.engine.kernel.driver.moving import azimuth_now, square_of_speed
 from stylobate.engine.kernel.driver.observation import observe
 from stylobate.engine.kernel.driver.step import step
@@ -40,6 +52,8 @@ def enter(buf: Table, i: int, table: Table, pieces: Table, run: int) -> int:
     set_sample(buf, i)
     set_strobe(buf, i)
     set_break(buf, i, table)
+    if ORBITS:
+        watch_from(buf, i, table)
     set_no_return(buf, i)
     set_leg(buf, i, table, pieces, t)
     return begin(buf, i, table, pieces)
@@ -67,6 +81,8 @@ def quiet(buf: Table, i: int) -> None:
         buf[row, i] = 1.0
     for row in (R.STOP, R.NO_RETURN, R.TILT_LIMIT, R.LARGEST_TILT, R.MOST_STEPS):
         buf[row, i] = 1e300
+    if ORBITS:
+        buf[R.PHASE_ZERO_AT, i] = math.inf
     for j in range(PARAMETERS):
         buf[R.PARAMETER + j, i] = 0.1
     buf[R.RUN, i] = -1.0
@@ -123,6 +139,27 @@ def pause(buf: Table, table: Table) -> bool:
     return False
 
 
+def is_due(buf: Table, i: int, table: Table, pieces: Table) -> bool:
+    """Observe the step just made in a lane; return whether the driver must deal with it."""
+    if buf[R.WATCHED, i] > 0.0 and buf[R.GO, i] > 0.0:
+        observe(buf, i)
+    if ORBITS and passes_phase_zero(buf, i):
+        watch(buf, i, table)
+    return buf[R.FLAG, i] > 0.0 and not passes_knot(buf, i, table, pieces)
+
+
+def passes_phase_zero(buf: Table, i: int) -> bool:
+    """Return whether the step just made took a run to phase zero of the base motion or beyond, and is not tentative."""
+    return buf[R.TIME, i] >= buf[R.PHASE_ZERO_AT, i] and buf[R.GO, i] > 0.0 and buf[R.AIMED, i] == 0.0
+
+
+def status_of(buf: Table, i: int, table: Table, pieces: Table) -> int:
+    """Return the status of a lane that is flagged, once its event has been dealt with."""
+    if ORBITS and buf[R.CONVERGED, i] > 0.0:
+        return Status.CONVERGED
+    return handle(buf, i, table, pieces)
+
+
 def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table) -> bool:
     """Run a batch to its end; return whether it got there.
 
@@ -141,15 +178,12 @@ def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table
             full = traced and trace_steps(buf, table)
             met = full
             for i in range(width):
-                if buf[R.WATCHED, i] > 0.0 and buf[R.GO, i] > 0.0:
-                    observe(buf, i)
-                if buf[R.FLAG, i] > 0.0 and not passes_knot(buf, i, table, pieces):
-                    met = True
+                met = is_due(buf, i, table, pieces) or met
             if halt[0] != 0:
                 return False
         for i in range(width):
             if buf[R.FLAG, i] > 0.0 and buf[R.RUN, i] >= 0.0:
-                status = handle(buf, i, table, pieces)
+                status = status_of(buf, i, table, pieces)
                 if status != Status.WAITING:
                     leave(buf, i, table, status)
                     quiet(buf, i)

@@ -1,0 +1,197 @@
+"""Orbits by which the runs of studies end early: steady rolling in closed form, and exact periodic orbits."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate import theory
+from stylobate.base_motions import BaseMotion, Harmonic, as_harmonic
+from stylobate.engine import KnownOrbit
+from stylobate.engine.parameters import changed_model, split
+from stylobate.errors import ParameterError, UnsupportedError
+from stylobate.models import Model
+from stylobate.models.closed_form import RollingLaw
+from stylobate.models.inheritance import closed_form_of
+from stylobate.orbits import PeriodicOrbit
+from stylobate.orbits.steady import rolling_form_of
+from stylobate.studies.responses.rolling_frame import RollingFrame
+from stylobate.theory.averaging import circular_components
+
+Floats = npt.NDArray[np.float64]
+Steady: TypeAlias = tuple[Floats, Floats, Floats, Floats]
+"""Tilt [rad], phase [rad], spin [ω0], and the rate [ω0] at which the slowest disturbance grows; NaN where unstable."""
+
+# A harmonic motion is circular if the other of its two circles is smaller than this part.
+_CIRCULAR = 1e-12
+# Numbers of a circular motion that may vary between runs.
+_OF_CIRCLES = ("angular_frequency", "start_phase", "acceleration", "scale", "rotation", "delay")
+
+
+def require_closed_form(model: Model, motion: BaseMotion, names: Sequence[str]) -> None:
+    """Raise UnsupportedError unless steady rolling has a closed form, where numbers of these `names` vary."""
+    form = rolling_form_of(model)
+    harmonic = as_harmonic(motion)
+    remedy = "Leave out end_converged, or pass `orbits` to stylobate.studies.basins."
+    if form is None or form.requires is not None:
+        message = f"end_converged: the model must state a closed form of steady rolling (got {model!r}). {remedy}"
+        raise UnsupportedError(message)
+    if harmonic is None or harmonic.ramp or not _is_circular(harmonic):
+        message = f"end_converged: the base motion must be circular, without ramp (got {motion!r}). {remedy}"
+        raise UnsupportedError(message)
+    _, of_motion = split(model, dict.fromkeys(names, 0.0))
+    unknown = [name for name in of_motion if name not in _OF_CIRCLES]
+    if unknown:
+        message = f"end_converged: {unknown[0]} must not vary (got it among {', '.join(names)}). {remedy}"
+        raise UnsupportedError(message)
+
+
+def known_rolling(model: Model, motion: BaseMotion, values: Mapping[str, Floats], count: int) -> KnownOrbit:
+    """Compute steady rolling of each run of a sweep in closed form, where it is stable.
+
+    Parameters
+    ----------
+    model, motion
+        What all runs have in common; see `require_closed_form`.
+    values
+        Numbers of column, model and motion that differ between the runs, by name, shape (n,).
+    count
+        Number n of runs, 1 or more.
+    """
+    of_model, of_motion = split(model, values)
+    bodies = _Bodies.of(model, of_model)
+    harmonic = as_harmonic(motion)
+    assert harmonic is not None  # `require_closed_form` has seen to it
+    frame = RollingFrame.of(model, replace(harmonic, start_phase=0.0))
+    scale = of_motion.get("scale", np.ones(1))
+    drive = of_motion.get("acceleration", frame.drive * model.column.gravity) * np.abs(scale) / bodies.gravity
+    theta = of_motion.get("angular_frequency", np.array(harmonic.angular_frequency)) * bodies.time_scale
+    offset = frame.offset + of_motion.get("rotation", np.zeros(1)) + np.where(scale < 0.0, np.pi, 0.0)
+    theta, drive, time_scale = np.broadcast_arrays(theta, drive, bodies.time_scale)  # one of each where none varies
+    tilt, psi, spin, growth = _steady(bodies, theta, drive)
+    azimuth = frame.sense * psi + offset
+    vector = tilt[:, np.newaxis] * np.stack([np.cos(azimuth), np.sin(azimuth)], axis=-1)
+    turning = (frame.sense * theta / time_scale)[:, np.newaxis]
+    multiplier = np.exp(growth * 2.0 * np.pi / theta)
+    return KnownOrbit(
+        tilt=np.broadcast_to(vector, (count, 2)),
+        tilt_rate=np.broadcast_to(turning * np.stack([-vector[:, 1], vector[:, 0]], axis=-1), (count, 2)),
+        spin=np.broadcast_to(frame.sense * spin / time_scale, count),
+        multiplier=np.broadcast_to(np.where((multiplier > 0.0) & (multiplier < 1.0), multiplier, np.nan), count),
+        turns=float(frame.sense),
+        mean_tilt=np.broadcast_to(np.where(tilt > 0.0, tilt, np.nan), count),
+    )
+
+
+def _is_circular(motion: Harmonic) -> bool:
+    (a1, a2, a3), (phi1, phi2, _) = motion.amplitude, motion.phase
+    sizes = sorted(abs(complex(part)) for part in circular_components(a1, a2, phi2 - phi1))
+    return a3 == 0.0 and sizes[0] <= _CIRCULAR * sizes[1]
+
+
+@dataclass(frozen=True, slots=True)
+class _Bodies:
+    """Numbers of the models of runs, shape (n,), or (1,) where all have one model."""
+
+    law: RollingLaw
+    eta: Floats
+    zeta: Floats
+    slenderness: Floats
+    inertia_ratio: Floats
+    axial_ratio: Floats
+    gravity: Floats
+    time_scale: Floats
+
+    @classmethod
+    def of(cls, model: Model, values: Mapping[str, Floats]) -> "_Bodies":
+        """Return the numbers of `model` with these `values`; each combination of them is made once."""
+        rows = np.stack(list(values.values()), axis=-1) if values else np.zeros((1, 0))
+        different, place = np.unique(rows, axis=0, return_inverse=True)
+        models = [changed_model(model, dict(zip(values, row.tolist(), strict=True))) for row in different]
+        forms = [closed_form_of(one) for one in models]
+        form = closed_form_of(model)
+        assert form is not None  # `require_closed_form` has seen to it
+        numbers = [
+            (
+                one.eta,
+                one.zeta,
+                body.slenderness,
+                body.inertia_ratio,
+                body.axial_ratio,
+                body.gravity,
+                changed.time_scale,
+            )
+            for one, changed in zip(forms, models, strict=True)
+            if one is not None
+            for body in (changed.column,)
+        ]
+        return cls(form.law, *np.array(numbers).reshape(-1, 7)[place.ravel()].T)
+
+
+def _steady(bodies: _Bodies, theta: Floats, a0: Floats) -> Steady:
+    """Return steady rolling of each run; of several stable branches the one of the least tilt."""
+    c, eta, zeta = bodies.slenderness, bodies.eta, bodies.zeta
+    shape = {"inertia_ratio": bodies.inertia_ratio, "axial_ratio": bodies.axial_ratio}
+    if bodies.law is RollingLaw.SLENDER:
+        upper = theory.steady_rolling(theta, a0, c=c, eta=eta).upper
+        return _where_stable(upper.amplitude, upper.phase, np.zeros_like(theta), upper.stable, upper.eigenvalues)
+    if bodies.law is RollingLaw.FREE_TWIST:
+        free = theory.free_twist_rolling(theta, a0, c=c, eta=eta, zeta=zeta, **shape)
+        return _where_stable(free.amplitude, free.phase, free.spin, free.stable, free.eigenvalues)
+    if bodies.law is RollingLaw.WOBBLING:
+        found = theory.wobbling_rolling(theta, a0, c=c, eta=eta, **shape)
+    else:
+        found = theory.full_rolling(theta, a0, c=c, eta=eta, zeta=zeta, **shape)
+    runs, branch = np.arange(theta.size), np.argmax(found.stable, axis=-1)
+    one = (runs, branch)
+    return _where_stable(
+        found.amplitude[one], found.phase[one], found.spin[one], found.stable[one], found.eigenvalues[one]
+    )
+
+
+def _where_stable(
+    tilt: Floats, phase: Floats, spin: Floats, stable: npt.NDArray[np.bool_], eigenvalues: npt.NDArray[np.complex128]
+) -> Steady:
+    growth = np.max(eigenvalues.real, axis=-1)
+    return tuple(np.where(stable, array, np.nan) for array in (tilt, phase, spin, growth))  # type: ignore[return-value]
+
+
+def known_orbit_of(orbit: PeriodicOrbit, model: Model, motion: BaseMotion) -> KnownOrbit:
+    """Return a periodic orbit of `model` under `motion` as the runs of a study are compared with it.
+
+    Raises
+    ------
+    ParameterError
+        If it is an orbit of another model or base motion, unstable, longer than one period, or one in a plane.
+    """
+    if not isinstance(orbit, PeriodicOrbit):
+        message = f"orbits must be periodic orbits, as of stylobate.orbits.periodic_orbit (got {orbit!r})"
+        raise ParameterError(message)
+    if orbit.model != model or _without_phase(orbit.motion) != _without_phase(motion):
+        message = f"orbits: each must be one of the model and base motion of the study (got {orbit!r})"
+        raise ParameterError(message)
+    modulus = float(np.abs(orbit.multipliers[0]))
+    if orbit.planar or orbit.periods != 1 or not 0.0 < modulus < 1.0:
+        message = f"orbits: each must be stable, of one period, in space (got {orbit!r}). Leave it out."
+        raise ParameterError(message)
+    start_phase = getattr(as_harmonic(orbit.motion), "start_phase", 0.0)
+    until = -start_phase / (2.0 * math.pi) % 1.0
+    state = orbit.system.carry(orbit.state, 0.0, until).end if until > 0.0 else orbit.state
+    scale = model.time_scale
+    x, y, vx, vy = (float(value) for value in model.tilt_of(*state, *model.parameters))
+    return KnownOrbit(
+        tilt=(x, y),
+        tilt_rate=(vx / scale, vy / scale),
+        spin=0.0 if model.spin_state is None else float(state[model.spin_state]) / scale,
+        multiplier=modulus,
+        turns=orbit.turns,
+        mean_tilt=orbit.mean_tilt,
+    )
+
+
+def _without_phase(motion: BaseMotion) -> BaseMotion:
+    """Return a harmonic motion at phase zero: its orbits at that phase are the same whatever the phase at t = 0."""
+    return replace(motion, start_phase=0.0) if isinstance(motion, Harmonic) else motion
