@@ -1,4 +1,4 @@
-"""Names for the columns of the table of a batch: what a kernel reads of a run, and what it notes.
+"""Names for the columns of the table of a batch: what a kernel reads of a run and notes; and of its buffer, `Lane`.
 
 The table is one float64 array with a row for each run. A row holds `Setup`, then `Log`, two windows, the looks of a
 period, the state, `Change` where the model knows it, an `Orbit` for each that is known, the model's parameters, the
@@ -121,6 +121,86 @@ class Log(_FromZero):
     BACKWARD_COS = auto()
     BACKWARD_SIN = auto()
     """Integrals over the last periods: of the tilt, and of its parts that turn with the forcing and against it."""
+
+
+class Lane(_FromZero):
+    """What a lane keeps in the buffer while it has a run, behind the columns of the table; flags are 0 or 1."""
+
+    RUN = auto()
+    """Index of the run; -1 where it has none."""
+    PIECE = auto()
+    """Number of the polynomial of the base motion."""
+    H = auto()
+    """Step to try."""
+    TRIED = auto()
+    """Step last tried."""
+    HELD_STEP = auto()
+    """Step that an event held back."""
+    BY_TILT = auto()
+    """Flag: the event aimed at is met where the tilt reaches its bound, else where it grows; -1 at a lossy passage."""
+    STOP = auto()
+    """Time that the next step must not pass."""
+    WANTED = auto()
+    """Next step as the error allows it, before stops cut it."""
+    MADE = auto()
+    """Step last made; 0 where it was not taken."""
+    AIMED = auto()
+    """How many steps have been aimed at an event ahead."""
+    REJECTED = auto()
+    """Flag of a step with too large an error."""
+    SIDE = auto()
+    """In a plane: sign of the tilt."""
+    ATOL_NOW = auto()
+    """Absolute tolerance, finer while a motion is still small."""
+    GROWN = auto()
+    """Tilt at which a motion is no longer small."""
+    REST_TILT = auto()
+    REST_SQUARE = auto()
+    SLOW_SQUARE = auto()
+    """Tilt and squares of speed below which rest is looked for."""
+    NO_RETURN = auto()
+    """Tilt beyond which the model proves that the column overturns."""
+    TILT = auto()
+    RADIAL = auto()
+    """Tilt times its rate."""
+    MOMENTUM = auto()
+    """Twice the area that the lean sweeps per unit of time."""
+    X = auto()
+    Y = auto()
+    VX = auto()
+    VY = auto()
+    """Lean and its rate."""
+    TURNS = auto()
+    """Whole turns of the lean so far."""
+    LOW = auto()
+    """Least tilt within the step."""
+    SLOW = auto()
+    """Flag: it may have been slow enough within the step to come to rest."""
+    PEAK = auto()
+    """Flag: a largest tilt lies within the step."""
+    FLAG = auto()
+    """Not 0 where the driver must look at the lane."""
+    ERROR = auto()
+    """Of the step, in units of the tolerance."""
+    OK = auto()
+    """Flag: the error is small enough."""
+    HELD = auto()
+    """Flag: but the step goes beyond an event."""
+    GO = auto()
+    """Flag: the step is taken."""
+    REACHED = auto()
+    """Flag: it has reached the stop."""
+    TRACE_AZIMUTH = auto()
+    """Of the lean, as the trace last noted it [turns]."""
+    NEW_X = auto()
+    NEW_Y = auto()
+    NEW_VX = auto()
+    NEW_VY = auto()
+    NEW_TILT = auto()
+    NEW_RADIAL = auto()
+    """The same at the end of the step tried."""
+    PER_TURN = auto()
+    """1/period of the base motion; 0 where it has none."""
 
 
 class Change(_FromZero):

@@ -1,4 +1,7 @@
-"""The buffer of a kernel: one contiguous array, row r of lane i at buf[r * WIDTH + i]."""
+"""The buffer of a kernel: one contiguous array, row r of lane i at buf[r * WIDTH + i].
+
+What the rows mean stands in `columns` (`Setup`, `Log`, `Lane`); which of them a kernel has is for its `Shape` to say.
+"""
 
 from collections.abc import Iterator
 
@@ -37,11 +40,3 @@ class Rows:
 
     def __len__(self) -> int:
         return len(self._numbers)
-
-    def at(self, name: str) -> str:
-        """Return the source of the entry of lane `i` in the flat buffer, as the innermost loops address it."""
-        return f"buf[{self._numbers[name]} * WIDTH + i]"
-
-    def of_lane(self, name: str) -> str:
-        """Return the source of the entry of lane `i` in the buffer as a table, as the driver addresses it."""
-        return f"buf[{self._numbers[name]}, i]"

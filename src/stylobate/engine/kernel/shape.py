@@ -10,6 +10,7 @@ from stylobate.engine.kernel.columns import (
     TRACE_ROOM,
     TRACE_TERMS,
     Change,
+    Lane,
     Log,
     Setup,
     Trace,
@@ -136,7 +137,7 @@ class Shape:
         rows.add_many("look", 4 * LOOKS)
         rows.add_many("y", self.order)
         rows.add(*self.changes)
-        rows.add(*_LANE_ROWS)
+        rows.add(*(row.name.lower() for row in Lane))
         rows.add_many("p", self.parameters)
         self.forcing.reserve(rows)
         rows.add(*(f"end_{name}" for name in self.forcing.components))
@@ -173,12 +174,3 @@ DEMANDS = ("normal", "friction", "pivoting")
 
 OBSERVED = ("mean_tilt", "forward_cos", "forward_sin", "backward_cos", "backward_sin")
 """Rows of the integrals over the last periods."""
-
-_LANE_ROWS = (
-    "run", "piece", "h", "tried", "held_step", "by_tilt", "stop", "wanted", "made", "aimed", "rejected", "side",
-    "atol_now", "grown", "rest_tilt", "rest_square", "slow_square", "no_return",
-    "tilt", "radial", "momentum", "x", "y", "vx", "vy",
-    "turns", "low", "slow", "peak", "flag", "error", "ok", "held", "go", "reached",
-    "trace_azimuth",
-    "new_x", "new_y", "new_vx", "new_vy", "new_tilt", "new_radial", "per_turn",
-)  # fmt: skip

@@ -22,7 +22,6 @@ from stylobate.engine.kernel.driver import (
     events,
     guards,
     implicit_step,
-    judgement,
     lift_off,
     moving,
     observation,
@@ -34,9 +33,10 @@ from stylobate.engine.kernel.driver import (
     resting,
     series,
     stages,
-    standing,
+    standing_loads,
     starting,
     step,
+    step_control,
     stops,
     sums,
     tracing,
@@ -44,8 +44,8 @@ from stylobate.engine.kernel.driver import (
 )
 
 _COMMON = (
-    *(sums, push, equations, stages, series, guards, judgement, demands, observation, step),
-    *(base_motion, moving, within, tracing, stops, release, release_search, standing, peaks, convergence, batch),
+    *(sums, push, equations, stages, series, guards, step_control, demands, observation, step),
+    *(base_motion, moving, within, tracing, stops, release, release_search, standing_loads, peaks, convergence, batch),
 )
 _SMOOTH = (resting, lift_off, passages, events, starting)
 _SWITCHING = (

@@ -10,7 +10,7 @@ from stylobate.engine.kernel.driver.moving import at_upright, azimuth_now, set_o
 from stylobate.engine.kernel.driver.push import accelerations
 from stylobate.engine.kernel.driver.release import RELEASE_MARGIN
 from stylobate.engine.kernel.driver.release_search import next_release, search_end
-from stylobate.engine.kernel.driver.standing import bear_standing
+from stylobate.engine.kernel.driver.standing_loads import bear_standing
 from stylobate.engine.kernel.driver.stops import go_on, leg_end, meet_stop, next_stop, stand_to_the_end
 from stylobate.engine.kernel.driver.tracing import trace_event, trace_stand
 from stylobate.engine.kernel.driver.within import set_dense_output, set_within, set_within_closely

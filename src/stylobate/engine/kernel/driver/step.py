@@ -4,9 +4,9 @@ from stylobate.compiler.marks import fast, lanes
 from stylobate.engine.kernel.bound import DEMANDS, ORDER, SERIES, SWITCHING, WIDTH, R
 from stylobate.engine.kernel.driver.demands import follow_demands
 from stylobate.engine.kernel.driver.guards import bring_up_to_date, look_at_guards
-from stylobate.engine.kernel.driver.judgement import judge
 from stylobate.engine.kernel.driver.series import make_series_step
 from stylobate.engine.kernel.driver.stages import STAGE_NUMBERS, make_long_stage, make_stage
+from stylobate.engine.kernel.driver.step_control import judge
 from stylobate.engine.kernel.layout import Table
 
 

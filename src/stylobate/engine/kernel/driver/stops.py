@@ -7,7 +7,7 @@ from stylobate.engine.kernel.columns import LOOKS, NOTE, SLACK, Status, Window
 from stylobate.engine.kernel.driver.base_motion import goes_on_in_next_piece, set_leg
 from stylobate.engine.kernel.driver.guards import note_window
 from stylobate.engine.kernel.driver.moving import azimuth_now, set_rates
-from stylobate.engine.kernel.driver.standing import bear_standing
+from stylobate.engine.kernel.driver.standing_loads import bear_standing
 from stylobate.engine.kernel.layout import Table
 
 
