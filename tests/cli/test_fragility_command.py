@@ -198,18 +198,18 @@ def test_a_store_goes_on(folder, capsys, monkeypatch):
 
 def test_what_was_interrupted_is_fitted_as_far_as_it_is_known_and_goes_on(folder, capsys, interrupted, monkeypatch):
     monkeypatch.chdir(folder)
-    command = ["fragility", "study.toml", "--property-samples", "24", "--threads", "1", "--json"]
+    command = ["fragility", "study.toml", "--property-samples", "40", "--threads", "1", "--json"]
     assert run([*command, "--output", "runs.zarr"]) == 130
     told = capsys.readouterr()
     assert "continues with --resume" in told.err
     partial = json.loads(told.out)
-    assert 0 < partial["computed"] < 384
+    assert 0 < partial["computed"] < 640
     assert partial["limit_states"][-1]["runs"] <= partial["computed"]
     interrupted.undo()
     monkeypatch.chdir(folder)
     assert run([*command, "--output", "runs.zarr", "--resume"]) == 0
     resumed = json.loads(capsys.readouterr().out)
-    assert resumed["computed"] == resumed["runs"] == 384
+    assert resumed["computed"] == resumed["runs"] == 640
 
 
 @pytest.mark.parametrize(
