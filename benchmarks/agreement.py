@@ -1,4 +1,4 @@
-"""Whether outcomes and measures of single runs are those of ensembles to the bit: random runs over all models and kinds of base motion, both ways.
+"""Whether outcomes and measures of single runs are those of ensembles to the bit: random runs of all models.
 
 python -m benchmarks.agreement 10000
 """
@@ -49,7 +49,7 @@ def main() -> int:
         print(f"\r{number + 1} of {count}", end="", file=sys.stderr, flush=True)
     print(file=sys.stderr)
     words = ", ".join(f"{number} {name}" for name, number in kinds.items())
-    print(f"{count - differing} of {count} have the same outcome and measures to the bit, singly and in an ensemble ({words})")
+    print(f"{count - differing} of {count} have the same outcome and measures to the bit, alone and together ({words})")
     return min(differing, 99)
 
 
