@@ -4,6 +4,7 @@ from typing import get_args
 
 import pytest
 
+from stylobate.cli.command import Command
 from stylobate.cli.commands import COMMANDS
 from stylobate.cli.main import run
 from stylobate.cli.parts import kinds_in_files
@@ -106,6 +107,22 @@ _OF_PRINTING = ("as_json",)
 
 class ComputedError(Exception):
     """What is to be computed, instead of computing it."""
+
+
+@pytest.fixture(autouse=True, scope="module")
+def parsers_are_kept():
+    """Make the parser of a command once for each choice of model and motion: it is asked a thousand times."""
+    kept, made = {}, Command.program
+
+    def program(self, name, arguments=()):
+        key = name, repr(self._chosen(arguments))
+        if key not in kept:
+            kept[key] = made(self, name, arguments)
+        return kept[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Command, "program", program)
+        yield
 
 
 @pytest.fixture(autouse=True)

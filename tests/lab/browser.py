@@ -12,7 +12,16 @@ from stylobate.lab.pages import page_is_built
 
 REQUIRED = os.environ.get("STYLOBATE_BROWSER") == "required"
 # Drawn by the processor, as on machines without a graphics card.
-DRAWN = ("--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+DRAWN = ("--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader-webgl", "--enable-unsafe-swiftshader")
+# A page that plays keeps more than one core busy if the processor draws every frame of the screen.
+SEVEN_FRAMES_A_SECOND = """
+window.everyFrame = ((request, cancel) => () => {
+  window.requestAnimationFrame = request;
+  window.cancelAnimationFrame = cancel;
+})(window.requestAnimationFrame, window.cancelAnimationFrame);
+window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 150);
+window.cancelAnimationFrame = clearTimeout;
+"""
 
 
 def found_browser() -> str:
@@ -40,8 +49,12 @@ def open_browser() -> Iterator[Browser]:
 
 
 def new_page(where: Browser | BrowserContext) -> Page:
-    """Return a new page that waits as long as the first start of a process may take on a busy machine."""
+    """Return a new page that waits as long as the first start of a process may take on a busy machine.
+
+    It draws seven frames a second, or after `window.everyFrame()` those of the screen.
+    """
     page = where.new_page()
+    page.add_init_script(SEVEN_FRAMES_A_SECOND)
     page.set_default_timeout(120_000.0)
     return page
 

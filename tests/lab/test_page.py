@@ -337,7 +337,7 @@ def test_the_page_tells_when_the_server_is_gone_and_recovers(browser, tmp_path):
 def test_curves_follow_a_slider_and_the_animation_runs(watched):
     """Times hold for a machine that does nothing else: two cores, drawn by the processor."""
     page = watched.page
-    page.evaluate("() => window.stylobate.laboratory.clock.play()")
+    page.evaluate("() => { window.everyFrame(); window.stylobate.laboratory.clock.play(); }")
     page.wait_for_timeout(4000)
     rates = []
     for _ in range(5):
