@@ -124,7 +124,8 @@ def _is_same(a: types.CodeType, b: types.CodeType, *, exact: bool) -> bool:
 def _functions_of(text: str, file: str) -> _Functions:
     """Return the functions of a text with their code, by name and first line."""
     try:
-        tree, whole = ast.parse(text, file), compile(text, file, "exec", dont_inherit=True)
+        tree = ast.parse(text, file)
+        whole = compile(tree, file, "exec", dont_inherit=True)
     except SyntaxError:  # changed since it was imported, or a page with programs in it
         return {}
     codes = {(code.co_name, code.co_firstlineno): code for code in _codes_in(whole)}
