@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from stylobate.engine.ensembles.batch import Batch, Plan
 from stylobate.engine.ensembles.broadcasting import Runs
+from stylobate.engine.ensembles.outcomes import Late, late_periods
 from stylobate.engine.kernel.columns import STATE, TRACE_TERMS, Log, Setup, Status, Trace, TraceKind
 from stylobate.engine.pace import EVERY
 from stylobate.engine.starts import Turning
@@ -36,7 +37,7 @@ _LAST_EVENTS = {
 
 @dataclass(frozen=True, slots=True)
 class Followed:
-    """A run that was followed to its end: as a batch of one, its motion, and its events.
+    """A run that was followed to its end: as a batch of one, its motion, its events, and its last periods.
 
     `last_guard` is the number of the guard that ended a kind of contact last; −1 for none.
     """
@@ -44,6 +45,7 @@ class Followed:
     batch: Batch
     trajectory: Trajectory
     events: tuple[Event, ...]
+    late: Late
     last_guard: int
 
     @classmethod
@@ -73,7 +75,8 @@ class Followed:
         named.append((_LAST_EVENTS.get(Status(int(batch.log(Log.STATUS)[0])), ""), end))
         events = tuple(Event(name, time * scale) for name, time in named if name)
         changes = entries[entries[:, Trace.KIND] == TraceKind.CONTACT]
-        return cls(batch, trajectory, events, int(changes[-1, len(Trace)]) if len(changes) else -1)
+        last_guard = int(changes[-1, len(Trace)]) if len(changes) else -1
+        return cls(batch, trajectory, events, late_periods(batch), last_guard)
 
     @property
     def status(self) -> Status:

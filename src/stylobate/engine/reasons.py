@@ -6,7 +6,7 @@ import numpy as np
 
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.end_of_motion import survival
-from stylobate.engine.ensembles.outcomes import Late, grounds_of, late_periods
+from stylobate.engine.ensembles.outcomes import grounds_of
 from stylobate.engine.followed import Followed
 from stylobate.engine.kernel.columns import Log, Status
 from stylobate.engine.pace import step_limit, unseen
@@ -55,8 +55,7 @@ def _at_its_end(model: Model, motion: BaseMotion, followed: Followed, outcome: O
         return _standing(model, motion, followed)
     if outcome in (Outcome.STILL_MOVING, Outcome.SURVIVED) and math.isfinite(motion.duration):
         return survival(model, motion, followed.trajectory)[1]
-    late = late_periods(followed.batch)
-    ground = Ground(int(grounds_of(followed.batch, late)[0]))
+    ground = Ground(int(grounds_of(followed.batch, followed.late)[0]))
     return reason_on(ground, followed.batch.plan.options.rules.periods, motion.period or 0.0)
 
 
@@ -99,7 +98,7 @@ def bounds_of(followed: Followed) -> tuple[float, float]:
 
 def late_measures(followed: Followed) -> dict[str, float]:
     """Return what is measured over the last periods, where they were looked at."""
-    late = late_periods(followed.batch)
+    late = followed.late
     if np.isnan(late.span[0]):
         return {}
     scale = followed.trajectory.model.time_scale
@@ -109,7 +108,7 @@ def late_measures(followed: Followed) -> dict[str, float]:
         "repetition": float(late.repetition[0]),
         "mean_tilt_late": float(late.mean_tilt[0]),
         "least_tilt_late": float(late.least_tilt[0]),
-        "largest_tilt_late": _largest_tilt(followed, late),
+        "largest_tilt_late": _largest_tilt(followed),
     }
     before = float(late.repetition_before[0])
     if not math.isnan(before):
@@ -122,7 +121,7 @@ def late_measures(followed: Followed) -> dict[str, float]:
 _SAMPLES = 64
 
 
-def _largest_tilt(followed: Followed, late: Late) -> float:
+def _largest_tilt(followed: Followed) -> float:
     trajectory, periods = followed.trajectory, followed.batch.plan.options.rules.periods
-    tau = np.linspace(trajectory.end - float(late.span[0]), trajectory.end, periods * _SAMPLES + 1)
+    tau = np.linspace(trajectory.end - float(followed.late.span[0]), trajectory.end, periods * _SAMPLES + 1)
     return float(np.hypot(*trajectory.model.tilt(trajectory.states(tau))).max())

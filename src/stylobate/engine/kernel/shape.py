@@ -1,6 +1,7 @@
 """What sets one kernel apart from another, and the layout of its buffer and table."""
 
 from dataclasses import dataclass
+from functools import cache
 
 from stylobate.engine.kernel.columns import (
     LOOKS,
@@ -130,43 +131,50 @@ class Shape:
 
     def rows(self) -> Rows:
         """Return the layout of the buffer: the tables' columns first, under their names in small letters."""
-        rows = Rows()
-        rows.add(*(column.name.lower() for column in Setup), *(column.name.lower() for column in Log))
-        for window in ("before", "late"):
-            rows.add(*(f"{window}_{column.name.lower()}" for column in Window))
-        rows.add_many("look", 4 * LOOKS)
-        rows.add_many("y", self.order)
-        rows.add(*self.changes)
-        rows.add(*(row.name.lower() for row in Lane))
-        rows.add_many("p", self.parameters)
-        self.forcing.reserve(rows)
-        rows.add(*(f"end_{name}" for name in self.forcing.components))
-        for name in ("new", "last"):
-            rows.add_many(name, self.order)
-        if self.orbits:
-            rows.add("phase_zero_at", "converged")
-            rows.add_many("orbit", self.orbits * ORBIT)
-        if self.demands:
-            rows.add(*(f"{name}_{place}" for place in ("now", 1, 2, 3, 4) for name in DEMANDS))
-        (self._add_series if self.series else self._add_stages)(rows)
-        return rows
+        return _rows_of(self)
 
-    def _add_series(self, rows: Rows) -> None:
-        rows.add("proposed", *(f"node_{name}" for name in OBSERVED))
-        rows.add_many("square", SERIES_ORDER + 1)
-        for j in self.expanded:
-            rows.add(*(f"c{k}_{j}" for k in range(1, self.degree(j) + 1)))
 
-    def _add_stages(self, rows: Rows) -> None:
-        for stage in range(STAGES + 1):
-            rows.add_many(f"k{stage}_", self.order)
-        rows.add_many("last_slope", self.order)
-        if self.guards:
-            rows.add("last_margin", "margin_now", "broken", "stiff_looks", "stiff_look_at", "stiff_wait")
-            for name in ("stage", "rate", "step"):
-                rows.add_many(name, self.order)
-        for name in ("extra0_", "extra1_", "extra2_", *(f"dense{power}_" for power in range(DENSE_TERMS))):
-            rows.add_many(name, self.order)
+@cache
+def _rows_of(shape: Shape) -> Rows:
+    rows = Rows()
+    rows.add(*(column.name.lower() for column in Setup), *(column.name.lower() for column in Log))
+    for window in ("before", "late"):
+        rows.add(*(f"{window}_{column.name.lower()}" for column in Window))
+    rows.add_many("look", 4 * LOOKS)
+    rows.add_many("y", shape.order)
+    rows.add(*shape.changes)
+    rows.add(*(row.name.lower() for row in Lane))
+    rows.add_many("p", shape.parameters)
+    shape.forcing.reserve(rows)
+    rows.add(*(f"end_{name}" for name in shape.forcing.components))
+    for name in ("new", "last"):
+        rows.add_many(name, shape.order)
+    if shape.orbits:
+        rows.add("phase_zero_at", "converged")
+        rows.add_many("orbit", shape.orbits * ORBIT)
+    if shape.demands:
+        rows.add(*(f"{name}_{place}" for place in ("now", 1, 2, 3, 4) for name in DEMANDS))
+    (_add_series if shape.series else _add_stages)(shape, rows)
+    return rows
+
+
+def _add_series(shape: Shape, rows: Rows) -> None:
+    rows.add("proposed", *(f"node_{name}" for name in OBSERVED))
+    rows.add_many("square", SERIES_ORDER + 1)
+    for j in shape.expanded:
+        rows.add(*(f"c{k}_{j}" for k in range(1, shape.degree(j) + 1)))
+
+
+def _add_stages(shape: Shape, rows: Rows) -> None:
+    for stage in range(STAGES + 1):
+        rows.add_many(f"k{stage}_", shape.order)
+    rows.add_many("last_slope", shape.order)
+    if shape.guards:
+        rows.add("last_margin", "margin_now", "broken", "stiff_looks", "stiff_look_at", "stiff_wait")
+        for name in ("stage", "rate", "step"):
+            rows.add_many(name, shape.order)
+    for name in ("extra0_", "extra1_", "extra2_", *(f"dense{power}_" for power in range(DENSE_TERMS))):
+        rows.add_many(name, shape.order)
 
 
 DEMANDS = ("normal", "friction", "pivoting")
