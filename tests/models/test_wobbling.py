@@ -292,3 +292,18 @@ def test_bad_numbers_are_refused_in_one_line(change, told):
         sb.Wobbling(**({"column": STOUT} | change))
     assert str(refusal.value).startswith(told)
     assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize("constraint", ["pure_tilt", "rubber"])
+@pytest.mark.parametrize("slenderness", [0.02, 0.1, 0.3, 0.7, 1.5, 3.0])
+@pytest.mark.parametrize("inner", [0.3, 0.9])
+def test_rolling_round_the_rim_never_holds_a_falling_column_back(constraint, slenderness, inner):
+    # The proof of no return drops what β̇ adds to the acceleration of the tilt.
+    column = sb.Column.hollow(radius=slenderness, inner_radius=inner * slenderness, height=2.0, density=1.0)
+    model = sb.Wobbling(column, constraint=constraint)
+    for theta in np.linspace(math.atan(slenderness), 0.5 * math.pi - 1e-3, 40):
+        still, turning = (
+            model.rates(theta, 0.0, 0.0, theta * rate, 0.0, 0.0, 0.0, *model.parameters)[2] + theta * rate**2
+            for rate in (0.0, 1.0)
+        )
+        assert turning > still

@@ -18,6 +18,8 @@ from stylobate.engine.kernel.roots import first_growth_past, first_return
 # An event is met by repeated steps towards it, so often at most; a further step below the second number, in units of
 # the longest step, is made by a Taylor polynomial, whose error is its third power.
 MOST_AIMS, SHORT_AIM = 6, 1e-6
+# A step back to an event has at least this part of the step that met it.
+SHORTEST_AIM = 1e-9
 
 
 def event_ahead(buf: Table, i: int) -> float:
@@ -128,7 +130,7 @@ def arrived(buf: Table, i: int, table: Table, pieces: Table) -> int:
 def near_upright(buf: Table, i: int, table: Table) -> float:
     """Deal with a passage near the upright, out of a plane; return when the column came to rest there, or NaN."""
     if CAN_LOSE and loses(buf, i):
-        aim(buf, i, -closest_within(buf, i))
+        aim(buf, i, -max(closest_within(buf, i), SHORTEST_AIM * buf[R.MADE, i]))
         buf[R.BY_TILT, i] = -1.0
         return math.nan
     if CAN_REST and buf[R.REST_ENERGY, i] > 0.0 and buf[R.LOW, i] < buf[R.SLOW, i] * buf[R.REST_TILT, i]:

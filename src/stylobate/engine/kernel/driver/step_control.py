@@ -255,7 +255,8 @@ def choose_next_step(buf: Table, i: int) -> None:
     buf[R.TIME, i] = now
     wanted = min(wanted_by_series(buf, i, h, ok) if SERIES else wanted_by_error(buf, i, h), buf[R.LONGEST_STEP, i])
     buf[R.REJECTED, i] = 1.0 - ok
-    buf[R.AIMED, i] = buf[R.AIMED, i] * ok
+    # A rejected step back to an event is shortened, and still aimed: without an aim it would go on back in time.
+    buf[R.AIMED, i] = buf[R.AIMED, i] * (1.0 if h < 0.0 else ok)
     buf[R.WANTED, i] = wanted
     buf[R.H, i] = min(wanted, stop - now)
     buf[R.STEPS, i] = buf[R.STEPS, i] + go
