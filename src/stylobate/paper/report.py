@@ -17,7 +17,8 @@ from stylobate.results import Finding, PaperCheck, write_netcdf
 _TITLE = "A round column on a vibrating base: the source paper reproduced, checked and corrected"
 
 _INTRODUCTION = (
-    "The paper, “Dynamic of a cylindrical column on a vibrating base” (Vibroengineering Procedia), studies a slender "
+    "The paper, A. Munitsyn and M. Munitsyna, “Dynamic of a cylindrical column on a vibrating base” "
+    "(Vibroengineering Procedia, 2021), studies a slender "
     "free-standing column with a circular base under harmonic base motion. This page repeats its curves from its "
     "equations, measures each of its statements, corrects its misprints, and says where a statement fails. Numbers in "
     "parentheses are the paper's equations.",
