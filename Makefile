@@ -94,4 +94,4 @@ bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks, beside the engines that c
 	$(BIN)/python -m benchmarks.orbits
 
 clean:  ## remove what the targets made
-	rm -rf $(VENV) .venv-* docs/_build stylobate-paper
+	rm -rf $(VENV) .venv-* docs/_build docs/gallery docs/tutorials stylobate-paper

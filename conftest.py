@@ -49,9 +49,9 @@ def _pages(patterns: Sequence[str], excludes: Sequence[str] = (), fixtures: Sequ
     )
 
 
-_OF_THE_LABORATORY = "docs/laboratory.md"
+_OF_THE_LABORATORY = "docs/how-to/laboratory.md"
 
 pytest_collect_file = (
-    _pages(["README.md", "docs/*.md", "docs/*/*.md"], excludes=[_OF_THE_LABORATORY])
+    _pages(["README.md", "docs/*.md", "docs/*/*.md", "docs/*/*/*.md"], excludes=[_OF_THE_LABORATORY])
     + _pages([_OF_THE_LABORATORY], fixtures=["laboratory"])
 ).pytest()

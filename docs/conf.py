@@ -1,4 +1,4 @@
-"""Settings of the documentation: MyST pages, furo, reference from docstrings, MathJax from a local package."""
+"""Settings of the documentation: MyST pages, executed examples, reference from docstrings; all of it offline."""
 
 import re
 from importlib.metadata import version as installed_version
@@ -12,12 +12,19 @@ release = installed_version("stylobate")
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",  # summary tables of the reference
     "sphinx.ext.napoleon",
+    "sphinx.ext.viewcode",  # links to the source, which is part of the site
     "sphinx.ext.mathjax",
     "sphinx-mathjax-offline",  # the files of MathJax, so that no page fetches anything
+    "sphinx_copybutton",
+    "sphinx_design",  # cards
+    "sphinx_gallery.gen_gallery",
+    "sphinxcontrib.bibtex",
 ]
 exclude_patterns = ["_build"]
-myst_enable_extensions = ["dollarmath", "colon_fence", "deflist"]
+autosummary_generate = False
+myst_enable_extensions = ["dollarmath", "colon_fence", "deflist", "attrs_inline", "attrs_block"]
 myst_heading_anchors = 3
 
 # In our docstrings single backticks mean code.
@@ -29,8 +36,38 @@ autodoc_typehints_format = "short"
 autodoc_preserve_defaults = True
 python_maximum_signature_line_length = 88
 
+bibtex_bibfiles = ["../paper/paper.bib"]
+bibtex_default_style = "unsrt"
+bibtex_reference_style = "author_year"
+
+copybutton_prompt_text = r">>> |\.\.\. |\$ "
+copybutton_prompt_is_regexp = True
+
+# Tutorials and gallery: programs that run while the site is built; their figures and output become part of their pages.
+sphinx_gallery_conf = {
+    "examples_dirs": ["../examples/tutorials", "../examples/gallery"],
+    "gallery_dirs": ["tutorials", "gallery"],
+    "filename_pattern": r"\.py$",
+    "within_subsection_order": "FileNameSortKey",
+    "image_srcset": ["2x"],
+    "thumbnail_size": (480, 320),
+    "remove_config_comments": True,
+    "abort_on_example_error": True,
+    "show_memory": False,
+    "min_reported_time": 1e9,
+    "write_computation_times": False,
+    "doc_module": ("stylobate",),
+    "reference_url": {"stylobate": None},
+    "prefer_full_module": {r"stylobate\."},
+    "download_all_examples": False,
+    "parallel": 2,
+}
+suppress_warnings = ["config.cache"]
+
 html_theme = "furo"
 html_title = f"stylobate {release}"
+html_logo = "_static/logo.svg"
+html_favicon = "_static/favicon.svg"
 html_static_path = ["_static"]
 html_css_files = ["page.css"]
 html_copy_source = False

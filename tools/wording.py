@@ -1,13 +1,14 @@
-"""Find words that the project's texts avoid, in source, docs and page: `python tools/wording.py`.
+"""Find words that the project's texts avoid, and code too wide for a page: `python tools/wording.py [prefix …]`.
 
-Each rule has a pattern and the words to write instead. `PENDING` lists the places that still wait to be rewritten; a
-place that needs no exception any more is reported, so that the list only shrinks.
+Each rule has a pattern and the words to write instead. `PAGE_RULES` hold for README, documentation and examples.
+`PENDING` lists the places that still wait to be rewritten; a place that needs no exception is reported, so that
+the list only shrinks. With prefixes of paths, every problem below them is shown, exceptions included.
 """
 
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
@@ -24,25 +25,48 @@ RULES = {
     ),
 }
 
-# Prefixes of paths: the prose of the guide.
+PAGE_RULES = {
+    r"(?i)\bin a plane\b": "planar",
+    r"(?i)\bin space\b": "three-dimensional",
+    r"(?i)\bthe upright\b": "the vertical",
+    r"(?i)\bno-return tilts?\b": "point of no return",
+    r"(?i)\bmade records?\b": "synthetic ground motions",
+    r"(?i)\bcreep(?:s|ing)?\b": "is conveyed, mean transport velocity",
+    r"(?i)\bfrictions\b": "damping parameters",
+    r"(?i)\bfree twist\b|\bmay turn\b": "free axial rotation (spin)",
+    r"(?i)(?<!`)\bstrobe[ds]?\b": "stroboscopic (Poincaré) samples",
+    r"(?i)\bholds? the contact\b": "assumes permanent contact without slip",
+    r"(?i)\bthe house\b": "repository layout, architecture",
+    r"(?i)\bjams?\b": "dynamic jamming (Painlevé)",
+    r"(?i)\bwhat (?:it|they) (?:is|are|was|were|has|have|can|does|do|knows?|gives?|needs?|shows?|means?)\b": (
+        "the noun: outcome, response, value"
+    ),
+}
+
+# Prefixes of paths.
 PENDING = (
     "docs/",
     "README.md",
 )
 
-_READ = {".py", ".pyi", ".ts", ".css", ".html", ".md"}
-_FOLDERS = ("src", "docs", "README.md", "CONTRIBUTING.md", "CHANGELOG.md")
+_WIDTH = 88  # columns that a page shows without scrolling
+_PAGES = ("docs/", "README.md", "examples/", "paper/")
+_READ = {".py", ".pyi", ".ts", ".css", ".html", ".md", ".rst"}
+_FOLDERS = ("src", "docs", "examples", "paper", "README.md", "CONTRIBUTING.md", "CHANGELOG.md")
 
 
-def main() -> int:
+def main(prefixes: Sequence[str] = ()) -> int:
     """Print each place that breaks a rule, and each exception that is not needed; return the exit status."""
     found = list(problems())
+    pending = () if prefixes else PENDING
     lines = [
-        f"{path}:{line}: {word!r}: use {remedy}" for path, line, word, remedy in found if not path.startswith(PENDING)
+        f"{path}:{line}: {word!r}: use {remedy}"
+        for path, line, word, remedy in found
+        if path.startswith(tuple(prefixes) or "") and not path.startswith(pending or "\0")
     ]
     lines += [
         f"tools/wording.py: {prefix} needs no exception any more. Remove it."
-        for prefix in PENDING
+        for prefix in pending
         if not any(path.startswith(prefix) for path, *_ in found)
     ]
     print("\n".join(lines), end="\n" if lines else "")
@@ -53,9 +77,20 @@ def problems() -> Iterator[tuple[str, int, str, str]]:
     """Yield path, line, word and remedy of each place that breaks a rule."""
     for path in files():
         text = (ROOT / path).read_text(encoding="utf-8")
-        for pattern, remedy in RULES.items():
+        for pattern, remedy in (RULES | PAGE_RULES if path.startswith(_PAGES) else RULES).items():
             for match in re.finditer(pattern, text):
                 yield path, text.count("\n", 0, match.start()) + 1, match[0], remedy
+        if path.endswith(".md"):
+            yield from _wide_code(path, text)
+
+
+def _wide_code(path: str, text: str) -> Iterator[tuple[str, int, str, str]]:
+    inside = False
+    for number, line in enumerate(text.splitlines(), start=1):
+        if line.startswith("```"):
+            inside = not inside
+        elif inside and len(line) > _WIDTH:
+            yield path, number, f"{line[:20]}…", f"at most {_WIDTH} columns in code, not {len(line)}"
 
 
 def files() -> list[str]:
@@ -65,4 +100,4 @@ def files() -> list[str]:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))
