@@ -1,8 +1,12 @@
 """Settings of the documentation: MyST pages, executed examples, reference from docstrings; all of it offline."""
 
 import re
+import sys
 from importlib.metadata import version as installed_version
+from pathlib import Path
 from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parent))  # for `figure_scraper`
 
 project = "stylobate"
 author = "The stylobate developers"
@@ -49,6 +53,7 @@ sphinx_gallery_conf = {
     "gallery_dirs": ["tutorials", "gallery"],
     "filename_pattern": r"\.py$",
     "within_subsection_order": "FileNameSortKey",
+    "image_scrapers": ("matplotlib", "figure_scraper.new_figures"),
     "image_srcset": ["2x"],
     "thumbnail_size": (480, 320),
     "remove_config_comments": True,
