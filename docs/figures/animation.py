@@ -1,16 +1,23 @@
-"""Draws the moving pictures of the page "Pictures that move" into docs/_static/animation.
+"""Draws the animations of the pages into docs/_static/animation, and that of the front page, docs/_static/home.gif.
 
-Run it with `python docs/figures/animation.py`; it takes a minute or so on one core.
+Run it with `python docs/figures/animation.py`, or with names such as `home coin`; it takes some minutes on one core.
 """
 
+import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from PIL import Image
 
 import stylobate as sb
+from stylobate.plots.animation.drawing import Drawing
+from stylobate.plots.animation.gif import gif_of
+from stylobate.plots.animation.motion import DrawnMotion
 
-FOLDER = Path(__file__).parents[1] / "_static" / "animation"
+STATIC = Path(__file__).parents[1] / "_static"
+FOLDER = STATIC / "animation"
 SHOWN = {"size": (520, 400), "frames_per_second": 18}
 
 
@@ -47,11 +54,71 @@ def part() -> sb.plots.Animation:
     return sb.animate(run, speed=0.2, **SHOWN)
 
 
+class Falling(sb.Wobbling):
+    """The same equations without the criterion of no return: a run ends where the column lies."""
+
+    __slots__ = ()
+    no_return_tilt = None
+
+
+# The front page: scale of the record, how the pictures follow each other, and their size.
+SCALE, RATE, SIDE = 1.3, 12.0, (360, 400)
+# Shown as fast as it happens to this time [s], then so many times as fast.
+SLOW, PACE = 7.0, 5.0
+# Rest before the record in the one without drift [s].
+REST = 20.0
+
+
+def without_drift(motion: DrawnMotion) -> DrawnMotion:
+    """Return a motion whose base is displaced by the record without its drift, which no column feels."""
+    ground = sb.sample_record("el centro 1940 corrected").scaled(SCALE)
+    start, moved = (ground.displacement(REST + time) for time in (np.zeros(1), motion.time))
+    return replace(motion, base=np.asarray(moved - start))
+
+
+def home() -> bytes:
+    """A column that overturns under El Centro beside one twice as large, of the same shape, that survives."""
+    quake = sb.sample_record("el centro 1940").scaled(SCALE)
+    drawings: list[dict[float, Drawing]] = []
+    scale = None
+    for size in (2.0, 1.0):
+        stone = sb.Column.solid(radius=0.3 * size, height=3.0 * size, density=2700.0)
+        run = sb.simulate(Falling(stone, damping=0.03), quake)
+        both = {}
+        for pace in (1.0, PACE):
+            title = f"{3.0 * size:g} m high, El Centro 1940 × {SCALE:g}"
+            one = sb.animate(run, size=SIDE, frames_per_second=RATE, speed=pace, title=title)
+            look = replace(one.look, scale=scale)
+            both[pace] = Drawing(without_drift(one.motion), without_drift(one.history), look)
+        scale = both[1.0].pixels_per_metre
+        drawings.insert(0, both)
+    end = float(drawings[1][1.0].motion.time[-1])
+    shown = [(1.0, time) for time in np.arange(0.0, SLOW, 1.0 / RATE)]
+    shown += [(PACE, time) for time in np.arange(SLOW, end + PACE / RATE, PACE / RATE)]
+
+    def picture(index: int) -> Image.Image:
+        pace, time = shown[index]
+        sheet = Image.new("RGB", (2 * SIDE[0], SIDE[1]))
+        for place, both in enumerate(drawings):
+            times = both[pace].motion.time
+            sheet.paste(
+                both[pace].picture(min(int(np.searchsorted(times, time)), times.size - 1)), (place * SIDE[0], 0)
+            )
+        return sheet
+
+    return gif_of(picture, len(shown), RATE)
+
+
 DRAWINGS: tuple[Callable[[], sb.plots.Animation], ...] = (temple, rolling, coin, part)
 
 if __name__ == "__main__":
     FOLDER.mkdir(parents=True, exist_ok=True)
+    chosen = sys.argv[1:] or [home.__name__, *(drawing.__name__ for drawing in DRAWINGS)]
+    if home.__name__ in chosen:
+        print("home", (STATIC / "home.gif").write_bytes(home()) / 1e6, "MB")
     for drawing in DRAWINGS:
+        if drawing.__name__ not in chosen:
+            continue
         drawn = drawing()
         path = drawn.save(FOLDER / f"{drawing.__name__}.gif")
         tilt = np.hypot(*drawn.motion.tilt.T).max() / drawn.motion.shape.slenderness

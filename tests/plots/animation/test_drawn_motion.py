@@ -157,7 +157,7 @@ def test_of_a_column_that_overturns_the_fall_is_not_invented():
     drawn = drawn_motion(run)
     assert drawn["time"][-1] == pytest.approx(run.decided_at, rel=1e-6)
     assert math.hypot(*drawn["tilt"][-1]) < 0.5 * math.pi
-    assert drawn["title"].startswith("cannot come back: ")
+    assert drawn["title"].startswith("overturned: ")
 
 
 def shape_of(column):

@@ -215,7 +215,7 @@ def test_no_text_runs_into_another_or_out_of_the_picture(motion, title, width):
     drawing.picture(motion.time.size - 1)
     texts = [one for one in drawing._figure.findobj(Text) if one.get_text() and one.get_visible()]
     shown = [(one.get_text(), one.get_window_extent()) for one in texts if one.axes is None or one in one.axes.texts]
-    assert any(text == "cannot come back" for text, _ in shown)
+    assert any(text == "overturned" for text, _ in shown)
     for at, (_, box) in enumerate(shown):
         assert box.x0 >= 0.0
         assert box.x1 <= width

@@ -21,7 +21,7 @@ from PIL import Image
 from stylobate.errors import Outcome
 from stylobate.plots.animation import palette
 from stylobate.plots.animation.column import MARKED, FlutedColumn, lit, ring
-from stylobate.plots.animation.motion import DrawnMotion, verdict_of
+from stylobate.plots.animation.motion import DrawnMotion
 from stylobate.plots.animation.path import contact_path
 from stylobate.plots.animation.scene import Scene, round_length
 from stylobate.plots.axonometry import View, direction, hull
@@ -67,12 +67,15 @@ class Look:
         A line above the picture.
     pace
         Seconds of the motion in a second of the animation.
+    scale
+        Pixels per metre, for pictures that stand side by side; by default the motion fills the picture.
     """
 
     size: tuple[int, int]
     view: View
     title: str | None = None
     pace: float = 1.0
+    scale: float | None = None
 
 
 class Drawing:
@@ -148,13 +151,16 @@ class Drawing:
         room = np.array([(right - _SIDE if narrow else right) - _EDGE, top - _BELOW])
         space = self._axes(_EDGE, _BELOW, _EDGE + room[0], top)
         half, middle = 0.5 * room * float(np.max((high - low) / room)), 0.5 * (low + high)
+        if self.look.scale is not None:
+            half = 0.5 * room / self.look.scale
+            middle[1] = low[1] + half[1]
         space.set(xlim=(middle[0] - half[0], middle[0] + half[0]), ylim=(middle[1] - half[1], middle[1] + half[1]))
         return space, self._axes(right - _SIDE, top - _SIDE, right, top) if narrow else None
 
     def _add_ground(self) -> None:
         """Draw marks on the ground, over which the slab moves, and the square of the view from above."""
         (left, right), (low, high) = self.space.get_xlim(), self.space.get_ylim()
-        step = 2.0 * round_length(_MARKS_APART / self._pixels_per_metre())
+        step = 2.0 * round_length(_MARKS_APART / self.pixels_per_metre)
         reach = math.hypot(right - left, (high - low) / math.sin(max(self.look.view.elevation, math.radians(10.0))))
         one = step * np.arange(-math.ceil(reach / step), math.ceil(reach / step) + 1)
         marks = np.stack(np.broadcast_arrays(one[:, None], one, self.scene.ground), axis=-1).reshape(-1, 3)
@@ -171,7 +177,9 @@ class Drawing:
             middle, half = ends.mean(axis=0), 0.5 * float(np.abs(np.diff(ends, axis=0)).max()) + reach
             self.plan.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
 
-    def _pixels_per_metre(self) -> float:
+    @property
+    def pixels_per_metre(self) -> float:
+        """Scale of the scene."""
         (left, right) = self.space.get_xlim()
         return float(self.space.bbox.width / (right - left))
 
@@ -204,7 +212,7 @@ class Drawing:
         self._verdict.set_fontweight("bold")
         if self.look.title:
             self._fit(self._text(_EDGE, height - 38, self.look.title, palette.PALE), width - 2 * _EDGE)
-        scale = self._pixels_per_metre()
+        scale = self.pixels_per_metre
         length = round_length(0.2 * (width - 2 * _EDGE) / scale)
         left, right, floor = width - _EDGE - length * scale, width - _EDGE, _BELOW - 20
         bar = Line2D([left, right], [floor, floor], transform=None, color=palette.INK, linewidth=1.5, marker="|")
@@ -353,7 +361,7 @@ class Drawing:
         self._state.set_text(f"{now:.{digits}f} s    tilt {over:.2f} c    {math.degrees(tilt):.1f}°")
         at_end = index == motion.time.size - 1
         pace = "" if math.isclose(self.look.pace, 1.0) else f"speed × {self.look.pace:.3g}"
-        self._verdict.set_text(verdict_of(motion.outcome) if at_end else pace)
+        self._verdict.set_text(motion.outcome.label if at_end else pace)
         self._verdict.set_color(VERMILION if at_end and motion.outcome in _FALLS else palette.INK)
         self._verdict.set_fontweight("bold" if at_end else "normal")
         self._place_verdict()

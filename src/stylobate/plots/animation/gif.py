@@ -26,7 +26,7 @@ _HEADER, _FLAGS, _PLACE, _COMMA, _TRAILER = 13, 10, 9, 0x2C, b";"
 # Pictures from which the colours are taken.
 _SAMPLED = 8
 # How long the last one is shown [s].
-_HOLD = 1.5
+_HOLD = 2.5
 
 
 def gif_of(

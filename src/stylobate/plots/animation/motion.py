@@ -115,7 +115,7 @@ class DrawnMotion:
             friction_coefficient=None if coefficient is None else float(coefficient),
             outcome=run.outcome,
             decided_at=run.decided_at,
-            title=f"{verdict_of(run.outcome)}: {_without_advice(run.reason)}" if title is None else title,
+            title=f"{run.outcome.label}: {_without_advice(run.reason)}" if title is None else title,
         )
 
     @property
@@ -191,11 +191,6 @@ def drawn_motion(run: Response, *, frames_per_second: float | None = None, title
         If `run` is no run, or `frames_per_second` not positive.
     """
     return DrawnMotion.of(run, frames_per_second=frames_per_second, title=title).as_dict()
-
-
-def verdict_of(outcome: Outcome) -> str:
-    """Return the outcome in words; the motion of a column that overturns ends before its fall."""
-    return "cannot come back" if outcome is Outcome.OVERTURNED else outcome.label
 
 
 def _without_advice(reason: str) -> str:
