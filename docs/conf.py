@@ -54,6 +54,7 @@ sphinx_gallery_conf = {
     "filename_pattern": r"\.py$",
     "within_subsection_order": "FileNameSortKey",
     "image_scrapers": ("matplotlib", "figure_scraper.new_figures"),
+    "ignore_repr_types": r"Figure|Animation",  # shown as images, not as text
     "image_srcset": ["2x"],
     "thumbnail_size": (480, 320),
     "remove_config_comments": True,
