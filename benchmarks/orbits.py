@@ -1,6 +1,6 @@
 """The response curve of straight-line motion by exact orbits, beside plain shooting with SciPy: the same task.
 
-Run as `python -m benchmarks.orbits`. Task: rolling at a1 = 0.13, c = η = 0.1, from θ = 8 down to 0.8 with Floquet
+Run as `python -m benchmarks.orbits`. Task: rolling at a1 = 0.13, c = η = 0.1, from ν = 8 down to 0.8 with Floquet
 multipliers. The plain way: at each frequency Newton's method from where the two orbits before point, equations (1) and
 their variational equations in Python by solve_ivp (DOP853) at the same tolerance, 1e-12. It locates no bifurcation.
 """
@@ -20,12 +20,12 @@ A1, LOW, HIGH, RTOL = 0.13, 0.8, 8.0, 1e-12
 TARGET = Path("docs/_static/benchmarks/orbits.txt")
 
 
-def variational(t, y, theta):
+def variational(t, y, nu):
     """Right-hand side of (1) and of its variational equations."""
     x, z, vx, vz = y[:4]
     tilt = math.hypot(x, z)
     lean = 1.0 - C / tilt
-    ax = A1 * math.cos(theta * t)
+    ax = A1 * math.cos(nu * t)
     cube = C / tilt**3
     jacobian = np.array(
         [
@@ -40,11 +40,11 @@ def variational(t, y, theta):
     )
 
 
-def shot(state, theta):
+def shot(state, nu):
     """Return the state after a period and its derivative."""
     start = np.concatenate([state, np.eye(4).ravel()])
     run = solve_ivp(
-        variational, (0.0, 2.0 * math.pi / theta), start, "DOP853", args=(theta,), rtol=RTOL, atol=1e-2 * RTOL * C
+        variational, (0.0, 2.0 * math.pi / nu), start, "DOP853", args=(nu,), rtol=RTOL, atol=1e-2 * RTOL * C
     )
     return run.y[:4, -1], run.y[4:, -1].reshape(4, 4)
 
@@ -52,17 +52,17 @@ def shot(state, theta):
 def plain(start, frequencies):
     """Return multipliers at each frequency, by shooting from where the two orbits before point."""
     state, found, before = start, [], []
-    for theta in frequencies:
+    for nu in frequencies:
         if len(before) > 1:
             (older, there), (old, here) = before[-2:]
-            state = here + (here - there) * (theta - old) / (old - older)
+            state = here + (here - there) * (nu - old) / (old - older)
         for _ in range(20):
-            end, derivative = shot(state, theta)
+            end, derivative = shot(state, nu)
             step = np.linalg.solve(derivative - np.eye(4), state - end)
             state = state + step
             if np.abs(step).max() < 1e-10 * np.abs(state).max():
                 break
-        before.append((theta, state))
+        before.append((nu, state))
         found.append(np.linalg.eigvals(derivative))
     return np.array(found)
 
@@ -93,7 +93,7 @@ def main():
     gap = np.abs(np.abs(multipliers).max(axis=1) / known - 1.0).max()
     located = ", ".join(f"{one.parameter:.9f}" for one in branch.bifurcations)
     TARGET.write_text(
-        "| response curve, θ = 8 to 0.8, one core | time [s] | |\n|---|---|---|\n"
+        "| response curve, ν = 8 to 0.8, one core | time [s] | |\n|---|---|---|\n"
         f"| plain shooting with SciPy, {frequencies.size} frequencies | {slow:.3g} | no bifurcation located |\n"
         f"| stylobate, {frequencies.size} orbits | {quick:.3g} | pitchforks at {located} |\n\n"
         f"Ratio {slow / quick:.0f}. The largest multipliers agree within {gap:.0e} of themselves.\n",

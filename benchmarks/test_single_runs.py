@@ -6,10 +6,10 @@ from scipy.integrate import solve_ivp
 
 import stylobate as sb
 
-C, ETA, A0, THETA = 0.1, 0.1, 0.065, 3.0
+C, ETA, A0, NU = 0.1, 0.1, 0.065, 3.0
 PERIODS = 200
 MODEL = sb.Slender(sb.Column.dimensionless(C), damping=ETA)
-MOTION = sb.Harmonic.circular(acceleration=A0, angular_frequency=THETA)
+MOTION = sb.Harmonic.circular(acceleration=A0, angular_frequency=NU)
 START = sb.studies.steady_start(MODEL, MOTION)
 DURATION = PERIODS * MOTION.period
 
@@ -17,7 +17,7 @@ DURATION = PERIODS * MOTION.period
 def equations_1(tau, state):
     x, y, vx, vy = state
     lean = 1.0 - C / np.sqrt(x * x + y * y)
-    return vx, vy, lean * x - ETA * vx - A0 * np.cos(THETA * tau), lean * y - ETA * vy - A0 * np.sin(THETA * tau)
+    return vx, vy, lean * x - ETA * vx - A0 * np.cos(NU * tau), lean * y - ETA * vy - A0 * np.sin(NU * tau)
 
 
 @pytest.mark.benchmark(group=f"rolling, {PERIODS} periods, rtol 1e-8")

@@ -29,9 +29,9 @@ def _solver(*, circular: bool, rtol: float, atol: float) -> Any:
 
     def rates(tau, state, args):
         x, y, vx, vy = state
-        theta, cx, cy, sx, sy, _ = args
+        nu, cx, cy, sx, sy, _ = args
         lean = 1.0 - C / jnp.sqrt(x * x + y * y)
-        p, q = jnp.cos(theta * tau), jnp.sin(theta * tau)
+        p, q = jnp.cos(nu * tau), jnp.sin(nu * tau)
         if circular:
             ax, ay = ROLLING_ACCELERATION * p, ROLLING_ACCELERATION * q
         else:
@@ -75,7 +75,7 @@ def _solve(solver: Any, workload: Workload) -> Answer:
     for first in range(0, count, LANES):
         rows = np.arange(first, first + LANES)
         part = workload.take(np.minimum(rows, count - 1))
-        args = (part.theta, *part.cos.T, *part.sin.T, part.no_return)
+        args = (part.nu, *part.cos.T, *part.sin.T, part.no_return)
         ts, ys, fell, made = solver(tuple(part.start.T), part.duration, args)
         kept = slice(0, count - first)
         time[first : first + LANES] = np.asarray(ts)[kept]

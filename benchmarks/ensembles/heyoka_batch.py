@@ -32,8 +32,8 @@ def _integrator(workload: Workload, width: int, tolerance: float) -> Any:
     import heyoka as hy  # noqa: PLC0415  it need not be installed
 
     x, y, vx, vy = hy.make_vars("x", "y", "vx", "vy")
-    theta, no_return = hy.par[0], hy.par[1]
-    p, q = hy.cos(theta * hy.time), hy.sin(theta * hy.time)
+    nu, no_return = hy.par[0], hy.par[1]
+    p, q = hy.cos(nu * hy.time), hy.sin(nu * hy.time)
     if workload.circular:
         ax, ay = ROLLING_ACCELERATION * p, ROLLING_ACCELERATION * q
     else:
@@ -58,12 +58,12 @@ def _solve(integrator: Any, workload: Workload) -> Answer:
     count, width = len(workload), integrator.batch_size
     end, time = np.empty((count, 4)), np.empty(count)
     overturned = np.zeros(count, bool)
-    parameters = [workload.theta[:, None], workload.no_return[:, None]]
+    parameters = [workload.nu[:, None], workload.no_return[:, None]]
     if not workload.circular:
         parameters += [workload.cos, workload.sin]
     table = np.concatenate(parameters, axis=1)
     going_on = (hy.taylor_outcome.time_limit, hy.taylor_outcome.success)
-    queue = iter(np.argsort(workload.theta, kind="stable").tolist())
+    queue = iter(np.argsort(workload.nu, kind="stable").tolist())
     state, pars = integrator.state, integrator.pars
     runs = [-1] * width
     now, ends = np.zeros(width), np.zeros(width)

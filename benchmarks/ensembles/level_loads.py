@@ -63,9 +63,9 @@ def all_levels() -> dict[str, Level]:
 
 
 def rocking(count: int) -> Workload:
-    """Return runs under straight motion, begun on the exact rocking of the slender column, θ as in "rolling"."""
+    """Return runs under straight motion, begun on the exact rocking of the slender column, ν as in "rolling"."""
     base = rolling(count)
-    rate, phase = sb.theory.planar_forced_response(base.theta, ROLLING_ACCELERATION, c=C, eta=ETA).fast.start()[1:]
+    rate, phase = sb.theory.planar_forced_response(base.nu, ROLLING_ACCELERATION, c=C, eta=ETA).fast.start()[1:]
     none = np.zeros(count)
     start = np.stack([none, none, rate, none], axis=1)
     return replace(
@@ -75,7 +75,7 @@ def rocking(count: int) -> Workload:
         cos=np.stack([ROLLING_ACCELERATION * np.cos(phase), none], axis=1),
         sin=np.stack([-ROLLING_ACCELERATION * np.sin(phase), none], axis=1),
         motion=sb.Harmonic.straight(acceleration=ROLLING_ACCELERATION, angular_frequency=3.0),
-        parameters={"angular_frequency": base.theta, "start_phase": phase},
+        parameters={"angular_frequency": base.nu, "start_phase": phase},
     )
 
 
@@ -101,24 +101,24 @@ def mix_on_a_line(count: int) -> Workload:
 
 def _slender_rolling(count: int) -> Workload:
     base = rolling(count)
-    found = sb.theory.free_twist_rolling(base.theta, ROLLING_ACCELERATION, c=C, eta=ETA, zeta=ZETA)
+    found = sb.theory.free_twist_rolling(base.nu, ROLLING_ACCELERATION, c=C, eta=ETA, zeta=ZETA)
     return _steady(base, found.amplitude, found.phase, found.spin)
 
 
 def _wobbling(count: int) -> Workload:
     base = rolling(count)
-    found = sb.theory.wobbling_rolling(base.theta, ROLLING_ACCELERATION, c=C, eta=ETA)
+    found = sb.theory.wobbling_rolling(base.nu, ROLLING_ACCELERATION, c=C, eta=ETA)
     return _steady(base, found.amplitude[:, -1], found.phase[:, -1])
 
 
 def _rolling(count: int) -> Workload:
     base = rolling(count)
-    found = sb.theory.full_rolling(base.theta, ROLLING_ACCELERATION, c=C, eta=ETA, zeta=ZETA)
+    found = sb.theory.full_rolling(base.nu, ROLLING_ACCELERATION, c=C, eta=ETA, zeta=ZETA)
     return _steady(base, found.amplitude[:, -1], found.phase[:, -1], found.spin[:, -1])
 
 
 def _steady(base: Workload, amplitude: Array, psi: Array, *spin: Array) -> Workload:
-    start = np.column_stack([on_circle(amplitude, psi, base.theta), *spin])
+    start = np.column_stack([on_circle(amplitude, psi, base.nu), *spin])
     return replace(base, start=start, exact=start)
 
 

@@ -36,9 +36,9 @@ def _accelerations() -> Any:
 
     @njit
     def accelerations(tau, x, y, vx, vy, numbers):
-        theta, cx, cy, sx, sy = numbers
+        nu, cx, cy, sx, sy = numbers
         lean = 1.0 - C / math.sqrt(x * x + y * y)
-        p, q = math.cos(theta * tau), math.sin(theta * tau)
+        p, q = math.cos(nu * tau), math.sin(nu * tau)
         return lean * x - ETA * vx - cx * p - sx * q, lean * y - ETA * vy - cy * p - sy * q
 
     return accelerations
@@ -101,4 +101,4 @@ def _solve(follow: Any, rtol: float, atol: float, workload: Workload) -> Answer:
 
 
 def _numbers(workload: Workload) -> np.ndarray:
-    return np.column_stack([workload.theta, workload.cos, workload.sin])
+    return np.column_stack([workload.nu, workload.cos, workload.sin])

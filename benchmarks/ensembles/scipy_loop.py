@@ -64,12 +64,12 @@ def solve_model(model: sb.Model, workload: Workload) -> Answer:
 
 
 def _model_rates(model: sb.Model, workload: Workload, i: int) -> Rates:
-    theta, cos, sin = float(workload.theta[i]), math.cos, math.sin
+    nu, cos, sin = float(workload.nu[i]), math.cos, math.sin
     (cx, cy), (sx, sy) = workload.cos[i].tolist(), workload.sin[i].tolist()
     right_hand_side, parameters = model.rates, model.parameters
 
     def rates(tau, state):
-        turned = theta * tau
+        turned = nu * tau
         p, q = cos(turned), sin(turned)
         return right_hand_side(*state.tolist(), cx * p + sx * q, cy * p + sy * q, 0.0, *parameters)
 
@@ -77,25 +77,25 @@ def _model_rates(model: sb.Model, workload: Workload, i: int) -> Rates:
 
 
 def _rolling_rates(workload: Workload, i: int) -> Rates:
-    theta, cos, sin, hypot, a0 = float(workload.theta[i]), math.cos, math.sin, math.hypot, ROLLING_ACCELERATION
+    nu, cos, sin, hypot, a0 = float(workload.nu[i]), math.cos, math.sin, math.hypot, ROLLING_ACCELERATION
 
     def rates(tau, state):
         x, y, vx, vy = state.tolist()  # floats of Python are faster than those of NumPy
         lean = 1.0 - C / hypot(x, y)
-        turned = theta * tau
+        turned = nu * tau
         return vx, vy, lean * x - ETA * vx - a0 * cos(turned), lean * y - ETA * vy - a0 * sin(turned)
 
     return rates
 
 
 def _rates(workload: Workload, i: int) -> Rates:
-    theta, cos, sin, hypot = float(workload.theta[i]), math.cos, math.sin, math.hypot
+    nu, cos, sin, hypot = float(workload.nu[i]), math.cos, math.sin, math.hypot
     (cx, cy), (sx, sy) = workload.cos[i].tolist(), workload.sin[i].tolist()
 
     def rates(tau, state):
         x, y, vx, vy = state.tolist()
         lean = 1.0 - C / hypot(x, y)
-        turned = theta * tau
+        turned = nu * tau
         p, q = cos(turned), sin(turned)
         return vx, vy, lean * x - ETA * vx - cx * p - sx * q, lean * y - ETA * vy - cy * p - sy * q
 

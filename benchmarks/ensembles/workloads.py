@@ -1,6 +1,6 @@
 """What every engine computes: two sets of runs of equations (1), c = η = 0.1.
 
-The base moves as a_i(τ) = cos_i cos θτ + sin_i sin θτ. A run ends with its duration, or at the tilt of no return
+The base moves as a_i(τ) = cos_i cos ντ + sin_i sin ντ. A run ends with its duration, or at the tilt of no return
 c + sup|a_h|.
 """
 
@@ -34,7 +34,7 @@ class Workload:
     ----------
     name
         "rolling" or "mix".
-    theta, duration
+    nu, duration
         Frequency and length of each run.
     start
         x, y, their rates, shape (n, 4); behind them the spin, of levels that know it.
@@ -49,7 +49,7 @@ class Workload:
     """
 
     name: str
-    theta: Array
+    nu: Array
     duration: Array
     start: Array
     cos: Array
@@ -60,52 +60,52 @@ class Workload:
     parameters: dict[str, Array] = field(repr=False)
 
     def __len__(self) -> int:
-        return len(self.theta)
+        return len(self.nu)
 
     @property
     def circular(self) -> bool:
-        """Whether the base moves in one and the same circle (a0 cos θτ, a0 sin θτ) in all runs."""
+        """Whether the base moves in one and the same circle (a0 cos ντ, a0 sin ντ) in all runs."""
         return self.name == "rolling"
 
     def take(self, index: Any) -> "Workload":
         """Return the runs of this index."""
-        rows = {name: getattr(self, name)[index] for name in ("theta", "duration", "start", "cos", "sin", "no_return")}
+        rows = {name: getattr(self, name)[index] for name in ("nu", "duration", "start", "cos", "sin", "no_return")}
         exact = None if self.exact is None else self.exact[index]
         return replace(self, **rows, exact=exact, parameters={k: v[index] for k, v in self.parameters.items()})
 
 
 def rolling(count: int) -> Workload:
-    """Return runs on the exact steady rolling under circular motion: θ even on 3…6, in random order (seed 1)."""
-    theta = 3.0 + 3.0 * (np.random.default_rng(1).permutation(count) + 0.5) / count
-    branch = sb.theory.steady_rolling(theta, ROLLING_ACCELERATION, c=C, eta=ETA).upper
-    start = on_circle(branch.amplitude, branch.phase, theta)
+    """Return runs on the exact steady rolling under circular motion: ν even on 3…6, in random order (seed 1)."""
+    nu = 3.0 + 3.0 * (np.random.default_rng(1).permutation(count) + 0.5) / count
+    branch = sb.theory.steady_rolling(nu, ROLLING_ACCELERATION, c=C, eta=ETA).upper
+    start = on_circle(branch.amplitude, branch.phase, nu)
     circle = np.full(count, ROLLING_ACCELERATION)
     none = np.zeros(count)
     return Workload(
         name="rolling",
-        theta=theta,
-        duration=PERIODS * 2.0 * math.pi / theta,
+        nu=nu,
+        duration=PERIODS * 2.0 * math.pi / nu,
         start=start,
         cos=np.stack([circle, none], axis=1),
         sin=np.stack([none, circle], axis=1),
         no_return=np.full(count, C + ROLLING_ACCELERATION),
         exact=start,  # after whole periods it is where it was
         motion=sb.Harmonic.circular(acceleration=ROLLING_ACCELERATION, angular_frequency=3.0),
-        parameters={"angular_frequency": theta},
+        parameters={"angular_frequency": nu},
     )
 
 
-def on_circle(amplitude: Array, psi: Array, theta: Array) -> Array:
-    """Return x, y and their rates on a circle of this amplitude, at the angle ψ, turning at the rate θ."""
+def on_circle(amplitude: Array, psi: Array, nu: Array) -> Array:
+    """Return x, y and their rates on a circle of this amplitude, at the angle ψ, turning at the rate ν."""
     x, y = amplitude * np.cos(psi), amplitude * np.sin(psi)
-    return np.stack([x, y, -theta * y, theta * x], axis=1)
+    return np.stack([x, y, -nu * y, nu * x], axis=1)
 
 
 def mix(count: int) -> Workload:
     """Return `count` runs, copies of 512 random ones (seed 2) in random order, so that every engine has the same mix.
 
     Uniform and independent: start tilt in a disc of radius 0.09, its rate in one of radius 0.1; the base on an ellipse
-    of axis ratio 0.7 with largest acceleration 0.15…0.3, direction of the long axis 0…π, start phase 0…2π, θ = 1…6.
+    of axis ratio 0.7 with largest acceleration 0.15…0.3, direction of the long axis 0…π, start phase 0…2π, ν = 1…6.
     The acceleration is always above c: no run comes to rest, which equations (1) by themselves cannot follow.
     """
     rng = np.random.default_rng(2)
@@ -113,15 +113,15 @@ def mix(count: int) -> Workload:
     largest = rng.uniform(0.15, 0.3, MIX_DISTINCT)
     rotation = rng.uniform(0.0, math.pi, MIX_DISTINCT)
     phase = rng.uniform(0.0, 2.0 * math.pi, MIX_DISTINCT)
-    theta = rng.uniform(1.0, 6.0, MIX_DISTINCT)
-    # R(rotation) (s cos ξ, q s sin ξ), ξ = θτ + phase
+    nu = rng.uniform(1.0, 6.0, MIX_DISTINCT)
+    # R(rotation) (s cos ξ, q s sin ξ), ξ = ντ + phase
     long = np.stack([np.cos(rotation), np.sin(rotation)], axis=1) * largest[:, None]
     short = MIX_AXIS_RATIO * np.stack([-np.sin(rotation), np.cos(rotation)], axis=1) * largest[:, None]
     cos_phase, sin_phase = np.cos(phase)[:, None], np.sin(phase)[:, None]
     distinct = Workload(
         name="mix",
-        theta=theta,
-        duration=PERIODS * 2.0 * math.pi / theta,
+        nu=nu,
+        duration=PERIODS * 2.0 * math.pi / nu,
         start=np.concatenate([tilt, rate], axis=1),
         cos=long * cos_phase + short * sin_phase,
         sin=short * cos_phase - long * sin_phase,
@@ -129,7 +129,7 @@ def mix(count: int) -> Workload:
         exact=None,
         motion=sb.Harmonic.elliptic(amplitude=(0.2, 0.2 * MIX_AXIS_RATIO), phase=-math.pi / 2.0, angular_frequency=3.0),
         parameters={
-            "angular_frequency": theta,
+            "angular_frequency": nu,
             "acceleration": largest,
             "rotation": rotation,
             "start_phase": phase,

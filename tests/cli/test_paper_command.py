@@ -16,7 +16,7 @@ def test_paper_makes_its_report(tmp_path, capsys):
     printed = capsys.readouterr().out
     findings = json.loads((folder / "findings.json").read_text())
     assert len(findings) > 20
-    assert "fails" in printed
+    assert "does not hold" in printed
     pictures = list(folder.glob("*.png"))
     html = (folder / "report.html").read_text()
     assert html.count("data:image/png;base64,") == len(pictures) > 10

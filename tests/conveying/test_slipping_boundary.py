@@ -76,7 +76,7 @@ def test_classes_are_told_by_what_exists_and_what_is_stable(gentle, hard):
         np.testing.assert_array_equal(found["slip_speed"] > 0.0, found["slipping_amplitude"].notnull())
 
 
-def begun(found, branch, theta):
+def begun(found, branch, nu):
     """Return the start on a branch of theory, its tilt a part larger."""
     tilt = (1.0 + PERTURBED) * float(found.amplitude[branch])
     phase = float(found.phase[branch])
@@ -85,25 +85,25 @@ def begun(found, branch, theta):
     if hasattr(found, "slip_along"):
         slip = float(found.slip_along[branch]) * d + float(found.slip_across[branch]) * n
     spin = float(found.spin[branch])
-    return {"tilt": tilt * d, "tilt_rate": theta * tilt * n, "spin": spin, "velocity": (*slip, 0.0)}
+    return {"tilt": tilt * d, "tilt_rate": nu * tilt * n, "spin": spin, "velocity": (*slip, 0.0)}
 
 
-def departure(zeta, mu, acceleration, theta, found, branch):
+def departure(zeta, mu, acceleration, nu, found, branch):
     """Return how far the tilt is from that of steady rolling in the end of a run begun beside it."""
-    start, slowest = begun(found, branch, theta), float(found.eigenvalues[branch].real.max())
-    run = sb.simulate(sliding(zeta, mu), circle(acceleration, theta), **start, duration=_TIMES / abs(slowest))
+    start, slowest = begun(found, branch, nu), float(found.eigenvalues[branch].real.max())
+    run = sb.simulate(sliding(zeta, mu), circle(acceleration, nu), **start, duration=_TIMES / abs(slowest))
     end = float(run.data["time"][-1])
     last = run.sample(np.linspace(0.9 * end, end, 100))["amplitude"].to_numpy()
     return np.abs(last / float(found.amplitude[branch]) - 1.0).max()
 
 
-@pytest.mark.parametrize(("mu", "theta"), [(0.03, 3.0), (0.05, 3.0), (0.05, 4.6)])
-def test_runs_stay_at_stable_slip_and_leave_the_unstable_one(hard, mu, theta):
-    found = slipping_rolling(theta, HARD, mu=mu, c=C, eta=ETA, zeta=1.0)
-    assert hard["steady_rolling"].sel(friction_coefficient=mu, angular_frequency=theta) == RollingRegime.WITH_SLIP
+@pytest.mark.parametrize(("mu", "nu"), [(0.03, 3.0), (0.05, 3.0), (0.05, 4.6)])
+def test_runs_stay_at_stable_slip_and_leave_the_unstable_one(hard, mu, nu):
+    found = slipping_rolling(nu, HARD, mu=mu, c=C, eta=ETA, zeta=1.0)
+    assert hard["steady_rolling"].sel(friction_coefficient=mu, angular_frequency=nu) == RollingRegime.WITH_SLIP
     saddle, node = 0, 1
-    assert departure(1.0, mu, HARD, theta, found, node) < NEAR
-    assert departure(1.0, mu, HARD, theta, found, saddle) > FAR
+    assert departure(1.0, mu, HARD, nu, found, node) < NEAR
+    assert departure(1.0, mu, HARD, nu, found, saddle) > FAR
 
 
 @pytest.mark.parametrize(("zeta", "acceleration", "mu"), [(0.1, GENTLE, 0.07), (1.0, HARD, 0.05)])
@@ -115,16 +115,16 @@ def test_runs_stay_at_rolling_without_slip_as_far_as_its_border(zeta, accelerati
     edge = slips_to if acceleration == HARD else found["rolling_to"].item()
     outwards = -1.0 if acceleration == HARD else 1.0  # in which sense friction ends it
     for side in (-1.0, 1.0):
-        theta = edge * (1.0 + 0.03 * side * outwards)
-        steady = full_rolling(theta, acceleration, c=C, eta=ETA, zeta=zeta)
+        nu = edge * (1.0 + 0.03 * side * outwards)
+        steady = full_rolling(nu, acceleration, c=C, eta=ETA, zeta=zeta)
         branch = int(steady.exists.sum()) - 1
-        left = departure(zeta, mu, acceleration, theta, steady, branch)
+        left = departure(zeta, mu, acceleration, nu, steady, branch)
         if side < 0.0:
             assert left < NEAR
         elif acceleration == GENTLE:
             assert left > FAR
         else:  # it comes to roll with slip, beside
-            slipping = slipping_rolling(theta, HARD, mu=mu, c=C, eta=ETA, zeta=zeta)
+            slipping = slipping_rolling(nu, HARD, mu=mu, c=C, eta=ETA, zeta=zeta)
             beside = slipping.amplitude[-1] / steady.amplitude[branch] - 1.0
             assert left == pytest.approx(abs(beside), rel=0.01)
 

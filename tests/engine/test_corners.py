@@ -18,7 +18,7 @@ C = 0.1
 MODEL = sb.Slender(sb.Column.dimensionless(C), damping=0.1)
 
 
-# Time at which the tilt reaches 0.19 rad, for circular motion with θ = 2 that exceeds c by these parts: from an
+# Time at which the tilt reaches 0.19 rad, for circular motion with ν = 2 that exceeds c by these parts: from an
 # integration of (1) by Radau and by DOP853 at two tolerances each, which agree to 1e-10.
 @pytest.mark.parametrize(("excess", "expected"), [(1e-6, 10.4158), pytest.param(1e-7, 11.469, marks=pytest.mark.slow)])
 def test_a_marginal_release_overturns_at_the_right_time(excess, expected):
@@ -49,9 +49,9 @@ def test_a_short_ramp_costs_no_more_than_none():
     assert steps[1] < 1.2 * steps[0] + 20
 
 
-@pytest.mark.parametrize("theta", [10.0, 40.0])
-def test_fast_rolling_is_never_taken_for_rest(theta):
-    motion = sb.Harmonic.circular(acceleration=0.5 * C, angular_frequency=theta)
+@pytest.mark.parametrize("nu", [10.0, 40.0])
+def test_fast_rolling_is_never_taken_for_rest(nu):
+    motion = sb.Harmonic.circular(acceleration=0.5 * C, angular_frequency=nu)
     run = sb.simulate(MODEL, motion, **sb.studies.steady_start(MODEL, motion), duration=25 * motion.period)
     assert run.outcome is sb.Outcome.ROLLING
 

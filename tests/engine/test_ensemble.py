@@ -22,24 +22,24 @@ def names(runs):
     return [sb.Outcome(code).name for code in runs["outcome"].to_numpy()]
 
 
-def rolling(theta):
-    steady = sb.theory.steady_rolling(theta, 0.065, c=C, eta=ETA).upper
+def rolling(nu):
+    steady = sb.theory.steady_rolling(nu, 0.065, c=C, eta=ETA).upper
     cos, sin = np.cos(steady.phase), np.sin(steady.phase)
     tilt = steady.amplitude[:, np.newaxis] * np.stack([cos, sin], axis=1)
-    rate = (steady.amplitude * theta)[:, np.newaxis] * np.stack([-sin, cos], axis=1)
+    rate = (steady.amplitude * nu)[:, np.newaxis] * np.stack([-sin, cos], axis=1)
     return tilt, rate, steady
 
 
 def test_steady_rolling_ends_where_it_began_and_is_told_as_theory_has_it():
-    theta = np.linspace(3.0, 6.0, 60)
-    tilt, rate, steady = rolling(theta)
+    nu = np.linspace(3.0, 6.0, 60)
+    tilt, rate, steady = rolling(nu)
     runs = sb.simulate_ensemble(
         MODEL,
         CIRCLE,
         tilt=tilt,
         tilt_rate=rate,
-        duration=100 * 2.0 * math.pi / theta,
-        parameters={"angular_frequency": theta},
+        duration=100 * 2.0 * math.pi / nu,
+        parameters={"angular_frequency": nu},
         strobes=3,
     )
     # Some thousand steps, each with an error of 1e-8 times the tilt, add up to no more than 1e-7 of it.
@@ -48,7 +48,7 @@ def test_steady_rolling_ends_where_it_began_and_is_told_as_theory_has_it():
     assert set(names(runs)) == {"ROLLING"}
     np.testing.assert_allclose(runs["mean_tilt"], steady.amplitude, rtol=1e-7)
     np.testing.assert_allclose(runs["phase"], steady.phase, atol=1e-6)
-    np.testing.assert_allclose(runs["mean_rolling_rate"], theta, rtol=1e-8)
+    np.testing.assert_allclose(runs["mean_rolling_rate"], nu, rtol=1e-8)
     np.testing.assert_allclose(runs["turns"], 100.0, atol=1e-6)
 
 
@@ -153,11 +153,9 @@ def test_an_acceleration_of_just_the_limit_leaves_the_column_standing():
 
 
 def test_dimensions_are_broadcast_by_name():
-    theta = xr.DataArray([2.0, 3.0, 4.0], dims="angular_frequency")
+    nu = xr.DataArray([2.0, 3.0, 4.0], dims="angular_frequency")
     size = xr.DataArray([0.05, 0.2], dims="acceleration")
-    runs = sb.simulate_ensemble(
-        MODEL, LINE, duration=10.0, parameters={"angular_frequency": theta, "acceleration": size}
-    )
+    runs = sb.simulate_ensemble(MODEL, LINE, duration=10.0, parameters={"angular_frequency": nu, "acceleration": size})
     assert runs["outcome"].dims == ("angular_frequency", "acceleration")
     assert runs["end_tilt"].shape == (3, 2, 2)
     with pytest.raises(ParameterError, match="must have 3 values along run"):

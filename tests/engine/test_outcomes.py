@@ -15,39 +15,39 @@ def model(damping=ETA):
     return sb.Slender(sb.Column.dimensionless(C), damping=damping)
 
 
-def upper_state(theta, a0, sense=1.0):
+def upper_state(nu, a0, sense=1.0):
     """Return A, tilt and rate of steady rolling on the upper branch (8), written out here once more."""
-    weight = 1.0 + theta**2
-    root = math.sqrt(a0**2 * weight**2 + ETA**2 * theta**2 * (a0**2 - C**2))
-    amplitude = (C * weight + root) / (weight**2 + ETA**2 * theta**2)
-    psi = math.atan2(ETA * theta * amplitude, amplitude * weight - C)
+    weight = 1.0 + nu**2
+    root = math.sqrt(a0**2 * weight**2 + ETA**2 * nu**2 * (a0**2 - C**2))
+    amplitude = (C * weight + root) / (weight**2 + ETA**2 * nu**2)
+    psi = math.atan2(ETA * nu * amplitude, amplitude * weight - C)
     lean = np.array([math.cos(psi), sense * math.sin(psi)])
-    return amplitude, amplitude * lean, amplitude * theta * np.array([-sense * lean[1], sense * lean[0]])
+    return amplitude, amplitude * lean, amplitude * nu * np.array([-sense * lean[1], sense * lean[0]])
 
 
-def roll(theta, a0, periods, off=1.0, sense=1, **options):
-    amplitude, tilt, rate = upper_state(theta, a0, sense)
-    motion = sb.Harmonic.circular(acceleration=a0, angular_frequency=theta, sense=sense)
-    duration = periods * 2.0 * math.pi / theta
+def roll(nu, a0, periods, off=1.0, sense=1, **options):
+    amplitude, tilt, rate = upper_state(nu, a0, sense)
+    motion = sb.Harmonic.circular(acceleration=a0, angular_frequency=nu, sense=sense)
+    duration = periods * 2.0 * math.pi / nu
     run = sb.simulate(model(), motion, tilt=off * tilt, tilt_rate=rate, duration=duration, **options)
     return amplitude, run
 
 
-@pytest.mark.parametrize(("theta", "a0"), [(1.5, 0.065), (3.0, 0.065), (1.2, 0.02)])
-def test_steady_rolling_stays_for_fifty_periods(theta, a0):
-    amplitude, run = roll(theta, a0, 50, rtol=1e-12)
+@pytest.mark.parametrize(("nu", "a0"), [(1.5, 0.065), (3.0, 0.065), (1.2, 0.02)])
+def test_steady_rolling_stays_for_fifty_periods(nu, a0):
+    amplitude, run = roll(nu, a0, 50, rtol=1e-12)
     assert run.outcome is sb.Outcome.ROLLING
     np.testing.assert_allclose(run.data.amplitude, amplitude, rtol=0.0, atol=1e-10)
-    np.testing.assert_allclose(run.data.rolling_rate, theta, rtol=1e-8)
+    np.testing.assert_allclose(run.data.rolling_rate, nu, rtol=1e-8)
     assert run.measures["turns"] == pytest.approx(50.0, abs=1e-8)
 
 
-def jacobian(theta, amplitude, psi, a0):
+def jacobian(nu, amplitude, psi, a0):
     sin, cos = a0 * math.sin(psi), a0 * math.cos(psi)
     return np.array(
         [
-            [-ETA, 2.0 * theta * amplitude, 1.0 + theta**2, sin],
-            [-2.0 * theta / amplitude, -ETA, -sin / amplitude**2, cos / amplitude],
+            [-ETA, 2.0 * nu * amplitude, 1.0 + nu**2, sin],
+            [-2.0 * nu / amplitude, -ETA, -sin / amplitude**2, cos / amplitude],
             [1.0, 0.0, 0.0, 0.0],
             [0.0, 1.0, 0.0, 0.0],
         ]
@@ -55,15 +55,15 @@ def jacobian(theta, amplitude, psi, a0):
 
 
 def test_unstable_rolling_is_left_at_the_rate_of_its_eigenvalue():
-    theta, a0 = 0.9, 0.02
-    amplitude, tilt, _ = upper_state(theta, a0)
+    nu, a0 = 0.9, 0.02
+    amplitude, tilt, _ = upper_state(nu, a0)
     psi = math.atan2(tilt[1], tilt[0])
-    values, vectors = np.linalg.eig(jacobian(theta, amplitude, psi, a0))
+    values, vectors = np.linalg.eig(jacobian(nu, amplitude, psi, a0))
     eigenvalue, vector = values[np.argmax(values.real)], vectors[:, np.argmax(values.real)]
     seed = 1e-8 * np.real(vector / abs(vector[2])) * amplitude
-    mu, omega, a, angle = np.array([0.0, theta, amplitude, psi]) + seed
+    mu, omega, a, angle = np.array([0.0, nu, amplitude, psi]) + seed
     along, across = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
-    motion = sb.Harmonic.circular(acceleration=a0, angular_frequency=theta)
+    motion = sb.Harmonic.circular(acceleration=a0, angular_frequency=nu)
     # Until the deviation is 1e-4 of A: second-order terms are a thousandth of it.
     duration = math.log(1e4) / eigenvalue.real
     run = sb.simulate(
@@ -115,34 +115,34 @@ def test_modulated_rolling_lives_below_the_critical_frequency(periods, sense):
     assert run.measures["turns"] / periods == pytest.approx(sense, abs=0.01)
 
 
-def planar_orbit(a1, theta):
+def planar_orbit(a1, nu):
     """Return the rate at the crossing, and the phase there, of the symmetric orbit α̈ = α − c sgn α − ηα̇ − a1 cos."""
-    # Half a period s = π/θ from α = 0 to α = 0 with the rate reversed; unknown: rate and phase.
+    # Half a period s = π/ν from α = 0 to α = 0 with the rate reversed; unknown: rate and phase.
     root = math.sqrt(1.0 + ETA**2 / 4.0)
     roots = -ETA / 2.0 + root, -ETA / 2.0 - root
-    half = math.pi / theta
+    half = math.pi / nu
     e, f = (math.exp(r * half) for r in roots)
     # α = c + p e^{r1 t} + q e^{r2 t} + w(t), w antiperiodic over the half period. α(0) = α(half) = 0 and
     # α̇(half) = −α̇(0) give p(1 + e) + q(1 + f) = −2c and r1 p(1 + e) + r2 q(1 + f) = 0.
     p = 2.0 * C * roots[1] / ((roots[0] - roots[1]) * (1.0 + e))
     q = -2.0 * C * roots[0] / ((roots[0] - roots[1]) * (1.0 + f))
-    gain = a1 / abs(1.0 + theta**2 - 1j * ETA * theta)
+    gain = a1 / abs(1.0 + nu**2 - 1j * ETA * nu)
     wave = -C - p - q  # = gain cos χ
     chi = math.acos(wave / gain)
     candidates = []
     for angle in (chi, -chi):
-        rate = roots[0] * p + roots[1] * q - gain * theta * math.sin(angle)
-        candidates.append((rate, angle - np.angle(1.0 / (1.0 + theta**2 - 1j * ETA * theta))))
+        rate = roots[0] * p + roots[1] * q - gain * nu * math.sin(angle)
+        candidates.append((rate, angle - np.angle(1.0 / (1.0 + nu**2 - 1j * ETA * nu))))
     return max(candidates)
 
 
 def test_a_periodic_orbit_in_a_plane_is_rocking():
-    a1, theta = 0.13, 3.0
-    rate, phase = planar_orbit(a1, theta)
+    a1, nu = 0.13, 3.0
+    rate, phase = planar_orbit(a1, nu)
     line = np.array([math.cos(0.3), math.sin(0.3)])
-    motion = sb.Harmonic.straight(acceleration=a1, angular_frequency=theta, direction=0.3, start_phase=phase)
+    motion = sb.Harmonic.straight(acceleration=a1, angular_frequency=nu, direction=0.3, start_phase=phase)
     run = sb.simulate(
-        model(), motion, tilt=(0.0, 0.0), tilt_rate=rate * line, duration=12.0 * 2.0 * math.pi / theta, rtol=1e-10
+        model(), motion, tilt=(0.0, 0.0), tilt_rate=rate * line, duration=12.0 * 2.0 * math.pi / nu, rtol=1e-10
     )
     assert rate > 0.0
     assert run.planar
@@ -215,13 +215,13 @@ def test_rules_are_arguments_and_are_reported():
     assert strict.thresholds["repeat_tolerance"] == 1e-12
 
 
-@pytest.mark.parametrize("theta", [1.7, 3.0, 11.3])
-def test_a_run_that_is_too_short_says_for_how_long_it_is_to_be_followed(theta):
-    _, short = roll(theta, 0.065, 5)
+@pytest.mark.parametrize("nu", [1.7, 3.0, 11.3])
+def test_a_run_that_is_too_short_says_for_how_long_it_is_to_be_followed(nu):
+    _, short = roll(nu, 0.065, 5)
     assert "shorter than the 11 periods" in short.reason
     asked = float(re.search(r"set duration to at least (\S+) s$", short.reason)[1])
     for duration, enough in ((asked, True), (0.998 * asked, False)):
-        _, run = roll(theta, 0.065, duration * theta / (2.0 * math.pi))
+        _, run = roll(nu, 0.065, duration * nu / (2.0 * math.pi))
         assert ("is shorter than" not in run.reason) is enough
 
 

@@ -20,25 +20,25 @@ def model(damping=0.0):
 
 
 class PiecewiseLinear:
-    """α̈ = α − c s − ηα̇ − a cos(θτ + φ) with s = sgn α: solved by exponentials from crossing to crossing."""
+    """α̈ = α − c s − ηα̇ − a cos(ντ + φ) with s = sgn α: solved by exponentials from crossing to crossing."""
 
-    def __init__(self, a, theta, phi, eta):
-        self.eta, self.theta = eta, theta
-        # α = Re(B e^{iθτ}): −θ²B + iηθB − B = −a e^{iφ}
-        self.wave = a * cmath.exp(1j * phi) / (1.0 + theta**2 - 1j * eta * theta)
+    def __init__(self, a, nu, phi, eta):
+        self.eta, self.nu = eta, nu
+        # α = Re(B e^{iντ}): −ν²B + iηνB − B = −a e^{iφ}
+        self.wave = a * cmath.exp(1j * phi) / (1.0 + nu**2 - 1j * eta * nu)
         root = math.sqrt(1.0 + eta**2 / 4.0)
         self.roots = -eta / 2.0 + root, -eta / 2.0 - root
 
     def stretch(self, start, tilt, rate, side):
-        turning = self.wave * cmath.exp(1j * self.theta * start)
-        x, v = tilt - C * side - turning.real, rate - (1j * self.theta * turning).real
+        turning = self.wave * cmath.exp(1j * self.nu * start)
+        x, v = tilt - C * side - turning.real, rate - (1j * self.nu * turning).real
         grow, fall = self.roots
         p, q = (v - fall * x) / (grow - fall), (grow * x - v) / (grow - fall)
 
         def at(tau):
             e, f = p * np.exp(grow * (tau - start)), q * np.exp(fall * (tau - start))
-            wave = self.wave * np.exp(1j * self.theta * tau)
-            return C * side + e + f + wave.real, grow * e + fall * f + (1j * self.theta * wave).real
+            wave = self.wave * np.exp(1j * self.nu * tau)
+            return C * side + e + f + wave.real, grow * e + fall * f + (1j * self.nu * wave).real
 
         return at
 
@@ -128,13 +128,13 @@ def test_a_start_off_the_line_of_the_motion_is_not_planar():
     tilt=st.floats(-0.6, 0.6),
     rate=st.floats(-0.5, 0.5),
     a=st.floats(0.0, 3.0),
-    theta=st.floats(0.2, 6.0),
+    nu=st.floats(0.2, 6.0),
     phi=st.floats(0.0, 6.0),
     eta=st.sampled_from([0.0, 0.1, 1.0]),
 )
-def test_forced_motion_in_a_plane_is_piecewise_linear(tilt, rate, a, theta, phi, eta):
+def test_forced_motion_in_a_plane_is_piecewise_linear(tilt, rate, a, nu, phi, eta):
     tilt, rate = C * (tilt + math.copysign(0.01, tilt)), C * rate
-    motion = sb.Harmonic.straight(acceleration=C * a, angular_frequency=theta, direction=0.3, start_phase=phi)
+    motion = sb.Harmonic.straight(acceleration=C * a, angular_frequency=nu, direction=0.3, start_phase=phi)
     line = np.array([math.cos(0.3), math.sin(0.3)])
     run = sb.simulate(
         model(eta),
@@ -146,7 +146,7 @@ def test_forced_motion_in_a_plane_is_piecewise_linear(tilt, rate, a, theta, phi,
         rest_energy=0.0,
         samples=301,
     )
-    exact, crossings = PiecewiseLinear(C * a, theta, phi, eta).at(run.data.time.to_numpy(), tilt, rate)
+    exact, crossings = PiecewiseLinear(C * a, nu, phi, eta).at(run.data.time.to_numpy(), tilt, rate)
     if crossings > 40:  # swings of no size: nothing to compare
         return
     # The tolerance 1e-11 times a growth of at most e⁶ = 400, and ten more for the crossings at low speed.
@@ -164,13 +164,13 @@ def test_a_swing_over_the_upright_and_back_within_one_step_is_not_missed():
 
 
 def test_straight_release_follows_the_closed_form():
-    theta, a1, phi = 1.7, 0.14, -1.2
-    motion = sb.Harmonic.straight(acceleration=a1, angular_frequency=theta, start_phase=phi)
+    nu, a1, phi = 1.7, 0.14, -1.2
+    motion = sb.Harmonic.straight(acceleration=a1, angular_frequency=nu, start_phase=phi)
     run = sb.simulate(model(0.1), motion, duration=3.0, rtol=1e-11)
     release = run.events[0].time
-    assert release == pytest.approx((-phi - math.acos(C / a1)) / theta, abs=1e-10)
+    assert release == pytest.approx((-phi - math.acos(C / a1)) / nu, abs=1e-10)
     time = run.data.time.to_numpy()
     moving = time > release + 1e-2
-    exact, _ = PiecewiseLinear(a1, theta, phi + theta * release, 0.1).at(time[moving] - release, 0.0, -1e-300)
-    # What the departure series neglects, of the fourth order in 1e-3/(1 + θ), and the tolerance.
+    exact, _ = PiecewiseLinear(a1, nu, phi + nu * release, 0.1).at(time[moving] - release, 0.0, -1e-300)
+    # What the departure series neglects, of the fourth order in 1e-3/(1 + ν), and the tolerance.
     np.testing.assert_allclose(run.data.tilt.to_numpy()[moving, 0], exact[0], rtol=0.0, atol=1e-9 * C)

@@ -188,14 +188,14 @@ def test_rest_is_followed_by_release_when_the_base_begins_to_move():
     assert bool(run.sample(0.5 * (rest.time + release.time)).resting[0])
 
 
-@pytest.mark.parametrize(("theta", "a0"), [(5.0, 0.05), (20.0, 0.05), (20.0, 0.02), (60.0, 0.09)])
-def test_steady_rolling_is_never_taken_for_rest(theta, a0):
-    upper = sb.theory.steady_rolling(theta, a0, c=C, eta=0.1).upper
+@pytest.mark.parametrize(("nu", "a0"), [(5.0, 0.05), (20.0, 0.05), (20.0, 0.02), (60.0, 0.09)])
+def test_steady_rolling_is_never_taken_for_rest(nu, a0):
+    upper = sb.theory.steady_rolling(nu, a0, c=C, eta=0.1).upper
     amplitude, phase = float(upper.amplitude), float(upper.phase)
-    motion = sb.Harmonic.circular(acceleration=a0, angular_frequency=theta)
+    motion = sb.Harmonic.circular(acceleration=a0, angular_frequency=nu)
     lean = amplitude * np.array([math.cos(phase), math.sin(phase)])
-    along = amplitude * theta * np.array([-math.sin(phase), math.cos(phase)])
-    run = sb.simulate(model(0.1), motion, tilt=lean, tilt_rate=along, duration=12.0 * 2.0 * math.pi / theta)
+    along = amplitude * nu * np.array([-math.sin(phase), math.cos(phase)])
+    run = sb.simulate(model(0.1), motion, tilt=lean, tilt_rate=along, duration=12.0 * 2.0 * math.pi / nu)
     assert run.outcome is sb.Outcome.ROLLING
     assert not run.data.resting.any()
 

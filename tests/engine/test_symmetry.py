@@ -68,10 +68,10 @@ def test_reflection_swaps_the_two_senses():
 )
 def test_a_real_column_gives_the_dimensionless_answer(column):
     scale, g = column.frequency_scale, column.gravity
-    theta, a0, duration = 2.3, 0.07, 25.0
+    nu, a0, duration = 2.3, 0.07, 25.0
     real = sb.simulate(
         sb.Slender(column, damping=0.1),
-        sb.Harmonic.circular(acceleration=a0 * g, angular_frequency=theta * scale, ramp=3.0 / scale),
+        sb.Harmonic.circular(acceleration=a0 * g, angular_frequency=nu * scale, ramp=3.0 / scale),
         tilt=START[0],
         tilt_rate=START[1] * scale,
         duration=duration / scale,
@@ -80,7 +80,7 @@ def test_a_real_column_gives_the_dimensionless_answer(column):
     )
     paper = sb.simulate(
         sb.Slender(sb.Column.dimensionless(column.slenderness), damping=0.1),
-        sb.Harmonic.circular(acceleration=a0, angular_frequency=theta, ramp=3.0),
+        sb.Harmonic.circular(acceleration=a0, angular_frequency=nu, ramp=3.0),
         tilt=START[0],
         tilt_rate=START[1],
         duration=duration,

@@ -14,7 +14,7 @@ from stylobate.models.inheritance import closed_form_of
 from stylobate.orbits.steady import rolling_form_of, steady_rolling_of
 
 COLUMN = sb.Column.dimensionless(slenderness=0.2)
-THETA, A0, ETA, ZETA = 1.8, 0.13, 0.1, 0.3
+NU, A0, ETA, ZETA = 1.8, 0.13, 0.1, 0.3
 ROLLING = [
     (sb.Slender(COLUMN, damping=ETA), RollingLaw.SLENDER),
     (sb.SlenderRolling(COLUMN, damping=ETA, spin_damping=ZETA), RollingLaw.FREE_TWIST),
@@ -29,15 +29,15 @@ def test_the_closed_form_solves_the_equations_of_the_model(model, law):
     form = rolling_form_of(model)
     assert form.law is law
     assert callable(getattr(sb.theory, law.value))
-    tilt, phase, spin = steady_rolling_of(form, COLUMN, THETA, A0)
+    tilt, phase, spin = steady_rolling_of(form, COLUMN, NU, A0)
     x, y = tilt * math.cos(phase), tilt * math.sin(phase)
     state = np.array(model.start((x, y), (0.0, 0.0)))
-    state[2:4] = -THETA * y, THETA * x
+    state[2:4] = -NU * y, NU * x
     if model.spin_state is not None:
         state[model.spin_state] = spin
     found = model.rates(*state, A0, 0.0, 0.0, *model.parameters)
-    # Steady rolling turns with the base: its acceleration is −θ² times the tilt, and the spin stays.
-    np.testing.assert_allclose(found[2:4], (-(THETA**2) * x, -(THETA**2) * y), rtol=0.0, atol=1e-9)
+    # Steady rolling turns with the base: its acceleration is −ν² times the tilt, and the spin stays.
+    np.testing.assert_allclose(found[2:4], (-(NU**2) * x, -(NU**2) * y), rtol=0.0, atol=1e-9)
     np.testing.assert_allclose(found[4:], 0.0, rtol=0.0, atol=1e-9)
 
 

@@ -13,9 +13,9 @@ from stylobate.models.sliding.forces_along import forces_along
 from stylobate.models.sliding.phases import State
 from stylobate.models.sliding.posture import forces
 
-C, ETA, A0, THETA = 0.1, 0.1, 0.065, 3.0
+C, ETA, A0, NU = 0.1, 0.1, 0.065, 3.0
 COLUMN = sb.Column.dimensionless(C)
-CIRCLE = sb.Harmonic.circular(acceleration=A0, angular_frequency=THETA)
+CIRCLE = sb.Harmonic.circular(acceleration=A0, angular_frequency=NU)
 
 
 def rolling(model, branch, spin=None):
@@ -23,31 +23,31 @@ def rolling(model, branch, spin=None):
     size, psi = float(branch.amplitude), float(branch.phase)
     lean = size * np.array([math.cos(psi), math.sin(psi)])
     run = sb.simulate(
-        model, CIRCLE, tilt=lean, tilt_rate=(-THETA * lean[1], THETA * lean[0]), duration=320.0 * CIRCLE.period
+        model, CIRCLE, tilt=lean, tilt_rate=(-NU * lean[1], NU * lean[0]), duration=320.0 * CIRCLE.period
     )  # fmt: skip
     return run.data.isel(time=slice(-50, None))
 
 
 def needed(branch, spin=0.0):
-    """|a_h + κ(α̈ + cσθ û)| on steady rolling, on which the footprint circles with the velocity −cσ n, and ηθA."""
+    """|a_h + κ(α̈ + cσν û)| on steady rolling, on which the footprint circles with the velocity −cσ n, and ηνA."""
     size, psi = float(branch.amplitude), float(branch.phase)
-    friction = abs(A0 - 0.75 * THETA * (THETA * size - C * spin) * np.exp(1j * psi))
-    return friction, ETA * THETA * size
+    friction = abs(A0 - 0.75 * NU * (NU * size - C * spin) * np.exp(1j * psi))
+    return friction, ETA * NU * size
 
 
 def test_steady_rolling_that_cannot_turn_needs_what_theory_says():
-    branch = sb.theory.steady_rolling(THETA, A0, c=C, eta=ETA).upper
+    branch = sb.theory.steady_rolling(NU, A0, c=C, eta=ETA).upper
     found = rolling(sb.Slender(COLUMN, damping=ETA), branch)
     friction, moment = needed(branch)
-    # The share (1 − κ) of a_n, and of the friction couple its reaction κ: together a_n = ηθA.
+    # The share (1 − κ) of a_n, and of the friction couple its reaction κ: together a_n = ηνA.
     np.testing.assert_allclose(found["friction_demand"], friction, rtol=1e-6)
     np.testing.assert_allclose(found["pivoting_demand"], moment, rtol=1e-6)
-    free = sb.theory.free_twist_rolling(THETA, A0, c=C, eta=ETA, zeta=math.inf)
+    free = sb.theory.free_twist_rolling(NU, A0, c=C, eta=ETA, zeta=math.inf)
     assert float(free.friction_moment) == pytest.approx(moment, rel=1e-12)
 
 
 def test_with_a_free_twist_the_spin_damping_gives_the_moment():
-    branch = sb.theory.free_twist_rolling(THETA, A0, c=C, eta=ETA, zeta=0.1)
+    branch = sb.theory.free_twist_rolling(NU, A0, c=C, eta=ETA, zeta=0.1)
     found = rolling(sb.SlenderRolling(COLUMN, damping=ETA, spin_damping=0.1), branch)
     friction, _ = needed(branch, float(branch.spin))
     np.testing.assert_allclose(found["friction_demand"], friction, rtol=1e-4)

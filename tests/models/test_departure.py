@@ -78,17 +78,17 @@ def test_without_excess_a_column_stays(name):
 def test_a_column_shaken_off_its_base_does_not_depend_on_how_it_departs(name, sense):
     # The same run begun by the equations at a tilt of 1e-9: what the departure does is lost in its motion.
     model = MODELS[name]
-    excess, theta, duration = 0.02, 2.0, 2.0
+    excess, nu, duration = 0.02, 2.0, 2.0
     motion = sb.Harmonic.circular(
-        acceleration=(C + excess) * COLUMN.gravity, angular_frequency=theta * COLUMN.frequency_scale, sense=sense
+        acceleration=(C + excess) * COLUMN.gravity, angular_frequency=nu * COLUMN.frequency_scale, sense=sense
     )
     run = sb.simulate(model, motion, duration=duration / COLUMN.frequency_scale, rtol=1e-11, samples=2)
     early = 1e-6
-    push = Push((-1.0, 0.0), C + excess, excess, 0.0, sense * theta)
+    push = Push((-1.0, 0.0), C + excess, excess, 0.0, sense * nu)
     begun = model.departure(push, early, *model.parameters)
     by_hand = solve_ivp(
         lambda tau, y: model.rates(
-            *y, (C + excess) * math.cos(theta * tau), sense * (C + excess) * math.sin(theta * tau), 0.0,
+            *y, (C + excess) * math.cos(nu * tau), sense * (C + excess) * math.sin(nu * tau), 0.0,
             *model.parameters,
         ),
         (early, duration), begun, "DOP853", rtol=1e-12, atol=1e-22,

@@ -137,15 +137,15 @@ def test_a_passage_in_closed_form_is_the_one_integrated(spin):
 
 def test_departure_goes_over_into_the_motion_integrated():
     model = sb.SlenderRolling(COLUMN, damping=0.1, spin_damping=0.2)
-    theta, a0 = 2.0, 0.13
-    # Released while a circular motion grows: a_h = a0 (1 + 0.1 τ)(cos θτ, sin θτ), beyond c already by 0.03.
-    push = Push((-1.0, 0.0), a0, a0 - C, 0.1 * a0, theta)
+    nu, a0 = 2.0, 0.13
+    # Released while a circular motion grows: a_h = a0 (1 + 0.1 τ)(cos ντ, sin ντ), beyond c already by 0.03.
+    push = Push((-1.0, 0.0), a0, a0 - C, 0.1 * a0, nu)
     late = 1e-2
     early = 1e-4
 
     def pushed(tau):
         size = a0 * (1.0 + 0.1 * tau)
-        return size * math.cos(theta * tau), size * math.sin(theta * tau), 0.0
+        return size * math.cos(nu * tau), size * math.sin(nu * tau), 0.0
 
     begun = model.departure(push, early, *model.parameters)
     run = solve_ivp(
@@ -167,14 +167,14 @@ def test_runs_and_ensembles_agree(method):
     np.testing.assert_allclose(together["end_tilt"].squeeze(), single.data["tilt"][-1], atol=1e-7)
 
 
-def settled(theta, spin_damping):
+def settled(nu, spin_damping):
     """A run that has settled on steady rolling, and what theory knows of it."""
     model = sb.SlenderRolling(COLUMN, damping=0.1, spin_damping=spin_damping)
-    circle = sb.Harmonic.circular(acceleration=0.065, angular_frequency=theta)
-    known = sb.theory.free_twist_rolling(theta, 0.065, c=C, eta=0.1, zeta=spin_damping)
+    circle = sb.Harmonic.circular(acceleration=0.065, angular_frequency=nu)
+    known = sb.theory.free_twist_rolling(nu, 0.065, c=C, eta=0.1, zeta=spin_damping)
     size = float(known.amplitude)
     run = sb.simulate(
-        model, circle, tilt=(size, 0.0), tilt_rate=(0.0, theta * size), duration=320.0 * circle.period
+        model, circle, tilt=(size, 0.0), tilt_rate=(0.0, nu * size), duration=320.0 * circle.period
     )  # fmt: skip
     return run, known, model, circle
 

@@ -57,30 +57,30 @@ def test_normal_form_of_the_map_and_of_the_flow_agree_in_size():
     disturbance is their ratio.
     """
     for a0 in (0.02, 0.065, 0.2):
-        theta = float(sb.theory.critical_frequency(a0, c=C, eta=0.1))
-        (found,) = branch_of_circle(a0, 0.1, 0.97 * theta, 1.05 * theta).bifurcations
-        scale = _length_of_theorys_vector(a0, theta)
+        nu = float(sb.theory.critical_frequency(a0, c=C, eta=0.1))
+        (found,) = branch_of_circle(a0, 0.1, 0.97 * nu, 1.05 * nu).bifurcations
+        scale = _length_of_theorys_vector(a0, nu)
         # Kuznetsov's l1 is Re(c1)/Ω.
         crossing = float(sb.theory.crossing_frequency(a0, c=C, eta=0.1))
         coefficient = float(sb.theory.first_lyapunov_coefficient(a0, c=C, eta=0.1))
         # The family has the inversion: its map is that of half a period.
-        expected = coefficient * crossing * (math.pi / theta) / scale**2
+        expected = coefficient * crossing * (math.pi / nu) / scale**2
         # Third differences over 2e-2 of the state: errors of its fourth power by higher derivatives.
         assert found.coefficient == pytest.approx(expected, rel=1e-4)
 
 
-def _length_of_theorys_vector(a0, theta):
+def _length_of_theorys_vector(a0, nu):
     """Return the length, in states over c at t = 0, of theory's critical vector of length 1."""
-    upper = sb.theory.steady_rolling(theta, a0, c=C, eta=0.1).upper
+    upper = sb.theory.steady_rolling(nu, a0, c=C, eta=0.1).upper
     tilt, psi = float(upper.amplitude), float(upper.phase)
-    jacobian = rotating_frame_jacobian(np.array([0.0, theta, tilt / C, psi]), a0 / C, eta=0.1)
+    jacobian = rotating_frame_jacobian(np.array([0.0, nu, tilt / C, psi]), a0 / C, eta=0.1)
     values, vectors = np.linalg.eig(jacobian)
     crossing = float(sb.theory.crossing_frequency(a0, c=C, eta=0.1))
     mu, omega, height, phase = vectors[:, np.argmin(np.abs(values - 1j * crossing))]
     turned = np.exp(1j * psi)
     # z = A e^{iβ}, ż = (μ + iAω) e^{iβ}: changes of their real and imaginary parts, by complex amplitudes.
     radial, around = height, tilt / C * phase
-    along, across = mu - tilt / C * theta * phase, height * theta + tilt / C * omega
+    along, across = mu - tilt / C * nu * phase, height * nu + tilt / C * omega
     pairs = [(radial, around), (along, across)]
     state = [f for r, t in pairs for f in (r * turned.real - t * turned.imag, r * turned.imag + t * turned.real)]
     return float(np.linalg.norm(state))
@@ -181,6 +181,6 @@ def test_a_branch_lists_its_bifurcations_in_its_data(straight_branches):
     assert list(points["bifurcation_kind"].to_numpy()) == ["pitchfork"]
     assert points["bifurcation_parameter"].to_numpy() == pytest.approx([found.parameter], rel=1e-15)
     assert list(points["bifurcation_soft"].to_numpy()) == [1]
-    theta = points["angular_frequency"].to_numpy()
-    away = np.abs(theta - found.parameter) > 1e-8
-    np.testing.assert_array_equal(points["stable"].to_numpy()[away], (theta > found.parameter)[away])
+    nu = points["angular_frequency"].to_numpy()
+    away = np.abs(nu - found.parameter) > 1e-8
+    np.testing.assert_array_equal(points["stable"].to_numpy()[away], (nu > found.parameter)[away])

@@ -17,35 +17,35 @@ def slender(eta=0.1):
     return sb.Slender(sb.Column.dimensionless(C), damping=eta)
 
 
-def circular_orbit(theta=2.0, a0=0.065, eta=0.1):
-    return periodic_orbit(slender(eta), sb.Harmonic.circular(acceleration=a0, angular_frequency=theta))
+def circular_orbit(nu=2.0, a0=0.065, eta=0.1):
+    return periodic_orbit(slender(eta), sb.Harmonic.circular(acceleration=a0, angular_frequency=nu))
 
 
 def test_every_point_of_a_branch_of_circular_motion_is_steady_rolling():
     branch = continue_branch(circular_orbit(), "angular_frequency", bounds=(1.2, 2.5))
     points = branch.points
-    theta = points["angular_frequency"].to_numpy()
-    rolling = sb.theory.steady_rolling(theta, 0.065, c=C, eta=0.1).upper
+    nu = points["angular_frequency"].to_numpy()
+    rolling = sb.theory.steady_rolling(nu, 0.065, c=C, eta=0.1).upper
     np.testing.assert_allclose(points["mean_tilt"], rolling.amplitude, rtol=0.0, atol=1e-11)
     # On the point of bifurcation itself, where it is among them, nothing is decided.
-    away = np.abs(theta - sb.theory.critical_frequency(0.065, c=C, eta=0.1)) > 1e-8
+    away = np.abs(nu - sb.theory.critical_frequency(0.065, c=C, eta=0.1)) > 1e-8
     np.testing.assert_array_equal(points["stable"][away], rolling.stable[away])
-    expected = np.exp(2.0 * math.pi / theta[:, np.newaxis] * rolling.eigenvalues)
+    expected = np.exp(2.0 * math.pi / nu[:, np.newaxis] * rolling.eigenvalues)
     found = points["multiplier"].to_numpy() @ np.array([1.0, 1j])
     np.testing.assert_allclose(np.sort(np.abs(found), axis=1), np.sort(np.abs(expected), axis=1), rtol=0.0, atol=1e-8)
-    assert (theta[0], theta[-1]) == pytest.approx((1.2, 2.5), rel=1e-12)
-    assert np.all(np.diff(theta) > 0.0)
+    assert (nu[0], nu[-1]) == pytest.approx((1.2, 2.5), rel=1e-12)
+    assert np.all(np.diff(nu) > 0.0)
     assert branch.ends == (End.BOUND, End.BOUND)
 
 
-@pytest.mark.parametrize(("side", "theta", "bounds"), [(1, 3.2, (2.0, 3.4)), (0, 0.3, (0.25, 1.4))])
-def test_a_branch_goes_round_its_fold_to_the_lower_branch(side, theta, bounds):
-    """Folds of circular motion: a0²(1 + θ²)² = η²θ²(c² − a0²), where A = c(1 + θ²)/D."""
+@pytest.mark.parametrize(("side", "nu", "bounds"), [(1, 3.2, (2.0, 3.4)), (0, 0.3, (0.25, 1.4))])
+def test_a_branch_goes_round_its_fold_to_the_lower_branch(side, nu, bounds):
+    """Folds of circular motion: a0²(1 + ν²)² = η²ν²(c² − a0²), where A = c(1 + ν²)/D."""
     a0, eta = 0.01, 0.3
-    branch = continue_branch(circular_orbit(theta, a0, eta), "angular_frequency", bounds=bounds)
+    branch = continue_branch(circular_orbit(nu, a0, eta), "angular_frequency", bounds=bounds)
     (fold,) = (one for one in branch.bifurcations if one.kind is Kind.FOLD)
     at = fold.parameter
-    # The closed form, solved for θ.
+    # The closed form, solved for ν.
     ratio = eta * math.sqrt(C**2 - a0**2) / a0
     expected = 0.5 * (ratio + (1 if side else -1) * math.sqrt(ratio**2 - 4.0))
     assert at == pytest.approx(expected, abs=1e-8)
@@ -55,9 +55,9 @@ def test_a_branch_goes_round_its_fold_to_the_lower_branch(side, theta, bounds):
     assert fold.orbit.mean_tilt == pytest.approx(C * (1.0 + at**2) / d, rel=1e-6)
     assert abs(fold.multiplier - 1.0) < 1e-5
     assert fold.soft is None
-    rolling = sb.theory.steady_rolling(theta, a0, c=C, eta=eta)
-    tilts = sorted(orbit.mean_tilt for orbit in branch.orbits_at(theta * 1.01 if side else theta * 0.99))
-    rolling = sb.theory.steady_rolling(theta * 1.01 if side else theta * 0.99, a0, c=C, eta=eta)
+    rolling = sb.theory.steady_rolling(nu, a0, c=C, eta=eta)
+    tilts = sorted(orbit.mean_tilt for orbit in branch.orbits_at(nu * 1.01 if side else nu * 0.99))
+    rolling = sb.theory.steady_rolling(nu * 1.01 if side else nu * 0.99, a0, c=C, eta=eta)
     assert tilts == pytest.approx([float(rolling.lower.amplitude), float(rolling.upper.amplitude)], abs=1e-11)
 
 
@@ -87,10 +87,10 @@ def test_a_branch_does_not_depend_on_its_steps(straight_branches, largest):
         np.testing.assert_allclose(one.state, other.state, rtol=0.0, atol=1e-11)
 
 
-@pytest.mark.parametrize("theta", [2.0, 3.0])
-def test_with_the_acceleration_circular_rolling_ends_at_the_upright(theta):
+@pytest.mark.parametrize("nu", [2.0, 3.0])
+def test_with_the_acceleration_circular_rolling_ends_at_the_upright(nu):
     """On the lower arm A → 0 as a0 → c; nothing of the other arm is followed again from there."""
-    branch = continue_branch(circular_orbit(theta), "acceleration", bounds=(0.001, 0.3))
+    branch = continue_branch(circular_orbit(nu), "acceleration", bounds=(0.001, 0.3))
     assert branch.ends == (End.LOST, End.BOUND)
     points = branch.points
     a0, tilt = points["acceleration"].to_numpy(), points["mean_tilt"].to_numpy()
@@ -99,14 +99,14 @@ def test_with_the_acceleration_circular_rolling_ends_at_the_upright(theta):
     assert a0[at] == fold.parameter
     assert np.all(np.diff(a0[: at + 1]) < 0.0)
     assert np.all(np.diff(a0[at:]) > 0.0)
-    rolling = sb.theory.steady_rolling(theta, a0, c=C, eta=0.1)
+    rolling = sb.theory.steady_rolling(nu, a0, c=C, eta=0.1)
     # The tilt goes with the square root of the distance from the fold: two on either side of it are left out.
     for part, expected in ((slice(0, at - 2), rolling.lower), (slice(at + 3, None), rolling.upper)):
         np.testing.assert_allclose(tilt[part], expected.amplitude[part], rtol=0.0, atol=1e-10)
         # On the point of bifurcation itself, where it is among them, nothing is decided.
         away = ~np.isin(a0[part], [one.parameter for one in branch.bifurcations])
         np.testing.assert_array_equal(points["stable"][part][away], expected.stable[part][away])
-    # By the closed form the tilt at the end is (c − a0) / (1 + θ²) but for friction.
+    # By the closed form the tilt at the end is (c − a0) / (1 + ν²) but for friction.
     assert tilt[0] < 1e-4 * C
     assert a0[0] == pytest.approx(C, rel=1e-3)
     assert len(branch.orbits_at(0.2)) == 1
@@ -148,7 +148,7 @@ def test_followed_over_any_parameter_an_orbit_is_that_found_there(name, bounds, 
 
 @pytest.mark.parametrize("start", [0.0, 0.05])
 def test_friction_can_be_followed_down_to_none(start):
-    """Above θ* without friction (1.40 at a0 = 0.065), all multipliers come to lie on the unit circle."""
+    """Above ν* without friction (1.40 at a0 = 0.065), all multipliers come to lie on the unit circle."""
     branch = continue_branch(circular_orbit(eta=start), "damping", bounds=(0.0, 0.1))
     assert branch.path[0].value == 0.0
     (orbit,) = branch.orbits_at(0.0)

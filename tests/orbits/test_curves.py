@@ -43,9 +43,9 @@ def test_the_fold_curve_is_where_the_two_branches_of_rolling_meet():
     motion = sb.Harmonic.circular(acceleration=0.01, angular_frequency=4.0)
     fold = next(one for one in branch_of(motion, model, (1.5, 6.0)).bifurcations if one.kind is Kind.FOLD)
     curve = bifurcation_curve(fold, "acceleration", bounds=((1.5, 6.0), (0.006, 0.013)))
-    theta, a0 = np.transpose([point.values for point in curve.path])
+    nu, a0 = np.transpose([point.values for point in curve.path])
     # The discriminant of (8), relative to its terms.
-    positive, negative = a0**2 * (1.0 + theta**2) ** 2, eta**2 * theta**2 * (C**2 - a0**2)
+    positive, negative = a0**2 * (1.0 + nu**2) ** 2, eta**2 * nu**2 * (C**2 - a0**2)
     np.testing.assert_allclose(positive, negative, rtol=1e-8)
     assert np.ptp(a0) > 0.005
     np.testing.assert_array_equal(curve.points["soft"], -1)

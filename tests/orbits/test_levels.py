@@ -9,10 +9,10 @@ import stylobate as sb
 from stylobate.errors import NoOrbitError, ParameterError
 from stylobate.orbits import Kind
 
-C, A0, ETA, THETA = 0.1, 0.065, 0.1, 3.0
+C, A0, ETA, NU = 0.1, 0.065, 0.1, 3.0
 COLUMN = sb.Column.dimensionless(C)
-CIRCLE = sb.Harmonic.circular(acceleration=A0, angular_frequency=THETA)
-PERIOD = 2.0 * math.pi / THETA
+CIRCLE = sb.Harmonic.circular(acceleration=A0, angular_frequency=NU)
+PERIOD = 2.0 * math.pi / NU
 
 
 def stable_one(branches):
@@ -23,15 +23,15 @@ def stable_one(branches):
 
 def near(amplitude, phase):
     x, y = amplitude * math.cos(phase), amplitude * math.sin(phase)
-    return [x, y, -THETA * y, THETA * x]
+    return [x, y, -NU * y, NU * x]
 
 
 LEVELS = {
-    "wobbling": (sb.Wobbling(COLUMN, damping=ETA), lambda theta: sb.theory.wobbling_rolling(theta, A0, c=C, eta=ETA)),
+    "wobbling": (sb.Wobbling(COLUMN, damping=ETA), lambda nu: sb.theory.wobbling_rolling(nu, A0, c=C, eta=ETA)),
     **{
         f"rolling {zeta}": (
             sb.Rolling(COLUMN, damping=ETA, spin_damping=zeta),
-            lambda theta, zeta=zeta: sb.theory.full_rolling(theta, A0, c=C, eta=ETA, zeta=zeta),
+            lambda nu, zeta=zeta: sb.theory.full_rolling(nu, A0, c=C, eta=ETA, zeta=zeta),
         )
         for zeta in (0.1, 1.0)
     },
@@ -46,7 +46,7 @@ SLENDER = pytest.param("slender rolling", marks=pytest.mark.slow)
 @pytest.mark.parametrize("name", NAMES)
 def test_multipliers_are_exponentials_of_the_eigenvalues_at_finite_tilt(name):
     model, theory = LEVELS[name]
-    amplitude, phase, eigenvalues = stable_one(theory(THETA))
+    amplitude, phase, eigenvalues = stable_one(theory(NU))
     orbit = sb.orbits.periodic_orbit(model, CIRCLE, guess=near(amplitude, phase))
     assert orbit.mean_tilt == pytest.approx(amplitude, rel=1e-9)
     expected = np.exp(eigenvalues * PERIOD)
@@ -59,7 +59,7 @@ def test_multipliers_are_exponentials_of_the_eigenvalues_at_finite_tilt(name):
 def test_branches_keep_to_the_theory_and_lose_stability_where_it_says(name):
     # With a spin the half orbit closes by the half turn, which leaves the spin as it is.
     model, theory = LEVELS[name]
-    amplitude, phase, _ = stable_one(theory(THETA))
+    amplitude, phase, _ = stable_one(theory(NU))
     orbit = sb.orbits.periodic_orbit(model, CIRCLE, guess=near(amplitude, phase))
     branch = sb.orbits.continue_branch(orbit, "angular_frequency", bounds=(0.95, 3.5))
     frequencies = branch.points["angular_frequency"].to_numpy()
@@ -124,7 +124,7 @@ def test_the_product_of_multipliers_tells_what_impacts_and_friction_take():
 
 
 def test_orbits_that_pass_the_upright_with_loss_out_of_a_plane_are_refused():
-    amplitude, phase, _ = stable_one(LEVELS["rolling 0.1"][1](THETA))
+    amplitude, phase, _ = stable_one(LEVELS["rolling 0.1"][1](NU))
     frictions = {"damping": ETA, "spin_damping": 0.1}
     model = sb.Rolling(COLUMN, **frictions, restitution=0.9, passage_tilt=2.0 * amplitude)
     with pytest.raises(NoOrbitError, match="so near that it loses energy"):
@@ -144,12 +144,12 @@ def test_a_restitution_that_is_not_given_cannot_be_followed():
 def test_steady_rolling_of_every_level_needs_no_guess(name, sense):
     slender = sb.SlenderRolling(COLUMN, damping=ETA, spin_damping=0.1)
     model = slender if name == "slender rolling" else LEVELS[name][0]
-    circle = sb.Harmonic.circular(acceleration=A0, angular_frequency=THETA, sense=sense)
+    circle = sb.Harmonic.circular(acceleration=A0, angular_frequency=NU, sense=sense)
     orbit = sb.orbits.periodic_orbit(model, circle)
     if name == "slender rolling":
-        known = float(sb.theory.free_twist_rolling(THETA, A0, c=C, eta=ETA, zeta=0.1).amplitude)
+        known = float(sb.theory.free_twist_rolling(NU, A0, c=C, eta=ETA, zeta=0.1).amplitude)
     else:
-        known = stable_one(LEVELS[name][1](THETA))[0]
+        known = stable_one(LEVELS[name][1](NU))[0]
     assert orbit.mean_tilt == pytest.approx(known, rel=1e-9)
     assert orbit.turns == sense
     assert orbit.stable
@@ -157,7 +157,7 @@ def test_steady_rolling_of_every_level_needs_no_guess(name, sense):
 
 def test_a_guess_may_tell_the_spin():
     model, theory = LEVELS["rolling 0.1"]
-    branches = theory(THETA)
+    branches = theory(NU)
     amplitude, phase, _ = stable_one(branches)
     spin = float(branches.spin[np.flatnonzero(branches.stable)[0]])
     orbit = sb.orbits.periodic_orbit(model, CIRCLE, guess=[*near(amplitude, phase), spin])

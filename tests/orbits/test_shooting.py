@@ -23,8 +23,8 @@ STRAIGHT = sb.Harmonic.straight(acceleration=0.04, angular_frequency=2.0)
 ELLIPSE = sb.Harmonic.elliptic(amplitude=(0.08, 0.04), phase=-math.pi / 2.0, angular_frequency=2.0)
 
 
-def circle(theta, a0, sense=1):
-    return sb.Harmonic.circular(acceleration=a0, angular_frequency=theta, sense=sense)
+def circle(nu, a0, sense=1):
+    return sb.Harmonic.circular(acceleration=a0, angular_frequency=nu, sense=sense)
 
 
 def distance_of_sets(found, expected):
@@ -38,8 +38,8 @@ def distance_of_sets(found, expected):
 
 
 CIRCULAR = [
-    (theta, a0, eta)
-    for theta in (0.8, 1.2, 1.7, 3.0)
+    (nu, a0, eta)
+    for nu in (0.8, 1.2, 1.7, 3.0)
     for a0 in (0.02, 0.065, 0.12)
     for eta in (0.02, 0.1, 0.4)
     if a0 > eta * C / math.sqrt(4.0 + eta**2)
@@ -47,11 +47,11 @@ CIRCULAR = [
 
 
 @pytest.mark.parametrize("sense", [1, -1])
-@pytest.mark.parametrize(("theta", "a0", "eta"), CIRCULAR)
-def test_multipliers_of_circular_motion_are_exponentials_of_the_exact_eigenvalues(theta, a0, eta, sense):
-    orbit = periodic_orbit(slender(eta), circle(theta, a0, sense), sense=sense)
-    rolling = sb.theory.steady_rolling(theta, a0, c=C, eta=eta).upper
-    expected = np.exp(2.0 * math.pi / theta * rolling.eigenvalues)
+@pytest.mark.parametrize(("nu", "a0", "eta"), CIRCULAR)
+def test_multipliers_of_circular_motion_are_exponentials_of_the_exact_eigenvalues(nu, a0, eta, sense):
+    orbit = periodic_orbit(slender(eta), circle(nu, a0, sense), sense=sense)
+    rolling = sb.theory.steady_rolling(nu, a0, c=C, eta=eta).upper
+    expected = np.exp(2.0 * math.pi / nu * rolling.eigenvalues)
     # A double multiplier, as a collision brings it, would have half the digits.
     assert distance_of_sets(orbit.multipliers, expected) < 1e-8 * max(1.0, np.abs(expected).max())
     assert orbit.stable == bool(rolling.stable)
@@ -59,27 +59,27 @@ def test_multipliers_of_circular_motion_are_exponentials_of_the_exact_eigenvalue
     assert orbit.inversion
 
 
-@pytest.mark.parametrize(("theta", "a0", "eta"), CIRCULAR)
-def test_orbits_of_circular_motion_are_steady_rolling(theta, a0, eta):
-    rolling = sb.theory.steady_rolling(theta, a0, c=C, eta=eta).upper
+@pytest.mark.parametrize(("nu", "a0", "eta"), CIRCULAR)
+def test_orbits_of_circular_motion_are_steady_rolling(nu, a0, eta):
+    rolling = sb.theory.steady_rolling(nu, a0, c=C, eta=eta).upper
     # Begun off it: theory's guess would be exact already.
     start = rolling.amplitude * np.exp(1j * rolling.phase)
-    exact = np.array([start.real, start.imag, -theta * start.imag, theta * start.real])
-    orbit = periodic_orbit(slender(eta), circle(theta, a0), guess=exact * 1.001)
+    exact = np.array([start.real, start.imag, -nu * start.imag, nu * start.real])
+    orbit = periodic_orbit(slender(eta), circle(nu, a0), guess=exact * 1.001)
     np.testing.assert_allclose(orbit.state, exact, rtol=0.0, atol=1e-11)
     assert orbit.least_tilt == pytest.approx(rolling.amplitude, rel=1e-9)
     assert orbit.largest_tilt == pytest.approx(rolling.amplitude, rel=1e-9)
     assert orbit.mean_tilt == pytest.approx(rolling.amplitude, rel=1e-9)
 
 
-@pytest.mark.parametrize("theta", [1.2, 2.0])
-def test_the_lower_branch_is_a_saddle_with_the_eigenvalues_of_theory(theta):
-    rolling = sb.theory.steady_rolling(theta, 0.065, c=C, eta=ETA).lower
+@pytest.mark.parametrize("nu", [1.2, 2.0])
+def test_the_lower_branch_is_a_saddle_with_the_eigenvalues_of_theory(nu):
+    rolling = sb.theory.steady_rolling(nu, 0.065, c=C, eta=ETA).lower
     start = rolling.amplitude * np.exp(1j * rolling.phase)
-    guess = np.array([start.real, start.imag, -theta * start.imag, theta * start.real])
-    orbit = periodic_orbit(MODEL, circle(theta, 0.065), guess=guess)
+    guess = np.array([start.real, start.imag, -nu * start.imag, nu * start.real])
+    orbit = periodic_orbit(MODEL, circle(nu, 0.065), guess=guess)
     np.testing.assert_allclose(orbit.state, guess, rtol=0.0, atol=1e-11)
-    expected = np.exp(2.0 * math.pi / theta * rolling.eigenvalues)
+    expected = np.exp(2.0 * math.pi / nu * rolling.eigenvalues)
     # The least ones stand beside the largest one: rounding of that is their error.
     assert distance_of_sets(orbit.multipliers, expected) < 1e-10 * np.abs(expected).max()
     assert not orbit.stable
@@ -172,8 +172,8 @@ def test_derivatives_of_a_chain_equal_differences_of_its_residual():
         # Differences: third derivatives are about 1/C² of the first ones.
         np.testing.assert_allclose(chain.matrix, np.transpose(columns), rtol=0.0, atol=1e-6)
 
-        def at(theta, sense=sense, periods=periods):
-            changed = system.changed(angular_frequency=theta)
+        def at(nu, sense=sense, periods=periods):
+            changed = system.changed(angular_frequency=nu)
             return shots(changed, states, periods, sense=sense).residual.ravel()
 
         np.testing.assert_allclose(chain.by_parameter, (at(2.0 + h) - at(2.0 - h)) / (2 * h), rtol=0.0, atol=1e-8)
@@ -181,16 +181,16 @@ def test_derivatives_of_a_chain_equal_differences_of_its_residual():
 
 # In a plane.
 
-PLANAR = [(theta, a1, eta) for theta in (1.5, 3.0, 6.0) for a1 in (0.04, 0.13, 0.3) for eta in (0.0, 0.05, 0.1, 0.4)]
+PLANAR = [(nu, a1, eta) for nu in (1.5, 3.0, 6.0) for a1 in (0.04, 0.13, 0.3) for eta in (0.0, 0.05, 0.1, 0.4)]
 
 
-def planar_case(theta, a1, expected, *, later, eta=ETA):
+def planar_case(nu, a1, expected, *, later, eta=ETA):
     """Return the base motion, and the orbit of theory, both begun a part `later` of a period after the passage."""
     phase, speed = float(expected.phase), float(expected.crossing_velocity)
     direction = 0.3
     along = np.array([math.cos(direction), math.sin(direction)])
     begun, motion = (
-        sb.Harmonic.straight(acceleration=a1, angular_frequency=theta, direction=direction, start_phase=start)
+        sb.Harmonic.straight(acceleration=a1, angular_frequency=nu, direction=direction, start_phase=start)
         for start in (phase, phase + 2.0 * math.pi * later)
     )
     system = PeriodicSystem(slender(eta), begun, (float(along[0]), float(along[1])))
@@ -198,14 +198,14 @@ def planar_case(theta, a1, expected, *, later, eta=ETA):
     return motion, np.concatenate([state[0] * along, state[1] * along])
 
 
-@pytest.mark.parametrize(("theta", "a1", "eta"), PLANAR)
-def test_symmetric_orbits_in_a_plane_are_those_of_the_closed_form(theta, a1, eta):
-    response = sb.theory.planar_forced_response(theta, a1, c=C, eta=eta)
+@pytest.mark.parametrize(("nu", "a1", "eta"), PLANAR)
+def test_symmetric_orbits_in_a_plane_are_those_of_the_closed_form(nu, a1, eta):
+    response = sb.theory.planar_forced_response(nu, a1, c=C, eta=eta)
     existing = [expected for expected in (response.fast, response.slow) if expected.exists]
     if not existing:
         pytest.skip("theory has no orbit here")
     for expected in existing:
-        motion, exact = planar_case(theta, a1, expected, later=0.2, eta=eta)
+        motion, exact = planar_case(nu, a1, expected, later=0.2, eta=eta)
         orbit = periodic_orbit(slender(eta), motion, guess=exact * 1.0001)
         assert orbit.planar
         assert orbit.inversion
@@ -218,11 +218,11 @@ def test_symmetric_orbits_in_a_plane_are_those_of_the_closed_form(theta, a1, eta
 
 
 @pytest.mark.parametrize("later", [0.0, 0.5, 0.25])
-@pytest.mark.parametrize(("theta", "a1"), [(3.0, 0.13), (6.0, 0.13), (6.0, 0.3), (3.0, 0.3)])
-def test_orbits_in_a_plane_may_pass_the_upright_where_they_begin_or_are_sampled(theta, a1, later):
+@pytest.mark.parametrize(("nu", "a1"), [(3.0, 0.13), (6.0, 0.13), (6.0, 0.3), (3.0, 0.3)])
+def test_orbits_in_a_plane_may_pass_the_upright_where_they_begin_or_are_sampled(nu, a1, later):
     """As theory gives them: from a passage; a quarter of a period later a passage is among the samples."""
-    expected = sb.theory.planar_forced_response(theta, a1, c=C, eta=ETA).fast
-    motion, exact = planar_case(theta, a1, expected, later=later)
+    expected = sb.theory.planar_forced_response(nu, a1, c=C, eta=ETA).fast
+    motion, exact = planar_case(nu, a1, expected, later=later)
     orbit = periodic_orbit(MODEL, motion, guess=exact)
     np.testing.assert_allclose([*orbit.tilt, *orbit.tilt_rate], exact, rtol=0.0, atol=1e-10)
     assert orbit.inversion

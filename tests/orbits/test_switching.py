@@ -156,9 +156,9 @@ def test_the_amplitude_of_doubling_grows_as_the_square_root_of_the_distance(doub
 
 
 def test_nothing_branches_off_at_a_fold_or_a_neimark_sacker_point():
-    for a0, eta, theta, bounds in ((0.01, 0.3, 3.2, (2.0, 3.4)), (0.065, 0.1, 1.6, (1.3, 1.7))):
+    for a0, eta, nu, bounds in ((0.01, 0.3, 3.2, (2.0, 3.4)), (0.065, 0.1, 1.6, (1.3, 1.7))):
         model = sb.Slender(sb.Column.dimensionless(C), damping=eta)
-        motion = sb.Harmonic.circular(acceleration=a0, angular_frequency=theta)
+        motion = sb.Harmonic.circular(acceleration=a0, angular_frequency=nu)
         branch = continue_branch(periodic_orbit(model, motion), "angular_frequency", bounds=bounds)
         with pytest.raises(ParameterError, match="bifurcation must be") as told:
             switch_branch(branch.bifurcations[0], bounds=bounds)

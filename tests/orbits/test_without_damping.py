@@ -14,20 +14,20 @@ MODEL = sb.Slender(sb.Column.dimensionless(C), damping=0.0)
 CRITICAL = 1.40046
 
 
-def orbit_of_circle(theta):
-    return periodic_orbit(MODEL, sb.Harmonic.circular(acceleration=A0, angular_frequency=theta))
+def orbit_of_circle(nu):
+    return periodic_orbit(MODEL, sb.Harmonic.circular(acceleration=A0, angular_frequency=nu))
 
 
-@pytest.mark.parametrize("theta", [1.2, 1.39, 1.4, 1.401, 1.41, 1.6, 2.0, 3.0, 5.0])
-def test_rolling_is_stable_where_theory_says_that_nothing_grows(theta):
-    rolling = sb.theory.steady_rolling(theta, A0, c=C, eta=0.0).upper
-    orbit = orbit_of_circle(theta)
-    assert orbit.stable == bool(rolling.stable) == (theta > CRITICAL)
+@pytest.mark.parametrize("nu", [1.2, 1.39, 1.4, 1.401, 1.41, 1.6, 2.0, 3.0, 5.0])
+def test_rolling_is_stable_where_theory_says_that_nothing_grows(nu):
+    rolling = sb.theory.steady_rolling(nu, A0, c=C, eta=0.0).upper
+    orbit = orbit_of_circle(nu)
+    assert orbit.stable == bool(rolling.stable) == (nu > CRITICAL)
 
 
-@pytest.mark.parametrize("theta", [0.4, 0.7, 1.39, 1.41, 3.0])
-def test_volumes_of_states_keep_their_size(theta):
-    multipliers = orbit_of_circle(theta).multipliers
+@pytest.mark.parametrize("nu", [0.4, 0.7, 1.39, 1.41, 3.0])
+def test_volumes_of_states_keep_their_size(nu):
+    multipliers = orbit_of_circle(nu).multipliers
     # Each is known to 1e-9, and the least have the rounding of the largest.
     assert abs(np.prod(multipliers) - 1.0) < 4e-9 + 1e-14 * abs(multipliers[0]) ** 2
 

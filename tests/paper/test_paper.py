@@ -45,10 +45,10 @@ def test_curves_of_figure_2_lie_on_their_sides_of_the_backbone():
 
 def test_stable_parts_of_figure_2_begin_at_the_critical_frequencies():
     data = circular.response_data()
-    spacing = float(np.diff(data["theta"])[0])
+    spacing = float(np.diff(data["nu"])[0])
     for a0 in circular.CIRCULAR_AMPLITUDES:
         stable = data["stable"].sel(a0=a0, branch="upper")
-        first = float(data["theta"][int(np.argmax(stable.to_numpy()))])
+        first = float(data["nu"][int(np.argmax(stable.to_numpy()))])
         assert abs(first - float(theory.critical_frequency(a0, c=0.1, eta=0.1))) <= spacing
         assert not bool(data["stable"].sel(a0=a0, branch="lower").any())
 
@@ -66,10 +66,10 @@ def test_curves_of_the_critical_frequency_meet_in_their_limits():
 
 
 def test_the_averaged_solution_fails_where_its_amplitude_is_large():
-    # Averaged stable at θ = 1.5 and 2 for a1 = 0.13; the full motion started on it overturns.
-    for theta in (1.5, 2.0):
-        assert bool(theory.averaged_rolling(theta, 0.13, c=0.1, eta=0.1).forward.upper.stable)
-        assert straight._from_averaged(theta, 0.13, 60).outcome.name == "OVERTURNED"
+    # Averaged stable at ν = 1.5 and 2 for a1 = 0.13; the full motion started on it overturns.
+    for nu in (1.5, 2.0):
+        assert bool(theory.averaged_rolling(nu, 0.13, c=0.1, eta=0.1).forward.upper.stable)
+        assert straight._from_averaged(nu, 0.13, 60).outcome.name == "OVERTURNED"
 
 
 def test_the_sideways_kick_follows_the_logarithmic_law():

@@ -33,7 +33,7 @@ def calls(monkeypatch):
             data = xr.Dataset(
                 {"value": ("x", values), "stable": ("x", values > 0.1)}, {"x": ["a", "b", "c"]}, {"c": 0.1}
             )
-            return Section((Finding("(1)", f"{heading} – θ", "1e-3", Verdict.ERRATUM),), {f"data {heading}": data})
+            return Section((Finding("(1)", f"{heading} – ν", "1e-3", Verdict.ERRATUM),), {f"data {heading}": data})
 
         return computed
 

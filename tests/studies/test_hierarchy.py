@@ -72,10 +72,10 @@ def test_differences_are_taken_from_the_reference(scaled):
 
 
 def test_late_means_are_those_of_steady_rolling():
-    theta, c = 1.8, 0.1
+    nu, c = 1.8, 0.1
     found = sb.studies.model_hierarchy(COLUMN, CIRCLE, **FRICTIONS, **START, duration=300.0)
-    free = sb.theory.free_twist_rolling(theta, 0.065, c=c, eta=0.1, zeta=0.1)
-    paper = sb.theory.steady_rolling(theta, 0.065, c=c, eta=0.1)
+    free = sb.theory.free_twist_rolling(nu, 0.065, c=c, eta=0.1, zeta=0.1)
+    paper = sb.theory.steady_rolling(nu, 0.065, c=c, eta=0.1)
     # What is left of the start decays as exp(growth τ); late is from τ = 240 on.
     for model, exact, growth in (
         ("slender rolling", float(free.amplitude), free.eigenvalues.real.max()),

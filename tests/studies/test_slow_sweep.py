@@ -35,11 +35,11 @@ def downward():
 
 def test_a_sweep_stays_on_the_exact_solution_8_while_that_is_stable(downward):
     steady = downward.isel(step=slice(0, 12), sweep=0)
-    theta = steady["angular_frequency"].values
-    exact = sb.theory.steady_rolling(theta, 0.065, c=0.1, eta=0.1).upper
+    nu = steady["angular_frequency"].values
+    exact = sb.theory.steady_rolling(nu, 0.065, c=0.1, eta=0.1).upper
     # A step disturbs by about as much as the tilt changes; what is left decays with the eigenvalue of (7).
     rate = exact.eigenvalues.real.max(axis=-1)
-    settling = 49 * 2.0 * np.pi / theta
+    settling = 49 * 2.0 * np.pi / nu
     left = np.abs(np.diff(exact.amplitude, prepend=exact.amplitude[0])) * np.exp(rate * settling)
     # Errors of rtol of a step, some hundred of them while they decay.
     allowed = 10.0 * left + 100.0 * RTOL * exact.amplitude
@@ -51,12 +51,12 @@ def test_a_sweep_stays_on_the_exact_solution_8_while_that_is_stable(downward):
 
 def test_below_the_critical_frequency_it_is_modulated_and_then_overturns(downward):
     one = downward.isel(sweep=0)
-    theta = one["angular_frequency"].values
+    nu = one["angular_frequency"].values
     told = outcomes(downward)
     lost = told.index(Outcome.OVERTURNED)
     # Modulated rolling is lost at 1.312; each step of 0.004 may do it one step before.
-    assert 1.310 < theta[lost] < 1.322
-    modulated = slice(int(np.flatnonzero(theta < CRITICAL - 0.01)[0]), lost)
+    assert 1.310 < nu[lost] < 1.322
+    modulated = slice(int(np.flatnonzero(nu < CRITICAL - 0.01)[0]), lost)
     assert set(told[modulated]) <= {Outcome.MODULATED, Outcome.STILL_MOVING}
     assert told[modulated].count(Outcome.MODULATED) > 0.8 * len(told[modulated])
     swing = (one["largest_tilt"] - one["least_tilt"]).values[modulated]
@@ -114,14 +114,14 @@ def over_a_fold():
 
 
 def test_past_the_fold_of_8_it_falls_to_rest_and_stays_there_on_the_way_back(over_a_fold):
-    theta = over_a_fold["angular_frequency"].values[:, 0]
-    np.testing.assert_allclose(theta, [3.0, 2.9, 2.8, 2.7, 2.6, 2.5, 2.6, 2.7, 2.8, 2.9, 3.0])
-    # Without a solution from a0(1 + θ²) < ηθ √(c² − a0²) on: θ² − kθ + 1 < 0.
+    nu = over_a_fold["angular_frequency"].values[:, 0]
+    np.testing.assert_allclose(nu, [3.0, 2.9, 2.8, 2.7, 2.6, 2.5, 2.6, 2.7, 2.8, 2.9, 3.0])
+    # Without a solution from a0(1 + ν²) < ην √(c² − a0²) on: ν² − kν + 1 < 0.
     k = 0.3 * np.sqrt(0.1**2 - 0.01**2) / 0.01
     fold = k / 2.0 + np.sqrt(k**2 / 4.0 - 1.0)
     told = outcomes(over_a_fold)
     rolling = [one is Outcome.ROLLING for one in told]
-    assert rolling == [*(theta[:6] > fold), *([False] * 5)]
+    assert rolling == [*(nu[:6] > fold), *([False] * 5)]
     assert set(told) == {Outcome.ROLLING, Outcome.AT_REST}
     for name in ("mean_tilt", "least_tilt", "largest_tilt", "turns_per_period"):
         assert (over_a_fold[name].values[~np.array(rolling)] == 0.0).all()

@@ -23,10 +23,10 @@ from stylobate.theory.rotating_frame import rotating_frame_jacobian
 C = 0.1
 
 
-def growth(theta, a0, eta):
+def growth(nu, a0, eta):
     """Largest real part of the eigenvalues of the Jacobian, and the imaginary part that belongs to it."""
-    upper = steady_rolling(theta, a0, c=C, eta=eta).upper
-    jacobian = rotating_frame_jacobian([0.0, theta, float(upper.amplitude), float(upper.phase)], a0, eta=eta)
+    upper = steady_rolling(nu, a0, c=C, eta=eta).upper
+    jacobian = rotating_frame_jacobian([0.0, nu, float(upper.amplitude), float(upper.phase)], a0, eta=eta)
     eigenvalues = np.linalg.eigvals(jacobian)
     largest = eigenvalues[np.argmax(eigenvalues.real)]
     return largest.real, abs(largest.imag)
@@ -44,16 +44,16 @@ def test_published_critical_frequencies():
     ("a0", "eta"), [(0.02, 0.1), (0.065, 0.1), (0.065, 0.3), (0.065, 0.5), (0.065, 1.0), (1.0, 0.2), (0.3, 5.0)]
 )
 def test_agrees_with_the_sign_change_of_the_eigenvalues(a0, eta):
-    theta = float(critical_frequency(a0, c=C, eta=eta))
-    found = brentq(lambda t: growth(t, a0, eta)[0], theta - 0.01, theta + 0.01, xtol=1e-14)
-    assert theta == pytest.approx(found, abs=1e-11)
-    assert float(crossing_frequency(a0, c=C, eta=eta)) == pytest.approx(growth(theta, a0, eta)[1], rel=1e-9)
+    nu = float(critical_frequency(a0, c=C, eta=eta))
+    found = brentq(lambda t: growth(t, a0, eta)[0], nu - 0.01, nu + 0.01, xtol=1e-14)
+    assert nu == pytest.approx(found, abs=1e-11)
+    assert float(crossing_frequency(a0, c=C, eta=eta)) == pytest.approx(growth(nu, a0, eta)[1], rel=1e-9)
 
 
-@given(theta=st.floats(0.58, 50.0), eta=st.floats(0.0, 30.0))
-def test_amplitude_and_frequency_invert_each_other(theta, eta):
-    a0 = critical_amplitude(theta, c=C, eta=eta)
-    assert critical_frequency(a0, c=C, eta=eta) == pytest.approx(theta, rel=1e-11)
+@given(nu=st.floats(0.58, 50.0), eta=st.floats(0.0, 30.0))
+def test_amplitude_and_frequency_invert_each_other(nu, eta):
+    a0 = critical_amplitude(nu, c=C, eta=eta)
+    assert critical_frequency(a0, c=C, eta=eta) == pytest.approx(nu, rel=1e-11)
 
 
 @given(a0=st.floats(1e-6, 100.0))
@@ -64,7 +64,7 @@ def test_without_damping_it_has_the_closed_form(a0):
 
 def test_undamped_limits():
     assert undamped_critical_frequency(0.0, c=C) == pytest.approx(1.0 / np.sqrt(3.0), rel=1e-15)
-    # far away a0 → c θ²/2
+    # far away a0 → c ν²/2
     assert undamped_critical_frequency(1e10, c=1.0) == pytest.approx(np.sqrt(2e10), rel=1e-4)
 
 
@@ -77,19 +77,19 @@ def test_critical_amplitude_rises_with_frequency(eta):
 
 
 def test_stability_on_a_grid_is_what_the_boundary_says():
-    theta, a0, eta = np.meshgrid(np.linspace(0.3, 4.0, 60), np.geomspace(0.002, 0.5, 40), [0.05, 0.3, 1.0])
-    upper = steady_rolling(theta, a0, c=C, eta=eta).upper
-    boundary = critical_amplitude(theta, c=C, eta=eta)
+    nu, a0, eta = np.meshgrid(np.linspace(0.3, 4.0, 60), np.geomspace(0.002, 0.5, 40), [0.05, 0.3, 1.0])
+    upper = steady_rolling(nu, a0, c=C, eta=eta).upper
+    boundary = critical_amplitude(nu, c=C, eta=eta)
     said = upper.exists & np.isfinite(boundary) & (a0 < boundary)
     assert (said == upper.stable).all()
 
 
 @pytest.mark.parametrize("eta", [0.1, 0.5, 2.0])
 def test_the_curve_begins_on_the_lower_fold(eta):
-    theta = np.sqrt(2.0 / (2.0 + eta**2 + np.sqrt((2.0 + eta**2) ** 2 + 12.0))) * (1.0 + 1e-12)
-    a0 = critical_amplitude(theta, c=C, eta=eta)
+    nu = np.sqrt(2.0 / (2.0 + eta**2 + np.sqrt((2.0 + eta**2) ** 2 + 12.0))) * (1.0 + 1e-12)
+    a0 = critical_amplitude(nu, c=C, eta=eta)
     low, _ = rolling_gap(a0, c=C, eta=eta)
-    assert low == pytest.approx(theta, rel=1e-9)
+    assert low == pytest.approx(nu, rel=1e-9)
     # Ω² = q/2 vanishes linearly there
     assert crossing_frequency(a0, c=C, eta=eta) < 1e-4
     assert np.isnan(critical_frequency(0.999 * a0, c=C, eta=eta))
@@ -110,15 +110,15 @@ def test_first_lyapunov_coefficient_depends_on_the_amplitude_ratio_only():
 
 
 def test_second_and_third_derivatives_by_algebra():
-    mu, omega, tilt, psi, a, c, eta, theta = names = sp.symbols("mu omega A psi a c eta theta")
+    mu, omega, tilt, psi, a, c, eta, nu = names = sp.symbols("mu omega A psi a c eta nu")
     rates = [
         tilt * (1 + omega**2) - c - eta * mu - a * sp.cos(psi),
         -2 * mu * omega / tilt - eta * omega + a / tilt * sp.sin(psi),
     ]
     state = names[:4]
-    values = {mu: 0.0, omega: 1.3, tilt: 0.6, psi: 0.4, a: 0.7, c: 1.0, eta: 0.2, theta: 1.3}
+    values = {mu: 0.0, omega: 1.3, tilt: 0.6, psi: 0.4, a: 0.7, c: 1.0, eta: 0.2, nu: 1.3}
     flow = _Expansion(
-        theta=np.array(1.3), tilt=np.array(0.6), push=np.array(0.7 * np.cos(0.4)), drive=np.array(0.7 * np.sin(0.4))
+        nu=np.array(1.3), tilt=np.array(0.6), push=np.array(0.7 * np.cos(0.4)), drive=np.array(0.7 * np.sin(0.4))
     )
     x, y, z = np.random.default_rng(1).normal(size=(3, 4)) + 1j * np.random.default_rng(2).normal(size=(3, 4))
     for row, rate in enumerate(rates):
@@ -141,13 +141,13 @@ def test_second_and_third_derivatives_by_algebra():
 def test_modulated_rolling_just_below_has_the_size_that_the_coefficient_predicts():
     """Normal form ż = (σ + iΩ)z + Ω l1 |z|²z: its cycle has |z|² = −σ/(Ω l1) and the deviations 2 Re(zq), |q| = 1."""
     a0, eta = 0.65, 0.1
-    theta = float(critical_frequency(a0, c=1.0, eta=eta)) - 1e-4
-    upper = steady_rolling(theta, a0, c=1.0, eta=eta).upper
+    nu = float(critical_frequency(a0, c=1.0, eta=eta)) - 1e-4
+    upper = steady_rolling(nu, a0, c=1.0, eta=eta).upper
     frequency = crossing_frequency(a0, c=1.0, eta=eta)
     size = np.sqrt(-upper.eigenvalues.real.max() / (frequency * first_lyapunov_coefficient(a0, c=1.0, eta=eta)))
-    steady = [0.0, theta, float(upper.amplitude), float(upper.phase)]
+    steady = [0.0, nu, float(upper.amplitude), float(upper.phase)]
     values, vectors = np.linalg.eig(rotating_frame_jacobian(steady, a0, eta=eta))
     swing = 2.0 * size * abs(vectors[2, np.argmax(values.imag)])
-    tilt = modulated_rolling(theta, a0, c=1.0, eta=eta, points=31).amplitude
+    tilt = modulated_rolling(nu, a0, c=1.0, eta=eta, points=31).amplitude
     # the next order of the normal form is relatively of the order of the size squared, 4e-4
     assert 2.0 * abs(np.fft.rfft(tilt)[1]) / tilt.size == pytest.approx(swing, rel=0.01)

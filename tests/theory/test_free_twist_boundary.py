@@ -24,19 +24,19 @@ def named(friction, body):
     return {"c": C, "eta": friction[0], "zeta": friction[1], "inertia_ratio": body[0], "axial_ratio": body[1]}
 
 
-def growth(theta, a, column):
-    return float(theory.free_twist_rolling(theta, a * C, **column).eigenvalues.real.max())
+def growth(nu, a, column):
+    return float(theory.free_twist_rolling(nu, a * C, **column).eigenvalues.real.max())
 
 
-@given(theta=st.floats(0.3, 6.0), a=st.floats(0.1, 3.0), friction=frictions, body=bodies)
-def test_the_polynomial_is_that_of_the_jacobian(theta, a, friction, body):
+@given(nu=st.floats(0.3, 6.0), a=st.floats(0.1, 3.0), friction=frictions, body=bodies)
+def test_the_polynomial_is_that_of_the_jacobian(nu, a, friction, body):
     column = named(friction, body)
-    found = theory.free_twist_rolling(theta, a * C, **column)
+    found = theory.free_twist_rolling(nu, a * C, **column)
     if not found.exists:
         return
     polynomial = [
         1.0,
-        *characteristic(theta, C / float(found.amplitude), Frictions(*map(np.asarray, (*friction, *body)))),
+        *characteristic(nu, C / float(found.amplitude), Frictions(*map(np.asarray, (*friction, *body)))),
     ]
     expected = np.poly(found.eigenvalues).real
     scale = np.poly(-np.abs(found.eigenvalues))  # what the symmetric functions are sums of
@@ -52,12 +52,12 @@ def test_known_critical_frequencies():
 @given(a=st.floats(0.5, 10.0), friction=frictions, body=bodies)  # rolling exists at all frequencies
 def test_the_largest_eigenvalue_leaves_the_left_half_plane_there(a, friction, body):
     column = named(friction, body)
-    theta = float(free_twist_critical_frequency(a * C, **column))
-    found = theory.free_twist_rolling(theta, a * C, **column)
+    nu = float(free_twist_critical_frequency(a * C, **column))
+    found = theory.free_twist_rolling(nu, a * C, **column)
     largest = found.eigenvalues[np.argmax(found.eigenvalues.real)]
     assert abs(largest.real) < 1e-8 * np.abs(found.eigenvalues).max()
     assert abs(largest.imag) > 1e-3  # a pair, not a real one
-    assert growth(theta * 0.999, a, column) > 0.0 > growth(theta * 1.001, a, column)
+    assert growth(nu * 0.999, a, column) > 0.0 > growth(nu * 1.001, a, column)
 
 
 @given(a=st.floats(0.01, 30.0), friction=frictions, body=bodies)
@@ -69,8 +69,8 @@ def test_rolling_is_stable_from_the_critical_to_the_upper_frequency_and_not_beyo
     )
     if math.isnan(low):
         return
-    theta = np.geomspace(low * 1.0001, min(high * 0.9999, 50.0 * low), 200)
-    found = theory.free_twist_rolling(theta, a * C, **column)
+    nu = np.geomspace(low * 1.0001, min(high * 0.9999, 50.0 * low), 200)
+    found = theory.free_twist_rolling(nu, a * C, **column)
     assert np.all(found.stable | ~found.exists)
     if math.isfinite(high):
         assert not theory.free_twist_rolling(high * np.array([1.001, 2.0]), a * C, **column).stable.any()
@@ -103,9 +103,11 @@ def test_without_damping_it_is_the_same_for_every_column(a, zeta, body):
 def test_weak_damping_lowers_it_in_proportion(a, zeta, body):
     eta = np.array([1e-4, 1e-5])
     freedom = 1.0 + body[1] - body[0]
-    nu = body[1] / freedom
-    slope = (1.0 + a) * zeta / (a * (1.0 + 2.0 * a) * (1.0 - nu)) + a / (freedom * zeta)
-    slope += (1.0 + a) * (1.0 + nu) * (1.0 + a - nu * a) / ((1.0 + 2.0 * a) * (1.0 - nu) * zeta)
+    axial_share = body[1] / freedom
+    slope = (1.0 + a) * zeta / (a * (1.0 + 2.0 * a) * (1.0 - axial_share)) + a / (freedom * zeta)
+    slope += (
+        (1.0 + a) * (1.0 + axial_share) * (1.0 + a - axial_share * a) / ((1.0 + 2.0 * a) * (1.0 - axial_share) * zeta)
+    )
     column = {"c": C, "zeta": zeta, "inertia_ratio": body[0], "axial_ratio": body[1]}
     off = free_twist_critical_frequency(a * C, eta=eta, **column) ** 2 - (1.0 + 2.0 * a - slope * eta)
     np.testing.assert_allclose(off[0] / off[1], 100.0, rtol=0.02)
@@ -129,16 +131,16 @@ def test_weak_damping_and_strong_spin_damping_count_by_their_product(product):
 
 
 def test_it_falls_as_the_root_of_a_small_spin_damping():
-    # θ² = y ζD/η, where y is the root of a quartic's Hurwitz determinant.
+    # ν² = y ζD/η, where y is the root of a quartic's Hurwitz determinant.
     a, eta, kappa, axial = 0.65, 0.1, 0.75, 0.5
     freedom = 1.0 + axial - kappa
-    epsilon, nu = kappa / freedom, axial / freedom
+    epsilon, axial_share = kappa / freedom, axial / freedom
 
     def determinant(y):
         m = a * (1.0 + y) / (1.0 + a)
-        b2 = 2.0 * y - 1.0 + eta**2 * (1.0 + epsilon) - nu * m
-        b3 = (1.0 + epsilon) * (y - 1.0) - nu * m
-        return (2.0 + epsilon) * b2 * b3 - b3**2 - (2.0 + epsilon) ** 2 * nu * m
+        b2 = 2.0 * y - 1.0 + eta**2 * (1.0 + epsilon) - axial_share * m
+        b3 = (1.0 + epsilon) * (y - 1.0) - axial_share * m
+        return (2.0 + epsilon) * b2 * b3 - b3**2 - (2.0 + epsilon) ** 2 * axial_share * m
 
     zeta = np.array([1e-5, 1e-6])
     limit = np.sqrt(brentq(determinant, 1.2, 10.0) * zeta * freedom / eta)

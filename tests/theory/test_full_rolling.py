@@ -16,26 +16,26 @@ from stylobate.theory import finite_tilt
 SOLID = {"inertia_ratio": 0.75, "axial_ratio": 0.5}
 
 
-def state_of(found, branch, theta):
-    return np.array([0.0, theta, found.amplitude[branch], found.phase[branch], found.spin[branch]])
+def state_of(found, branch, nu):
+    return np.array([0.0, nu, found.amplitude[branch], found.phase[branch], found.spin[branch]])
 
 
 @given(
-    c=st.floats(0.01, 1.0), theta=st.floats(0.2, 8.0), a=st.floats(0.05, 5.0), eta=st.floats(1e-3, 2.0),
+    c=st.floats(0.01, 1.0), nu=st.floats(0.2, 8.0), a=st.floats(0.05, 5.0), eta=st.floats(1e-3, 2.0),
     zeta=st.one_of(st.floats(1e-2, 10.0), st.just(math.inf)), kappa=st.floats(0.1, 0.6), axial=st.floats(0.1, 1.0),
 )  # fmt: skip
-def test_the_branches_are_where_nothing_changes_and_their_number_is_even_or_odd(c, theta, a, eta, zeta, kappa, axial):
+def test_the_branches_are_where_nothing_changes_and_their_number_is_even_or_odd(c, nu, a, eta, zeta, kappa, axial):
     at = {"c": c, "eta": eta, "zeta": zeta, "inertia_ratio": kappa, "axial_ratio": axial}
-    found = theory.full_rolling(theta, a * c, **at)
+    found = theory.full_rolling(nu, a * c, **at)
     if abs(a - 1.0) > 1e-6:
         # The excess X² + Y² − a0² runs from c² − a0² at no tilt to infinity at π/2.
         assert found.exists.sum() % 2 == (a > 1.0)
     for branch in np.flatnonzero(found.exists):
-        state = state_of(found, branch, theta)
-        rates = full_rolling_rates(state, theta, a * c, **at)
+        state = state_of(found, branch, nu)
+        rates = full_rolling_rates(state, nu, a * c, **at)
         # Not better than the terms cancel: those of the tilt, and of the spin, which 1/I_a amplifies.
         zeta_or_0 = 0.0 if math.isinf(zeta) else zeta
-        terms = (1.0 + theta**2) * (1.0 + a + abs(state[4])) * (1.0 + zeta_or_0) * (1.0 + eta / state[2])
+        terms = (1.0 + nu**2) * (1.0 + a + abs(state[4])) * (1.0 + zeta_or_0) * (1.0 + eta / state[2])
         assert np.abs(rates).max() <= 1e-12 * terms / (kappa * axial * min(1.0, c) * (1.0 - kappa))
 
 
@@ -47,16 +47,16 @@ def test_nothing_is_missed_without_damping():
         kappa = rng.uniform(0.05, 0.9)
         c = 10.0 ** rng.uniform(-2.0, 0.3)
         axial = rng.uniform(0.05, 1.0) * min(1.0, 2.0 * (1.0 - kappa) / kappa / c**2)
-        theta, a0, spin = 10.0 ** rng.uniform(-1, 1), c * 10.0 ** rng.uniform(-2, 1), 3.0 * rng.normal()
+        nu, a0, spin = 10.0 ** rng.uniform(-1, 1), c * 10.0 ** rng.uniform(-2, 1), 3.0 * rng.normal()
         if number == 0:  # a case with four
-            c, kappa, axial, theta, a0, spin = 1.87822, 0.084543, 0.508536, 6.93993, 2.3045, 4.63626
+            c, kappa, axial, nu, a0, spin = 1.87822, 0.084543, 0.508536, 6.93993, 2.3045, 4.63626
         shape = {"inertia_ratio": kappa, "axial_ratio": axial}
-        found = theory.full_rolling(theta, a0, c=c, eta=0.0, zeta=0.0, spin=spin, **shape)
+        found = theory.full_rolling(nu, a0, c=c, eta=0.0, zeta=0.0, spin=spin, **shape)
         expected = []
         for side in (1.0, -1.0):
             values = [
                 (1.0 + t * t) ** 2
-                * tilting(2.0 * math.atan(t), theta, side * a0, spin, c, kappa, axial)
+                * tilting(2.0 * math.atan(t), nu, side * a0, spin, c, kappa, axial)
                 for t in nodes
             ]  # fmt: skip
             roots = np.roots(np.linalg.solve(np.vander(nodes, 5), values))
@@ -69,26 +69,26 @@ def test_nothing_is_missed_without_damping():
     assert most == 4
 
 
-def tilting(tilt, theta, push, spin, c, kappa, axial):
+def tilting(tilt, nu, push, spin, c, kappa, axial):
     """The balance of tilting times −1, from the rolling equations."""
     s, cosine = math.sin(tilt), math.cos(tilt)
     p = cosine + c * s
-    w = c * spin - theta * s
-    gyroscopic = (1.0 - kappa) * theta**2 * s * cosine - kappa * axial * c**2 * theta * s * spin
-    return c * cosine - s + p * push + kappa * p * theta * w - gyroscopic
+    w = c * spin - nu * s
+    gyroscopic = (1.0 - kappa) * nu**2 * s * cosine - kappa * axial * c**2 * nu * s * spin
+    return c * cosine - s + p * push + kappa * p * nu * w - gyroscopic
 
 
 def test_a_finer_scan_finds_no_more(monkeypatch):
     rng = np.random.default_rng(6)
     c, kappa = 10.0 ** rng.uniform(-3.0, 0.2, 400), rng.uniform(0.05, 0.95, 400)
     shape = {"inertia_ratio": kappa, "axial_ratio": rng.uniform(0.05, 1.0, 400) * np.minimum(1.0, (1 - kappa) / c**2)}
-    theta, a0 = 10.0 ** rng.uniform(-1.0, 1.5, 400), c * 10.0 ** rng.uniform(-2.0, 1.5, 400)
+    nu, a0 = 10.0 ** rng.uniform(-1.0, 1.5, 400), c * 10.0 ** rng.uniform(-2.0, 1.5, 400)
     eta, zeta = 10.0 ** rng.uniform(-3.0, 0.7, 400), 10.0 ** rng.uniform(-3.0, 2.0, 400)
 
     def solve():
         return [
-            theory.full_rolling(theta, a0, c=c, eta=eta, zeta=zeta, **shape),
-            theory.wobbling_rolling(theta, a0, c=c, eta=eta, **shape),
+            theory.full_rolling(nu, a0, c=c, eta=eta, zeta=zeta, **shape),
+            theory.wobbling_rolling(nu, a0, c=c, eta=eta, **shape),
         ]
 
     coarse = solve()
@@ -100,10 +100,10 @@ def test_a_finer_scan_finds_no_more(monkeypatch):
 
 @pytest.mark.parametrize("zeta", [0.1, 1.0, math.inf])
 def test_small_tilts_give_the_slender_column_with_an_error_of_order_c_squared(zeta):
-    theta, a, eta = 1.7, 0.65, 0.1
+    nu, a, eta = 1.7, 0.65, 0.1
     c = np.array([0.02, 0.01, 0.005])
-    full = theory.full_rolling(theta, a * c, c=c, eta=eta, zeta=zeta)
-    slender = theory.free_twist_rolling(theta, a * c, c=c, eta=eta, zeta=zeta)
+    full = theory.full_rolling(nu, a * c, c=c, eta=eta, zeta=zeta)
+    slender = theory.free_twist_rolling(nu, a * c, c=c, eta=eta, zeta=zeta)
     upper = full.amplitude.shape[-1] - 1
     pairs = [
         (full.amplitude[:, upper] / c, slender.amplitude / c),
@@ -151,21 +151,21 @@ def test_the_energy_of_free_rolling_is_conserved():
     np.testing.assert_allclose(energy(run.y), energy(run.y[:, 0]), rtol=1e-9)
 
 
-@pytest.mark.parametrize(("theta", "zeta", "stable"), [(1.5, 0.1, True), (1.2, 1.0, False)])
-def test_deviations_grow_and_decay_as_the_eigenvalues_say(theta, zeta, stable):
+@pytest.mark.parametrize(("nu", "zeta", "stable"), [(1.5, 0.1, True), (1.2, 1.0, False)])
+def test_deviations_grow_and_decay_as_the_eigenvalues_say(nu, zeta, stable):
     at = {"c": 0.1, "eta": 0.1, "zeta": zeta}
-    found = theory.full_rolling(theta, 0.065, **at)
+    found = theory.full_rolling(nu, 0.065, **at)
     branch = int(np.flatnonzero(found.exists)[-1])
     assert bool(found.stable[branch]) is stable
     values = found.eigenvalues[branch]
     slowest = values[values.real.argmax()]
-    start = state_of(found, branch, theta)
+    start = state_of(found, branch, nu)
     small = 1e-7 * start[2]
     period = 2.0 * math.pi / abs(slowest.imag) if slowest.imag else 5.0
     settle = 0.0 if not stable else 60.0
     times = [settle + 40.0, settle + 40.0 + period]
     run = solve_ivp(
-        lambda _, x: full_rolling_rates(x, theta, 0.065, **at), (0.0, times[-1]),
+        lambda _, x: full_rolling_rates(x, nu, 0.065, **at), (0.0, times[-1]),
         start + small * np.array([0.0, 0.0, 1.0, 0.0, 0.0]), "DOP853", t_eval=times, rtol=1e-12, atol=1e-15,
     )  # fmt: skip
     first, second = (run.y - start[:, None]).T
@@ -195,11 +195,11 @@ def test_spin_damping_alone_forbids_rotation_about_the_vertical():
 
 def test_many_at_once_are_as_one_by_one():
     rng = np.random.default_rng(2)
-    theta, a0, eta = rng.uniform(0.5, 4.0, 4500), rng.uniform(0.01, 0.3, 4500), rng.choice([0.0, 0.1], 4500)
-    every = theory.full_rolling(theta.reshape(45, 100), a0.reshape(45, 100), c=0.1, eta=eta.reshape(45, 100), zeta=0.5)
+    nu, a0, eta = rng.uniform(0.5, 4.0, 4500), rng.uniform(0.01, 0.3, 4500), rng.choice([0.0, 0.1], 4500)
+    every = theory.full_rolling(nu.reshape(45, 100), a0.reshape(45, 100), c=0.1, eta=eta.reshape(45, 100), zeta=0.5)
     assert every.eigenvalues.shape == (45, 100, 2, 5)
     for i in (0, 17, 4321, 4499):
-        one = theory.full_rolling(theta[i], a0[i], c=0.1, eta=eta[i], zeta=0.5)
+        one = theory.full_rolling(nu[i], a0[i], c=0.1, eta=eta[i], zeta=0.5)
         count = one.exists.sum()
         np.testing.assert_array_equal(every.amplitude[divmod(i, 100)][:count], one.amplitude[one.exists])
 
@@ -207,4 +207,4 @@ def test_many_at_once_are_as_one_by_one():
 @pytest.mark.parametrize(("change", "told"), [({"zeta": -0.1}, "zeta"), ({"spin": math.nan}, "spin")])
 def test_bad_numbers_are_refused_by_name(change, told):
     with pytest.raises(ParameterError, match=told):
-        theory.full_rolling(**({"theta": 2.0, "a0": 0.05, "c": 0.1, "eta": 0.1, "zeta": 0.1} | change))
+        theory.full_rolling(**({"nu": 2.0, "a0": 0.05, "c": 0.1, "eta": 0.1, "zeta": 0.1} | change))

@@ -47,20 +47,20 @@ def test_integration_of_the_flow_follows_it_and_closes(motion):
 
 
 def test_integration_of_the_equation_of_motion_repeats_it(motion):
-    theta, beta = 1.36, motion.phase[0]
+    nu, beta = 1.36, motion.phase[0]
     z = motion.amplitude[0] * np.exp(1j * beta)
     rate = (motion.tilt_rate[0] + 1j * motion.amplitude[0] * motion.rolling_rate[0]) * np.exp(1j * beta)
 
     def rates(tau, y):  # (1)
         tilt = complex(y[0], y[1])
-        acceleration = tilt - C * tilt / abs(tilt) - ETA * complex(y[2], y[3]) - A0 * np.exp(1j * theta * tau)
+        acceleration = tilt - C * tilt / abs(tilt) - ETA * complex(y[2], y[3]) - A0 * np.exp(1j * nu * tau)
         return [y[2], y[3], acceleration.real, acceleration.imag]
 
     run = solve_ivp(
         rates, [0.0, motion.period], [z.real, z.imag, rate.real, rate.imag], "DOP853", rtol=1e-12, atol=1e-14
     )
     end = complex(run.y[0, -1], run.y[1, -1])
-    assert end == pytest.approx(z * np.exp(1j * theta * motion.period), abs=1e-10)
+    assert end == pytest.approx(z * np.exp(1j * nu * motion.period), abs=1e-10)
 
 
 def test_multipliers_are_those_of_the_variational_equation(motion):
@@ -76,9 +76,9 @@ def test_multipliers_are_those_of_the_variational_equation(motion):
         assert np.abs(expected - multiplier).min() < 1e-7
 
 
-@pytest.mark.parametrize("theta", [1.39, 1.36, 1.33])
-def test_one_multiplier_is_one_and_their_product_is_that_of_liouville(theta):
-    motion = modulated_rolling(theta, A0, c=C, eta=ETA, points=61)
+@pytest.mark.parametrize("nu", [1.39, 1.36, 1.33])
+def test_one_multiplier_is_one_and_their_product_is_that_of_liouville(nu):
+    motion = modulated_rolling(nu, A0, c=C, eta=ETA, points=61)
     assert motion.stable
     assert np.abs(motion.multipliers - 1.0).min() < 1e-8
     assert np.prod(motion.multipliers) == pytest.approx(np.exp(-2.0 * ETA * motion.period), rel=1e-9)
@@ -89,7 +89,7 @@ def test_published_range_of_the_tilt(motion):
 
 
 def test_the_modulation_doubles_its_period_near_1_322():
-    above, below = (modulated_rolling(theta, A0, c=C, eta=ETA, points=61) for theta in (1.3234, 1.3214))
+    above, below = (modulated_rolling(nu, A0, c=C, eta=ETA, points=61) for nu in (1.3234, 1.3214))
     assert above.stable
     assert not below.stable
     assert below.multipliers[0].real < -1.0
@@ -107,7 +107,7 @@ def test_it_grows_out_of_steady_rolling_with_the_root_of_the_distance():
 
 
 @pytest.mark.parametrize(
-    ("theta", "a0", "eta", "points", "reason"),
+    ("nu", "a0", "eta", "points", "reason"),
     [
         (1.5, A0, ETA, 31, "below the critical frequency"),
         (1.0, A0, 0.0, 31, "below the critical frequency"),
@@ -115,8 +115,8 @@ def test_it_grows_out_of_steady_rolling_with_the_root_of_the_distance():
         (1.25, A0, ETA, 31, "do not resolve"),
     ],
 )
-def test_what_is_not_found_says_why(theta, a0, eta, points, reason):
-    motion = modulated_rolling(theta, a0, c=C, eta=eta, points=points)
+def test_what_is_not_found_says_why(nu, a0, eta, points, reason):
+    motion = modulated_rolling(nu, a0, c=C, eta=eta, points=points)
     assert not motion.found
     assert not motion.stable
     assert reason in motion.reason
@@ -150,5 +150,5 @@ def test_the_doubled_modulation_is_what_is_seen_at_1_318():
 def test_user_mistakes_are_named():
     with pytest.raises(ParameterError, match="points must be odd and at least 15, got 64"):
         modulated_rolling(1.36, A0, c=C, eta=ETA, points=64)
-    with pytest.raises(ParameterError, match="theta must be positive"):
+    with pytest.raises(ParameterError, match="nu must be positive"):
         modulated_rolling(-1.0, A0, c=C, eta=ETA)

@@ -54,10 +54,10 @@ class Body:
         return torque + np.cross(above, force), force
 
 
-def equations(kind, state, theta, a0, eta, zeta, c, shape):
+def equations(kind, state, nu, a0, eta, zeta, c, shape):
     if kind != "wobbling":
-        return full_rolling_rates(state, theta, a0, c=c, eta=eta, zeta=zeta, **shape)
-    rates = wobbling_rates(state[:4], theta, a0, c=c, eta=eta, **shape)
+        return full_rolling_rates(state, nu, a0, c=c, eta=eta, zeta=zeta, **shape)
+    rates = wobbling_rates(state[:4], nu, a0, c=c, eta=eta, **shape)
     mu, omega, tilt = state[:3]
     return np.append(rates, -rates[1] * (1.0 - math.cos(tilt)) - omega * math.sin(tilt) * mu)
 
@@ -68,15 +68,15 @@ def test_the_equations_are_the_laws_of_newton_and_euler(kind):
     for _ in range(40):
         c, shape = random_body(rng)
         eta, zeta = rng.uniform(0.0, 1.0, 2)
-        theta, a0, azimuth = rng.uniform(0.3, 4.0), rng.uniform(0.0, 2.0), rng.uniform(-3.0, 3.0)
+        nu, a0, azimuth = rng.uniform(0.3, 4.0), rng.uniform(0.0, 2.0), rng.uniform(-3.0, 3.0)
         mu, omega, tilt, psi, spin = rng.normal(), 2.0 * rng.normal(), rng.uniform(0.1, 1.4), azimuth, rng.normal()
         if kind == "held":
             zeta, spin = math.inf, -omega * math.sin(tilt) * math.tan(tilt)
         if kind == "wobbling":
             spin = -omega * (1.0 - math.cos(tilt))
         state = np.array([mu, omega, tilt, psi, spin])
-        rates = equations(kind, state, theta, a0, eta, zeta, c, shape)
-        np.testing.assert_allclose(rates[2:4], [mu, omega - theta], rtol=1e-15)
+        rates = equations(kind, state, nu, a0, eta, zeta, c, shape)
+        np.testing.assert_allclose(rates[2:4], [mu, omega - nu], rtol=1e-15)
         # The base acceleration stands at azimuth − ψ = 0 at this instant.
         body = Body(c, **shape)
         couple, force = body.couple(state, rates, azimuth, a0 * np.array([1.0, 0.0, 0.0]))
@@ -95,18 +95,18 @@ def test_the_equations_are_the_laws_of_newton_and_euler(kind):
 
 @pytest.mark.parametrize("kind", ["rolling", "wobbling"])
 def test_friction_and_moment_of_steady_rolling_are_the_forces_of_the_contact(kind):
-    c, theta, a0, eta = 0.2, 1.7, 0.11, 0.3
+    c, nu, a0, eta = 0.2, 1.7, 0.11, 0.3
     shape = {"inertia_ratio": 0.7, "axial_ratio": 0.4}
     if kind == "rolling":
-        found = theory.full_rolling(theta, a0, c=c, eta=eta, zeta=0.4, **shape)
+        found = theory.full_rolling(nu, a0, c=c, eta=eta, zeta=0.4, **shape)
     else:
-        found = theory.wobbling_rolling(theta, a0, c=c, eta=eta, **shape)
+        found = theory.wobbling_rolling(nu, a0, c=c, eta=eta, **shape)
     body = Body(c, **shape)
     assert found.exists.sum() == 2
     for i in range(2):
         psi = found.phase[i]
-        state = np.array([0.0, theta, found.amplitude[i], psi, found.spin[i]])
-        couple, force = body.couple(state, np.array([0.0, 0.0, 0.0, theta, 0.0]), psi, a0 * np.array([1.0, 0.0, 0.0]))
+        state = np.array([0.0, nu, found.amplitude[i], psi, found.spin[i]])
+        couple, force = body.couple(state, np.array([0.0, 0.0, 0.0, nu, 0.0]), psi, a0 * np.array([1.0, 0.0, 0.0]))
         assert math.hypot(*force[:2]) / force[2] == pytest.approx(found.friction_demand[i], rel=1e-8)
         _, _, e3 = body.axes(found.amplitude[i], psi)
         # The viscous couple has no part about e3; the moment in question lies along Z, or along e3 + Z.
@@ -121,14 +121,14 @@ def test_friction_and_moment_of_steady_rolling_are_the_forces_of_the_contact(kin
         ({"axial_ratio": 70.0}, "axial_ratio must be at most 66.66"),
         ({"c": 0.0}, "c must be positive"),
         ({"eta": -0.1}, "eta"),
-        ({"theta": 0.0}, "theta"),
+        ({"nu": 0.0}, "nu"),
         ({"a0": -1.0}, "a0"),
     ],
 )
 @pytest.mark.parametrize("solve", [theory.full_rolling, theory.wobbling_rolling])
 def test_bad_numbers_are_refused_by_name(solve, change, told):
     with pytest.raises(ParameterError, match=told):
-        solve(**({"theta": 2.0, "a0": 0.05, "c": 0.1, "eta": 0.1} | rest_of(solve) | change))
+        solve(**({"nu": 2.0, "a0": 0.05, "c": 0.1, "eta": 0.1} | rest_of(solve) | change))
 
 
 def rest_of(solve):

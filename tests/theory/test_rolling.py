@@ -11,20 +11,20 @@ from stylobate.theory.rolling import rolling_gap
 from stylobate.theory.rotating_frame import rotating_frame_jacobian, rotating_frame_rates
 
 C = 0.1
-THETA = np.linspace(0.05, 10.0, 300)[:, np.newaxis, np.newaxis]
+NU = np.linspace(0.05, 10.0, 300)[:, np.newaxis, np.newaxis]
 A0 = np.array([1e-4, 0.004, 0.02, 0.065, 0.0999999, 0.1, 0.2])[:, np.newaxis]
 ETA = np.array([0.0, 0.1, 0.5, 2.0])
-ROLLING = steady_rolling(THETA, A0, c=C, eta=ETA)
+ROLLING = steady_rolling(NU, A0, c=C, eta=ETA)
 BRANCHES = pytest.mark.parametrize("branch", [ROLLING.upper, ROLLING.lower], ids=["upper", "lower"])
 
 
-def states(branch, theta=THETA):
-    return np.stack(np.broadcast_arrays(0.0 * branch.amplitude, theta, branch.amplitude, branch.phase))
+def states(branch, nu=NU):
+    return np.stack(np.broadcast_arrays(0.0 * branch.amplitude, nu, branch.amplitude, branch.phase))
 
 
 @BRANCHES
 def test_solves_the_equations_to_rounding(branch):
-    rates = rotating_frame_rates(states(branch), THETA, A0, c=C, eta=ETA)
+    rates = rotating_frame_rates(states(branch), NU, A0, c=C, eta=ETA)
     assert np.nanmax(np.abs(rates[0])) < 1e-14
     assert np.nanmax(np.abs(rates[1] * branch.amplitude)) < 1e-14
 
@@ -66,8 +66,8 @@ def test_lower_branch_is_a_saddle_with_one_unstable_direction():
 
 def test_q_and_p0_give_the_characteristic_polynomial():
     upper = ROLLING.upper
-    x, k = C / np.where(upper.exists, upper.amplitude, 1.0), 1.0 + THETA**2
-    q, p0 = 2.0 * THETA**2 - 2.0 + x, k * (k - x) + (ETA * THETA) ** 2
+    x, k = C / np.where(upper.exists, upper.amplitude, 1.0), 1.0 + NU**2
+    q, p0 = 2.0 * NU**2 - 2.0 + x, k * (k - x) + (ETA * NU) ** 2
     coefficients = np.stack(np.broadcast_arrays(1.0, 2.0 * ETA, ETA**2 + q, ETA * q, p0), axis=-1)
     for place in zip(*np.nonzero(upper.exists), strict=True):
         expected = np.poly(upper.eigenvalues[place]).real
@@ -75,44 +75,44 @@ def test_q_and_p0_give_the_characteristic_polynomial():
 
 
 def symbols():
-    return sp.symbols("s theta eta A", positive=True)
+    return sp.symbols("s nu eta A", positive=True)
 
 
 def test_characteristic_polynomial_is_a_quadratic_in_s_squared_plus_eta_s():
-    s, theta, eta, tilt = symbols()
+    s, nu, eta, tilt = symbols()
     omega, mu, psi, a0, c = sp.symbols("omega mu psi a0 c")
     rates = sp.Matrix(
         [
             tilt * (1 + omega**2) - c - eta * mu - a0 * sp.cos(psi),
             -2 * mu * omega / tilt - eta * omega + a0 / tilt * sp.sin(psi),
             mu,
-            omega - theta,
+            omega - nu,
         ]
     )
-    steady = {a0 * sp.cos(psi): tilt * (1 + theta**2) - c, a0 * sp.sin(psi): eta * theta * tilt}
-    jacobian = rates.jacobian([mu, omega, tilt, psi]).subs({mu: 0, omega: theta}).subs(steady)
-    x, u, k = c / tilt, s**2 + eta * s, 1 + theta**2
-    q, p0 = 2 * theta**2 - 2 + x, k * (k - x) + eta**2 * theta**2
+    steady = {a0 * sp.cos(psi): tilt * (1 + nu**2) - c, a0 * sp.sin(psi): eta * nu * tilt}
+    jacobian = rates.jacobian([mu, omega, tilt, psi]).subs({mu: 0, omega: nu}).subs(steady)
+    x, u, k = c / tilt, s**2 + eta * s, 1 + nu**2
+    q, p0 = 2 * nu**2 - 2 + x, k * (k - x) + eta**2 * nu**2
     assert sp.simplify((s * sp.eye(4) - jacobian).det() - (u**2 + q * u + p0)) == 0
 
 
 def test_hopf_condition_is_a_quadratic_in_the_slenderness_ratio():
-    _, theta, eta, x = symbols()
-    k, w = 1 + theta**2, 4 * theta**2 + eta**2
-    q, p0 = 2 * theta**2 - 2 + x, k * (k - x) + eta**2 * theta**2
+    _, nu, eta, x = symbols()
+    k, w = 1 + nu**2, 4 * nu**2 + eta**2
+    q, p0 = 2 * nu**2 - 2 + x, k * (k - x) + eta**2 * nu**2
     assert sp.expand(q**2 + 2 * eta**2 * q - 4 * p0 - (x**2 + 2 * w * x - 4 * w)) == 0
     critical = 4 / (1 + sp.sqrt(1 + 4 / w))
     assert sp.simplify((x**2 + 2 * w * x - 4 * w).subs(x, critical)) == 0
 
 
 def test_branches_lie_either_side_of_the_backbone_and_become_it_without_base_motion_and_friction():
-    theta = np.linspace(0.1, 5.0, 50)
-    free = steady_rolling(theta, 0.0, c=C, eta=0.0)
-    assert free.upper.amplitude == pytest.approx(rolling_backbone(theta, C), rel=1e-15)
-    assert free.lower.amplitude == pytest.approx(rolling_backbone(theta, C), rel=1e-15)
-    driven = steady_rolling(theta, 0.05, c=C, eta=0.0)
-    assert (driven.upper.amplitude > rolling_backbone(theta, C)).all()
-    assert (driven.lower.amplitude < rolling_backbone(theta, C)).all()
+    nu = np.linspace(0.1, 5.0, 50)
+    free = steady_rolling(nu, 0.0, c=C, eta=0.0)
+    assert free.upper.amplitude == pytest.approx(rolling_backbone(nu, C), rel=1e-15)
+    assert free.lower.amplitude == pytest.approx(rolling_backbone(nu, C), rel=1e-15)
+    driven = steady_rolling(nu, 0.05, c=C, eta=0.0)
+    assert (driven.upper.amplitude > rolling_backbone(nu, C)).all()
+    assert (driven.lower.amplitude < rolling_backbone(nu, C)).all()
     assert (driven.upper.phase == 0.0).all()
     assert (driven.lower.phase == np.pi).all()
 
@@ -145,14 +145,14 @@ def test_gap_closes_at_the_stated_amplitude():
     assert [float(end) for end in rolling_gap(0.0, c=C, eta=0.3)] == [0.0, np.inf]
 
 
-@pytest.mark.parametrize(("theta", "a0"), [(1.5, 0.065), (3.0, 0.065), (1.2, 0.02)])
-def test_motion_started_on_the_stable_branch_stays_on_it(theta, a0):
-    rolling = steady_rolling(theta, a0, c=C, eta=0.1).upper
+@pytest.mark.parametrize(("nu", "a0"), [(1.5, 0.065), (3.0, 0.065), (1.2, 0.02)])
+def test_motion_started_on_the_stable_branch_stays_on_it(nu, a0):
+    rolling = steady_rolling(nu, a0, c=C, eta=0.1).upper
     assert rolling.stable
-    start = [0.0, theta, float(rolling.amplitude), float(rolling.phase)]
+    start = [0.0, nu, float(rolling.amplitude), float(rolling.phase)]
     run = solve_ivp(
-        lambda _, y: rotating_frame_rates(y, theta, a0, c=C, eta=0.1),
-        [0.0, 50.0 * 2.0 * np.pi / theta],
+        lambda _, y: rotating_frame_rates(y, nu, a0, c=C, eta=0.1),
+        [0.0, 50.0 * 2.0 * np.pi / nu],
         start,
         "DOP853",
         rtol=1e-12,
@@ -162,13 +162,13 @@ def test_motion_started_on_the_stable_branch_stays_on_it(theta, a0):
 
 
 def test_the_rotating_frame_is_the_equation_of_motion():
-    theta, a0, eta = 1.3, 0.07, 0.2
+    nu, a0, eta = 1.3, 0.07, 0.2
     mu, omega, tilt, psi = 0.03, 0.8, 0.05, 0.4
     beta = psi  # at τ = 0
     lean, across = np.exp(1j * beta), 1j * np.exp(1j * beta)
     z, velocity = tilt * lean, mu * lean + tilt * omega * across
     acceleration = z - C * lean - eta * velocity - a0  # (1)
-    rates = rotating_frame_rates([mu, omega, tilt, psi], theta, a0, c=C, eta=eta)
+    rates = rotating_frame_rates([mu, omega, tilt, psi], nu, a0, c=C, eta=eta)
     assert rates[0] - tilt * omega**2 == pytest.approx((acceleration / lean).real, rel=1e-13)
     assert tilt * rates[1] + 2.0 * mu * omega == pytest.approx((acceleration / lean).imag, rel=1e-13)
 
@@ -186,7 +186,7 @@ def test_jacobian_is_the_derivative_of_the_rates():
 
 
 def test_user_mistakes_are_named():
-    with pytest.raises(ParameterError, match=r"theta must be positive, got 0.0"):
+    with pytest.raises(ParameterError, match=r"nu must be positive, got 0.0"):
         steady_rolling([1.0, 0.0], 0.1, c=C, eta=0.1)
     with pytest.raises(ParameterError, match=r"a0 must be zero or positive, got -0.1"):
         steady_rolling(1.0, -0.1, c=C, eta=0.1)

@@ -24,7 +24,7 @@ BODIES = [
     {"c": 0.1, "inertia_ratio": 0.75, "axial_ratio": 0.5},
     {"c": 0.3, "inertia_ratio": 0.5, "axial_ratio": 0.9},
 ]
-# θ, a0, and the frictions: points and patches, both signs of T_d, with and without ζ and η
+# ν, a0, and the frictions: points and patches, both signs of T_d, with and without ζ and η
 CASES = [
     (3.0, 0.065, {"mu": 0.08, "eta": 0.1, "zeta": 0.1}),
     (3.0, 0.5, {"mu": 0.05, "eta": 0.1, "zeta": 2.0}),
@@ -34,11 +34,11 @@ CASES = [
 ]
 
 
-def states_of(found, theta):
+def states_of(found, nu):
     some = found.exists
     each = [found.amplitude, found.phase, found.spin, found.slip_along, found.slip_across]
     tilt, phase, spin, along, across = (part[some] for part in each)
-    return np.array([np.zeros_like(tilt), np.full_like(tilt, theta), tilt, phase, spin, along, across])
+    return np.array([np.zeros_like(tilt), np.full_like(tilt, nu), tilt, phase, spin, along, across])
 
 
 @dataclass(frozen=True)
@@ -84,10 +84,10 @@ def touching_state(body, state):
 def test_the_rates_are_those_of_newton_and_euler_at_any_state(body, patch):
     rng = np.random.default_rng(8)
     frictions = {"mu": 0.15, "eta": 0.2, "zeta": 0.4, "patch": patch}
-    other, theta, a0 = made(frictions, body), 1.7, 0.2
+    other, nu, a0 = made(frictions, body), 1.7, 0.2
     for _ in range(30):
         state = rng.uniform([-0.3, -2.0, 0.05, -3.0, -1.0, -0.2, -0.2], [0.3, 2.0, 1.0, 3.0, 1.0, 0.2, 0.2])
-        found = slipping_rolling_rates(state, theta, a0, **frictions, **body)
+        found = slipping_rolling_rates(state, nu, a0, **frictions, **body)
         start = touching_state(other, state)
         at = other.touch(start, a0 * np.array([1.0, 0.0, 0.0]))
         load = other.slipping(start, at)
@@ -108,38 +108,38 @@ def test_the_rates_are_those_of_newton_and_euler_at_any_state(body, patch):
 
 
 @pytest.mark.parametrize("body", BODIES)
-@pytest.mark.parametrize(("theta", "a0", "frictions"), CASES)
-def test_the_body_turns_as_a_whole_with_the_base(theta, a0, frictions, body):
+@pytest.mark.parametrize(("nu", "a0", "frictions"), CASES)
+def test_the_body_turns_as_a_whole_with_the_base(nu, a0, frictions, body):
     a0, frictions = a0 * body["c"] / 0.1, frictions | {"mu": frictions["mu"] * body["c"] / 0.1}
-    found = slipping_rolling(theta, a0, **frictions, **body)
+    found = slipping_rolling(nu, a0, **frictions, **body)
     other = made(frictions, body)
     assert body is not BODIES[0] or found.exists.any()
-    for state, power in zip(states_of(found, theta).T, found.slip_power[found.exists], strict=True):
+    for state, power in zip(states_of(found, nu).T, found.slip_power[found.exists], strict=True):
         start = touching_state(other, state)
         at = other.touch(start, (a0, 0.0, 0.0))
         load = other.slipping(start, at)
         rates = other.rates_touching(start, at, load)
         for part in (VELOCITY, TURNING):
-            np.testing.assert_allclose(rates[part], theta * np.cross(UP, start[part]), rtol=0.0, atol=1e-11)
+            np.testing.assert_allclose(rates[part], nu * np.cross(UP, start[part]), rtol=0.0, atol=1e-11)
         assert load.force[2] == pytest.approx(1.0, rel=1e-12)  # the weight
         heat = -(load.force @ start[VELOCITY] + load.couple @ start[TURNING]) / other.column.mass_height
         assert power == pytest.approx(heat, rel=1e-9)
         assert power > 0.0
 
 
-@pytest.mark.parametrize(("theta", "a0", "frictions"), CASES)
-def test_a_search_from_many_starts_finds_no_other(theta, a0, frictions):
+@pytest.mark.parametrize(("nu", "a0", "frictions"), CASES)
+def test_a_search_from_many_starts_finds_no_other(nu, a0, frictions):
     rng = np.random.default_rng(3)
-    found = slipping_rolling(theta, a0, **frictions, **BODIES[0])
-    known = states_of(found, theta)[2:].T
+    found = slipping_rolling(nu, a0, **frictions, **BODIES[0])
+    known = states_of(found, nu)[2:].T
     if "spin" in frictions:  # any spin will do
         known[:, 2] = frictions["spin"]
 
     def residual(unknown):
-        state = np.concatenate([[0.0, theta], unknown])
+        state = np.concatenate([[0.0, nu], unknown])
         if state[2] < 1e-6 or state[2] > 1.5 or max(abs(state[5]), abs(state[6])) < 1e-12:
             return np.full(5, 1e3)
-        rates = slipping_rolling_rates(state, theta, a0, **{k: v for k, v in frictions.items() if k != "spin"},
+        rates = slipping_rolling_rates(state, nu, a0, **{k: v for k, v in frictions.items() if k != "spin"},
                                        **BODIES[0])[[0, 1, 4, 5, 6]]  # fmt: skip
         if "spin" in frictions:
             rates[2] = state[4] - frictions["spin"]
@@ -162,14 +162,14 @@ def test_a_search_from_many_starts_finds_no_other(theta, a0, frictions):
 
 
 @pytest.mark.parametrize(
-    ("theta", "a0", "zeta", "side"),
+    ("nu", "a0", "zeta", "side"),
     [(3.0, 0.065, 0.1, 1.0), (3.0, 0.065, math.inf, 1.0), (4.0, 0.5, math.inf, -1.0), (6.0, 1.0, 0.1, -1.0)],
 )
-def test_it_leaves_rolling_without_slip_at_the_friction_that_needs(theta, a0, zeta, side):
-    held = full_rolling(theta, a0, **PAPER, zeta=zeta)
+def test_it_leaves_rolling_without_slip_at_the_friction_that_needs(nu, a0, zeta, side):
+    held = full_rolling(nu, a0, **PAPER, zeta=zeta)
     upper = int(held.exists.sum()) - 1
     excess = np.array([1e-5, 1e-6, 1e-7])
-    found = slipping_rolling(theta, a0, **PAPER, zeta=zeta, mu=held.friction_demand[upper] * (1.0 + side * excess))
+    found = slipping_rolling(nu, a0, **PAPER, zeta=zeta, mu=held.friction_demand[upper] * (1.0 + side * excess))
     branch = found.exists.sum(axis=-1) - 1  # that of the largest tilt
     rows = np.arange(3)
     speed = np.hypot(found.slip_along, found.slip_across)[rows, branch]
@@ -183,7 +183,7 @@ def test_it_leaves_rolling_without_slip_at_the_friction_that_needs(theta, a0, ze
         np.testing.assert_allclose(small[:-1] / small[1:], 10.0, rtol=0.05)
     # The contact point gives way along the lean, against the force it bears there.
     assert np.all(np.sign(found.slip_along[rows, branch]) == side)
-    beyond = slipping_rolling(theta, a0, **PAPER, zeta=zeta, mu=held.friction_demand[upper] * (1.0 - side * 1e-5))
+    beyond = slipping_rolling(nu, a0, **PAPER, zeta=zeta, mu=held.friction_demand[upper] * (1.0 - side * 1e-5))
     near = np.abs(beyond.amplitude / held.amplitude[upper] - 1.0) < 1e-3
     assert not near.any()
     # The direction of slip follows at once: the rate of that goes as 1/|v|.
@@ -209,9 +209,9 @@ def test_the_saddle_ends_on_the_lower_branch():
     assert not found.stable.any()
 
 
-@pytest.mark.parametrize("theta", [1.5, 3.0])
-def test_a_patch_sticks_where_it_can_bear_rolling_without_any_twist(theta):
-    held = full_rolling(theta, 0.065, **PAPER, zeta=math.inf)
+@pytest.mark.parametrize("nu", [1.5, 3.0])
+def test_a_patch_sticks_where_it_can_bear_rolling_without_any_twist(nu):
+    held = full_rolling(nu, 0.065, **PAPER, zeta=math.inf)
     drag, moment, patch = held.friction_demand[-1], held.friction_moment[-1] * 0.1, 0.1  # over m g, m g h
 
     def reserve(mu):  # the bound of what friction on a patch can be
@@ -219,14 +219,14 @@ def test_a_patch_sticks_where_it_can_bear_rolling_without_any_twist(theta):
         return 1.0 - force - couple * (1.0 + ((SLOWED * EASED) ** EXPONENT - 1.0) * force)
 
     mu = brentq(reserve, drag, 10.0, xtol=1e-15)
-    found = slipping_rolling(theta, 0.065, **PAPER, zeta=0.0, patch=patch, mu=mu * (1.0 - np.array([1e-3, 1e-4])))
+    found = slipping_rolling(nu, 0.065, **PAPER, zeta=0.0, patch=patch, mu=mu * (1.0 - np.array([1e-3, 1e-4])))
     # Friction of a patch falls with the cube of the ratio of slip to turn, not with slip: all is linear in 1 − μ/μ*.
     for name in ("amplitude", "phase"):
         off = np.abs(getattr(found, name)[:, -1] - getattr(held, name)[-1])
         assert off[0] / off[1] == pytest.approx(10.0, rel=0.05)
     speed = np.hypot(found.slip_along, found.slip_across)[:, -1]
     assert speed[0] / speed[1] == pytest.approx(10.0, rel=0.05)
-    assert not slipping_rolling(theta, 0.065, **PAPER, zeta=0.0, patch=patch, mu=mu * 1.001).exists.any()
+    assert not slipping_rolling(nu, 0.065, **PAPER, zeta=0.0, patch=patch, mu=mu * 1.001).exists.any()
 
 
 def test_a_small_patch_is_the_limit_of_a_point():
@@ -250,23 +250,23 @@ def test_the_base_acceleration_does_not_move_the_tilt():
 
 @pytest.mark.parametrize("kappa", [0.75, 0.5])
 def test_under_hard_shaking_it_is_the_paper_s_column_about_its_centre_of_mass(kappa):
-    c, mu, eta, theta = np.array([2e-2, 1e-2, 5e-3]), 0.6, 0.1, 3.0
+    c, mu, eta, nu = np.array([2e-2, 1e-2, 5e-3]), 0.6, 0.1, 3.0
     faster = math.sqrt(1.0 - kappa)
-    found = slipping_rolling(theta, 1e5, c=c, eta=eta, zeta=math.inf, mu=mu * c, inertia_ratio=kappa)
-    paper = steady_rolling(theta * faster, mu * c, c=c, eta=eta / faster)
+    found = slipping_rolling(nu, 1e5, c=c, eta=eta, zeta=math.inf, mu=mu * c, inertia_ratio=kappa)
+    paper = steady_rolling(nu * faster, mu * c, c=c, eta=eta / faster)
     for branch, known in enumerate([paper.lower, paper.upper]):
         off = np.abs(found.amplitude[:, branch] - known.amplitude) / c
         np.testing.assert_allclose(np.log2(off[:-1] / off[1:]), 2.0, atol=0.05)
         np.testing.assert_array_equal(found.stable[:, branch], known.stable)
-        # The other eigenvalues are that of the spin, held, and of the drift of the centre of mass, ±iθ.
-        expected = np.concatenate([known.eigenvalues[-1] / faster, [1j * theta, -1j * theta]])
+        # The other eigenvalues are that of the spin, held, and of the drift of the centre of mass, ±iν.
+        expected = np.concatenate([known.eigenvalues[-1] / faster, [1j * nu, -1j * nu]])
         values = found.eigenvalues[-1, branch]
         values = values[np.isfinite(values)]
         away = np.abs(values[:, np.newaxis] - expected)
         assert max(away.min(axis=0).max(), away.min(axis=1).max()) < 1e-3
     low, high = (critical_frequency(mu * c, c=c, eta=eta / faster) / faster * (1.0 + x) for x in (-0.01, 0.01))
-    for theta_near, stable in ((low, False), (high, True)):
-        near = slipping_rolling(theta_near, 1e5, c=c, eta=eta, zeta=math.inf, mu=mu * c, inertia_ratio=kappa)
+    for nu_near, stable in ((low, False), (high, True)):
+        near = slipping_rolling(nu_near, 1e5, c=c, eta=eta, zeta=math.inf, mu=mu * c, inertia_ratio=kappa)
         assert np.all(near.stable.any(axis=-1) == stable)
 
 
@@ -274,15 +274,15 @@ def test_under_hard_shaking_it_is_the_paper_s_column_about_its_centre_of_mass(ka
 def test_without_other_friction_stability_begins_at_half_the_tipping_angle(a, m, kappa):
     c = 1e-3
     start = math.sqrt((1.0 + 2.0 * m) / (1.0 - kappa))
-    theta = start * np.array([0.999, 1.001])  # off by a part of the order c² only
-    found = slipping_rolling(theta, a * c, c=c, eta=0.0, zeta=math.inf, mu=m * c, inertia_ratio=kappa)
+    nu = start * np.array([0.999, 1.001])  # off by a part of the order c² only
+    found = slipping_rolling(nu, a * c, c=c, eta=0.0, zeta=math.inf, mu=m * c, inertia_ratio=kappa)
     np.testing.assert_array_equal(found.stable.any(axis=-1), [False, True])
     np.testing.assert_allclose(found.amplitude.max(axis=-1, initial=0.0, where=found.exists) / c, 0.5, rtol=2e-3)
 
 
 def test_a_spin_that_nothing_decides_is_no_matter_of_stability():
-    theta = np.linspace(3.0, 6.0, 50)
-    found = slipping_rolling(theta, 0.5, c=0.1, eta=0.0, zeta=0.0, spin=0.1, mu=0.02)
+    nu = np.linspace(3.0, 6.0, 50)
+    found = slipping_rolling(nu, 0.5, c=0.1, eta=0.0, zeta=0.0, spin=0.1, mu=0.02)
     np.testing.assert_allclose(found.spin, 0.1, rtol=1e-14)
     sizes = np.sort(np.abs(found.eigenvalues[:, -1]), axis=-1)
     assert sizes[:, 0].max() < 1e-9
@@ -314,35 +314,35 @@ def test_slip_saves_a_column_that_would_not_roll_stably():
 
 
 @pytest.mark.parametrize(
-    ("theta", "a0", "frictions"),
+    ("nu", "a0", "frictions"),
     [
         (3.0, 0.065, {"mu": 0.08, "eta": 0.1, "zeta": 0.1}),
         (3.0, 1.0, {"mu": 0.02, "eta": 0.1, "zeta": 0.1}),
         (2.0, 0.065, {"mu": 0.11, "eta": 0.1, "zeta": 0.0, "patch": 0.03}),
     ],
 )
-def test_the_body_leaves_or_comes_back_as_the_eigenvalues_say(theta, a0, frictions):
+def test_the_body_leaves_or_comes_back_as_the_eigenvalues_say(nu, a0, frictions):
     body = BODIES[0]
-    found, other = slipping_rolling(theta, a0, **frictions, **body), made(frictions, body)
-    at = states_of(found, theta)
+    found, other = slipping_rolling(nu, a0, **frictions, **body), made(frictions, body)
+    at = states_of(found, nu)
     for branch in range(at.shape[1]):
         values = found.eigenvalues[found.exists][branch]
         steady = at[:, branch]
         # All deviations of 1e-6, as the linear equations carry them on, after a time in which the fastest counts.
-        jacobian = _jacobian(steady, theta, a0, frictions | body)
+        jacobian = _jacobian(steady, nu, a0, frictions | body)
         after = 2.0 / max(values.real.max(), 0.5)
         kick = 1e-6 * steady[2] * np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
         expected = _propagated(jacobian, after) @ kick
-        ends = [_followed(other, state, theta, a0, after) for state in (steady + kick, steady - kick)]
+        ends = [_followed(other, state, nu, a0, after) for state in (steady + kick, steady - kick)]
         np.testing.assert_allclose(0.5 * (ends[0] - ends[1]), expected[2], rtol=1e-3, atol=1e-4 * kick[2])
         np.testing.assert_allclose(np.sort_complex(np.linalg.eigvals(jacobian)), np.sort_complex(values), rtol=1e-5,
                                    atol=1e-6 * np.abs(values).max())  # fmt: skip
 
 
-def _jacobian(state, theta, a0, numbers):
+def _jacobian(state, nu, a0, numbers):
     steps = 1e-5 * np.abs(state) + 1e-8
     ahead, behind = (
-        slipping_rolling_rates(state[:, np.newaxis] + sign * np.diag(steps), theta, a0, **numbers) for sign in (1, -1)
+        slipping_rolling_rates(state[:, np.newaxis] + sign * np.diag(steps), nu, a0, **numbers) for sign in (1, -1)
     )
     return (ahead - behind) / (2.0 * steps)
 
@@ -352,11 +352,11 @@ def _propagated(jacobian, time):
     return (vectors * np.exp(values * time) @ np.linalg.inv(vectors)).real
 
 
-def _followed(body, state, theta, a0, time):
+def _followed(body, state, nu, a0, time):
     """Return the tilt of the body after a time."""
 
     def rates(now, touching):
-        at = body.touch(touching, (a0 * math.cos(theta * now), a0 * math.sin(theta * now), 0.0))
+        at = body.touch(touching, (a0 * math.cos(nu * now), a0 * math.sin(nu * now), 0.0))
         return body.rates_touching(touching, at, body.slipping(touching, at))
 
     run = solve_ivp(rates, (0.0, time), touching_state(body, state), "LSODA", rtol=1e-12, atol=1e-14)
@@ -380,8 +380,8 @@ def test_the_friction_of_a_slender_column_is_off_by_the_order_of_c_squared(zeta)
 
 def test_rolling_without_slip_ends_at_a_frequency_in_closed_form():
     a0, c, kappa, mu = 0.065, 0.1, 0.75, 0.04
-    theta = math.sqrt((a0 + mu) / (kappa * (a0 + c) - a0 - mu))
-    needed = rolling_required_friction([theta, 1e6], a0, c=c, eta=0.0, inertia_ratio=kappa)
+    nu = math.sqrt((a0 + mu) / (kappa * (a0 + c) - a0 - mu))
+    needed = rolling_required_friction([nu, 1e6], a0, c=c, eta=0.0, inertia_ratio=kappa)
     np.testing.assert_allclose(needed.upper, [mu, kappa * c - (1.0 - kappa) * a0], rtol=1e-10)
     least = math.sqrt(a0 / (kappa * c - (1.0 - kappa) * a0))
     assert rolling_required_friction(least, a0, c=c, eta=0.0).upper == pytest.approx(0.0, abs=1e-15)
@@ -392,12 +392,12 @@ def test_rolling_without_slip_ends_at_a_frequency_in_closed_form():
 
 def test_many_at_once_are_as_one_by_one():
     rng = np.random.default_rng(2)
-    theta, mu = rng.uniform(1.0, 4.0, (3, 4)), rng.uniform(0.02, 0.12, (3, 4))
+    nu, mu = rng.uniform(1.0, 4.0, (3, 4)), rng.uniform(0.02, 0.12, (3, 4))
     patch, zeta = rng.choice([0.0, 0.05], (3, 4)), rng.choice([0.1, math.inf], (3, 4))
-    every = slipping_rolling(theta, 0.3, **PAPER, zeta=zeta, mu=mu, patch=patch)
+    every = slipping_rolling(nu, 0.3, **PAPER, zeta=zeta, mu=mu, patch=patch)
     assert every.eigenvalues.shape == (*every.exists.shape, 7)
     for cell in np.ndindex(3, 4):
-        one = slipping_rolling(theta[cell], 0.3, **PAPER, zeta=zeta[cell], mu=mu[cell], patch=patch[cell])
+        one = slipping_rolling(nu[cell], 0.3, **PAPER, zeta=zeta[cell], mu=mu[cell], patch=patch[cell])
         assert one.exists.sum() == every.exists[cell].sum()
         for name in ("amplitude", "slip_power", "stable"):
             chosen = getattr(every, name)[cell][every.exists[cell]]
@@ -419,4 +419,4 @@ def test_nothing_holds_the_spin_of_a_point_without_spin_damping():
 )
 def test_bad_numbers_are_refused_by_name(change, told):
     with pytest.raises(ParameterError, match=told):
-        slipping_rolling(**({"theta": 2.0, "a0": 0.05, "mu": 0.1, "c": 0.1, "eta": 0.1, "zeta": 0.1} | change))
+        slipping_rolling(**({"nu": 2.0, "a0": 0.05, "mu": 0.1, "c": 0.1, "eta": 0.1, "zeta": 0.1} | change))

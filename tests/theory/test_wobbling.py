@@ -10,19 +10,19 @@ from tests.theory.turning_frame import wobbling_rates
 from stylobate import theory
 
 
-@given(c=st.floats(0.01, 1.0), theta=st.floats(0.2, 8.0), a=st.floats(0.05, 5.0), eta=st.floats(0.0, 2.0))
-def test_the_branches_are_where_nothing_changes(c, theta, a, eta):
-    found = theory.wobbling_rolling(theta, a * c, c=c, eta=eta, inertia_ratio=0.6)
+@given(c=st.floats(0.01, 1.0), nu=st.floats(0.2, 8.0), a=st.floats(0.05, 5.0), eta=st.floats(0.0, 2.0))
+def test_the_branches_are_where_nothing_changes(c, nu, a, eta):
+    found = theory.wobbling_rolling(nu, a * c, c=c, eta=eta, inertia_ratio=0.6)
     for tilt, phase in zip(found.amplitude[found.exists], found.phase[found.exists], strict=True):
-        rates = wobbling_rates([0.0, theta, tilt, phase], theta, a * c, c=c, eta=eta, inertia_ratio=0.6)
-        assert np.abs(rates).max() <= 1e-12 * (1.0 + theta**2) * (1.0 + a) * (1.0 + eta) * (1.0 + c / tilt)
+        rates = wobbling_rates([0.0, nu, tilt, phase], nu, a * c, c=c, eta=eta, inertia_ratio=0.6)
+        assert np.abs(rates).max() <= 1e-12 * (1.0 + nu**2) * (1.0 + a) * (1.0 + eta) * (1.0 + c / tilt)
 
 
 def test_small_tilts_give_the_paper_s_column_with_an_error_of_order_c_squared():
-    theta, a, eta = 1.7, 0.65, 0.1
+    nu, a, eta = 1.7, 0.65, 0.1
     c = np.array([0.02, 0.01, 0.005])
-    wobbling = theory.wobbling_rolling(theta, a * c, c=c, eta=eta)
-    paper = theory.steady_rolling(theta, a * c, c=c, eta=eta)
+    wobbling = theory.wobbling_rolling(nu, a * c, c=c, eta=eta)
+    paper = theory.steady_rolling(nu, a * c, c=c, eta=eta)
     for branch, limit in ((0, paper.lower), (1, paper.upper)):
         off = np.abs(wobbling.amplitude[:, branch] / limit.amplitude - 1.0)
         assert np.all(np.abs(np.log2(off[:-1] / off[1:]) - 2.0) < 0.05)
@@ -31,7 +31,7 @@ def test_small_tilts_give_the_paper_s_column_with_an_error_of_order_c_squared():
         growth = wobbling.eigenvalues[:, branch].real.max(axis=-1) - limit.eigenvalues.real.max(axis=-1)
         assert np.all(np.abs(np.log2(growth[:-1] / growth[1:]) - 2.0) < 0.05)
         np.testing.assert_array_equal(wobbling.stable[:, branch], limit.stable)
-    np.testing.assert_allclose(wobbling.friction_moment[:, 1] / c, eta * theta * paper.upper.amplitude / c, rtol=1e-3)
+    np.testing.assert_allclose(wobbling.friction_moment[:, 1] / c, eta * nu * paper.upper.amplitude / c, rtol=1e-3)
 
 
 def test_rolling_becomes_stable_near_the_critical_frequency_of_the_paper():
@@ -68,15 +68,13 @@ def test_free_wobbling_conserves_its_energy_and_its_moment_of_momentum():
 
 
 def test_it_settles_on_the_stable_branch():
-    theta, a0, at = 1.6, 0.065, {"c": 0.1, "eta": 0.1}
-    found = theory.wobbling_rolling(theta, a0, **at)
+    nu, a0, at = 1.6, 0.065, {"c": 0.1, "eta": 0.1}
+    found = theory.wobbling_rolling(nu, a0, **at)
     slowest = found.eigenvalues[1].real.max()
     assert slowest < 0.0
-    start = [0.0, theta, 1.02 * found.amplitude[1], found.phase[1]]
+    start = [0.0, nu, 1.02 * found.amplitude[1], found.phase[1]]
     span = np.log(1e-6) / slowest
-    run = solve_ivp(
-        lambda _, x: wobbling_rates(x, theta, a0, **at), (0.0, span), start, "DOP853", rtol=1e-10, atol=1e-12
-    )
+    run = solve_ivp(lambda _, x: wobbling_rates(x, nu, a0, **at), (0.0, span), start, "DOP853", rtol=1e-10, atol=1e-12)
     np.testing.assert_allclose(run.y[2:, -1], [found.amplitude[1], found.phase[1]], atol=1e-6)
 
 

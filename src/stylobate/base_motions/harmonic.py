@@ -92,7 +92,7 @@ class Harmonic(BaseMotion):
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
-        """Return a motion on an ellipse: amplitudes (a1, a2) [m/s²], `phase` φ0 of the second axis to the first."""
+        """Return a motion on an ellipse: amplitudes (a1, a2) [m/s²], `phase` φ2 of the second axis to the first."""
         a1, a2 = amplitude
         return cls(
             amplitude=(a1, a2, 0.0),

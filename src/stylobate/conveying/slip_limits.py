@@ -114,15 +114,15 @@ def slipping_boundary(
     case = _Case.of(model, motion)
     friction = _rising_frictions(friction_coefficient)
     frequency = require_rising_frequencies(angular_frequency)
-    theta = frequency * model.time_scale
-    held, slipping = case.held(theta), case.slipping(theta, friction[:, np.newaxis])
+    nu = frequency * model.time_scale
+    held, slipping = case.held(nu), case.slipping(nu, friction[:, np.newaxis])
     slips = held.friction_demand > friction[:, np.newaxis, np.newaxis]
     sticks = held.exists & ~slips
     rolls, slides = _any(sticks & held.stable), _any(slipping.stable)
     exists = _any(sticks) | _any(slipping.exists)
     ends = {
-        **_ends("rolling", rolls, theta, friction, case.rolls),
-        **_ends("slipping", slides, theta, friction, case.slips),
+        **_ends("rolling", rolls, nu, friction, case.rolls),
+        **_ends("slipping", slides, nu, friction, case.slips),
     }
     flags = flag_attributes("steady rolling", [kind.name for kind in RollingRegime])
     return xr.Dataset(
@@ -198,20 +198,20 @@ class _Case:
             },
         )
 
-    def held(self, theta: Floats) -> theory.FiniteTiltRolling:
-        return theory.full_rolling(theta, self.a0, **self.column)
+    def held(self, nu: Floats) -> theory.FiniteTiltRolling:
+        return theory.full_rolling(nu, self.a0, **self.column)
 
-    def slipping(self, theta: Floats, mu: Floats) -> theory.SlippingRolling:
-        return theory.slipping_rolling(theta, self.a0, mu=mu, **self.column)
+    def slipping(self, nu: Floats, mu: Floats) -> theory.SlippingRolling:
+        return theory.slipping_rolling(nu, self.a0, mu=mu, **self.column)
 
-    def rolls(self, theta: Floats, mu: Floats) -> Flags:
+    def rolls(self, nu: Floats, mu: Floats) -> Flags:
         """Whether rolling without slip is stable."""
-        found = self.held(theta)
+        found = self.held(nu)
         return _any(found.stable & (found.friction_demand <= mu[..., np.newaxis]))
 
-    def slips(self, theta: Floats, mu: Floats) -> Flags:
+    def slips(self, nu: Floats, mu: Floats) -> Flags:
         """Whether rolling with slip is stable."""
-        return _any(self.slipping(theta, mu).stable)
+        return _any(self.slipping(nu, mu).stable)
 
 
 def _closed_form(model: Model) -> ClosedForm:
@@ -262,24 +262,24 @@ def _classes(exists: Flags, rolls: Flags, slips: Flags) -> npt.NDArray[np.int8]:
     return classes.astype(np.int8)
 
 
-def _ends(name: str, inside: Flags, theta: Floats, mu: Floats, predicate: Predicate) -> dict[str, Floats]:
-    """Return for each μ the lowest and the highest θ at which the predicate holds, which on the grid is `inside`."""
+def _ends(name: str, inside: Flags, nu: Floats, mu: Floats, predicate: Predicate) -> dict[str, Floats]:
+    """Return for each μ the lowest and the highest ν at which the predicate holds, which on the grid is `inside`."""
     return {
-        f"{name}_from": _first(inside, theta, mu, predicate),
-        f"{name}_to": _first(inside[:, ::-1], theta[::-1], mu, predicate),
+        f"{name}_from": _first(inside, nu, mu, predicate),
+        f"{name}_to": _first(inside[:, ::-1], nu[::-1], mu, predicate),
     }
 
 
-def _first(inside: Flags, theta: Floats, mu: Floats, predicate: Predicate) -> Floats:
-    """Return for each μ the first θ inside, halved between the first of the grid and the one before; NaN for none."""
+def _first(inside: Flags, nu: Floats, mu: Floats, predicate: Predicate) -> Floats:
+    """Return for each μ the first ν inside, halved between the first of the grid and the one before; NaN for none."""
     first = inside.argmax(axis=1)
-    within, beyond = theta[first], theta[np.maximum(first - 1, 0)]
+    within, beyond = nu[first], nu[np.maximum(first - 1, 0)]
     for _ in range(_HALVINGS):
         middle = 0.5 * (within + beyond)
         holds = predicate(middle, mu)
         within, beyond = np.where(holds, middle, within), np.where(holds, beyond, middle)
     # Where the grid begins inside there is nothing to halve.
-    return np.where(inside.any(axis=1), np.where(first > 0, within, theta[0]), np.nan)
+    return np.where(inside.any(axis=1), np.where(first > 0, within, nu[0]), np.nan)
 
 
 def _any(branches: Flags) -> Flags:

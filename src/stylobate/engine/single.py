@@ -82,7 +82,7 @@ def simulate(
         A tilt that ends the run [rad]; none by default.
     rest_energy
         ε: with friction, rest is entered below the energy ε c² where the base motion holds the column down. By default
-        the smaller of 1e-4 and 0.015/θ², θ being the mean dimensionless frequency of the base motion; if that can
+        the smaller of 1e-4 and 0.015/ν², ν being the mean dimensionless frequency of the base motion; if that can
         release the column again, at most a hundredth of the energy with which it does, but not below 1e-8, and not
         below 1e-5 under a record or a brief motion.
     max_steps

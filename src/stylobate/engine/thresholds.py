@@ -11,7 +11,7 @@ from stylobate.errors import SMALLEST
 
 Bools = npt.NDArray[np.bool_]
 
-# The energy of steady rolling at frequency θ is 1.5 c²/θ²; rest is entered below a hundredth of it at most.
+# The energy of steady rolling at frequency ν is 1.5 c²/ν²; rest is entered below a hundredth of it at most.
 _REST_ENERGY, _REST_ENERGY_ROLLING = 1e-4, 0.015
 # Where the base motion can release the column again, at most a hundredth of the energy it releases it with; not below
 # the next number, which bounds the number of hops to follow, or the last for a motion that is over before small hops
@@ -91,7 +91,7 @@ def hop_energy(
 ) -> Floats:
     """Return the energy [c²] that a harmonic peak gives a column it has just released; NaN if it cannot release it.
 
-    With |a_h| = c(1 + δ) at the peak the excess lasts 2√(2δ)/θ and leaves the speed (4/3)√2 c δ^{3/2}/θ.
+    With |a_h| = c(1 + δ) at the peak the excess lasts 2√(2δ)/ν and leaves the speed (4/3)√2 c δ^{3/2}/ν.
     """
     weight = 1.0 + np.asarray(least_vertical, dtype=float)
     with np.errstate(divide="ignore", invalid="ignore"):

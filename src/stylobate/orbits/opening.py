@@ -133,8 +133,8 @@ def _rolling(model: Model, motion: Harmonic, guess: Floats, sense: int) -> Float
 
 
 def _on_the_circle(model: Model, form: ClosedForm, motion: Harmonic, part: complex, sense: int) -> Floats:
-    theta = motion.angular_frequency / model.column.frequency_scale
-    amplitude, psi, spin = steady_rolling_of(form, model.column, theta, abs(part) / model.column.gravity)
+    nu = motion.angular_frequency / model.column.frequency_scale
+    amplitude, psi, spin = steady_rolling_of(form, model.column, nu, abs(part) / model.column.gravity)
     if not amplitude > 0.0:
         message = (
             "guess must be given: theory has no steady rolling in this sense at angular_frequency = "
@@ -143,7 +143,7 @@ def _on_the_circle(model: Model, form: ClosedForm, motion: Harmonic, part: compl
         raise NoOrbitError(message)
     azimuth = cmath.phase(part) + sense * psi
     x, y = amplitude * math.cos(azimuth), amplitude * math.sin(azimuth)
-    rate = sense * theta
+    rate = sense * nu
     state = np.array(model.start((x, y), (0.0, 0.0)), dtype=float)
     state[2:4] = -rate * y, rate * x
     if model.spin_state is not None:

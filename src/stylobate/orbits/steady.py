@@ -19,7 +19,7 @@ def rolling_form_of(model: Model) -> ClosedForm | None:
 
 
 def steady_rolling_of(
-    form: ClosedForm, column: Column, theta: float, acceleration: float, branch: str = "upper"
+    form: ClosedForm, column: Column, nu: float, acceleration: float, branch: str = "upper"
 ) -> tuple[float, float, float]:
     """Return tilt [rad], phase to the base acceleration [rad] and spin [ω0] of steady rolling; NaN where there is none.
 
@@ -29,7 +29,7 @@ def steady_rolling_of(
         As of `rolling_form_of`, whose requirement is met.
     column
         The column.
-    theta
+    nu
         Frequency of the base [ω0], which moves anticlockwise.
     acceleration
         Of the base [g].
@@ -40,16 +40,16 @@ def steady_rolling_of(
     c, eta, zeta = column.slenderness, form.eta, form.zeta
     shape = {"inertia_ratio": column.inertia_ratio, "axial_ratio": column.axial_ratio}
     if form.law is RollingLaw.SLENDER:
-        steady = theory.steady_rolling(theta, acceleration, c=c, eta=eta)
+        steady = theory.steady_rolling(nu, acceleration, c=c, eta=eta)
         chosen = steady.upper if branch == "upper" else steady.lower
         return float(chosen.amplitude), float(chosen.phase), 0.0
     if form.law is RollingLaw.FREE_TWIST:
-        free = theory.free_twist_rolling(theta, acceleration, c=c, eta=eta, zeta=zeta, **shape)
+        free = theory.free_twist_rolling(nu, acceleration, c=c, eta=eta, zeta=zeta, **shape)
         return float(free.amplitude), float(free.phase), float(free.spin)
     if form.law is RollingLaw.WOBBLING:
-        found = theory.wobbling_rolling(theta, acceleration, c=c, eta=eta, **shape)
+        found = theory.wobbling_rolling(nu, acceleration, c=c, eta=eta, **shape)
     else:
-        found = theory.full_rolling(theta, acceleration, c=c, eta=eta, zeta=zeta, **shape)
+        found = theory.full_rolling(nu, acceleration, c=c, eta=eta, zeta=zeta, **shape)
     index = _place(found.phase, found.stable, found.exists, branch)
     if index is None:
         return math.nan, math.nan, math.nan

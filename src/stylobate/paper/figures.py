@@ -22,7 +22,7 @@ from stylobate.plots.style import (
     styled,
 )
 
-# The paper's numbers of the curves, by amplitude and branch, and where along θ to put them.
+# The paper's numbers of the curves, by amplitude and branch, and where along ν to put them.
 _CURVE_NUMBERS = {(0, "lower"): (2, 0.62), (0, "upper"): (3, 0.28), (1, "lower"): (4, 0.42), (1, "upper"): (5, 0.5)}
 _COLOURS = (BLUE, VERMILION)
 _LIMIT = (0, (4, 2))
@@ -46,7 +46,7 @@ def sketch() -> Figure:
     for text, place in (
         ("centre of mass, at the height h on the axis", (centre[0] + 0.85, centre[1] - 0.05)),
         ("contact point on the rim, radius r", (0.1, -0.36)),
-        ("A", (foot[0] + 0.42, foot[1] + height * 1.08)),
+        ("θ", (foot[0] + 0.42, foot[1] + height * 1.08)),
     ):
         side.annotate(text, place, fontsize=8)
     side.annotate("", (1.8, -0.75), (0.7, -0.75), arrowprops={"arrowstyle": "->", "color": BLACK})
@@ -59,7 +59,7 @@ def sketch() -> Figure:
     above.plot(np.cos(angle), np.sin(angle), "o", color=VERMILION)
     arc = np.linspace(0.0, angle, 30)
     above.plot(0.45 * np.cos(arc), 0.45 * np.sin(arc), color=BLACK, linewidth=0.9)
-    for text, place in (("β", (0.5, 0.2)), ("α", (0.3, 0.62)), ("x₁", (1.32, -0.05)), ("x₂", (-0.06, 1.36))):
+    for text, place in (("β", (0.5, 0.2)), ("θ", (0.3, 0.62)), ("x", (1.32, -0.05)), ("y", (-0.06, 1.36))):
         above.annotate(text, place, fontsize=9)
     for axes, limits in ((side, (-1.7, 4.1, -1.0, 3.8)), (above, (-1.5, 1.6, -1.4, 1.6))):
         axes.set_aspect("equal")
@@ -73,19 +73,19 @@ def figure_2(response: xr.Dataset, straight: xr.Dataset | None = None) -> Figure
     """Return Fig. 2, tilt against frequency; for straight-line motion with the `straight` full motion beside it."""
     figure = new_figure(4.4)
     axes = figure.subplots()
-    theta = response["theta"]
-    axes.plot(theta, response["backbone"], color=GREY, linestyle=_LIMIT)
+    nu = response["nu"]
+    axes.plot(nu, response["backbone"], color=GREY, linestyle=_LIMIT)
     _number(axes, 1, 0.05, float(response["backbone"][0]))
     for (index, branch), (number, place) in _CURVE_NUMBERS.items():
         part = response.isel(a0=index).sel(branch=branch)
-        draw_branch(axes, theta, part["amplitude"], part["stable"], color=_COLOURS[index])
-        _number(axes, number, place, float(part["amplitude"].interp(theta=place)), color=_COLOURS[index])
+        draw_branch(axes, nu, part["amplitude"], part["stable"], color=_COLOURS[index])
+        _number(axes, number, place, float(part["amplitude"].interp(nu=place)), color=_COLOURS[index])
     if straight is not None:
         _draw_full_motion(axes, straight)
     _name_amplitudes(axes, response, 1.0 if straight is None else 2.0)
     axes.legend(loc="upper right")
-    axes.set_xlabel("frequency of the base θ = θ₀/ω₀")
-    axes.set_ylabel("tilt angle A [rad]" if straight is None else "tilt angle A, averaged [rad]")
+    axes.set_xlabel("frequency ratio ν = Ω/ω₀")
+    axes.set_ylabel("tilt angle θ [rad]" if straight is None else "tilt angle θ, averaged [rad]")
     axes.set_xlim(0.0, 4.1)
     axes.set_ylim(0.0, 0.172)
     return figure
@@ -99,15 +99,15 @@ def figure_3(response: xr.Dataset, *, averaged: bool) -> Figure:
     places = {2: 0.8, 3: 2.6, 4: 1.2, 5: 1.9}
     for (index, branch), (number, _) in _CURVE_NUMBERS.items():
         part = response.isel(a0=index).sel(branch=branch)
-        draw_branch(axes, response["theta"], part["phase"], part["stable"], color=_COLOURS[index])
+        draw_branch(axes, response["nu"], part["phase"], part["stable"], color=_COLOURS[index])
         place = places[number]
-        _number(axes, number, place, float(part["phase"].interp(theta=place)), color=_COLOURS[index])
+        _number(axes, number, place, float(part["phase"].interp(nu=place)), color=_COLOURS[index])
     set_phase_axis(axes)
     _name_amplitudes(axes, response, 2.0 if averaged else 1.0)
     axes.legend(loc="center right")
-    axes.set_xlabel("frequency of the base θ = θ₀/ω₀")
+    axes.set_xlabel("frequency ratio ν = Ω/ω₀")
     axes.set_ylabel("phase ψ, averaged [rad]" if averaged else "phase ψ [rad]")
-    axes.set_xlim(0.0, float(response["theta"][-1]))
+    axes.set_xlim(0.0, float(response["nu"][-1]))
     return figure
 
 
@@ -116,20 +116,20 @@ def backbones(data: xr.Dataset) -> Figure:
     """Return the two backbones, each with the forced response that hugs it."""
     figure = new_figure(4.2)
     axes = figure.subplots()
-    theta = data["theta"]
-    axes.plot(theta, data["rolling_backbone"], color=BLUE, linestyle=_LIMIT, label="free rolling (5)")
-    axes.plot(theta, data["planar_backbone"], color=VERMILION, linestyle=":", linewidth=1.6, label="free rocking (3)")
+    nu = data["nu"]
+    axes.plot(nu, data["rolling_backbone"], color=BLUE, linestyle=_LIMIT, label="free rolling (5)")
+    axes.plot(nu, data["planar_backbone"], color=VERMILION, linestyle=":", linewidth=1.6, label="free rocking (3)")
     for branch in data["branch"].to_numpy():
         part = data.sel(branch=branch)
-        draw_branch(axes, theta, part["rolling"], part["rolling_stable"], color=BLUE)
+        draw_branch(axes, nu, part["rolling"], part["rolling_stable"], color=BLUE)
     for orbit in data["orbit"].to_numpy():
         part = data.sel(orbit=orbit)
-        draw_branch(axes, theta, part["planar"], part["planar_stable"], color=VERMILION)
+        draw_branch(axes, nu, part["planar"], part["planar_stable"], color=VERMILION)
     axes.plot([], [], color=BLUE, linewidth=STABLE_WIDTH, label=f"rolling on a circle, a0 = {data.attrs['a0']:g}")
-    axes.plot([], [], color=VERMILION, linewidth=STABLE_WIDTH, label=f"rocking in a plane, a1 = {data.attrs['a1']:g}")
+    axes.plot([], [], color=VERMILION, linewidth=STABLE_WIDTH, label=f"planar rocking, a1 = {data.attrs['a1']:g}")
     axes.plot([], [], color=BLACK, linewidth=UNSTABLE_WIDTH, label="thin: unstable (rocking: within its plane)")
     axes.legend()
-    axes.set_xlabel("frequency θ, ω")
+    axes.set_xlabel("frequency ratio ν, ω")
     axes.set_ylabel("largest tilt angle [rad]")
     axes.set_ylim(0.0, 1.2 * data.attrs["c"])
     return figure
@@ -139,7 +139,7 @@ def backbones(data: xr.Dataset) -> Figure:
 def averaging(data: xr.Dataset) -> Figure:
     """Return tilt against time by the full equations and by the slow flow, where averaging is good and where not."""
     figure = new_figure(5.4)
-    for k, (theta, a1) in enumerate(zip(data.attrs["theta"], data.attrs["a1"], strict=True)):
+    for k, (nu, a1) in enumerate(zip(data.attrs["nu"], data.attrs["a1"], strict=True)):
         axes = figure.add_subplot(2, 1, k + 1)
         axes.plot(data[f"time_{k}"], data[f"full_{k}"], color=BLUE, linewidth=1.1, label="full motion (1)")
         axes.plot(
@@ -147,8 +147,8 @@ def averaging(data: xr.Dataset) -> Figure:
         )
         overturned = bool(np.isnan(data[f"full_{k}"]).any())
         fate = "averaged motion stable, the column overturns" if overturned else "averaging follows the mean"
-        axes.set_title(f"a1 = {a1:g}, θ = {theta:g}: {fate}")
-        axes.set_ylabel("tilt angle A [rad]")
+        axes.set_title(f"a1 = {a1:g}, ν = {nu:g}: {fate}")
+        axes.set_ylabel("tilt angle θ [rad]")
         axes.set_ylim(0.0, 2.2 * data.attrs["c"] if overturned else None)
         axes.legend(loc="upper right")
     axes.set_xlabel("time τ")
@@ -157,11 +157,11 @@ def averaging(data: xr.Dataset) -> Figure:
 
 @styled
 def modulated(data: xr.Dataset) -> Figure:
-    """Return the modulated rolling below θ*: tilt over a few of its periods, and its cycle in the rotating frame."""
+    """Return the modulated rolling below ν*: tilt over a few of its periods, and its cycle in the rotating frame."""
     figure = new_figure(3.6)
     history, cycle = figure.add_subplot(1, 2, 1), figure.add_subplot(1, 2, 2)
-    for k, theta in enumerate(data.attrs["theta"]):
-        line: dict[str, Any] = {"color": PALETTE[k], "linestyle": DASHES[k], "label": f"θ = {theta:g}"}
+    for k, nu in enumerate(data.attrs["nu"]):
+        line: dict[str, Any] = {"color": PALETTE[k], "linestyle": DASHES[k], "label": f"ν = {nu:g}"}
         tau, tilt, phase = (data[f"{name}_{k}"].to_numpy() for name in ("tau", "amplitude", "phase"))
         turns = np.concatenate([tau[:-1] + n * tau[-1] for n in range(3)])
         history.plot(turns, np.tile(tilt[:-1], 3), **line)
@@ -170,12 +170,12 @@ def modulated(data: xr.Dataset) -> Figure:
         cycle.plot(np.cos(psi), np.sin(psi), marker="+", color=PALETTE[k])
     history.axhline(1.0, color=GREY, linewidth=0.9, linestyle=_LIMIT)
     history.set_xlabel("time τ")
-    history.set_ylabel("tilt over that of steady rolling, A/A₊")
+    history.set_ylabel("tilt over that of steady rolling, θ/θ₊")
     history.set_ylim(bottom=0.3)
     history.legend(loc="lower center", ncols=3, columnspacing=1.0, handlelength=1.6)
     cycle.set_aspect("equal", adjustable="box")
-    cycle.set_xlabel("A cos ψ / A₊")
-    cycle.set_ylabel("A sin ψ / A₊")
+    cycle.set_xlabel("θ cos ψ / θ₊")
+    cycle.set_ylabel("θ sin ψ / θ₊")
     cycle.set_title("frame of the base; + steady, unstable")
     return figure
 
@@ -198,8 +198,8 @@ def runaway(data: xr.Dataset) -> Figure:
     azimuth.set_ylim(-1.5, 13.5)
     azimuth.legend(title="sideways rate at the start, in c", loc="upper left", ncols=2)
     path.set_aspect("equal", adjustable="datalim")
-    path.set_xlabel("α₁/c")
-    path.set_ylabel("α₂/c")
+    path.set_xlabel("θx/c")
+    path.set_ylabel("θy/c")
     path.set_title(f"path with sideways rate {float(data['offset'][0]):g}c")
     return figure
 
@@ -210,10 +210,10 @@ def critical(data: xr.Dataset) -> Figure:
     figure = new_figure(4.0)
     axes = figure.subplots()
     for k, eta in enumerate(data["eta"].to_numpy()):
-        axes.plot(data["a0"], data["theta"].sel(eta=eta), color=PALETTE[k], linestyle=DASHES[k], label=f"η = {eta:g}")
+        axes.plot(data["a0"], data["nu"].sel(eta=eta), color=PALETTE[k], linestyle=DASHES[k], label=f"η = {eta:g}")
     axes.plot(data["a0"][::12], data["undamped"][::12], "o", markersize=3.5, color=BLACK, label="η = 0, closed form")
     axes.set_xlabel("amplitude of the base acceleration a0 [g]")
-    axes.set_ylabel("critical frequency θ*")
+    axes.set_ylabel("critical frequency ν*")
     axes.set_xlim(0.0, float(data["a0"][-1]))
     axes.set_ylim(0.0, None)
     axes.annotate("rolling stable above its curve", (0.3, 0.9), xycoords="axes fraction", color=GREY)
@@ -250,7 +250,7 @@ def kicks(data: xr.Dataset) -> Figure:
     middle = len(offset) // 2
     line = -kick[middle] - data.attrs["slope"] * np.log(offset / offset[middle])
     axes.semilogx(offset, line, color=BLACK, linewidth=1.0, label="exact slope 2c/v")
-    axes.set_xlabel("offset y₀ from the upright at the passage [rad]")
+    axes.set_xlabel("offset y₀ from the vertical at the passage [rad]")
     axes.set_ylabel("sideways kick −Δẏ/y₀")
     axes.legend()
     return figure
@@ -260,7 +260,7 @@ def _draw_full_motion(axes: Axes, straight: xr.Dataset) -> None:
     width = 0.02
     for index, a1 in enumerate(straight["a1"].to_numpy()):
         part = straight.sel(a1=a1)
-        x = part["theta"].to_numpy() + (index - 0.5) * width
+        x = part["nu"].to_numpy() + (index - 0.5) * width
         mean, low, high = (part[name].to_numpy() for name in ("mean", "least", "largest"))
         axes.errorbar(
             x, mean, yerr=[mean - low, high - mean], fmt="o", markersize=3.5, capsize=2, linewidth=0.9,

@@ -19,26 +19,34 @@ _TITLE = "A round column on a vibrating base: the source paper reproduced, check
 _INTRODUCTION = (
     "The paper, A. Munitsyn and M. Munitsyna, “Dynamic of a cylindrical column on a vibrating base” "
     "(Vibroengineering Procedia, 2021), studies a slender "
-    "free-standing column with a circular base under harmonic base motion. This page repeats its curves from its "
-    "equations, measures each of its statements, corrects its misprints, and says where a statement fails. Numbers in "
-    "parentheses are the paper's equations.",
-    "Units: angles in rad, time τ = ω₀t, frequency θ = θ₀/ω₀, accelerations in g. Unless said otherwise c = η = 0.1, "
-    "the numbers of the paper's figures. Every number below was computed when this page was made.",
+    "free-standing column with a circular base under harmonic base motion. This page recomputes the curves of the "
+    "paper from its equations and compares each of its statements with a measurement. It lists misprints, and "
+    "statements that hold within limits or do not hold as stated. Numbers in parentheses are the paper's equations.",
+    "Units: angles in rad, time τ = ω₀t, frequency ratio ν = Ω/ω₀, accelerations in g. The letters are those of "
+    "stylobate; the table lists the paper's letter where it differs. Unless stated otherwise c = η = 0.1, the numbers "
+    "of the paper's figures. Every number below was computed when this page was made.",
 )
 
 _SYMBOLS = Table(
-    ("symbol", "meaning"),
+    ("symbol", "meaning", "in the paper"),
     (
-        ("r, h; c = r/h", "base radius, height of the centre of mass; slenderness, the tilt at which the column tips"),
-        ("ω₀ = √(mgh/J₀)", "frequency scale; J₀ the moment of inertia about a diameter of the base"),
-        ("α = (α₁, α₂); A, β", "tilt vector: where the column leans and by how much; its length and its azimuth"),
-        ("μ = dA/dτ, ω = dβ/dτ", "tilt rate; rate at which the contact point rolls round the rim"),
-        ("a0; a1, a2", "amplitude of circular base motion; amplitudes along the two axes"),
-        ("ψ", "phase by which the contact point leads the base acceleration"),
-        ("η", "viscous friction"),
-        ("κ = mh²/J₀, i_a = I_a/(mr²); D", "ratios of inertia, I_a about the axis; 1 + i_a − κ"),
-        ("σ, ζ", "spin about the axis, and the friction it meets"),
-        ("A₊, A₋; θ*", "upper and lower branch of steady rolling; frequency above which the upper one is stable"),
+        (
+            "r, h; c = r/h",
+            "base radius, height of the centre of mass; slenderness, the tilt at which the column tips",
+            "",
+        ),
+        ("ω₀ = √(mgh/J₀)", "frequency scale; J₀ the moment of inertia about a diameter of the base", ""),
+        ("ν = Ω/ω₀", "frequency ratio: angular frequency of the base over ω₀", "θ"),
+        ("θ = (θ_x, θ_y)", "tilt vector: points to the side of the lean", "α = (α₁, α₂)"),
+        ("θ, β", "tilt angle, the length of the tilt vector; azimuth of the lean", "A, β"),
+        ("θ̇, β̇", "tilt rate; rate at which the contact point rolls round the rim", "μ, ω"),
+        ("ω", "frequency of free motion in units of ω₀", "ω"),
+        ("a0; a1, a2", "amplitude of circular base motion; amplitudes along the two axes", ""),
+        ("ψ", "phase by which the contact point leads the base acceleration", ""),
+        ("η", "damping", ""),
+        ("κ = mh²/J₀, i_a = I_a/(mr²); Λ", "ratios of inertia, I_a about the axis; 1 + i_a − κ", "–"),
+        ("σ, ζ", "spin about the axis; spin damping", "–"),
+        ("θ₊, θ₋; ν*", "upper and lower branch of steady rolling; frequency above which the upper one is stable", ""),
     ),
 )
 
@@ -48,8 +56,8 @@ _PICTURES: tuple[tuple[str, str, Callable[[PaperCheck], Figure], str], ...] = (
         "column",
         "The column and its symbols",
         lambda _: figures.sketch(),
-        "The leaning column from the side, and its base from above: the tilt vector α points to where it leans, its "
-        "length is the tilt angle A, its azimuth β that of the contact point.",
+        "The leaning column from the side, and its base from above. The tilt vector points to the side of the lean, "
+        "its length is the tilt angle θ, and its azimuth β is that of the contact point.",
     ),
     (
         "figure-2-circular",
@@ -68,29 +76,30 @@ _PICTURES: tuple[tuple[str, str, Callable[[PaperCheck], Figure], str], ...] = (
         "critical-frequency",
         "Circular base motion",
         lambda check: figures.critical(check.data["critical"]),
-        "The frequency θ* above which rolling is stable, against the amplitude of the base, for several frictions η. "
-        "Dots: the closed form without friction. A curve begins where the boundary meets the fold of the two branches.",
+        "The frequency ν* above which rolling is stable, against the amplitude of the base, for several values of the "
+        "damping η. Dots: the closed form without damping. A curve begins where the boundary meets the fold of the two "
+        "branches.",
     ),
     (
         "modulated-rolling",
         "Below the critical frequency",
         lambda check: figures.modulated(check.data["modulated"]),
-        "Modulated rolling, stable, below θ* = 1.3971 at a0 = 0.065: limit cycles of (7).",
+        "Stable modulated rolling below ν* = 1.3971 at a0 = 0.065: limit cycles of (7).",
     ),
     (
         "free-twist",
-        "A column that may turn",
+        "Free spin",
         lambda check: twist_figures.twist(check.data["twist"]),
-        "Steady rolling of a solid cylinder that may turn about its axis, a0 = 0.065, for several spin damping ζ: it "
-        "leans less the less friction there is, and spins against its rolling. Bold: stable.",
+        "Steady rolling of a solid cylinder with free spin, a0 = 0.065, for several values of the spin damping ζ. With "
+        "less spin damping the column leans less; it spins against its rolling. Bold: stable.",
     ),
     (
         "free-twist-boundary",
-        "A column that may turn",
+        "Free spin",
         lambda check: twist_figures.twist_boundary(check.data["twist_boundary"]),
-        "The frequency θ* above which steady rolling with a free twist is stable, against amplitude, spin damping ζ "
-        "(grey: no twist) and friction η (dot: its limit η → 0 at every finite ζ), and for columns with "
-        "i_a < 2κ − 1 = ½ the one above which it is unstable again (dots: limit ζ → 0).",
+        "The frequency ν* above which steady rolling with free spin is stable, against amplitude, spin damping ζ "
+        "(grey: no spin) and damping η (dot: its limit η → 0 at every finite ζ). For columns with i_a < 2κ − 1 = ½ "
+        "also the frequency above which it is unstable again (dots: limit ζ → 0).",
     ),
     (
         "figure-2-straight",
@@ -129,25 +138,26 @@ _PICTURES: tuple[tuple[str, str, Callable[[PaperCheck], Figure], str], ...] = (
     ),
     (
         "backbones",
-        "Motion in a plane",
+        "Planar motion",
         lambda check: figures.backbones(check.data["backbones"]),
-        "Two curves that look alike and are not: free rolling (5) and free rocking (3), each with a forced response "
-        "that hugs it. Rocking is shown stable or not within its plane; whether it keeps to it is conclusion 5.",
+        "Two curves that look similar and are different: free rolling (5) and free rocking (3), each with a forced "
+        "response near it. Rocking is marked stable if it is stable within its plane; conclusion 5 is about leaving "
+        "it.",
     ),
     (
         "planar-kick",
-        "Motion in a plane",
+        "Planar motion",
         lambda check: figures.kicks(check.data["kicks"]),
-        "Why planar motion is lost: the sideways kick of one passage of the upright, over its offset, grows without "
-        "bound as the offset shrinks.",
+        "Why planar motion is lost: the sideways kick of one passage near the vertical, divided by its offset, grows "
+        "without bound as the offset shrinks.",
     ),
     (
         "runaway-azimuth",
         "Free vibration",
         lambda check: figures.runaway(check.data["runaway"]),
-        "Free motion without friction from a tilt of 0.7c with a small sideways rate: the azimuth of the lean runs on "
-        "by about half a turn at each passage of the upright. Right: the path of the tilt vector inside the circle |α| "
-        "= c.",
+        "Free motion without damping from a tilt of 0.7c with a small sideways rate: the azimuth of the lean advances "
+        "by about half a turn at each passage near the vertical. Right: the path of the tilt vector inside the circle "
+        "θ = c.",
     ),
     (
         "centre-of-pressure",

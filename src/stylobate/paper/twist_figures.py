@@ -18,14 +18,14 @@ def twist(data: xr.Dataset) -> Figure:
         part = data.sel(zeta=zeta)
         stable = part["stable"]
         name = "no twist" if np.isinf(zeta) else f"ζ = {zeta:g}"
-        draw_branch(tilt, data["theta"], part["amplitude"], stable, color=PALETTE[k])
-        draw_branch(spin, data["theta"], part["spin"], stable, color=PALETTE[k])
+        draw_branch(tilt, data["nu"], part["amplitude"], stable, color=PALETTE[k])
+        draw_branch(spin, data["nu"], part["spin"], stable, color=PALETTE[k])
         tilt.plot([], [], color=PALETTE[k], linewidth=STABLE_WIDTH, label=name)
-    tilt.set_ylabel("tilt A [rad]")
+    tilt.set_ylabel("tilt angle θ [rad]")
     spin.set_ylabel("spin σ [ω₀]")
     for axes in (tilt, spin):
-        axes.set_xlabel("frequency θ")
-        axes.set_xlim(float(data["theta"][0]), float(data["theta"][-1]))
+        axes.set_xlabel("frequency ratio ν")
+        axes.set_xlim(float(data["nu"][0]), float(data["nu"][-1]))
     tilt.set_ylim(0.0, None)
     tilt.legend(title="bold: stable", ncols=1)
     return figure
@@ -56,7 +56,7 @@ def twist_boundary(data: xr.Dataset) -> Figure:
     amplitude.set_xlim(0.0, float(data["a0"][-1]))
     for k, highest in enumerate(data["upper_limit"].to_numpy()):
         upper.plot(data["least_spin_damping"][0], highest, "o", color=PALETTE[k], clip_on=False)
-    upper.set_ylabel("upper frequency θ** [ω₀]")
+    upper.set_ylabel("upper frequency ν** [ω₀]")
     upper.set_ylim(0.0, 2.0 * float(data["upper_limit"][-1]))
     return figure
 
@@ -74,7 +74,7 @@ def _shapes(ratios: xr.DataArray) -> dict[float, str]:
 
 def _finish(axes: Axes, label: str, title: str, ncols: int = 1) -> None:
     axes.set_xlabel(label)
-    axes.set_ylabel("critical frequency θ* [ω₀]")
+    axes.set_ylabel("critical frequency ν* [ω₀]")
     axes.set_ylim(0.0, None)
     axes.set_title(title)
     axes.legend(ncols=ncols)

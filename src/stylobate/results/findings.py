@@ -1,4 +1,4 @@
-"""What a check of a publication finds: its claims with measurements and verdicts, and the data of its figures."""
+"""Result of checking a publication: its claims with measurements and verdicts, and the data of its figures."""
 
 from collections import Counter
 from collections.abc import Mapping
@@ -9,19 +9,19 @@ import xarray as xr
 
 
 class Verdict(Enum):
-    """How a statement of a publication fares."""
+    """The verdict on a statement of a publication."""
 
     HOLDS = "holds"
     SHARPENED = "holds, sharpened"
     LIMITED = "holds within limits"
-    FAILS = "fails"
+    DOES_NOT_HOLD = "does not hold"
     ERRATUM = "misprint"
     NOT_CONFIRMED = "not confirmed here"
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One statement, in our words, with what was measured and how it fares."""
+    """One statement in the words of this project, the measurement and the verdict."""
 
     source: str
     statement: str

@@ -68,14 +68,14 @@ def known_rolling(model: Model, motion: BaseMotion, values: Mapping[str, Floats]
     frame = RollingFrame.of(model, replace(harmonic, start_phase=0.0))
     scale = of_motion.get("scale", np.ones(1))
     drive = of_motion.get("acceleration", frame.drive * model.column.gravity) * np.abs(scale) / bodies.gravity
-    theta = of_motion.get("angular_frequency", np.array(harmonic.angular_frequency)) * bodies.time_scale
+    nu = of_motion.get("angular_frequency", np.array(harmonic.angular_frequency)) * bodies.time_scale
     offset = frame.offset + of_motion.get("rotation", np.zeros(1)) + np.where(scale < 0.0, np.pi, 0.0)
-    theta, drive, time_scale = np.broadcast_arrays(theta, drive, bodies.time_scale)  # one of each where none varies
-    tilt, psi, spin, growth = _steady(bodies, theta, drive)
+    nu, drive, time_scale = np.broadcast_arrays(nu, drive, bodies.time_scale)  # one of each where none varies
+    tilt, psi, spin, growth = _steady(bodies, nu, drive)
     azimuth = frame.sense * psi + offset
     vector = tilt[:, np.newaxis] * np.stack([np.cos(azimuth), np.sin(azimuth)], axis=-1)
-    turning = (frame.sense * theta / time_scale)[:, np.newaxis]
-    multiplier = np.exp(growth * 2.0 * np.pi / theta)
+    turning = (frame.sense * nu / time_scale)[:, np.newaxis]
+    multiplier = np.exp(growth * 2.0 * np.pi / nu)
     return KnownOrbit(
         tilt=np.broadcast_to(vector, (count, 2)),
         tilt_rate=np.broadcast_to(turning * np.stack([-vector[:, 1], vector[:, 0]], axis=-1), (count, 2)),
@@ -131,21 +131,21 @@ class _Bodies:
         return cls(form.law, *np.array(numbers).reshape(-1, 7)[place.ravel()].T)
 
 
-def _steady(bodies: _Bodies, theta: Floats, a0: Floats) -> Steady:
+def _steady(bodies: _Bodies, nu: Floats, a0: Floats) -> Steady:
     """Return steady rolling of each run; of several stable branches the one of the least tilt."""
     c, eta, zeta = bodies.slenderness, bodies.eta, bodies.zeta
     shape = {"inertia_ratio": bodies.inertia_ratio, "axial_ratio": bodies.axial_ratio}
     if bodies.law is RollingLaw.SLENDER:
-        upper = theory.steady_rolling(theta, a0, c=c, eta=eta).upper
-        return _where_stable(upper.amplitude, upper.phase, np.zeros_like(theta), upper.stable, upper.eigenvalues)
+        upper = theory.steady_rolling(nu, a0, c=c, eta=eta).upper
+        return _where_stable(upper.amplitude, upper.phase, np.zeros_like(nu), upper.stable, upper.eigenvalues)
     if bodies.law is RollingLaw.FREE_TWIST:
-        free = theory.free_twist_rolling(theta, a0, c=c, eta=eta, zeta=zeta, **shape)
+        free = theory.free_twist_rolling(nu, a0, c=c, eta=eta, zeta=zeta, **shape)
         return _where_stable(free.amplitude, free.phase, free.spin, free.stable, free.eigenvalues)
     if bodies.law is RollingLaw.WOBBLING:
-        found = theory.wobbling_rolling(theta, a0, c=c, eta=eta, **shape)
+        found = theory.wobbling_rolling(nu, a0, c=c, eta=eta, **shape)
     else:
-        found = theory.full_rolling(theta, a0, c=c, eta=eta, zeta=zeta, **shape)
-    runs, branch = np.arange(theta.size), np.argmax(found.stable, axis=-1)
+        found = theory.full_rolling(nu, a0, c=c, eta=eta, zeta=zeta, **shape)
+    runs, branch = np.arange(nu.size), np.argmax(found.stable, axis=-1)
     one = (runs, branch)
     return _where_stable(
         found.amplitude[one], found.phase[one], found.spin[one], found.stable[one], found.eigenvalues[one]

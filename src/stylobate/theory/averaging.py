@@ -18,30 +18,30 @@ class AveragedRolling:
     Parameters
     ----------
     forward
-        Anticlockwise rolling, driven by the circular part p e^{iθτ}.
+        Anticlockwise rolling, driven by the circular part p e^{iντ}.
     backward
-        Clockwise rolling, driven by the circular part q e^{−iθτ}.
+        Clockwise rolling, driven by the circular part q e^{−iντ}.
     """
 
     forward: SteadyRolling
     backward: SteadyRolling
 
 
-def circular_components(a1: Real, a2: Real, phi0: Real) -> tuple[ComplexArray, ComplexArray]:
+def circular_components(a1: Real, a2: Real, phi2: Real) -> tuple[ComplexArray, ComplexArray]:
     """Split harmonic base motion into two circular motions of opposite sense.
 
     Parameters
     ----------
     a1, a2
         Acceleration amplitudes along the two horizontal axes [g].
-    phi0
-        Phase φ0 of axis 2 against axis 1 [rad].
+    phi2
+        Phase φ2 of axis 2 against axis 1 [rad].
 
     Returns
     -------
     tuple of numpy.ndarray
         p and q, complex, of the broadcast shape, such that
-        a1 cos θτ + i a2 cos(θτ + φ0) = p e^{iθτ} + q e^{−iθτ}. The largest acceleration is abs(p) + abs(q).
+        a1 cos ντ + i a2 cos(ντ + φ2) = p e^{iντ} + q e^{−iντ}. The largest acceleration is abs(p) + abs(q).
 
     Raises
     ------
@@ -59,22 +59,22 @@ def circular_components(a1: Real, a2: Real, phi0: Real) -> tuple[ComplexArray, C
     >>> print(abs(p), abs(q))
     0.065 0.065
     """
-    a1, a2, phi0 = np.broadcast_arrays(finite("a1", a1), finite("a2", a2), finite("phi0", phi0))
-    turn = np.exp(1.0j * phi0)
+    a1, a2, phi2 = np.broadcast_arrays(finite("a1", a1), finite("a2", a2), finite("phi2", phi2))
+    turn = np.exp(1.0j * phi2)
     return 0.5 * (a1 + 1.0j * a2 * turn), 0.5 * (a1 + 1.0j * a2 * turn.conj())
 
 
-def averaged_rolling(theta: Real, a1: Real, a2: Real = 0.0, phi0: Real = 0.0, *, c: Real, eta: Real) -> AveragedRolling:
+def averaged_rolling(nu: Real, a1: Real, a2: Real = 0.0, phi2: Real = 0.0, *, c: Real, eta: Real) -> AveragedRolling:
     """Steady rolling under straight-line or elliptic base motion, by averaging.
 
     Parameters
     ----------
-    theta
-        Excitation frequency θ, positive.
+    nu
+        Excitation frequency ν, positive.
     a1, a2
         Acceleration amplitudes along the two horizontal axes [g]. By default the base moves along axis 1.
-    phi0
-        Phase φ0 of axis 2 against axis 1 [rad].
+    phi2
+        Phase φ2 of axis 2 against axis 1 [rad].
     c
         Slenderness.
     eta
@@ -84,12 +84,12 @@ def averaged_rolling(theta: Real, a1: Real, a2: Real = 0.0, phi0: Real = 0.0, *,
     -------
     AveragedRolling
         Rolling in both senses, arrays of the broadcast shape. The azimuth of the contact point is, in the mean,
-        β = sense · (θτ + ψ) + azimuth_offset.
+        β = sense · (ντ + ψ) + azimuth_offset.
 
     Raises
     ------
     ParameterError
-        If `theta` or `c` is not positive, `eta` is negative, or an amplitude or phase is not finite.
+        If `nu` or `c` is not positive, `eta` is negative, or an amplitude or phase is not finite.
 
     Notes
     -----
@@ -104,15 +104,15 @@ def averaged_rolling(theta: Real, a1: Real, a2: Real = 0.0, phi0: Real = 0.0, *,
     >>> print(rolling.forward.upper.amplitude.round(4), rolling.backward.upper.amplitude.round(4))
     0.0165 0.0165
     """
-    theta, c, eta = positive("theta", theta), positive("c", c), not_negative("eta", eta)
-    p, q = circular_components(a1, a2, phi0)
+    nu, c, eta = positive("nu", nu), positive("c", c), not_negative("eta", eta)
+    p, q = circular_components(a1, a2, phi2)
     return AveragedRolling(
-        forward=_rolling(theta, p, c, eta, sense=1),
-        backward=_rolling(theta, q, c, eta, sense=-1),
+        forward=_rolling(nu, p, c, eta, sense=1),
+        backward=_rolling(nu, q, c, eta, sense=-1),
     )
 
 
-def _rolling(theta: Real, component: ComplexArray, c: Real, eta: Real, *, sense: int) -> SteadyRolling:
-    rolling = steady_rolling(theta, np.abs(component), c=c, eta=eta)
+def _rolling(nu: Real, component: ComplexArray, c: Real, eta: Real, *, sense: int) -> SteadyRolling:
+    rolling = steady_rolling(nu, np.abs(component), c=c, eta=eta)
     offset = np.broadcast_to(np.angle(component), rolling.azimuth_offset.shape).copy()
     return SteadyRolling(upper=rolling.upper, lower=rolling.lower, sense=sense, azimuth_offset=offset)

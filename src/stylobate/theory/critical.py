@@ -1,12 +1,12 @@
-"""The critical frequency θ*, below which steady rolling on a circularly moving base is unstable, for any friction.
+"""The critical frequency ν*, below which steady rolling on a circularly moving base is unstable, for any friction.
 
 The boundary A = c/x* of `stylobate.theory.stability`, put into (8), gives the critical amplitude in closed form,
 
-    a0*/c = √[(1 + θ² − x*)² + η²θ²] / x*,    x* = 4 / (1 + √(1 + 4/(4θ² + η²))).
+    a0*/c = √[(1 + ν² − x*)² + η²ν²] / x*,    x* = 4 / (1 + √(1 + 4/(4ν² + η²))).
 
 On it a pair of eigenvalues ±iΩ crosses the imaginary axis, Ω² = q/2. The curve begins at q = p0 = 0, on the fold at the
-lower end of the band without rolling (a Bogdanov–Takens point), where 3θ⁴ + (2 + η²)θ² = 1. From there a0* rises with θ
-without bound: seen on a fine grid for every η from 0 to 100. So θ* exists, and is unique, for every amplitude above the
+lower end of the band without rolling (a Bogdanov–Takens point), where 3ν⁴ + (2 + η²)ν² = 1. From there a0* rises with ν
+without bound: seen on a fine grid for every η from 0 to 100. So ν* exists, and is unique, for every amplitude above the
 one at that point. For a smaller amplitude there is none: rolling is unstable at all frequencies below the band without
 rolling and stable at all frequencies above it.
 """
@@ -19,13 +19,13 @@ from stylobate.theory.stability import critical_ratio
 _BISECTIONS = 64  # from an interval as long as the root is large to rounding
 
 
-def critical_amplitude(theta: Real, *, c: Real, eta: Real) -> FloatArray:
-    """Base acceleration amplitude at which the excitation frequency θ is the critical one.
+def critical_amplitude(nu: Real, *, c: Real, eta: Real) -> FloatArray:
+    """Base acceleration amplitude at which the excitation frequency ν is the critical one.
 
     Parameters
     ----------
-    theta
-        Excitation frequency θ, positive.
+    nu
+        Excitation frequency ν, positive.
     c
         Slenderness.
     eta
@@ -40,7 +40,7 @@ def critical_amplitude(theta: Real, *, c: Real, eta: Real) -> FloatArray:
     Raises
     ------
     ParameterError
-        If `theta` or `c` is not positive or `eta` is negative.
+        If `nu` or `c` is not positive or `eta` is negative.
 
     Notes
     -----
@@ -51,13 +51,13 @@ def critical_amplitude(theta: Real, *, c: Real, eta: Real) -> FloatArray:
     >>> print(critical_amplitude([0.5, 1.0, 1.3971075892], c=0.1, eta=0.1).round(9))
     [       nan 0.02152925 0.065     ]
     """
-    theta, c, eta = positive("theta", theta), positive("c", c), not_negative("eta", eta)
+    nu, c, eta = positive("nu", nu), positive("c", c), not_negative("eta", eta)
     begins = _least_frequency(eta)
-    return np.where(theta >= begins, c * _amplitude_ratio(theta, eta), np.nan)
+    return np.where(nu >= begins, c * _amplitude_ratio(nu, eta), np.nan)
 
 
 def critical_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
-    """Critical frequency θ* above which steady rolling on a circularly moving base is stable.
+    """Critical frequency ν* above which steady rolling on a circularly moving base is stable.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def critical_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
     [       nan 0.98130802 1.39710759]
     """
     ratio, eta = np.broadcast_arrays(not_negative("a0", a0) / positive("c", c), not_negative("eta", eta))
-    low, high = _least_frequency(eta), np.sqrt(1.0 + 2.0 * ratio)  # x* < 2 bounds θ*
+    low, high = _least_frequency(eta), np.sqrt(1.0 + 2.0 * ratio)  # x* < 2 bounds ν*
     exists = ratio >= _amplitude_ratio(low, eta)
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
@@ -115,8 +115,8 @@ def crossing_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
     Returns
     -------
     numpy.ndarray
-        Imaginary part Ω of the pair of eigenvalues that crosses at θ*, in the frame that turns with the base motion;
-        NaN where there is no θ*.
+        Imaginary part Ω of the pair of eigenvalues that crosses at ν*, in the frame that turns with the base motion;
+        NaN where there is no ν*.
 
     Raises
     ------
@@ -125,20 +125,20 @@ def crossing_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
 
     Notes
     -----
-    Ω² = q/2 = θ*² − 1 + x*/2, from the odd part of the characteristic polynomial.
+    Ω² = q/2 = ν*² − 1 + x*/2, from the odd part of the characteristic polynomial.
 
     Examples
     --------
     >>> print(crossing_frequency([0.02, 0.065], c=0.1, eta=0.1).round(4))
     [0.8872 1.3598]
     """
-    theta = critical_frequency(a0, c=c, eta=eta)
+    nu = critical_frequency(a0, c=c, eta=eta)
     eta = not_negative("eta", eta)
-    return np.sqrt(np.maximum(theta**2 - 1.0 + 0.5 * critical_ratio(theta, eta), 0.0))
+    return np.sqrt(np.maximum(nu**2 - 1.0 + 0.5 * critical_ratio(nu, eta), 0.0))
 
 
 def undamped_critical_frequency(a0: Real, *, c: Real) -> FloatArray:
-    """Critical frequency θ* of the column without friction, in closed form.
+    """Critical frequency ν* of the column without friction, in closed form.
 
     Parameters
     ----------
@@ -159,8 +159,8 @@ def undamped_critical_frequency(a0: Real, *, c: Real) -> FloatArray:
 
     Notes
     -----
-    θ* = (1+√σ)/√(4 − (1+√σ)²) with σ = a0/(a0 + c): two imaginary pairs of eigenvalues of (7) meet (Krein). Above θ*
-    rolling is neutrally stable. Weak friction moves θ* little: at c = η = 0.1 by a quarter to one per cent.
+    ν* = (1+√σ)/√(4 − (1+√σ)²) with σ = a0/(a0 + c): two imaginary pairs of eigenvalues of (7) meet (Krein). Above ν*
+    rolling is neutrally stable. Weak friction moves ν* little: at c = η = 0.1 by a quarter to one per cent.
 
     Examples
     --------
@@ -174,12 +174,12 @@ def undamped_critical_frequency(a0: Real, *, c: Real) -> FloatArray:
 
 
 def _least_frequency(eta: FloatArray) -> FloatArray:
-    """Return θ at which the critical curve begins, from 3θ⁴ + (2 + η²)θ² = 1."""
+    """Return ν at which the critical curve begins, from 3ν⁴ + (2 + η²)ν² = 1."""
     half = 2.0 + eta**2
     return np.sqrt(2.0 / (half + np.sqrt(half**2 + 12.0)))
 
 
-def _amplitude_ratio(theta: FloatArray, eta: FloatArray) -> FloatArray:
+def _amplitude_ratio(nu: FloatArray, eta: FloatArray) -> FloatArray:
     """Return a0*/c."""
-    x = critical_ratio(theta, eta)
-    return np.hypot(1.0 + theta**2 - x, eta * theta) / x
+    x = critical_ratio(nu, eta)
+    return np.hypot(1.0 + nu**2 - x, eta * nu) / x

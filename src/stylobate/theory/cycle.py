@@ -30,13 +30,13 @@ class Cycle:
         (μ/c, ω, A/c, ψ) on equally spaced points of one period, shape (4, points).
     period
         Its period.
-    theta
-        Excitation frequency θ.
+    nu
+        Excitation frequency ν.
     """
 
     state: FloatArray
     period: float
-    theta: float
+    nu: float
 
 
 class NoCycleError(Exception):
@@ -45,7 +45,7 @@ class NoCycleError(Exception):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CycleProblem:
-    """The collocated equations: the unknowns are the state at all points, the period and θ, as one vector.
+    """The collocated equations: the unknowns are the state at all points, the period and ν, as one vector.
 
     Parameters
     ----------
@@ -68,13 +68,13 @@ class CycleProblem:
 
     @property
     def weight(self) -> FloatArray:
-        """Weights of the norm of the unknowns: the mean square of the state, and θ; the period follows by itself."""
+        """Weights of the norm of the unknowns: the mean square of the state, and ν; the period follows by itself."""
         return np.concatenate([np.full(STATE_LENGTH * self.points, 1.0 / self.points), [0.01, 1.0]])
 
     def cycle(self, unknowns: FloatArray) -> Cycle:
         """Return the cycle that a vector of unknowns stands for."""
         state = unknowns[:-2].reshape(STATE_LENGTH, self.points)
-        return Cycle(state=state, period=float(unknowns[-2]), theta=float(unknowns[-1]))
+        return Cycle(state=state, period=float(unknowns[-2]), nu=float(unknowns[-1]))
 
     def unit(self, direction: FloatArray) -> FloatArray:
         """Return the direction scaled to length one."""
@@ -106,7 +106,7 @@ class CycleProblem:
     def _equations(self, unknowns: FloatArray, reference: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Residual and matrix of (7) at the points, and of the phase condition: no shift along the reference."""
         cycle, points = self.cycle(unknowns), self.points
-        rates = rotating_frame_rates(cycle.state, cycle.theta, self.a0, c=1.0, eta=self.eta)
+        rates = rotating_frame_rates(cycle.state, cycle.nu, self.a0, c=1.0, eta=self.eta)
         jacobian = rotating_frame_jacobian(cycle.state, self.a0, eta=self.eta)
         shift = (reference @ self.derivative.T / points).ravel()
         matrix = np.zeros((unknowns.size, unknowns.size))
@@ -117,7 +117,7 @@ class CycleProblem:
             for column in range(STATE_LENGTH):
                 blocks[row, each, column, each] -= cycle.period * jacobian[:, row, column]
         matrix[:-2, -2] = -rates.ravel()
-        matrix[-2 - points : -2, -1] = cycle.period  # ψ̇ = ω − θ
+        matrix[-2 - points : -2, -1] = cycle.period  # ψ̇ = ω − ν
         matrix[-2, :-2] = shift
         residual = np.zeros_like(unknowns)
         residual[:-2] = (cycle.state @ self.derivative.T - cycle.period * rates).ravel()
@@ -125,12 +125,12 @@ class CycleProblem:
         return residual, matrix
 
 
-def cycle_at(theta: float, a0: float, eta: float, points: int) -> Cycle:
-    """Follow the cycles from the Hopf bifurcation down to the excitation frequency θ.
+def cycle_at(nu: float, a0: float, eta: float, points: int) -> Cycle:
+    """Follow the cycles from the Hopf bifurcation down to the excitation frequency ν.
 
     Parameters
     ----------
-    theta
+    nu
         Wanted frequency.
     a0
         Acceleration amplitude of the base in units of c.
@@ -142,15 +142,15 @@ def cycle_at(theta: float, a0: float, eta: float, points: int) -> Cycle:
     Returns
     -------
     Cycle
-        The cycle on the branch where it first passes θ.
+        The cycle on the branch where it first passes ν.
 
     Raises
     ------
     NoCycleError
-        If there is no branch or it does not reach θ.
+        If there is no branch or it does not reach ν.
     """
     problem = CycleProblem(a0=a0, eta=eta, derivative=differentiation_matrix(points))
-    point, tangent = _birth(problem, theta)
+    point, tangent = _birth(problem, nu)
     step, born = _FIRST_STEP, True
     for _ in range(_MOST_STEPS):
         found = problem.corrected(point + step * tangent, problem.weight * tangent)
@@ -161,21 +161,21 @@ def cycle_at(theta: float, a0: float, eta: float, points: int) -> Cycle:
             continue
         following, tangent, effort = found
         if following[-1] >= point[-1]:
-            message = f"the branch of modulated rolling turns back at θ = {point[-1]:.4f}"
+            message = f"the branch of modulated rolling turns back at ν = {point[-1]:.4f}"
             raise NoCycleError(message)
-        if following[-1] <= theta:
-            return _landed(problem, point, following, theta, born=born)
+        if following[-1] <= nu:
+            return _landed(problem, point, following, nu, born=born)
         point, born = following, False
         step = min(step * 1.4, _LONGEST_STEP) if effort <= _EASY else step
         step = step / 1.4 if effort >= _HARD else step
-    message = f"the branch of modulated rolling could not be followed below θ = {point[-1]:.4f}"
+    message = f"the branch of modulated rolling could not be followed below ν = {point[-1]:.4f}"
     raise NoCycleError(message)
 
 
-def _birth(problem: CycleProblem, theta: float) -> tuple[FloatArray, FloatArray]:
-    """Return steady rolling at θ* as a cycle of no size, and the direction in which cycles grow out of it."""
+def _birth(problem: CycleProblem, nu: float) -> tuple[FloatArray, FloatArray]:
+    """Return steady rolling at ν* as a cycle of no size, and the direction in which cycles grow out of it."""
     critical = float(critical_frequency(problem.a0, c=1.0, eta=problem.eta))
-    if not (problem.eta > 0.0 and theta < critical):
+    if not (problem.eta > 0.0 and nu < critical):
         message = f"modulated rolling is sought below the critical frequency only, which is {critical:.4f}"
         raise NoCycleError(message)
     crossing = float(crossing_frequency(problem.a0, c=1.0, eta=problem.eta))
@@ -190,17 +190,17 @@ def _birth(problem: CycleProblem, theta: float) -> tuple[FloatArray, FloatArray]
     return unknowns, problem.unit(np.concatenate([direction.ravel(), [0.0, 0.0]]))
 
 
-def _landed(problem: CycleProblem, point: FloatArray, following: FloatArray, theta: float, *, born: bool) -> Cycle:
-    """Solve at θ itself, between two points of the branch that lie either side of it."""
-    fraction = (point[-1] - theta) / (point[-1] - following[-1])
+def _landed(problem: CycleProblem, point: FloatArray, following: FloatArray, nu: float, *, born: bool) -> Cycle:
+    """Solve at ν itself, between two points of the branch that lie either side of it."""
+    fraction = (point[-1] - nu) / (point[-1] - following[-1])
     if born:  # out of the bifurcation cycles grow with the root of the distance
         fraction = np.sqrt(fraction)
     guess = point + fraction * (following - point)
-    guess[-1] = theta
+    guess[-1] = nu
     closing = np.zeros_like(guess)
     closing[-1] = 1.0
     found = problem.corrected(guess, closing)
     if found is None:
-        message = f"the modulated rolling next to θ = {theta:.4f} did not converge"
+        message = f"the modulated rolling next to ν = {nu:.4f} did not converge"
         raise NoCycleError(message)
     return problem.cycle(found[0])

@@ -53,7 +53,7 @@ class FreeTwistRolling:
 
 
 def free_twist_rolling(
-    theta: Real,
+    nu: Real,
     a0: Real,
     *,
     c: Real,
@@ -66,8 +66,8 @@ def free_twist_rolling(
 
     Parameters
     ----------
-    theta
-        Excitation frequency θ, positive.
+    nu
+        Excitation frequency ν, positive.
     a0
         Acceleration amplitude of the base [g].
     c
@@ -85,12 +85,12 @@ def free_twist_rolling(
     Returns
     -------
     FreeTwistRolling
-        Arrays of the broadcast shape, for the base acceleration a0 (cos θτ, sin θτ).
+        Arrays of the broadcast shape, for the base acceleration a0 (cos ντ, sin ντ).
 
     Raises
     ------
     ParameterError
-        If `theta`, `c`, `inertia_ratio` or `axial_ratio` is not positive, `inertia_ratio` is 1 or more, or another is
+        If `nu`, `c`, `inertia_ratio` or `axial_ratio` is not positive, `inertia_ratio` is 1 or more, or another is
         negative.
 
     See Also
@@ -101,10 +101,10 @@ def free_twist_rolling(
     -----
     With D = 1 + i_a − κ, the three balances, along the lean, across it and about the axis, give
 
-        a0 cos ψ = A(1 + θ²(1 + η/(ζD))) − c,   a0 sin ψ = ηθA,   σ = −ηθA/(cζκD):
+        a0 cos ψ = A(1 + ν²(1 + η/(ζD))) − c,   a0 sin ψ = ηνA,   σ = −ηνA/(cζκD):
 
-    the paper's solution (8) with θ² replaced by θ²(1 + η/(ζD)) in the first. The column rolls at a smaller tilt, spins
-    against its rolling, and the contact bears the moment m r a_n about the vertical, a_n = g ηθA being the base
+    the paper's solution (8) with ν² replaced by ν²(1 + η/(ζD)) in the first. The column rolls at a smaller tilt, spins
+    against its rolling, and the contact bears the moment m r a_n about the vertical, a_n = g ηνA being the base
     acceleration across the lean. At η = ζ = 0 the spin is arbitrary, and taken as 0.
 
     Examples
@@ -113,19 +113,19 @@ def free_twist_rolling(
     >>> print(rolling.amplitude.round(7), rolling.spin.round(5))
     [0.0074982 0.0147187 0.0164812] [-0.39991 -0.0785   0.     ]
     """
-    numbers = checked_numbers(theta, a0, c, eta, zeta, inertia_ratio, axial_ratio)
-    theta, a0, c, eta, zeta, ratio, axial = numbers
+    numbers = checked_numbers(nu, a0, c, eta, zeta, inertia_ratio, axial_ratio)
+    nu, a0, c, eta, zeta, ratio, axial = numbers
     freedom = 1.0 + axial - ratio  # D
     with np.errstate(divide="ignore", invalid="ignore"):
         lag = np.where(eta > 0.0, eta / (zeta * freedom), 0.0)
     exists = np.isfinite(lag)
-    k, drag = 1.0 + theta**2 * (1.0 + np.where(exists, lag, 0.0)), eta * theta
+    k, drag = 1.0 + nu**2 * (1.0 + np.where(exists, lag, 0.0)), eta * nu
     scaled, _, _ = rolling_amplitudes(k, drag, a0 / c)
     scaled = np.where(exists, scaled, np.nan)
     exists = np.isfinite(scaled)
     phase = np.arctan2(drag * scaled, k * scaled - 1.0)
-    spin = np.where(exists, -lag * theta * scaled / ratio + 0.0, np.nan)
-    state = np.stack([np.zeros_like(scaled), theta, c * scaled, phase, spin])
+    spin = np.where(exists, -lag * nu * scaled / ratio + 0.0, np.nan)
+    state = np.stack([np.zeros_like(scaled), nu, c * scaled, phase, spin])
     eigenvalues = _eigenvalues(state, exists, numbers)
     with np.errstate(invalid="ignore"):  # NaN, where there is no rolling, passes through
         stable = no_deviation_grows(eigenvalues, eta)
@@ -148,7 +148,7 @@ def free_twist_jacobian(
     Parameters
     ----------
     state
-        Tilt rate μ, rolling rate ω, tilt angle A > 0 [rad], phase ψ = β − θτ and spin σ [ω0], along the first axis:
+        Tilt rate μ, rolling rate ω, tilt angle A > 0 [rad], phase ψ = β − ντ and spin σ [ω0], along the first axis:
         shape (5, ...).
     a0, c, eta, zeta, inertia_ratio, axial_ratio
         As for `free_twist_rolling`; `zeta` finite.
@@ -156,7 +156,7 @@ def free_twist_jacobian(
     Returns
     -------
     numpy.ndarray
-        Matrices along the last two axes, shape (..., 5, 5). θ does not enter.
+        Matrices along the last two axes, shape (..., 5, 5). ν does not enter.
 
     Raises
     ------
@@ -202,7 +202,7 @@ def free_twist_jacobian(
 
 
 def checked_numbers(
-    theta: Real, a0: Real, c: Real, eta: Real, zeta: Real, ratio: Real, axial: Real
+    nu: Real, a0: Real, c: Real, eta: Real, zeta: Real, ratio: Real, axial: Real
 ) -> tuple[FloatArray, ...]:
     """Return the arguments of `free_twist_rolling` as arrays of one shape, or raise ParameterError."""
     kappa = positive("inertia_ratio", ratio)
@@ -212,7 +212,7 @@ def checked_numbers(
     free = np.asarray(zeta, dtype=np.float64)
     not_negative("zeta", np.where(np.isposinf(free), 0.0, free))
     arrays = (
-        positive("theta", theta),
+        positive("nu", nu),
         not_negative("a0", a0),
         positive("c", c),
         not_negative("eta", eta),

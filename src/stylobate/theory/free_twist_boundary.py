@@ -1,13 +1,13 @@
 """The frequencies between which steady rolling with a free twist is stable.
 
-Its tilt follows from θ in closed form and its stability from a determinant, `stylobate.theory.free_twist_stability`.
+Its tilt follows from ν in closed form and its stability from a determinant, `stylobate.theory.free_twist_stability`.
 Left is a root in one variable, bracketed on a grid and bisected to rounding. Seen at 30 000 random columns (a0/c from
 0.001 to 1000, η from 1e-4 to 5, ζ from 1e-4 to 1e4, κ from 0.05 to 0.99, i_a up to 4): besides the band without rolling
-there is one frequency at most at which stability is gained, with 1/(3 + η²/(1+λ)) ≤ (1+λ)θ*² and θ*² ≤ 1 + 2a0/c, and
+there is one frequency at most at which stability is gained, with 1/(3 + η²/(1+λ)) ≤ (1+λ)ν*² and ν*² ≤ 1 + 2a0/c, and
 one at most above it at which it is lost, that only for i_a < 2κ − 1. At two of the columns, with the least amplitudes
 and frictions, rolling was stable in a strip next to that band too.
 
-That last bound follows from the limit θ → ∞, in which the determinant is a positive factor times a cubic in λ = η/(ζD).
+That last bound follows from the limit ν → ∞, in which the determinant is a positive factor times a cubic in λ = η/(ζD).
 Its coefficients are all positive for i_a ≥ 2κ − 1. For i_a < 2κ − 1 they change their sign once: rolling at high
 frequency is then unstable above some λ.
 """
@@ -19,7 +19,7 @@ from stylobate.theory.critical import critical_frequency
 from stylobate.theory.free_twist import checked_numbers
 from stylobate.theory.free_twist_stability import Frictions, deviations_decay
 
-# The grid begins at this part of the bound below θ* and ends at this many times √(1 + a0/c).
+# The grid begins at this part of the bound below ν* and ends at this many times √(1 + a0/c).
 _LOWEST, _HIGHEST = 0.9, 1e4
 _BELOW, _ABOVE = 40, 240  # nodes below and above the band without rolling
 _BISECTIONS = 60
@@ -28,7 +28,7 @@ _BISECTIONS = 60
 def free_twist_critical_frequency(
     a0: Real, *, c: Real, eta: Real, zeta: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
 ) -> FloatArray:
-    """Critical frequency θ* above which steady rolling with a free twist is stable.
+    """Critical frequency ν* above which steady rolling with a free twist is stable.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def free_twist_critical_frequency(
     numpy.ndarray
         Critical frequency, of the broadcast shape. NaN where rolling gains its stability nowhere but across the band in
         which there is none, as for `critical_frequency`, and without spin damping or base motion. Rolling is stable
-        from θ* up to `free_twist_upper_frequency`, which is infinite for most columns.
+        from ν* up to `free_twist_upper_frequency`, which is infinite for most columns.
 
     Raises
     ------
@@ -65,9 +65,9 @@ def free_twist_critical_frequency(
     -----
     A pair of eigenvalues ±iΩ crosses there. At a finite ζ
 
-        θ*² = 1 + 2a − η[(1+a)ζ/(a(1+2a)(1−ν)) + (1+a)(1+ν)(1+a−νa)/((1+2a)(1−ν)ζ) + a/(Dζ)] + O(η²),
+        ν*² = 1 + 2a − η[(1+a)ζ/(a(1+2a)(1−j)) + (1+a)(1+j)(1+a−ja)/((1+2a)(1−j)ζ) + a/(Dζ)] + O(η²),
 
-    with a = a0/c, D = 1 + i_a − κ, ν = i_a/D: as η → 0 it tends to √(1 + 2a0/c), more than the
+    with a = a0/c, D = 1 + i_a − κ, j = i_a/D: as η → 0 it tends to √(1 + 2a0/c), more than the
     `undamped_critical_frequency` of a column that cannot turn. As ζ → 0 it falls as √ζ.
 
     Examples
@@ -83,7 +83,7 @@ def free_twist_critical_frequency(
 def free_twist_upper_frequency(
     a0: Real, *, c: Real, eta: Real, zeta: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
 ) -> FloatArray:
-    """Frequency θ** up to which steady rolling with a free twist is stable.
+    """Frequency ν** up to which steady rolling with a free twist is stable.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def free_twist_upper_frequency(
     -----
     Finite only for i_a < 2κ − 1 and weak spin damping. As ζ → 0 it tends to
 
-        θ** → √((1 + a0/c + i_a)/(2κ − 1 − i_a)).
+        ν** → √((1 + a0/c + i_a)/(2κ − 1 − i_a)).
 
     A solid cylinder stands on the border, i_a = 2κ − 1 = ½, where it is infinite.
 
@@ -173,9 +173,9 @@ def _gap(a: FloatArray, drag: FloatArray) -> tuple[FloatArray, FloatArray]:
     return 1.0 / high, high
 
 
-def _stable(theta: FloatArray, a: FloatArray, column: Frictions) -> BoolArray:
+def _stable(nu: FloatArray, a: FloatArray, column: Frictions) -> BoolArray:
     """Whether the upper branch is stable where there is rolling; on its fold, whether the other conditions hold."""
-    k, drag = 1.0 + theta**2 * (1.0 + column.lag), column.eta * theta
+    k, drag = 1.0 + nu**2 * (1.0 + column.lag), column.eta * nu
     square = k**2 + drag**2
     root = np.sqrt(np.maximum((a * np.sqrt(square) - drag) * (a * np.sqrt(square) + drag), 0.0))
-    return deviations_decay(theta, square / (k + root), column)
+    return deviations_decay(nu, square / (k + root), column)

@@ -18,7 +18,7 @@ from stylobate.theory.zeros import Rows
 
 
 def full_rolling(
-    theta: Real,
+    nu: Real,
     a0: Real,
     *,
     c: Real,
@@ -32,8 +32,8 @@ def full_rolling(
 
     Parameters
     ----------
-    theta
-        Excitation frequency θ, positive.
+    nu
+        Excitation frequency ν, positive.
     a0
         Acceleration amplitude of the base [g].
     c
@@ -53,13 +53,13 @@ def full_rolling(
     Returns
     -------
     FiniteTiltRolling
-        All branches with a tilt below π/2, for the base acceleration a0 (cos θτ, sin θτ), five eigenvalues each; for
+        All branches with a tilt below π/2, for the base acceleration a0 (cos ντ, sin ντ), five eigenvalues each; for
         infinite `zeta` four, and −∞.
 
     Raises
     ------
     ParameterError
-        If `theta` or a number of the body is not positive, no body has these numbers, `spin` is not finite, or another
+        If `nu` or a number of the body is not positive, no body has these numbers, `spin` is not finite, or another
         argument is negative.
 
     See Also
@@ -71,16 +71,16 @@ def full_rolling(
     -----
     In steady rolling the two couples about the lean and about the axis leave of the contact force and the spin
 
-        a0 sin ψ = ηθ sin A cos A/p,   w3 = −θ sin A (sin A + η/(ζκcDp))/cos A,   p = cos A + c sin A
+        a0 sin ψ = ην sin A cos A/p,   w3 = −ν sin A (sin A + η/(ζκcDp))/cos A,   p = cos A + c sin A
 
     with D = 1 + i_a − κ, and tilting is in balance where
 
-        p a0 cos ψ = sin A − c cos A + θ² sin A (κp + (1 − κ) cos A) − θκc w3 (p + c i_a sin A).
+        p a0 cos ψ = sin A − c cos A + ν² sin A (κp + (1 − κ) cos A) − νκc w3 (p + c i_a sin A).
 
     The amplitudes are the zeros of (a0 cos ψ)² + (a0 sin ψ)² − a0²: with friction there have been two at most among
     100 000 random columns, one for a0 > c. They are those of the slender column but for a part of the order c². A
     column that rolls against its spin may lean beyond its tipping angle and be stable. Infinite spin damping leaves
-    the spin w3 = −θ sin A tan A, since it forbids rotation about the vertical and not about the axis.
+    the spin w3 = −ν sin A tan A, since it forbids rotation about the vertical and not about the axis.
 
     Stability is that of all five states, from the exact Jacobian. Without friction and base motion the phase is
     arbitrary.
@@ -95,7 +95,7 @@ def full_rolling(
     free = np.asarray(zeta, dtype=np.float64)
     not_negative("zeta", np.where(np.isposinf(free), 0.0, free))
     numbers = np.broadcast_arrays(
-        positive("theta", theta),
+        positive("nu", nu),
         not_negative("a0", a0),
         not_negative("eta", eta),
         free,
@@ -110,7 +110,7 @@ def full_rolling(
 
 def _branches(
     shape: tuple[int, ...],
-    theta: FloatArray,
+    nu: FloatArray,
     a0: FloatArray,
     eta: FloatArray,
     zeta: FloatArray,
@@ -127,26 +127,26 @@ def _branches(
     def spin_at(tilt: FloatArray, rows: Rows) -> FloatArray:
         body = bodies[rows]
         slide = lag[rows] / (body.kappa * body.c * body.height(tilt))
-        settled = -theta[rows] * np.sin(tilt) * (np.sin(tilt) + slide) / np.cos(tilt)
+        settled = -nu[rows] * np.sin(tilt) * (np.sin(tilt) + slide) / np.cos(tilt)
         return np.where(undecided[rows], spin[rows], settled)
 
     def balance(tilt: FloatArray, rows: Rows) -> tuple[FloatArray, FloatArray]:
-        body, rate = bodies[rows], theta[rows]
+        body, rate = bodies[rows], nu[rows]
         s, cosine, height = np.sin(tilt), np.cos(tilt), body.height(tilt)
         turning = body.kappa * body.c * spin_at(tilt, rows) * (height + body.c * body.axial_ratio * s)
         fling = rate**2 * s * (body.kappa * height + body.transverse * cosine)
         along = (body.overhang(tilt) + fling - rate * turning) / height
         return along, eta[rows] * rate * s * cosine / height
 
-    scale = np.where(np.isfinite(lag), c / (1.0 + theta**2 * (1.0 + lag)), np.nan)
+    scale = np.where(np.isfinite(lag), c / (1.0 + nu**2 * (1.0 + lag)), np.nan)
     tilts = steady_tilts(balance, a0, scale, eta == 0.0)
     exists = np.isfinite(tilts)
     rows, tilt = np.nonzero(exists)[0], tilts[exists]
     along, across = balance(tilt, rows)
     phase, w3, body = np.arctan2(across, along), spin_at(tilt, rows), bodies[rows]
-    moved = kappa[rows] * theta[rows] * (body.c * w3 - theta[rows] * np.sin(tilt))
-    state = np.stack([np.zeros_like(tilt), theta[rows], tilt, phase, w3])
-    growth = _eigenvalues(state, theta[rows], a0[rows], eta[rows], zeta[rows], body)
+    moved = kappa[rows] * nu[rows] * (body.c * w3 - nu[rows] * np.sin(tilt))
+    state = np.stack([np.zeros_like(tilt), nu[rows], tilt, phase, w3])
+    growth = _eigenvalues(state, nu[rows], a0[rows], eta[rows], zeta[rows], body)
     stable = np.zeros(exists.shape, dtype=np.bool_)
     stable[exists] = no_deviation_grows(growth, eta[rows])
     return FiniteTiltRolling(
@@ -162,12 +162,12 @@ def _branches(
 
 
 def _eigenvalues(
-    state: FloatArray, theta: FloatArray, a0: FloatArray, eta: FloatArray, zeta: FloatArray, body: RigidBody
+    state: FloatArray, nu: FloatArray, a0: FloatArray, eta: FloatArray, zeta: FloatArray, body: RigidBody
 ) -> ComplexArray:
     """Return the five eigenvalues of each state; four, and −∞ for the spin, where it follows the rolling at once."""
 
     def rates_of(chosen: BoolArray) -> Callable[[Numbers], Numbers]:
-        some, of = body[chosen], tuple(number[chosen] for number in (theta, a0, eta, zeta))
+        some, of = body[chosen], tuple(number[chosen] for number in (nu, a0, eta, zeta))
         return lambda x: rates(x, of[0], of[1], of[2], of[3], some)
 
     out = np.full((state.shape[1], STATES), -np.inf, dtype=np.complex128)

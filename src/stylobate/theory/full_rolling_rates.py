@@ -9,17 +9,17 @@ STATES = 5
 
 
 def rates(
-    state: Numbers, theta: FloatArray, a0: FloatArray, eta: FloatArray, zeta: FloatArray, body: RigidBody
+    state: Numbers, nu: FloatArray, a0: FloatArray, eta: FloatArray, zeta: FloatArray, body: RigidBody
 ) -> Numbers:
     """Return the right-hand side of rolling without slip at finite tilt, in the frame of the circular base motion.
 
     Parameters
     ----------
     state
-        Tilt rate μ, rolling rate ω = β̇, tilt angle A > 0 [rad], phase ψ = β − θτ and axial angular velocity σ [ω0],
+        Tilt rate μ, rolling rate ω = β̇, tilt angle A > 0 [rad], phase ψ = β − ντ and axial angular velocity σ [ω0],
         real or complex, along the first axis: shape (5, ...).
-    theta
-        Excitation frequency θ.
+    nu
+        Excitation frequency ν.
     a0
         Acceleration amplitude of the base [g].
     eta
@@ -62,7 +62,7 @@ def rates(
         - eta * mu
     ) / body.rim
     rolling = -(w1_rate + omega * mu * cosine) / s
-    return np.stack(np.broadcast_arrays(tilting, rolling, mu, omega - theta, spin_rate))
+    return np.stack(np.broadcast_arrays(tilting, rolling, mu, omega - nu, spin_rate))
 
 
 def _turning(

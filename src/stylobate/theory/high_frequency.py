@@ -1,7 +1,7 @@
-"""Fast straight-line base motion: the limit θ → ∞, a problem of its own with a1/c as its one parameter.
+"""Fast straight-line base motion: the limit ν → ∞, a problem of its own with a1/c as its one parameter.
 
-With α = c y/θ² and s = θτ, (1) becomes y″ = y/θ² − ŷ − (η/θ) y′ − (a1/c) cos s e1. The limit drops the overturning
-part of the weight and the friction, and keeps the base motion in full: raising θ does not make averaging better.
+With α = c y/ν² and s = ντ, (1) becomes y″ = y/ν² − ŷ − (η/ν) y′ − (a1/c) cos s e1. The limit drops the overturning
+part of the weight and the friction, and keeps the base motion in full: raising ν does not make averaging better.
 """
 
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ class HighFrequencyRolling:
     Parameters
     ----------
     upper, lower
-        Tilt angle y = Aθ²/c of the two branches; NaN where the lower does not exist.
+        Tilt angle y = Aν²/c of the two branches; NaN where the lower does not exist.
     frequencies
         The two frequencies, per unit of s, of small oscillations about the upper branch, along a last axis of length 2,
         the slower first.
@@ -36,22 +36,22 @@ class HighFrequencyRolling:
 
 
 def high_frequency_rates(
-    s: Real, state: Real, ratio: Real, transverse_ratio: Real = 0.0, phi0: Real = 0.0
+    s: Real, state: Real, ratio: Real, transverse_ratio: Real = 0.0, phi2: Real = 0.0
 ) -> FloatArray:
     """Right-hand side of the equations of motion in the limit of fast base motion.
 
     Parameters
     ----------
     s
-        Time in units of the base motion, s = θτ.
+        Time in units of the base motion, s = ντ.
     state
-        (y1, y2, y1′, y2′) along the first axis: tilt vector y = αθ²/c and its derivative in s, shape (4, ...).
+        (y1, y2, y1′, y2′) along the first axis: tilt vector y = αν²/c and its derivative in s, shape (4, ...).
     ratio
         a1/c, acceleration amplitude of the base along axis 1 against the slenderness.
     transverse_ratio
         a2/c, the same along axis 2.
-    phi0
-        Phase φ0 of axis 2 against axis 1 [rad].
+    phi2
+        Phase φ2 of axis 2 against axis 1 [rad].
 
     Returns
     -------
@@ -65,16 +65,16 @@ def high_frequency_rates(
 
     Notes
     -----
-    y″ = −ŷ − (a1 cos s, a2 cos(s + φ0))/c, from (1). Holds while y ≪ θ²: nothing overturns in this limit.
+    y″ = −ŷ − (a1 cos s, a2 cos(s + φ2))/c, from (1). Holds while y ≪ ν²: nothing overturns in this limit.
     """
     y = np.asarray(state, dtype=np.float64)
     if y.ndim == 0 or len(y) != _STATE_LENGTH:
         message = f"state must have the four entries (y1, y2, y1', y2') along its first axis, got the shape {y.shape}"
         raise ParameterError(message)
-    s, ratio, transverse_ratio, phi0 = (np.asarray(v, dtype=np.float64) for v in (s, ratio, transverse_ratio, phi0))
+    s, ratio, transverse_ratio, phi2 = (np.asarray(v, dtype=np.float64) for v in (s, ratio, transverse_ratio, phi2))
     lean = np.hypot(y[0], y[1])
     first = -y[0] / lean - ratio * np.cos(s)
-    second = -y[1] / lean - transverse_ratio * np.cos(s + phi0)
+    second = -y[1] / lean - transverse_ratio * np.cos(s + phi2)
     return np.stack(np.broadcast_arrays(y[2], y[3], first, second))
 
 
@@ -99,10 +99,10 @@ def high_frequency_rolling(ratio: Real) -> HighFrequencyRolling:
 
     Notes
     -----
-    The limit of (8), (10) for θ → ∞: y± = 1 ± a1/2c. Deviations e^{σs} obey σ⁴ + (2 + ξ)σ² + 1 − ξ = 0, ξ = 1/y, so
+    The limit of (8), (10) for ν → ∞: y± = 1 ± a1/2c. Deviations e^{σs} obey σ⁴ + (2 + ξ)σ² + 1 − ξ = 0, ξ = 1/y, so
     σ² = −½[2 + ξ ± √(ξ² + 8ξ)]: both negative on the upper branch, ξ < 1, and of opposite sign on the lower. The
     critical frequency is below √(1 + 2a0/c), hence every amplitude ends up stable. Friction damps as e^{−ητ/2}, which
-    is e^{−ηs/2θ} here: not in the limit.
+    is e^{−ηs/2ν} here: not in the limit.
 
     Examples
     --------

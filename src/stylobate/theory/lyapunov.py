@@ -1,7 +1,7 @@
-"""How steady rolling loses its stability at θ*: softly, into a modulated rolling, or hard.
+"""How steady rolling loses its stability at ν*: softly, into a modulated rolling, or hard.
 
 The first Lyapunov coefficient of the Hopf bifurcation of (7), from its second and third derivatives in closed form. The
-state is (μ/c, ω, A/c, ψ) and the amplitude a = a0/c; at steady rolling μ = 0 and ω = θ.
+state is (μ/c, ω, A/c, ψ) and the amplitude a = a0/c; at steady rolling μ = 0 and ω = ν.
 """
 
 from dataclasses import dataclass
@@ -29,8 +29,8 @@ def first_lyapunov_coefficient(a0: Real, *, c: Real, eta: Real) -> FloatArray:
     Returns
     -------
     numpy.ndarray
-        The coefficient, of the broadcast shape: negative where a stable modulated rolling is born below θ*. NaN where
-        there is no θ*, at the very start of its curve, and without friction, where the loss of stability is no Hopf
+        The coefficient, of the broadcast shape: negative where a stable modulated rolling is born below ν*. NaN where
+        there is no ν*, at the very start of its curve, and without friction, where the loss of stability is no Hopf
         bifurcation.
 
     Raises
@@ -55,22 +55,20 @@ def first_lyapunov_coefficient(a0: Real, *, c: Real, eta: Real) -> FloatArray:
     [-4.3987 -1.6652]
     """
     amplitude, c, eta = np.broadcast_arrays(not_negative("a0", a0), positive("c", c), not_negative("eta", eta))
-    theta, frequency = critical_frequency(amplitude, c=c, eta=eta), crossing_frequency(amplitude, c=c, eta=eta)
+    nu, frequency = critical_frequency(amplitude, c=c, eta=eta), crossing_frequency(amplitude, c=c, eta=eta)
     regular = (frequency > 0.0) & (eta > 0.0)
     coefficient = np.full(amplitude.shape, np.nan)
-    coefficient[regular] = _coefficient(
-        theta[regular], frequency[regular], amplitude[regular] / c[regular], eta[regular]
-    )
+    coefficient[regular] = _coefficient(nu[regular], frequency[regular], amplitude[regular] / c[regular], eta[regular])
     return coefficient
 
 
-def _coefficient(theta: FloatArray, frequency: FloatArray, a0: FloatArray, eta: FloatArray) -> FloatArray:
-    rolling = steady_rolling(theta, a0, c=1.0, eta=eta).upper
+def _coefficient(nu: FloatArray, frequency: FloatArray, a0: FloatArray, eta: FloatArray) -> FloatArray:
+    rolling = steady_rolling(nu, a0, c=1.0, eta=eta).upper
     tilt, phase = rolling.amplitude, rolling.phase
-    flow = _Expansion(theta=theta, tilt=tilt, push=a0 * np.cos(phase), drive=a0 * np.sin(phase))
-    state = np.stack([np.zeros_like(theta), theta, tilt, phase])
+    flow = _Expansion(nu=nu, tilt=tilt, push=a0 * np.cos(phase), drive=a0 * np.sin(phase))
+    state = np.stack([np.zeros_like(nu), nu, tilt, phase])
     jacobian = rotating_frame_jacobian(state, a0, eta=eta).astype(np.complex128)
-    q, p = _critical_vectors(theta, tilt, eta, frequency)
+    q, p = _critical_vectors(nu, tilt, eta, frequency)
     forced = _solve(jacobian, flow.second(q, q.conj()))
     shifted = 2.0j * frequency[:, np.newaxis, np.newaxis] * np.eye(4) - jacobian
     doubled = _solve(shifted, flow.second(q, q))
@@ -84,15 +82,15 @@ def _solve(matrices: ComplexArray, vectors: ComplexArray) -> ComplexArray:
 
 
 def _critical_vectors(
-    theta: FloatArray, tilt: FloatArray, eta: FloatArray, frequency: FloatArray
+    nu: FloatArray, tilt: FloatArray, eta: FloatArray, frequency: FloatArray
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Return q and p of the eigenvalue iΩ, by hand from the sparse Jacobian, where a0 sin ψ = ηθA."""
+    """Return q and p of the eigenvalue iΩ, by hand from the sparse Jacobian, where a0 sin ψ = ηνA."""
     s = 1.0j * frequency
-    turn, detuning = theta * (2.0 * s + eta), s**2 + eta * s - 1.0 - theta**2
+    turn, detuning = nu * (2.0 * s + eta), s**2 + eta * s - 1.0 - nu**2
     q = np.stack([s * turn * tilt, s * detuning, turn * tilt, detuning], axis=-1)
     first, second = turn / tilt, -detuning
-    third = (s + eta) * first + 2.0 * theta / tilt * second
-    fourth = (s + eta) * second - 2.0 * theta * tilt * first
+    third = (s + eta) * first + 2.0 * nu / tilt * second
+    fourth = (s + eta) * second - 2.0 * nu * tilt * first
     p = np.stack([first, second, third, fourth], axis=-1).conj()
     q = q / np.linalg.norm(q, axis=-1, keepdims=True)
     return q, p / np.sum(p.conj() * q, axis=-1, keepdims=True).conj()
@@ -104,13 +102,13 @@ class _Expansion:
 
     Parameters
     ----------
-    theta, tilt
+    nu, tilt
         Rolling rate and tilt angle.
     push, drive
         a cos ψ and a sin ψ.
     """
 
-    theta: FloatArray
+    nu: FloatArray
     tilt: FloatArray
     push: FloatArray
     drive: FloatArray
@@ -119,7 +117,7 @@ class _Expansion:
         """Return B(x, y)."""
         xm, xw, xa, xp = np.moveaxis(x, -1, 0)
         ym, yw, ya, yp = np.moveaxis(y, -1, 0)
-        tilting = 2.0 * self.tilt * xw * yw + 2.0 * self.theta * (xw * ya + xa * yw) + self.push * xp * yp
+        tilting = 2.0 * self.tilt * xw * yw + 2.0 * self.nu * (xw * ya + xa * yw) + self.push * xp * yp
         turning = (
             self._moment_2(xm, xw, xp, ym, yw, yp) / self.tilt
             - (self._moment_1(xm, xp) * ya + self._moment_1(ym, yp) * xa) / self.tilt**2
@@ -143,7 +141,7 @@ class _Expansion:
 
     def _moment_1(self, m: ComplexArray, p: ComplexArray) -> ComplexArray:
         """First derivative of −2μω + a sin ψ, which is A times the turning acceleration but for friction."""
-        return -2.0 * self.theta * m + self.push * p
+        return -2.0 * self.nu * m + self.push * p
 
     def _moment_2(
         self,

@@ -1,4 +1,4 @@
-"""Modulated rolling: below θ* the column still rolls with the base motion, at a tilt that swings for ever."""
+"""Modulated rolling: below ν* the column still rolls with the base motion, at a tilt that swings for ever."""
 
 from dataclasses import dataclass
 
@@ -28,7 +28,7 @@ class ModulatedRolling:
     tau
         Times of one period of the modulation, equally spaced, shape (points,).
     amplitude, phase
-        Tilt angle A [rad] and phase ψ = β − θτ [rad] at these times.
+        Tilt angle A [rad] and phase ψ = β − ντ [rad] at these times.
     tilt_rate, rolling_rate
         μ = Ȧ and ω = β̇ at these times.
     period
@@ -54,13 +54,13 @@ class ModulatedRolling:
     amplitude_range: tuple[float, float]
 
 
-def modulated_rolling(theta: float, a0: float, *, c: float, eta: float, points: int = 101) -> ModulatedRolling:
+def modulated_rolling(nu: float, a0: float, *, c: float, eta: float, points: int = 101) -> ModulatedRolling:
     """Modulated rolling on a circularly moving base, below the critical frequency.
 
     Parameters
     ----------
-    theta
-        Excitation frequency θ, a number.
+    nu
+        Excitation frequency ν, a number.
     a0
         Acceleration amplitude of the base [g].
     c
@@ -74,18 +74,18 @@ def modulated_rolling(theta: float, a0: float, *, c: float, eta: float, points: 
     Returns
     -------
     ModulatedRolling
-        The motion and its stability, or the reason why there is none: θ is not below θ*, the branch turns back before
-        it reaches θ, or the points do not resolve it.
+        The motion and its stability, or the reason why there is none: ν is not below ν*, the branch turns back before
+        it reaches ν, or the points do not resolve it.
 
     Raises
     ------
     ParameterError
-        If `theta` or `c` is not positive, `a0` or `eta` is negative, or `points` is even or below 15.
+        If `nu` or `c` is not positive, `a0` or `eta` is negative, or `points` is even or below 15.
 
     Notes
     -----
-    A limit cycle of (7) born in the Hopf bifurcation of steady rolling at θ*, found by Fourier collocation and followed
-    from there. At c = η = 0.1 and a0 = 0.065 it is stable from θ* = 1.3971 down to 1.3224, where a multiplier
+    A limit cycle of (7) born in the Hopf bifurcation of steady rolling at ν*, found by Fourier collocation and followed
+    from there. At c = η = 0.1 and a0 = 0.065 it is stable from ν* = 1.3971 down to 1.3224, where a multiplier
     leaves through −1: the modulation doubles its period. Integration then shows a cascade of doublings, which ends
     near 1.313 with the column overturning. The unstable cycle itself goes on to lower frequencies.
 
@@ -95,13 +95,13 @@ def modulated_rolling(theta: float, a0: float, *, c: float, eta: float, points: 
     >>> print(motion.found, motion.stable, round(motion.period, 3))
     True True 4.763
     """
-    theta, a0 = require_positive("theta", theta), require_not_negative("a0", a0)
+    nu, a0 = require_positive("nu", nu), require_not_negative("a0", a0)
     c, eta = require_positive("c", c), require_not_negative("eta", eta)
     if points < _FEWEST_POINTS or points % 2 == 0:
         message = f"points must be odd and at least {_FEWEST_POINTS}, got {points!r}"
         raise ParameterError(message)
     try:
-        cycle = cycle_at(theta, a0 / c, eta, points)
+        cycle = cycle_at(nu, a0 / c, eta, points)
     except NoCycleError as none:
         return _missing(str(none), points)
     left = unresolved(cycle.state)
@@ -112,7 +112,7 @@ def modulated_rolling(theta: float, a0: float, *, c: float, eta: float, points: 
 
 def _described(cycle: Cycle, a0: float, c: float, eta: float) -> ModulatedRolling:
     tilt_rate, rolling_rate, ratio, phase = cycle.state
-    steady = float(steady_rolling(cycle.theta, a0 / c, c=1.0, eta=eta).upper.amplitude)
+    steady = float(steady_rolling(cycle.nu, a0 / c, c=1.0, eta=eta).upper.amplitude)
     multipliers = floquet_multipliers(cycle.state, cycle.period, a0 / c, eta)
     shift = np.argmin(np.abs(multipliers - 1.0))
     return ModulatedRolling(

@@ -1,11 +1,11 @@
 """Rocking in a plane under straight-line base motion: the symmetric orbits of the forcing period, in closed form.
 
 Between two passages of the upright the equation (1) is linear. A motion that leaves the upright at the speed v0, comes
-back after half a forcing period H = π/θ at the speed −v0 and then repeats with the opposite sign obeys, with the rates
+back after half a forcing period H = π/ν at the speed −v0 and then repeats with the opposite sign obeys, with the rates
 λ = (η + √(η² + 4))/2 of decay and 1/λ of growth,
 
     f  = c [tanh(λH/2) − λ² tanh(H/2λ)] / (1 + λ²),              the forced part of α at the passage,
-    v0 = cλ [tanh(λH/2) + tanh(H/2λ)] / (1 + λ²) ± θ√(Z² − f²),  Z = a1/√((1 + θ²)² + η²θ²).
+    v0 = cλ [tanh(λH/2) + tanh(H/2λ)] / (1 + λ²) ± ν√(Z² − f²),  Z = a1/√((1 + ν²)² + η²ν²).
 
 The amplitude a1 enters only through Z. Without friction f = 0.
 """
@@ -30,7 +30,7 @@ class PlanarOrbit:
     amplitude
         Largest tilt angle [rad].
     phase
-        Phase of the base acceleration a1 cos(θτ + phase) when the column passes the upright towards positive tilt at
+        Phase of the base acceleration a1 cos(ντ + phase) when the column passes the upright towards positive tilt at
         τ = 0 [rad], in (−π, π].
     crossing_velocity
         Tilt rate v0 at that passage.
@@ -72,13 +72,13 @@ class PlanarForcedResponse:
     slow: PlanarOrbit
 
 
-def planar_forced_response(theta: Real, a1: Real, *, c: Real, eta: Real) -> PlanarForcedResponse:
+def planar_forced_response(nu: Real, a1: Real, *, c: Real, eta: Real) -> PlanarForcedResponse:
     """Symmetric rocking in a plane with the period of a straight-line base motion.
 
     Parameters
     ----------
-    theta
-        Excitation frequency θ, positive.
+    nu
+        Excitation frequency ν, positive.
     a1
         Acceleration amplitude of the base [g].
     c
@@ -94,7 +94,7 @@ def planar_forced_response(theta: Real, a1: Real, *, c: Real, eta: Real) -> Plan
     Raises
     ------
     ParameterError
-        If `theta` or `c` is not positive, or `a1` or `eta` is negative.
+        If `nu` or `c` is not positive, or `a1` or `eta` is negative.
 
     Notes
     -----
@@ -110,10 +110,10 @@ def planar_forced_response(theta: Real, a1: Real, *, c: Real, eta: Real) -> Plan
     >>> print(response.fast.amplitude.round(5), response.fast.stable_in_plane)
     0.02528 True
     """
-    theta, a1, c, eta = np.broadcast_arrays(
-        positive("theta", theta), not_negative("a1", a1), positive("c", c), not_negative("eta", eta)
+    nu, a1, c, eta = np.broadcast_arrays(
+        positive("nu", nu), not_negative("a1", a1), positive("c", c), not_negative("eta", eta)
     )
-    return PlanarForcedResponse(fast=_orbit(theta, a1, c, eta, 1.0), slow=_orbit(theta, a1, c, eta, -1.0))
+    return PlanarForcedResponse(fast=_orbit(nu, a1, c, eta, 1.0), slow=_orbit(nu, a1, c, eta, -1.0))
 
 
 def planar_kick_slope(crossing_velocity: Real, c: Real) -> FloatArray:
@@ -151,14 +151,14 @@ def planar_kick_slope(crossing_velocity: Real, c: Real) -> FloatArray:
     return 2.0 * positive("c", c) / positive("crossing_velocity", crossing_velocity)
 
 
-def _orbit(theta: FloatArray, a1: FloatArray, c: FloatArray, eta: FloatArray, branch: float) -> PlanarOrbit:
-    arc = _arc(theta, a1, c, eta, branch)
+def _orbit(nu: FloatArray, a1: FloatArray, c: FloatArray, eta: FloatArray, branch: float) -> PlanarOrbit:
+    arc = _arc(nu, a1, c, eta, branch)
     top, bottom = arc.extremes()
     exists = (arc.speed > 0.0) & (top > 0.0) & (bottom > 0.0)
-    multipliers, stable = _in_plane(theta, c, eta, np.where(exists, arc.speed, np.nan))
+    multipliers, stable = _in_plane(nu, c, eta, np.where(exists, arc.speed, np.nan))
     return PlanarOrbit(
         amplitude=np.where(exists, top, np.nan),
-        phase=np.where(exists, _wrapped(arc.lag - np.arctan2(eta * theta, 1.0 + theta**2)), np.nan),
+        phase=np.where(exists, _wrapped(arc.lag - np.arctan2(eta * nu, 1.0 + nu**2)), np.nan),
         crossing_velocity=np.where(exists, arc.speed, np.nan),
         exists=exists,
         multipliers=multipliers,
@@ -168,12 +168,12 @@ def _orbit(theta: FloatArray, a1: FloatArray, c: FloatArray, eta: FloatArray, br
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Arc:
-    """The half period on the positive side: α = c + C1 e^{(τ−H)/λ} + C2 e^{−λτ} + Z cos(θτ + lag).
+    """The half period on the positive side: α = c + C1 e^{(τ−H)/λ} + C2 e^{−λτ} + Z cos(ντ + lag).
 
     The growing exponential is counted from its end, so that nothing overflows however long the half period is.
     """
 
-    theta: FloatArray
+    nu: FloatArray
     c: FloatArray
     half_period: FloatArray
     decay: FloatArray
@@ -186,12 +186,12 @@ class _Arc:
     def tilt(self, tau: FloatArray) -> FloatArray:
         """Tilt angle at the times τ along a leading axis."""
         growing, decaying = self._exponentials(tau)
-        return self.c + growing + decaying + self.size * np.cos(self.theta * tau + self.lag)
+        return self.c + growing + decaying + self.size * np.cos(self.nu * tau + self.lag)
 
     def tilt_rate(self, tau: FloatArray) -> FloatArray:
         """Tilt rate at the times τ along a leading axis."""
         growing, decaying = self._exponentials(tau)
-        harmonic = -self.theta * self.size * np.sin(self.theta * tau + self.lag)
+        harmonic = -self.nu * self.size * np.sin(self.nu * tau + self.lag)
         return growing / self.decay - self.decay * decaying + harmonic
 
     def _exponentials(self, tau: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -222,17 +222,17 @@ class _Arc:
         return self.tilt(0.5 * (low + high))
 
 
-def _arc(theta: FloatArray, a1: FloatArray, c: FloatArray, eta: FloatArray, branch: float) -> _Arc:
+def _arc(nu: FloatArray, a1: FloatArray, c: FloatArray, eta: FloatArray, branch: float) -> _Arc:
     """Solve α(0) = α(H) = 0 and α̇(H) = −α̇(0), three linear equations in C1, C2 and f."""
-    half_period, decay = np.pi / theta, 0.5 * (eta + np.hypot(eta, 2.0))
+    half_period, decay = np.pi / nu, 0.5 * (eta + np.hypot(eta, 2.0))
     up, down = np.tanh(0.5 * half_period / decay), np.tanh(0.5 * half_period * decay)
     share = c / (1.0 + decay**2)
-    size = a1 / np.hypot(1.0 + theta**2, eta * theta)
+    size = a1 / np.hypot(1.0 + nu**2, eta * nu)
     forced = share * (down - decay**2 * up)
     square = (size - forced) * (size + forced)
     across = branch * np.sqrt(np.where(square >= 0.0, square, np.nan))
     return _Arc(
-        theta=theta,
+        nu=nu,
         c=c,
         half_period=half_period,
         decay=decay,
@@ -240,23 +240,23 @@ def _arc(theta: FloatArray, a1: FloatArray, c: FloatArray, eta: FloatArray, bran
         decaying=-share * (1.0 + down),
         size=size,
         lag=np.arctan2(-across, forced),
-        speed=share * decay * (up + down) + theta * across,
+        speed=share * decay * (up + down) + nu * across,
     )
 
 
-def _in_plane(theta: FloatArray, c: FloatArray, eta: FloatArray, speed: FloatArray) -> tuple[ComplexArray, BoolArray]:
+def _in_plane(nu: FloatArray, c: FloatArray, eta: FloatArray, speed: FloatArray) -> tuple[ComplexArray, BoolArray]:
     """Multipliers of the half-period map, its smooth part followed by the jump of the weight at the passage.
 
     At the passage the acceleration jumps by 2c while the tilt falls at the speed v0, so the map of (α, α̇) is
     −[[1, 0], [−2c/v0, 1]] e^{MH}: determinant e^{−ηH}, trace as below. The sign is the symmetry of the orbit.
     """
-    half_period, width = np.pi / theta, np.hypot(eta, 2.0)
+    half_period, width = np.pi / nu, np.hypot(eta, 2.0)
     growth = 2.0 / (width + eta)
     shrink = np.exp(-width * half_period)
     kick = 2.0 * c / (speed * width)
     scaled = -((1.0 + shrink) - kick * (1.0 - shrink))  # trace · e^{−H/λ}
     determinant = np.exp(-eta * half_period)
-    with np.errstate(over="ignore", invalid="ignore"):  # beyond the largest float at very low θ; NaN without an orbit
+    with np.errstate(over="ignore", invalid="ignore"):  # beyond the largest float at very low ν; NaN without an orbit
         stretch = np.exp(growth * half_period)
         half = (0.5 * scaled).astype(np.complex128)
         root = np.sqrt(half**2 - shrink)

@@ -12,16 +12,16 @@ from stylobate.theory.arguments import BoolArray, FloatArray, Real, positive
 _HALVINGS = 60
 # A golden section narrows its bracket by 0.618 a step: 75 steps leave 2e-16 of it.
 _GOLDEN, _SECTIONS = 0.5 * (np.sqrt(5.0) - 1.0), 75
-# Below it exp(3π/2θ), by which rounding grows during the pulse, is as large as what the band is computed from.
+# Below it exp(3π/2ν), by which rounding grows during the pulse, is as large as what the band is computed from.
 _LEAST_FREQUENCY = 0.1
 
 
-def half_sine_overturning(theta: Real, c: Real) -> FloatArray:
+def half_sine_overturning(nu: Real, c: Real) -> FloatArray:
     """Least half sine of acceleration that overturns a column at rest, without friction.
 
     Parameters
     ----------
-    theta
+    nu
         Angular frequency ω of the pulse, a0 sin ωt over half a period, over ω0; for a block over p = √(mgR/K).
     c
         Slenderness; for a block the angle α or its tangent, equal to the order of this theory.
@@ -42,14 +42,14 @@ def half_sine_overturning(theta: Real, c: Real) -> FloatArray:
 
     Notes
     -----
-    For small tilt and slenderness, in the plane. The column is released where a0 sin θτ = c. With u the tilt over c and
-    a = a0/c, the growing part z = u − 1 + u̇ of its motion obeys ż = z + a sin θτ from z = −1. It overturns if z > 0 at
+    For small tilt and slenderness, in the plane. The column is released where a0 sin ντ = c. With u the tilt over c and
+    a = a0/c, the growing part z = u − 1 + u̇ of its motion obeys ż = z + a sin ντ from z = −1. It overturns if z > 0 at
     the end of the pulse, from where z grows by itself, and with s = √(a² − 1) z vanishes there for
 
-        s + √(1 + s²) exp[−(π/2 + arctan s)/θ] = θ,
+        s + √(1 + s²) exp[−(π/2 + arctan s)/ν] = ν,
 
     whose left side grows with s. G. W. Housner (Bulletin of the Seismological Society of America 53, 1963) gives
-    √(1 + θ²), 5.10 at θ = 5, on the assumption that the column stands at its balance when the pulse ends. A column that
+    √(1 + ν²), 5.10 at ν = 5, on the assumption that the column stands at its balance when the pulse ends. A column that
     leans less than that and still moves outwards overturns too, from 3.289 on: J. Zhang and N. Makris, "Rocking
     response of free-standing blocks under cycloidal pulses", Journal of Engineering Mechanics 127 (2001).
 
@@ -58,11 +58,11 @@ def half_sine_overturning(theta: Real, c: Real) -> FloatArray:
     >>> print(half_sine_overturning([2.0, 5.0, 10.0], c=1.0).round(4))
     [1.8007 3.2891 5.7865]
     """
-    theta, c = np.broadcast_arrays(positive("theta", theta), positive("c", c))
-    return c * _least(theta, lambda s: s + _left(s, 0.5, theta), theta)
+    nu, c = np.broadcast_arrays(positive("nu", nu), positive("c", c))
+    return c * _least(nu, lambda s: s + _left(s, 0.5, nu), nu)
 
 
-def one_sine_overturning_without_impact(theta: Real, c: Real) -> FloatArray:
+def one_sine_overturning_without_impact(nu: Real, c: Real) -> FloatArray:
     """Least whole sine of acceleration that overturns a column at rest without an impact, and without friction.
 
     This is mode 2 of Zhang and Makris (2001), and often not the least amplitude that overturns: weaker pulses may
@@ -70,7 +70,7 @@ def one_sine_overturning_without_impact(theta: Real, c: Real) -> FloatArray:
 
     Parameters
     ----------
-    theta
+    nu
         Angular frequency ω of the pulse, a0 sin ωt over one period, over ω0; for a block over p = √(mgR/K).
     c
         Slenderness; for a block the angle α or its tangent, equal to the order of this theory.
@@ -94,7 +94,7 @@ def one_sine_overturning_without_impact(theta: Real, c: Real) -> FloatArray:
     -----
     As for half a sine, now with a whole sine at the end of which z vanishes:
 
-        s − √(1 + s²) exp[−(3π/2 + arctan s)/θ] = θ.
+        s − √(1 + s²) exp[−(3π/2 + arctan s)/ν] = ν.
 
     The column overturns the way that the first half pushes it.
 
@@ -103,11 +103,11 @@ def one_sine_overturning_without_impact(theta: Real, c: Real) -> FloatArray:
     >>> print(one_sine_overturning_without_impact(5.0, c=1.0).round(4))
     7.1681
     """
-    theta, c = np.broadcast_arrays(positive("theta", theta), positive("c", c))
-    return c * _without_impact(theta)
+    nu, c = np.broadcast_arrays(positive("nu", nu), positive("c", c))
+    return c * _without_impact(nu)
 
 
-def one_sine_overturning_after_impact(theta: Real, c: Real, *, restitution: Real) -> tuple[FloatArray, FloatArray]:
+def one_sine_overturning_after_impact(nu: Real, c: Real, *, restitution: Real) -> tuple[FloatArray, FloatArray]:
     """Compute the band of whole sines of acceleration that overturn a column at rest after one impact.
 
     This is mode 1 of Zhang and Makris (2001). Where the band is not empty, its lower end is the least amplitude that
@@ -115,7 +115,7 @@ def one_sine_overturning_after_impact(theta: Real, c: Real, *, restitution: Real
 
     Parameters
     ----------
-    theta
+    nu
         Angular frequency ω of the pulse, a0 sin ωt over one period, over ω0; for a block over p = √(mgR/K).
     c
         Slenderness; for a block the angle α or its tangent, equal to the order of this theory.
@@ -126,7 +126,7 @@ def one_sine_overturning_after_impact(theta: Real, c: Real, *, restitution: Real
     -------
     lowest, highest : numpy.ndarray
         Ends of the band of a0 in g, of the broadcast shape; NaN where no pulse overturns after one impact. Below
-        θ = 0.1 they are NaN too: the band is there narrower than 1e-7 of its amplitude, and rounding hides it.
+        ν = 0.1 they are NaN too: the band is there narrower than 1e-7 of its amplitude, and rounding hides it.
 
     Raises
     ------
@@ -140,10 +140,10 @@ def one_sine_overturning_after_impact(theta: Real, c: Real, *, restitution: Real
     Notes
     -----
     As for half a sine up to the impact at τ1, where u = 0 and u̇ = −v. After it the column leans to the other side,
-    ü = u + 1 + a sin θτ, and its growing part y = u + 1 + u̇ obeys ẏ = y + a sin θτ from y = 1 − ev. It overturns if
-    y < 0 when the pulse ends, at θτ2 = 2π, which it does if
+    ü = u + 1 + a sin ντ, and its growing part y = u + 1 + u̇ obeys ẏ = y + a sin ντ from y = 1 − ev. It overturns if
+    y < 0 when the pulse ends, at ντ2 = 2π, which it does if
 
-        ev > 1 + a [sin θτ1 + θ cos θτ1 − θ exp(τ1 − τ2)]/(1 + θ²),
+        ev > 1 + a [sin ντ1 + ν cos ντ1 − ν exp(τ1 − τ2)]/(1 + ν²),
 
     and, for an impact after the pulse, if ev > 1. The least e that a pulse needs falls and then rises to 1 with the
     amplitude, so that the pulses that overturn form one band. At its ends the column takes infinite time to reach
@@ -156,33 +156,33 @@ def one_sine_overturning_after_impact(theta: Real, c: Real, *, restitution: Real
     >>> print(lowest.round(4), highest.round(4))
     3.0186 6.3181
     """
-    theta, c, e = np.broadcast_arrays(positive("theta", theta), positive("c", c), positive("restitution", restitution))
+    nu, c, e = np.broadcast_arrays(positive("nu", nu), positive("c", c), positive("restitution", restitution))
     if np.any(e > 1.0):
         message = f"restitution: at most 1 (got {float(e[e > 1.0].flat[0])!r}). State the ratio of tilt rates."
         raise ParameterError(message)
-    resolved = np.asarray(np.maximum(theta, _LEAST_FREQUENCY))
-    top, bottom = _without_impact(resolved), np.ones(theta.shape)
+    resolved = np.asarray(np.maximum(nu, _LEAST_FREQUENCY))
+    top, bottom = _without_impact(resolved), np.ones(nu.shape)
 
     def needed(a: FloatArray) -> FloatArray:
         return _least_restitution(a, resolved)
 
     easiest = _least_of(needed, bottom, top)
-    empty = (needed(easiest) >= e) | (theta < _LEAST_FREQUENCY)
+    empty = (needed(easiest) >= e) | (nu < _LEAST_FREQUENCY)
     lowest, highest = (_edge(lambda a: needed(a) < e, end, easiest) for end in (bottom, top))
     return np.where(empty, np.nan, c * lowest), np.where(empty, np.nan, c * highest)
 
 
-def _least_restitution(a: FloatArray, theta: FloatArray) -> FloatArray:
+def _least_restitution(a: FloatArray, nu: FloatArray) -> FloatArray:
     """Return the least e with which a pulse too weak to overturn without an impact overturns after one."""
-    motion = _Arc.of(a, theta)
-    end = 2.0 * np.pi / theta
+    motion = _Arc.of(a, nu)
+    end = 2.0 * np.pi / nu
     before, after = motion.start, end
     for _ in range(_HALVINGS):  # once it is back it stays below
         middle = 0.5 * (before + after)
         stands = motion.tilt(middle) > 0.0
         before, after = np.where(stands, middle, before), np.where(stands, after, middle)
-    angle, left = theta * after, theta * np.exp(after - end)
-    needed = 1.0 + a * (np.sin(angle) + theta * np.cos(angle) - left) / (1.0 + theta**2)
+    angle, left = nu * after, nu * np.exp(after - end)
+    needed = 1.0 + a * (np.sin(angle) + nu * np.cos(angle) - left) / (1.0 + nu**2)
     u, rate = motion.tilt(end), motion.rate(end)
     with np.errstate(invalid="ignore", divide="ignore"):  # of the case that does not apply
         return np.asarray(np.where(u > 0.0, 1.0 / np.sqrt(rate**2 + 2.0 * u - u**2), needed / -motion.rate(after)))
@@ -190,35 +190,35 @@ def _least_restitution(a: FloatArray, theta: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class _Arc:
-    """The tilt u over c from the release at `start` on: u = 1 − A cosh s − B sinh s − C sin θτ, s = τ − start."""
+    """The tilt u over c from the release at `start` on: u = 1 − A cosh s − B sinh s − C sin ντ, s = τ − start."""
 
-    theta: FloatArray
+    nu: FloatArray
     start: FloatArray
     coefficients: tuple[FloatArray, FloatArray, FloatArray]
 
     @classmethod
-    def of(cls, a: FloatArray, theta: FloatArray) -> Self:
-        """Return the motion under a pulse of amplitude a, over c, from rest where a sin θτ = 1."""
+    def of(cls, a: FloatArray, nu: FloatArray) -> Self:
+        """Return the motion under a pulse of amplitude a, over c, from rest where a sin ντ = 1."""
         angle = np.arcsin(1.0 / a)
-        share = a / (1.0 + theta**2)
-        return cls(theta, angle / theta, (1.0 - share / a, -theta * share * np.cos(angle), share))
+        share = a / (1.0 + nu**2)
+        return cls(nu, angle / nu, (1.0 - share / a, -nu * share * np.cos(angle), share))
 
     def tilt(self, tau: FloatArray) -> FloatArray:
         """Return u."""
         (first, second, share), s = self.coefficients, tau - self.start
-        return np.asarray(1.0 - first * np.cosh(s) - second * np.sinh(s) - share * np.sin(self.theta * tau))
+        return np.asarray(1.0 - first * np.cosh(s) - second * np.sinh(s) - share * np.sin(self.nu * tau))
 
     def rate(self, tau: FloatArray) -> FloatArray:
         """Return u̇."""
         (first, second, share), s = self.coefficients, tau - self.start
-        forced = share * self.theta * np.cos(self.theta * tau)
+        forced = share * self.nu * np.cos(self.nu * tau)
         return np.asarray(-first * np.sinh(s) - second * np.cosh(s) - forced)
 
 
-def _without_impact(theta: FloatArray) -> FloatArray:
+def _without_impact(nu: FloatArray) -> FloatArray:
     """Return the least amplitude over c of a whole sine that overturns without an impact."""
-    longest = np.exp(-1.5 * np.pi / theta)  # √(1 + s²) ≤ 1 + s
-    return _least(theta, lambda s: s - _left(s, 1.5, theta), (theta + longest) / (1.0 - longest))
+    longest = np.exp(-1.5 * np.pi / nu)  # √(1 + s²) ≤ 1 + s
+    return _least(nu, lambda s: s - _left(s, 1.5, nu), (nu + longest) / (1.0 - longest))
 
 
 def _least_of(valley: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray) -> FloatArray:
@@ -239,16 +239,16 @@ def _edge(inside: Callable[[FloatArray], BoolArray], beyond: FloatArray, within:
     return np.asarray(within)
 
 
-def _left(s: FloatArray, turns: float, theta: FloatArray) -> FloatArray:
-    """Return √(1 + s²) exp(−Δτ), Δτ from the release at θτ = arctan(1/s) to the end at θτ = (`turns` + ½)π."""
-    return np.asarray(np.sqrt(1.0 + s**2) * np.exp(-(turns * np.pi + np.arctan(s)) / theta))
+def _left(s: FloatArray, turns: float, nu: FloatArray) -> FloatArray:
+    """Return √(1 + s²) exp(−Δτ), Δτ from the release at ντ = arctan(1/s) to the end at ντ = (`turns` + ½)π."""
+    return np.asarray(np.sqrt(1.0 + s**2) * np.exp(-(turns * np.pi + np.arctan(s)) / nu))
 
 
-def _least(theta: FloatArray, growing: Callable[[FloatArray], FloatArray], high: FloatArray) -> FloatArray:
-    """Return √(1 + s²) where a function of s that grows from below θ at 0 to above it at `high` is θ."""
-    low = np.zeros_like(theta)
+def _least(nu: FloatArray, growing: Callable[[FloatArray], FloatArray], high: FloatArray) -> FloatArray:
+    """Return √(1 + s²) where a function of s that grows from below ν at 0 to above it at `high` is ν."""
+    low = np.zeros_like(nu)
     for _ in range(_HALVINGS):
         s = 0.5 * (low + high)
-        short = growing(s) < theta
+        short = growing(s) < nu
         low, high = np.where(short, s, low), np.where(short, high, s)
     return np.asarray(np.sqrt(1.0 + (0.5 * (low + high)) ** 2))

@@ -36,7 +36,7 @@ class RollingBranch:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SteadyRolling:
-    """Steady rolling in one sense: the azimuth of the contact point is β = sense · (θτ + ψ) + azimuth_offset.
+    """Steady rolling in one sense: the azimuth of the contact point is β = sense · (ντ + ψ) + azimuth_offset.
 
     Parameters
     ----------
@@ -56,13 +56,13 @@ class SteadyRolling:
     azimuth_offset: FloatArray
 
 
-def steady_rolling(theta: Real, a0: Real, *, c: Real, eta: Real) -> SteadyRolling:
+def steady_rolling(nu: Real, a0: Real, *, c: Real, eta: Real) -> SteadyRolling:
     """Steady rolling of the column round its rim on a base that moves in a circle.
 
     Parameters
     ----------
-    theta
-        Excitation frequency θ, positive.
+    nu
+        Excitation frequency ν, positive.
     a0
         Acceleration amplitude of the base [g].
     c
@@ -73,12 +73,12 @@ def steady_rolling(theta: Real, a0: Real, *, c: Real, eta: Real) -> SteadyRollin
     Returns
     -------
     SteadyRolling
-        Both branches, arrays of the broadcast shape, for the base acceleration a0 (cos θτ, sin θτ).
+        Both branches, arrays of the broadcast shape, for the base acceleration a0 (cos ντ, sin ντ).
 
     Raises
     ------
     ParameterError
-        If `theta` or `c` is not positive, or `a0` or `eta` is negative.
+        If `nu` or `c` is not positive, or `a0` or `eta` is negative.
 
     See Also
     --------
@@ -87,9 +87,9 @@ def steady_rolling(theta: Real, a0: Real, *, c: Real, eta: Real) -> SteadyRollin
 
     Notes
     -----
-    (8): with D = (1+θ²)² + η²θ² the amplitudes are the roots of D A² − 2c(1+θ²) A + c² − a0² = 0, the lower from their
+    (8): with D = (1+ν²)² + η²ν² the amplitudes are the roots of D A² − 2c(1+ν²) A + c² − a0² = 0, the lower from their
     product, since it is a small difference when a0 is near c. The lower branch exists for a0 < c only. The phase
-    follows from a0 cos ψ = A(1+θ²) − c and a0 sin ψ = ηθA; it is arbitrary (returned as 0 and π) at a0 = 0, where both
+    follows from a0 cos ψ = A(1+ν²) − c and a0 sin ψ = ηνA; it is arbitrary (returned as 0 and π) at a0 = 0, where both
     branches are the backbone (5) and exist only without friction.
 
     Stability is decided in closed form, see `stylobate.theory.stability`, and needs no eigenvalues.
@@ -100,15 +100,15 @@ def steady_rolling(theta: Real, a0: Real, *, c: Real, eta: Real) -> SteadyRollin
     >>> print(rolling.upper.amplitude.round(6), rolling.upper.stable)
     [0.061157 0.050632] [False  True]
     """
-    theta, a, c, eta = np.broadcast_arrays(
-        positive("theta", theta), not_negative("a0", a0) / positive("c", c), positive("c", c), not_negative("eta", eta)
+    nu, a, c, eta = np.broadcast_arrays(
+        positive("nu", nu), not_negative("a0", a0) / positive("c", c), positive("c", c), not_negative("eta", eta)
     )
-    k, drag = 1.0 + theta**2, eta * theta
+    k, drag = 1.0 + nu**2, eta * nu
     upper, lower, root = rolling_amplitudes(k, drag, a)
     d = k**2 + drag**2
     return SteadyRolling(
-        upper=_branch(theta, c, eta, upper, root, (k * root - drag**2) / d),
-        lower=_branch(theta, c, eta, lower, -root, -(k * root + drag**2) / d),
+        upper=_branch(nu, c, eta, upper, root, (k * root - drag**2) / d),
+        lower=_branch(nu, c, eta, lower, -root, -(k * root + drag**2) / d),
         azimuth_offset=np.zeros_like(a),
     )
 
@@ -119,7 +119,7 @@ def rolling_amplitudes(k: FloatArray, drag: FloatArray, a: FloatArray) -> tuple[
     Only positive ones; NaN for the others. All in units of c.
     """
     d = k**2 + drag**2
-    # a²D − η²θ² as a product, or the folds would be lost in rounding
+    # a²D − η²ν² as a product, or the folds would be lost in rounding
     square = (a * np.sqrt(d) - drag) * (a * np.sqrt(d) + drag)
     root = np.sqrt(np.where(square >= 0.0, square, np.nan))
     upper = (k + root) / d  # (8)
@@ -128,18 +128,18 @@ def rolling_amplitudes(k: FloatArray, drag: FloatArray, a: FloatArray) -> tuple[
 
 
 def _branch(
-    theta: FloatArray, c: FloatArray, eta: FloatArray, ratio: FloatArray, root: FloatArray, push: FloatArray
+    nu: FloatArray, c: FloatArray, eta: FloatArray, ratio: FloatArray, root: FloatArray, push: FloatArray
 ) -> RollingBranch:
     """Describe the branch A = c · ratio, where a0 cos ψ = c · push and p0 = root/ratio."""
     exists = np.isfinite(ratio)
     x = 1.0 / ratio
-    q = 2.0 * theta**2 - 2.0 + x
+    q = 2.0 * nu**2 - 2.0 + x
     p0 = x * root
     return RollingBranch(
         amplitude=c * ratio,
-        phase=np.arctan2(eta * theta * ratio, push),
+        phase=np.arctan2(eta * nu * ratio, push),
         exists=exists,
-        stable=satisfies_routh_hurwitz(theta, x, eta, q, p0),
+        stable=satisfies_routh_hurwitz(nu, x, eta, q, p0),
         eigenvalues=rolling_eigenvalues(eta, q, p0),
     )
 
@@ -169,7 +169,7 @@ def rolling_gap(a0: Real, *, c: Real, eta: Real) -> tuple[FloatArray, FloatArray
 
     Notes
     -----
-    The root in (8) vanishes where θ + 1/θ = η√(c² − a0²)/a0: the ends are reciprocal.
+    The root in (8) vanishes where ν + 1/ν = η√(c² − a0²)/a0: the ends are reciprocal.
 
     Examples
     --------

@@ -26,7 +26,7 @@ class RollingFriction:
 
 
 def rolling_required_friction(
-    theta: Real,
+    nu: Real,
     a0: Real,
     *,
     c: Real,
@@ -39,8 +39,8 @@ def rolling_required_friction(
 
     Parameters
     ----------
-    theta
-        Excitation frequency θ, positive.
+    nu
+        Excitation frequency ν, positive.
     a0
         Acceleration amplitude of the base [g].
     c
@@ -62,7 +62,7 @@ def rolling_required_friction(
     Raises
     ------
     ParameterError
-        If `theta`, `c`, `inertia_ratio` or `axial_ratio` is not positive, `inertia_ratio` is 1 or more, or another is
+        If `nu`, `c`, `inertia_ratio` or `axial_ratio` is not positive, `inertia_ratio` is 1 or more, or another is
         negative.
 
     See Also
@@ -75,15 +75,15 @@ def rolling_required_friction(
     -----
     The moments about the centre of mass, and not the motion of the base, decide the force: over m g it is
 
-        T_d = A(1 + (1 − κ)θ²) − c,   T_n = −ηθA
+        T_d = A(1 + (1 − κ)ν²) − c,   T_n = −ηνA
 
     along the lean and across it, whether the column turns or not; the twist counts by A, which is that of
     `steady_rolling` or `free_twist_rolling`. Without friction T_d on the upper branch falls from a0 at low frequency to
-    (1 − κ)a0 − κc at high frequency. It vanishes at θ² = a0/(κc − (1 − κ)a0), where friction is least, and there is no
+    (1 − κ)a0 − κc at high frequency. It vanishes at ν² = a0/(κc − (1 − κ)a0), where friction is least, and there is no
     such frequency for a0 ≥ κc/(1 − κ). A column that is not to slip at any high frequency needs κc − (1 − κ)a0, less
     the harder the base shakes. For a smaller μ rolling without slip ends at
 
-        θ² = (a0 + μ)/(κ(a0 + c) − a0 − μ).
+        ν² = (a0 + μ)/(κ(a0 + c) − a0 − μ).
 
     Examples
     --------
@@ -91,16 +91,16 @@ def rolling_required_friction(
     >>> print(needed.upper.round(4), needed.lower.round(4))
     [0.0116 0.0222 0.0467] [0.0805 0.0832 0.0886]
     """
-    numbers = checked_numbers(theta, a0, c, eta, zeta, inertia_ratio, axial_ratio)
-    theta, a0, c, eta, zeta, kappa, axial = numbers
+    numbers = checked_numbers(nu, a0, c, eta, zeta, inertia_ratio, axial_ratio)
+    nu, a0, c, eta, zeta, kappa, axial = numbers
     with np.errstate(divide="ignore", invalid="ignore"):
         lag = np.where(eta > 0.0, eta / (zeta * (1.0 + axial - kappa)), 0.0)
     possible = np.isfinite(lag)
-    k = 1.0 + theta**2 * (1.0 + np.where(possible, lag, 0.0))
-    upper, lower, _ = rolling_amplitudes(k, eta * theta, a0 / c)
+    k = 1.0 + nu**2 * (1.0 + np.where(possible, lag, 0.0))
+    upper, lower, _ = rolling_amplitudes(k, eta * nu, a0 / c)
 
     def needed(tilt: FloatArray) -> FloatArray:  # tilt in units of c
-        along = tilt * (1.0 + (1.0 - kappa) * theta**2) - 1.0
-        return np.where(possible, c * np.hypot(along, eta * theta * tilt), np.nan)
+        along = tilt * (1.0 + (1.0 - kappa) * nu**2) - 1.0
+        return np.where(possible, c * np.hypot(along, eta * nu * tilt), np.nan)
 
     return RollingFriction(upper=needed(upper), lower=needed(lower))

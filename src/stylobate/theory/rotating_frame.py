@@ -11,15 +11,15 @@ from stylobate.theory.arguments import FloatArray, Real
 STATE_LENGTH = 4
 
 
-def rotating_frame_rates(state: Real, theta: Real, a0: Real, *, c: Real, eta: Real) -> FloatArray:
+def rotating_frame_rates(state: Real, nu: Real, a0: Real, *, c: Real, eta: Real) -> FloatArray:
     """Right-hand side of (7), the column on a circularly moving base.
 
     Parameters
     ----------
     state
-        Tilt rate μ, rolling rate ω, tilt angle A > 0 and phase ψ = β − θτ, along the first axis: shape (4, ...).
-    theta
-        Excitation frequency θ.
+        Tilt rate μ, rolling rate ω, tilt angle A > 0 and phase ψ = β − ντ, along the first axis: shape (4, ...).
+    nu
+        Excitation frequency ν.
     a0
         Acceleration amplitude of the base [g].
     c
@@ -44,12 +44,12 @@ def rotating_frame_rates(state: Real, theta: Real, a0: Real, *, c: Real, eta: Re
     [0. 0. 0. 0.]
     """
     mu, omega, tilt, psi = _components(state)
-    theta, a0, c, eta = (np.asarray(value, dtype=np.float64) for value in (theta, a0, c, eta))
+    nu, a0, c, eta = (np.asarray(value, dtype=np.float64) for value in (nu, a0, c, eta))
     rates = (
         tilt * (1.0 + omega**2) - c - eta * mu - a0 * np.cos(psi),  # (7)
         -2.0 * mu * omega / tilt - eta * omega + a0 / tilt * np.sin(psi),
         mu,
-        omega - theta,
+        omega - nu,
     )
     return np.stack(np.broadcast_arrays(*rates))
 
@@ -69,7 +69,7 @@ def rotating_frame_jacobian(state: Real, a0: Real, *, eta: Real) -> FloatArray:
     Returns
     -------
     numpy.ndarray
-        Matrices along the last two axes, shape (..., 4, 4), as `numpy.linalg` takes them. θ and c do not enter.
+        Matrices along the last two axes, shape (..., 4, 4), as `numpy.linalg` takes them. ν and c do not enter.
 
     Raises
     ------

@@ -26,8 +26,8 @@ class Forced:
 
     Parameters
     ----------
-    theta, a0
-        Frequency θ and acceleration amplitude of the base [g].
+    nu, a0
+        Frequency ν and acceleration amplitude of the base [g].
     spin
         w3 [ω0] where nothing decides it.
     friction
@@ -36,14 +36,14 @@ class Forced:
         The columns.
     """
 
-    theta: FloatArray
+    nu: FloatArray
     a0: FloatArray
     spin: FloatArray
     friction: Frictions
     body: RigidBody
 
     def __getitem__(self, rows: Rows) -> "Forced":
-        return Forced(self.theta[rows], self.a0[rows], self.spin[rows], self.friction[rows], self.body[rows])
+        return Forced(self.nu[rows], self.a0[rows], self.spin[rows], self.friction[rows], self.body[rows])
 
     @property
     def undecided(self) -> BoolArray:
@@ -65,31 +65,31 @@ class Forced:
 
     def moment(self, tilt: Numbers) -> Numbers:
         """Moment about the vertical that rolling takes at a tilt."""
-        return np.asarray(self.friction.eta * self.theta * self.body.c * np.sin(tilt) / self.body.height(tilt))
+        return np.asarray(self.friction.eta * self.nu * self.body.c * np.sin(tilt) / self.body.height(tilt))
 
     def turn(self, tilt: FloatArray) -> FloatArray:
         """ω_z where the patch has no part in it."""
         s, cosine = np.sin(tilt), np.cos(tilt)
         with np.errstate(divide="ignore", invalid="ignore"):
             needed = np.where(self.friction.eta > 0.0, self.moment(tilt) / self.resistance, 0.0)
-        return np.where(self.undecided, self.spin * cosine + self.theta * s**2, -needed)
+        return np.where(self.undecided, self.spin * cosine + self.nu * s**2, -needed)
 
     def axial_spin(self, tilt: Numbers, turn: Numbers) -> Numbers:
-        """w3, from ω_z = w3 cos A + θ sin²A."""
-        return np.asarray((turn - self.theta * np.sin(tilt) ** 2) / np.cos(tilt))
+        """w3, from ω_z = w3 cos A + ν sin²A."""
+        return np.asarray((turn - self.nu * np.sin(tilt) ** 2) / np.cos(tilt))
 
     def force(self, tilt: Numbers, turn: Numbers) -> tuple[Numbers, Numbers]:
         """T_d and T_n over m g that keep the tilt and the rolling as they are."""
         s, cosine, p = np.sin(tilt), np.cos(tilt), self.body.height(tilt)
-        gyration = self.theta * s * (
-            self.body.transverse * self.theta * cosine - self.body.axial * self.axial_spin(tilt, turn)
+        gyration = self.nu * s * (
+            self.body.transverse * self.nu * cosine - self.body.axial * self.axial_spin(tilt, turn)
         )  # fmt: skip
-        return (self.body.overhang(tilt) + gyration) / p, -self.friction.eta * self.theta * s * cosine / p
+        return (self.body.overhang(tilt) + gyration) / p, -self.friction.eta * self.nu * s * cosine / p
 
     def carried(self, tilt: Numbers, turn: Numbers) -> Numbers:
-        """κθw, over g the acceleration of the centre of mass as it circles without slip."""
-        w = self.body.c * self.axial_spin(tilt, turn) - self.theta * np.sin(tilt)
-        return np.asarray(self.body.kappa * self.theta * w)
+        """κνw, over g the acceleration of the centre of mass as it circles without slip."""
+        w = self.body.c * self.axial_spin(tilt, turn) - self.nu * np.sin(tilt)
+        return np.asarray(self.body.kappa * self.nu * w)
 
 
 def solutions(forced: Forced) -> tuple[Rows, FloatArray, FloatArray, FloatArray]:
@@ -110,18 +110,18 @@ def _known_turn(forced: Forced) -> tuple[Rows, FloatArray, FloatArray, FloatArra
         return np.asarray((along - here.friction.mu) * (along + here.friction.mu) + across**2)
 
     some = forced[possible]
-    at, tilt = zeros(excess, tilt_grid(some.body.c / (1.0 + some.body.transverse * some.theta**2), _POINTS))
+    at, tilt = zeros(excess, tilt_grid(some.body.c / (1.0 + some.body.transverse * some.nu**2), _POINTS))
     here = some[at]
     turn = here.turn(tilt)
     along, across = here.force(tilt, turn)
     carried = here.carried(tilt, turn)
-    # U = κθ|v|:  U² + 2UκθwT_n/μ = a0² − (T_d − κθw)² − T_n²,  wT_n ≥ 0
+    # U = κν|v|:  U² + 2UκνwT_n/μ = a0² − (T_d − κνw)² − T_n²,  wT_n ≥ 0
     half = carried * across / here.friction.mu
     needed = np.hypot(along - carried, across)
     left = (here.a0 - needed) * (here.a0 + needed)
     slips = left > 0.0
     half, left, here = half[slips], left[slips], here[np.flatnonzero(slips)]
-    speed = left / (half + np.sqrt(half**2 + left)) / (here.body.kappa * here.theta)
+    speed = left / (half + np.sqrt(half**2 + left)) / (here.body.kappa * here.nu)
     return possible[at[slips]], tilt[slips], turn[slips], speed
 
 
@@ -134,14 +134,14 @@ def _pivoting(forced: Forced) -> tuple[Rows, FloatArray, FloatArray, FloatArray]
     """Solutions where a patch slips and turns: the moments give the tilt, two equations are left."""
     possible = np.flatnonzero(forced.pivots)
     some = forced[possible]
-    across = (some.a0 + some.friction.mu + some.body.c) / (some.body.kappa * some.theta)
+    across = (some.a0 + some.friction.mu + some.body.c) / (some.body.kappa * some.nu)
 
     def balance(turn: Numbers, speed: Numbers, at: Rows) -> tuple[Numbers, Numbers]:
         return _two_balances(some[at], np.exp(turn), np.exp(speed))
 
     at, turn, speed = common_zeros(
         balance,
-        np.log(some.theta)[:, np.newaxis] + np.linspace(np.log(_LEAST_TURN), np.log(_MOST_TURN), _TURNS),
+        np.log(some.nu)[:, np.newaxis] + np.linspace(np.log(_LEAST_TURN), np.log(_MOST_TURN), _TURNS),
         np.log(across)[:, np.newaxis] + np.linspace(np.log(_LEAST_SPEED), np.log(_MOST_SPEED), _SPEEDS),
     )
     turn, speed = np.exp(turn), np.exp(speed)
@@ -155,8 +155,8 @@ def _pivoted(here: Forced, turn: Numbers, speed: Numbers) -> tuple[Numbers, Numb
     drag = here.friction.mu * speed / (speed**EXPONENT + (SLOWED * pivot) ** EXPONENT) ** (1.0 / EXPONENT)
     twist = here.friction.mu * pivot / (pivot**EXPONENT + (EASED * speed) ** EXPONENT) ** (1.0 / EXPONENT)
     moment = here.resistance * turn + TWISTING * here.friction.patch * twist
-    # M = ηθc tan A/(1 + c tan A)
-    left = here.body.c * (here.friction.eta * here.theta - moment)
+    # M = ηνc tan A/(1 + c tan A)
+    left = here.body.c * (here.friction.eta * here.nu - moment)
     with np.errstate(invalid="ignore", divide="ignore"):
         tilt = np.arctan(np.where(left.real > 0.0, moment / left, np.nan))
     return tilt, drag
@@ -166,7 +166,7 @@ def _two_balances(here: Forced, turn: Numbers, speed: Numbers) -> tuple[Numbers,
     """Return what friction lacks of the force across the base, and the base motion of what moves the column."""
     tilt, drag = _pivoted(here, turn, speed)
     along, across = here.force(tilt, -turn)
-    fling = here.body.kappa * here.theta * speed / drag  # κθv = −fling T
+    fling = here.body.kappa * here.nu * speed / drag  # κνv = −fling T
     push = along - here.carried(tilt, -turn) - fling * across
     drive = fling * along + across
     scale = (here.a0 + here.friction.mu) ** 2

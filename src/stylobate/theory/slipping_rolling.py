@@ -53,7 +53,7 @@ class SlippingRolling:
 
 
 def slipping_rolling(
-    theta: Real,
+    nu: Real,
     a0: Real,
     *,
     mu: Real,
@@ -69,8 +69,8 @@ def slipping_rolling(
 
     Parameters
     ----------
-    theta
-        Excitation frequency θ, positive.
+    nu
+        Excitation frequency ν, positive.
     a0
         Acceleration amplitude of the base [g].
     mu
@@ -96,12 +96,12 @@ def slipping_rolling(
     Returns
     -------
     SlippingRolling
-        All branches with a tilt below π/2, for the base acceleration a0 (cos θτ, sin θτ).
+        All branches with a tilt below π/2, for the base acceleration a0 (cos ντ, sin ντ).
 
     Raises
     ------
     ParameterError
-        If `theta`, `mu` or a number of the body is not positive, no body has these numbers, `spin` is not finite, or
+        If `nu`, `mu` or a number of the body is not positive, no body has these numbers, `spin` is not finite, or
         another argument is negative.
 
     See Also
@@ -113,20 +113,20 @@ def slipping_rolling(
     -----
     The contact bears the weight, and the moments about the centre of mass give its friction, with p = cos A + c sin A
 
-        pT_d = sin A − c cos A + θ sin A ((1 − κ)θ cos A − I_a w3),   pT_n = −ηθ sin A cos A,
+        pT_d = sin A − c cos A + ν sin A ((1 − κ)ν cos A − I_a w3),   pT_n = −ην sin A cos A,
 
-    and its moment about the vertical, ηθc sin A/p, as if there were no slip. On a point |T| = μ then is an equation for
+    and its moment about the vertical, ηνc sin A/p, as if there were no slip. On a point |T| = μ then is an equation for
     the tilt alone: **the base acceleration has no part in it**. To leading order in c, without friction η,
 
-        A = (c ± μ)/(1 + (1 − κ)θ²),   T_d = ±μ,
+        A = (c ± μ)/(1 + (1 − κ)ν²),   T_d = ±μ,
 
-    and the velocity of slip is against T, with U = κθ|v| and w = c w3 − θ sin A
+    and the velocity of slip is against T, with U = κν|v| and w = c w3 − ν sin A
 
-        U² + 2Uκθw T_n/μ + (T_d − κθw)² + T_n² = a0².
+        U² + 2Uκνw T_n/μ + (T_d − κνw)² + T_n² = a0².
 
     There is one such U > 0, or none: a0 must be more than what rolling at that tilt without slip would need. Without η
     there is no T_n, the contact point slips along the lean, and the solution with T_d = ±μ exists where its tilt lies
-    between those of the two branches without slip, (c ± a0)/(1 + θ²).
+    between those of the two branches without slip, (c ± a0)/(1 + ν²).
 
     So where `friction_demand` of rolling without slip passes μ it meets a branch with slip, for weak η in one of two
     ways.
@@ -137,15 +137,15 @@ def slipping_rolling(
     * T_d > 0, pushed outwards, under strong shaking: rolling with slip goes on at smaller μ. It begins unstable, by an
       oscillation, and is stable from some percent below the friction demand, up to a fifth, in the cases looked at.
 
-    With c = 0.1, η = 0.1 and a0 = 0.065 rolling without slip is stable from θ = 1.40 on, the twist held, and takes a
-    friction of 0.022 at θ = 1.5, 0.047 at 3, 0.057 at 8: μ = 0.05 ends it at θ = 3.58. With ζ = 0.1 it is stable from
+    With c = 0.1, η = 0.1 and a0 = 0.065 rolling without slip is stable from ν = 1.40 on, the twist held, and takes a
+    friction of 0.022 at ν = 1.5, 0.047 at 3, 0.057 at 8: μ = 0.05 ends it at ν = 3.58. With ζ = 0.1 it is stable from
     1.04 on and takes 0.059, 0.076 and 0.081: μ = 0.05 ends it at 1.23. No rolling with slip is stable in either case.
 
     **Slip isolates.** Where a0 is large against μ and c the column is that of the paper on a base of acceleration μ,
-    but turns about its centre of mass: `steady_rolling` with θ√(1 − κ), μ and η/√(1 − κ) for θ, a0 and η, and with
-    `critical_frequency` of those over √(1 − κ). A solid cylinder rolls stably, with A = (c + μ)/(1 + θ²/4), from about
-    θ = 2θ*(μ) upwards, however hard the base shakes, also where rolling without slip would be unstable. At finite a0
-    slip changes its direction as the column moves, and without η, the twist held, stability begins at θ² = (1 + 2μ/c)/
+    but turns about its centre of mass: `steady_rolling` with ν√(1 − κ), μ and η/√(1 − κ) for ν, a0 and η, and with
+    `critical_frequency` of those over √(1 − κ). A solid cylinder rolls stably, with A = (c + μ)/(1 + ν²/4), from about
+    ν = 2ν*(μ) upwards, however hard the base shakes, also where rolling without slip would be unstable. At finite a0
+    slip changes its direction as the column moves, and without η, the twist held, stability begins at ν² = (1 + 2μ/c)/
     (1 − κ), where A = c/2, for every a0 (found numerically).
 
     A patch that turns has no threshold of slip. It creeps: slow slip next to the turn leaves it nearly all of its
@@ -165,7 +165,7 @@ def slipping_rolling(
     free = np.asarray(zeta, dtype=np.float64)
     not_negative("zeta", np.where(np.isposinf(free), 0.0, free))
     numbers = np.broadcast_arrays(
-        positive("theta", theta),
+        positive("nu", nu),
         not_negative("a0", a0),
         positive("mu", mu),
         not_negative("eta", eta),
@@ -177,23 +177,23 @@ def slipping_rolling(
         body.axial_ratio,
     )
     shape = numbers[0].shape
-    theta, a0, mu, eta, free, radius, spin, c, kappa, axial = (number.ravel() for number in numbers)
+    nu, a0, mu, eta, free, radius, spin, c, kappa, axial = (number.ravel() for number in numbers)
     frictions = Frictions(eta=eta, zeta=free, mu=mu, patch=radius)
-    forced = Forced(theta, a0, spin, frictions, RigidBody(c=c, kappa=kappa, axial_ratio=axial))
+    forced = Forced(nu, a0, spin, frictions, RigidBody(c=c, kappa=kappa, axial_ratio=axial))
     return _described(shape, forced, *solutions(forced))
 
 
 def _described(
     shape: tuple[int, ...], forced: Forced, rows: Rows, tilt: FloatArray, turn: FloatArray, speed: FloatArray
 ) -> SlippingRolling:
-    here, count = forced[rows], len(forced.theta)
+    here, count = forced[rows], len(forced.nu)
     w3 = here.axial_spin(tilt, turn)
     t_d, t_n = here.force(tilt, turn)
     size = np.hypot(t_d, t_n)
     v_d, v_n = -speed * t_d / size, -speed * t_n / size
-    slid = here.body.kappa * here.theta
+    slid = here.body.kappa * here.nu
     phase = np.arctan2(slid * v_d - t_n, t_d - here.carried(tilt, turn) + slid * v_n)
-    state = np.stack([np.zeros_like(tilt), here.theta, tilt, phase, w3, v_d, v_n])
+    state = np.stack([np.zeros_like(tilt), here.nu, tilt, phase, w3, v_d, v_n])
     growth = _eigenvalues(state, here)
     held = np.isinf(here.friction.zeta)
     pivoting = np.where(held, 0.0, here.moment(tilt) + np.where(held, 0.0, here.resistance) * turn)
@@ -244,14 +244,14 @@ def _eigenvalues(state: FloatArray, forced: Forced) -> ComplexArray:
     held = np.isinf(forced.friction.zeta)
     if not held.all():
         free = forced[np.flatnonzero(~held)]
-        out[~held] = eigenvalues(lambda x: rates(x, free.theta, free.a0, free.friction, free.body), state[:, ~held])
+        out[~held] = eigenvalues(lambda x: rates(x, free.nu, free.a0, free.friction, free.body), state[:, ~held])
     if held.any():
         some = forced[np.flatnonzero(held)]
 
         def without_spin(reduced: Numbers) -> Numbers:
             spin = -reduced[1] * np.sin(reduced[2]) * np.tan(reduced[2])  # ω·Z = 0
             whole = np.concatenate([reduced[:_SPIN], spin[np.newaxis], reduced[_SPIN:]])
-            return np.delete(rates(whole, some.theta, some.a0, some.friction, some.body), _SPIN, axis=0)
+            return np.delete(rates(whole, some.nu, some.a0, some.friction, some.body), _SPIN, axis=0)
 
         out[held, :-1] = eigenvalues(without_spin, np.delete(state[:, held], _SPIN, axis=0))
     return out

@@ -27,17 +27,17 @@ class Frictions:
         return Frictions(eta=self.eta[cells], zeta=self.zeta[cells], mu=self.mu[cells], patch=self.patch[cells])
 
 
-def rates(state: Numbers, theta: FloatArray, a0: FloatArray, friction: Frictions, body: RigidBody) -> Numbers:
+def rates(state: Numbers, nu: FloatArray, a0: FloatArray, friction: Frictions, body: RigidBody) -> Numbers:
     """Return the right-hand side of a column that slips on its base, in the frame of the circular base motion.
 
     Parameters
     ----------
     state
-        Tilt rate θ̇, rolling rate ω = β̇, tilt angle A > 0 [rad], phase ψ = β − θτ, axial angular velocity σ [ω0], and
+        Tilt rate θ̇, rolling rate ω = β̇, tilt angle A > 0 [rad], phase ψ = β − ντ, axial angular velocity σ [ω0], and
         the slip of the contact point along and across the lean, v_d and v_n [hω0], real or complex, along the first
         axis: shape (7, ...).
-    theta
-        Excitation frequency θ.
+    nu
+        Excitation frequency ν.
     a0
         Acceleration amplitude of the base [g].
     friction
@@ -97,7 +97,7 @@ def rates(state: Numbers, theta: FloatArray, a0: FloatArray, friction: Frictions
             w2_rate,
             -(w1_rate + omega * w2 * cosine) / s,
             w2,
-            omega - theta,
+            omega - nu,
             w3_rate,
             v_d_rate - p * w2_rate - slope * w2**2,
             v_n_rate + body.c * w3_rate + w1_rate,

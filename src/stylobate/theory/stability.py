@@ -1,15 +1,15 @@
 """Stability of steady rolling on a circularly moving base, in closed form.
 
-With x = c/A, k = 1 + θ² and D = k² + η²θ², small deviations from steady rolling grow as e^{sτ} where
+With x = c/A, k = 1 + ν² and D = k² + η²ν², small deviations from steady rolling grow as e^{sτ} where
 
-    (s² + ηs)² + q (s² + ηs) + p0 = 0,    q = 2θ² − 2 + x,    p0 = D − kx.
+    (s² + ηs)² + q (s² + ηs) + p0 = 0,    q = 2ν² − 2 + x,    p0 = D − kx.
 
 The quartic of the Jacobian of (7) is thus a quadratic in s² + ηs. Routh–Hurwitz asks for η > 0, q > 0, p0 > 0 and
-q² + 2η²q > 4p0. The last expression is the difference x² + 2wx − 4w with w = 4θ² + η², so it says no more than
+q² + 2η²q > 4p0. The last expression is the difference x² + 2wx − 4w with w = 4ν² + η², so it says no more than
 
     x > x* = 4 / (1 + √(1 + 4/w)),    that is    A < c/x*.
 
-On the branches of (8) p0 = ±x√(a0²D/c² − η²θ²): positive on the upper branch, negative on the lower. The lower branch
+On the branches of (8) p0 = ±x√(a0²D/c² − η²ν²): positive on the upper branch, negative on the lower. The lower branch
 is therefore a saddle wherever it exists, with exactly one positive eigenvalue: p0 < 0 makes the two roots s² + ηs real
 and of opposite sign, and only the positive one gives a positive s.
 
@@ -22,16 +22,14 @@ import numpy as np
 from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray
 
 
-def critical_ratio(theta: FloatArray, eta: FloatArray) -> FloatArray:
+def critical_ratio(nu: FloatArray, eta: FloatArray) -> FloatArray:
     """Return x* = c/A above which the Hopf condition of stability holds, the positive root of x² + 2wx − 4w."""
-    return 4.0 / (1.0 + np.sqrt(1.0 + 4.0 / (4.0 * theta**2 + eta**2)))
+    return 4.0 / (1.0 + np.sqrt(1.0 + 4.0 / (4.0 * nu**2 + eta**2)))
 
 
-def satisfies_routh_hurwitz(
-    theta: FloatArray, x: FloatArray, eta: FloatArray, q: FloatArray, p0: FloatArray
-) -> BoolArray:
+def satisfies_routh_hurwitz(nu: FloatArray, x: FloatArray, eta: FloatArray, q: FloatArray, p0: FloatArray) -> BoolArray:
     """Whether no deviation grows; without friction, whether all eigenvalues are imaginary and distinct."""
-    return (q > 0.0) & (p0 > 0.0) & (x > critical_ratio(theta, eta))
+    return (q > 0.0) & (p0 > 0.0) & (x > critical_ratio(nu, eta))
 
 
 def rolling_eigenvalues(eta: FloatArray, q: FloatArray, p0: FloatArray) -> ComplexArray:

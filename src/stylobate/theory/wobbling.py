@@ -19,14 +19,14 @@ from stylobate.theory.zeros import Rows
 
 
 def wobbling_rolling(
-    theta: Real, a0: Real, *, c: Real, eta: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
+    nu: Real, a0: Real, *, c: Real, eta: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
 ) -> FiniteTiltRolling:
     r"""All steady rolling of a column that only tilts, on a base that moves in a circle, at any tilt.
 
     Parameters
     ----------
-    theta
-        Excitation frequency θ, positive.
+    nu
+        Excitation frequency ν, positive.
     a0
         Acceleration amplitude of the base [g].
     c
@@ -41,12 +41,12 @@ def wobbling_rolling(
     Returns
     -------
     FiniteTiltRolling
-        All branches with a tilt below π/2, for the base acceleration a0 (cos θτ, sin θτ), four eigenvalues each.
+        All branches with a tilt below π/2, for the base acceleration a0 (cos ντ, sin ντ), four eigenvalues each.
 
     Raises
     ------
     ParameterError
-        If `theta` or a number of the body is not positive, no body has these numbers, or another argument is negative.
+        If `nu` or a number of the body is not positive, no body has these numbers, or another argument is negative.
 
     See Also
     --------
@@ -58,10 +58,10 @@ def wobbling_rolling(
     Of the balances along and across the lean, with P = sin A + c(1 − cos A), p = dP/dA and
     M = κP² + (1 − κ) sin²A + κ i_a c²(1 − cos A)²,
 
-        p a0 cos ψ = ½θ² dM/dA + sin A − c cos A,   P a0 sin ψ = ηθ sin²A,
+        p a0 cos ψ = ½ν² dM/dA + sin A − c cos A,   P a0 sin ψ = ην sin²A,
 
     the paper's solution (8) is the limit; its amplitudes differ by a part of the order c². Wobbling spins the column
-    about its axis, at w3 = −θ(1 − cos A), but not about the vertical.
+    about its axis, at w3 = −ν(1 − cos A), but not about the vertical.
 
     Examples
     --------
@@ -74,7 +74,7 @@ def wobbling_rolling(
     """
     body = RigidBody.checked(c, inertia_ratio, axial_ratio)
     numbers = np.broadcast_arrays(
-        positive("theta", theta),
+        positive("nu", nu),
         not_negative("a0", a0),
         not_negative("eta", eta),
         body.c,
@@ -85,15 +85,15 @@ def wobbling_rolling(
     return _branches(shape, *(number.ravel() for number in numbers))
 
 
-def rates(state: Numbers, theta: FloatArray, a0: FloatArray, eta: FloatArray, body: RigidBody) -> Numbers:
+def rates(state: Numbers, nu: FloatArray, a0: FloatArray, eta: FloatArray, body: RigidBody) -> Numbers:
     """Return the right-hand side of pure tilting at finite tilt, in the frame of the circular base motion.
 
     Parameters
     ----------
     state
-        Tilt rate μ, rolling rate ω = β̇, tilt angle A > 0 [rad] and phase ψ = β − θτ, real or complex, along the first
+        Tilt rate μ, rolling rate ω = β̇, tilt angle A > 0 [rad] and phase ψ = β − ντ, real or complex, along the first
         axis: shape (4, ...).
-    theta, a0, eta
+    nu, a0, eta
         As for `wobbling_rolling`.
     body
         The column.
@@ -118,7 +118,7 @@ def rates(state: Numbers, theta: FloatArray, a0: FloatArray, eta: FloatArray, bo
     inertia, slope = _about_vertical(tilt, body)
     tilting = 0.5 * slope * omega**2 + body.overhang(tilt) - body.height(tilt) * a0 * np.cos(psi) - eta * mu
     rolling = body.reach(tilt) * a0 * np.sin(psi) - slope * mu * omega - eta * np.sin(tilt) ** 2 * omega
-    return np.stack(np.broadcast_arrays(tilting / body.rim, rolling / inertia, mu, omega - theta))
+    return np.stack(np.broadcast_arrays(tilting / body.rim, rolling / inertia, mu, omega - nu))
 
 
 def _about_vertical(tilt: Numbers, body: RigidBody) -> tuple[Numbers, Numbers]:
@@ -131,7 +131,7 @@ def _about_vertical(tilt: Numbers, body: RigidBody) -> tuple[Numbers, Numbers]:
 
 def _branches(
     shape: tuple[int, ...],
-    theta: FloatArray,
+    nu: FloatArray,
     a0: FloatArray,
     eta: FloatArray,
     c: FloatArray,
@@ -141,25 +141,25 @@ def _branches(
     bodies = RigidBody(c=c, kappa=kappa, axial_ratio=axial_ratio)
 
     def balance(tilt: FloatArray, rows: Rows) -> tuple[FloatArray, FloatArray]:
-        body, rate = bodies[rows], theta[rows]
+        body, rate = bodies[rows], nu[rows]
         _, slope = _about_vertical(tilt, body)
         along = (0.5 * slope * rate**2 + body.overhang(tilt)) / body.height(tilt)
         return along, eta[rows] * rate * np.sin(tilt) ** 2 / body.reach(tilt)
 
-    tilts = steady_tilts(balance, a0, c / (1.0 + theta**2), eta == 0.0)
+    tilts = steady_tilts(balance, a0, c / (1.0 + nu**2), eta == 0.0)
     exists = np.isfinite(tilts)
     rows, tilt = np.nonzero(exists)[0], tilts[exists]
     along, across = balance(tilt, rows)
     phase, body = np.arctan2(across, along), bodies[rows]
-    moved = -kappa[rows] * theta[rows] ** 2 * body.reach(tilt)
-    state = np.stack([np.zeros_like(tilt), theta[rows], tilt, phase])
-    growth = eigenvalues(lambda x: rates(x, theta[rows], a0[rows], eta[rows], body), state)
+    moved = -kappa[rows] * nu[rows] ** 2 * body.reach(tilt)
+    state = np.stack([np.zeros_like(tilt), nu[rows], tilt, phase])
+    growth = eigenvalues(lambda x: rates(x, nu[rows], a0[rows], eta[rows], body), state)
     stable = np.zeros(exists.shape, dtype=np.bool_)
     stable[exists] = no_deviation_grows(growth, eta[rows])
     return FiniteTiltRolling(
         amplitude=on_branches(shape, exists, tilt),
         phase=on_branches(shape, exists, phase),
-        spin=on_branches(shape, exists, -theta[rows] * (1.0 - np.cos(tilt))),
+        spin=on_branches(shape, exists, -nu[rows] * (1.0 - np.cos(tilt))),
         friction_demand=on_branches(shape, exists, np.hypot(along + moved, across)),
         friction_moment=on_branches(shape, exists, across),
         exists=exists.reshape(*shape, -1),

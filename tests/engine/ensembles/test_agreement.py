@@ -14,40 +14,38 @@ LINE = sb.Harmonic.straight(acceleration=0.1, angular_frequency=2.0)
 ELLIPSE = sb.Harmonic.elliptic(amplitude=(0.1, 0.06), phase=1.0, angular_frequency=2.0)
 
 
-def rolling_runs(runs_of, theta, a0=0.065):
+def rolling_runs(runs_of, nu, a0=0.065):
     """Runs of 200 periods that begin exactly on steady rolling."""
-    upper = sb.theory.steady_rolling(theta, a0, c=C, eta=ETA).upper
+    upper = sb.theory.steady_rolling(nu, a0, c=C, eta=ETA).upper
     lean = np.stack([np.cos(upper.phase), np.sin(upper.phase)], axis=1) * upper.amplitude[:, np.newaxis]
-    along = np.stack([-lean[:, 1], lean[:, 0]], axis=1) * theta[:, np.newaxis]
+    along = np.stack([-lean[:, 1], lean[:, 0]], axis=1) * nu[:, np.newaxis]
     motion = sb.Harmonic.circular(acceleration=a0, angular_frequency=1.0)
-    parameters = {"angular_frequency": theta}
-    duration = 200 * 2.0 * math.pi / theta
-    return runs_of(MODEL, motion, len(theta), tilt=lean, tilt_rate=along, duration=duration, parameters=parameters)
+    parameters = {"angular_frequency": nu}
+    duration = 200 * 2.0 * math.pi / nu
+    return runs_of(MODEL, motion, len(nu), tilt=lean, tilt_rate=along, duration=duration, parameters=parameters)
 
 
 # Rolling is stable there: errors of single steps, each of rtol at most, do not pile up.
 @pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10, 1e-12])
 def test_steady_rolling_stays_on_the_exact_solution_to_a_few_tolerances(runs_of, ends_of, rtol):
-    theta = np.linspace(3.0, 6.0, 61)
-    runs = rolling_runs(runs_of, theta)
+    nu = np.linspace(3.0, 6.0, 61)
+    runs = rolling_runs(runs_of, nu)
     found = ends_of(runs.together(rtol=rtol))
     exact = np.concatenate([runs.tilt, runs.tilt_rate], axis=1)
     size = np.hypot(*runs.tilt.T)[:, np.newaxis] * np.array([1.0, 1.0, 0.0, 0.0])
-    size = size + size[:, ::-1] * theta[:, np.newaxis]
+    size = size + size[:, ::-1] * nu[:, np.newaxis]
     assert np.abs((found - exact) / size).max() < 4.0 * rtol + 6e-12
 
 
 @pytest.mark.parametrize("rtol", [1e-8, 1e-11])
 def test_steady_rolling_ends_where_single_runs_end(runs_of, end_of, ends_of, rtol):
-    theta = np.linspace(3.0, 6.0, 3)
-    runs = rolling_runs(runs_of, theta)
+    nu = np.linspace(3.0, 6.0, 3)
+    runs = rolling_runs(runs_of, nu)
     data = runs.together(rtol=rtol)
     for index in range(3):
         single = runs.alone(index, rtol=rtol)
         difference = np.abs(ends_of(data)[index] - end_of(single))
-        assert np.all(
-            difference < 8.0 * rtol * np.hypot(*runs.tilt[index]) * np.array([1.0, 1.0, theta[index]] * 2)[:4]
-        )
+        assert np.all(difference < 8.0 * rtol * np.hypot(*runs.tilt[index]) * np.array([1.0, 1.0, nu[index]] * 2)[:4])
         # The same method with the same control of its steps.
         assert int(data["steps"][index]) == pytest.approx(single.measures["steps"], rel=0.05)
 
@@ -112,15 +110,15 @@ def test_random_runs_show_every_common_outcome(mixed_runs):
 
 def test_runs_whose_passages_fall_on_looks_do_not_stick_there():
     # On the exact periodic motion passages of the upright fall on half periods, as the looks do, but for rounding.
-    theta = np.linspace(3.0, 6.0, 32)
-    rate, phase = sb.theory.planar_forced_response(theta, 0.065, c=C, eta=ETA).fast.start()[1:]
+    nu = np.linspace(3.0, 6.0, 32)
+    rate, phase = sb.theory.planar_forced_response(nu, 0.065, c=C, eta=ETA).fast.start()[1:]
     motion = sb.Harmonic.straight(acceleration=0.065, angular_frequency=1.0)
     runs = sb.simulate_ensemble(
         MODEL,
         motion,
         tilt_rate=np.stack([rate, np.zeros_like(rate)], axis=1),
-        duration=200.0 * 2.0 * math.pi / theta,
-        parameters={"angular_frequency": theta, "start_phase": phase},
+        duration=200.0 * 2.0 * math.pi / nu,
+        parameters={"angular_frequency": nu, "start_phase": phase},
         rtol=1e-12,
         max_steps=20_000,
     )

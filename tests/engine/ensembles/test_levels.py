@@ -207,8 +207,8 @@ def test_taylor_series_agree(name):
 
 
 def test_ensembles_settle_on_steady_rolling_at_finite_tilt():
-    theta = 3.0
-    steady = sb.theory.full_rolling(theta, 0.065, c=C, eta=0.1, zeta=0.1)
+    nu = 3.0
+    steady = sb.theory.full_rolling(nu, 0.065, c=C, eta=0.1, zeta=0.1)
     stable = np.flatnonzero(steady.stable)
     assert stable.size == 1
     amplitude, spin = float(steady.amplitude[stable[0]]), float(steady.spin[stable[0]])

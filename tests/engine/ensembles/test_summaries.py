@@ -108,31 +108,31 @@ def test_strobes_are_states_at_phase_zero(one):
 @pytest.mark.parametrize("start_phase", [0.0, 2.1, -0.4])
 @pytest.mark.parametrize("delay", [0.0, -0.37])
 def test_steady_rolling_has_the_mean_tilt_phase_and_rate_of_theory(sense, start_phase, delay):
-    theta = np.linspace(2.0, 5.0, 7)
-    upper = sb.theory.steady_rolling(theta, 0.065, c=C, eta=ETA).upper
-    angle = sense * (start_phase - theta * delay + upper.phase)
+    nu = np.linspace(2.0, 5.0, 7)
+    upper = sb.theory.steady_rolling(nu, 0.065, c=C, eta=ETA).upper
+    angle = sense * (start_phase - nu * delay + upper.phase)
     lean = np.stack([np.cos(angle), np.sin(angle)], axis=1) * upper.amplitude[:, np.newaxis]
-    along = sense * np.stack([-lean[:, 1], lean[:, 0]], axis=1) * theta[:, np.newaxis]
+    along = sense * np.stack([-lean[:, 1], lean[:, 0]], axis=1) * nu[:, np.newaxis]
     motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.0, sense=sense, start_phase=start_phase)
     data = sb.simulate_ensemble(
         MODEL,
         motion.delayed(delay),
         tilt=lean,
         tilt_rate=along,
-        duration=30.5 * 2.0 * math.pi / theta,
-        parameters={"angular_frequency": theta},
+        duration=30.5 * 2.0 * math.pi / nu,
+        parameters={"angular_frequency": nu},
         rtol=1e-10,
         strobes=4,
     )
     assert set(data["outcome"].to_numpy()) == {sb.Outcome.ROLLING}
     np.testing.assert_allclose(data["mean_tilt"], upper.amplitude, rtol=1e-8)
     np.testing.assert_allclose(data["phase"], upper.phase, atol=1e-8)
-    np.testing.assert_allclose(data["mean_rolling_rate"], sense * theta, rtol=1e-8)
+    np.testing.assert_allclose(data["mean_rolling_rate"], sense * nu, rtol=1e-8)
     np.testing.assert_allclose(data["turns"], sense * 30.5, rtol=1e-8)
     assert float(data["repetition"].max()) < 1e-8
     # At phase zero the base accelerates along x: all strobes are one point, that of the exact solution there.
     at_zero = upper.amplitude[:, np.newaxis] * np.stack([np.cos(upper.phase), sense * np.sin(upper.phase)], axis=1)
-    rate_at_zero = sense * theta[:, np.newaxis] * np.stack([-at_zero[:, 1], at_zero[:, 0]], axis=1)
+    rate_at_zero = sense * nu[:, np.newaxis] * np.stack([-at_zero[:, 1], at_zero[:, 0]], axis=1)
     np.testing.assert_allclose(data["strobe_tilt"], np.repeat(at_zero[:, np.newaxis], 4, axis=1), atol=1e-9)
     np.testing.assert_allclose(data["strobe_tilt_rate"], np.repeat(rate_at_zero[:, np.newaxis], 4, axis=1), atol=5e-9)
 

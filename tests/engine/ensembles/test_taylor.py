@@ -21,15 +21,15 @@ ELLIPSE = sb.Harmonic.elliptic(amplitude=(0.1, 0.06), phase=1.0, angular_frequen
 KINDS = {"circle": CIRCLE, "line": LINE, "ellipse": ELLIPSE}
 
 
-def rolling_runs(runs_of, theta, a0=0.065, **options):
+def rolling_runs(runs_of, nu, a0=0.065, **options):
     """Runs of 200 periods that begin exactly on steady rolling."""
-    upper = sb.theory.steady_rolling(theta, a0, c=C, eta=ETA).upper
+    upper = sb.theory.steady_rolling(nu, a0, c=C, eta=ETA).upper
     lean = np.stack([np.cos(upper.phase), np.sin(upper.phase)], axis=1) * upper.amplitude[:, np.newaxis]
-    along = np.stack([-lean[:, 1], lean[:, 0]], axis=1) * theta[:, np.newaxis]
+    along = np.stack([-lean[:, 1], lean[:, 0]], axis=1) * nu[:, np.newaxis]
     motion = sb.Harmonic.circular(acceleration=a0, angular_frequency=1.0)
-    parameters = {"angular_frequency": theta}
-    duration = 200 * 2.0 * math.pi / theta
-    count = len(theta)
+    parameters = {"angular_frequency": nu}
+    duration = 200 * 2.0 * math.pi / nu
+    count = len(nu)
     return runs_of(
         MODEL, motion, count, tilt=lean, tilt_rate=along, duration=duration, parameters=parameters, **options
     )
@@ -38,12 +38,12 @@ def rolling_runs(runs_of, theta, a0=0.065, **options):
 # Rolling is stable there: errors of single steps, each of rtol at most, do not pile up.
 @pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10, 1e-12])
 def test_steady_rolling_stays_on_the_exact_solution_to_the_tolerance(runs_of, ends_of, rtol):
-    theta = np.linspace(3.0, 6.0, 61)
-    runs = rolling_runs(runs_of, theta, method="taylor", rtol=rtol)
+    nu = np.linspace(3.0, 6.0, 61)
+    runs = rolling_runs(runs_of, nu, method="taylor", rtol=rtol)
     found = ends_of(runs.together())
     exact = np.concatenate([runs.tilt, runs.tilt_rate], axis=1)
     size = np.hypot(*runs.tilt.T)[:, np.newaxis] * np.array([1.0, 1.0, 0.0, 0.0])
-    size = size + size[:, ::-1] * theta[:, np.newaxis]
+    size = size + size[:, ::-1] * nu[:, np.newaxis]
     assert np.abs((found - exact) / size).max() < rtol + 6e-12
 
 
@@ -55,14 +55,14 @@ def test_steady_rolling_takes_few_steps(runs_of, rtol, share):
 
 
 def test_steady_rolling_has_the_mean_tilt_phase_and_rate_of_theory(runs_of):
-    theta = np.linspace(2.5, 5.0, 7)
-    data = rolling_runs(runs_of, theta, method="taylor", rtol=1e-10, strobes=3).together()
-    upper = sb.theory.steady_rolling(theta, 0.065, c=C, eta=ETA).upper
+    nu = np.linspace(2.5, 5.0, 7)
+    data = rolling_runs(runs_of, nu, method="taylor", rtol=1e-10, strobes=3).together()
+    upper = sb.theory.steady_rolling(nu, 0.065, c=C, eta=ETA).upper
     assert set(data["outcome"].to_numpy()) == {sb.Outcome.ROLLING}
     np.testing.assert_allclose(data["mean_tilt"], upper.amplitude, rtol=1e-9)
     np.testing.assert_allclose(data["largest_tilt"], upper.amplitude, rtol=1e-9)
     np.testing.assert_allclose(data["phase"], upper.phase, atol=1e-9)
-    np.testing.assert_allclose(data["mean_rolling_rate"], theta, rtol=1e-9)
+    np.testing.assert_allclose(data["mean_rolling_rate"], nu, rtol=1e-9)
     np.testing.assert_allclose(data["turns"], 200.0, rtol=1e-9)
     assert float(data["repetition"].max()) < 1e-9
 

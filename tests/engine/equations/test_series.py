@@ -338,21 +338,21 @@ def exponential(rate):
 
 
 @settings(max_examples=40)
-@given(theta=st.floats(1.6, 6.0), azimuth=st.floats(-math.pi, math.pi), sense=st.sampled_from([1.0, -1.0]))
-def test_steady_rolling_has_the_coefficients_of_cosines(theta, azimuth, sense):
+@given(nu=st.floats(1.6, 6.0), azimuth=st.floats(-math.pi, math.pi), sense=st.sampled_from([1.0, -1.0]))
+def test_steady_rolling_has_the_coefficients_of_cosines(nu, azimuth, sense):
     a0 = 0.065
-    upper = sb.theory.steady_rolling(theta, a0, c=C, eta=ETA).upper
+    upper = sb.theory.steady_rolling(nu, a0, c=C, eta=ETA).upper
     amplitude, lead = float(upper.amplitude), azimuth + float(upper.phase)
     exact = [
-        cosine(amplitude, theta, lead),
-        cosine(sense * amplitude, theta, lead - math.pi / 2.0),
-        cosine(theta * amplitude, theta, lead + math.pi / 2.0),
-        cosine(sense * theta * amplitude, theta, lead),
+        cosine(amplitude, nu, lead),
+        cosine(sense * amplitude, nu, lead - math.pi / 2.0),
+        cosine(nu * amplitude, nu, lead + math.pi / 2.0),
+        cosine(sense * nu * amplitude, nu, lead),
     ]
-    pushes = {"ax": cosine(a0, theta, azimuth), "ay": cosine(sense * a0, theta, azimuth - math.pi / 2.0)}
+    pushes = {"ax": cosine(a0, nu, azimuth), "ay": cosine(sense * a0, nu, azimuth - math.pi / 2.0)}
     found, square = expanded(sb.Slender, [one[0] for one in exact], (C, ETA, 0.75), pushes)
-    # x² + y² is a sum of terms of size A² (2θ)^k/k! that cancel; what is lost there the equations carry on, with c/A.
-    allowed = EPS * (1.0 + theta) * (amplitude + C) * exponential(2.0 * theta + C / amplitude)
+    # x² + y² is a sum of terms of size A² (2ν)^k/k! that cancel; what is lost there the equations carry on, with c/A.
+    allowed = EPS * (1.0 + nu) * (amplitude + C) * exponential(2.0 * nu + C / amplitude)
     assert np.all(np.abs(found - exact) <= allowed)
     assert np.all(np.abs(square - amplitude**2 * np.eye(1, COUNT)[0]) <= allowed * amplitude)
 

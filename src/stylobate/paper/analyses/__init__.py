@@ -37,10 +37,10 @@ _ANALYSES: Mapping[str, _Analysis] = {
     "Free vibration": _Analysis(check_free, 3.0),
     "Circular base motion": _Analysis(check_circular, 2.0),
     "Below the critical frequency": _Analysis(check_modulated, 60.0),
-    "A column that may turn": _Analysis(check_twist, 8.0),
+    "Free spin": _Analysis(check_twist, 8.0),
     "Straight-line base motion": _Analysis(check_straight, 30.0),
     "Exact periodic orbits": _Analysis(check_exact, 40.0),
-    "Motion in a plane": _Analysis(check_planar, 3.0),
+    "Planar motion": _Analysis(check_planar, 3.0),
     "The standing column": _Analysis(check_standing, 1.0),
 }
 

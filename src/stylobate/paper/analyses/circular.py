@@ -32,56 +32,54 @@ def check_circular() -> Section:
 
 
 def response_data() -> xr.Dataset:
-    """Return the curves of Figs. 2 and 3: amplitude and phase of both branches against θ, and the backbone (5)."""
-    theta = np.linspace(0.02, 4.0, 1600)
-    steady = [theory.steady_rolling(theta, a0, **_PARAMETERS) for a0 in CIRCULAR_AMPLITUDES]
-    dims = ("a0", "branch", "theta")
+    """Return the curves of Figs. 2 and 3: amplitude and phase of both branches against ν, and the backbone (5)."""
+    nu = np.linspace(0.02, 4.0, 1600)
+    steady = [theory.steady_rolling(nu, a0, **_PARAMETERS) for a0 in CIRCULAR_AMPLITUDES]
+    dims = ("a0", "branch", "nu")
     fields = {
         name: (dims, np.array([[getattr(s.lower, name), getattr(s.upper, name)] for s in steady]))
         for name in ("amplitude", "phase", "stable")
     }
     return xr.Dataset(
-        {**fields, "backbone": ("theta", theory.rolling_backbone(theta, SLENDERNESS))},
-        coords={"theta": theta, "a0": list(CIRCULAR_AMPLITUDES), "branch": ["lower", "upper"]},
+        {**fields, "backbone": ("nu", theory.rolling_backbone(nu, SLENDERNESS))},
+        coords={"nu": nu, "a0": list(CIRCULAR_AMPLITUDES), "branch": ["lower", "upper"]},
         attrs={**_PARAMETERS},
     )
 
 
 def critical_data() -> xr.Dataset:
-    """Return θ* against a0 for several frictions, and its closed form without friction."""
+    """Return ν* against a0 for several frictions, and its closed form without friction."""
     a0 = np.linspace(1e-4, 0.3, 400)
     etas = [0.1, 0.3, 0.5, 1.0]
-    theta = np.array([theory.critical_frequency(a0, c=SLENDERNESS, eta=eta) for eta in etas])
+    nu = np.array([theory.critical_frequency(a0, c=SLENDERNESS, eta=eta) for eta in etas])
     closed = theory.undamped_critical_frequency(a0, c=SLENDERNESS)
     return xr.Dataset(
-        {"theta": (("eta", "a0"), theta), "undamped": ("a0", closed)},
+        {"nu": (("eta", "a0"), nu), "undamped": ("a0", closed)},
         coords={"a0": a0, "eta": etas},
         attrs={"c": SLENDERNESS},
     )
 
 
 def _grid() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    theta, a0, eta = np.meshgrid(
+    nu, a0, eta = np.meshgrid(
         np.linspace(0.05, 6.0, 120), np.linspace(0.002, 0.3, 60), [0.01, 0.1, 0.3, 1.0], indexing="ij"
     )
-    return theta.ravel(), a0.ravel(), eta.ravel()
+    return nu.ravel(), a0.ravel(), eta.ravel()
 
 
 def _solution() -> Finding:
-    theta, a0, eta = _grid()
-    steady = theory.steady_rolling(theta, a0, c=SLENDERNESS, eta=eta)
+    nu, a0, eta = _grid()
+    steady = theory.steady_rolling(nu, a0, c=SLENDERNESS, eta=eta)
     worst = 0.0
     for branch in (steady.upper, steady.lower):
         tilt, phase = branch.amplitude[branch.exists], branch.phase[branch.exists]
-        state = np.stack([np.zeros_like(tilt), theta[branch.exists], tilt, phase])
-        rates = rotating_frame_rates(
-            state, theta[branch.exists], a0[branch.exists], c=SLENDERNESS, eta=eta[branch.exists]
-        )
+        state = np.stack([np.zeros_like(tilt), nu[branch.exists], tilt, phase])
+        rates = rotating_frame_rates(state, nu[branch.exists], a0[branch.exists], c=SLENDERNESS, eta=eta[branch.exists])
         worst = max(worst, float(np.abs(rates[0]).max()), float(np.abs(tilt * rates[1]).max()))
     return Finding(
         "(7), (8)",
         "Circular base motion has an exact steady rolling: constant tilt, contact point turning with the base.",
-        f"(8) satisfies (7) with residuals of μ̇ and Aω̇ below {worst:.0e} on {theta.size} points of (θ, a0, η).",
+        f"(8) satisfies (7) with residuals of θ̈ and θβ̈ below {worst:.0e} on {nu.size} points of (ν, a0, η).",
         judged(worst < 1e-13),  # noqa: PLR2004  a few hundred units of rounding
     )
 
@@ -92,7 +90,7 @@ def _phase() -> Finding:
     return Finding(
         "(8)",
         "The phase follows from tan ψ alone.",
-        f"The tangent leaves the quadrant open. With a0 cos ψ and a0 sin ψ taken together, θ = 2, a0 = 0.02: "
+        f"The tangent leaves the quadrant open. With a0 cos ψ and a0 sin ψ taken together, ν = 2, a0 = 0.02: "
         f"ψ = {up:.4f} on the upper branch, {low:.4f} (near π) on the lower.",
         judged(abs(up) < math.pi / 2 < abs(low), Verdict.SHARPENED),
     )
@@ -102,46 +100,46 @@ def _stays() -> Finding:
     cases = ((1.5, 0.065), (3.0, 0.065), (1.2, 0.02))
     model = paper_model()
     worst = 0.0
-    for theta, a0 in cases:
-        motion = Harmonic.circular(acceleration=a0, angular_frequency=theta)
+    for nu, a0 in cases:
+        motion = Harmonic.circular(acceleration=a0, angular_frequency=nu)
         start = steady_start(model, motion)
         run = simulate(model, motion, **start, duration=_PERIODS * motion.period, rtol=1e-11)
         tilt = math.hypot(*start["tilt"])
         worst = max(worst, float(np.abs(run.data["amplitude"] - tilt).max()))
     return Finding(
         "section 3",
-        "Where it is stable the column rolls on so for ever.",
-        f"Started on (8) and integrated over {_PERIODS} periods at (θ, a0) = (1.5, 0.065), (3, 0.065), (1.2, 0.02), "
+        "Where steady rolling is stable the column keeps rolling.",
+        f"Started on (8) and integrated over {_PERIODS} periods at (ν, a0) = (1.5, 0.065), (3, 0.065), (1.2, 0.02), "
         f"the tilt stays within {worst:.0e} rad of it.",
         judged(worst < 1e-10),  # noqa: PLR2004  ten times the integrator's tolerance
     )
 
 
 def _lower_branch() -> Finding:
-    theta, a0, eta = _grid()
-    lower = theory.steady_rolling(theta, a0, c=SLENDERNESS, eta=eta).lower
+    nu, a0, eta = _grid()
+    lower = theory.steady_rolling(nu, a0, c=SLENDERNESS, eta=eta).lower
     growth = lower.eigenvalues[lower.exists].real.max(axis=-1)
     return Finding(
         "Figs. 2, 3",
         "Curves 2 and 4 (lower branch, phase near π) are unstable at all frequencies.",
         f"On all {growth.size} points with a lower branch an eigenvalue is positive (least {growth.min():.2g}). Proof: "
-        "the constant coefficient of the characteristic polynomial is (1+θ²)² + η²θ² − (1+θ²)c/A, negative below the "
+        "the constant coefficient of the characteristic polynomial is (1+ν²)² + η²ν² − (1+ν²)c/θ, negative below the "
         "fold: the lower branch is a saddle.",
         judged(bool(growth.min() > 0.0), Verdict.SHARPENED),
     )
 
 
 def _criteria_agree() -> Finding:
-    theta, a0, eta = _grid()
-    upper = theory.steady_rolling(theta, a0, c=SLENDERNESS, eta=eta).upper
+    nu, a0, eta = _grid()
+    upper = theory.steady_rolling(nu, a0, c=SLENDERNESS, eta=eta).upper
     growth = upper.eigenvalues[upper.exists].real.max(axis=-1)
     same = int(np.sum((growth < 0.0) == upper.stable[upper.exists]))
     return Finding(
         "matrix after (8)",
         "Stability follows from the Routh-Hurwitz criterion on the printed matrix.",
         f"Routh-Hurwitz and computed eigenvalues agree on {same} of {growth.size} points. The criterion reduces to a "
-        "bound on the tilt, A < c[1 + √(1 + 4/w)]/4 with w = 4θ² + η², which gives the boundary in closed form for "
-        "any friction.",
+        "bound on the tilt, θ < c[1 + √(1 + 4/w)]/4 with w = 4ν² + η², which gives the boundary in closed form for "
+        "any damping.",
         judged(same == growth.size, Verdict.SHARPENED),
     )
 
@@ -152,8 +150,8 @@ def _critical_frequencies() -> Finding:
     return Finding(
         "Figs. 2, 3",
         "Curves 3 and 5 (upper branch) are unstable below and stable above a boundary that moves right with amplitude.",
-        f"θ* = {first:.10f} at a0 = 0.02 and {second:.10f} at a0 = 0.065, and θ* rises with a0 throughout. A complex "
-        "pair crosses there.",
+        f"ν* = {first:.10f} at a0 = 0.02 and {second:.10f} at a0 = 0.065, and ν* rises with a0 throughout. A complex "
+        "pair of eigenvalues crosses the imaginary axis there.",
         judged(bool(np.all(np.diff(rising) > 0.0))),
     )
 
@@ -165,7 +163,7 @@ def _undamped_limit() -> Finding:
     return Finding(
         "conclusions",
         "The critical frequency depends on the parameters of the problem.",
-        "Without friction it is (1+√σ)/√(4 − (1+√σ)²) with σ = a0/(a0+c): "
+        "Without damping it is (1+√s)/√(4 − (1+√s)²) with s = a0/(a0+c): "
         f"{closed[0]:.5f} and {closed[1]:.5f}; at η = 1e-4 the boundary differs from it by {gap:.0e}.",
         judged(gap < 1e-6, Verdict.SHARPENED),  # noqa: PLR2004  the correction is of the order η²
     )

@@ -71,10 +71,10 @@ def _circular() -> Finding:
     return Finding(
         "(7), (8)",
         "Circular motion has an exact rolling solution, stable above a critical frequency.",
-        f"Periodic orbits of (1), found without (7), have Floquet multipliers that equal exp(2πλ/θ) of its exact "
-        f"eigenvalues within {max(errors):.0e}; followed over θ at a0 = {a0:g} they lose stability in a "
-        f"{lost.kind.value} bifurcation at θ = {lost.parameter:.9f}, {gap:.0e} from the closed form; softly: a "
-        "modulated motion is born.",
+        f"Periodic orbits of (1), found without (7), have Floquet multipliers that equal exp(2πλ/ν) of its exact "
+        f"eigenvalues within {max(errors):.0e}; followed over ν at a0 = {a0:g} they lose stability in a "
+        f"{lost.kind.value} bifurcation at ν = {lost.parameter:.9f}, {gap:.0e} from the closed form; supercritical: "
+        "a stable modulated motion bifurcates.",
         judged(
             max(errors) < 1e-8 and gap < 1e-7 and lost.kind is Kind.NEIMARK_SACKER and bool(lost.soft),  # noqa: PLR2004
             Verdict.SHARPENED,
@@ -96,9 +96,9 @@ def _boundaries(straight: dict[float, Branch]) -> Finding:
     return Finding(
         "conclusion 4",
         "Averaging gives the frequency above which rolling is stable under straight-line motion.",
-        f"The exact orbit is stable above another θ*: {'; '.join(lines)}. It is lost not by an oscillation but in a "
-        "pitchfork: a real multiplier leaves through +1, and the orbit loses its symmetry of leaning the other way "
-        "half a period later.",
+        f"The exact orbit is stable above another ν*: {'; '.join(lines)}. "
+        "Stability is lost in a pitchfork, not by an oscillation: a real multiplier leaves the unit circle through +1, "
+        "and the orbit loses its symmetry (the opposite lean half a period later).",
         judged(pitchforks and all(higher), Verdict.LIMITED),
     )
 
@@ -114,9 +114,10 @@ def _born(straight: dict[float, Branch]) -> Finding:
     return Finding(
         "conclusion 3",
         "Below the critical frequency the column only stands or overturns.",
-        "Under straight-line motion the loss is soft: two mirror-image rolling motions without the symmetry are stable "
-        f"below θ*. {'; '.join(lines)}. They end in doublings or modulated motion, and soon after in overturning.",
-        judged(all(soft), Verdict.FAILS),
+        "Under straight-line motion the bifurcation is supercritical: two mirror-image rolling motions without the "
+        f"symmetry are stable below ν*. {'; '.join(lines)}. They end in doublings or modulated motion, and soon after "
+        "in overturning.",
+        judged(all(soft), Verdict.DOES_NOT_HOLD),
     )
 
 
@@ -131,9 +132,9 @@ def _error(straight: dict[float, Branch]) -> Finding:
     order = math.log(large[0] / small[0]) / math.log(AMPLITUDES[1] / AMPLITUDES[0])
     return Finding(
         "(9), (10)",
-        "Averaging is good at high frequency, its small parameters being η/2θ, a1/4θ, μ/2θ, (ω − θ)/2θ.",
+        "Averaging is good at high frequency, its small parameters being η/2ν, a1/4ν, θ̇/2ν, (β̇ − ν)/2ν.",
         f"The mean tilt of the exact orbit is larger than the averaged one by {100 * small[0]:.2f} % at a1 = 0.04 and "
-        f"{100 * large[0]:.2f} % at a1 = 0.13, at θ = 3, and by {100 * small[1]:.2f} % and {100 * large[1]:.2f} % at "
-        f"θ = 6: the error does not fall with θ; between these amplitudes it grows as the power {order:.2f} of a1/c.",
+        f"{100 * large[0]:.2f} % at a1 = 0.13, at ν = 3, and by {100 * small[1]:.2f} % and {100 * large[1]:.2f} % at "
+        f"ν = 6: the error does not fall with ν; between these amplitudes it grows as the power {order:.2f} of a1/c.",
         judged(abs(small[1] / small[0] - 1.0) < 0.1 and abs(order - 2.0) < 0.2, Verdict.LIMITED),  # noqa: PLR2004
     )

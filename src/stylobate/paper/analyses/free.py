@@ -50,9 +50,9 @@ def _planar() -> Finding:
     right, wrong = float(np.abs(tilt - corrected).max()), float(np.abs(tilt - printed).max())
     return Finding(
         "(2), (3)",
-        "In a plane the column swings as α = c − (c − A) cosh τ, with the same formula on the next half period.",
-        f"Integrated from A = 0.6c: with the opposite sign on alternate half periods the formula is met to {right:.0e} "
-        f"rad; as printed it is off by {wrong:.2g} rad. Amplitude and frequency obey (3).",
+        "Planar motion is θ = c − (c − θ0) cosh τ, with the same formula on the next half period.",
+        "Integrated from θ0 = 0.6c: with the opposite sign on alternate half periods the formula is met to "
+        f"{right:.0e} rad; as printed it is off by {wrong:.2g} rad. Amplitude and frequency obey (3).",
         judged(right < 1e-9 < wrong, Verdict.ERRATUM),  # noqa: PLR2004  a hundred times the tolerance
     )
 
@@ -91,10 +91,10 @@ def _general() -> Finding:
     measured = 2.0 * (float(near["amplitude"][0]) - tilt) / 1e-6
     return Finding(
         "after (11)",
-        "With angular momentum ℓ the tilt obeys Ä = −ℓ²/A³ − A + c, where ω0 is the initial β̇.",
-        f"All signs are reversed in print: from A = 0.6c, β̇ = 0.5 the integration starts with Ä = {measured:.5f}, "
-        f"ℓ²/A³ + A − c = {true:.5f}; its ω0 is the initial A0 β̇. Period {period:.6f} and advance of the azimuth "
-        f"{advance:.6f} rad by quadrature agree with the integration to {gap:.0e}.",
+        "With angular momentum ℓ the tilt obeys θ̈ = −ℓ²/θ³ − θ + c, where the paper's ω0 is the initial β̇.",
+        f"All signs are reversed in print: from θ = 0.6c, β̇ = 0.5 the integration starts with "
+        f"θ̈ = {measured:.5f}, ℓ²/θ³ + θ − c = {true:.5f}; the paper's ω0 is the initial θ0 β̇. Period {period:.6f} "
+        f"and advance of the azimuth {advance:.6f} rad by quadrature agree with the integration to {gap:.0e}.",
         judged(abs(measured - true) < 1e-3 * abs(true) and gap < 1e-8, Verdict.ERRATUM),  # noqa: PLR2004
     )
 
@@ -106,9 +106,9 @@ def _planar_rate() -> Finding:
     printed = (_C - amplitude) * math.sinh(tau)
     return Finding(
         "after (11)",
-        "In the planar motion the tilt rate is μ = (c − A0) sinh τ.",
-        f"Its sign is wrong: from A0 = 0.6c at rest the tilt falls, at τ = 0.5 with μ = {measured:.6f}; printed "
-        f"{printed:.6f}. It is the derivative of A = c − (c − A0) cosh τ, −(c − A0) sinh τ.",
+        "In the planar motion the tilt rate is θ̇ = (c − θ0) sinh τ.",
+        f"The sign is reversed in print: from θ0 = 0.6c at rest the tilt falls, at τ = 0.5 with "
+        f"θ̇ = {measured:.6f}; printed {printed:.6f}. The derivative of θ = c − (c − θ0) cosh τ is −(c − θ0) sinh τ.",
         judged(abs(measured + printed) < 1e-10, Verdict.ERRATUM),  # noqa: PLR2004  ten times the tolerance
     )
 
@@ -120,8 +120,8 @@ def _runaway() -> Finding:
     shown = ", ".join(f"{value:.1e}" for value in excess)
     return Finding(
         "after (11)",
-        "With any angular momentum at all the azimuth runs away: planar free motion is unstable.",
-        "The azimuth always turns the same way, by π at each passage of the upright in the limit ℓ → 0: for "
-        f"β̇(0) = 0.1, 1e-3, 1e-6 the turn exceeds π by the parts {shown}.",
+        "With any angular momentum the azimuth grows without bound: planar free motion is unstable.",
+        "The azimuth always turns the same way, by π at each passage near the vertical in the limit ℓ → 0: for "
+        f"β̇(0) = 0.1, 1e-3, 1e-6 the turn exceeds π by the fractions {shown}.",
         judged(bool(np.all(np.diff(np.abs(excess)) < 0.0) and abs(excess[-1]) < 1e-4)),  # noqa: PLR2004
     )

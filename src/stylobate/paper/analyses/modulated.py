@@ -18,7 +18,7 @@ from stylobate.studies.responses.initial_conditions import steady_start
 _C = SLENDERNESS
 _A0 = CIRCULAR_AMPLITUDES[1]
 _FREQUENCIES = (1.38, 1.36, 1.33)
-"""θ of the cycles drawn, all stable."""
+"""ν of the cycles drawn, all stable."""
 
 _BEYOND_DOUBLING = 1.318
 _SEED = 20
@@ -30,16 +30,16 @@ def check_modulated() -> Section:
 
 
 def modulated_data() -> xr.Dataset:
-    """Return the limit cycles of (7) below θ*: tilt over one period and the path in the (A cos ψ, A sin ψ) plane."""
+    """Return the limit cycles of (7) below ν*: tilt over one period and the path in the (θ cos ψ, θ sin ψ) plane."""
     fields: dict[str, Any] = {}
-    for k, theta in enumerate(_FREQUENCIES):
-        cycle = theory.modulated_rolling(theta, _A0, c=_C, eta=DAMPING)
-        steady = float(theory.steady_rolling(theta, _A0, c=_C, eta=DAMPING).upper.amplitude)
+    for k, nu in enumerate(_FREQUENCIES):
+        cycle = theory.modulated_rolling(nu, _A0, c=_C, eta=DAMPING)
+        steady = float(theory.steady_rolling(nu, _A0, c=_C, eta=DAMPING).upper.amplitude)
         fields[f"tau_{k}"] = (f"point_{k}", np.append(cycle.tau, cycle.period))
         for name, values in (("amplitude", cycle.amplitude / steady), ("phase", cycle.phase)):
             fields[f"{name}_{k}"] = (f"point_{k}", np.append(values, values[0]))
-        fields[f"steady_phase_{k}"] = ((), float(theory.steady_rolling(theta, _A0, c=_C, eta=DAMPING).upper.phase))
-    return xr.Dataset(fields, attrs={"theta": list(_FREQUENCIES), "a0": _A0})
+        fields[f"steady_phase_{k}"] = ((), float(theory.steady_rolling(nu, _A0, c=_C, eta=DAMPING).upper.phase))
+    return xr.Dataset(fields, attrs={"nu": list(_FREQUENCIES), "a0": _A0})
 
 
 def _supercritical() -> Finding:
@@ -50,29 +50,29 @@ def _supercritical() -> Finding:
         "Below the boundary the rolling is unstable.",
         "It is lost in a Hopf bifurcation: the tilt begins to oscillate, at a frequency near that of the base, "
         f"{crossing[0]:.4f} (a0 = 0.02) or {crossing[1]:.4f} (a0 = 0.065). The first Lyapunov coefficient is "
-        f"{values[0]:.2f} and {values[1]:.2f} (state μ/c, ω, A/c, ψ): supercritical, so a stable modulated rolling "
-        "takes over below θ*.",
+        f"{values[0]:.2f} and {values[1]:.2f} (state θ̇/c, β̇, θ/c, ψ): supercritical, so a stable modulated rolling "
+        "exists below ν*.",
         judged(bool(np.all(values < 0.0)), Verdict.SHARPENED),
     )
 
 
 def _third_kind() -> Finding:
-    theta = _FREQUENCIES[1]
-    motion = Harmonic.circular(acceleration=_A0, angular_frequency=theta)
+    nu = _FREQUENCIES[1]
+    motion = Harmonic.circular(acceleration=_A0, angular_frequency=nu)
     model = paper_model()
     start = steady_start(model, motion)
     tilt = (1.02 * start["tilt"][0], 1.02 * start["tilt"][1])
     run = simulate(model, motion, tilt=tilt, tilt_rate=start["tilt_rate"], duration=150.0 * motion.period, rtol=1e-7)
     steady = math.hypot(*start["tilt"])
     low, high = (run.measures.get(name, math.nan) / steady for name in ("least_tilt_late", "largest_tilt_late"))
-    ranges = [theory.modulated_rolling(theta, _A0, c=_C, eta=DAMPING).amplitude_range]
+    ranges = [theory.modulated_rolling(nu, _A0, c=_C, eta=DAMPING).amplitude_range]
     return Finding(
         "conclusion 3",
         "At low frequencies there are only two outcomes: the column stands, or it overturns.",
-        f"a0 = 0.065, θ = 1.36 < θ*: started 2 % off (8), after 150 periods the outcome is {run.outcome.name}, A/A+ "
+        f"a0 = 0.065, ν = 1.36 < ν*: started 2 % off (8), after 150 periods the outcome is {run.outcome.name}, θ/θ+ "
         f"between {low:.2f} and {high:.2f}; as a limit cycle of (7) {ranges[0][0]:.2f} to {ranges[0][1]:.2f}. "
-        "A third kind of motion: the conclusion fails.",
-        judged(run.outcome is Outcome.MODULATED, Verdict.FAILS),
+        "This is a third kind of motion, so the conclusion does not hold.",
+        judged(run.outcome is Outcome.MODULATED, Verdict.DOES_NOT_HOLD),
     )
 
 
@@ -82,30 +82,30 @@ def _followed_down() -> Finding:
     critical = float(theory.critical_frequency(_A0, c=_C, eta=DAMPING))
     return Finding(
         "conclusion 3",
-        "The same, how far down.",
-        f"Followed down from θ* = {critical:.4f} at a0 = 0.065: at θ = {doubling:.4f} a multiplier of the cycle passes "
+        "The same: how far below the boundary.",
+        f"Followed down from ν* = {critical:.4f} at a0 = 0.065: at ν = {doubling:.4f} a multiplier of the cycle passes "
         "−1 and its period doubles; the doubled and then irregular modulation, followed by integration in steps of "
-        f"0.002, still lives at θ = {lowest:.3f} and is lost at {lost:.3f}, where the column overturns.",
-        judged(lost < doubling, Verdict.FAILS),
+        f"0.002, persists at ν = {lowest:.3f} and is lost at {lost:.3f}, where the column overturns.",
+        judged(lost < doubling, Verdict.DOES_NOT_HOLD),
     )
 
 
-def _least_multiplier(theta: float) -> float:
+def _least_multiplier(nu: float) -> float:
     """Return the least real part of the cycle's multipliers, plus one: zero where the period doubles."""
-    return float(theory.modulated_rolling(theta, _A0, c=_C, eta=DAMPING).multipliers.real.min()) + 1.0
+    return float(theory.modulated_rolling(nu, _A0, c=_C, eta=DAMPING).multipliers.real.min()) + 1.0
 
 
-def _lost_below(theta: float) -> tuple[float, float]:
-    """Return the frequency at which a slow descent from `theta` overturns the column, and the last it survived."""
+def _lost_below(nu: float) -> tuple[float, float]:
+    """Return the frequency at which a slow descent from `nu` overturns the column, and the last it survived."""
     model = paper_model()
-    cycle = theory.modulated_rolling(theta, _A0, c=_C, eta=DAMPING)
+    cycle = theory.modulated_rolling(nu, _A0, c=_C, eta=DAMPING)
     tilt, psi, mu, omega = (
         float(part[0]) for part in (cycle.amplitude, cycle.phase, cycle.tilt_rate, cycle.rolling_rate)
     )
     ux, uy = math.cos(psi), math.sin(psi)
     state = (tilt * ux, tilt * uy), (mu * ux - tilt * omega * uy, mu * uy + tilt * omega * ux)
     lowest = math.nan
-    for frequency in np.arange(theta, theta - 0.03, -0.002):
+    for frequency in np.arange(nu, nu - 0.03, -0.002):
         motion = Harmonic.circular(acceleration=_A0, angular_frequency=float(frequency))
         run = simulate(model, motion, tilt=state[0], tilt_rate=state[1], duration=100.0 * motion.period, rtol=1e-7)
         if run.outcome is Outcome.OVERTURNED:
@@ -121,8 +121,8 @@ def _survivors() -> Finding:
     model = paper_model()
     cases = ((0.02, 0.5), (0.02, 0.8), (0.065, 0.9), (0.065, 1.25))
     outcomes: dict[str, int] = {}
-    for a0, theta in cases:
-        motion = Harmonic.circular(acceleration=a0, angular_frequency=theta)
+    for a0, nu in cases:
+        motion = Harmonic.circular(acceleration=a0, angular_frequency=nu)
         for _ in range(8):
             x, y, vx, vy = rng.uniform(-0.5 * _C, 0.5 * _C, 4)
             run = simulate(
@@ -138,9 +138,9 @@ def _survivors() -> Finding:
     counts_text = ", ".join(f"{count} {name}" for name, count in sorted(outcomes.items(), key=lambda item: -item[1]))
     return Finding(
         "conclusion 3",
-        "Whether anything else survives lower.",
-        f"32 random starts at (a0, θ) = (0.02, 0.5), (0.02, 0.8), (0.065, 0.9), (0.065, 1.25), c = η = 0.1: "
+        "The same at lower frequencies, where no third motion was found.",
+        f"32 random starts at (a0, ν) = (0.02, 0.5), (0.02, 0.8), (0.065, 0.9), (0.065, 1.25), c = η = 0.1: "
         f"{counts_text}. "
-        "A sample, no proof.",
+        "This is a sample, not a proof.",
         judged(set(outcomes) <= {"overturned", "at rest"}),
     )

@@ -12,8 +12,8 @@ from stylobate.models import Rolling, SlenderRolling
 from stylobate.paper.analyses.setting import CIRCULAR_AMPLITUDES, DAMPING, SLENDERNESS
 from stylobate.results import Response
 
-A0, THETA = CIRCULAR_AMPLITUDES[1], 3.0
-"""a0 and θ of these runs."""
+A0, NU = CIRCULAR_AMPLITUDES[1], 3.0
+"""a0 and ν of these runs."""
 
 PERIODS = 300
 """Length of a run with friction: the slowest deviation decays by exp(−0.0254 τ), 1e-7 in all these periods."""
@@ -26,12 +26,12 @@ _PERIODS_WITHOUT = 15
 
 def run_from_paper(kind: type[Rolling | SlenderRolling], zeta: float, periods: float = PERIODS) -> Response:
     """Return the motion of a column that may turn, begun on the paper's solution (8) without spin."""
-    motion = Harmonic.circular(acceleration=A0, angular_frequency=THETA)
+    motion = Harmonic.circular(acceleration=A0, angular_frequency=NU)
     model = kind(Column.dimensionless(SLENDERNESS), damping=DAMPING, spin_damping=zeta)
-    branch = theory.steady_rolling(THETA, A0, c=SLENDERNESS, eta=DAMPING).upper
+    branch = theory.steady_rolling(NU, A0, c=SLENDERNESS, eta=DAMPING).upper
     size, psi = float(branch.amplitude), float(branch.phase)
     x, y = size * math.cos(psi), size * math.sin(psi)
-    rate = (-THETA * y, THETA * x)
+    rate = (-NU * y, NU * x)
     return simulate(model, motion, tilt=(x, y), tilt_rate=rate, duration=periods * motion.period, rest_energy=0.0)
 
 

@@ -41,10 +41,10 @@ def _sign_of_forces() -> Finding:
     lean = float(run.data["tilt"].sel(axis="x")[-1])
     return Finding(
         "before (1)",
-        "The generalised forces are +m Q0i √(h² + r²) cos(γ − αi) cos θ0t.",
+        "The generalised forces are +m Q0i √(h² + r²) cos(γ − αi) cos θ0t (in the paper's letters).",
         "In the frame of the base the force is −m times its acceleration, as in the paper's own (1), with arm h in the "
         f"small-angle model. With the sign of (1) a base that accelerates along +x at 1.2c makes the column lean to "
-        f"{lean:+.4f} rad, against the acceleration, as it must. (1) is what counts.",
+        f"{lean:+.4f} rad, against the acceleration, as it must. The results of the paper rest on (1), which is right.",
         judged(lean < 0.0, Verdict.ERRATUM),
     )
 
@@ -52,11 +52,11 @@ def _sign_of_forces() -> Finding:
 def _stays() -> Finding:
     model = paper_model()
     count, moved = 0, 0
-    for theta in (0.3, 1.0, 1.4, 3.0, 10.0):
+    for nu in (0.3, 1.0, 1.4, 3.0, 10.0):
         for share in (0.2, 0.9, 1.0):
             for motion in (
-                Harmonic.circular(acceleration=share * _C, angular_frequency=theta, start_phase=0.7),
-                Harmonic.straight(acceleration=share * _C, angular_frequency=theta, direction=0.4),
+                Harmonic.circular(acceleration=share * _C, angular_frequency=nu, start_phase=0.7),
+                Harmonic.straight(acceleration=share * _C, angular_frequency=nu, direction=0.4),
             ):
                 run = simulate(model, motion, duration=50.0)
                 count += 1
@@ -67,7 +67,7 @@ def _stays() -> Finding:
     return Finding(
         "conclusion 1",
         "With a0 < c or a1 < c and from rest the column never moves; only the pressure under it shifts.",
-        f"{count} runs with amplitudes up to c itself: {moved} moved. At 1.001c it is released, within "
+        f"{count} runs with amplitudes up to c itself: {moved} moved. At 1.001c it uplifts, within "
         f"{abs(release - expected):.0e} of the instant at which |a| = c. The centre of pressure runs at the distance "
         "h|a|/g from the axis and reaches the rim at |a| = c.",
         judged(moved == 0 and abs(release - expected) < 1e-9),  # noqa: PLR2004  the root finder's tolerance
@@ -83,8 +83,8 @@ def _overturns() -> Finding:
     fell = [run.outcome is Outcome.OVERTURNED for run in (pushed, shaken)]
     return Finding(
         "conclusion 2",
-        "From other starts, or for a > c, the column can overturn.",
+        "From other initial states, or for a > c, the column can overturn.",
         f"a0 = 0.2c from a tilt of 0.9c: overturned at τ = {pushed.decided_at:.2f}; a0 = 1.5c from rest: at "
-        f"τ = {shaken.decided_at:.2f}. Both proved by the criterion A > c + sup|a|, Ȧ ≥ 0.",
+        f"τ = {shaken.decided_at:.2f}. Both proved by the criterion θ > c + sup|a|, θ̇ ≥ 0.",
         judged(all(fell)),
     )

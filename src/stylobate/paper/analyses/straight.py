@@ -33,18 +33,18 @@ def check_straight() -> Section:
 
 def full_response_data() -> xr.Dataset:
     """Return mean, least and largest tilt of the full motion started on the averaged solution; NaN: it overturned."""
-    theta = np.array([0.9, 1.1, 1.3, 1.5, 1.75, 2.0, 2.25, 2.5, 3.0, 3.5, 4.0])
-    values = np.full((len(AMPLITUDES), theta.size, 3), np.nan)
+    nu = np.array([0.9, 1.1, 1.3, 1.5, 1.75, 2.0, 2.25, 2.5, 3.0, 3.5, 4.0])
+    values = np.full((len(AMPLITUDES), nu.size, 3), np.nan)
     for i, a1 in enumerate(AMPLITUDES):
-        for j, frequency in enumerate(theta):
+        for j, frequency in enumerate(nu):
             run = _from_averaged(frequency, a1, _PERIODS)
             if run.outcome is Outcome.OVERTURNED:
                 continue
             late = run.data["amplitude"].sel(time=slice(run.decided_at / 2.0, None)).to_numpy()
             values[i, j] = late.mean(), late.min(), late.max()
     return xr.Dataset(
-        {name: (("a1", "theta"), values[..., k]) for k, name in enumerate(("mean", "least", "largest"))},
-        coords={"a1": list(AMPLITUDES), "theta": theta},
+        {name: (("a1", "nu"), values[..., k]) for k, name in enumerate(("mean", "least", "largest"))},
+        coords={"a1": list(AMPLITUDES), "nu": nu},
         attrs={"c": _C, "eta": DAMPING, "periods": _PERIODS},
     )
 
@@ -55,8 +55,8 @@ def averaging_data() -> xr.Dataset:
     cases = ((3.0, 0.04, 20, 1.15), (1.5, 0.13, 8, 1.0))
     model = paper_model()
     fields = {}
-    for k, (theta, a1, periods, off) in enumerate(cases):
-        motion = Harmonic.straight(acceleration=a1, angular_frequency=theta)
+    for k, (nu, a1, periods, off) in enumerate(cases):
+        motion = Harmonic.straight(acceleration=a1, angular_frequency=nu)
         start = steady_start(model, motion, sense=1)
         (x, y), (vx, vy) = start["tilt"], start["tilt_rate"]
         start = {"tilt": (off * x, off * y), "tilt_rate": (off * vx, off * vy)}
@@ -66,12 +66,12 @@ def averaging_data() -> xr.Dataset:
         full = np.interp(slow["time"], run.data["time"], run.data["amplitude"], right=np.nan)
         for name, values in (("full", full), ("slow", slow["amplitude"]), ("time", slow["time"])):
             fields[f"{name}_{k}"] = (f"sample_{k}", np.asarray(values))
-    return xr.Dataset(fields, attrs={"theta": [case[0] for case in cases], "a1": [case[1] for case in cases], "c": _C})
+    return xr.Dataset(fields, attrs={"nu": [case[0] for case in cases], "a1": [case[1] for case in cases], "c": _C})
 
 
-def _from_averaged(theta: float, a1: float, periods: int, sense: int = 1) -> Response:
+def _from_averaged(nu: float, a1: float, periods: int, sense: int = 1) -> Response:
     model = paper_model()
-    motion = Harmonic.straight(acceleration=a1, angular_frequency=theta)
+    motion = Harmonic.straight(acceleration=a1, angular_frequency=nu)
     start = steady_start(model, motion, sense=sense)
     return simulate(model, motion, **start, duration=periods * motion.period, rtol=1e-7)
 
@@ -86,9 +86,9 @@ def _sign_of_nine() -> Finding:
     right, wrong = (float(np.abs(slow + sign * fast - exact).max()) for sign in (1.0, -1.0))
     return Finding(
         "(9)",
-        "In the rotating frame the second equation carries −(a1/2A) sin(χ + ψ).",
+        "In the rotating frame the second equation carries −(a1/2θ) sin(2ντ + ψ).",
         f"Put back into (6) at 200 random states the sign must be +: residual {right:.0e}, as printed {wrong:.2g}. "
-        "The averaged equations (10) are not touched by it.",
+        "The averaged equations (10) are not affected.",
         judged(right < 1e-13 < wrong, Verdict.ERRATUM),  # noqa: PLR2004  rounding
     )
 
@@ -100,17 +100,16 @@ def _both_senses() -> Finding:
     return Finding(
         "section 4",
         "A straight-line motion can drive rolling.",
-        "In either sense: started on the averaged solution at θ = 3, a1 = 0.04 the contact point turns "
+        "In either sense: started on the averaged solution at ν = 3, a1 = 0.04 the contact point turns "
         f"{turns[0]:+.1f} or {turns[1]:+.1f} times in 30 periods, the tilts of the two runs agreeing to "
-        f"{max(mirrored, 1e-16):.0e} rad. Elliptic motion has two such solutions with amplitudes |p| and |q|.",
+        f"{max(mirrored, 1e-16):.0e} rad. Elliptic motion has two such solutions with amplitudes |a₊| and |a₋|.",
         judged(turns[0] > 29.0 and turns[1] < -29.0, Verdict.SHARPENED),  # noqa: PLR2004
     )
 
 
 def _averaged_curves(response: xr.Dataset) -> Finding:
     averaged = {
-        a1: theory.averaged_rolling(response["theta"].to_numpy(), a1, c=_C, eta=DAMPING).forward.upper
-        for a1 in AMPLITUDES
+        a1: theory.averaged_rolling(response["nu"].to_numpy(), a1, c=_C, eta=DAMPING).forward.upper for a1 in AMPLITUDES
     }
     gaps = []
     for a1, branch in averaged.items():
@@ -126,17 +125,17 @@ def _averaged_curves(response: xr.Dataset) -> Finding:
 
 
 def _stable_motion() -> Finding:
-    fates = {theta: _from_averaged(theta, AMPLITUDES[1], _PERIODS) for theta in (1.5, 2.0, 3.0)}
-    lines = ", ".join(f"θ = {theta:g}: {run.outcome.label}" for theta, run in fates.items())
+    fates = {nu: _from_averaged(nu, AMPLITUDES[1], _PERIODS) for nu in (1.5, 2.0, 3.0)}
+    lines = ", ".join(f"ν = {nu:g}: {run.outcome.label}" for nu, run in fates.items())
     critical = float(theory.critical_frequency(AMPLITUDES[1] / 2.0, c=_C, eta=DAMPING))
     low, high = (fates[3.0].data["amplitude"].quantile(q).item() for q in (0.0, 1.0))
-    fell = [fates[theta].outcome is Outcome.OVERTURNED for theta in (1.5, 2.0)]
+    fell = [fates[nu].outcome is Outcome.OVERTURNED for nu in (1.5, 2.0)]
     return Finding(
         "conclusion 4",
-        "Above the critical frequency a stable rolling exists for straight-line motion as for circular motion.",
-        f"a1 = 0.13, averaged stable above θ = {critical:.3f}; started on the averaged solution: {lines} (tilt between "
+        "Above the critical frequency stable rolling exists for straight-line motion as for circular motion.",
+        f"a1 = 0.13, averaged stable above ν = {critical:.3f}; started on the averaged solution: {lines} (tilt between "
         f"{low:.4f} and {high:.4f}). The boundary of the full motion lies higher than the averaged one, and near it "
-        "the surviving starts are few.",
+        "few initial states survive.",
         judged(all(fell) and fates[3.0].outcome is not Outcome.OVERTURNED, Verdict.LIMITED),
     )
 
@@ -144,26 +143,26 @@ def _stable_motion() -> Finding:
 def _small_parameters() -> Finding:
     lines, swings = [], {}
     for a1 in AMPLITUDES:
-        for theta in (3.0, 12.0):
+        for nu in (3.0, 12.0):
             # Friction damps the start within a time of a few 1/η: so many periods more at a higher frequency.
-            periods = round(_SETTLING_TIME * theta / (2.0 * math.pi))
-            run = _from_averaged(theta, a1, periods)
-            mean = float(theory.averaged_rolling(theta, a1, c=_C, eta=DAMPING).forward.upper.amplitude)
+            periods = round(_SETTLING_TIME * nu / (2.0 * math.pi))
+            run = _from_averaged(nu, a1, periods)
+            mean = float(theory.averaged_rolling(nu, a1, c=_C, eta=DAMPING).forward.upper.amplitude)
             tilt = run.data["amplitude"].to_numpy() / mean
             late = tilt[-tilt.size // 10 :]
-            swings[a1, theta] = float(np.ptp(late))
+            swings[a1, nu] = float(np.ptp(late))
             lines.append(
-                f"a1 = {a1:g}, θ = {theta:g}: {tilt.min():.2f} to {tilt.max():.2f} at first, "
+                f"a1 = {a1:g}, ν = {nu:g}: {tilt.min():.2f} to {tilt.max():.2f} at first, "
                 f"{late.min():.2f} to {late.max():.2f} settled"
             )
     limit = _limit_range(AMPLITUDES[0] / _C)
     same = [abs(swings[a1, 12.0] / swings[a1, 3.0] - 1.0) for a1 in AMPLITUDES]
     return Finding(
         "after (9)",
-        "Averaging is good while η/2θ, a1/4θ and the detuning are small, that is at high frequency.",
-        f"Tilt over averaged tilt, started on the averaged solution: {'; '.join(lines)}. It does not improve with θ: "
-        "with α = c y/θ² the limit θ → ∞ is y″ = −ŷ − (a1/c) cos s, whose one parameter is a1/c; integrated at a1/c = "
-        f"0.4 from the averaged start it swings from {limit[0]:.2f} to {limit[1]:.2f}.",
+        "Averaging is good while η/2ν, a1/4ν and the detuning are small, that is at high frequency.",
+        f"Tilt over averaged tilt, started on the averaged solution: {'; '.join(lines)}. It does not improve with ν: "
+        "with the tilt vector c y/ν² the limit ν → ∞ is y″ = −ŷ − (a1/c) cos s, whose one parameter is a1/c; "
+        f"integrated at a1/c = 0.4 from the averaged start it swings from {limit[0]:.2f} to {limit[1]:.2f}.",
         judged(max(same) < 0.1, Verdict.LIMITED),  # noqa: PLR2004  the same swing within a tenth
     )
 

@@ -11,7 +11,7 @@ from stylobate import theory
 from stylobate.column import Column
 from stylobate.errors import Outcome
 from stylobate.models import Model, SlenderRolling
-from stylobate.paper.analyses.run_with_twist import A0, GONE, PERIODS, THETA, end_of_rolling, run_from_paper
+from stylobate.paper.analyses.run_with_twist import A0, GONE, NU, PERIODS, end_of_rolling, run_from_paper
 from stylobate.paper.analyses.setting import DAMPING, SLENDERNESS, judged
 from stylobate.paper.analyses.twist_at_finite_tilt import findings_at_finite_tilt
 from stylobate.results import Finding, Section, Verdict
@@ -33,10 +33,10 @@ _DEVIATION = 1e-5
 """Deviations integrated, in parts of the tilt: with the square of this the derivatives are off, by 1e-10."""
 
 _SEARCHED = (0.8, 1.6)
-"""Frequencies between which integration looks for θ*."""
+"""Frequencies between which integration looks for ν*."""
 
 _BOUNDARY, _LINEAR = 1e-6, 0.01
-"""How well integration must give θ*; how well θ* − θ*(η = 0) must be proportional to η."""
+"""How well integration must give ν*; how well ν* − ν*(η = 0) must be proportional to η."""
 
 
 def check_twist() -> Section:
@@ -49,11 +49,11 @@ def check_twist() -> Section:
 
 def twist_data() -> xr.Dataset:
     """Return steady rolling with a free twist against frequency, for several spin damping."""
-    theta, zeta = np.linspace(0.5, 4.0, 281), np.array(_SPIN_DAMPINGS)
-    found = _steady(theta[np.newaxis], zeta[:, np.newaxis])
-    dims = ("zeta", "theta")
+    nu, zeta = np.linspace(0.5, 4.0, 281), np.array(_SPIN_DAMPINGS)
+    found = _steady(nu[np.newaxis], zeta[:, np.newaxis])
+    dims = ("zeta", "nu")
     fields = {name: (dims, getattr(found, name)) for name in ("amplitude", "spin", "friction_moment", "stable")}
-    return xr.Dataset(fields, coords={"zeta": zeta, "theta": theta}, attrs={"a0": A0, "c": _C})
+    return xr.Dataset(fields, coords={"zeta": zeta, "nu": nu}, attrs={"a0": A0, "c": _C})
 
 
 def boundary_data() -> xr.Dataset:
@@ -94,18 +94,18 @@ def _weak_limit() -> float:
     return math.sqrt(1.0 + 2.0 * A0 / _C)
 
 
-def _steady(theta: object, zeta: object) -> theory.FreeTwistRolling:
-    return theory.free_twist_rolling(theta, A0, c=_C, eta=DAMPING, zeta=zeta)  # type: ignore[arg-type]
+def _steady(nu: object, zeta: object) -> theory.FreeTwistRolling:
+    return theory.free_twist_rolling(nu, A0, c=_C, eta=DAMPING, zeta=zeta)  # type: ignore[arg-type]
 
 
 def _needed() -> Finding:
-    held = _steady(THETA, math.inf)
+    held = _steady(NU, math.inf)
     moment = float(held.friction_moment)
-    expected = DAMPING * THETA * float(held.amplitude)
+    expected = DAMPING * NU * float(held.amplitude)
     return Finding(
         "before (1)",
         "The column cannot rotate about the vertical.",
-        "On (8) the contact must bear the moment m r a_n about the vertical, a_n = g η θ A: at a0 = 0.065, θ = 3 it is "
+        "On (8) the contact must bear the moment m r a_n about the vertical, a_n = g η ν θ: at a0 = 0.065, ν = 3 it is "
         f"{100.0 * moment:.2f} % of weight times radius. A small contact patch can give that, a point cannot.",
         judged(math.isclose(moment, expected, rel_tol=1e-12), Verdict.LIMITED),
     )
@@ -113,17 +113,17 @@ def _needed() -> Finding:
 
 def _with_spin_damping() -> Finding:
     zeta = 0.1
-    known, paper = _steady(THETA, zeta), _steady(THETA, math.inf)
+    known, paper = _steady(NU, zeta), _steady(NU, math.inf)
     run = run_from_paper(SlenderRolling, zeta)
     tilt = float(np.hypot(*run.data["tilt"].to_numpy()[-1]))
     off = abs(tilt / float(known.amplitude) - 1.0)
     return Finding(
         "(8)",
-        "Steady rolling at the tilt A.",
-        "With a free twist and spin damping ζ it is (8) with θ² replaced by θ²(1 + η/(ζD)) in a0 cos ψ = A(1+θ²) − c, "
-        "D = 1 + i_a − κ: the column spins at σ = −ηθA/(cζκD) and leans less. Solid cylinder, ζ = 0.1, θ = 3: "
-        f"A = {float(known.amplitude):.5f} instead of {float(paper.amplitude):.5f}, σ = {float(known.spin):.4f}; "
-        f"integration begun on (8) gives A = {tilt:.5f} after {PERIODS} periods.",
+        "The column rolls steadily at the tilt θ.",
+        "With free spin and spin damping ζ it is (8) with ν² replaced by ν²(1 + η/(ζΛ)) in a0 cos ψ = θ(1+ν²) − c, "
+        "Λ = 1 + i_a − κ: the column spins at σ = −ηνθ/(cζκΛ) and leans less. Solid cylinder, ζ = 0.1, ν = 3: "
+        f"θ = {float(known.amplitude):.5f} instead of {float(paper.amplitude):.5f}, σ = {float(known.spin):.4f}; "
+        f"integration started on (8) gives θ = {tilt:.5f} after {PERIODS} periods.",
         judged(off < _SETTLED and run.outcome is not Outcome.OVERTURNED, Verdict.LIMITED),
     )
 
@@ -132,10 +132,10 @@ def _without() -> Finding:
     when, spin = end_of_rolling(SlenderRolling)
     return Finding(
         "(8)",
-        "The same without any friction about the vertical.",
-        "None is left: what the base gives across the lean spins the column up, and the tilt dies. Begun on (8) at "
-        f"a0 = 0.065, θ = 3 it falls below {GONE:g}c at τ = {when:.1f}, with σ = {spin:.2f}.",
-        judged(math.isfinite(when), Verdict.FAILS),
+        "The same without any damping about the vertical.",
+        "No steady rolling exists: the base acceleration across the lean spins the column up, and the tilt decays. "
+        f"From (8) at a0 = 0.065, ν = 3 it falls below {GONE:g}c at τ = {when:.1f}, with σ = {spin:.2f}.",
+        judged(math.isfinite(when), Verdict.DOES_NOT_HOLD),
     )
 
 
@@ -147,32 +147,33 @@ def _stability() -> Finding:
     return Finding(
         "after (8)",
         "Rolling is stable above the critical frequency.",
-        f"A free twist lowers it: at a0 = 0.065 from {paper:.4f} to {much:.4f} (ζ = 1) and {little:.4f} (ζ = 0.1), "
-        f"for the column leans less. Integrated over a period, deviations neither grow nor decay within {max(off):.0e} "
+        f"Free spin lowers the critical frequency: at a0 = 0.065 from {paper:.4f} to {much:.4f} (ζ = 1) and "
+        f"{little:.4f} (ζ = 0.1), for the column leans less. Integrated over a period, deviations neither grow nor "
+        f"decay within {max(off):.0e} "
         "of these.",
         judged(little < much < paper and max(off) < _BOUNDARY, Verdict.SHARPENED),
     )
 
 
 def _weak_damping() -> Finding:
-    weak, zeta, theta = 0.01, 1.0, 1.45
+    weak, zeta, nu = 0.01, 1.0, 1.45
     paper = float(theory.critical_frequency(A0, c=_C, eta=weak))
     known = float(theory.free_twist_critical_frequency(A0, c=_C, eta=weak, zeta=zeta))
     gaps = [
         _weak_limit() - float(theory.free_twist_critical_frequency(A0, c=_C, eta=eta, zeta=zeta))
         for eta in (1e-5, 2e-5)
     ]
-    growth = _largest_multiplier(theta, eta=weak, zeta=zeta)
+    growth = _largest_multiplier(nu, eta=weak, zeta=zeta)
     without = float(theory.undamped_critical_frequency(A0, c=_C))
     return Finding(
         "conclusions",
-        "The critical frequency depends on the parameters: weak friction hardly moves it.",
-        f"With a free twist it does: as η → 0, at any ζ and shape, it tends to √(1 + 2a0/c) = {_weak_limit():.4f} and "
-        f"not to {without:.4f}, and a twist raises it. At η = {weak:g}, ζ = 1 it is {known:.4f} instead of "
-        f"{paper:.4f}; at θ = {theta:g}, between the two, integration makes deviations {growth:.4f} times as large in "
+        "The critical frequency depends on the parameters; weak damping hardly changes it.",
+        f"With free spin it does: as η → 0, at any ζ and shape, it tends to √(1 + 2a0/c) = {_weak_limit():.4f} and "
+        f"not to {without:.4f}, and free spin raises it. At η = {weak:g}, ζ = 1 it is {known:.4f} instead of "
+        f"{paper:.4f}; at ν = {nu:g}, between the two, integration makes deviations {growth:.4f} times as large in "
         "a period.",
         judged(
-            paper < theta < known and growth > 1.0 and abs(gaps[1] / gaps[0] - 2.0) < _LINEAR,
+            paper < nu < known and growth > 1.0 and abs(gaps[1] / gaps[0] - 2.0) < _LINEAR,
             Verdict.LIMITED,
         ),
     )
@@ -187,34 +188,34 @@ def _upper_frequency() -> Finding:
     return Finding(
         "after (8)",
         "The same at high frequency.",
-        "Not for every column that may turn: with i_a < 2κ − 1, a foot wide against what stands on it, and little spin "
-        f"friction it is lost again. At i_a = 0.1, ζ = 0.003 rolling is stable for {low:.4f} < θ < {high:.4f}; in a "
-        f"period integration makes deviations {below:.4f} and {above:.4f} times as large 3 % below and above that end. "
-        "A solid cylinder is on the border i_a = 2κ − 1 and stays stable.",
+        "Not for every column with free spin: with i_a < 2κ − 1 (a body slim against its foot) and weak spin "
+        f"damping stability is lost again. At i_a = 0.1, ζ = 0.003 rolling is stable for {low:.4f} < ν < {high:.4f}; "
+        f"in a period integration makes deviations {below:.4f} and {above:.4f} times as large 3 % below and above that "
+        "end. A solid cylinder is on the border i_a = 2κ − 1 and stays stable.",
         judged(below < 1.0 < above and math.isinf(solid), Verdict.LIMITED),
     )
 
 
 def _integrated_boundary(*, zeta: float) -> float:
     """Return the frequency at which integration makes deviations neither grow nor decay."""
-    return float(brentq(lambda theta: _largest_multiplier(theta, zeta=zeta) - 1.0, *_SEARCHED, xtol=1e-9))
+    return float(brentq(lambda nu: _largest_multiplier(nu, zeta=zeta) - 1.0, *_SEARCHED, xtol=1e-9))
 
 
-def _largest_multiplier(theta: float, *, zeta: float, eta: float = DAMPING, axial_ratio: float = 0.5) -> float:
+def _largest_multiplier(nu: float, *, zeta: float, eta: float = DAMPING, axial_ratio: float = 0.5) -> float:
     """Return by which factor a deviation from steady rolling can grow in a period, from runs of the model."""
-    found = theory.free_twist_rolling(theta, A0, c=_C, eta=eta, zeta=zeta, axial_ratio=axial_ratio)
+    found = theory.free_twist_rolling(nu, A0, c=_C, eta=eta, zeta=zeta, axial_ratio=axial_ratio)
     model: Model = SlenderRolling(Column.dimensionless(_C, _KAPPA, axial_ratio), damping=eta, spin_damping=zeta)
     size, psi = float(found.amplitude), float(found.phase)
     x, y = size * math.cos(psi), size * math.sin(psi)
-    steady = np.array([x, y, -theta * y, theta * x, float(found.spin)])
-    scale = _DEVIATION * np.array([size, size, theta * size, theta * size, 1.0])
+    steady = np.array([x, y, -nu * y, nu * x, float(found.spin)])
+    scale = _DEVIATION * np.array([size, size, nu * size, nu * size, 1.0])
 
     def rates(tau: float, state: np.ndarray) -> tuple[float, ...]:
-        push = (A0 * math.cos(theta * tau), A0 * math.sin(theta * tau), 0.0)
+        push = (A0 * math.cos(nu * tau), A0 * math.sin(nu * tau), 0.0)
         return model.rates(*state, *push, *model.parameters)
 
     def after_a_period(start: np.ndarray) -> np.ndarray:
-        run = solve_ivp(rates, (0.0, 2.0 * math.pi / theta), start, "DOP853", rtol=1e-11, atol=1e-14)
+        run = solve_ivp(rates, (0.0, 2.0 * math.pi / nu), start, "DOP853", rtol=1e-11, atol=1e-14)
         return np.asarray(run.y[:, -1])
 
     columns = [

@@ -31,8 +31,8 @@ _NEAR = 0.1
 class AttractorRules:
     """When strobed states repeat, when two orbits are one, and when a motion that does not repeat has settled.
 
-    The first two are parts of the tilt c/(1 + θ²) and the tilt rate cθ/(1 + θ²) of free rolling (5) at the forcing
-    frequency θ: the size of the motions in question at every frequency.
+    The first two are parts of the tilt c/(1 + ν²) and the tilt rate cν/(1 + ν²) of free rolling (5) at the forcing
+    frequency ν: the size of the motions in question at every frequency.
 
     Parameters
     ----------
@@ -85,8 +85,8 @@ class OrbitScales:
         period = None if motion is None else motion.period
         if period is None:
             return cls(c, c * scale, None)
-        theta = 2.0 * np.pi / (period * scale)
-        return cls(c / (1.0 + theta**2), c * theta * scale / (1.0 + theta**2), period)
+        nu = 2.0 * np.pi / (period * scale)
+        return cls(c / (1.0 + nu**2), c * nu * scale / (1.0 + nu**2), period)
 
     def states(self, tilt: Floats, tilt_rate: Floats) -> Complexes:
         """Return vectors (..., 2) of tilt and rate as dimensionless states (..., 2): tilt and rate, each x + iy."""

@@ -77,7 +77,7 @@ def averaged_motion(
     c, eta = model.column.slenderness, form.eta
 
     def rates(_: float, state: np.ndarray) -> np.ndarray:
-        return rotating_frame_rates(state, frame.theta, frame.drive, c=c, eta=eta)
+        return rotating_frame_rates(state, frame.nu, frame.drive, c=c, eta=eta)
 
     def leaves(_: float, state: np.ndarray) -> float:
         return float(min(state[2] - _SMALLEST * c, _LARGEST * c - state[2]))
@@ -93,7 +93,7 @@ def averaged_motion(
         {
             "amplitude": ("time", amplitude, {"units": "rad", "long_name": "averaged tilt angle"}),
             "phase": ("time", psi, {"units": "rad", "long_name": "averaged phase"}),
-            "azimuth": ("time", frame.sense * (frame.theta * flow.t + psi) + frame.offset, {"units": "rad"}),
+            "azimuth": ("time", frame.sense * (frame.nu * flow.t + psi) + frame.offset, {"units": "rad"}),
         },
         coords={"time": ("time", flow.t * frame.time_scale, {"units": "s", "long_name": "time"})},
     )

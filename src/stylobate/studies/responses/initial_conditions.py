@@ -71,11 +71,11 @@ def steady_start(model: Model, motion: Harmonic, *, branch: str = "upper", sense
         raise ParameterError(message)
     form = _closed_form(model, branch)
     frame = RollingFrame.of(model, motion, sense)
-    tilt, psi, spin = steady_rolling_of(form, model.column, frame.theta, frame.drive, branch)
+    tilt, psi, spin = steady_rolling_of(form, model.column, frame.nu, frame.drive, branch)
     if not math.isfinite(tilt):
         message = f"motion has no steady rolling on the {branch} branch at {motion.angular_frequency!r} rad/s"
         raise ParameterError(message)
-    vector, rate = frame.to_tilt(tilt, psi, 0.0, frame.theta)
+    vector, rate = frame.to_tilt(tilt, psi, 0.0, frame.nu)
     if model.spin_state is None:
         return {"tilt": vector, "tilt_rate": rate}
     return TurningStart(tilt=vector, tilt_rate=rate, spin=frame.sense * spin / frame.time_scale)

@@ -14,12 +14,12 @@ Vector = tuple[float, float]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RollingFrame:
-    """A frame that turns with the base: the azimuth of the lean is β = sense (θτ + ψ) + offset.
+    """A frame that turns with the base: the azimuth of the lean is β = sense (ντ + ψ) + offset.
 
     Parameters
     ----------
-    theta
-        Dimensionless frequency θ.
+    nu
+        Dimensionless frequency ν.
     drive
         Amplitude a0 of the circular part that drives rolling in this sense [g].
     sense
@@ -30,7 +30,7 @@ class RollingFrame:
         Unit of dimensionless time, 1/ω0 [s].
     """
 
-    theta: float
+    nu: float
     drive: float
     sense: int
     offset: float
@@ -56,7 +56,7 @@ class RollingFrame:
         turning = (1 if abs(p) >= abs(q) else -1) if sense is None else sense
         part = p if turning == 1 else q
         return cls(
-            theta=motion.angular_frequency * model.time_scale,
+            nu=motion.angular_frequency * model.time_scale,
             drive=abs(part) / model.column.gravity,
             sense=turning,
             # The parts are given at the phase of axis 1.
@@ -66,7 +66,7 @@ class RollingFrame:
 
     def azimuth(self, tau: float, psi: float) -> float:
         """Return β [rad] at dimensionless time τ for the phase ψ."""
-        return self.sense * (self.theta * tau + psi) + self.offset
+        return self.sense * (self.nu * tau + psi) + self.offset
 
     def to_tilt(self, tilt: float, psi: float, tilt_rate: float, rolling_rate: float) -> tuple[Vector, Vector]:
         """Return tilt vector [rad] and rate [rad/s] at t = 0 of A, ψ, μ = Ȧ and ω (dimensionless)."""
