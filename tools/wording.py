@@ -38,7 +38,7 @@ PAGE_RULES = {
     r"(?i)\bholds? the contact\b": "assumes permanent contact without slip",
     r"(?i)\bthe house\b": "repository layout, architecture",
     r"(?i)\bjams?\b": "dynamic jamming (Painlevé)",
-    r"(?i)\bwhat (?:it|they) (?:is|are|was|were|has|have|can|does|do|knows?|gives?|needs?|shows?|means?)\b": (
+    r"(?i)(?<!# )\bwhat (?:it|they) (?:is|are|was|were|has|have|can|does|do|knows?|gives?|needs?|shows?|means?)\b": (
         "the noun: outcome, response, value"
     ),
 }
@@ -88,7 +88,7 @@ def _wide_code(path: str, text: str) -> Iterator[tuple[str, int, str, str]]:
     inside = False
     for number, line in enumerate(text.splitlines(), start=1):
         if line.startswith("```"):
-            inside = not inside
+            inside = not inside and not line.startswith("```{")
         elif inside and len(line) > _WIDTH:
             yield path, number, f"{line[:20]}…", f"at most {_WIDTH} columns in code, not {len(line)}"
 
