@@ -85,11 +85,11 @@ def problems() -> Iterator[tuple[str, int, str, str]]:
 
 
 def _wide_code(path: str, text: str) -> Iterator[tuple[str, int, str, str]]:
-    inside = False
+    fence = ""
     for number, line in enumerate(text.splitlines(), start=1):
         if line.startswith("```"):
-            inside = not inside and not line.startswith("```{")
-        elif inside and len(line) > _WIDTH:
+            fence = "" if fence else line
+        elif fence and not fence.startswith("```{") and len(line) > _WIDTH:
             yield path, number, f"{line[:20]}…", f"at most {_WIDTH} columns in code, not {len(line)}"
 
 
