@@ -46,7 +46,6 @@ PAGE_RULES = {
 # Prefixes of paths.
 PENDING = (
     "docs/",
-    "README.md",
 )
 
 _WIDTH = 88  # columns that a page shows without scrolling
