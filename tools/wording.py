@@ -44,9 +44,7 @@ PAGE_RULES = {
 }
 
 # Prefixes of paths.
-PENDING = (
-    "docs/",
-)
+PENDING = ("docs/",)
 
 _WIDTH = 88  # columns that a page shows without scrolling
 _PAGES = ("docs/", "README.md", "examples/", "paper/")
