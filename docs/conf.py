@@ -6,18 +6,20 @@ from importlib.metadata import version as installed_version
 from pathlib import Path
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parent))  # for `figure_scraper`
+_HERE = Path(__file__).parent
+sys.path[:0] = [str(_HERE), str(_HERE / "extensions")]  # `figure_scraper`, and the directives of the reference
 
 project = "stylobate"
 author = "The stylobate developers"
-copyright = author  # noqa: A001  the name that Sphinx asks for
+copyright = f"{author}, MIT licence"  # noqa: A001  the name that Sphinx asks for
 release = installed_version("stylobate")
+language = "en"
 
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
-    "sphinx.ext.autosummary",  # summary tables of the reference
     "sphinx.ext.napoleon",
+    "sphinx.ext.intersphinx",  # types in signatures link to NumPy, xarray, Matplotlib, SciPy and Python
     "sphinx.ext.viewcode",  # links to the source, which is part of the site
     "sphinx.ext.mathjax",
     "sphinx-mathjax-offline",  # the files of MathJax, so that no page fetches anything
@@ -25,20 +27,38 @@ extensions = [
     "sphinx_design",  # cards
     "sphinx_gallery.gen_gallery",
     "sphinxcontrib.bibtex",
+    "stylobate_reference",  # docs/extensions: summaries, options of commands and fields of files from declarations
 ]
-exclude_patterns = ["_build"]
-autosummary_generate = False
+exclude_patterns = ["_build", "inventories", "extensions"]
 myst_enable_extensions = ["dollarmath", "colon_fence", "deflist", "attrs_inline", "attrs_block"]
 myst_heading_anchors = 3
+myst_html_meta = {
+    "description": "Free-standing round columns on shaking bases: simulate whether they stay, rock, roll or overturn.",
+}
 
 # In our docstrings single backticks mean code.
 default_role = "literal"
 napoleon_google_docstring = False
 napoleon_use_ivar = True
+# Parameters that share a text, "tilt, tilt_rate", share one entry.
+napoleon_use_param = False
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
 autodoc_preserve_defaults = True
 python_maximum_signature_line_length = 88
+
+# The names of other packages that signatures and pages use: text files, so that a build fetches nothing.
+intersphinx_mapping = {
+    name: (address, str(_HERE / "inventories" / f"{name}.txt"))
+    for name, address in {
+        "python": "https://docs.python.org/3",
+        "numpy": "https://numpy.org/doc/stable",
+        "scipy": "https://docs.scipy.org/doc/scipy",
+        "xarray": "https://docs.xarray.dev/en/stable",
+        "matplotlib": "https://matplotlib.org/stable",
+        "pillow": "https://pillow.readthedocs.io/en/stable",
+    }.items()
+}
 
 bibtex_bibfiles = ["../paper/paper.bib"]
 bibtex_default_style = "unsrt"
@@ -91,19 +111,40 @@ def _escape_bars(app: Any, what: str, name: str, thing: object, options: object,
             lines[index] = "".join(part if part.startswith("`") else part.replace("|", r"\|") for part in parts)
 
 
+def _describe_whole_properties(
+    app: Any, what: str, name: str, thing: object, options: object, lines: list[str]
+) -> None:
+    # Napoleon takes what stands before a colon in the first line of a property for its type.
+    del app, name, thing, options
+    if what in ("attribute", "data", "property") and lines:
+        lines.insert(0, "")
+
+
 def _aliases() -> dict[str, str]:
-    # numpy's aliases arrive written out in full; in signatures they get their names back.
+    # numpy's aliases arrive written out in full, and classes with the module where they are defined: in signatures
+    # both get the names by which users know them.
     import numpy as np  # noqa: PLC0415
     import numpy.typing as npt  # noqa: PLC0415
     from sphinx.util.typing import stringify_annotation  # noqa: PLC0415  tests import this file without Sphinx
 
     named = {
-        "ArrayLike": npt.ArrayLike,
-        "NDArray[float64]": npt.NDArray[np.float64],
-        "NDArray[complex128]": npt.NDArray[np.complex128],
-        "NDArray[bool]": npt.NDArray[np.bool_],
+        "~numpy.typing.ArrayLike": npt.ArrayLike,
+        "~numpy.typing.NDArray[~numpy.float64]": npt.NDArray[np.float64],
+        "~numpy.typing.NDArray[~numpy.complex128]": npt.NDArray[np.complex128],
+        "~numpy.typing.NDArray[~numpy.int64]": npt.NDArray[np.int64],
+        "~numpy.typing.NDArray[~numpy.bool]": npt.NDArray[np.bool_],
     }
-    return {stringify_annotation(alias, "smart"): name for name, alias in named.items()}
+    return {stringify_annotation(alias, "smart"): name for name, alias in named.items()} | {
+        "~xarray.core.dataset.Dataset": "~xarray.Dataset",
+        "~xarray.core.dataarray.DataArray": "~xarray.DataArray",
+        "~xarray.core.datatree.DataTree": "~xarray.DataTree",
+        "~numpy.random._generator.Generator": "~numpy.random.Generator",
+    }
+
+
+# Annotations that only the type checker reads keep the short names of their file.
+_SHORT = re.compile(r"(?<![\w.~])(npt|np|xr)\.(?=[A-Za-z])")
+_MODULES = {"npt": "~numpy.typing.", "np": "~numpy.", "xr": "~xarray."}
 
 
 # A declared number is its type and what it is; the docstring beside it says the latter.
@@ -117,11 +158,16 @@ def setup(app: Any) -> None:
     aliases = _aliases()
 
     def name_aliases(*event: Any) -> tuple[str | None, str | None]:
-        signature, returned = event[-2:]
-        for alias, name in aliases.items():
-            signature = signature and signature.replace(alias, name)
-            returned = returned and returned.replace(alias, name)
-        return signature and _DECLARED.sub(r"\1", signature), returned
+        return _named(event[-2], aliases), _named(event[-1], aliases)
 
     app.connect("autodoc-process-docstring", _escape_bars)
+    app.connect("autodoc-process-docstring", _describe_whole_properties, priority=400)
     app.connect("autodoc-process-signature", name_aliases)
+
+
+def _named(signature: str | None, aliases: dict[str, str]) -> str | None:
+    if not signature:
+        return signature
+    for alias, name in aliases.items():
+        signature = signature.replace(alias, name)
+    return _SHORT.sub(lambda match: _MODULES[match[1]], _DECLARED.sub(r"\1", signature))

@@ -1,4 +1,4 @@
-"""The description of values of one quantity: evenly spaced, or listed."""
+"""Describe the values of one quantity: evenly spaced, or listed."""
 
 from typing import Any, Literal
 
@@ -11,7 +11,23 @@ from stylobate.errors import ParameterError, require_finite, require_positive, r
 
 
 class Axis(Config):
-    """Values of the quantity `name`: `number` of them `from` … `to`, their `spacing` linear or log; or `values`."""
+    """Values of one quantity, evenly spaced or listed.
+
+    Parameters
+    ----------
+    name
+        Name of the quantity, such as "acceleration" or "tilt_x".
+    from
+        First value; needed without `values`.
+    to
+        Last value; needed without `values`.
+    number
+        Number of values; needed without `values`.
+    spacing
+        Spacing of the values between `from` and `to`.
+    values
+        The values themselves, in place of `from`, `to` and `number`.
+    """
 
     name: str
     first: float | None = Field(default=None, alias="from")
@@ -26,12 +42,12 @@ class Axis(Config):
         return name.replace("-", "_")
 
     def build(self) -> npt.NDArray[np.float64]:
-        """Return the values, shape (n,).
+        """Compute the values, shape (n,).
 
         Raises
         ------
         ParameterError
-            If they are given in no way, in two, or cannot be.
+            If the values are missing, given in both ways, or invalid.
         """
         spaced = {"from": self.first, "to": self.last, "number": self.number}
         missing = [name for name, value in spaced.items() if value is None]

@@ -1,4 +1,4 @@
-"""The description of basins of attraction: what all runs share, and starts on a grid or drawn at random."""
+"""Describe basins of attraction: the case that all runs share, and initial conditions on a grid or at random."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, Self
@@ -14,7 +14,19 @@ from stylobate.errors import LARGEST_SEED, MOST_RUNS, require_whole
 
 
 class Starts(Config):
-    """Starts on a grid, `x` and `y`; or `random`, a number of them drawn with `seed` in the ranges `over`."""
+    """Initial conditions on a grid of two of them, or drawn at random.
+
+    Parameters
+    ----------
+    x, y
+        Values of an initial condition on a grid: a table as below.
+    random
+        Number of initial conditions to draw, in place of a grid.
+    seed
+        Seed of the draw.
+    over
+        Range of each initial condition that is drawn: lowest and highest value.
+    """
 
     x: Axis | None = None
     y: Axis | None = None
@@ -28,7 +40,7 @@ class Starts(Config):
         return {name.replace("-", "_"): bounds for name, bounds in over.items()}
 
     def arguments(self, problems: list[str]) -> dict[str, Any]:
-        """Return the arguments of `stylobate.studies.maps.basins`, with a line in `problems` for each mistake."""
+        """Make the arguments of `stylobate.studies.basins`; add a line to `problems` for each mistake."""
         axes = {place: axis for place, axis in (("x", self.x), ("y", self.y)) if axis is not None}
         if self.random is None:
             problems += _problems_of_the_grid(axes, self.over)
@@ -54,28 +66,28 @@ def _problems_of_the_grid(axes: Mapping[str, Axis], over: Mapping[str, object]) 
 
 
 class BasinConfig(Stroboscopic, ManyRuns):
-    """Basins of attraction: `column`, `model`, `motion`, the arguments of a run, and the starts `basin`."""
+    """Basins of attraction: `column`, `model`, `motion`, numbers of all runs, and the table `basin`."""
 
     basin: Starts = Starts()
     end_converged: bool = False
 
     @classmethod
     def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]]) -> Self:
-        """Return the description that repeats saved basins.
+        """Make the description that repeats saved basins.
 
         Parameters
         ----------
         provenance
-            Of the basins.
+            Provenance of the basins.
         axes
-            The coordinates of a grid: both names with their values, x first.
+            Coordinates of a grid: both names with their values, x first.
 
         Raises
         ------
         UnsupportedError
-            If they were made with a model or motion that descriptions do not know.
+            If descriptions do not support the model or base motion of the basins.
         ParameterError
-            If the starts were neither on a grid nor drawn at random.
+            If the initial conditions are neither on a grid nor drawn at random.
         """
         design = refuse_design(provenance, "grid", "random")
         if design["kind"] == "random":
@@ -87,12 +99,12 @@ class BasinConfig(Stroboscopic, ManyRuns):
         return cls.parse({**common_values(provenance), **kept, "basin": starts})
 
     def build(self) -> Setup:
-        """Return model and motion; the options are arguments of `stylobate.studies.maps.basins`.
+        """Build model and motion; the options are arguments of `stylobate.studies.basins`.
 
         Raises
         ------
         ConfigError
-            With one line for each part that cannot be.
+            With one line for each invalid part.
         """
         problems: list[str] = []
         arguments = self.basin.arguments(problems)

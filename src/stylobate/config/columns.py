@@ -1,4 +1,4 @@
-"""Descriptions of columns, made from the declarations of their numbers and told apart by their `shape`."""
+"""Describe columns by the declarations of their numbers; the key `shape` chooses the shape."""
 
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any

@@ -1,4 +1,4 @@
-"""What all descriptions share: strict keys, and one line for each mistake."""
+"""Base of all descriptions: strict keys, and one line for each mistake."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -28,11 +28,11 @@ class Config(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     make: ClassVar[Callable[..., Any]]
-    """What is described: a class or a named constructor; for a kind of column, model or motion only."""
+    """Class or named constructor that is described; only for a kind of column, model or motion."""
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
-        """Return the description of these `values`.
+        """Validate these `values` and return their description.
 
         Raises
         ------
@@ -45,12 +45,12 @@ class Config(BaseModel):
             raise ConfigError(with_suggestions(cls, [_line(problem) for problem in error.errors()])) from None
 
     def values(self) -> dict[str, Any]:
-        """Return the description as plain values that JSON and TOML can hold, defaults left out."""
+        """Return the description as plain values for JSON and TOML, without keys that are None."""
         return self.model_dump(mode="json", exclude_none=True)
 
 
 def built(name: str, build: Callable[[], _T], problems: list[str]) -> _T | None:
-    """Return what `build` makes; where it cannot, None, and a line more in `problems`."""
+    """Return the result of `build`; if it fails, return None and add a line to `problems`."""
     try:
         return build()
     except ParameterError as error:

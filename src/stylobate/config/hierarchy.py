@@ -1,4 +1,4 @@
-"""The description of one case on the model hierarchy."""
+"""Describe one case for the model hierarchy."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -28,7 +28,7 @@ _MOST_GENERAL = "rolling"
 
 
 class _OfAllModels(Config):
-    """The dissipation parameters of all models: each takes those that it declares."""
+    """Dissipation parameters of all models; each model uses those that it declares."""
 
 
 if TYPE_CHECKING:
@@ -44,7 +44,15 @@ else:
 
 
 class HierarchyOptions(Config):
-    """What is compared: the case scaled to these slendernesses, and the model from which differences are taken."""
+    """Slendernesses and reference model of a comparison.
+
+    Parameters
+    ----------
+    slenderness
+        Slendernesses to which the case is scaled, with its tilts and base motion; that of the column by default.
+    reference
+        Model from which differences are taken.
+    """
 
     slenderness: tuple[float, ...] = ()
     reference: str = "rolling"
@@ -64,7 +72,7 @@ class HierarchyConfig(OneRun, _HierarchyCase):
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
-        """Return the description of these `values`; the kind of the model, and what it does not change, is left out."""
+        """Validate these `values`; the kind of the model and unchanged defaults of it are ignored."""
         of_others = {*OF_OTHER_COMMANDS, *SimulationConfig.model_fields} - set(cls.model_fields)
         kept = {name: value for name, value in values.items() if name not in of_others}
         described = kept.get("model")
@@ -84,12 +92,12 @@ class HierarchyConfig(OneRun, _HierarchyCase):
         return super().parse(with_default_duration(kept))
 
     def build(self) -> Setup:
-        """Return the most general model and the motion; the options are those of `stylobate.studies.model_hierarchy`.
+        """Build the most general model and the motion; the options are those of `stylobate.studies.model_hierarchy`.
 
         Raises
         ------
         ConfigError
-            With one line for each part that cannot be.
+            With one line for each invalid part.
         """
         problems = problems_of_the_numbers(self)
         for c in self.hierarchy.slenderness:

@@ -1,4 +1,4 @@
-"""What descriptions of many runs share: a column, its model, a base motion, a start, how long and how closely."""
+"""Describe the case that many runs share: column, model, base motion, initial state, duration and tolerances."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, Self
@@ -25,7 +25,19 @@ from stylobate.results import OutcomeRules
 
 
 class ManyRuns(SharedByRuns, Case):
-    """What all runs have in common, under the names of `simulate_ensemble`; `periods` may stand for `duration`."""
+    """The case that all runs share, with the argument names of `simulate_ensemble`.
+
+    Parameters
+    ----------
+    column, model, motion
+        Column, model and base motion.
+    demands
+        Whether to report the contact demand of each run.
+    recheck
+        Whether to repeat runs whose outcome rounding could change.
+    rules
+        Numbers of `OutcomeRules`, by name.
+    """
 
     demands: bool = False
     recheck: bool = False
@@ -33,21 +45,21 @@ class ManyRuns(SharedByRuns, Case):
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
-        """Return the description of these `values`; what they say for other commands is of no concern here."""
+        """Validate these `values`; those of other commands are ignored."""
         of_others = {*OF_OTHER_COMMANDS, *numbers_of(SingleRun)} - set(cls.model_fields)
         return super().parse({name: value for name, value in values.items() if name not in of_others})
 
     def values(self) -> dict[str, Any]:
-        """Return the description as plain values that JSON and TOML can hold, defaults left out."""
+        """Return the description as plain values for JSON and TOML, without keys that are None."""
         return self.model_dump(mode="json", exclude_none=True, by_alias=True)
 
     def common(self, problems: list[str], varying: Sequence[str] = ()) -> tuple[Model, BaseMotion, dict[str, Any]]:
-        """Return model, motion and the arguments that all runs share but for those `varying`.
+        """Build model, motion and the arguments that all runs share, except those `varying`.
 
         Raises
         ------
         ConfigError
-            With one line for each part that cannot be, and the `problems` known before.
+            With one line for each invalid part, and the `problems` known before.
         """
         problems += problems_of_the_numbers(self)
         rules = built("rules", lambda: built_rules(self.rules), problems)
@@ -100,7 +112,7 @@ def common_values(provenance: Mapping[str, Any]) -> dict[str, Any]:
     Raises
     ------
     UnsupportedError
-        If it was made with a model or motion that descriptions do not know.
+        If descriptions do not support the model or base motion of the sweep.
     """
     refuse_own_classes(provenance)
     known = ("column", "model", "motion", "rules", *_SHARED, "end_converged")

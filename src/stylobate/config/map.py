@@ -1,4 +1,4 @@
-"""The description of an overturning map: what all runs share, and two quantities with their values."""
+"""Describe an overturning map: the case that all runs share, and two quantities with their values."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, Self
@@ -11,54 +11,60 @@ from stylobate.config.simulation import Setup, duration_with_tail
 
 
 class Plane(Config):
-    """The two quantities `x` and `y` that vary."""
+    """The two quantities that vary over an overturning map.
+
+    Parameters
+    ----------
+    x, y
+        Values of a quantity: a table as below.
+    """
 
     x: Axis
     y: Axis
 
 
 class MapConfig(ManyRuns):
-    """An overturning map: `column`, `model`, `motion`, the arguments of a run, and `map.x`, `map.y`."""
+    """An overturning map: `column`, `model`, `motion`, numbers of all runs, and the table `map`."""
 
     map: Plane
     end_converged: bool = False
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
-        """Return the description of these `values`; a motion may lack a number that varies."""
+        """Validate these `values`; a motion may omit a number that varies."""
         plane = values.get("map")
         axes = plane if isinstance(plane, Mapping) else {}
         return super().parse(with_numbers_that_vary(values, (name_of(axes.get("x")), name_of(axes.get("y")))))
 
     @classmethod
     def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]]) -> Self:
-        """Return the description that repeats a saved map.
+        """Make the description that repeats a saved map.
 
         Parameters
         ----------
         provenance
-            Of the map.
+            Provenance of the map.
         axes
-            Its coordinates: both names with their values, x first.
+            Coordinates of the map: both names with their values, x first.
 
         Raises
         ------
         UnsupportedError
-            If it was made with a model or motion that descriptions do not know.
+            If descriptions do not support the model or base motion of the map.
         ParameterError
-            If its runs are not on a grid.
+            If the runs are not on a grid.
         """
         refuse_design(provenance, "grid")
         listed = ({"name": name, "values": list(values)} for name, values in axes.items())
         return cls.parse({**common_values(provenance), "map": dict(zip("xy", listed, strict=False))})
 
     def build(self) -> Setup:
-        """Return model and motion; the options are arguments of `stylobate.studies.overturning_map`.
+        """Build model and motion; the options are arguments of `stylobate.studies.overturning_map`.
 
         Raises
         ------
         ConfigError
-            With one line for each part that cannot be.
+            With one line for each invalid part.
         """
         x, y = self.map.x, self.map.y
         problems: list[str] = []

@@ -1,4 +1,4 @@
-"""Descriptions of models, made from the declarations of their numbers and told apart by their `kind`."""
+"""Describe models by the declarations of their numbers; the key `kind` chooses the model."""
 
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -20,7 +20,7 @@ class DescribedModel(Config):
     kind: str
 
     def build(self, column: Column) -> Model:
-        """Return the model of `column`."""
+        """Build the model of `column`."""
         model: Model = self.make(column, **self.model_dump(exclude={"kind"}))
         return model
 

@@ -1,4 +1,4 @@
-"""Descriptions of base motions, made from the declarations of their numbers and told apart by their `kind`."""
+"""Describe base motions by the declarations of their numbers; the key `kind` chooses the motion."""
 
 import inspect
 from collections.abc import Callable, Mapping

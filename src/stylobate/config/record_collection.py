@@ -1,4 +1,4 @@
-"""Descriptions of the records of a study: folders, patterns, files, and the files of stated events."""
+"""Describe the records of a study: folders, patterns, files, and the files of stated events."""
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
@@ -16,7 +16,17 @@ from stylobate.errors import ConfigError, FileError, ParameterError
 
 
 class EventConfig(Config):
-    """Files of one event: paths or patterns, their `directions` in the same order, and the `name` of the record."""
+    """Files of one event.
+
+    Parameters
+    ----------
+    files
+        Paths or patterns of the files of one event.
+    directions
+        Direction of each file, in the same order: an azimuth [degrees] or a name such as "up".
+    name
+        Name of the record.
+    """
 
     files: str | tuple[str, ...]
     directions: tuple[float | str, ...] = ()
@@ -26,9 +36,20 @@ class EventConfig(Config):
 class RecordsConfig(Reading):
     """Records for a study: those in a folder, of the files that match a pattern, or of a list of these.
 
-    The components of an event are joined as in `read_records`; `units`, `step`, `columns`, `directions` by name of a
-    file, `lengths`, `steps`, `format`, `single` and `processing` are for all of them. Each `event` lists files of one
-    event. `samples` names records that come with the package. `only` chooses some by name.
+    The components of an event are joined as in `read_records`.
+
+    Parameters
+    ----------
+    source
+        Folder, pattern such as `quakes/*.AT2`, file, or a list of these.
+    event
+        Files of one event, if their names do not show it; a list of tables.
+    samples
+        Names of records that come with the package.
+    only
+        Names of the records to use; all by default.
+    directions
+        Direction of a file, by its name: an azimuth [degrees] or a name such as "up".
     """
 
     source: str | tuple[str, ...] = ()
@@ -38,12 +59,12 @@ class RecordsConfig(Reading):
     directions: dict[str, float | str] = Field(default_factory=dict)
 
     def build(self) -> dict[str, Record]:
-        """Return the records by name, in the order of their names; each can be described.
+        """Read the records by name, in the order of their names; each keeps its description.
 
         Raises
         ------
         ConfigError
-            With one line for each event that cannot be read, and where nothing is found or two have one name.
+            With one line for each event that cannot be read; if no record is found, or two have one name.
         """
         problems: list[str] = []
         built = [_collected(build, problems) for build in self._builders(problems)]

@@ -1,4 +1,4 @@
-"""Descriptions of what is done to a record after it is read: the methods of `Record`, by their names and arguments."""
+"""Describe the processing of a record: methods of `Record`, by their names and arguments."""
 
 from collections.abc import Iterable
 from typing import Annotated, Literal, cast
@@ -11,13 +11,13 @@ from stylobate.config.description import Config
 
 class _Step(Config):
     def apply(self, record: Record) -> Record:
-        """Return the record after the method that has the name of this step."""
+        """Apply the method of `Record` with the name of this step."""
         values = self.model_dump(exclude_none=True)
         return cast("Record", getattr(record, values.pop("method"))(**values))
 
 
 class ScaledStep(_Step):
-    """Times `factor`, the vertical component times `vertical` where that is given."""
+    """Scale by `factor`; the vertical component by `vertical`, if given."""
 
     method: Literal["scaled"] = "scaled"
     factor: float
@@ -25,34 +25,34 @@ class ScaledStep(_Step):
 
 
 class ScaledToStep(_Step):
-    """Scaled to a largest horizontal acceleration `peak` [m/s²]."""
+    """Scale to the peak horizontal acceleration `peak` [m/s²]."""
 
     method: Literal["scaled_to"]
     peak: float
 
 
 class RotatedStep(_Step):
-    """Turned by `angle` [rad] about the vertical, anticlockwise seen from above."""
+    """Rotate by `angle` [rad] about the vertical, anticlockwise seen from above."""
 
     method: Literal["rotated"] = "rotated"
     angle: float
 
 
 class DelayedStep(_Step):
-    """Begun `delay` [s] later."""
+    """Delay by `delay` [s]."""
 
     method: Literal["delayed"] = "delayed"
     delay: float
 
 
 class InvertedStep(_Step):
-    """The opposite polarity of the horizontal components."""
+    """Reverse the horizontal components."""
 
     method: Literal["inverted"] = "inverted"
 
 
 class TrimmedStep(_Step):
-    """The samples from `begin` to `end` [s]."""
+    """Keep the samples from `begin` to `end` [s]."""
 
     method: Literal["trimmed"] = "trimmed"
     begin: float | None = None
@@ -60,7 +60,7 @@ class TrimmedStep(_Step):
 
 
 class PaddedStep(_Step):
-    """Zeros `before` and `after` [s]."""
+    """Add zeros `before` and `after` [s]."""
 
     method: Literal["padded"] = "padded"
     before: float = 0.0
@@ -68,21 +68,21 @@ class PaddedStep(_Step):
 
 
 class TailStep(_Step):
-    """Rest of this `length` [s] at the end."""
+    """Add a tail of zeros of this `length` [s]."""
 
     method: Literal["with_tail"] = "with_tail"
     length: float
 
 
 class ResampledStep(_Step):
-    """Another `step` [s]."""
+    """Resample to another time `step` [s]."""
 
     method: Literal["resampled"] = "resampled"
     step: float
 
 
 class FilteredStep(_Step):
-    """A Butterworth filter with corners in Hz."""
+    """Apply a Butterworth filter with corners `highpass` and `lowpass` [Hz]."""
 
     method: Literal["filtered"] = "filtered"
     highpass: float | None = None
@@ -92,7 +92,7 @@ class FilteredStep(_Step):
 
 
 class BaselineStep(_Step):
-    """Less the derivative of a polynomial of this `degree` fitted to the velocity."""
+    """Subtract the derivative of a polynomial of this `degree` fitted to the velocity."""
 
     method: Literal["baseline_corrected"] = "baseline_corrected"
     degree: int = 1
@@ -116,7 +116,7 @@ RecordStep = Annotated[AnyStep, Field(discriminator="method")]
 
 
 def processed(record: Record, steps: Iterable[AnyStep]) -> Record:
-    """Return the record after these steps, in their order."""
+    """Apply these steps to the record, in their order."""
     for step in steps:
         record = step.apply(record)
     return record

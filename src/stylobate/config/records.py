@@ -1,4 +1,4 @@
-"""Descriptions of records: which files, in which unit, and what is done to them."""
+"""Describe records: their files, units and processing."""
 
 import hashlib
 from collections.abc import Iterable, Mapping
@@ -35,7 +35,27 @@ _LONGEST_EVENT = 3  # two horizontal components and a vertical one
 
 
 class Reading(Config):
-    """What `RecordMotion` and `RecordsConfig` share: arguments of `read_records`, and `processing`."""
+    """Arguments of `read_records`, and processing: shared by `RecordMotion` and `RecordsConfig`.
+
+    Parameters
+    ----------
+    units
+        Unit of files that do not state it: "g", "m/s2" or "cm/s2".
+    step
+        Time step of files that do not state it [s].
+    columns
+        Component of each column of a table, by the name of the column.
+    lengths
+        Handling of components of unequal length.
+    steps
+        Handling of components of unequal time step.
+    format
+        Format of the files; detected by default.
+    single
+        Whether to accept records of one component without a warning.
+    processing
+        Steps of processing in their order: tables with the `method` of `Record` and its arguments.
+    """
 
     units: str | None = None
     step: float | None = None
@@ -59,12 +79,29 @@ class Reading(Config):
 
 
 class RecordMotion(Reading):
-    """A record: the file `path`, or a list of those of one event, or the `sample` that comes with the package.
+    """A record from files of one event, or a record that comes with the package.
 
-    `units`, `step`, `columns`, `axis`, `lengths`, `steps`, `format` and `single` are arguments of `read_record` and
-    `read_records`; `directions` are by name of a file, or a list in the order of the files; `name` is that of the
-    record. Then come the steps of `processing`, in their order, each with the name of a method of `Record`; at
-    last `scale`, `rotation` [rad] and `tail` [s of rest]. A saved result has `file_sha256` of its files, by path.
+    The steps of `processing` come first, then `scale`, `rotation` and `tail`. A saved result also holds
+    `file_sha256`, the SHA-256 of each file by its path.
+
+    Parameters
+    ----------
+    path
+        File of the record, or a list of the files of one event. Give `path` or `sample`.
+    sample
+        Name of a record that comes with the package, such as "el centro 1940".
+    name
+        Name of the record; from the files by default.
+    directions
+        Direction of each file: by its name, or a list in the order of the files.
+    axis
+        Axis of a file of one component.
+    scale
+        Factor of the record.
+    rotation
+        Rotation of the record about the vertical [rad].
+    tail
+        Free-vibration time after the record [s].
     """
 
     make: ClassVar = Record
@@ -88,26 +125,26 @@ class RecordMotion(Reading):
         return (self.path,) if isinstance(self.path, str) else self.path
 
     def build(self) -> "DescribedRecord":
-        """Return the record, which remembers this description and the SHA-256 of its files.
+        """Read the record; it keeps this description and the SHA-256 of its files.
 
         Raises
         ------
         ParameterError
-            If files and sample are contrary, the files are not those of one event, or one of them has changed since
-            its SHA-256 was kept.
+            If both or neither of path and sample are given, the files are not those of one event, or a file has
+            changed since its SHA-256 was saved.
         FileError
-            If a file cannot be read, or names no unit where `units` is not given.
+            If a file cannot be read, or neither the file nor `units` states a unit.
         """
         self._checked_files()
         return self.describe(self._read())
 
     def describe(self, record: Record) -> "DescribedRecord":
-        """Return the `record` that was read from the files, processed as described, with its description.
+        """Process the `record` that was read from the files, and attach its description.
 
         Warns
         -----
         UnlikelyInputWarning
-            If it lacks a component, unless `single`, or the axis or the columns of one file are chosen.
+            If the record lacks a component, unless `single` is true or an axis or columns of one file are chosen.
         """
         if not (self.single or self.axis or (self.columns and isinstance(self.path, str))):
             remark_on_missing_components(record)
@@ -194,13 +231,13 @@ class RecordMotion(Reading):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class DescribedRecord(Record):
-    """A record that knows the `description` from which it can be built again, after processing too."""
+    """A record with the `description` from which it can be built again, processing included."""
 
     description: RecordMotion
 
     @classmethod
     def of(cls, record: Record, description: RecordMotion) -> "DescribedRecord":
-        """Return `record` with its description."""
+        """Attach a description to `record`."""
         return cls(
             samples=record.samples,
             step=record.step,
@@ -215,7 +252,7 @@ class DescribedRecord(Record):
         return DescribedRecord.of(record, self.description.model_copy(update=more))
 
     def changed(self, note: str, **changes: Any) -> Record:
-        """Return a record with other fields, without a description: the `note` states what was done."""
+        """Return a record with other fields and without a description; the `note` records the change."""
         fields = {name: getattr(self, name) for name in ("samples", "step", "start", "name")} | changes
         return Record(**fields, provenance=(*self.provenance, note))
 
@@ -267,7 +304,7 @@ class DescribedRecord(Record):
 
 
 def anchored(values: Any, folder: Path) -> Any:
-    """Return the plain values of a description with the paths of its records taken from `folder` on.
+    """Make the paths of records in plain values relative to `folder`.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The description of response curves: a column, its model, a harmonic motion and a range of frequencies."""
+"""Describe response curves: a column, its model, a harmonic motion and a range of frequencies."""
 
 import math
 from collections.abc import Mapping
@@ -16,7 +16,19 @@ from stylobate.quantities import states
 
 
 class ResponseConfig(Config):
-    """Response curves: `column`, `model`, `motion` (its own frequency may be left out), range and number of points."""
+    """Response curves over the frequency of the base.
+
+    Parameters
+    ----------
+    column, model
+        The column and its model.
+    motion
+        A horizontal harmonic motion; it may omit `angular_frequency`.
+    angular_frequency_range
+        Lowest and highest angular frequency [rad/s].
+    points
+        Number of frequencies.
+    """
 
     column: ColumnConfig
     model: ModelConfig = described_model("slender")
@@ -26,7 +38,7 @@ class ResponseConfig(Config):
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
-        """Return the description of these `values`; the frequency of the motion is taken from the range."""
+        """Validate these `values`; a missing frequency of the motion follows from the range."""
         motion = values.get("motion")
         kind = motion.get("kind") if isinstance(motion, Mapping) else None
         if isinstance(motion, Mapping) and kind in kinds_by_acceleration():
@@ -42,12 +54,12 @@ class ResponseConfig(Config):
         return super().parse({name: value for name, value in values.items() if name not in of_runs})
 
     def build(self) -> Setup:
-        """Return model and motion; the options hold the range and number of frequencies.
+        """Build model and motion; the options hold the range and number of frequencies.
 
         Raises
         ------
         ConfigError
-            With one line for each part that cannot be.
+            With one line for each invalid part.
         """
         problems: list[str] = []
         low, high = self.angular_frequency_range

@@ -1,4 +1,4 @@
-"""The description of one run: from TOML, from the command line, or from a saved result."""
+"""Describe one run: from TOML, from the command line, or from a saved result."""
 
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
@@ -31,7 +31,7 @@ from stylobate.results import OutcomeRules
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """What a description describes: a model, a motion and the keyword arguments of `simulate`."""
+    """Objects that a description describes: model, motion and keyword arguments of the study."""
 
     model: Model
     motion: BaseMotion
@@ -39,7 +39,7 @@ class Setup:
 
 
 class Case(Config):
-    """What every run has: `column`, `model` and `motion`."""
+    """The case of a run: `column`, `model` and `motion`."""
 
     column: ColumnConfig
     model: ModelConfig = described_model("slender")
@@ -47,10 +47,19 @@ class Case(Config):
 
 
 class SimulationConfig(SingleRun, Case):
-    """A run: `column`, `model`, `motion` and the arguments of `simulate`, under the same names.
+    """A run: `column`, `model`, `motion` and the arguments of `simulate`, with the same names.
 
-    A run under a record, a pulse or a sine sweep needs no `duration`: it then lasts as long as the motion and a free
-    tail of 20/p.
+    Under a record, a pulse or a sine sweep the duration is optional. The default is the duration of the motion and a
+    free-vibration tail of 20/`column.frequency_parameter`.
+
+    Parameters
+    ----------
+    column, model, motion
+        Column, model and base motion.
+    rules
+        Numbers of `OutcomeRules`, by name.
+    recheck
+        Whether to repeat the run if rounding could change its outcome.
     """
 
     rules: dict[str, float] = Field(default_factory=dict)
@@ -58,17 +67,17 @@ class SimulationConfig(SingleRun, Case):
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
-        """Return the description of these `values`; what they say for other commands is of no concern here."""
+        """Validate these `values`; those of other commands are ignored."""
         own = {name: value for name, value in values.items() if name not in OF_OTHER_COMMANDS}
         return super().parse(with_default_duration(own))
 
     def build(self) -> Setup:
-        """Return the objects described.
+        """Build the described objects.
 
         Raises
         ------
         ConfigError
-            With one line for each part that cannot be.
+            With one line for each invalid part.
         """
         problems = problems_of_the_numbers(self)
         rules = built("rules", lambda: built_rules(self.rules), problems)
@@ -82,12 +91,12 @@ class SimulationConfig(SingleRun, Case):
 def built_parts(
     column: ColumnConfig, model: ModelConfig, motion: MotionConfig, problems: Sequence[str]
 ) -> tuple[Model, BaseMotion]:
-    """Return the model of the column and the motion.
+    """Build the model of the column and the motion.
 
     Raises
     ------
     ConfigError
-        With one line for each part that cannot be, and the `problems` known before.
+        With one line for each invalid part, and the `problems` known before.
     """
     found: list[str] = []
     if isinstance(motion, RecordMotion) and model.kind == "planar_rocking":
@@ -101,7 +110,7 @@ def built_parts(
 
 
 FREE_TAIL = 20.0
-"""How long a run goes on after its base motion if no duration is given, in 1/p: near its balance all parts by e²⁰."""
+"""Default free-vibration time after the base motion, in 1/`column.frequency_parameter`; deviations grow by e²⁰."""
 
 
 def with_default_duration(values: Mapping[str, Any]) -> dict[str, Any]:
@@ -113,7 +122,7 @@ def with_default_duration(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def duration_with_tail(model: Model, motion: BaseMotion) -> float:
-    """Return how long a run lasts where no duration is given: the motion and a free tail of 20/p [s]."""
+    """Compute the default duration of a run [s]: the motion and a tail of 20/`column.frequency_parameter`."""
     return motion.duration + FREE_TAIL / model.column.frequency_parameter
 
 
@@ -121,18 +130,18 @@ OF_OTHER_COMMANDS = (
     *("map", "basin", "spectrum", "fragility", "records", "hierarchy", "periods"),
     *("method", "strobes", "confidence", "angular_frequency_range", "points", "end_converged"),
 )
-"""What a description may say that is no argument of a single run."""
+"""Keys of a description that are no arguments of a single run."""
 
 
 def read_config(path: str | Path) -> dict[str, Any]:
-    """Return the plain values of the TOML file `path`; paths of records are taken from its folder on.
+    """Read a TOML file as plain values; paths of records become relative to its folder.
 
     Raises
     ------
     FileError
-        If it cannot be read or is not TOML.
+        If the file cannot be read or is not TOML.
     ConfigError
-        If it is nested too deeply, a kind is no word, or a text holds a NUL character.
+        If the file is nested too deeply, a kind is not a word, or a text contains a NUL character.
     """
     try:
         values = tomllib.loads(Path(path).read_text(encoding="utf-8"))
@@ -152,7 +161,7 @@ def read_config(path: str | Path) -> dict[str, Any]:
 
 
 def built_rules(rules: Mapping[str, Any]) -> OutcomeRules:
-    """Return the rules with these numbers, or raise ParameterError for one that is not known or cannot be."""
+    """Build the rules with these numbers; raise ParameterError for an unknown name or an invalid number."""
     known = {field.name for field in fields(OutcomeRules)}
     unknown = [name for name in rules if name not in known]
     if unknown:
@@ -162,7 +171,7 @@ def built_rules(rules: Mapping[str, Any]) -> OutcomeRules:
 
 
 def provenance_of_run(model: Model, motion: BaseMotion, **options: Any) -> dict[str, Any]:
-    """Return what is needed to repeat a run, as plain values: `SimulationConfig` but for the version."""
+    """Return the provenance of a run as plain values: those of `SimulationConfig`, and the version."""
     return {
         "version": _version(),
         "column": describe_column(model.column).values(),
@@ -178,19 +187,19 @@ def _version() -> str:
 
 
 def config_of(provenance: Mapping[str, Any]) -> SimulationConfig:
-    """Return the description that repeats a run from its `provenance`.
+    """Make the description that repeats a run from its `provenance`.
 
     Raises
     ------
     UnsupportedError
-        If the run was made with a model or motion that descriptions do not know.
+        If descriptions do not support the model or base motion of the run.
     """
     refuse_own_classes(provenance)
     return SimulationConfig.parse({name: value for name, value in with_places(provenance).items() if name != "version"})
 
 
 def refuse_own_classes(provenance: Mapping[str, Any]) -> None:
-    """Raise UnsupportedError if a run used a model or motion that descriptions do not know."""
+    """Raise UnsupportedError if descriptions do not support the model or base motion of a run."""
     for name in ("model", "motion"):
         if provenance[name].get("kind") == "other":
             if "record" in provenance[name]:

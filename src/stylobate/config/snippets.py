@@ -1,4 +1,4 @@
-"""A description written for others to read: as TOML, and as the Python that does the same."""
+"""Write a description as TOML, and as the Python program that does the same."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -13,7 +13,7 @@ from stylobate.models.declared import MODELS
 
 
 def as_toml(values: Mapping[str, Any]) -> str:
-    """Return the TOML file with these plain `values`, such as those of a description; what is None is left out.
+    """Write plain `values`, such as those of a description, as TOML; keys that are None are left out.
 
     Examples
     --------
@@ -28,10 +28,10 @@ def as_toml(values: Mapping[str, Any]) -> str:
 
 
 def as_python(description: SimulationConfig) -> str:
-    """Return a Python program that makes the described run by the public names, and draws it.
+    """Write a Python program that makes the described run with public names, and draws it.
 
-    What changes nothing is left out. A record that is put together or processed in another way than by scale, rotation
-    and tail stands as a description.
+    Values equal to their defaults are left out. A record that is joined or processed otherwise than by scale,
+    rotation and tail is written as a description.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The description of a drift: what all runs share, and one or two quantities with their values."""
+"""Describe a drift: the case that all runs share, and one or two quantities with their values."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, Self
@@ -13,7 +13,17 @@ _PERIODS = 60.0
 
 
 class Varied(Config):
-    """The quantity `x` that varies, perhaps another `y`; `late`: last periods over which means are taken."""
+    """One or two quantities that vary, and the periods of the means.
+
+    Parameters
+    ----------
+    x
+        Values of a quantity: a table as below.
+    y
+        Values of a second quantity.
+    late
+        Number of last periods over which means are taken.
+    """
 
     x: Axis
     y: Axis | None = None
@@ -21,13 +31,13 @@ class Varied(Config):
 
 
 class DriftConfig(ManyRuns):
-    """A drift: `column`, `model`, `motion`, the arguments of a run, and `drift.x`, perhaps `drift.y`, `drift.late`."""
+    """A drift: `column`, `model`, `motion`, numbers of all runs, and the table `drift`."""
 
     drift: Varied
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
-        """Return the description of these `values`; a motion may lack a number that varies."""
+        """Validate these `values`; a motion may omit a number that varies."""
         varied = values.get("drift")
         axes = varied if isinstance(varied, Mapping) else {}
         values = {"periods": _PERIODS, **values}
@@ -35,21 +45,21 @@ class DriftConfig(ManyRuns):
 
     @classmethod
     def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]]) -> Self:
-        """Return the description that repeats a saved drift.
+        """Make the description that repeats a saved drift.
 
         Parameters
         ----------
         provenance
-            Of the drift.
+            Provenance of the drift.
         axes
-            Its coordinates: one or two names with their values, x first.
+            Coordinates of the drift: one or two names with their values, x first.
 
         Raises
         ------
         UnsupportedError
-            If it was made with a model or motion that descriptions do not know.
+            If descriptions do not support the model or base motion of the drift.
         ParameterError
-            If its runs are not on a grid.
+            If the runs are not on a grid.
         """
         refuse_design(provenance, "grid")
         values = common_values(provenance)
@@ -58,12 +68,12 @@ class DriftConfig(ManyRuns):
         return cls.parse({**values, "drift": {**dict(zip("xy", listed, strict=False)), "late": late}})
 
     def build(self) -> Setup:
-        """Return model and motion; the options are arguments of `stylobate.conveying.drift`.
+        """Build model and motion; the options are arguments of `stylobate.conveying.drift`.
 
         Raises
         ------
         ConfigError
-            With one line for each part that cannot be.
+            With one line for each invalid part.
         """
         axes = {place: axis for place, axis in (("x", self.drift.x), ("y", self.drift.y)) if axis is not None}
         problems: list[str] = []

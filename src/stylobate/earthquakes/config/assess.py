@@ -1,4 +1,4 @@
-"""The description of an assessment: columns, records, dissipation, friction, and what is asked of them."""
+"""Describe an assessment: columns, records, dissipation, friction and the analyses."""
 
 import datetime as dt
 import warnings
@@ -58,7 +58,7 @@ _BY_COLUMN: TypeAdapter[dict[str, float]] = TypeAdapter(dict[str, float])
 
 @dataclass(frozen=True, slots=True)
 class AssessmentSetup:
-    """Models, records and the other arguments of `earthquakes.assess`, read from a file."""
+    """Models, records and other arguments of `earthquakes.assess`, read from a file."""
 
     columns: dict[str, Model]
     records: dict[str, Record]
@@ -66,7 +66,61 @@ class AssessmentSetup:
 
 
 class AssessConfig(Config):
-    """An assessment: `columns` by name, `records`, `dissipation`, `friction_coefficient`, and what is asked of them."""
+    """An assessment of columns under records.
+
+    Parameters
+    ----------
+    title
+        Title of the report.
+    columns
+        Columns by name: tables as `column`.
+    model
+        Model of all columns.
+    dissipation
+        Dissipation parameters at the levels "low", "central" and "high": a table for each level.
+    friction_coefficient
+        Friction coefficient of column and base: one number, or one for each column by its name.
+    records
+        Records: a folder, a pattern or a list of files; or a table as below.
+    scales
+        Scales of the records.
+    margin
+        Scales over which overturning is searched: a table as below, without a name.
+    width
+        Relative width to which the ends of overturning intervals are located.
+    tail
+        Free-vibration time after a record [s]; 20/`column.frequency_parameter` by default.
+    robustness
+        Whether to repeat each verdict under small perturbations; or the levels of dissipation at which to do so.
+    sliding
+        Whether to run the model `sliding` too, for columns that slide before they rock.
+    planar
+        Whether to run Housner's planar model too.
+    contact
+        Whether to report the contact demand.
+    least_records
+        Minimum number of records for fragility curves.
+    rtol
+        Relative tolerance.
+    rest_energy
+        Energy below which a column can come to rest, in c².
+    max_steps
+        Maximum number of integration steps.
+    notes
+        Paragraphs for the report.
+    author
+        Author, for the report.
+    project
+        Project, for the report.
+    date
+        Date, for the report.
+    about_records
+        Text on each record, by its name, for the report.
+    design_spectrum
+        Design spectrum to draw beside those of the records: a table as below.
+    spectral_period
+        Period of the spectral acceleration in the table of records [s].
+    """
 
     title: str = "Columns under records"
     columns: dict[str, ColumnConfig]
@@ -98,12 +152,12 @@ class AssessConfig(Config):
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
-        """Return the description of these `values`.
+        """Validate these `values`.
 
         Raises
         ------
         ConfigError
-            With one line for each mistake; one says how to state the dissipation where it is missing.
+            With one line for each mistake; if the dissipation is missing, a line shows how to state it.
         """
         problems: list[str] = []
         given = dict(values)
@@ -133,12 +187,12 @@ class AssessConfig(Config):
         return given
 
     def build(self) -> AssessmentSetup:
-        """Return models, records and the other arguments of `stylobate.earthquakes.assess`.
+        """Build models, records and the other arguments of `stylobate.earthquakes.assess`.
 
         Raises
         ------
         ConfigError
-            With one line for each part that cannot be.
+            With one line for each invalid part.
         """
         problems: list[str] = []
         problems += self._problems_of_the_model()

@@ -1,4 +1,4 @@
-"""The description of a design spectrum: points of period and spectral acceleration, or a file of two columns."""
+"""Describe a design spectrum: points of period and spectral acceleration, or a file of two columns."""
 
 import re
 from pathlib import Path
@@ -16,11 +16,23 @@ _SECONDS = ("s", "sec", "second", "seconds")
 
 
 class DesignSpectrumConfig(Config):
-    """A design spectrum: `points`, pairs of period [s] and spectral acceleration, or a `file` of these two columns.
+    """A design spectrum for the report: points, or a file of two columns.
 
-    `units` is the unit of the accelerations, such as "g" or "m/s²"; the first line of a file may state it instead:
-    `period [s], Sa [g]`. Commas are decimal where semicolons or tabs separate the columns. `name` is what the report
-    calls the spectrum, `damping` its damping ratio.
+    The first line of a file may state the unit: `period [s], Sa [g]`. Commas are decimal if semicolons or tabs
+    separate the columns.
+
+    Parameters
+    ----------
+    points
+        Pairs of period [s] and spectral acceleration.
+    file
+        File of these two columns, in place of `points`.
+    units
+        Unit of the accelerations, such as "g" or "m/s²", if the file does not state it.
+    name
+        Name of the spectrum in the report.
+    damping
+        Damping ratio of the spectrum.
     """
 
     points: tuple[tuple[float, float], ...] = ()
@@ -30,7 +42,7 @@ class DesignSpectrumConfig(Config):
     damping: float = 0.05
 
     def build(self) -> DesignSpectrum:
-        """Return the spectrum in SI units.
+        """Build the spectrum in SI units.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""The description of a fragility: records, their scales, uncertain properties, how it is fitted, and the hazard."""
+"""Describe a fragility: records, their scales, uncertain properties, the fit and the hazard."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -27,7 +27,15 @@ from stylobate.models import Model
 
 
 class Lognormal(Config):
-    """The logarithm is normal with this `dispersion`; `median` by default as the model has it."""
+    """Lognormal distribution of a property.
+
+    Parameters
+    ----------
+    dispersion
+        Standard deviation of the logarithm.
+    median
+        Median; the value of the model by default.
+    """
 
     kind: Literal["lognormal"]
     dispersion: float
@@ -35,7 +43,19 @@ class Lognormal(Config):
 
 
 class Normal(Config):
-    """Normal with this standard `deviation`, cut at `least` and `most`; `mean` by default as the model has it."""
+    """Truncated normal distribution of a property.
+
+    Parameters
+    ----------
+    deviation
+        Standard deviation.
+    mean
+        Mean; the value of the model by default.
+    least
+        Lower bound.
+    most
+        Upper bound; none by default.
+    """
 
     kind: Literal["normal"]
     deviation: float
@@ -45,7 +65,15 @@ class Normal(Config):
 
 
 class Uniform(Config):
-    """Even from `least` to `most`."""
+    """Uniform distribution of a property.
+
+    Parameters
+    ----------
+    least
+        Lower bound.
+    most
+        Upper bound.
+    """
 
     kind: Literal["uniform"]
     least: float
@@ -71,7 +99,15 @@ AnySpread = Annotated[Lognormal | Normal | Uniform, BeforeValidator(_as_spread)]
 
 
 class Spectral(Config):
-    """Spectral acceleration at `period` [s]."""
+    """Spectral acceleration as the intensity measure.
+
+    Parameters
+    ----------
+    period
+        Period of the oscillator [s].
+    damping
+        Damping ratio of the oscillator.
+    """
 
     period: float
     damping: float = 0.05
@@ -87,7 +123,39 @@ def _as_intensity(values: Any) -> Any:
 
 
 class Fragility(Config):
-    """The `scales` of the records and what else varies; how runs are counted and fitted; the hazard."""
+    """Scales, uncertain properties, fit and hazard of a fragility.
+
+    Parameters
+    ----------
+    scales
+        Factors of the records: a table as below, without a name.
+    intensity
+        Name of an intensity measure; or a table with the `period` [s] and `damping` of a spectral acceleration.
+    component
+        Horizontal component of the intensity: "RotD50", "RotD100", "geometric mean" or "larger component".
+    rotations
+        Rotations of each record about the vertical [rad].
+    vertical
+        Whether the vertical component acts; list both values to run with and without it.
+    tail
+        Free-vibration time after a record [s]; 20/`column.frequency_parameter` by default.
+    samples
+        Number of samples of the uncertain properties.
+    spreads
+        Distribution of each uncertain property, by its name: tables as below.
+    seed
+        Seed of samples and resamples.
+    counting
+        Which scales count as reached: those computed, or all above the first that reached the limit state.
+    confidence
+        Confidence level of intervals.
+    resamples
+        Number of bootstrap resamples of the records; 0 for profile likelihood.
+    hazard
+        Hazard curve of the site: a table as below.
+    years
+        Period of the stated probability [years].
+    """
 
     scales: Scales
     intensity: Annotated[str | Spectral, BeforeValidator(_as_intensity)] = "peak ground acceleration"
@@ -107,14 +175,16 @@ class Fragility(Config):
 
 @dataclass(frozen=True, slots=True)
 class FragilitySetup:
-    """What a description of a fragility describes.
+    """Objects that a description of a fragility describes.
 
     Parameters
     ----------
-    model, records
-        The column, and the records by name.
+    model
+        The model of the column.
+    records
+        Records by name.
     table
-        What is varied and how it is fitted, as described.
+        The described table `fragility`.
     scales
         Factors of the records.
     hazard
@@ -132,14 +202,14 @@ class FragilitySetup:
 
 
 class FragilityConfig(ManyRuns):
-    """A fragility: `column`, `model`, `records`, the arguments of a run, and `fragility`."""
+    """A fragility: `column`, `model`, `records`, numbers of all runs, and the table `fragility`."""
 
     records: RecordsConfig
     fragility: Fragility
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
-        """Return the description of these `values`; `records` may be the folder alone.
+        """Validate these `values`; `records` may be the folder alone.
 
         Raises
         ------

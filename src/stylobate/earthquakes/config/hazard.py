@@ -1,4 +1,4 @@
-"""The description of a hazard curve: how often an intensity is exceeded at a site, in numbers or in a file of them."""
+"""Describe a hazard curve: exceedance rates of an intensity at a site, as numbers or in a file."""
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -51,14 +51,31 @@ class HazardPoints:
 
 
 class Hazard(Config):
-    """Annual `rate` or `probability` of exceedance of each `intensity`; or a `file`.
+    """Hazard curve of a site: intensities with annual rates or probabilities of exceedance, or a file of them.
 
     A file has two columns, named in its first line: `PGA RotD50 [g], annual rate [1/a]` or `SA(0.5 s) RotD50 [g],
-    probability in 50 years`; or it is a hazard curve of OpenQuake, of which `site` is the number of a row, from 0, or
-    its longitude and latitude. `investigation_time` is the time of probabilities [years]; `units` that of the
-    intensity: "g", "m/s²", "cm/s²", "m/s", "cm/s", or "1"; `measure` what it is: PGA, PGV, "SA(0.5 s)"; `component`
-    the definition of its horizontal component: "RotD50", "RotD100", "geometric mean", "larger component". They are
-    needed where the file does not state them.
+    probability in 50 years`; or it is a hazard curve of OpenQuake. Give the keys that the file does not state.
+
+    Parameters
+    ----------
+    intensity
+        Intensities, in the unit `units`.
+    rate
+        Annual rate of exceedance of each intensity [1/year].
+    probability
+        Probability of exceedance of each intensity in `investigation_time`, in place of `rate`.
+    investigation_time
+        Time of the probabilities [years].
+    file
+        File of the curve, relative to the folder of the TOML file.
+    site
+        Site in a table of OpenQuake: number of its row, from 0, or its longitude and latitude.
+    units
+        Unit of the intensity: "g", "m/s²", "cm/s²", "m/s", "cm/s" or "1".
+    measure
+        Intensity measure: "PGA", "PGV" or a spectral acceleration such as "SA(0.5 s)".
+    component
+        Horizontal component of the intensity: "RotD50", "RotD100", "geometric mean" or "larger component".
     """
 
     intensity: tuple[float, ...] = ()
@@ -72,14 +89,14 @@ class Hazard(Config):
     component: str | None = None
 
     def points(self) -> HazardPoints:
-        """Return intensities in SI, and rates or probabilities.
+        """Convert to intensities in SI units, and rates or probabilities.
 
         Raises
         ------
         FileError
-            If the file cannot be read, or does not say what its columns are.
+            If the file cannot be read, or does not name its columns.
         ParameterError
-            If they are given in two ways or none, are no curve, or the file and the description contradict each other.
+            If the curve is missing, given twice or not a curve, or if file and description contradict each other.
         """
         listed = self.intensity or self.rate or self.probability
         if bool(listed) == (self.file is not None):

@@ -1,4 +1,4 @@
-"""The description of a spectrum: what all runs share, one quantity or two with their values, and the scales."""
+"""Describe a spectrum: the case that all runs share, one or two quantities with their values, and the scales."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal, Self
@@ -10,14 +10,28 @@ from stylobate.config.simulation import Setup
 
 
 class Scales(Axis):
-    """Factors of the base motion: `number` of them `from` … `to`, spaced in the logarithm; or `values`."""
+    """Factors of the base motion, spaced or listed."""
 
     name: str = "scale"
     spacing: Literal["linear", "log"] = "log"
 
 
 class Spectrum(Config):
-    """The quantity `x` that varies, perhaps another `y`, and the `scales`; of a rocking spectrum there are none."""
+    """Quantities that vary, and the scales that are tried.
+
+    Parameters
+    ----------
+    x, y
+        Values of a quantity: a table as below. Without `x` the result is of one column.
+    scales
+        Factors of the base motion: a table as below, without a name. Needed, but not with `rocking`.
+    rocking
+        Whether to compute a rocking spectrum: peak tilts and tilt rates at the scale of the motion.
+    width
+        Relative width to which the ends of overturning intervals are located; 0.001 by default.
+    tail
+        Free-vibration time after the base motion [s]; 40/`column.frequency_parameter` by default.
+    """
 
     x: Axis | None = None
     y: Axis | None = None
@@ -28,18 +42,18 @@ class Spectrum(Config):
 
 
 class SpectrumConfig(ManyRuns):
-    """A spectrum: `column`, `model`, `motion`, the arguments of a run, and `spectrum`: what varies, and the scales.
+    """A spectrum: `column`, `model`, `motion`, numbers of all runs, and the table `spectrum`.
 
-    Without a `duration` columns are followed for `spectrum.tail` [s] after the end of the base motion.
+    Without a `duration` runs continue for `spectrum.tail` [s] after the end of the base motion.
     """
 
     spectrum: Spectrum
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
-        """Return the description of these `values`; a motion may lack a number that varies.
+        """Validate these `values`; a motion may omit a number that varies.
 
-        A motion that is scaled may lack its acceleration too: it is 1 m/s².
+        A motion that is scaled may also omit its acceleration, which is then 1 m/s².
         """
         table = values.get("spectrum")
         table = table if isinstance(table, Mapping) else {}
@@ -50,21 +64,21 @@ class SpectrumConfig(ManyRuns):
 
     @classmethod
     def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]], *, rocking: bool) -> Self:
-        """Return the description that repeats a saved spectrum.
+        """Make the description that repeats a saved spectrum.
 
         Parameters
         ----------
         provenance
-            Of the spectrum.
+            Provenance of the spectrum.
         axes
-            Its coordinates: one or two names with their values, and the scale.
+            Coordinates of the spectrum: one or two names with their values, and the scale.
         rocking
             Whether it is a rocking spectrum.
 
         Raises
         ------
         UnsupportedError
-            If it was made with a model or motion that descriptions do not know.
+            If descriptions do not support the model or base motion of the spectrum.
         """
         over = {name: list(values) for name, values in axes.items() if rocking or name != "scale"}
         listed = ({"name": name, "values": values} for name, values in over.items())
@@ -75,12 +89,12 @@ class SpectrumConfig(ManyRuns):
         return cls.parse({**common_values(provenance), "spectrum": table})
 
     def build(self) -> Setup:
-        """Return model and motion; the options are arguments of `overturning_bands`, or of `rocking_spectrum`.
+        """Build model and motion; the options are arguments of `overturning_bands`, or of `rocking_spectrum`.
 
         Raises
         ------
         ConfigError
-            With one line for each part that cannot be.
+            With one line for each invalid part.
         """
         table, problems = self.spectrum, self._problems()
         axes = {place: axis for place, axis in (("x", table.x), ("y", table.y)) if axis is not None}

@@ -1,0 +1,121 @@
+"""The reference describes every public name, command, option and key of a file."""
+
+import doctest
+import importlib
+import re
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+import stylobate
+from stylobate.cli.commands import COMMANDS
+from stylobate.earthquakes.config import fragility
+
+DOCS = Path(__file__).parents[1] / "docs"
+PAGES = {page.name: page.read_text(encoding="utf-8") for page in (DOCS / "reference").glob("*.md")}
+
+if not PAGES:
+    pytest.skip("the documentation is not here", allow_module_level=True)
+
+
+@pytest.fixture(scope="module")
+def extensions():
+    """The modules that make the tables of the reference."""
+    sys.path.insert(0, str(DOCS / "extensions"))
+    yield {name: importlib.import_module(name) for name in ("declared_fields", "declared_options")}
+    sys.path.remove(str(DOCS / "extensions"))
+
+
+def public_modules(module=stylobate, seen=()):
+    """The package and the public subpackages that are reached from it."""
+    yield module
+    for name in getattr(module, "__all__", ()):
+        value = getattr(module, name)
+        if isinstance(value, ModuleType) and value.__name__ not in seen:
+            yield from public_modules(value, (*seen, module.__name__))
+
+
+MODULES = {module.__name__: module for module in (*public_modules(), importlib.import_module("stylobate.lab"))}
+DESCRIBED = re.compile(r"^\.\. (?:autofunction|autoclass|autoexception|autodata|py:data):: (\S+)", re.MULTILINE)
+
+
+def described_names():
+    return {name.rpartition(".")[2] for text in PAGES.values() for name in DESCRIBED.findall(text)}
+
+
+def public_names(module):
+    """The names that a package lists, without subpackages; the exceptions and warnings of the errors."""
+    if module is stylobate.errors:
+        return [name for name, value in vars(module).items() if is_public_exception(value)]
+    listed = getattr(module, "__all__", ())
+    return [name for name in listed if name[0] != "_" and not isinstance(getattr(module, name), ModuleType)]
+
+
+def is_public_exception(value):
+    return isinstance(value, type) and issubclass(value, BaseException) and value.__name__[0] != "_"
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_the_reference_describes_every_public_name(name):
+    assert sorted(set(public_names(MODULES[name])) - described_names()) == []
+
+
+def test_every_page_of_the_reference_is_in_its_table_of_contents():
+    listed = PAGES["index.md"].split()
+    assert [page for page in PAGES if page != "index.md" and page.removesuffix(".md") not in listed] == []
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_command_line_shows_every_command_under_its_usage(name, extensions):
+    page = PAGES["command-line.md"]
+    assert f"```{{command}} {name}\n" in page
+    assert f"## `{extensions['declared_options'].title(name)}`\n" in page
+
+
+def test_every_option_is_shared_or_shown_with_its_command(extensions):
+    options = extensions["declared_options"]
+    shared = {panel: {one.flag for one in rows} for panel, rows in options.shared_options().items()}
+    for name, entry in COMMANDS.items():
+        own, sharings = options.split(name)
+        shown = [one.flag for one in own] + [flag for one in sharings for flag in one.taken]
+        assert sorted(shown) == sorted(options.row(one).flag for one in options.options_of(entry.load()))
+        assert all(set(one.taken) <= shared[one.panel] for one in sharings)
+
+
+def test_the_text_about_the_command_line_names_options_that_exist(extensions):
+    options = extensions["declared_options"]
+    known = {options.row(one).flag for entry in COMMANDS.values() for one in options.options_of(entry.load())}
+    known |= {"--help", "--version", "--stiffness"}  # the last one is of a model of the reader's own
+    assert set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", PAGES["command-line.md"])) <= known
+
+
+TABLES = re.findall(r"```\{fields\} (\S+)", PAGES["descriptions.md"])
+
+
+@pytest.mark.parametrize("place", TABLES)
+def test_every_key_of_a_table_is_explained(place, extensions):
+    fields = extensions["declared_fields"]
+    rows = fields.fields_of(fields.table_of(place), ["column", "model", "motion"])
+    assert rows
+    assert [one.name for one in rows if not one.text] == []
+
+
+@pytest.mark.parametrize("part", ["column", "model", "motion"])
+def test_every_kind_and_number_is_on_the_page_of_the_files(part, extensions):
+    fields = extensions["declared_fields"]
+    assert f"```{{kinds}} {part}\n" in PAGES["descriptions.md"]
+    assert f"```{{numbers}} {part}\n" in PAGES["descriptions.md"]
+    listed = {one.name for one in fields.numbers(part)}
+    named = {name for one in fields.kinds(part) for name in (*one.needed, *one.optional)}
+    assert named - {"motion", "motions"} == listed
+
+
+def test_every_spread_has_its_table():
+    assert {f"earthquakes.config.fragility:{one.__name__}" for one in fragility._SPREADS.values()} <= set(TABLES)
+
+
+def test_examples_of_the_extensions_hold(extensions):
+    for module in extensions.values():
+        assert doctest.testmod(module).failed == 0
