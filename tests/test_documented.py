@@ -6,12 +6,15 @@ import re
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import get_type_hints
 
 import pytest
 
 import stylobate
 from stylobate.cli.commands import COMMANDS
 from stylobate.earthquakes.config import fragility
+from stylobate.studies.hierarchy.models import HierarchyArguments
+from stylobate.studies.sweeps.recipe import RunOptions
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGES = {page.name: page.read_text(encoding="utf-8") for page in (DOCS / "reference").glob("*.md")}
@@ -60,6 +63,11 @@ def is_public_exception(value):
 @pytest.mark.parametrize("name", MODULES)
 def test_the_reference_describes_every_public_name(name):
     assert sorted(set(public_names(MODULES[name])) - described_names()) == []
+
+
+@pytest.mark.parametrize("options", [RunOptions, HierarchyArguments])
+def test_options_that_many_functions_share_are_listed(options):
+    assert [name for name in get_type_hints(options) if f"`{name}`" not in options.__doc__] == []
 
 
 def test_every_page_of_the_reference_is_in_its_table_of_contents():

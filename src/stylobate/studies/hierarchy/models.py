@@ -25,7 +25,11 @@ class RunArguments(TypedDict, total=False):
 
 
 class HierarchyArguments(RunArguments, total=False):
-    """The dissipation parameters of the models, which take those that they declare, and what all are run with."""
+    """Arguments that all models of a comparison share; each model uses the dissipation parameters that it declares.
+
+    They are `damping`, `spin_damping`, `rolling_resistance`, `restitution`, and `rtol`, `atol`, `tilt_limit`,
+    `rest_energy`, `max_steps` and `rules` as in `simulate`.
+    """
 
     damping: float
     spin_damping: float

@@ -17,9 +17,11 @@ from stylobate.studies.sweeps.quantities import OF_A_RUN, Floats
 
 
 class RunOptions(TypedDict, total=False):
-    """What all runs of a sweep have in common: the arguments of `simulate_ensemble` of these names.
+    """Arguments of `simulate_ensemble` that all runs of a sweep share.
 
-    With `end_converged` each run is compared with steady rolling in closed form too, see `known_rolling`.
+    They are `tilt`, `tilt_rate`, `spin`, `method`, `rtol`, `atol`, `tilt_limit`, `rest_energy`, `max_steps`, `samples`,
+    `strobes`, `rules`, `demands`, `recheck`, `known_orbits` and `end_converged`. With `end_converged`, runs that have
+    converged to steady rolling in closed form end early.
     """
 
     tilt: Sequence[float]
