@@ -147,7 +147,7 @@ _SHORT = re.compile(r"(?<![\w.~])(npt|np|xr)\.(?=[A-Za-z])")
 _MODULES = {"npt": "~numpy.typing.", "np": "~numpy.", "xr": "~xarray."}
 
 
-# A declared number is its type and what it is; the docstring beside it says the latter.
+# A declared number has a type and a quantity; signatures show the type, the docstring describes the quantity.
 _DECLARED = re.compile(
     r"~?(?:\w+\.)*Annotated\[([^\[\]]*?(?:\[[^\[\]]*\])?), ~?stylobate\.quantities\.Quantity\((?:[^()]|\([^()]*\))*\)\]"
 )

@@ -28,7 +28,7 @@ _READ_FROM_FILES = "record"  # this kind of motion is the table of `RecordMotion
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """A kind of column, model or base motion: what it is, and the numbers it needs and may have."""
+    """A kind of column, model or base motion: its text, the numbers that it needs, and its optional numbers."""
 
     name: str
     text: str
