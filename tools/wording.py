@@ -37,7 +37,7 @@ PAGE_RULES = {
     r"(?i)(?<!`)\bstrobe[ds]?\b": "stroboscopic (Poincaré) samples",
     r"(?i)\bholds? the contact\b": "assumes permanent contact without slip",
     r"(?i)\bthe house\b": "repository layout, architecture",
-    r"(?i)\bjams?\b": "dynamic jamming (Painlevé)",
+    r"(?i)(?<![`\"])\bjams?\b": "dynamic jamming (Painlevé)",
     r"(?i)(?<!# )\bwhat (?:it|they) (?:is|are|was|were|has|have|can|does|do|knows?|gives?|needs?|shows?|means?)\b": (
         "the noun: outcome, response, value"
     ),

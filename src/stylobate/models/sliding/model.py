@@ -74,7 +74,7 @@ class Sliding(Model):
     In the limits it is another model: for large μ, as long as N > 0 and the base does not strike, it is `Rolling`; with
     a large patch it rolls as on rubber; a column with c above μ slides as a block.
 
-    The rules that end what would not end by itself: a rebound slower than 1e-5 √(gh/κ) is none; slip slower than 1e-10
+    The rules that end what would not end by itself: a rebound slower than 1e-5 √(κgh) is none; slip slower than 1e-10
     of that is none, and where Painlevé's denominator falls to 1e-3 slip ends by an impulse; below the energy of rest of
     a run a column on its rim is set down, where the plane holds it. Impacts follow A. Chatterjee and A. Ruina (1998),
     and never add energy. A stroke of the base is an impact of the rim on the other side, in the plane of the motion;
