@@ -58,7 +58,7 @@ def no_return_tilt(motion, since):
     return C + np.hypot(late[:, 0], late[:, 1]).max() / (1.0 + late[:, 2].min())
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(
     motion=motions(),
     tilt=numbers(0.1, 2.0),

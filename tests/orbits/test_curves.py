@@ -24,7 +24,7 @@ def modulating():
 
 
 def test_the_neimark_sacker_curve_is_the_critical_frequency_of_theory(modulating):
-    curve = bifurcation_curve(modulating, "acceleration", bounds=((0.8, 4.0), (0.02, 0.4)))
+    curve = bifurcation_curve(modulating, "acceleration", bounds=((0.8, 4.0), (0.02, 0.2)))
     frequency, acceleration = np.transpose([point.values for point in curve.path])
     # Both are told to about 1e-10 of the widths of the bounds.
     np.testing.assert_allclose(frequency, sb.theory.critical_frequency(acceleration, c=C, eta=ETA), atol=2e-9)
