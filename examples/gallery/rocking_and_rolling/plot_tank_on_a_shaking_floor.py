@@ -24,7 +24,7 @@ for acceleration, angular_frequency in cases:
     runs.append(run)
     labels.append(f"{acceleration:g} m/s², {angular_frequency:g} rad/s")
     peak = run.measures["largest_tilt_over_c"]
-    print(f"{labels[-1]}: {run.outcome.value}, peak tilt {peak:.2f} c")
+    print(f"{labels[-1]}: {run.outcome.label}, peak tilt {peak:.2f} c")
 
 # %%
 # The tilt of each run against time, and the paths of the tilt vector. The dashed circle
