@@ -20,6 +20,6 @@ print(
 figure = sb.plots.plot_column_path(run)
 
 # %%
-# The column in space with the path of its contact point, seen from the moving base. See
+# The column with the path of its contact point, seen from the moving base. See
 # :func:`stylobate.plots.plot_column_path` for the times that are drawn, and
 # :doc:`/how-to/animations` for the same as an animation.
