@@ -21,5 +21,5 @@ figure = sb.plot([inside, pushed], labels=["no push", "sideways push"])
 # %%
 # The contact point of the pushed column runs half round the rim at each passage near
 # the vertical, and a little farther each time. So the plane of rocking turns, and the
-# path of the tilt becomes a rosette. :doc:`/explanation/equations` derives why motion
-# in a plane is unstable.
+# path of the tilt becomes a rosette. :doc:`/explanation/equations` derives why planar
+# motion is unstable.
