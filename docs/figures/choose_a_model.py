@@ -1,6 +1,6 @@
 """Measures the table of the page "Choose a model": how long each model takes, and how often it overturns.
 
-Run it with `python docs/figures/choose_a_model.py`; it takes about half a minute on one core. One stone column under 200
+Run it with `python docs/figures/choose_a_model.py`; it takes half a minute on one core. One stone column under 200
 scales of El Centro 1940 by each model, in turns in one process; the shortest processor time of five rounds counts.
 """
 
@@ -35,7 +35,7 @@ def measure() -> list[str]:
     """Return the rows of the table."""
     space = sb.sample_record("el centro 1940")
     planar = type(space).from_components(x=space.samples[:, 0], z=space.samples[:, 2], step=space.step)
-    seconds = {name: np.inf for name in models()}
+    seconds = dict.fromkeys(models(), np.inf)
     overturned = {}
     for _ in range(ROUNDS):
         for name, model in models().items():
@@ -44,9 +44,8 @@ def measure() -> list[str]:
             runs = sb.simulate_ensemble(model, motion, duration=62.0, parameters={"scale": SCALES}, threads=1)
             seconds[name] = min(seconds[name], time.process_time() - begun)
             overturned[name] = float((runs["outcome"] == sb.Outcome.OVERTURNED).mean())
-    return [
-        f"| `{name}` | {seconds[name] / seconds['Slender']:.1f} | {100.0 * overturned[name]:.0f} % |" for name in seconds
-    ]
+    unit = seconds["Slender"]
+    return [f"| `{name}` | {seconds[name] / unit:.1f} | {100.0 * overturned[name]:.0f} % |" for name in seconds]
 
 
 if __name__ == "__main__":

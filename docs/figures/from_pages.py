@@ -1,6 +1,6 @@
 """Draws the figures that pages make with their own code: runs each page's Python blocks and keeps what they save.
 
-Run it with `python docs/figures/from_pages.py [PAGE …]`, such as `getting-started/first-steps`; it takes about a minute.
+Run it with `python docs/figures/from_pages.py [PAGE …]`, such as `getting-started/first-steps`; it takes a minute.
 """
 
 import os
