@@ -49,7 +49,7 @@ def _pages(patterns: Sequence[str], excludes: Sequence[str] = (), fixtures: Sequ
     )
 
 
-_OF_THE_LABORATORY = "docs/how-to/laboratory.md"
+_OF_THE_LABORATORY = "docs/reference/http-api.md"
 
 pytest_collect_file = (
     _pages(["README.md", "docs/*.md", "docs/*/*.md", "docs/*/*/*.md"], excludes=[_OF_THE_LABORATORY])

@@ -1,4 +1,4 @@
-"""What the page, or any program on this machine, can ask the laboratory for. See docs/how-to/laboratory.md."""
+"""What the page, or any program on this machine, can ask the laboratory for. See docs/reference/http-api.md."""
 
 import logging
 from collections.abc import Callable
