@@ -4,7 +4,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo lab page test test-all test-lowest test-newest coverage lint docs bench clean
+.PHONY: help demo lab page test test-all test-lowest test-newest coverage lint docs figures bench clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -80,6 +80,11 @@ lint: $(VENV)/.core $(VENV)/.test $(VENV)/.lint  ## style, types, import contrac
 
 docs: $(VENV)/.core $(VENV)/.docs  ## the documentation into docs/_build/html
 	$(BIN)/sphinx-build --fail-on-warning --keep-going docs docs/_build/html
+
+FIGURES := $(filter-out docs/figures/saving.py,$(wildcard docs/figures/*.py))
+
+figures: $(VENV)/.core  ## all figures and animations of the documentation into docs/_static, a quarter of an hour on two cores
+	for one in $(FIGURES); do echo "$$one"; $(BIN)/python "$$one" || exit 1; done
 
 bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks, beside the engines that can be installed, into docs/_static
 	-$(BIN)/python -m pip install --quiet --group bench

@@ -11,7 +11,7 @@ from statistics import median
 from .one_core import use_one_core
 
 _FOLDER = Path(__file__).parents[2] / "docs" / "_static" / "benchmarks"
-_DPI = 180
+_DPI = 200
 
 
 def main() -> None:

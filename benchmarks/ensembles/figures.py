@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from matplotlib.figure import Figure
 
-from stylobate.plots.style import BLACK, BLUE, DASHES, GREEN, GREY, ORANGE, PURPLE, VERMILION, new_figure, styled
+from stylobate.plots.style import BLACK, BLUE, DASHES, GREEN, ORANGE, PURPLE, VERMILION, new_figure, styled
 
 from .ours import NAMES
 from .precision import Point
@@ -29,15 +29,12 @@ def engines_figure(names: Mapping[str, str], found: Sequence[Timing], limits: Ma
             own = key in NAMES
             axes.barh(place, rates[key], color=VERMILION if own else BLUE, height=0.62)
             axes.annotate(
-                f"{rates[key]:,.0f}".replace(",", "\u2009"), (rates[key], place), (4, 0),
-                textcoords="offset points", va="center", fontsize=8.5, fontweight="bold" if own else None,
-                bbox={"boxstyle": "square,pad=0.1", "facecolor": "white", "edgecolor": "none"},
+                f"{rates[key]:,.0f}".replace(",", "\u2009"), (rates[key], place), (-4, 0),
+                textcoords="offset points", va="center", ha="right", fontsize=8.5, color="white", fontweight="bold",
             )  # fmt: skip
-        axes.axvline(limits[workload], color=GREY, linestyle="--", linewidth=1.1, zorder=0)
-        axes.annotate(
-            "DOP853 at the\narithmetic peak", (limits[workload], 0.0), (-4, 0), textcoords="offset points",
-            ha="right", va="center", fontsize=8, color=GREY,
-        )  # fmt: skip
+        axes.axvline(
+            limits[workload], color=BLACK, linestyle="--", linewidth=1.1, label="DOP853 at the arithmetic peak"
+        )
         axes.set_xscale("log")
         axes.set_xlim(1.0, 3e6)
         axes.set_title(title)
@@ -46,6 +43,7 @@ def engines_figure(names: Mapping[str, str], found: Sequence[Timing], limits: Ma
         axes.set_axisbelow(True)
         axes.tick_params(axis="y", length=0)
     panels[0].set_yticks(range(len(keys)), [names[key] for key in keys])
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower right")
     return figure
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from .one_core import use_one_core
 
 _FOLDER = Path(__file__).parents[2] / "docs" / "_static" / "benchmarks"
-_DPI = 180
+_DPI = 200
 TOLERANCES = tuple(float(f"1e-{power}") for power in range(4, 13))
 _QUICK_TOLERANCES = (1e-5, 1e-9)
 # Runs of the mix that all engines compute; SciPy's end states at this tolerance are their reference.

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from saving import save
 
 ROOT = Path(__file__).parents[2]
 TARGET = ROOT / "docs" / "_static" / "architecture" / "rooms.png"
@@ -70,6 +71,4 @@ def draw() -> Figure:
 
 
 if __name__ == "__main__":
-    TARGET.parent.mkdir(parents=True, exist_ok=True)
-    draw().savefig(TARGET, dpi=180)
-    print(TARGET)
+    save(draw(), TARGET)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 from matplotlib.image import imread
+from saving import save
 
 import stylobate as sb
 from stylobate.earthquakes.assessment.report.figures import margins_figure, robustness_figure
@@ -41,7 +42,7 @@ def head(found: Assessment, spectra: Figure) -> Figure:
     text = "\n".join(textwrap.fill(line, _LINE) for line in lines)
     words.text(0.0, 1.0, text, fontsize=8.0, va="top", linespacing=1.35)
     buffer = BytesIO()
-    spectra.savefig(buffer, format="png", dpi=180)
+    spectra.savefig(buffer, format="png", dpi=300)
     buffer.seek(0)
     below.imshow(imread(buffer))
     figure.subplots_adjust(left=0.03, right=0.98, top=0.94, bottom=0.01, hspace=0.02)
@@ -50,12 +51,11 @@ def head(found: Assessment, spectra: Figure) -> Figure:
 
 def main(store: Path) -> None:
     """Draw all of them."""
-    FOLDER.mkdir(parents=True, exist_ok=True)
     found = assessed(store)
     margins = margins_figure(found, "slim column")
-    head(found, spectra_figure(found)).savefig(FOLDER / "report.png", dpi=130)
-    margins.savefig(FOLDER / "margins.png", dpi=180)
-    robustness_figure(found, "slim column", 1.0).savefig(FOLDER / "robustness.png", dpi=180)
+    save(head(found, spectra_figure(found)), FOLDER / "report.png")
+    save(margins, FOLDER / "margins.png")
+    save(robustness_figure(found, "slim column", 1.0), FOLDER / "robustness.png")
 
 
 if __name__ == "__main__":

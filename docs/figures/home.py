@@ -3,13 +3,10 @@
 Run it with `python docs/figures/home.py`; it takes seconds.
 """
 
-from pathlib import Path
-
 from matplotlib.figure import Figure
+from saving import STATIC, save
 
 import stylobate as sb
-
-FOLDER = Path(__file__).parents[1] / "_static"
 
 
 def earthquake() -> Figure:
@@ -23,5 +20,4 @@ def earthquake() -> Figure:
 
 
 if __name__ == "__main__":
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    earthquake().savefig(FOLDER / "home-earthquake.png", dpi=200)
+    save(earthquake(), STATIC / "home-earthquake.png")

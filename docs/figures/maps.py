@@ -3,14 +3,13 @@
 Run it with `python docs/figures/maps.py`. The column is that of the paper, c = η = 0.1, in its units.
 """
 
-from pathlib import Path
-
 import numpy as np
 import xarray as xr
+from saving import STATIC, save
 
 import stylobate as sb
 
-FOLDER = Path(__file__).parents[1] / "_static" / "maps"
+FOLDER = STATIC / "maps"
 MODEL = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
 BOX = dict.fromkeys(("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y"), (-0.06, 0.06))
 
@@ -49,7 +48,5 @@ def erosion() -> xr.Dataset:
 
 
 if __name__ == "__main__":
-    FOLDER.mkdir(parents=True, exist_ok=True)
     for study in (overturning, basins, fractions, erosion):
-        sb.plot(study()).savefig(FOLDER / f"{study.__name__}.png", dpi=110)
-        print(study.__name__)
+        save(sb.plot(study()), FOLDER / f"{study.__name__}.png")

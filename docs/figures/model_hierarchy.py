@@ -3,18 +3,14 @@
 Run it with `python docs/figures/model_hierarchy.py`; it takes minutes on one core. Dimensionless columns, η = ζ = 0.1.
 """
 
-from collections.abc import Callable
-from io import BytesIO
-from pathlib import Path
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from PIL import Image
+from saving import STATIC, save
 
 import stylobate as sb
 
-FOLDER = Path(__file__).parents[1] / "_static" / "hierarchy"
+FOLDER = STATIC / "hierarchy"
 ETA = ZETA = 0.1
 
 BLUE, SKY, VERMILION, AMBER, GREY = "#0072B2", "#56B4E9", "#D55E00", "#E69F00", "#767676"
@@ -84,11 +80,11 @@ def responses() -> Figure:
             for one in at:
                 draw_run(axes, level, one, c)
         axes.set_title(f"$c = {c:g}$", fontsize=10)
-        axes.set_xlabel("frequency of the base $\\theta$")
+        axes.set_xlabel("base frequency $\\Omega/\\omega_0$")
         axes.set_xlim(theta[0], theta[-1])
         axes.set_ylim(0.0, 0.75)
         axes.grid(color="#dddddd", linewidth=0.6)
-    panels[0].set_ylabel("tilt of steady rolling over $c$")
+    panels[0].set_ylabel("tilt of steady rolling, $\\theta/c$")
     panels[0].plot([], [], "o", markerfacecolor="none", color="black", label="simulate")
     add_legend(figure)
     return figure
@@ -157,12 +153,12 @@ def dissipation() -> Figure:
     eta = float(sb.theory.equivalent_viscous_damping(0.1, c=0.2, restitution=e))
     print(f"e {e:.6f}, equivalent friction {eta:.5f}")
     models = {
-        "Housner's loss at the upright": (sb.Rolling(column, restitution=e), SKY, 2.6),
+        "Housner's loss at the vertical": (sb.Rolling(column, restitution=e), SKY, 2.6),
         "viscous equivalent": (sb.Rolling(column, damping=eta, spin_damping=eta), BLUE, 1.1),
         "rolling resistance 0.02 r": (sb.Rolling(column, rolling_resistance=0.02), VERMILION, 1.1),
     }
     panels = figure.subplots(1, 2, sharey=True)
-    for axes, (title, rate) in zip(panels, {"in a plane": 0.0, "in space": 0.02}.items(), strict=True):
+    for axes, (title, rate) in zip(panels, {"planar": 0.0, "three-dimensional": 0.02}.items(), strict=True):
         for name, (model, colour, width) in models.items():
             run = sb.simulate(model, tilt=(0.1, 0.0), tilt_rate=(0.0, rate), duration=60.0)
             energy = run.data["energy"].to_numpy()
@@ -170,27 +166,17 @@ def dissipation() -> Figure:
             print(title, name, f"energy left {left:.5f}", run.outcome.name, run.measures["least_tilt"] / 0.2)
             axes.plot(run.data["time"], energy / energy[0], color=colour, linewidth=width, label=name)
         axes.set_title(title, fontsize=10)
-        axes.set_xlabel("time in units of $1/\\omega_0$")
+        axes.set_xlabel("time $\\omega_0 t$")
         axes.set_xlim(0.0, 60.0)
         axes.set_ylim(0.0, 1.05)
         axes.grid(color="#dddddd", linewidth=0.6)
-    panels[0].set_ylabel("energy over that at the start")
+    panels[0].set_ylabel("energy, relative to the start")
     add_legend(figure)
     return figure
-
-
-def save(draw: Callable[[], Figure]) -> None:
-    """Save a figure with 256 colours, which a drawing of lines does not exceed visibly."""
-    buffer = BytesIO()
-    draw().savefig(buffer, format="png", dpi=170)
-    picture = Image.open(buffer).convert("RGB").quantize(256, dither=Image.Dither.NONE)
-    picture.save(FOLDER / f"{draw.__name__}.png", optimize=True)
-    print(draw.__name__)
 
 
 DRAWINGS = (levels, twist, path, responses, dissipation)
 
 if __name__ == "__main__":
-    FOLDER.mkdir(parents=True, exist_ok=True)
     for drawing in DRAWINGS:
-        save(drawing)
+        save(drawing(), FOLDER / f"{drawing.__name__}.png")

@@ -4,7 +4,6 @@ Run it with `python docs/figures/notation.py`; it takes seconds.
 """
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,8 +11,9 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Circle, Polygon, Rectangle
+from saving import STATIC, save
 
-TARGET = Path(__file__).parents[1] / "_static" / "notation"
+TARGET = STATIC / "notation"
 
 # Radius, height of the centre of mass and height; the tilt and the azimuth that are drawn [rad].
 R, MASS_HEIGHT, H = 0.32, 1.0, 2.0
@@ -181,4 +181,4 @@ if __name__ == "__main__":
     with rc_context(SETTINGS):
         figure = draw()
         figure.savefig(TARGET.with_suffix(".svg"), metadata={"Date": None})
-        figure.savefig(TARGET.with_suffix(".png"), dpi=204)
+        save(figure, TARGET.with_suffix(".png"))

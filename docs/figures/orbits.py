@@ -4,16 +4,15 @@ Run it with `python docs/figures/orbits.py`; it takes two minutes on one core. T
 c = η = 0.1, in its units.
 """
 
-from pathlib import Path
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from saving import STATIC, save
 
 import stylobate as sb
 
-FOLDER = Path(__file__).parents[1] / "_static" / "orbits"
+FOLDER = STATIC / "orbits"
 C = ETA = 0.1
 MODEL = sb.Slender(sb.Column.dimensionless(slenderness=C), damping=ETA)
 
@@ -79,13 +78,13 @@ def response() -> Figure:
             draw_family(axes, symmetric, BLUE, "symmetric rolling", tilt)
             draw_family(axes, born, ORANGE, "asymmetric rolling", tilt)
             bold = np.where(steady.stable, averaged, np.nan)
-            axes.plot(theta, averaged, color="black", linewidth=0.8, linestyle=":")
-            axes.plot(theta, bold, color="black", linewidth=2.0, linestyle=":", label="averaged")
+            axes.plot(theta, averaged, color="black", linewidth=0.6, linestyle=":")
+            axes.plot(theta, bold, color="black", linewidth=1.4, linestyle=":", label="averaged")
             axes.set_xlim(low, high)
-        panels[0, column].set_title(f"$a_1 = {acceleration}$ g", fontsize=10)
-        panels[1, column].set_xlabel("frequency of the base $\\theta = \\Omega/\\omega_0$")
-    panels[0, 0].set_ylabel("mean tilt over $c$")
-    panels[1, 0].set_ylabel("largest tilt over $c$")
+        panels[0, column].set_title(f"$a_1/g = {acceleration}$", fontsize=10)
+        panels[1, column].set_xlabel("base frequency $\\Omega/\\omega_0$")
+    panels[0, 0].set_ylabel("mean tilt $\\theta/c$")
+    panels[1, 0].set_ylabel("peak tilt $\\theta/c$")
     names = {"pitchfork": "pitchfork", "period doubling": "period doubling", "Neimark-Sacker": "Neimark–Sacker"}
     for kind, name in names.items():
         panels[0, 1].plot([], [], marker=MARKS[kind], color="black", markersize=5.0, linestyle="none", label=name)
@@ -104,20 +103,20 @@ def paths() -> Figure:
         axes.plot(np.cos(angle), np.sin(angle), color=GREY, linewidth=0.8, linestyle=":")
         axes.plot(0.0, 0.0, marker="+", color="black", markersize=7.0)
         axes.set_aspect("equal")
-        axes.set_xlabel("tilt $\\alpha_1$ over $c$, along the base motion")
+        axes.set_xlabel("tilt $\\theta_x/c$, along the base motion")
     before.plot(*closed_path(symmetric, 1.12), color=BLUE, linewidth=2.4)
-    before.set_title("$\\theta = 1.12$: one orbit, stable", fontsize=10)
+    before.set_title("$\\Omega/\\omega_0 = 1.12$: one orbit, stable", fontsize=10)
     unstable = {"color": BLUE, "linewidth": 1.0, "linestyle": (0, (4, 2))}
     after.plot(*closed_path(symmetric, 1.07), **unstable, label="symmetric, unstable")
     for opposite, colour, style, name in (
         (False, ORANGE, "-", "asymmetric, stable"),
-        (True, GREEN, (0, (6, 1.2)), "its image, stable"),
+        (True, GREEN, (0, (6, 1.2)), "its mirror image, stable"),
     ):
         born = sb.orbits.switch_branch(pitchfork, bounds=(0.9, 2.5), opposite=opposite)
         after.plot(*closed_path(born, 1.07), color=colour, linewidth=2.2, linestyle=style, label=name)
-    after.set_title("$\\theta = 1.07$: three orbits", fontsize=10)
+    after.set_title("$\\Omega/\\omega_0 = 1.07$: three orbits", fontsize=10)
     after.legend(fontsize=7.5, frameon=False, loc="lower center", bbox_to_anchor=(0.5, 0.08))
-    before.set_ylabel("tilt $\\alpha_2$ over $c$")
+    before.set_ylabel("tilt $\\theta_y/c$")
     return figure
 
 
@@ -166,8 +165,8 @@ def curves() -> Figure:
         linewidth=1.6,
         label="line $a_1$, averaged",
     )
-    left.set_xlabel("frequency of the base $\\theta = \\Omega/\\omega_0$")
-    left.set_ylabel("amplitude of the base acceleration [g]")
+    left.set_xlabel("base frequency $\\Omega/\\omega_0$")
+    left.set_ylabel("amplitude $a_0/g$, $a_1/g$ of the base acceleration")
     left.set_xlim(0.4, 3.7)
     left.set_ylim(0.0, 0.4)
     left.legend(fontsize=8, frameon=False, loc="lower right")
@@ -197,8 +196,8 @@ def curves() -> Figure:
     right.indicate_inset_zoom(inset, edgecolor="black", alpha=0.4)
     right.set_xlim(0.85, 2.15)
     right.set_ylim(0.0, 0.0835)
-    right.set_xlabel("frequency of the base $\\theta = \\Omega/\\omega_0$")
-    right.set_ylabel("$a_2$ [g] of an ellipse with $a_1 = 0.08$ g")
+    right.set_xlabel("base frequency $\\Omega/\\omega_0$")
+    right.set_ylabel("$a_2/g$ of an ellipse with $a_1/g = 0.08$")
     right.legend(fontsize=8, frameon=False, loc="upper left")
     return figure
 
@@ -220,7 +219,7 @@ def boundary_ellipse() -> Figure:
     """Boundary of stable rolling as an ellipse opens."""
     return sb.plot(
         sb.studies.stability_boundary(
-            MODEL, ellipse(0.04), parameter="amplitude_y", bounds=(0.0, 0.08), angular_frequency=(0.9, 1.7)
+            MODEL, ellipse(0.04), parameter="amplitude_y", bounds=(0.0, 0.08), angular_frequency=(0.9, 1.6)
         )
     )
 
@@ -253,8 +252,8 @@ def sweeps() -> Figure:
     draw_sweep(left, swept, down="slow sweep down", up="slow sweep up")
     left.set_xlim(1.53, 1.73)
     left.set_ylim(0.6, 1.2)
-    left.set_xlabel("frequency of the base $\\theta = \\Omega/\\omega_0$")
-    left.set_ylabel("largest tilt over $c$")
+    left.set_xlabel("base frequency $\\Omega/\\omega_0$")
+    left.set_ylabel("peak tilt $\\theta/c$")
 
     start = sb.orbits.periodic_orbit(MODEL, line(0.03, 3.0))
     family = sb.orbits.continue_branch(start, "acceleration", bounds=(0.004, 0.031))
@@ -272,8 +271,8 @@ def sweeps() -> Figure:
     )
     draw_sweep(right, swept, down="slow sweep down", up="and up again")
     right.set_ylim(-0.01, 0.2)
-    right.set_ylabel("largest tilt over $c$")
-    right.set_xlabel("amplitude of the base acceleration $a_1$ [g]")
+    right.set_ylabel("peak tilt $\\theta/c$")
+    right.set_xlabel("amplitude of the base acceleration $a_1/g$")
     for axes in (left, right):
         axes.legend(fontsize=8, frameon=False, loc="upper right")
     return figure
@@ -326,16 +325,14 @@ def chaos() -> Figure:
         points = section["section_tilt"].to_numpy()[0] / C
         axes.plot(*points.T, ".", color=BLUE, markersize=1.6, markeredgewidth=0.0)
         axes.plot(*(np.array(orbit.tilt) / C), "+", color="black", markersize=8)
-        axes.set_title(f"$\\theta = {value:g}$", fontsize=10)
-        axes.set_xlabel("tilt $\\alpha_1$ over $c$")
-        axes.set_ylabel("tilt $\\alpha_2$ over $c$")
+        axes.set_title(f"$\\Omega/\\omega_0 = {value:g}$", fontsize=10)
+        axes.set_xlabel("tilt $\\theta_x/c$")
+        axes.set_ylabel("tilt $\\theta_y/c$")
     return figure
 
 
 DRAWINGS = (response, paths, curves, exact, boundary_line, boundary_ellipse, averaging, sweeps, chaos)
 
 if __name__ == "__main__":
-    FOLDER.mkdir(parents=True, exist_ok=True)
     for draw in DRAWINGS:
-        draw().savefig(FOLDER / f"{draw.__name__}.png", dpi=150)
-        print(draw.__name__)
+        save(draw(), FOLDER / f"{draw.__name__}.png")

@@ -3,17 +3,13 @@
 Run it with `python docs/figures/shaking.py`; it takes a minute or two on one core.
 """
 
-from collections.abc import Callable
-from io import BytesIO
-from pathlib import Path
-
 import numpy as np
 from matplotlib.figure import Figure
-from PIL import Image
+from saving import STATIC, save
 
 import stylobate as sb
 
-FOLDER = Path(__file__).parents[1] / "_static" / "shaking"
+FOLDER = STATIC / "shaking"
 
 MODEL = sb.Slender(sb.Column.solid(radius=0.4, height=4.0, density=2700.0), damping=0.03)
 QUAKES = sb.records.EvolvingNoise(
@@ -71,18 +67,8 @@ def fragility() -> Figure:
     return sb.plot(fits.isel(limit_state=[1, 2, 4]))
 
 
-def save(draw: Callable[[], Figure]) -> None:
-    """Save a figure with 256 colours, which a drawing of lines does not exceed visibly."""
-    buffer = BytesIO()
-    draw().savefig(buffer, format="png", dpi=130)
-    picture = Image.open(buffer).convert("RGB").quantize(256, dither=Image.Dither.NONE)
-    picture.save(FOLDER / f"{draw.__name__}.png", optimize=True)
-    print(draw.__name__)
-
-
 DRAWINGS = (analysis, robust, directions, bias, fragility)
 
 if __name__ == "__main__":
-    FOLDER.mkdir(parents=True, exist_ok=True)
     for drawing in DRAWINGS:
-        save(drawing)
+        save(drawing(), FOLDER / f"{drawing.__name__}.png")

@@ -3,17 +3,13 @@
 Run it with `python docs/figures/sliding.py`; it takes a minute or two on one core.
 """
 
-from collections.abc import Callable
-from io import BytesIO
-from pathlib import Path
-
 import numpy as np
 from matplotlib.figure import Figure
-from PIL import Image
+from saving import STATIC, save
 
 import stylobate as sb
 
-FOLDER = Path(__file__).parents[1] / "_static" / "sliding"
+FOLDER = STATIC / "sliding"
 COLUMN = sb.Column.dimensionless(slenderness=0.1)
 ETA = 0.1
 
@@ -76,18 +72,8 @@ def drift() -> Figure:
     return sb.plot(found)
 
 
-def save(draw: Callable[[], Figure]) -> None:
-    """Save a figure with 256 colours, which a drawing of lines does not exceed visibly."""
-    buffer = BytesIO()
-    draw().savefig(buffer, format="png", dpi=130)
-    picture = Image.open(buffer).convert("RGB").quantize(256, dither=Image.Dither.NONE)
-    picture.save(FOLDER / f"{draw.__name__}.png", optimize=True)
-    print(draw.__name__)
-
-
 DRAWINGS = (run, gentle, hard, start, drift)
 
 if __name__ == "__main__":
-    FOLDER.mkdir(parents=True, exist_ok=True)
     for drawing in DRAWINGS:
-        save(drawing)
+        save(drawing(), FOLDER / f"{drawing.__name__}.png")

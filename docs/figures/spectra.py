@@ -3,14 +3,13 @@
 Run it with `python docs/figures/spectra.py`.
 """
 
-from pathlib import Path
-
 import numpy as np
 import xarray as xr
+from saving import STATIC, save
 
 import stylobate as sb
 
-FOLDER = Path(__file__).parents[1] / "_static" / "spectra"
+FOLDER = STATIC / "spectra"
 STONE = sb.Column.solid(radius=0.5, height=5.0, density=2000.0)
 
 
@@ -46,7 +45,5 @@ def rocking() -> xr.Dataset:
 
 
 if __name__ == "__main__":
-    FOLDER.mkdir(parents=True, exist_ok=True)
     for study in (pulse, one, record, rocking):
-        sb.plot(study()).savefig(FOLDER / f"{study.__name__}.png", dpi=110)
-        print(study.__name__)
+        save(sb.plot(study()), FOLDER / f"{study.__name__}.png")

@@ -134,7 +134,7 @@ def test_its_figure_draws_stable_parts_bold_and_marks_where_friction_ends_rollin
     marks = [line for line in tilt.lines if line.get_marker() not in ("None", "") and len(line.get_xdata()) == 1]
     at = sorted(float(line.get_xdata()[0]) for line in marks)
     np.testing.assert_allclose(at, gentle["rolling_to"].to_numpy()[:-1], rtol=1e-2)
-    assert plane.get_xlabel() == "angular frequency of the base [rad/s]"
+    assert plane.get_xlabel() == r"base frequency $\Omega/\omega_0$"
     dashed = [line for line in tilt.lines if line.get_linestyle() == "--" and np.isfinite(line.get_ydata()).any()]
     assert dashed
     assert max(line.get_linewidth() for line in dashed) < 1.0

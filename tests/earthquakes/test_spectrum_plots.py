@@ -77,7 +77,7 @@ def test_bands_of_a_pulse_stand_over_the_frequency_ratio_in_units_of_g_tan_alpha
     drawn = boxes(axes, DARK)
     np.testing.assert_allclose(drawn, [box for box in sorted(expected) if box[3] > box[2]], rtol=1e-12)
     assert axes.get_xlabel() == "ω / p"
-    assert axes.get_ylabel() == "peak base acceleration / (g tan α)"
+    assert axes.get_ylabel() == r"peak base acceleration $a/(c\,g)$"
     assert axes.get_ylim() == pytest.approx((1.0 * unit[0], 5.0 * unit[0]))
 
 
@@ -115,7 +115,7 @@ def test_a_record_is_drawn_by_its_scale_over_the_size_a_panel_for_each_slenderne
     assert first.get_xlabel() == second.get_xlabel() == "size 2R [m]"
     assert first.get_ylabel() == "factor of the base motion"
     assert first.get_xscale() == "log"
-    assert "peak acceleration g tan α" in legend_of(figure)
+    assert r"peak acceleration $c\,g$" in legend_of(figure)
     np.testing.assert_allclose(first.lines[-1].get_ydata(), 0.1 / 0.3)
 
 
@@ -133,7 +133,7 @@ def test_bands_of_one_column_lie_along_the_amplitude_with_the_peak_tilts_between
     (patch,) = [one for one in axes.patches if np.allclose(one.get_facecolor()[:3], DARK)]
     corners = patch.get_path().vertices
     np.testing.assert_allclose([corners[:, 0].min(), corners[:, 0].max()], [2.0 * unit, 3.0 * unit], rtol=1e-12)
-    assert axes.get_xlabel() == "peak base acceleration / (g tan α)"
+    assert axes.get_xlabel() == r"peak base acceleration $a/(c\,g)$"
     assert "ω / p = 5" in axes.get_title(loc="left")
     (tilts,) = [line for line in axes.lines if line.get_marker() == "." and len(line.get_xdata()) == 5]
     expected = np.array([0.01, np.nan, np.nan, 0.04, np.nan]) / float(found["tipping_angle"])
@@ -143,7 +143,7 @@ def test_bands_of_one_column_lie_along_the_amplitude_with_the_peak_tilts_between
 
 def test_a_single_value_of_a_parameter_is_drawn_as_one_column():
     (axes,) = sb.plot(bands({"size": [2.0], "damping": [0.1]}, PATTERN)).axes
-    assert axes.get_ylabel() == "peak tilt / α"
+    assert axes.get_ylabel() == r"peak tilt $\theta/\alpha_c$"
 
 
 @pytest.mark.parametrize("over", [None, {"size": [1.0, 2.0, 4.0]}])
@@ -179,7 +179,7 @@ def rocking():
     codes = np.where(np.isnan(peaks), FALLEN, SAFE)
     period = 2.0 * np.pi / cases.over_axes(cases.numbers["frequency_parameter"])
     data = {
-        "peak_tilt_ratio": (dims, peaks, {"long_name": "peak tilt / α", "units": "1"}),
+        "peak_tilt_ratio": (dims, peaks, {"long_name": "peak tilt / α_c", "units": "1"}),
         "peak_rate_ratio": (dims, 2.0 * peaks, {"long_name": "peak rate of tilt / p", "units": "rad"}),
         "outcome": (dims, codes),
         "uncertain": (dims, np.zeros((3, 2), dtype=bool)),
@@ -192,7 +192,7 @@ def test_a_rocking_spectrum_is_drawn_against_the_period(rocking):
     figure = sb.plot(rocking)
     above, below = figure.axes
     assert below.get_xlabel() == "period 2π/p [s]"
-    assert above.get_ylabel() == "peak tilt / α"
+    assert above.get_ylabel() == r"peak tilt / $α_c$"
     curves = [line for line in above.lines if len(line.get_xdata()) == 3]
     for place, curve in enumerate(curves):
         np.testing.assert_allclose(curve.get_xdata(), rocking["rocking_period"][:, place])

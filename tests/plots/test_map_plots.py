@@ -11,9 +11,10 @@ from matplotlib.patches import Ellipse, PathPatch
 
 import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
-from stylobate.plots.cells import cell_edges
-from stylobate.plots.classes import KIND_LOOKS, OUTCOME_LOOKS, UNFINISHED, attractor_classes
+from stylobate.plots.cells import cell_edges, draw_cells
+from stylobate.plots.classes import KIND_LOOKS, OUTCOME_LOOKS, UNFINISHED, Look, MapClass, attractor_classes
 from stylobate.plots.labels import axis_label
+from stylobate.plots.style import new_figure
 from stylobate.studies.maps.attractor_search import KINDS
 from stylobate.studies.maps.uncertainty_exponent import exponent_of
 
@@ -194,19 +195,40 @@ def test_fractions_at_a_single_value_are_bars():
     assert axes.get_xticks().tolist() == [0.1]
 
 
-def test_every_band_of_fractions_is_named_inside_the_figure():
-    count = 26
+def rockings(count):
+    """As many attractors that rock, with equal fractions."""
     dims, share = ("damping", "attractor_index"), np.full((2, count), 1.0 / count)
     named = dict.fromkeys(("attractor_kind", "attractor_name"), ("attractor_index", ["rocking"] * count))
-    many = a_share([0.1, 0.2])[["computed", "unsettled"]].assign(
+    return a_share([0.1, 0.2])[["computed", "unsettled"]].assign(
         dict.fromkeys(("fraction", "fraction_low", "fraction_high"), (dims, share)) | named
     )
-    figure = sb.plot(many)
+
+
+def test_every_band_of_fractions_is_named_inside_the_figure():
+    count = 14
+    figure = sb.plot(rockings(count))
     figure.canvas.draw()
     (legend,) = figure.legends
     box, whole = legend.get_window_extent(), figure.bbox
     assert len(legend.get_texts()) == count + 1
     assert whole.y0 <= box.y0 < box.y1 <= whole.y1
+
+
+def test_many_narrow_bands_of_a_kind_are_one():
+    figure = sb.plot(rockings(26))
+    assert legend_of(figure)[1:] == ["rocking, 26"]
+    (band,) = [one for one in figure.axes[0].collections if one.get_paths()]
+    assert band.get_paths()[0].vertices[:, 1].max() == pytest.approx(1.0)
+
+
+def test_on_a_fine_map_textures_are_left_out_where_classes_mix():
+    axes = new_figure(3.0).subplots()
+    codes = np.zeros((80, 80), dtype=int)
+    codes[:, 40:] = np.arange(80)[:, None] % 2  # mixed on the right
+    looks = [MapClass(0, "one", Look("#ffffff", "///")), MapClass(1, "other", Look("#000000", "..."))]
+    draw_cells(axes, np.arange(80.0), np.arange(80.0), codes, looks)
+    (texture,) = axes.patches
+    assert texture.get_path().vertices[:, 0].max() < 41.0
 
 
 def test_what_has_not_settled_looks_like_what_still_moves():

@@ -34,8 +34,8 @@ def test_a_sweep_is_drawn_in_the_directions_in_which_it_went(swept):
     assert up.get_xdata().tolist() == [1.8, 1.9, 2.0]
     np.testing.assert_array_equal(down.get_ydata(), swept["mean_tilt"].values[:3, 0])
     assert texts(tilts.get_legend())[:3] == ["sweep 1, downward", "sweep 1, upward", "sweep 2, downward"]
-    assert tilts.get_ylabel() == "tilt [rad]"
-    assert turns.get_xlabel() == "angular frequency [rad/s]"
+    assert tilts.get_ylabel() == r"tilt $\theta$ [rad]"
+    assert turns.get_xlabel() == r"base frequency $\Omega/\omega_0$"
     np.testing.assert_array_equal(turns.lines[1].get_ydata(), swept["turns_per_period"].values[2:, 0])
 
 
@@ -66,8 +66,8 @@ def test_a_section_shows_the_points_of_each_run_with_units():
     found = sb.studies.poincare_section(MODEL, MOTION, tilt=tilt, tilt_rate=start["tilt_rate"], periods=50, skip=40)
     figure = sb.plot(found)
     first, second = figure.axes
-    assert first.get_xlabel() == "tilt along x [rad]"
-    assert second.get_ylabel() == "rate of tilt along y [rad/s]"
+    assert first.get_xlabel() == r"tilt $\theta_x$ [rad]"
+    assert second.get_ylabel() == r"tilt rate $\dot\theta_y$ [$\omega_0$]"
     for run in range(2):
         np.testing.assert_array_equal(first.lines[run].get_xydata(), found["section_tilt"].values[run])
         np.testing.assert_array_equal(second.lines[run].get_xydata(), found["section_tilt_rate"].values[run])
@@ -81,12 +81,13 @@ def test_exponents_are_drawn_as_they_settle_with_their_errors_in_the_legend():
     figure = sb.plot(found)
     (axes,) = figure.axes
     np.testing.assert_array_equal(axes.lines[1].get_ydata(), found["running"].values[:, 0])
-    assert axes.get_title(loc="left") == "sum −0.2 /s"
-    assert axes.get_ylabel() == "Lyapunov exponent so far [1/s]"
+    assert axes.get_title(loc="left") == r"sum −0.2 $\omega_0$"
+    assert axes.get_ylabel() == r"Lyapunov exponent so far [$\omega_0$]"
     names = texts(figure.legends[0])
     assert len(names) == 4
     # As many places as the error has, and that with two digits.
-    value, error = (float(part) for part in names[0].replace("−", "-").split("= ")[1].removesuffix(" /s").split(" ± "))
+    shown = names[0].replace("−", "-").split("= ")[1].removesuffix(r" $\omega_0$")
+    value, error = (float(part) for part in shown.split(" ± "))
     assert value == pytest.approx(float(found["lyapunov_exponent"][0]), abs=0.1 * float(found["error"][0]))
     assert error == pytest.approx(float(found["error"][0]), rel=0.06)
 

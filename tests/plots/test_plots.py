@@ -22,7 +22,8 @@ def run():
 def test_a_run_shows_tilt_azimuth_and_orbit_with_units(run):
     figure = sb.plot(run)
     labels = {axes.get_ylabel() for axes in figure.axes} | {axes.get_xlabel() for axes in figure.axes}
-    assert {"tilt angle A [rad]", "azimuth β [turns]", "|base acc.| [m/s²]", "tilt α₁ [rad]", "time [s]"} <= labels
+    tilt = {r"tilt $\theta$ [rad]", r"azimuth $\beta$ [turns]", r"tilt $\theta_x$ [rad]", r"tilt $\theta_y$ [rad]"}
+    assert tilt | {"base acceleration $a/g$", r"time $\omega_0 t$"} <= labels
     drawn = figure.axes[0].lines[0].get_xydata()
     np.testing.assert_array_equal(drawn[:, 1], run.data["amplitude"])
     circles = [patch for axes in figure.axes for patch in axes.patches if isinstance(patch, Circle)]
@@ -48,7 +49,7 @@ def test_several_runs_are_compared_with_a_legend(run):
 def test_a_released_and_overturned_column_is_marked():
     motion = sb.Harmonic.straight(acceleration=0.15, angular_frequency=1.0, start_phase=-1.2)
     figure = sb.plot(sb.simulate(MODEL, motion, duration=60.0))
-    assert {"released", "overturned"} <= {text.get_text() for text in figure.axes[0].texts}
+    assert {"uplift", "overturned"} <= {text.get_text() for text in figure.axes[0].texts}
 
 
 def test_stable_parts_are_bold_and_meet_the_thin_ones():

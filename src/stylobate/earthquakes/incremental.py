@@ -296,7 +296,7 @@ def tilt_ratios(runs: xr.Dataset, slenderness: float | xr.DataArray) -> xr.DataA
     decided = ~codes.isin([NOT_COMPUTED, *UNRESOLVED])
     ratio = (runs["largest_tilt"] / np.arctan(slenderness)).where(decided)
     ratio = ratio.where(codes != Outcome.OVERTURNED, np.inf)
-    return ratio.assign_attrs(units="1", long_name="largest tilt over α")
+    return ratio.assign_attrs(units="1", long_name="peak tilt / α_c")
 
 
 def without_vertical(motion: BaseMotion) -> BaseMotion:

@@ -277,8 +277,8 @@ def _as_dataset(
             **one, long_name="share of the changes that flip the verdict"
         ),
         repeatable=(~overturning.any("change")).assign_attrs(long_name="no change flips overturning"),
-        tilt_ratio_low=peaks.min("change").assign_attrs(**one, long_name="least peak tilt over α"),
-        tilt_ratio_high=peaks.max("change").assign_attrs(**one, long_name="largest peak tilt over α"),
+        tilt_ratio_low=peaks.min("change").assign_attrs(**one, long_name="least peak tilt / α_c"),
+        tilt_ratio_high=peaks.max("change").assign_attrs(**one, long_name="largest peak tilt / α_c"),
         tilt_dispersion=logs.std(dim="change", ddof=1).assign_attrs(**one, long_name="scatter of ln(peak tilt)"),
         change_of=("change", [change.of.value for change in changes]),
     ).assign_attrs(kind="robustness", scale=scale)

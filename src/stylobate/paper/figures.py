@@ -46,11 +46,11 @@ def sketch() -> Figure:
     for text, place in (
         ("centre of mass, at the height h on the axis", (centre[0] + 0.85, centre[1] - 0.05)),
         ("contact point on the rim, radius r", (0.1, -0.36)),
-        ("θ", (foot[0] + 0.42, foot[1] + height * 1.08)),
+        (r"$\theta$", (foot[0] + 0.42, foot[1] + height * 1.08)),
     ):
         side.annotate(text, place, fontsize=8)
-    side.annotate("", (1.8, -0.75), (0.7, -0.75), arrowprops={"arrowstyle": "->", "color": BLACK})
-    side.annotate("acceleration of the base", (-1.2, -0.82), fontsize=8)
+    side.annotate("acceleration of the base", (-1.6, -0.75), fontsize=8, va="center")
+    side.annotate("", (2.6, -0.75), (1.5, -0.75), arrowprops={"arrowstyle": "-|>", "color": BLACK, "linewidth": 1.6})
     angle = 0.9
     above.add_patch(Circle((0.0, 0.0), 1.0, fill=False, color=BLACK, linewidth=1.2))
     above.plot([-1.3, 1.3], [0.0, 0.0], color=GREY, linewidth=0.9)
@@ -59,7 +59,12 @@ def sketch() -> Figure:
     above.plot(np.cos(angle), np.sin(angle), "o", color=VERMILION)
     arc = np.linspace(0.0, angle, 30)
     above.plot(0.45 * np.cos(arc), 0.45 * np.sin(arc), color=BLACK, linewidth=0.9)
-    for text, place in (("β", (0.5, 0.2)), ("θ", (0.3, 0.62)), ("x", (1.32, -0.05)), ("y", (-0.06, 1.36))):
+    for text, place in (
+        (r"$\beta$", (0.5, 0.2)),
+        (r"$\theta$", (0.24, 0.62)),
+        ("$x$", (1.34, -0.06)),
+        ("$y$", (-0.1, 1.38)),
+    ):
         above.annotate(text, place, fontsize=9)
     for axes, limits in ((side, (-1.7, 4.1, -1.0, 3.8)), (above, (-1.5, 1.6, -1.4, 1.6))):
         axes.set_aspect("equal")
@@ -84,8 +89,8 @@ def figure_2(response: xr.Dataset, straight: xr.Dataset | None = None) -> Figure
         _draw_full_motion(axes, straight)
     _name_amplitudes(axes, response, 1.0 if straight is None else 2.0)
     axes.legend(loc="upper right")
-    axes.set_xlabel("frequency ratio ν = Ω/ω₀")
-    axes.set_ylabel("tilt angle θ [rad]" if straight is None else "tilt angle θ, averaged [rad]")
+    axes.set_xlabel(r"frequency ratio $\nu = \Omega/\omega_0$")
+    axes.set_ylabel(r"tilt angle $\theta$ [rad]" if straight is None else r"tilt angle $\theta$, averaged [rad]")
     axes.set_xlim(0.0, 4.1)
     axes.set_ylim(0.0, 0.172)
     return figure
@@ -105,8 +110,8 @@ def figure_3(response: xr.Dataset, *, averaged: bool) -> Figure:
     set_phase_axis(axes)
     _name_amplitudes(axes, response, 2.0 if averaged else 1.0)
     axes.legend(loc="center right")
-    axes.set_xlabel("frequency ratio ν = Ω/ω₀")
-    axes.set_ylabel("phase ψ, averaged [rad]" if averaged else "phase ψ [rad]")
+    axes.set_xlabel(r"frequency ratio $\nu = \Omega/\omega_0$")
+    axes.set_ylabel(r"phase $\psi$, averaged [rad]" if averaged else r"phase $\psi$ [rad]")
     axes.set_xlim(0.0, float(response["nu"][-1]))
     return figure
 
@@ -125,11 +130,11 @@ def backbones(data: xr.Dataset) -> Figure:
     for orbit in data["orbit"].to_numpy():
         part = data.sel(orbit=orbit)
         draw_branch(axes, nu, part["planar"], part["planar_stable"], color=VERMILION)
-    axes.plot([], [], color=BLUE, linewidth=STABLE_WIDTH, label=f"rolling on a circle, a0 = {data.attrs['a0']:g}")
-    axes.plot([], [], color=VERMILION, linewidth=STABLE_WIDTH, label=f"planar rocking, a1 = {data.attrs['a1']:g}")
+    axes.plot([], [], color=BLUE, linewidth=STABLE_WIDTH, label=f"rolling on a circle, $a_0$ = {data.attrs['a0']:g}")
+    axes.plot([], [], color=VERMILION, linewidth=STABLE_WIDTH, label=f"planar rocking, $a_1$ = {data.attrs['a1']:g}")
     axes.plot([], [], color=BLACK, linewidth=UNSTABLE_WIDTH, label="thin: unstable (rocking: within its plane)")
     axes.legend()
-    axes.set_xlabel("frequency ratio ν, ω")
+    axes.set_xlabel(r"frequency ratio $\nu$, $\omega/\omega_0$")
     axes.set_ylabel("largest tilt angle [rad]")
     axes.set_ylim(0.0, 1.2 * data.attrs["c"])
     return figure
@@ -147,11 +152,11 @@ def averaging(data: xr.Dataset) -> Figure:
         )
         overturned = bool(np.isnan(data[f"full_{k}"]).any())
         fate = "averaged motion stable, the column overturns" if overturned else "averaging follows the mean"
-        axes.set_title(f"a1 = {a1:g}, ν = {nu:g}: {fate}")
-        axes.set_ylabel("tilt angle θ [rad]")
+        axes.set_title(rf"$a_1$ = {a1:g}, $\nu$ = {nu:g}: {fate}")
+        axes.set_ylabel(r"tilt angle $\theta$ [rad]")
         axes.set_ylim(0.0, 2.2 * data.attrs["c"] if overturned else None)
         axes.legend(loc="upper right")
-    axes.set_xlabel("time τ")
+    axes.set_xlabel(r"time $\tau = \omega_0 t$")
     return figure
 
 
@@ -161,7 +166,7 @@ def modulated(data: xr.Dataset) -> Figure:
     figure = new_figure(3.6)
     history, cycle = figure.add_subplot(1, 2, 1), figure.add_subplot(1, 2, 2)
     for k, nu in enumerate(data.attrs["nu"]):
-        line: dict[str, Any] = {"color": PALETTE[k], "linestyle": DASHES[k], "label": f"ν = {nu:g}"}
+        line: dict[str, Any] = {"color": PALETTE[k], "linestyle": DASHES[k], "label": rf"$\nu$ = {nu:g}"}
         tau, tilt, phase = (data[f"{name}_{k}"].to_numpy() for name in ("tau", "amplitude", "phase"))
         turns = np.concatenate([tau[:-1] + n * tau[-1] for n in range(3)])
         history.plot(turns, np.tile(tilt[:-1], 3), **line)
@@ -169,13 +174,13 @@ def modulated(data: xr.Dataset) -> Figure:
         psi = float(data[f"steady_phase_{k}"])
         cycle.plot(np.cos(psi), np.sin(psi), marker="+", color=PALETTE[k])
     history.axhline(1.0, color=GREY, linewidth=0.9, linestyle=_LIMIT)
-    history.set_xlabel("time τ")
-    history.set_ylabel("tilt over that of steady rolling, θ/θ₊")
+    history.set_xlabel(r"time $\tau = \omega_0 t$")
+    history.set_ylabel(r"tilt over that of steady rolling, $\theta/\theta_+$")
     history.set_ylim(bottom=0.3)
     history.legend(loc="lower center", ncols=3, columnspacing=1.0, handlelength=1.6)
     cycle.set_aspect("equal", adjustable="box")
-    cycle.set_xlabel("θ cos ψ / θ₊")
-    cycle.set_ylabel("θ sin ψ / θ₊")
+    cycle.set_xlabel(r"$\theta\,\cos\psi/\theta_+$")
+    cycle.set_ylabel(r"$\theta\,\sin\psi/\theta_+$")
     cycle.set_title("frame of the base; + steady, unstable")
     return figure
 
@@ -193,14 +198,14 @@ def runaway(data: xr.Dataset) -> Figure:
     shown = data.isel(offset=0)
     path.plot(shown["tilt"].sel(axis="x") / c, shown["tilt"].sel(axis="y") / c, color=PALETTE[0], linewidth=0.9)
     path.add_patch(Circle((0.0, 0.0), 1.0, fill=False, color=GREY, linestyle=_LIMIT))
-    azimuth.set_xlabel("time τ")
-    azimuth.set_ylabel("azimuth β [half turns]")
+    azimuth.set_xlabel(r"time $\tau = \omega_0 t$")
+    azimuth.set_ylabel(r"azimuth $\beta$ [half turns]")
     azimuth.set_ylim(-1.5, 13.5)
-    azimuth.legend(title="sideways rate at the start, in c", loc="upper left", ncols=2)
+    azimuth.legend(title="sideways rate at the start, in $c$", loc="upper left", ncols=2)
     path.set_aspect("equal", adjustable="datalim")
-    path.set_xlabel("θx/c")
-    path.set_ylabel("θy/c")
-    path.set_title(f"path with sideways rate {float(data['offset'][0]):g}c")
+    path.set_xlabel(r"tilt $\theta_x/c$")
+    path.set_ylabel(r"tilt $\theta_y/c$")
+    path.set_title(f"path with sideways rate {float(data['offset'][0]):g} $c$")
     return figure
 
 
@@ -210,10 +215,12 @@ def critical(data: xr.Dataset) -> Figure:
     figure = new_figure(4.0)
     axes = figure.subplots()
     for k, eta in enumerate(data["eta"].to_numpy()):
-        axes.plot(data["a0"], data["nu"].sel(eta=eta), color=PALETTE[k], linestyle=DASHES[k], label=f"η = {eta:g}")
-    axes.plot(data["a0"][::12], data["undamped"][::12], "o", markersize=3.5, color=BLACK, label="η = 0, closed form")
-    axes.set_xlabel("amplitude of the base acceleration a0 [g]")
-    axes.set_ylabel("critical frequency ν*")
+        line: dict[str, Any] = {"color": PALETTE[k], "linestyle": DASHES[k], "label": rf"$\eta$ = {eta:g}"}
+        axes.plot(data["a0"], data["nu"].sel(eta=eta), **line)
+    dots: dict[str, Any] = {"marker": "o", "linestyle": "none", "markersize": 3.5, "color": BLACK}
+    axes.plot(data["a0"][::12], data["undamped"][::12], label=r"$\eta$ = 0, closed form", **dots)
+    axes.set_xlabel("amplitude of the base acceleration $a_0/g$")
+    axes.set_ylabel(r"critical frequency $\nu^*$")
     axes.set_xlim(0.0, float(data["a0"][-1]))
     axes.set_ylim(0.0, None)
     axes.annotate("rolling stable above its curve", (0.3, 0.9), xycoords="axes fraction", color=GREY)
@@ -234,8 +241,8 @@ def pressure(data: xr.Dataset) -> Figure:
     axes.set_aspect("equal")
     axes.set_xlim(-1.15, 1.15)
     axes.set_ylim(-1.15, 1.15)
-    axes.set_xlabel("x / r")
-    axes.set_ylabel("y / r")
+    axes.set_xlabel("$x/r$")
+    axes.set_ylabel("$y/r$")
     axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0))
     return figure
 
@@ -249,9 +256,9 @@ def kicks(data: xr.Dataset) -> Figure:
     axes.semilogx(offset, -kick, "o", color=BLUE, label="integrated")
     middle = len(offset) // 2
     line = -kick[middle] - data.attrs["slope"] * np.log(offset / offset[middle])
-    axes.semilogx(offset, line, color=BLACK, linewidth=1.0, label="exact slope 2c/v")
-    axes.set_xlabel("offset y₀ from the vertical at the passage [rad]")
-    axes.set_ylabel("sideways kick −Δẏ/y₀")
+    axes.semilogx(offset, line, color=BLACK, linewidth=1.0, label="exact slope $2c/v$")
+    axes.set_xlabel("offset $y_0$ from the vertical at the passage [rad]")
+    axes.set_ylabel(r"sideways kick $-\Delta\dot y/y_0$")
     axes.legend()
     return figure
 
@@ -273,7 +280,7 @@ def _draw_full_motion(axes: Axes, straight: xr.Dataset) -> None:
 
 
 def _name_amplitudes(axes: Axes, response: xr.Dataset, factor: float) -> None:
-    name = "a0" if factor == 1.0 else "a1"
+    name = "$a_0$" if factor == 1.0 else "$a_1$"
     for index, a0 in enumerate(response["a0"].to_numpy()):
         axes.plot([], [], color=_COLOURS[index], linewidth=STABLE_WIDTH, label=f"{name} = {factor * a0:g}, stable")
         axes.plot([], [], color=_COLOURS[index], linewidth=UNSTABLE_WIDTH, label=f"{name} = {factor * a0:g}, unstable")

@@ -202,7 +202,7 @@ def _draw(check: PaperCheck, target: Path) -> dict[str, list[Picture]]:
     drawn: dict[str, list[Picture]] = {}
     for name, heading, draw, caption in _PICTURES:
         figure = draw(check)
-        write_whole(target / f"{name}.png", png_of(figure, resolution=180))
+        write_whole(target / f"{name}.png", png_of(figure, resolution=200))
         drawn.setdefault(heading, []).append(Picture(figure, caption))
     return drawn
 

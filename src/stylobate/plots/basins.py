@@ -137,8 +137,8 @@ def _draw_orbits(axes: Axes, found: xr.Dataset) -> None:
     if sum(drawn) > 1:
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), borderaxespad=0.0, handlelength=3.2)
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel("tilt α₁ [rad]")
-    axes.set_ylabel("tilt α₂ [rad]")
+    axes.set_xlabel(r"tilt $\theta_x$ [rad]")
+    axes.set_ylabel(r"tilt $\theta_y$ [rad]")
     axes.set_title("orbits, ○ at the strobe")
 
 

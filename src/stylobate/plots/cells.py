@@ -21,6 +21,9 @@ _FRAME = "#555555"
 # Values whose ratios are equal to this part, and whose differences are not, are spaced geometrically.
 _EQUAL = 1e-6
 _LEAST_FOR_SPACING = 3
+# On maps of this many cells or more each way a texture is drawn only where a class fills this fraction of the cells
+# about, within so many of them to each side: elsewhere it would look like noise.
+_FINE, _FILLED, _ABOUT = 60, 0.97, 4
 
 
 def cell_edges(values: npt.ArrayLike) -> Floats:
@@ -65,8 +68,9 @@ def draw_cells(axes: Axes, x: npt.ArrayLike, y: npt.ArrayLike, codes: Integers, 
     shown = np.ma.masked_less(places, 0)
     axes.pcolormesh(x_edges, y_edges, shown, cmap=colours, vmin=-0.5, vmax=len(classes) - 0.5, rasterized=True)
     for place, one in enumerate(classes):
-        if one.look.texture and np.any(places == place):
-            axes.add_patch(_texture(_outline(x_edges, y_edges, places == place), one.look))
+        inside = _coherent(places == place) if one.look.texture else np.zeros((1, 1), dtype=bool)
+        if np.any(inside):
+            axes.add_patch(_texture(_outline(x_edges, y_edges, inside), one.look))
     set_scale(axes, "x", x)
     set_scale(axes, "y", y)
     axes.set_xlim(x_edges[0], x_edges[-1])
@@ -84,6 +88,17 @@ def set_scale(axes: Axes, name: Literal["x", "y"], values: npt.ArrayLike) -> Non
         axis.set_minor_formatter(NullFormatter())
     else:
         axis.set_major_locator(MaxNLocator(nbins=_TICKS, steps=[1, 2, 2.5, 5, 10]))
+
+
+def _coherent(inside: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """Return the cells of a class that lie among others of it, on a fine map; all of them on a coarse one."""
+    if min(inside.shape) < _FINE:
+        return inside
+    window = 2 * _ABOUT + 1
+    padded = np.pad(inside.astype(float), _ABOUT, mode="edge")
+    filled = np.lib.stride_tricks.sliding_window_view(padded, (window, window)).mean(axis=(2, 3)) >= _FILLED
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(filled, _ABOUT), (window, window)).any(axis=(2, 3))
+    return np.asarray(inside & around)
 
 
 def _texture(outline: Path, look: Look) -> PathPatch:

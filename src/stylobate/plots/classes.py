@@ -26,13 +26,14 @@ class Look:
 _CREAM, _LILAC, _SKY, _AMBER, _SEA, _BLUE, _NIGHT = (
     "#F6F1DA", "#DAD2E8", "#74C0EA", "#D58900", "#008B65", "#0063A0", "#1B0B16",
 )  # fmt: skip
-_MAUVE, _GREY, _SAND = "#A4558C", "#767676", "#E5BE8F"
+_MAUVE, _ROSE, _MINT = "#A4558C", "#DDA6CD", "#7CCDB4"
+_GREY, _SAND = "#767676", "#E5BE8F"
 _DARK_INK, _LILAC_INK = "#333333", "#8E7DA3"
 
 _AT_REST, _ROCKING = Look(_CREAM, ink=_DARK_INK), Look(_SKY, ink=_DARK_INK)
 _SLIDING = Look(_SAND, "--", _DARK_INK)
 _ROLLING, _ROLLING_BACK = Look(_AMBER, ink=_DARK_INK), Look(_BLUE, "\\\\\\")
-_MODULATED, _MODULATED_BACK = Look(_SEA, "..."), Look(_SEA, "ooo")
+_MODULATED, _MODULATED_BACK = Look(_SEA, "..."), Look(_MINT, "ooo", _DARK_INK)
 _APERIODIC = Look(_MAUVE, "---")
 _UNSETTLED, _OVERTURNED = Look(_LILAC, "xx", _LILAC_INK), Look(_NIGHT)
 UNFINISHED = Look("#ffffff", "//////", "#b0b0b0")
@@ -62,7 +63,7 @@ KIND_LOOKS = {
     "modulated anticlockwise": _MODULATED,
     "modulated clockwise": _MODULATED_BACK,
     "aperiodic anticlockwise": _APERIODIC,
-    "aperiodic clockwise": replace(_APERIODIC, texture="|||"),
+    "aperiodic clockwise": Look(_ROSE, "|||", _DARK_INK),
     "aperiodic": replace(_APERIODIC, texture="+++"),
     "overturned": _OVERTURNED,
     "tilt limit reached": OUTCOME_LOOKS[Outcome.LIMIT_REACHED],

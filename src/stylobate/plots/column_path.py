@@ -13,6 +13,7 @@ from matplotlib.ticker import MaxNLocator
 
 from stylobate.errors import ParameterError
 from stylobate.plots.axonometry import Cylinder, View
+from stylobate.plots.labels import axis_label, unit_label
 from stylobate.plots.pose import Floats
 from stylobate.plots.shape import Shape
 from stylobate.plots.style import BLACK, BLUE, GREY, SKY, VERMILION, new_figure, styled
@@ -70,14 +71,16 @@ def plot_column_path(
     figure = new_figure(4.6)
     space, plan = figure.subplots(1, 2, width_ratios=(1.0, 1.15))
     low, high = _extent(data, radius)
-    _draw_ground(space, view, low, high)
+    unit = unit_label(run.data["contact_point"])
+    _draw_ground(space, view, low, high, unit)
     _draw_paths_in_space(space, view, data, radius)
     for index, one in enumerate(columns):
         _draw_column(space, view, one, full=index == len(columns) - 1)
-    _draw_height(space, view, low, high, height)
+    _draw_height(space, view, low, high, height, f"{height:.3g} {unit}")
     space.set_aspect("equal")
     space.axis("off")
-    _draw_plan(plan, data, drawn, radius, low, high)
+    _draw_plan(plan, data, drawn, radius, low, high, " s" if unit_label(run.data["time"]) == "s" else "")
+    _name_plan(plan, run)
     figure.legend(*plan.get_legend_handles_labels(), loc="outside lower center", ncols=4)
     return figure
 
@@ -127,8 +130,8 @@ def _on_ground(points: Floats) -> Floats:
     return np.concatenate([points, np.zeros((*points.shape[:-1], 1))], axis=-1)
 
 
-def _draw_ground(axes: Axes, view: View, low: Floats, high: Floats) -> None:
-    """Draw the base as a board with a grid in metres, numbered along its near edges."""
+def _draw_ground(axes: Axes, view: View, low: Floats, high: Floats, unit: str) -> None:
+    """Draw the base as a board with a grid, numbered along its near edges."""
     corners = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]])
     board = view.project(_on_ground(corners))
     axes.add_patch(Polygon(board, facecolor="#f4f4f4", edgecolor=GREY, linewidth=0.8))
@@ -148,7 +151,7 @@ def _draw_ground(axes: Axes, view: View, low: Floats, high: Floats) -> None:
         edge = view.project(_on_ground(middle))
         outwards = edge - centre
         axes.annotate(
-            f"{name} [m]",
+            f"${name}$ [{unit}]",
             (float(edge[0]), float(edge[1])),
             xytext=tuple(26.0 * outwards / np.hypot(*outwards)),
             textcoords="offset points",
@@ -208,18 +211,18 @@ def _draw_column(axes: Axes, view: View, column: Cylinder, *, full: bool) -> Non
         axes.plot(*view.project(column.mark()).T, color=edge, linewidth=width)
 
 
-def _draw_height(axes: Axes, view: View, low: Floats, high: Floats, height: float) -> None:
-    """Draw a rod as high as the column beside it, with its height."""
+def _draw_height(axes: Axes, view: View, low: Floats, high: Floats, height: float, text: str) -> None:
+    """Draw a rod as high as the column beside it, with its height as text."""
     corners = [np.array([x, y]) for x in (low[0], high[0]) for y in (low[1], high[1])]
     left = min(corners, key=lambda corner: float(view.project(_on_ground(corner))[0]))
     foot, top = view.project(np.array([[*left, 0.0], [*left, height]]))
     axes.annotate("", top, xytext=foot, arrowprops={"arrowstyle": "|-|", "linewidth": 0.8, "mutation_scale": 3})
-    axes.annotate(
-        f"{height:.3g} m", (foot + top) / 2.0, xytext=(-5, 0), textcoords="offset points", ha="right", va="center"
-    )
+    axes.annotate(text, (foot + top) / 2.0, xytext=(-5, 0), textcoords="offset points", ha="right", va="center")
 
 
-def _draw_plan(axes: Axes, data: xr.Dataset, drawn: npt.NDArray[Any], radius: float, low: Floats, high: Floats) -> None:
+def _draw_plan(
+    axes: Axes, data: xr.Dataset, drawn: npt.NDArray[Any], radius: float, low: Floats, high: Floats, seconds: str
+) -> None:
     contact, centres = data["contact_point"].to_numpy(), _footprint(data)
     circles: dict[str, Any] = {"fill": False, "edgecolor": GREY, "linewidth": 0.7}
     for at in drawn[:-1]:
@@ -234,7 +237,7 @@ def _draw_plan(axes: Axes, data: xr.Dataset, drawn: npt.NDArray[Any], radius: fl
     for at in drawn:
         if np.all(np.isfinite(contact[at])):
             axes.annotate(
-                f"{float(data['time'][at]):.3g} s",
+                f"{float(data['time'][at]):.3g}{seconds}",
                 tuple(contact[at]),
                 xytext=tuple(14.0 * (contact[at] - centres[at]) / radius),
                 textcoords="offset points",
@@ -246,6 +249,11 @@ def _draw_plan(axes: Axes, data: xr.Dataset, drawn: npt.NDArray[Any], radius: fl
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
     axes.set_aspect("equal")
-    axes.set_xlabel("x [m]")
-    axes.set_ylabel("y [m]")
-    axes.set_title("from above")
+
+
+def _name_plan(axes: Axes, run: Response) -> None:
+    """Name the axes, and the numbers in the plan where they have no unit."""
+    axes.set_xlabel(axis_label(run.data["contact_point"], "$x$"))
+    axes.set_ylabel(axis_label(run.data["contact_point"], "$y$"))
+    own = unit_label(run.data["time"]) != "s"
+    axes.set_title(f"from above, at {axis_label(run.data['time'])}" if own else "from above")

@@ -7,10 +7,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from stylobate.plots.kinds import figure_of
+from stylobate.plots.labels import axis_label
 from stylobate.plots.style import GREY, PALETTE, STABLE_WIDTH, UNSTABLE_WIDTH, new_figure, styled
 
 _DASHED = (0, (4, 2))
-_HEIGHT, _HEIGHT_OF_ONE = 6.6, 4.4
+_HEIGHT, _HEIGHT_OF_ONE, _RATIOS = 6.0, 4.4, (2.2, 1.0)
+# Of theory's curves where they are stable, and where not: thinner than exact ones.
+_THEORY_WIDTHS = 1.5, 0.8
+# Phases that differ by less than this fill their panel.
+_SPREAD = 0.5 * np.pi
 BIFURCATION_MARKS = {
     "fold": ("s", "fold"),
     "pitchfork": ("D", "pitchfork"),
@@ -34,7 +39,7 @@ def plot_exact_response(curves: xr.Dataset) -> Figure:
     """
     phased = bool(np.isfinite(curves["phase"]).any())
     figure = new_figure(_HEIGHT if phased else _HEIGHT_OF_ONE)
-    panels = figure.subplots(1 + phased, 1, sharex=True, squeeze=False)[:, 0]
+    panels = figure.subplots(1 + phased, 1, sharex=True, squeeze=False, height_ratios=_RATIOS[: 1 + phased])[:, 0]
     tilt, quantities = panels[0], ("mean_tilt", "phase")
     for axes, name in zip(panels, ("averaged_amplitude", "averaged_phase"), strict=False):
         _draw_theory(axes, curves, name)
@@ -48,14 +53,25 @@ def plot_exact_response(curves: xr.Dataset) -> Figure:
     _mark(tilt, curves)
     if curves["stable"].any():
         tilt.plot([], [], color="black", linewidth=STABLE_WIDTH, label=f"bold: {stability_of(curves)}")
-    tilt.set_ylabel("mean tilt A [rad]")
+    tilt.set_ylabel(r"mean tilt $\theta$ [rad]")
     tilt.set_ylim(bottom=0.0)
-    panels[-1].set_xlabel("angular frequency of the base [rad/s]")
+    panels[-1].set_xlabel(axis_label(curves["angular_frequency"]))
     if phased:
-        panels[1].set_ylabel("phase ψ [rad]")
-        panels[1].set_yticks([0.0, np.pi / 2.0, np.pi], ["0", "π/2", "π"])
+        panels[1].set_ylabel(r"phase $\psi$ [rad]")
+        _set_phase_axis(panels[1], curves["phase"].to_numpy())
     tilt.legend(fontsize="small")
     return figure
+
+
+def _set_phase_axis(axes: Axes, phase: npt.NDArray[np.float64]) -> None:
+    """Mark 0, π/2 and π, or show the phases of exact orbits enlarged where they hardly differ."""
+    low, high = float(np.nanmin(phase)), float(np.nanmax(phase))
+    if high - low > _SPREAD:
+        axes.set_yticks([0.0, np.pi / 2.0, np.pi], ["0", "π/2", "π"])
+        return
+    room = 0.15 * (high - low) + 0.01
+    axes.set_ylim(low - room, high + room)
+    axes.locator_params(axis="y", nbins=5)
 
 
 def stability_of(found: xr.Dataset) -> str:
@@ -91,9 +107,9 @@ def _draw_theory(axes: Axes, curves: xr.Dataset, name: str) -> None:
     for index in range(curves.sizes["averaged_branch"]):
         y = curves[name][index].to_numpy()
         stable = curves["averaged_stable"][index].to_numpy().astype(bool)
-        axes.plot(x, y, color=GREY, linewidth=UNSTABLE_WIDTH, linestyle=_DASHED)
-        axes.plot(x, np.where(stable, y, np.nan), color=GREY, linewidth=STABLE_WIDTH, linestyle=_DASHED)
-    axes.plot([], [], color=GREY, linewidth=STABLE_WIDTH, linestyle=_DASHED, label=label)
+        axes.plot(x, y, color=GREY, linewidth=_THEORY_WIDTHS[1], linestyle=_DASHED)
+        axes.plot(x, np.where(stable, y, np.nan), color=GREY, linewidth=_THEORY_WIDTHS[0], linestyle=_DASHED)
+    axes.plot([], [], color=GREY, linewidth=_THEORY_WIDTHS[0], linestyle=_DASHED, label=label)
 
 
 def _mark(axes: Axes, curves: xr.Dataset) -> None:

@@ -1,5 +1,7 @@
 """Basin fractions along a parameter: stacked bands that fill the unit height."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from stylobate.plots.cells import Floats, cell_edges, fill_options, is_geometric, set_scale
-from stylobate.plots.classes import Look, attractor_classes
+from stylobate.plots.classes import Look, MapClass, attractor_classes
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import BLACK, new_figure, styled
@@ -21,6 +23,8 @@ _HEIGHT = 4.2
 _ENTRY = 0.19
 # Bands thinner than this part of the height have no bar: it would stand for a line.
 _SEEN = 0.005
+# More bands than this are too many to tell apart: those of one kind that stay narrower are drawn as one.
+_MOST, _NARROW = 10, 0.06
 # Room beside the first and last value, in widths of the bands.
 _ROOM = 0.015
 
@@ -31,27 +35,34 @@ def plot_fractions(found: xr.Dataset) -> Figure:
     """Return a figure of basin fractions along a parameter, stacked.
 
     A single value has a bar for its bands. The line on the upper edge of a band is the interval of that band's own
-    height. Runs that have not settled are the topmost band; values not computed stay white.
+    height. Runs that have not settled are the topmost band; values not computed stay white. Of many attractors the
+    narrow bands of one kind are drawn as one, named with their number.
     """
     (name,) = found["computed"].dims
     ordered = found.sortby(str(name)).isel({str(name): found.sortby(str(name))["computed"].to_numpy() > 0})
     x, classes = ordered[str(name)].to_numpy(), attractor_classes(found)[:-1]
-    fraction = ordered["fraction"].transpose(name, "attractor_index").to_numpy()
-    tops = np.cumsum(fraction, axis=1)
-    figure = new_figure(max(_HEIGHT, _ENTRY * (int(fraction.any(axis=0).sum()) + 3)))
+    fraction, low, high = (
+        ordered[key].transpose(name, "attractor_index").to_numpy()
+        for key in ("fraction", "fraction_low", "fraction_high")
+    )
+    bands = _bands(fraction, [str(kind) for kind in found["attractor_kind"].to_numpy()], classes)
+    figure = new_figure(max(_HEIGHT, _ENTRY * (len(bands) + 3)))
     axes = figure.subplots()
     legend: list[Patch | Line2D] = []
-    for place, one in enumerate(classes):
-        if fraction[:, place].any():
-            _draw_band(axes, x, tops[:, place] - fraction[:, place], tops[:, place], one.look)
-            legend.append(Patch(label=one.name, **fill_options(one.look)))
-    below = fraction - ordered["fraction_low"].transpose(name, "attractor_index").to_numpy()
-    above = ordered["fraction_high"].transpose(name, "attractor_index").to_numpy() - fraction
-    for place in range(fraction.shape[1]):
-        shown = (fraction[:, place] > _SEEN) & (tops[:, place] < 1.0 - _SEEN)
-        spread = np.maximum([below[shown, place], above[shown, place]], 0.0)
+    bottom, errors = np.zeros(x.size), []
+    for label, look, places in bands:
+        top = bottom + fraction[:, places].sum(axis=1)
+        _draw_band(axes, x, bottom, top, look)
+        legend.append(Patch(label=label, **fill_options(look)))
+        if len(places) == 1:
+            errors.append((places[0], top))
+        bottom = top
+    for place, top in errors:
+        shown = (fraction[:, place] > _SEEN) & (top < 1.0 - _SEEN)
+        below, above = fraction[shown, place] - low[shown, place], high[shown, place] - fraction[shown, place]
+        spread = np.maximum([below, above], 0.0)
         for colour, width in (("white", 2.6), (BLACK, 1.0)):
-            axes.errorbar(x[shown], tops[shown, place], yerr=spread, ecolor=colour, elinewidth=width, **_BAR)
+            axes.errorbar(x[shown], top[shown], yerr=spread, ecolor=colour, elinewidth=width, **_BAR)
     confidence = 100.0 * float(found.attrs["confidence"])
     legend.append(Line2D([], [], color=BLACK, marker="|", markersize=9, linestyle="none", label=_interval(confidence)))
     set_scale(axes, "x", x)
@@ -63,6 +74,23 @@ def plot_fractions(found: xr.Dataset) -> Figure:
     axes.set_xlabel(axis_label(found[str(name)]))
     figure.legend(handles=legend[::-1], loc="outside right upper")
     return figure
+
+
+def _bands(fraction: Floats, kinds: list[str], classes: Sequence[MapClass]) -> list[tuple[str, Look, list[int]]]:
+    """Return name, look and attractors of each band, from below; narrow ones of a kind are one if there are many."""
+    present = [place for place in range(len(classes)) if fraction[:, place].any()]
+    narrow = [place for place in present if fraction[:, place].max() < _NARROW] if len(present) > _MOST else []
+    alike = {kind: [place for place in narrow if kinds[place] == kind] for kind in kinds}
+    bands: list[tuple[str, Look, list[int]]] = []
+    for place in present:
+        together = alike[kinds[place]]
+        if place not in together or len(together) == 1:
+            bands.append((classes[place].name, classes[place].look, [place]))
+        elif place == together[0]:
+            alone = not any(kinds[one] == kinds[place] for one in set(present) - set(together))
+            look = replace(classes[place].look, texture="" if alone else "....", ink="#333333")
+            bands.append((f"{kinds[place]}, {len(together)}{'' if alone else ' others'}", look, together))
+    return bands
 
 
 def _draw_band(axes: Axes, x: Floats, low: Floats, high: Floats, look: Look) -> None:

@@ -15,6 +15,7 @@ from stylobate.errors import Outcome
 from stylobate.plots.cells import fill_options, percent
 from stylobate.plots.classes import OUTCOME_LOOKS, UNFINISHED_CLASS, Look, MapClass, classes_of
 from stylobate.plots.kinds import figure_of
+from stylobate.plots.labels import axis_label
 from stylobate.plots.maps import draw_classes
 from stylobate.plots.style import BLACK, GREY, PALETTE, new_figure, styled
 from stylobate.results.outcomes import outcome_label
@@ -87,12 +88,12 @@ def _draw_histories(axes: Axes, shown: xr.Dataset, c: float) -> None:
     axes.axhline(c, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)))
     axes.set_ylim(0.0, 1.05 * max(c, min(float(shown["amplitude"].max()), 3.0 * c)))
     axes.annotate(
-        "A = c", (1.0, c), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=8, color=GREY
+        r"$\theta = c$", (1.0, c), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=8, color=GREY
     )
-    axes.set_ylabel("tilt angle A [rad]")
-    axes.set_xlabel("time [s]")
+    axes.set_ylabel(r"tilt $\theta$ [rad]")
+    axes.set_xlabel(axis_label(shown["time"]))
     axes.margins(x=0.0)
-    axes.set_title(f"c = {c:.4g}")
+    axes.set_title(f"$c = {c:.4g}$")
     assert isinstance(axes.figure, Figure)
     axes.figure.legend(*axes.get_legend_handles_labels(), loc="outside upper center", ncols=2)
 
@@ -106,8 +107,8 @@ def _draw_spin(axes: Axes, shown: xr.Dataset) -> None:
         spin = shown["spin"].sel(model=model)
         if bool(spin.notnull().any()):
             axes.plot(shown["time"], spin, **_LINES[str(model)])
-    axes.set_ylabel("spin [rad/s]")
-    axes.set_xlabel("time [s]")
+    axes.set_ylabel(axis_label(shown["spin"]))
+    axes.set_xlabel(axis_label(shown["time"]))
 
 
 def _draw_tilts(axes: Axes, found: xr.Dataset, c: float) -> None:
@@ -118,7 +119,7 @@ def _draw_tilts(axes: Axes, found: xr.Dataset, c: float) -> None:
     axes.set_yticks(place, list(found["model"].to_numpy()))
     axes.set_ylim(-0.6, place.size - 0.1)
     axes.set_xlim(left=0.0)
-    axes.set_xlabel("tilt over c")
+    axes.set_xlabel(r"tilt $\theta/c$")
     axes.legend(loc="upper right", ncols=2, fontsize=7.5, borderpad=0.1, handletextpad=0.1, columnspacing=0.8)
 
 
@@ -160,12 +161,12 @@ def _draw_convergence(axes: Axes, found: xr.Dataset) -> None:
             axes.plot(c, relative, color=colour, marker=marker, markersize=4.5, linestyle=style, label=name)
     least = deviation.sel(model="slender", other_model="wobbling").to_numpy() / c
     guide = _BELOW * least[-1] * (c / c[-1]) ** _ORDER
-    axes.plot(c, guide, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), label="in proportion to c²")
+    axes.plot(c, guide, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), label="in proportion to $c^2$")
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, 0.93), fontsize=7)
     _set_slendernesses(axes, c)
-    axes.set_ylabel("largest distance of tilts over c")
+    axes.set_ylabel(r"largest distance of tilts, over $c$")
 
 
 def _draw_over_slenderness(axes: Axes, found: xr.Dataset) -> None:
@@ -180,14 +181,14 @@ def _draw_over_slenderness(axes: Axes, found: xr.Dataset) -> None:
     axes.set_xscale("log")
     _set_slendernesses(axes, c)
     axes.set_ylim(0.0, 1.1 * top or 1.0)
-    axes.set_ylabel("late mean of the tilt over c")
+    axes.set_ylabel(r"late mean tilt $\theta/c$")
     axes.legend(fontsize=7.5)
 
 
 def _set_slendernesses(axes: Axes, c: np.ndarray) -> None:
     axes.set_xticks(c, [f"{value:g}" for value in c])
     axes.set_xticks([], minor=True)
-    axes.set_xlabel("slenderness c")
+    axes.set_xlabel("slenderness $c$")
 
 
 @figure_of("outcome differences")

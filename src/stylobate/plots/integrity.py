@@ -72,7 +72,7 @@ def plot_erosion(found: xr.Dataset) -> Figure:
     set_scale(axes, "x", x)
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel(axis_label(found[str(name)]))
-    axes.set_ylabel("distance, in c and cω₀")
+    axes.set_ylabel(r"distance, in $c$ and $c\,\omega_0$")
     axes.legend()
     first = float(found["distance"][0])
     if first > 0.0:

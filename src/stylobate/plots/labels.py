@@ -1,17 +1,110 @@
-"""Names on axes: what a quantity is called, with its unit."""
+"""Labels of axes: the name of a quantity, its symbol and its unit; of a dimensionless column in the column's units."""
 
+import json
+import math
 import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, TypeVar
 
 import xarray as xr
 
+from stylobate.results import Response
+
 _EXPONENTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
+# Units of SI in those of a column with m = g = ω0 = 1, as TeX.
+_OWN_UNITS = {
+    "rad s-1": r"$\omega_0$",
+    "s-1": r"$\omega_0$",
+    "m s-2": "$g$",
+    "s": r"$1/\omega_0$",
+    "m": r"$g/\omega_0^2$",
+    "m s-1": r"$g/\omega_0$",
+}
+# Quantities whose label states the ratio itself.
+_OWN_LABELS = {
+    "angular_frequency": r"base frequency $\Omega/\omega_0$",
+    "acceleration": "base acceleration $a/g$",
+    "base_acceleration": "base acceleration $a/g$",
+    "time": r"time $\omega_0 t$",
+    "spin": r"spin $\sigma/\omega_0$",
+}
+_LABEL, _UNIT = "axis_label", "axis_unit"
+# A symbol with an index in a name, such as α_c.
+_INDEXED = re.compile(r"\b([^\W\d_])_([^\W_])\b")
+# Two numbers that differ by less, as a fraction, are equal but for rounding.
+_ROUNDING = 1e-9
 
-def axis_label(quantity: xr.DataArray) -> str:
-    """Return the long name of `quantity` with its unit, such as "angular frequency [rad/s]"."""
-    name = str(quantity.attrs.get("long_name") or str(quantity.name).replace("_", " "))
+_Result = TypeVar("_Result")
+
+
+def axis_label(quantity: xr.DataArray, name: str | None = None) -> str:
+    """Return the label of an axis, such as "angular frequency [rad/s]", or of a dimensionless column its ratio.
+
+    Parameters
+    ----------
+    quantity
+        What the axis shows, with the attributes `units` and `long_name`.
+    name
+        A name in place of its own, to which the unit is added.
+    """
+    if name is None and _LABEL in quantity.attrs:
+        return str(quantity.attrs[_LABEL])
+    named = str(quantity.attrs.get("long_name") or str(quantity.name).replace("_", " "))
+    shown = name or _INDEXED.sub(r"$\1_\2$", named)
+    unit = unit_label(quantity)
+    return f"{shown} [{unit}]" if unit else shown
+
+
+def unit_label(quantity: xr.DataArray) -> str:
+    """Return the unit of a quantity as it is written: "m s-2" as m/s²; nothing for a number without unit."""
+    if _UNIT in quantity.attrs:
+        return str(quantity.attrs[_UNIT])
     unit = str(quantity.attrs.get("units", ""))
-    return name if unit in ("", "1") else f"{name} [{_written(unit)}]"
+    return "" if unit in ("", "1") else _written(unit)
+
+
+def in_own_units(result: _Result) -> _Result:
+    """Return a result that labels its quantities in units of its column, if that column is dimensionless.
+
+    The numbers stay: for a column with m = g = ω0 = 1 they are those of the dimensionless equations. Anything else is
+    returned as it is. Whether a column is dimensionless is read from the provenance, which files keep.
+
+    Parameters
+    ----------
+    result
+        A run, a sequence of runs, or the Dataset of a study.
+    """
+    found: Any = result
+    if isinstance(found, Response) and _is_dimensionless(found.provenance):
+        found = replace(found, data=_relabelled(found.data))
+    elif isinstance(found, xr.Dataset) and _is_dimensionless(json.loads(found.attrs.get("provenance", "{}"))):
+        found = _relabelled(found)
+    elif isinstance(found, Sequence) and any(isinstance(one, Response) for one in found):
+        found = [in_own_units(one) for one in found]
+    return found  # type: ignore[no-any-return]
+
+
+def _is_dimensionless(provenance: Mapping[str, Any]) -> bool:
+    """Return whether a result is of a column with m = g = ω0 = 1; two models compared have one column."""
+    column = provenance.get("column") or provenance.get("first", {}).get("column") or {}
+    try:
+        mass, gravity, height = (float(column[name]) for name in ("mass", "gravity", "mass_height"))
+        inertia = float(column["transverse_inertia"]) + mass * height**2
+    except KeyError:
+        return False
+    return mass == gravity == 1.0 and math.isclose(height, inertia, rel_tol=_ROUNDING)
+
+
+def _relabelled(data: xr.Dataset) -> xr.Dataset:
+    data = data.copy(deep=False)
+    for name, variable in data.variables.items():
+        unit = _OWN_UNITS.get(str(variable.attrs.get("units", "")))
+        if unit is not None:
+            label = _OWN_LABELS.get(str(name))
+            variable.attrs = {**variable.attrs, _UNIT: unit} | ({} if label is None else {_LABEL: label})
+    return data
 
 
 def _written(unit: str) -> str:

@@ -5,11 +5,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stylobate.plots.kinds import figure_of
-from stylobate.plots.labels import axis_label
+from stylobate.plots.labels import axis_label, unit_label
 from stylobate.plots.style import DASHES, GREY, PALETTE, new_figure, styled
 
 _HEIGHT = 3.8
-_DIGITS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 _LARGEST_PLACE = 9
 
 
@@ -25,7 +24,8 @@ def plot_lyapunov(found: xr.Dataset) -> Figure:
         one, colour = found.sel(exponent=number), PALETTE[place % len(PALETTE)]
         value, error = float(one["lyapunov_exponent"]), float(one["error"])
         dashes = DASHES[place % len(DASHES)]
-        name = f"λ{_lowered(int(number))} {_value_and_error(value, error)}"
+        unit = _unit(one["lyapunov_exponent"])
+        name = rf"$\lambda_{int(number)}$ {_value_and_error(value, error, unit)}"
         axes.plot(period, one["running"], color=colour, linestyle=dashes, linewidth=1.6, label=name)
         if np.isfinite(value):
             axes.axhspan(value - error, value + error, color=colour, alpha=0.15, linewidth=0.0)
@@ -43,16 +43,16 @@ def _title(found: xr.Dataset) -> str:
         lasted = int(found["periods_counted"]) + int(found.attrs.get("periods_skipped", 0))
         return f"{found.attrs['ending']} after {lasted} whole periods{within}"
     total = f"{float(found['lyapunov_exponent'].sum()):.6g}".replace("-", "−")
-    return f"sum {total} /s{within}"
+    return f"sum {total} {_unit(found['lyapunov_exponent'])}{within}"
 
 
-def _lowered(number: int) -> str:
-    return str(number).translate(_DIGITS)
+def _unit(exponent: xr.DataArray) -> str:
+    return unit_label(exponent).removeprefix("1")
 
 
-def _value_and_error(value: float, error: float) -> str:
+def _value_and_error(value: float, error: float, unit: str) -> str:
     """Return the value with as many places as its error has, and that with two digits."""
     if not np.isfinite(value):
         return "undecided"
     place = _LARGEST_PLACE if error == 0.0 else int(np.clip(1 - np.floor(np.log10(error)), 0, _LARGEST_PLACE))
-    return f"= {value:.{place}f} ± {error:.{place}f} /s".replace("-", "−")
+    return f"= {value:.{place}f} ± {error:.{place}f} {unit}".replace("-", "−")

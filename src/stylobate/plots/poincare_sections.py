@@ -5,11 +5,12 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stylobate.plots.kinds import figure_of
+from stylobate.plots.labels import unit_label
 from stylobate.plots.style import GREY, PALETTE, new_figure, styled
 from stylobate.results.outcomes import outcome_label
 
 _HEIGHT = 3.9
-_QUANTITIES = (("section_tilt", "tilt", "rad"), ("section_tilt_rate", "rate of tilt", "rad/s"))
+_QUANTITIES = (("section_tilt", "tilt", r"\theta"), ("section_tilt_rate", "tilt rate", r"\dot\theta"))
 # Points are drawn the smaller the more there are [points].
 _LARGEST, _LEAST, _AREA = 4.5, 1.4, 60.0
 _MOST_NAMED = 7
@@ -26,7 +27,7 @@ def plot_section(found: xr.Dataset) -> Figure:
     count = runs.sizes["each"]
     size = float(np.clip(_AREA / np.sqrt(found.sizes["period"]), _LEAST, _LARGEST))
     panels = figure.subplots(1, 2)
-    for axes, (name, label, unit) in zip(panels, _QUANTITIES, strict=True):
+    for axes, (name, label, symbol) in zip(panels, _QUANTITIES, strict=True):
         for each in range(count):
             points = runs[name].isel(each=each)
             axes.plot(
@@ -38,7 +39,8 @@ def plot_section(found: xr.Dataset) -> Figure:
                 markeredgewidth=0.0,
                 color=PALETTE[each % len(PALETTE)],
             )
-        axes.set(xlabel=f"{label} along x [{unit}]", ylabel=f"{label} along y [{unit}]")
+        unit = unit_label(found[name])
+        axes.set(xlabel=f"{label} ${symbol}_x$ [{unit}]", ylabel=f"{label} ${symbol}_y$ [{unit}]")
         axes.set_aspect("equal", adjustable="datalim")
         if not np.isfinite(runs[name]).any():
             axes.text(0.5, 0.5, _NOTHING, transform=axes.transAxes, ha="center", va="center", color=GREY)

@@ -6,6 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from stylobate.plots.kinds import figure_of
+from stylobate.plots.labels import axis_label
 from stylobate.plots.style import GREY, PALETTE, STABLE_WIDTH, UNSTABLE_WIDTH, new_figure, styled
 
 
@@ -26,12 +27,12 @@ def plot_response(curves: xr.Dataset) -> Figure:
         amplitude.plot([], [], color=colour, linewidth=STABLE_WIDTH, label=f"rolling {name}, stable")
         amplitude.plot([], [], color=colour, linewidth=UNSTABLE_WIDTH, label=f"rolling {name}, unstable")
     averaged = "averaged " if curves.attrs["averaged"] else ""
-    amplitude.set_ylabel(f"{averaged}tilt A [rad]")
+    amplitude.set_ylabel(rf"{averaged}tilt $\theta$ [rad]")
     amplitude.set_ylim(bottom=0.0)
     amplitude.legend()
     set_phase_axis(phase)
-    phase.set_ylabel(f"{averaged}phase ψ [rad]")
-    phase.set_xlabel("angular frequency of the base [rad/s]")
+    phase.set_ylabel(rf"{averaged}phase $\psi$ [rad]")
+    phase.set_xlabel(axis_label(frequency))
     phase.sharex(amplitude)
     return figure
 

@@ -1,5 +1,6 @@
 """Pictures of single runs: tilt against time, orbit of the tilt vector, azimuth; one run or several compared."""
 
+import textwrap
 from collections.abc import Sequence
 from typing import Any
 
@@ -7,14 +8,16 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
 from stylobate.plots.contact_strip import ContactHistory, draw_contact
+from stylobate.plots.labels import axis_label
 from stylobate.plots.style import BLACK, DASHES, GREY, PALETTE, new_figure, styled
 from stylobate.results import Response
 
 _EVENT_NAMES = {
-    "release": "released",
+    "release": "uplift",
     "rest": "at rest",
     "overturned": "overturned",
     "limit": "tilt limit",
@@ -22,11 +25,16 @@ _EVENT_NAMES = {
     "failed": "failed",
 }
 # Heights of a panel, of a row of kinds of contact, and of what is about the rows [inches].
-_PANEL, _ROW, _GAP = 2.0, 0.19, 0.3
+_PANEL, _ROW, _GAP = 1.75, 0.19, 0.3
 # The name of an event later than this part of the run stands to its left.
 _LATE = 0.8
 # A line whose direction has no more than this part along x runs along y, but for rounding.
 _ALONG_Y = 1e-9
+# Room about the orbit, and characters in a line of the reason beside it.
+_ROOM, _LINE = 1.08, 46
+_MOST_REASONS = 2
+_DASHED = (0, (4, 2))
+_LIMIT: dict[str, Any] = {"color": GREY, "linewidth": 0.9, "linestyle": _DASHED}
 
 
 @styled
@@ -34,9 +42,9 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
     """Return a figure of one run, or of several compared.
 
     Shows the tilt angle, the azimuth of the lean (in a plane: the tilt with its sign) and the base acceleration
-    against time, and the path of the tilt vector. Dashed: |α| = c, beyond which the column, left alone, falls, and the
-    acceleration c g that releases it. Of one run of a model that changes its contact also how the column met the
-    plane, a row for each kind of contact.
+    against time, and the path of the tilt vector. Dashed: θ = c, beyond which the column, left alone, falls, and the
+    acceleration c g at which it uplifts. Of one run of a model that changes its contact also how the column met the
+    plane, a row for each kind of contact. Below the path the reason for the outcome of one run, or a key to several.
 
     Parameters
     ----------
@@ -47,10 +55,9 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
     """
     names = labels or [run.outcome.label for run in runs]
     contact = ContactHistory.of(runs[0]) if len(runs) == 1 and "contact" in runs[0].data else None
-    figure, axes = _panels(contact)
-    tilt, azimuth, base, orbit = axes["tilt"], axes["azimuth"], axes["base"], axes["orbit"]
-    azimuth.sharex(tilt)
-    base.sharex(tilt)
+    shaken = any(bool((run.data["base_acceleration"] != 0.0).any()) for run in runs)
+    figure, axes = _panels(contact, shaken=shaken)
+    tilt, azimuth, orbit = axes["tilt"], axes["azimuth"], axes["orbit"]
     planar = all(run.planar for run in runs)
     for index, (run, name) in enumerate(zip(runs, names, strict=True)):
         line: dict[str, Any] = {
@@ -62,36 +69,50 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
         azimuth.plot(
             time, _signed_tilt(run.data) if planar else run.data["azimuth"] / (2.0 * np.pi), linewidth=1.1, **line
         )
-        base.plot(time, np.hypot(*run.data["base_acceleration"].to_numpy()[:, :2].T), linewidth=1.1, **line)
+        if shaken:  # later runs below, so that weaker ones are seen
+            acceleration = np.hypot(*run.data["base_acceleration"].to_numpy()[:, :2].T)
+            axes["base"].plot(time, acceleration, linewidth=0.9, zorder=2.0 - 0.01 * index, **line)
         _draw_orbit(orbit, run.data, line)
         if len(runs) == 1:
             _mark_events(tilt, run)
     limits = {float(run.data.attrs["slenderness"]) for run in runs}
     for c in limits:
-        tilt.axhline(c, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)))
-        orbit.add_patch(Circle((0.0, 0.0), c, fill=False, color=GREY, linewidth=0.9, linestyle=(0, (4, 2))))
-    for level in {float(run.data.attrs["release_acceleration"]) for run in runs}:
-        base.axhline(level, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)))
-    base.set_ylabel("|base acc.| [m/s²]")
-    base.set_xlabel("time [s]")
-    azimuth.set_ylabel("tilt along its line [rad]" if planar else "azimuth β [turns]")
-    _finish(tilt, orbit, max(limits), compared=len(runs) > 1, title=names[0])
+        tilt.axhline(c, **_LIMIT)
+        orbit.add_patch(Circle((0.0, 0.0), c, fill=False, **_LIMIT))
+    if shaken:
+        for level in {float(run.data.attrs["release_acceleration"]) for run in runs}:
+            axes["base"].axhline(level, **_LIMIT)
+        axes["base"].set_ylabel(axis_label(runs[0].data["base_acceleration"]))
+    axes["base" if shaken else "azimuth"].set_xlabel(axis_label(runs[0].data["time"]))
+    azimuth.set_ylabel("tilt along its line [rad]" if planar else r"azimuth $\beta$ [turns]")
+    _finish(tilt, orbit, max(limits), runs)
+    _write_key(axes["notes"], runs, names, shaken=shaken)
     return figure
 
 
-def _panels(contact: ContactHistory | None) -> tuple[Figure, dict[str, Axes]]:
-    """Return a figure and its panels by name, with that of the kinds of contact drawn where it is wanted."""
+def _panels(contact: ContactHistory | None, *, shaken: bool) -> tuple[Figure, dict[str, Axes]]:
+    """Return a figure and its panels by name; kinds of contact are drawn, the base has a panel if it moves."""
     heights = {"tilt": _PANEL, "contact": 0.0, "azimuth": _PANEL, "base": _PANEL}
     if contact is None:
         del heights["contact"]
     else:
         heights["contact"] = _GAP + _ROW * len(contact.shown)
+    if not shaken:
+        del heights["base"]
     figure = new_figure(sum(heights.values()))
+    *upper, lowest = heights
+    rows: list[Any] = [*([name, "orbit"] for name in upper), [lowest, "notes"]]
     axes = figure.subplot_mosaic(
-        [[name, "orbit"] for name in heights], width_ratios=(1.15, 1.0), height_ratios=list(heights.values())
+        rows,
+        width_ratios=(1.15, 1.0),
+        height_ratios=list(heights.values()),
     )
+    for name in heights:
+        if name != "tilt":
+            axes[name].sharex(axes["tilt"])
+        if name != lowest:
+            axes[name].tick_params(axis="x", labelbottom=False)
     if contact is not None:
-        axes["contact"].sharex(axes["tilt"])
         draw_contact(axes["contact"], contact)
     return figure, axes
 
@@ -130,18 +151,57 @@ def _mark_events(axes: Axes, run: Response) -> None:
         )
 
 
-def _finish(tilt: Axes, orbit: Axes, c: float, *, compared: bool, title: str) -> None:
-    tilt.set_ylabel("tilt angle A [rad]")
+def _finish(tilt: Axes, orbit: Axes, c: float, runs: Sequence[Response]) -> None:
+    tilt.set_ylabel(r"tilt $\theta$ [rad]")
     tilt.margins(y=0.15)
     tilt.set_ylim(bottom=0.0)
     tilt.annotate(
-        "A = c", (1.0, c), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=8, color=GREY
+        r"$\theta = c$",
+        (0.01, c),
+        xycoords=("axes fraction", "data"),
+        ha="left",
+        va="bottom",
+        fontsize=8,
+        color=GREY,
     )
-    if compared:
-        tilt.figure.legend(loc="outside upper left", ncols=4)
-    else:
-        tilt.set_title(title)
-    orbit.set_aspect("equal", adjustable="datalim")
-    orbit.set_xlabel("tilt α₁ [rad]")
-    orbit.set_ylabel("tilt α₂ [rad]")
-    orbit.set_title("○ start, ■ end, dashed |α| = c")
+    reach = _ROOM * max(c, *(float(np.abs(run.data["tilt"]).max()) for run in runs))
+    orbit.set(xlim=(-reach, reach), ylim=(-reach, reach))
+    orbit.set_aspect("equal", adjustable="box", anchor="N")
+    orbit.set_xlabel(r"tilt $\theta_x$ [rad]")
+    orbit.set_ylabel(r"tilt $\theta_y$ [rad]")
+    orbit.locator_params(nbins=5)
+
+
+def _write_key(axes: Axes, runs: Sequence[Response], names: Sequence[str], *, shaken: bool) -> None:
+    """Write what the marks mean, and the outcomes with their reasons, as far as there is room."""
+    axes.axis("off")
+    mark: dict[str, Any] = {"linestyle": "none", "color": BLACK, "markersize": 5}
+    entries = [
+        Line2D([], [], marker="o", markerfacecolor="white", label="start", **mark),
+        Line2D([], [], marker="s", label="end", **mark),
+        Line2D([], [], label=r"$\theta = c$; uplift at $c\,g$" if shaken else r"$\theta = c$", **_LIMIT),
+    ]
+    axes.legend(handles=entries, loc="upper left", ncols=3, columnspacing=1.2, handlelength=1.8, borderaxespad=0.0)
+    if len(runs) > 1:
+        assert isinstance(axes.figure, Figure)
+        handles = axes.figure.axes[0].get_legend_handles_labels()[0]
+        axes.figure.legend(handles=handles, loc="outside upper left", ncols=4)
+    if len(runs) > _MOST_REASONS:
+        return
+    lines: list[tuple[str, dict[str, Any]]] = []
+    for index, (run, name) in enumerate(zip(runs, names, strict=True)):
+        heading = name if name == run.outcome.label else f"{name}: {run.outcome.label}"
+        lines += [(heading, {"weight": "bold", "color": PALETTE[index % len(PALETTE)] if len(runs) > 1 else BLACK})]
+        lines += [(line, {}) for line in textwrap.wrap(run.reason, _LINE)]
+    for place, (line, look) in enumerate(lines):
+        offset = (0, -18 - 12.0 * place)
+        axes.annotate(
+            line,
+            (0.0, 1.0),
+            xytext=offset,
+            xycoords="axes fraction",
+            textcoords="offset points",
+            va="top",
+            size=8.5,
+            **look,
+        )

@@ -50,10 +50,10 @@ def plot_slow_sweep(found: xr.Dataset) -> Figure:
     if np.any(found["largest_tilt"] - found["least_tilt"] > 0.0):
         legend.append(Patch(color=GREY, alpha=2.0 * _BAND, linewidth=0.0, label="least to largest tilt"))
     legend += _draw_ends(tilts, found)
-    tilts.set_ylabel("tilt [rad]")
+    tilts.set_ylabel(r"tilt $\theta$ [rad]")
     tilts.set_ylim(bottom=0.0)
     tilts.legend(handles=legend)
-    turns.set_ylabel("turns a period")
+    turns.set_ylabel("turns per period")
     # What is left of a whole number of turns shows as such.
     low, high = turns.get_ylim()
     turns.set_ylim(min(low, -0.1), max(high, 1.1) if high > 0.0 else 0.1)

@@ -11,9 +11,11 @@ from matplotlib.patches import Patch
 
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
-from stylobate.plots.style import GREY, PALETTE, STABLE_WIDTH, new_figure, styled
+from stylobate.plots.style import GREY, PALETTE, new_figure, styled
 
 _DASHED = (0, (4, 2))
+# Theory is thinner than what is exact.
+_THEORY_WIDTH = 1.2
 _STYLES = {
     "pitchfork": (PALETTE[0], "-"),
     "Neimark-Sacker": (PALETTE[1], "-."),
@@ -55,11 +57,11 @@ def plot_stability_boundary(boundary: xr.Dataset) -> Figure:
                 labelled.add(label)
     if "theory_frequency" in boundary:
         name = "theory" if bool(boundary["theory_is_exact"]) else "averaged"
-        look: dict[str, Any] = {"color": GREY, "linestyle": _DASHED, "linewidth": STABLE_WIDTH, "label": name}
+        look: dict[str, Any] = {"color": GREY, "linestyle": _DASHED, "linewidth": _THEORY_WIDTH, "label": name}
         x, y = _inside(boundary)
         if np.isfinite(x).any():
             axes.plot(x, y, **look)
-    axes.set_xlabel("angular frequency of the base [rad/s]")
+    axes.set_xlabel(axis_label(boundary["angular_frequency"]))
     axes.set_ylabel(axis_label(parameter))
     for limit, name in ((axes.set_xlim, "angular_frequency_range"), (axes.set_ylim, "bounds")):
         if name in boundary.attrs:
@@ -114,7 +116,7 @@ def plot_averaging_map(found: xr.Dataset) -> Figure:
     axes.pcolormesh(x, y, classes, cmap=colours, vmin=-0.5, vmax=len(_CASES) - 0.5, alpha=0.55, rasterized=True)
     error = np.abs(found["error"].transpose(parameter, "angular_frequency").to_numpy())
     _contours(axes, x, y, error)
-    axes.set_xlabel("angular frequency of the base [rad/s]")
+    axes.set_xlabel(axis_label(found["angular_frequency"]))
     axes.set_ylabel(axis_label(found[parameter]))
     handles = [
         Patch(facecolor=colour, edgecolor="black", linewidth=0.4, alpha=0.55, label=_called(name, neutral))

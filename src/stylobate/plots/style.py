@@ -7,6 +7,8 @@ from typing import Any, ParamSpec
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from stylobate.plots.labels import in_own_units
+
 # Okabe and Ito's palette ("Color Universal Design", 2008), its yellow left out; order alternates in lightness.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 BLUE, VERMILION, GREEN, PURPLE, SKY, ORANGE, BLACK = PALETTE
@@ -30,7 +32,6 @@ _SETTINGS: dict[Any, Any] = {
     "grid.linewidth": 0.6,
     "legend.frameon": False,
     "legend.fontsize": 8.5,
-    "savefig.dpi": 180,
     "hatch.linewidth": 0.55,
 }
 
@@ -39,12 +40,13 @@ P = ParamSpec("P")
 
 
 def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
-    """Draw with the common settings, and leave those of the user as they were."""
+    """Draw with the common settings, results of dimensionless columns in their units; settings of the user stay."""
 
     @wraps(draw)
     def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:
         with rc_context(_SETTINGS):
-            return draw(*args, **kwargs)
+            results: Any = [in_own_units(one) for one in args]
+            return draw(*results, **kwargs)
 
     return drawn
 

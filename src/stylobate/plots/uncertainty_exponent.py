@@ -47,7 +47,7 @@ def plot_exponent(found: xr.Dataset) -> Figure:
             found["fit"].where(found["fit"] <= 1.0),
             color=VERMILION,
             linestyle="--",
-            label=r"fit $\varepsilon^{\alpha}$",
+            label=r"fit $\varepsilon^{\upsilon}$",
         )
     axes.set(xscale="log", yscale="log", ylabel="fraction of uncertain starts")
     axes.set_xlabel(f"shift ε of {axis_label(found['epsilon'])}")
@@ -65,7 +65,8 @@ def _law(found: xr.Dataset) -> str:
     exponent, error = float(found["uncertainty_exponent"]), float(found["standard_error"])
     if not np.isfinite(exponent):
         return "too few uncertain starts for an exponent"
-    return f"α = {exponent:.3f} ± {error:.3f}, dimension of the boundary {float(found['boundary_dimension']):.3f}"
+    dimension = float(found["boundary_dimension"])
+    return rf"$\upsilon$ = {exponent:.3f} ± {error:.3f}, dimension of the boundary {dimension:.3f}"
 
 
 def _dropped(found: xr.Dataset) -> list[str]:

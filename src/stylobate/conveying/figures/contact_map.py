@@ -50,10 +50,10 @@ def plot_drift(found: xr.Dataset) -> Figure:
     turns = bool(np.any(np.abs(np.nan_to_num(turning)) > _STILL))
     figure = new_figure(_TALL if turns else _LOW)
     panels = list(figure.subplots(2 if turns else 1, 1, sharex=True, squeeze=False)[:, 0])
-    _draw_velocity(panels[0], x, ordered["mean_velocity"].to_numpy())
+    _draw_velocity(panels[0], x, ordered["mean_velocity"])
     if turns:
         panels[1].plot(x, turning, color=BLACK, marker=".")
-        panels[1].set_ylabel("mean rate of twist [rad/s]")
+        panels[1].set_ylabel(axis_label(found["mean_twist_rate"], "mean twist rate"))
     panels[-1].set_xlabel(axis_label(found[name]))
     thrown = _where_thrown(x, ordered["throw_number"].to_numpy())
     for axes in panels:
@@ -74,12 +74,13 @@ def plot_drift(found: xr.Dataset) -> Figure:
     return figure
 
 
-def _draw_velocity(axes: Axes, x: Floats, velocity: Floats) -> None:
+def _draw_velocity(axes: Axes, x: Floats, mean: xr.DataArray) -> None:
+    velocity = mean.to_numpy()
     axes.plot(x, velocity[:, 0], color=BLUE, marker=".", label="along x")
     axes.plot(x, velocity[:, 1], color=VERMILION, linestyle="--", marker=".", label="along y")
     if np.isnan(velocity).any():
         axes.plot([], [], linestyle="none", label="gaps: it does not move on to the end")
-    axes.set_ylabel("mean velocity [m/s]")
+    axes.set_ylabel(axis_label(mean, "mean velocity"))
     axes.legend()
 
 
@@ -97,9 +98,9 @@ def _draw_speed(figure: Figure, axes: Axes, found: xr.Dataset) -> None:
     ordered = found.sortby([x, y]).transpose(y, x, ...)
     speed = np.ma.masked_invalid(ordered["transport_speed"].to_numpy())
     axes.grid(visible=False)
-    axes.patch.set(facecolor="white", hatch="////", edgecolor=GREY)
+    axes.patch.set(facecolor="white", hatch="////", edgecolor="#b0b0b0")
     drawn = axes.pcolormesh(cell_edges(ordered[x]), cell_edges(ordered[y]), speed, cmap="viridis", rasterized=True)
-    figure.colorbar(drawn, ax=axes, label="mean transport speed [m/s]")
+    figure.colorbar(drawn, ax=axes, label=axis_label(found["transport_speed"], "mean transport speed"))
     throw = ordered["throw_number"].to_numpy()
     if throw.min() < 1.0 < throw.max():
         axes.contour(ordered[x], ordered[y], throw, levels=[1.0], colors="white", linestyles=":")

@@ -65,20 +65,21 @@ def plot_slipping_boundary(found: xr.Dataset, *, friction_coefficient: Sequence[
         friction = float(part["friction_coefficient"])
         _draw_slipping(tilt, part, colour)
         _mark_ends(tilt, part, colour, marker)
-        name = f"μ = {friction:.3g}" if part["slipping_amplitude"].isnull().all() else f"slipping, μ = {friction:.3g}"
+        slips = "" if part["slipping_amplitude"].isnull().all() else "slipping, "
+        name = rf"{slips}$\mu$ = {friction:.3g}"
         tilt.plot([], [], color=colour, marker=marker, linewidth=STABLE_WIDTH, label=name)
         plane.plot(
             1.0, friction, color=colour, marker=marker, markersize=6, clip_on=False,
             transform=plane.get_yaxis_transform(), zorder=6,
         )  # fmt: skip
     tilt.plot([], [], color=BLACK, linewidth=UNSTABLE_WIDTH, linestyle=_DASHED, label="thin, dashed: unstable")
-    tilt.set_ylabel("tilt A [rad]")
+    tilt.set_ylabel(r"tilt $\theta$ [rad]")
     tilt.set_ylim(bottom=0.0)
     codes, classes = found["steady_rolling"].to_numpy(), classes_of(found["class_name"].to_numpy(), _LOOKS)
     draw_cells(plane, found["angular_frequency"], found["friction_coefficient"], codes, classes)
     _draw_required(plane, found)
     plane.set_ylabel(axis_label(found["friction_coefficient"]))
-    plane.set_xlabel("angular frequency of the base [rad/s]")
+    plane.set_xlabel(axis_label(found["angular_frequency"]))
     tilt.legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
     handles = [*class_legend(codes, classes), *plane.get_legend_handles_labels()[0]]
     plane.legend(handles=handles, loc="center left", bbox_to_anchor=(1.04, 0.5))

@@ -66,7 +66,7 @@ def plot_start_boundary(found: xr.Dataset) -> Figure:
         _draw(axes, cases.isel(case=place).sortby("slenderness"))
         axes.set_title(_name(cases.isel(case=place), found), fontsize="small")
         axes.set_xlabel(axis_label(found["slenderness"]))
-    panels[0].set_ylabel("acceleration of the base [m/s²]")
+    panels[0].set_ylabel(axis_label(found["acceleration"], "acceleration of the base"))
     panels[0].set_xlim(float(found["slenderness"].min()), float(found["slenderness"].max()))
     panels[0].set_ylim(0.0, _top(found))
     figure.legend(handles=_legend(found), loc="outside lower center", ncols=3)
@@ -124,7 +124,7 @@ def _legend(found: xr.Dataset) -> list[Line2D | Patch]:
     frictions = found["friction_coefficient"].to_numpy()
     entries: list[Line2D | Patch] = [Line2D([], [], color=BLACK, linewidth=STABLE_WIDTH, label="begins to rock")]
     entries += [
-        Line2D([], [], color=colour, linewidth=STABLE_WIDTH, label=f"begins to slide, μ = {friction:.3g}")
+        Line2D([], [], color=colour, linewidth=STABLE_WIDTH, label=rf"begins to slide, $\mu$ = {friction:.3g}")
         for friction, colour in zip(frictions, _COLOURS, strict=False)
     ]
     if (found["lift_off"] < _top(found)).any():

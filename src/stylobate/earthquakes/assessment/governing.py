@@ -149,7 +149,7 @@ def _as_dataset(run: xr.Dataset, motion: BaseMotion, alpha: float) -> xr.Dataset
     largest = int(np.nanargmax(size))
     base = motion.acceleration(np.nan_to_num(times)) + 0.0 * times[:, np.newaxis]
     fallen = run["outcome"].item() == Outcome.OVERTURNED
-    about = {"units": "1", "long_name": "tilt over α"}
+    about = {"units": "1", "long_name": "tilt / α_c"}
     curves = {
         "time": (times, {"units": "s", "long_name": "time"}),
         "tilt_x": (tilt[:, 0], about),

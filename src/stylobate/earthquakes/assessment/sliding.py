@@ -18,7 +18,7 @@ from stylobate.studies.sweeps.computing import Progress
 
 _OPTIONS = tuple(name for name in numbers_of(Accuracy) if name != "tilt_limit")
 _NUMBERS = {
-    "tilt_ratio": ("1", "largest tilt over α"),
+    "tilt_ratio": ("1", "peak tilt / α_c"),
     "residual_slip": ("m", "distance of the footprint from its place at the end"),
     "largest_slip": ("m", "largest distance of the footprint from its place"),
     "slip_path": ("m", "length of the path of slip"),

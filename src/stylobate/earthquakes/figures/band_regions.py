@@ -145,7 +145,7 @@ def is_normalized(found: xr.Dataset) -> bool:
 
 def amplitude_label(found: xr.Dataset) -> str:
     """Return what the amplitudes are called in a figure of the bands."""
-    return "peak base acceleration / (g tan α)" if is_normalized(found) else axis_label(found["scale"])
+    return r"peak base acceleration $a/(c\,g)$" if is_normalized(found) else axis_label(found["scale"])
 
 
 def band_legend(found: xr.Dataset, *, hairlines: int, wide_edges: bool) -> list[Patch | Line2D]:
@@ -164,7 +164,7 @@ def band_legend(found: xr.Dataset, *, hairlines: int, wide_edges: bool) -> list[
     if wide_edges:
         entries.append(Patch(label="edge, undecided", **fill_options(_EDGE)))
     if not is_normalized(found) and bool((found["acceleration_ratio"] > 0.0).all()):
-        entries.append(Line2D([], [], **WEAKEST, label="peak acceleration g tan α"))
+        entries.append(Line2D([], [], **WEAKEST, label=r"peak acceleration $c\,g$"))
     return entries
 
 

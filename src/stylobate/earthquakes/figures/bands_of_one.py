@@ -50,7 +50,7 @@ def plot_bands_of_one(found: xr.Dataset) -> Figure:
         axes.axvline(1.0 / ratio, **WEAKEST)
     counts = _draw_runs(axes, found, factor * scales)
     set_scale(axes, "x", scales)
-    axes.set(xlim=amplitude_ends(one, factors), xlabel=amplitude_label(found), ylabel="peak tilt / α")
+    axes.set(xlim=amplitude_ends(one, factors), xlabel=amplitude_label(found), ylabel=r"peak tilt $\theta/\alpha_c$")
     axes.set_ylim(bottom=0.0)
     axes.grid(visible=False)
     axes.set_title(_title(found), fontsize="small")
@@ -78,6 +78,6 @@ def _draw_runs(axes: Axes, found: xr.Dataset, amplitude: Floats) -> tuple[int, i
 
 def _title(found: xr.Dataset) -> str:
     size, tangent = 2.0 * float(found["rim_distance"]), float(np.tan(found["tipping_angle"]))
-    parts = [f"one column: size 2R = {size:.3g} m, tan α = {tangent:.3g}"]
+    parts = [f"one column: size $2R$ = {size:.3g} m, $c$ = {tangent:.3g}"]
     parts += [f"ω / p = {float(found['frequency_ratio']):.3g}"] if is_normalized(found) else []
     return ", ".join(parts)

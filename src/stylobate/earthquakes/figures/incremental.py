@@ -55,7 +55,7 @@ def plot_incremental(found: xr.Dataset) -> Figure:
     handles = _legend(order)
     drawn = _draw_quantiles(tilts, level, tilt)
     handles += drawn
-    tilts.set(ylabel="largest tilt over α", ylim=(0.0, None))
+    tilts.set(ylabel=r"peak tilt $\theta/\alpha_c$", ylim=(0.0, None))
     tilts.set_xlabel(axis_label(found["intensity"]))
     _axis_of(tilts, level)
     strip.set(ylim=(-0.7, len(order) - 0.3), yticks=[])

@@ -46,8 +46,8 @@ def plot_planar_bias(found: xr.Dataset) -> Figure:
         line(end, color=GREY, linewidth=0.8, linestyle=DASHES[1])
     limits = (-0.02 * end, end * (1.0 + 2.0 * _MARGIN))
     axes.set(xlim=limits, ylim=limits, aspect="equal")
-    axes.set_xlabel("largest tilt over α, worst of the planes")
-    axes.set_ylabel("largest tilt over α, in space")
+    axes.set_xlabel(r"peak tilt $\theta/\alpha_c$, worst of the planes")
+    axes.set_ylabel(r"peak tilt $\theta/\alpha_c$, three-dimensional")
     ticks = [float(tick) for tick in MaxNLocator(5).tick_values(0.0, end) if 0.0 <= tick < 0.97 * end]
     names = [*(f"{tick:g}" for tick in ticks), "overturned"]
     axes.set_xticks([*ticks, beyond], names)
@@ -121,7 +121,7 @@ def plot_directions(found: xr.Dataset) -> Figure:
 def _quantity(found: xr.Dataset) -> str:
     if found.sizes["scale"] > 1:
         return "least scale that overturns"
-    return f"largest tilt over α at scale {found['scale'].item():g}"
+    return rf"peak tilt $\theta/\alpha_c$ at scale {found['scale'].item():g}"
 
 
 def _draw_polar(axes: PolarAxes, one: xr.Dataset, name: str, *, turned: bool) -> None:

@@ -35,7 +35,7 @@ _NUMBERS: Mapping[str, Mapping[str, str]] = {
     "frequency_parameter": {"units": "rad s-1", "long_name": "frequency parameter p"},
     "tipping_angle": {"units": "rad", "long_name": "tipping angle α"},
     "rim_distance": {"units": "m", "long_name": "distance R of the centre of mass from the rim"},
-    "acceleration_ratio": {"units": "1", "long_name": "peak base acceleration / (g tan α), at scale 1"},
+    "acceleration_ratio": {"units": "1", "long_name": "peak base acceleration / (c g), at scale 1"},
     "frequency_ratio": {"units": "1", "long_name": "angular frequency of the base motion / p"},
     "motion_end": {"units": "s", "long_name": "end of the base motion"},
 }

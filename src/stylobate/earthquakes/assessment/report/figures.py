@@ -119,7 +119,7 @@ def tilts_figure(assessment: Assessment, column: str, scale: float) -> Figure:
         )
     axes.axvspan(_FALLEN - 0.12, _FALLEN + 0.12, color="#eeeeee", zorder=0)
     last = _UNKNOWN if undecided else _FALLEN
-    axes.set(xlim=(-0.03, last + 0.12), xlabel="largest tilt / α [1]")
+    axes.set(xlim=(-0.03, last + 0.12), xlabel=r"peak tilt $\theta/\alpha_c$")
     ticks = {0.0: "0", 0.25: "0.25", 0.5: "0.5", 0.75: "0.75", 1.0: "1", _FALLEN: "overturned"}
     ticks |= {_UNKNOWN: "not\ndecided"} if undecided else {}
     axes.set_xticks(list(ticks), list(ticks.values()))
@@ -212,7 +212,8 @@ def history_figure(assessment: Assessment, column: str) -> Figure:
         above.plot(one["time"], one["amplitude"], label=_run_words(one), **look)
         path.plot(one["tilt_x"], one["tilt_y"], **{**look, "linewidth": 0.7})
     above.axhline(1.0, color=VERMILION, linestyle="--", linewidth=1.0)
-    above.set(ylabel="tilt / α [1]", ylim=(0.0, 1.05 * min(_MOST_TILT, max(1.0, float(own["amplitude"].max())))))
+    highest = min(_MOST_TILT, max(1.0, float(own["amplitude"].max())))
+    above.set(ylabel=r"tilt $\theta/\alpha_c$", ylim=(0.0, 1.05 * highest))
     recorded = max(shown, key=lambda one: float(one["time"].max()))
     for axis, colour, width in (("x", BLACK, 0.6), ("y", ORANGE, 0.6)):
         below.plot(
@@ -222,7 +223,7 @@ def history_figure(assessment: Assessment, column: str) -> Figure:
     below.legend(loc="upper right", ncols=2)
     around = np.linspace(0.0, 2.0 * math.pi, 181)
     path.plot(np.cos(around), np.sin(around), color=VERMILION, linestyle="--", linewidth=1.0)
-    path.set(xlabel="lean along x / α [1]", ylabel="along y / α [1]", aspect="equal")
+    path.set(xlabel=r"tilt $\theta_x/\alpha_c$", ylabel=r"tilt $\theta_y/\alpha_c$", aspect="equal")
     path.set(xlim=(-_MOST_TILT, _MOST_TILT), ylim=(-_MOST_TILT, _MOST_TILT))
     figure.legend(*above.get_legend_handles_labels(), loc="outside lower center", ncols=1)
     record = str(assessment.data["summary"]["governing"].sel(column=column).item())
