@@ -94,7 +94,7 @@ def simulate(
     recheck
         Repeat a run in doubt with a hundredth of the rest energy and ten times the tolerance: one that was released
         again after it had come to rest and then overturned or tilted beyond half of its tipping angle, that came back
-        from 0.95 of its tipping angle or more, or that overturned after 40/p or more. If the column then overturns
+        from 0.95 of its tipping angle or more, or that overturned after 40/ω0 or more. If the column then overturns
         instead of surviving, or the other way round, the result is `uncertain`, and a warning says so.
     events
         Event functions, as `EventFunction` or plain functions of time and state with the optional attributes
