@@ -6,6 +6,8 @@ from importlib.metadata import version as installed_version
 from pathlib import Path
 from typing import Any
 
+from sphinx.domains.math import MathDomain
+
 _HERE = Path(__file__).parent
 sys.path[:0] = [str(_HERE), str(_HERE / "extensions")]  # `figure_scraper`, and the directives of the reference
 
@@ -153,8 +155,19 @@ _DECLARED = re.compile(
 )
 
 
+class NumbersOfThePaper(MathDomain):
+    """Equations labelled "eq-7" have the number 7, which the source paper gives them, on whatever page they stand."""
+
+    def note_equation(self, docname: str, labelid: str, location: Any = None) -> None:
+        """Register an equation."""
+        super().note_equation(docname, labelid, location=location)
+        if number := re.fullmatch(r"eq-(\d+)", labelid):
+            self.equations[labelid] = (docname, int(number[1]))
+
+
 def setup(app: Any) -> None:
-    """Connect what docstrings and signatures need."""
+    """Connect what docstrings and signatures need, and number equations as the source paper does."""
+    app.add_domain(NumbersOfThePaper, override=True)
     aliases = _aliases()
 
     def name_aliases(*event: Any) -> tuple[str | None, str | None]:

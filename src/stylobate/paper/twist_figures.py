@@ -17,7 +17,7 @@ def twist(data: xr.Dataset) -> Figure:
     for k, zeta in enumerate(data["zeta"].to_numpy()):
         part = data.sel(zeta=zeta)
         stable = part["stable"]
-        name = "no twist" if np.isinf(zeta) else rf"$\zeta$ = {zeta:g}"
+        name = "no spin" if np.isinf(zeta) else rf"$\zeta$ = {zeta:g}"
         draw_branch(tilt, data["nu"], part["amplitude"], stable, color=PALETTE[k])
         draw_branch(spin, data["nu"], part["spin"], stable, color=PALETTE[k])
         tilt.plot([], [], color=PALETTE[k], linewidth=STABLE_WIDTH, label=name)
@@ -37,7 +37,7 @@ def twist_boundary(data: xr.Dataset) -> Figure:
     figure = new_figure(6.2)
     (amplitude, spin_damping), (damping, upper) = figure.subplots(2, 2)
     at, damped = f"$a_0$ = {data.attrs['a0']:g}", rf"$\eta$ = {data.attrs['eta']:g}"
-    curves = {float(zeta): "no twist" if np.isinf(zeta) else rf"$\zeta$ = {zeta:g}" for zeta in data["zeta"].to_numpy()}
+    curves = {float(zeta): "no spin" if np.isinf(zeta) else rf"$\zeta$ = {zeta:g}" for zeta in data["zeta"].to_numpy()}
     _draw(amplitude, data["by_amplitude"], "zeta", curves)
     _draw(damping, data["by_damping"], "zeta", curves)
     _draw(spin_damping, data["by_spin_damping"], "axial_ratio", _shapes(data["axial_ratio"]))
