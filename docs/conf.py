@@ -75,8 +75,8 @@ sphinx_gallery_conf = {
     "gallery_dirs": ["tutorials", "gallery"],
     "filename_pattern": r"\.py$",
     "within_subsection_order": "FileNameSortKey",
-    "image_scrapers": ("matplotlib", "figure_scraper.new_figures"),
-    "ignore_repr_types": r"Figure|Animation",  # shown as images, not as text
+    "image_scrapers": ("figure_scraper.new_figures", "matplotlib"),
+    "ignore_repr_types": r"matplotlib|Animation",  # shown as images, not as text
     "image_srcset": ["2x"],
     "thumbnail_size": (480, 320),
     "remove_config_comments": True,

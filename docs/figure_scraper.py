@@ -21,9 +21,9 @@ def new_figures(block: Any, block_vars: dict[str, Any], gallery_conf: dict[str, 
     for value in list(variables.values()):
         if not isinstance(value, (Figure, Animation)) or any(value is one for one in shown):
             continue
-        if isinstance(value, Figure) and getattr(value.canvas, "manager", None) is not None:
-            continue  # pyplot's own, which sphinx-gallery finds
         shown.append(value)
+        if isinstance(value, Figure) and getattr(value.canvas, "manager", None) is not None:
+            continue  # pyplot's own, which sphinx-gallery finds, and closes afterwards
         path = PurePosixPath(next(block_vars["image_path_iterator"]))
         images.append(_saved(value, path, gallery_conf))
     return "\n".join(images)

@@ -70,8 +70,8 @@ print(run.outcome.name, "-", run.reason)
 time = np.linspace(0.0, 150.0 * below.period, 6001)
 tilt = np.hypot(*run.sample(time)["tilt"].values.T) / c
 figure, axes = plt.subplots(figsize=(7.4, 3.0), layout="constrained")
-axes.plot(time / below.period, tilt, color="#0072b2", linewidth=0.8)
 axes.set(xlabel="periods of the base", ylabel=r"tilt angle $\theta/c$")
+lines = axes.plot(time / below.period, tilt, color="#0072b2", linewidth=0.8)
 
 # %%
 # The tilt does not grow until the column overturns. It settles on a modulated motion.
