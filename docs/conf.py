@@ -29,6 +29,7 @@ extensions = [
     "sphinx_design",  # cards
     "sphinx_gallery.gen_gallery",
     "sphinxcontrib.bibtex",
+    "citations",  # docs/extensions: BibTeX from CITATION.cff
     "stylobate_reference",  # docs/extensions: summaries, options of commands and fields of files from declarations
 ]
 exclude_patterns = ["_build", "inventories", "extensions"]
@@ -113,13 +114,19 @@ def _escape_bars(app: Any, what: str, name: str, thing: object, options: object,
             lines[index] = "".join(part if part.startswith("`") else part.replace("|", r"\|") for part in parts)
 
 
-def _describe_whole_properties(
-    app: Any, what: str, name: str, thing: object, options: object, lines: list[str]
-) -> None:
-    # Napoleon takes what stands before a colon in the first line of a property for its type.
+# Napoleon takes what stands before a colon in the first line of a property for its type: the colon hides from it.
+_HIDDEN_COLON = "\ue000"
+
+
+def _hide_colons(app: Any, what: str, name: str, thing: object, options: object, lines: list[str]) -> None:
     del app, name, thing, options
     if what in ("attribute", "data", "property") and lines:
-        lines.insert(0, "")
+        lines[0] = lines[0].replace(":", _HIDDEN_COLON)
+
+
+def _show_colons(app: Any, what: str, name: str, thing: object, options: object, lines: list[str]) -> None:
+    del app, what, name, thing, options
+    lines[:] = [line.replace(_HIDDEN_COLON, ":") for line in lines]
 
 
 def _aliases() -> dict[str, str]:
@@ -174,7 +181,8 @@ def setup(app: Any) -> None:
         return _named(event[-2], aliases), _named(event[-1], aliases)
 
     app.connect("autodoc-process-docstring", _escape_bars)
-    app.connect("autodoc-process-docstring", _describe_whole_properties, priority=400)
+    app.connect("autodoc-process-docstring", _hide_colons, priority=400)
+    app.connect("autodoc-process-docstring", _show_colons, priority=600)
     app.connect("autodoc-process-signature", name_aliases)
 
 

@@ -41,7 +41,7 @@ def public_modules(module=stylobate, seen=()):
 
 
 MODULES = {module.__name__: module for module in (*public_modules(), importlib.import_module("stylobate.lab"))}
-DESCRIBED = re.compile(r"^\.\. (?:autofunction|autoclass|autoexception|autodata|py:data):: (\S+)", re.MULTILINE)
+DESCRIBED = re.compile(r"^\.\. (?:autofunction|autoclass|autoexception|autodata|py:data|py:type):: (\S+)", re.MULTILINE)
 
 
 def described_names():
