@@ -81,7 +81,7 @@ lint: $(VENV)/.core $(VENV)/.test $(VENV)/.lint  ## style, types, import contrac
 docs: $(VENV)/.core $(VENV)/.docs  ## the documentation into docs/_build/html
 	$(BIN)/sphinx-build --fail-on-warning --keep-going docs docs/_build/html
 
-FIGURES := $(filter-out docs/figures/saving.py,$(wildcard docs/figures/*.py))
+FIGURES := $(filter-out %/saving.py %/choose_a_model.py,$(wildcard docs/figures/*.py))
 
 figures: $(VENV)/.core  ## all figures and animations of the documentation into docs/_static, a quarter of an hour on two cores
 	for one in $(FIGURES); do echo "$$one"; $(BIN)/python "$$one" || exit 1; done

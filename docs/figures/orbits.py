@@ -110,7 +110,7 @@ def paths() -> Figure:
     after.plot(*closed_path(symmetric, 1.07), **unstable, label="symmetric, unstable")
     for opposite, colour, style, name in (
         (False, ORANGE, "-", "asymmetric, stable"),
-        (True, GREEN, (0, (6, 1.2)), "its mirror image, stable"),
+        (True, GREEN, (0, (6, 1.2)), "symmetry-related, stable"),
     ):
         born = sb.orbits.switch_branch(pitchfork, bounds=(0.9, 2.5), opposite=opposite)
         after.plot(*closed_path(born, 1.07), color=colour, linewidth=2.2, linestyle=style, label=name)
