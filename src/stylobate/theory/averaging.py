@@ -13,7 +13,7 @@ from stylobate.theory.rolling import SteadyRolling, steady_rolling
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AveragedRolling:
-    """Averaged steady rolling in both senses.
+    """Steady rolling in both senses, by averaging.
 
     Parameters
     ----------
@@ -65,12 +65,12 @@ def circular_components(a1: Real, a2: Real, phi2: Real) -> tuple[ComplexArray, C
 
 
 def averaged_rolling(nu: Real, a1: Real, a2: Real = 0.0, phi2: Real = 0.0, *, c: Real, eta: Real) -> AveragedRolling:
-    """Steady rolling under straight-line or elliptic base motion, by averaging.
+    """Compute steady rolling under straight-line or elliptic base motion by averaging.
 
     Parameters
     ----------
     nu
-        Excitation frequency ν, positive.
+        Frequency ratio ν = Ω/ω0 of the base motion, positive.
     a1, a2
         Acceleration amplitudes along the two horizontal axes [g]. By default the base moves along axis 1.
     phi2
@@ -78,7 +78,7 @@ def averaged_rolling(nu: Real, a1: Real, a2: Real = 0.0, phi2: Real = 0.0, *, c:
     c
         Slenderness.
     eta
-        Viscous friction η.
+        Damping η.
 
     Returns
     -------
@@ -94,7 +94,7 @@ def averaged_rolling(nu: Real, a1: Real, a2: Real = 0.0, phi2: Real = 0.0, *, c:
     Notes
     -----
     (10): (8) with a0 = abs(p) forward and a0 = abs(q) backward; both are a1/2 for straight-line motion. Exact for
-    circular motion. Its small parameter is a1/c at every frequency: started here, the exact motion without friction
+    circular motion. Its small parameter is a1/c at every frequency: started here, the exact motion without damping
     strays from the averaged tilt by about 2.3 a1/c of it while a1 ≪ c. At a1 = 0.4c and 1.3c the exact critical
     frequency lies 11 and 16 per cent above the averaged one (c = η = 0.1).
 

@@ -9,7 +9,7 @@ from stylobate.theory.arguments import FloatArray, Real, finite, positive
 
 
 def rolling_backbone(omega: Real, c: Real) -> FloatArray:
-    """Tilt angle A at which the free column rolls steadily round its rim.
+    """Compute the tilt at which a free column rolls steadily round its rim.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def rolling_backbone(omega: Real, c: Real) -> FloatArray:
 
     Notes
     -----
-    (5): A = c / (1 + ω²). It exists for every ω; without friction it is stable where ω² > 1/3.
+    (5): θ = c / (1 + ω²). It exists for every ω; without damping it is stable where ω² > 1/3.
 
     Examples
     --------
@@ -42,7 +42,7 @@ def rolling_backbone(omega: Real, c: Real) -> FloatArray:
 
 
 def planar_backbone(omega: Real, c: Real) -> FloatArray:
-    """Amplitude A0 at which the free column rocks in a plane with the frequency ω.
+    """Compute the amplitude at which a free column rocks in a plane with the frequency ω.
 
     Parameters
     ----------
@@ -63,8 +63,8 @@ def planar_backbone(omega: Real, c: Real) -> FloatArray:
 
     Notes
     -----
-    (3): A0 = c [1 − 1/cosh(π/2ω)], written as c tanh x tanh(x/2) with x = π/2ω, which keeps its relative accuracy at
-    every frequency. Without friction, and with α kept in one plane: out of the plane this motion is unstable.
+    (3): θ0 = c [1 − 1/cosh(π/2ω)], written as c tanh x tanh(x/2) with x = π/2ω, which keeps its relative accuracy at
+    every frequency. Without damping, and with α kept in one plane: out of the plane this motion is unstable.
 
     Examples
     --------

@@ -40,7 +40,7 @@ _LEAST_SPAN = 1e-12
 
 
 class BlockPhase(IntEnum):
-    """What a block on a vibrating plane is doing."""
+    """The phase of motion of a block on a vibrating plane."""
 
     STICK = 0
     FORWARD = 1

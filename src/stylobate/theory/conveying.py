@@ -21,7 +21,7 @@ _SLOW = 1e3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BlockCycle:
-    """What the motion of a block on a vibrating plane has become.
+    """The long-term motion of a block on a vibrating plane.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def block_cycle(
     tolerance: float = 1e-13,
     rest_speed: float = 1e-9,
 ) -> BlockCycle:
-    """Motion of a block on a harmonically vibrating plane once it has become periodic.
+    """Compute the periodic motion that a block on a harmonically vibrating plane settles to.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def mean_block_speed(
     incline: Real = 0.0,
     cycles: int = 1000,
 ) -> FloatArray:
-    """Mean transport speed of a block on a harmonically vibrating plane that began at rest on it.
+    """Compute the mean transport velocity of a block that begins at rest on a harmonically vibrating plane.
 
     Parameters
     ----------

@@ -1,13 +1,13 @@
 """The critical frequency ν*, below which steady rolling on a circularly moving base is unstable, for any friction.
 
-The boundary A = c/x* of `stylobate.theory.stability`, put into (8), gives the critical amplitude in closed form,
+The boundary θ = c/ξ* of `stylobate.theory.stability`, put into (8), gives the critical amplitude in closed form,
 
-    a0*/c = √[(1 + ν² − x*)² + η²ν²] / x*,    x* = 4 / (1 + √(1 + 4/(4ν² + η²))).
+    a0*/c = √[(1 + ν² − ξ*)² + η²ν²] / ξ*,    ξ* = 4 / (1 + √(1 + 4/(4ν² + η²))).
 
-On it a pair of eigenvalues ±iΩ crosses the imaginary axis, Ω² = q/2. The curve begins at q = p0 = 0, on the fold at the
-lower end of the band without rolling (a Bogdanov–Takens point), where 3ν⁴ + (2 + η²)ν² = 1. From there a0* rises with ν
-without bound: seen on a fine grid for every η from 0 to 100. So ν* exists, and is unique, for every amplitude above the
-one at that point. For a smaller amplitude there is none: rolling is unstable at all frequencies below the band without
+On it a pair of eigenvalues ±iω_H crosses the imaginary axis, ω_H² = q/2. The curve begins at q = p0 = 0, on the fold at
+the lower end of the band without rolling (a Bogdanov–Takens point), where 3ν⁴ + (2 + η²)ν² = 1. From there a0* rises with
+ν without bound: observed on a fine grid for η from 0 to 100, not proved. There ν* exists, and is unique, for every
+amplitude above the one at that point. For a smaller amplitude there is none: rolling is unstable at all frequencies below the band without
 rolling and stable at all frequencies above it.
 """
 
@@ -20,16 +20,16 @@ _BISECTIONS = 64  # from an interval as long as the root is large to rounding
 
 
 def critical_amplitude(nu: Real, *, c: Real, eta: Real) -> FloatArray:
-    """Base acceleration amplitude at which the excitation frequency ν is the critical one.
+    """Compute the base acceleration at which a frequency ratio ν is the critical one.
 
     Parameters
     ----------
     nu
-        Excitation frequency ν, positive.
+        Frequency ratio ν = ω_H/ω0 of the base motion, positive.
     c
         Slenderness.
     eta
-        Viscous friction η.
+        Damping η.
 
     Returns
     -------
@@ -57,7 +57,7 @@ def critical_amplitude(nu: Real, *, c: Real, eta: Real) -> FloatArray:
 
 
 def critical_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
-    """Critical frequency ν* above which steady rolling on a circularly moving base is stable.
+    """Compute the critical frequency ratio ν* above which steady rolling on a circling base is stable.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def critical_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
     c
         Slenderness.
     eta
-        Viscous friction η.
+        Damping η.
 
     Returns
     -------
@@ -91,7 +91,7 @@ def critical_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
     [       nan 0.98130802 1.39710759]
     """
     ratio, eta = np.broadcast_arrays(not_negative("a0", a0) / positive("c", c), not_negative("eta", eta))
-    low, high = _least_frequency(eta), np.sqrt(1.0 + 2.0 * ratio)  # x* < 2 bounds ν*
+    low, high = _least_frequency(eta), np.sqrt(1.0 + 2.0 * ratio)  # ξ* < 2 bounds ν*
     exists = ratio >= _amplitude_ratio(low, eta)
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
@@ -101,7 +101,7 @@ def critical_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
 
 
 def crossing_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
-    """Frequency Ω with which steady rolling begins to be modulated at the critical frequency.
+    """Compute the frequency ω_H of the modulation that begins at the critical frequency.
 
     Parameters
     ----------
@@ -110,12 +110,12 @@ def crossing_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
     c
         Slenderness.
     eta
-        Viscous friction η.
+        Damping η.
 
     Returns
     -------
     numpy.ndarray
-        Imaginary part Ω of the pair of eigenvalues that crosses at ν*, in the frame that turns with the base motion;
+        Imaginary part ω_H of the pair of eigenvalues that crosses at ν*, in the frame that turns with the base motion;
         NaN where there is no ν*.
 
     Raises
@@ -125,7 +125,7 @@ def crossing_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
 
     Notes
     -----
-    Ω² = q/2 = ν*² − 1 + x*/2, from the odd part of the characteristic polynomial.
+    ω_H² = q/2 = ν*² − 1 + ξ*/2, from the odd part of the characteristic polynomial.
 
     Examples
     --------
@@ -138,7 +138,7 @@ def crossing_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
 
 
 def undamped_critical_frequency(a0: Real, *, c: Real) -> FloatArray:
-    """Critical frequency ν* of the column without friction, in closed form.
+    """Compute the critical frequency ratio ν* of the undamped column in closed form.
 
     Parameters
     ----------

@@ -27,11 +27,11 @@ class Cycle:
     Parameters
     ----------
     state
-        (μ/c, ω, A/c, ψ) on equally spaced points of one period, shape (4, points).
+        (θ̇/c, β̇, θ/c, ψ) on equally spaced points of one period, shape (4, points).
     period
         Its period.
     nu
-        Excitation frequency ν.
+        Frequency ratio ν = Ω/ω0 of the base motion.
     """
 
     state: FloatArray
@@ -52,7 +52,7 @@ class CycleProblem:
     a0
         Acceleration amplitude of the base in units of c.
     eta
-        Viscous friction η.
+        Damping η.
     derivative
         Spectral differentiation matrix.
     """
@@ -117,7 +117,7 @@ class CycleProblem:
             for column in range(STATE_LENGTH):
                 blocks[row, each, column, each] -= cycle.period * jacobian[:, row, column]
         matrix[:-2, -2] = -rates.ravel()
-        matrix[-2 - points : -2, -1] = cycle.period  # ψ̇ = ω − ν
+        matrix[-2 - points : -2, -1] = cycle.period  # ψ̇ = β̇ − ν
         matrix[-2, :-2] = shift
         residual = np.zeros_like(unknowns)
         residual[:-2] = (cycle.state @ self.derivative.T - cycle.period * rates).ravel()
@@ -126,7 +126,7 @@ class CycleProblem:
 
 
 def cycle_at(nu: float, a0: float, eta: float, points: int) -> Cycle:
-    """Follow the cycles from the Hopf bifurcation down to the excitation frequency ν.
+    """Follow the cycles from the Hopf bifurcation down to the frequency ratio ν.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def cycle_at(nu: float, a0: float, eta: float, points: int) -> Cycle:
     a0
         Acceleration amplitude of the base in units of c.
     eta
-        Viscous friction η.
+        Damping η.
     points
         Number of collocation points, odd.
 

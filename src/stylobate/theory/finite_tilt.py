@@ -27,7 +27,7 @@ class FiniteTiltRolling:
     Parameters
     ----------
     amplitude
-        Tilt angle A [rad], between 0 and π/2.
+        Tilt angle θ [rad], between 0 and π/2.
     phase
         Phase ψ by which the contact point leads the base acceleration [rad], in (−π, π].
     spin
@@ -39,7 +39,7 @@ class FiniteTiltRolling:
     exists
         Whether there is such a solution.
     stable
-        Whether all deviations decay; without friction, whether none grows.
+        Whether all deviations decay; without damping, whether none grows.
     eigenvalues
         Eigenvalues of the Jacobian, complex, along one more axis after that of the branches.
     """
@@ -83,7 +83,7 @@ def steady_tilts(balance: Balance, a0: FloatArray, scale: FloatArray, lossless: 
     numpy.ndarray
         Tilts [rad], rising, shape (rows, branches), NaN where there are fewer than the most.
     """
-    # Without friction X² = a0² is taken apart, or its double zeros at a0 = 0 would be lost.
+    # Without damping X² = a0² is taken apart, or its double zeros at a0 = 0 would be lost.
     possible = np.isfinite(scale)
     rows, sides = [], []
     for chosen, side in ((~lossless, 0.0), (lossless, 1.0), (lossless & (a0 > 0.0), -1.0)):
@@ -136,7 +136,7 @@ _NEUTRAL = 1e-7
 
 
 def no_deviation_grows(eigenvalues: ComplexArray, eta: FloatArray) -> BoolArray:
-    """Whether all of the last axis decay or, without friction, none grows."""
+    """Return whether all of the last axis decay or, without damping, none grows."""
     growth = eigenvalues.real.max(axis=-1)
     size = np.abs(np.where(np.isfinite(eigenvalues), eigenvalues, 0.0)).max(axis=-1)
     return np.asarray(np.where(eta > 0.0, growth < 0.0, growth <= _NEUTRAL * size))

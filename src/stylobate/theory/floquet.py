@@ -22,18 +22,18 @@ _STAGES = np.array(
 
 
 def floquet_multipliers(state: FloatArray, period: float, a0: float, eta: float) -> ComplexArray:
-    """Multipliers of a periodic solution of (7), the largest first.
+    """Compute the multipliers of a periodic solution of (7), the largest first.
 
     Parameters
     ----------
     state
-        (μ, ω, A, ψ) on equally spaced points of one period, shape (4, points).
+        (θ̇, β̇, θ, ψ) on equally spaced points of one period, shape (4, points).
     period
         Its period.
     a0
         Acceleration amplitude of the base [g].
     eta
-        Viscous friction η.
+        Damping η.
 
     Returns
     -------

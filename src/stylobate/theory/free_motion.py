@@ -1,4 +1,4 @@
-"""Free motion without friction between its turning points: the tilt oscillates while the contact point runs on (11)."""
+"""Free motion without damping between its turning points: the tilt oscillates while the contact point runs on (11)."""
 
 from dataclasses import dataclass
 
@@ -12,16 +12,16 @@ _NEWTON_STEPS = 64  # a double root is approached by halving: enough to go from 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FreeMotion:
-    """Free motions of the column without friction, arrays of one shape; NaN where the column overturns.
+    """Free motions of the column without damping, arrays of one shape; NaN where the column overturns.
 
     Parameters
     ----------
     smallest_tilt, largest_tilt
-        Turning points A1 ≤ A2 of the tilt angle [rad].
+        Turning points θ1 ≤ θ2 of the tilt angle [rad].
     energy
-        E = ½(Ȧ² + A²β̇²) + cA − ½A², also where the column overturns.
+        E = ½(θ̇² + θ²β̇²) + cθ − ½θ², also where the column overturns.
     angular_momentum
-        ℓ = A²β̇, with the sign of the rolling rate, also where the column overturns.
+        ℓ = θ²β̇, with the sign of the rolling rate, also where the column overturns.
     period
         Time τ from one largest tilt to the next.
     azimuth_advance
@@ -37,12 +37,12 @@ class FreeMotion:
 
 
 def free_motion(tilt: Real, rolling_rate: Real, c: Real) -> FreeMotion:
-    """Free motion without friction, started at a turning point of the tilt.
+    """Compute free motion without damping, started at a turning point of the tilt.
 
     Parameters
     ----------
     tilt
-        Tilt angle A at the start [rad], positive; its rate Ȧ is zero there.
+        Tilt angle θ at the start [rad], positive; its rate θ̇ is zero there.
     rolling_rate
         Rolling rate β̇ at the start, either sense.
     c
@@ -60,13 +60,12 @@ def free_motion(tilt: Real, rolling_rate: Real, c: Real) -> FreeMotion:
 
     Notes
     -----
-    From (11), Ä = ℓ²/A³ + A − c and β̇ = ℓ/A². In units of c the turning points are roots of the quartic
-    A⁴ − 2A³ + 2EA² − ℓ² = (A − A1)(A − A2)(A − A3)(A − A4) with A4 < 0 < A1 ≤ A2 < A3, and
-    ℓ² = A1²A2²(2 − A1 − A2)/(A1 + A2). The motion is bounded if the start lies below A3. A start on the separatrix
-    A2 = A3, which includes steady rolling at ω² ≤ 1/3, counts as overturning.
+    From (11), θ̈ = ℓ²/θ³ + θ − c and β̇ = ℓ/θ². In units of c the turning points are roots of the quartic
+    θ⁴ − 2θ³ + 2Eθ² − ℓ² = (θ − θ1)(θ − θ2)(θ − θ3)(θ − θ4) with θ4 < 0 < θ1 ≤ θ2 < θ3, and
+    ℓ² = θ1²θ2²(2 − θ1 − θ2)/(θ1 + θ2). The motion is bounded if the start lies below θ3. A start on the separatrix
+    θ2 = θ3, which includes steady rolling at ω² ≤ 1/3, counts as overturning.
 
-    One period holds one passage near the upright. As ℓ → 0 the azimuth turns by π in it, so the limit of the azimuth is
-    the jump from one side of the upright to the other, and `planar_free_period` is two of these periods.
+    One period contains one passage near the vertical. As ℓ → 0 the azimuth turns by π in the passage, so its limit is the jump from one side of the vertical to the other, and `planar_free_period` is two of these periods.
     At a rolling rate of zero the advance is reported as +π.
 
     Examples
@@ -94,8 +93,8 @@ def free_motion(tilt: Real, rolling_rate: Real, c: Real) -> FreeMotion:
 def _partner_turning_point(start: FloatArray, rate: FloatArray) -> FloatArray:
     """Return the other turning point in units of c, NaN where the motion is unbounded.
 
-    A' is a turning point if A'²(2 − A0 − A') = A0²w²(A0 + A'). With A' = A0 w/Z that is the convex cubic
-    F(Z) = Z³ + wZ² − gZ + w = 0, g = 2/A0 − 1, for Z > 0: the partner belongs to its larger root, A3 to the smaller,
+    θ' is a turning point if θ'²(2 − θ0 − θ') = θ0²w²(θ0 + θ'). With θ' = θ0 w/Z that is the convex cubic
+    F(Z) = Z³ + wZ² − gZ + w = 0, g = 2/θ0 − 1, for Z > 0: the partner belongs to its larger root, θ3 to the smaller,
     and the start itself stands at Z = w. Newton from above the larger root descends to it without fail.
     """
     slope = 2.0 / start - 1.0
@@ -120,18 +119,18 @@ def _partner_turning_point(start: FloatArray, rate: FloatArray) -> FloatArray:
 def _period_and_advance(a1: FloatArray, a2: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the period and the advance of the azimuth between the turning points a1 ≤ a2 in units of c.
 
-    With A² = A1²cos²φ + A2²sin²φ the half period is the integral over a quarter turn of
-    √[(A + A1)(A + A2) / ((A3 − A)(A − A4))]; with 1/A² = cos²χ/A1² + sin²χ/A2², which undoes the peak of β̇ = ℓ/A²
-    at the passage of the upright, half the advance is ℓ/(A1 A2) times the integral of the same root over χ.
+    With θ² = θ1²cos²φ + θ2²sin²φ the half period is the integral over a quarter turn of
+    √[(θ + θ1)(θ + θ2) / ((θ3 − θ)(θ − θ4))]; with 1/θ² = cos²χ/θ1² + sin²χ/θ2², which undoes the peak of β̇ = ℓ/θ²
+    at the passage near the vertical, half the advance is ℓ/(θ1 θ2) times the integral of the same root over χ.
     """
-    others = 2.0 - a1 - a2  # A3 + A4
-    product = a1 * a2 * others / (a1 + a2)  # −A3 A4
+    others = 2.0 - a1 - a2  # θ3 + θ4
+    product = a1 * a2 * others / (a1 + a2)  # −θ3 θ4
     a3 = 0.5 * (others + np.sqrt(others**2 + 4.0 * product))
     a4 = -product / a3
     spread = (a2 - a1) * (a1 + a2)
 
     def root(a: FloatArray, rise: FloatArray, fall: FloatArray) -> FloatArray:
-        """Evaluate the root where A² − A1² = rise and A2² − A² = fall, both given free of cancellation."""
+        """Evaluate the root where θ² − θ1² = rise and θ2² − θ² = fall, both given free of cancellation."""
         below_a3 = (a3 - a2) + fall / (a2 + a)
         above_a4 = (a1 - a4) + rise / (a + a1)
         return np.sqrt((a + a1) * (a + a2) / (below_a3 * above_a4))
@@ -141,10 +140,10 @@ def _period_and_advance(a1: FloatArray, a2: FloatArray) -> tuple[FloatArray, Flo
     for sine, cosine, weight in quarter_turn():  # one node at a time: memory stays that of the arguments
         a = np.hypot(a1 * cosine, a2 * sine)
         half_period = half_period + weight * root(a, spread * sine**2, spread * cosine**2)
-        squeeze = np.hypot(a2 * cosine, a1 * sine)  # A1 A2 / A
+        squeeze = np.hypot(a2 * cosine, a1 * sine)  # θ1 θ2 / θ
         a = np.where(upright, a2, a2 * (a1 / squeeze))
         rise, fall = spread * (sine * a1 / squeeze) ** 2, spread * (cosine * a2 / squeeze) ** 2
-        with np.errstate(divide="ignore", invalid="ignore"):  # A1 = 0, whose limit is put in below
+        with np.errstate(divide="ignore", invalid="ignore"):  # θ1 = 0, whose limit is put in below
             half_advance = half_advance + weight * root(a, rise, fall)
     advance = np.where(upright, np.pi, 2.0 * np.sqrt(others / (a1 + a2)) * half_advance)
     return 2.0 * half_period, advance

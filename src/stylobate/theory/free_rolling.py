@@ -1,4 +1,4 @@
-"""Steady rolling of a rigid column at finite tilt on a base at rest, without friction and with free twist."""
+"""Steady rolling of a rigid column at finite tilt on a base at rest, without damping and with free spin."""
 
 from dataclasses import dataclass
 
@@ -40,12 +40,12 @@ class FreeRolling:
 def free_rolling(
     tilt: Real, spin: Real = 0.0, *, c: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
 ) -> FreeRolling:
-    r"""Steady rolling of a column round its rim, by itself, at a given tilt and spin.
+    r"""Compute free steady rolling of a column round its rim at a given tilt and spin.
 
     Parameters
     ----------
     tilt
-        Tilt angle A [rad], between 0 and π/2.
+        Tilt angle θ [rad], between 0 and π/2.
     spin
         Axial angular velocity w3 [ω0].
     c
@@ -73,9 +73,9 @@ def free_rolling(
 
     Notes
     -----
-    With p = cos A + c sin A the rates are the roots of
+    With p = cos θ + c sin θ the rates are the roots of
 
-        sin A (κp + (1 − κ) cos A) β̇² − κc w3 (p + c i_a sin A) β̇ + sin A − c cos A = 0,
+        sin θ (κp + (1 − κ) cos θ) β̇² − κc w3 (p + c i_a sin θ) β̇ + sin θ − c cos θ = 0,
 
     two of opposite sign below the tipping angle, and above it, where the column would fall without spin, two of the
     sign of w3 if that is large enough. Deviations from steady rolling keep two linear combinations of w1 and w3 that
@@ -116,12 +116,12 @@ def free_rolling(
 def free_rolling_spin(
     tilt: Real, rate: Real, *, c: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
 ) -> FloatArray:
-    """Spin with which a column rolls steadily by itself at a given tilt and rate.
+    """Compute the spin with which a column rolls freely at a given tilt and rate.
 
     Parameters
     ----------
     tilt
-        Tilt angle A [rad], between 0 and π/2.
+        Tilt angle θ [rad], between 0 and π/2.
     rate
         Rolling rate β̇ of the contact point [ω0].
     c, inertia_ratio, axial_ratio
@@ -182,7 +182,7 @@ _STEP = 1e-30
 
 
 def _stiffness(tilt: FloatArray, rate: FloatArray, spin: FloatArray, body: RigidBody) -> FloatArray:
-    """Return −K dμ̇/dA, with w1 and w3 following the tilt as they do without couples."""
+    """Return −K dθ̈/dθ, with w1 and w3 following the tilt as they do without couples."""
     s, cosine = np.sin(tilt), np.cos(tilt)
     w1 = -rate * s
     inertia = body.axial / body.transverse
@@ -195,7 +195,7 @@ def _stiffness(tilt: FloatArray, rate: FloatArray, spin: FloatArray, body: Rigid
 
 
 def _tilting(tilt: Numbers, w1: Numbers, spin: Numbers, body: RigidBody) -> Numbers:
-    """Return K μ̇ on a base at rest."""
+    """Return K θ̈ on a base at rest."""
     s = np.sin(tilt)
     forward = body.kappa * body.height(tilt) * (body.c * spin + w1) / s
     return body.overhang(tilt) + w1 * (forward + body.transverse * w1 * np.cos(tilt) / s + body.axial * spin)

@@ -1,7 +1,7 @@
-"""Steady rolling of a slender column whose twist is free: nothing but friction keeps it from spinning about its axis.
+"""Steady rolling of a slender column that is free to spin about its axis.
 
-The paper forbids rotation about the vertical. A column that may turn lags behind the base by its friction, the lag
-leaves a part of the base acceleration across its lean, and that part spins the column up, until the spin damping ζ
+The paper excludes rotation about the vertical. Damping makes a column that is free to spin lag behind the base. The lag
+leaves a part of the base acceleration across the lean, and this part spins the column up until the spin damping ζ
 balances it. The equations are those of rolling without slip in the limit of small tilts, seen from the frame that turns
 with the base.
 """
@@ -21,12 +21,12 @@ _STATES = 5
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FreeTwistRolling:
-    """Steady rolling with free twist, arrays of one shape; NaN (and False) where there is none.
+    """Steady rolling with free spin, arrays of one shape; NaN (and False) where there is none.
 
     Parameters
     ----------
     amplitude
-        Tilt angle A [rad].
+        Tilt angle θ [rad].
     phase
         Phase ψ by which the contact point leads the base acceleration [rad].
     spin
@@ -37,7 +37,7 @@ class FreeTwistRolling:
     exists
         Whether there is such a solution.
     stable
-        Whether all deviations decay; without friction, whether none grows.
+        Whether all deviations decay; without damping, whether none grows.
     eigenvalues
         The five eigenvalues of the Jacobian, complex, along a last axis of length 5. For infinite `zeta` the spin
         follows at once: the four of the paper's column, and −∞.
@@ -62,21 +62,21 @@ def free_twist_rolling(
     inertia_ratio: Real = 0.75,
     axial_ratio: Real = 0.5,
 ) -> FreeTwistRolling:
-    """Steady rolling on a base that moves in a circle, upper branch, where the column may turn about its axis.
+    """Compute steady rolling with free spin on a base that moves in a circle, upper branch.
 
     Parameters
     ----------
     nu
-        Excitation frequency ν, positive.
+        Frequency ratio ν = Ω/ω0 of the base motion, positive.
     a0
         Acceleration amplitude of the base [g].
     c
         Slenderness.
     eta
-        Viscous friction η, a couple against the rate of tilt.
+        Damping η, a couple against the rate of tilt.
     zeta
         Spin damping ζ, a moment about the vertical that lets a free spin decay at the rate ζω0. Infinite, it forbids
-        the twist, as the paper does. Zero, with friction η, it leaves no steady rolling.
+        the twist, as the paper does. Zero, with damping η, it leaves no steady rolling.
     inertia_ratio
         κ = m h²/J0; ¾ for a solid cylinder, as by default.
     axial_ratio
@@ -99,12 +99,12 @@ def free_twist_rolling(
 
     Notes
     -----
-    With D = 1 + i_a − κ, the three balances, along the lean, across it and about the axis, give
+    With Λ = 1 + i_a − κ, the three balances, along the lean, across it and about the axis, give
 
-        a0 cos ψ = A(1 + ν²(1 + η/(ζD))) − c,   a0 sin ψ = ηνA,   σ = −ηνA/(cζκD):
+        a0 cos ψ = θ(1 + ν²(1 + η/(ζΛ))) − c,   a0 sin ψ = ηνθ,   σ = −ηνθ/(cζκΛ):
 
-    the paper's solution (8) with ν² replaced by ν²(1 + η/(ζD)) in the first. The column rolls at a smaller tilt, spins
-    against its rolling, and the contact bears the moment m r a_n about the vertical, a_n = g ηνA being the base
+    the paper's solution (8) with ν² replaced by ν²(1 + η/(ζΛ)) in the first. The column rolls at a smaller tilt, spins
+    against its rolling, and the contact bears the moment m r a_n about the vertical, a_n = g ηνθ being the base
     acceleration across the lean. At η = ζ = 0 the spin is arbitrary, and taken as 0.
 
     Examples
@@ -115,7 +115,7 @@ def free_twist_rolling(
     """
     numbers = checked_numbers(nu, a0, c, eta, zeta, inertia_ratio, axial_ratio)
     nu, a0, c, eta, zeta, ratio, axial = numbers
-    freedom = 1.0 + axial - ratio  # D
+    freedom = 1.0 + axial - ratio  # Λ
     with np.errstate(divide="ignore", invalid="ignore"):
         lag = np.where(eta > 0.0, eta / (zeta * freedom), 0.0)
     exists = np.isfinite(lag)
@@ -143,12 +143,12 @@ def free_twist_rolling(
 def free_twist_jacobian(
     state: Real, a0: Real, *, c: Real, eta: Real, zeta: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
 ) -> FloatArray:
-    """Jacobian of rolling with free twist on a circularly moving base, in the frame that turns with it, at any state.
+    """Evaluate the Jacobian of rolling with free spin on a circling base, in the frame that turns with it, at any state.
 
     Parameters
     ----------
     state
-        Tilt rate μ, rolling rate ω, tilt angle A > 0 [rad], phase ψ = β − ντ and spin σ [ω0], along the first axis:
+        Tilt rate θ̇, rolling rate β̇, tilt angle θ > 0 [rad], phase ψ = β − ντ and spin σ [ω0], along the first axis:
         shape (5, ...).
     a0, c, eta, zeta, inertia_ratio, axial_ratio
         As for `free_twist_rolling`; `zeta` finite.
@@ -165,11 +165,11 @@ def free_twist_jacobian(
 
     Notes
     -----
-    With D = 1 + i_a − κ:
+    With Λ = 1 + i_a − κ:
 
-        Ä = A(1 + ω²) − c − ηȦ − a0 cos ψ − cκσω
-        Aω̇ = −2Ȧω − η(1 + i_a)Aω/D + a0 sin ψ i_a/D − cκζσ
-        σ̇ = −a0 sin ψ (1 − κ)/(cκD) − ηAω/(cD) − ζσ
+        θ̈ = θ(1 + β̇²) − c − ηθ̇ − a0 cos ψ − cκσβ̇
+        θβ̈ = −2θ̇β̇ − η(1 + i_a)θβ̇/Λ + a0 sin ψ i_a/Λ − cκζσ
+        σ̇ = −a0 sin ψ (1 − κ)/(cκΛ) − ηθβ̇/(cΛ) − ζσ
     """
     mu, omega, tilt, psi, spin = _components(state)
     a, slender, friction, decay, kappa, i_a = _arrays(a0, c, eta, zeta, inertia_ratio, axial_ratio)
@@ -249,6 +249,6 @@ def _arrays(*values: Real) -> tuple[FloatArray, ...]:
 def _components(state: Real) -> tuple[FloatArray, ...]:
     array = np.asarray(state, dtype=np.float64)
     if array.ndim == 0 or len(array) != _STATES:
-        message = f"state must have the five entries (μ, ω, A, ψ, σ) along its first axis, got the shape {array.shape}"
+        message = f"state must have the five entries (θ̇, β̇, θ, ψ, σ) along its first axis, got the shape {array.shape}"
         raise ParameterError(message)
     return tuple(array)

@@ -1,15 +1,15 @@
-"""The frequencies between which steady rolling with a free twist is stable.
+"""The frequencies between which steady rolling with free spin is stable.
 
 Its tilt follows from ν in closed form and its stability from a determinant, `stylobate.theory.free_twist_stability`.
 Left is a root in one variable, bracketed on a grid and bisected to rounding. Seen at 30 000 random columns (a0/c from
 0.001 to 1000, η from 1e-4 to 5, ζ from 1e-4 to 1e4, κ from 0.05 to 0.99, i_a up to 4): besides the band without rolling
-there is one frequency at most at which stability is gained, with 1/(3 + η²/(1+λ)) ≤ (1+λ)ν*² and ν*² ≤ 1 + 2a0/c, and
+there is one frequency at most at which stability is gained, with 1/(3 + η²/(1+b)) ≤ (1+b)ν*² and ν*² ≤ 1 + 2a0/c, and
 one at most above it at which it is lost, that only for i_a < 2κ − 1. At two of the columns, with the least amplitudes
-and frictions, rolling was stable in a strip next to that band too.
+and damping, rolling was stable in a strip next to that band too.
 
-That last bound follows from the limit ν → ∞, in which the determinant is a positive factor times a cubic in λ = η/(ζD).
+That last bound follows from the limit ν → ∞, in which the determinant is a positive factor times a cubic in b = η/(ζΛ).
 Its coefficients are all positive for i_a ≥ 2κ − 1. For i_a < 2κ − 1 they change their sign once: rolling at high
-frequency is then unstable above some λ.
+frequency is then unstable above some b.
 """
 
 import numpy as np
@@ -28,7 +28,7 @@ _BISECTIONS = 60
 def free_twist_critical_frequency(
     a0: Real, *, c: Real, eta: Real, zeta: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
 ) -> FloatArray:
-    """Critical frequency ν* above which steady rolling with a free twist is stable.
+    """Compute the critical frequency ratio ν* above which steady rolling with free spin is stable.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def free_twist_critical_frequency(
     c
         Slenderness.
     eta
-        Viscous friction η.
+        Damping η.
     zeta
         Spin damping ζ. Infinite, it forbids the twist, as the paper does.
     inertia_ratio
@@ -59,16 +59,16 @@ def free_twist_critical_frequency(
 
     See Also
     --------
-    critical_frequency : the same without twist.
+    critical_frequency : the same without spin.
 
     Notes
     -----
-    A pair of eigenvalues ±iΩ crosses there. At a finite ζ
+    A pair of eigenvalues ±iω_H crosses there. At a finite ζ
 
-        ν*² = 1 + 2a − η[(1+a)ζ/(a(1+2a)(1−j)) + (1+a)(1+j)(1+a−ja)/((1+2a)(1−j)ζ) + a/(Dζ)] + O(η²),
+        ν*² = 1 + 2a − η[(1+a)ζ/(a(1+2a)(1−i')) + (1+a)(1+i')(1+a−i'a)/((1+2a)(1−i')ζ) + a/(Λζ)] + O(η²),
 
-    with a = a0/c, D = 1 + i_a − κ, j = i_a/D: as η → 0 it tends to √(1 + 2a0/c), more than the
-    `undamped_critical_frequency` of a column that cannot turn. As ζ → 0 it falls as √ζ.
+    with a = a0/c, Λ = 1 + i_a − κ, i' = i_a/Λ: as η → 0 it tends to √(1 + 2a0/c), more than the
+    `undamped_critical_frequency` of a column without spin. As ζ → 0 it falls as √ζ.
 
     Examples
     --------
@@ -83,7 +83,7 @@ def free_twist_critical_frequency(
 def free_twist_upper_frequency(
     a0: Real, *, c: Real, eta: Real, zeta: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
 ) -> FloatArray:
-    """Frequency ν** up to which steady rolling with a free twist is stable.
+    """Compute the upper frequency ratio ν** up to which steady rolling with free spin is stable.
 
     Parameters
     ----------

@@ -1,20 +1,20 @@
-"""Stability of steady rolling with a free twist, from the characteristic polynomial of its five states.
+"""Stability of steady rolling with free spin, from the characteristic polynomial of its five states.
 
-With K = 1 + ν²(1 + λ), λ = η/(ζD), D = 1 + i_a − κ, x = c/A, m = a0 cos ψ/A = K − x, ε = κ/D and j = i_a/D, small
-deviations from steady rolling grow as e^{sτ} where s⁵ + p1 s⁴ + p2 s³ + p3 s² + p4 s + p5 = 0,
+With b = η/(ζΛ), Λ = 1 + i_a − κ, k = 1 + ν²(1 + b), ξ = c/θ, f = a0 cos ψ/θ = k − ξ, κ' = κ/Λ and i' = i_a/Λ, small
+deviations from steady rolling grow as e^{λτ} where λ⁵ + p1 λ⁴ + p2 λ³ + p3 λ² + p4 λ + p5 = 0,
 
-    p1 = ζ + η(2 + ε)
-    p2 = ν²(3 + 2λ) − 1 + η²(1 + ε) + 2ηζ − jm
-    p3 = ζ(3ν² − 1 + 2λν² + η²) + η(3ν² − 1 + λν²) + εη(2ν² − 1 + λν²) − m(ζ + ηj)
-    p4 = η²ν²(1 + ε) + ηζ(3ν² − 1 + λν²) + m(2ν² + j(1 − ν²) − ηζ)
-    p5 = ζ(η²ν² + mK).
+    p1 = ζ + η(2 + κ')
+    p2 = ν²(3 + 2b) − 1 + η²(1 + κ') + 2ηζ − i'f
+    p3 = ζ(3ν² − 1 + 2bν² + η²) + η(3ν² − 1 + bν²) + κ'η(2ν² − 1 + bν²) − f(ζ + ηi')
+    p4 = η²ν²(1 + κ') + ηζ(3ν² − 1 + bν²) + f(2ν² + i'(1 − ν²) − ηζ)
+    p5 = ζ(η²ν² + fk).
 
-On the upper branch p5 = ζx√((a0/c)²(K² + η²ν²) − η²ν²) > 0: no real eigenvalue changes its sign there but at a fold. So
-stability is lost by a pair ±iΩ, where the fourth Hurwitz determinant vanishes,
+On the upper branch p5 = ζξ√((a0/c)²(k² + η²ν²) − η²ν²) > 0: no real eigenvalue changes its sign there but at a fold. So
+stability is lost by a pair ±iω_H, where the fourth Hurwitz determinant vanishes,
 
-    (p1p2 − p3)(p3p4 − p2p5) = (p1p4 − p5)²,    Ω² = (p1p4 − p5)/(p1p2 − p3).
+    (p1p2 − p3)(p3p4 − p2p5) = (p1p4 − p5)²,    ω_H² = (p1p4 − p5)/(p1p2 − p3).
 
-At given ν this is a cubic in c/A.
+At given ν this is a cubic in ξ.
 """
 
 from typing import NamedTuple
@@ -23,7 +23,7 @@ from stylobate.theory.arguments import BoolArray, FloatArray
 
 
 class Frictions(NamedTuple):
-    """Frictions and shape of the column: η, ζ, κ and i_a, arrays that broadcast."""
+    """Damping and shape of the column: η, ζ, κ and i_a, arrays that broadcast."""
 
     eta: FloatArray
     zeta: FloatArray
@@ -32,17 +32,17 @@ class Frictions(NamedTuple):
 
     @property
     def freedom(self) -> FloatArray:
-        """D = 1 + i_a − κ."""
+        """Λ = 1 + i_a − κ."""
         return 1.0 + self.axial - self.kappa
 
     @property
     def lag(self) -> FloatArray:
-        """λ = η/(ζD)."""
+        """b = η/(ζΛ)."""
         return self.eta / (self.zeta * self.freedom)
 
 
 def characteristic(nu: FloatArray, x: FloatArray, column: Frictions) -> tuple[FloatArray, ...]:
-    """Return p1 to p5 at the slenderness ratio x = c/A; a0 does not enter, since ν, A and the frictions fix it."""
+    """Return p1 to p5 at ξ = c/θ; a0 does not enter, since ν, θ and the damping fix it."""
     eta, zeta = column.eta, column.zeta
     epsilon, axial_share, lag = column.kappa / column.freedom, column.axial / column.freedom, column.lag
     square = nu**2
@@ -64,7 +64,7 @@ def characteristic(nu: FloatArray, x: FloatArray, column: Frictions) -> tuple[Fl
 
 
 def deviations_decay(nu: FloatArray, x: FloatArray, column: Frictions) -> BoolArray:
-    """Whether steady rolling of the upper branch, where p5 > 0, is stable (Liénard–Chipart)."""
+    """Return whether steady rolling of the upper branch, where p5 > 0, is stable (Liénard–Chipart)."""
     p1, p2, p3, p4, p5 = characteristic(nu, x, column)
     second = p1 * p2 - p3
     fourth = second * (p3 * p4 - p2 * p5) - (p1 * p4 - p5) ** 2

@@ -1,4 +1,4 @@
-"""Steady rolling without slip at finite tilt and with free twist, on a base that moves in a circle."""
+"""Steady rolling without slip at finite tilt and with free spin, on a base that moves in a circle."""
 
 from collections.abc import Callable
 
@@ -28,18 +28,18 @@ def full_rolling(
     inertia_ratio: Real = 0.75,
     axial_ratio: Real = 0.5,
 ) -> FiniteTiltRolling:
-    """All steady rolling of a rigid column on a base that moves in a circle, at any tilt, without slip.
+    """Compute all steady rolling of a rigid column without slip on a circling base, at any tilt.
 
     Parameters
     ----------
     nu
-        Excitation frequency ν, positive.
+        Frequency ratio ν = Ω/ω0 of the base motion, positive.
     a0
         Acceleration amplitude of the base [g].
     c
         Slenderness.
     eta
-        Viscous friction η, a couple against the rate of tilt.
+        Damping η, a couple against the rate of tilt.
     zeta
         Spin damping ζ, a moment against rotation about the vertical. Infinite, it forbids that. Zero, with friction
         η, it leaves no steady rolling.
@@ -71,18 +71,18 @@ def full_rolling(
     -----
     In steady rolling the two couples about the lean and about the axis leave of the contact force and the spin
 
-        a0 sin ψ = ην sin A cos A/p,   w3 = −ν sin A (sin A + η/(ζκcDp))/cos A,   p = cos A + c sin A
+        a0 sin ψ = ην sin θ cos θ/p,   w3 = −ν sin θ (sin θ + η/(ζκcΛp))/cos θ,   p = cos θ + c sin θ
 
-    with D = 1 + i_a − κ, and tilting is in balance where
+    with Λ = 1 + i_a − κ, and tilting is in balance where
 
-        p a0 cos ψ = sin A − c cos A + ν² sin A (κp + (1 − κ) cos A) − νκc w3 (p + c i_a sin A).
+        p a0 cos ψ = sin θ − c cos θ + ν² sin θ (κp + (1 − κ) cos θ) − νκc w3 (p + c i_a sin θ).
 
     The amplitudes are the zeros of (a0 cos ψ)² + (a0 sin ψ)² − a0²: with friction there have been two at most among
     100 000 random columns, one for a0 > c. They are those of the slender column but for a part of the order c². A
     column that rolls against its spin may lean beyond its tipping angle and be stable. Infinite spin damping leaves
-    the spin w3 = −ν sin A tan A, since it forbids rotation about the vertical and not about the axis.
+    the spin w3 = −ν sin θ tan θ, since it forbids rotation about the vertical and not about the axis.
 
-    Stability is that of all five states, from the exact Jacobian. Without friction and base motion the phase is
+    Stability is that of all five states, from the exact Jacobian. Without damping and base motion the phase is
     arbitrary.
 
     Examples

@@ -1,4 +1,4 @@
-"""Rolling of a rigid column without slip, at any tilt and with free twist, seen from the frame of a turning base."""
+"""Rolling of a rigid column without slip, at any tilt and with free spin, seen from the frame of a turning base."""
 
 import numpy as np
 
@@ -16,34 +16,34 @@ def rates(
     Parameters
     ----------
     state
-        Tilt rate μ, rolling rate ω = β̇, tilt angle A > 0 [rad], phase ψ = β − ντ and axial angular velocity σ [ω0],
+        Tilt rate θ̇, rolling rate β̇, tilt angle θ > 0 [rad], phase ψ = β − ντ and axial angular velocity σ [ω0],
         real or complex, along the first axis: shape (5, ...).
     nu
-        Excitation frequency ν.
+        Frequency ratio ν = Ω/ω0 of the base motion.
     a0
         Acceleration amplitude of the base [g].
     eta
-        Viscous friction η, a couple against the rate of tilt.
+        Damping η, a couple against the rate of tilt.
     zeta
         Spin damping ζ, a moment against rotation about the vertical. Infinite, it forbids that; the state must then
-        have σ cos A + ω sin²A = 0.
+        have σ cos θ + β̇ sin²θ = 0.
     body
         The column.
 
     Returns
     -------
     numpy.ndarray
-        Rates of the state in the same order, shape (5, ...). Not defined at A = 0.
+        Rates of the state in the same order, shape (5, ...). Not defined at θ = 0.
 
     Notes
     -----
-    Over J0, with s = sin A, w1 = −ωs, p = cos A + cs, D = 1 + i_a − κ, and the couples M1 = −ηw1 − Ms and M3 = M cos A,
-    M = −ζκc²D(σ cos A − w1 s) being the moment of the spin damping:
+    Over J0, with s = sin θ, w1 = −β̇s, p = cos θ + cs, Λ = 1 + i_a − κ, and the couples M1 = −ηw1 − Ms and M3 = M cos θ,
+    M = −ζκc²Λ(σ cos θ − w1 s) being the moment of the spin damping:
 
-        T = [κμ((I_a/I_t)σ − cw1) − a0 sin ψ − (κ/I_t)M1 − (κc/I_a)M3] I_t i_a/D
-        ẇ1 = ωμ cos A − (I_a/I_t)μσ + (T + M1)/I_t
+        T = [κθ̇((I_a/I_t)σ − cw1) − a0 sin ψ − (κ/I_t)M1 − (κc/I_a)M3] I_t i_a/Λ
+        ẇ1 = β̇θ̇ cos θ − (I_a/I_t)θ̇σ + (T + M1)/I_t
         σ̇ = (cT + M3)/I_a
-        K μ̇ = s − c cos A − p a0 cos ψ − κpω(cσ + w1) + I_t ω²s cos A − I_a ωsσ − ημ
+        K θ̈ = s − c cos θ − p a0 cos ψ − κpβ̇(cσ + w1) + I_t β̇²s cos θ − I_a β̇sσ − ηθ̇
 
     T is the force of the contact across the lean, over m g.
     """

@@ -76,7 +76,7 @@ class HarmonicForce:
 
 
 def root(value: Callable[[float], float], slope: Callable[[float], float], low: float, high: float) -> float:
-    """Zero of a function that is monotone between `low` and `high`, positive at the one or negative at the other.
+    """Find the zero of a function that is monotone between `low` and `high` and changes its sign.
 
     Newton's steps while they stay in the bracket, halving it otherwise; to rounding.
     """

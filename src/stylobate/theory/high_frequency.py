@@ -1,6 +1,6 @@
 """Fast straight-line base motion: the limit ν → ∞, a problem of its own with a1/c as its one parameter.
 
-With α = c y/ν² and s = ντ, (1) becomes y″ = y/ν² − ŷ − (η/ν) y′ − (a1/c) cos s e1. The limit drops the overturning
+With θ = c y/ν² and s = ντ, (1) becomes y″ = y/ν² − ŷ − (η/ν) y′ − (a1/c) cos s e1. The limit drops the overturning
 part of the weight and the friction, and keeps the base motion in full: raising ν does not make averaging better.
 """
 
@@ -21,7 +21,7 @@ class HighFrequencyRolling:
     Parameters
     ----------
     upper, lower
-        Tilt angle y = Aν²/c of the two branches; NaN where the lower does not exist.
+        Tilt angle y = θν²/c of the two branches; NaN where the lower does not exist.
     frequencies
         The two frequencies, per unit of s, of small oscillations about the upper branch, along a last axis of length 2,
         the slower first.
@@ -45,7 +45,7 @@ def high_frequency_rates(
     s
         Time in units of the base motion, s = ντ.
     state
-        (y1, y2, y1′, y2′) along the first axis: tilt vector y = αν²/c and its derivative in s, shape (4, ...).
+        (y1, y2, y1′, y2′) along the first axis: tilt vector y = θν²/c and its derivative in s, shape (4, ...).
     ratio
         a1/c, acceleration amplitude of the base along axis 1 against the slenderness.
     transverse_ratio
@@ -79,7 +79,7 @@ def high_frequency_rates(
 
 
 def high_frequency_rolling(ratio: Real) -> HighFrequencyRolling:
-    """Averaged steady rolling in the limit of fast straight-line base motion.
+    """Compute averaged steady rolling in the limit of fast straight-line base motion.
 
     Parameters
     ----------

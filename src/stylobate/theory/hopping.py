@@ -29,7 +29,7 @@ def hopping_speed(
     phase: Real = 0.0,
     incline: Real = 0.0,
 ) -> FloatArray:
-    """Mean transport speed of a block that bounces once in each period of the base motion.
+    """Compute the mean transport velocity of a block that bounces once in each period of the base motion.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ from stylobate.theory.rigid_body import below_one
 
 
 def housner_restitution(c: Real, *, inertia_ratio: Real = 0.75) -> FloatArray:
-    """Ratio of the rocking rates after and before an impact that neither bounces nor slips.
+    """Compute the restitution of an impact that neither bounces nor slips (Housner).
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def housner_restitution(c: Real, *, inertia_ratio: Real = 0.75) -> FloatArray:
 
 
 def block_restitution(c: Real) -> FloatArray:
-    """Ratio of the rocking rates after and before an impact of a uniform rectangular block.
+    """Compute the restitution of an impact of a uniform rectangular block.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def block_restitution(c: Real) -> FloatArray:
     Returns
     -------
     numpy.ndarray
-        e = 1 − (3/2) sin²α with tan α = c; 0 for blocks so flat that they stay down, c ≥ √2.
+        e = 1 − (3/2) sin²α_c with tan α_c = c; 0 for blocks so flat that they stay down, c ≥ √2.
 
     Raises
     ------
@@ -87,12 +87,12 @@ def block_restitution(c: Real) -> FloatArray:
 
 
 def equivalent_viscous_damping(amplitude: Real, *, c: Real, restitution: Real) -> FloatArray:
-    """Viscous friction that takes as much energy from planar rocking in a cycle as its impacts do.
+    """Compute the damping that takes as much energy from planar rocking per cycle as impacts do.
 
     Parameters
     ----------
     amplitude
-        Largest tilt angle A [rad].
+        Largest tilt angle θ [rad].
     c
         Slenderness.
     restitution
@@ -101,7 +101,7 @@ def equivalent_viscous_damping(amplitude: Real, *, c: Real, restitution: Real) -
     Returns
     -------
     numpy.ndarray
-        Friction η, of the broadcast shape; NaN where A ≥ c: the column does not come back.
+        Friction η, of the broadcast shape; NaN where θ ≥ c: the column does not come back.
 
     Raises
     ------
@@ -110,12 +110,12 @@ def equivalent_viscous_damping(amplitude: Real, *, c: Real, restitution: Real) -
 
     Notes
     -----
-    For the slender column. Its free motion (2), φ = A/c, hits the base at the rate cv with v² = 2φ − φ² and loses
+    For the slender column. Its free motion (2), φ = θ/c, hits the base at the rate cv with v² = 2φ − φ² and loses
     (1 − e²) of its energy; friction takes 2ηc²S in the same half cycle, S = ∫₀^φ √(v² − 2x + x²) dx:
 
         η = (1 − e²) v²/(4S),   S = ½[v − (1 − v²) artanh v].
 
-    η falls with the amplitude, as ¾(1 − e²)/v from small ones, to ½(1 − e²) at A = c: no one η fits a decay.
+    η falls with the amplitude, as ¾(1 − e²)/v from small ones, to ½(1 − e²) at θ = c: no one η fits a decay.
 
     Examples
     --------

@@ -28,9 +28,9 @@ class ModulatedRolling:
     tau
         Times of one period of the modulation, equally spaced, shape (points,).
     amplitude, phase
-        Tilt angle A [rad] and phase ψ = β − ντ [rad] at these times.
+        Tilt angle θ [rad] and phase ψ = β − ντ [rad] at these times.
     tilt_rate, rolling_rate
-        μ = Ȧ and ω = β̇ at these times.
+        θ̇ and β̇ at these times.
     period
         Period of the modulation, in the frame that turns with the base motion.
     multipliers
@@ -38,7 +38,7 @@ class ModulatedRolling:
     stable
         Whether the others lie within the unit circle.
     amplitude_range
-        Least and largest tilt angle at these times, against that of the unstable steady rolling A+.
+        Least and largest tilt angle at these times, against that of the unstable steady rolling θ+.
     """
 
     found: bool
@@ -55,21 +55,21 @@ class ModulatedRolling:
 
 
 def modulated_rolling(nu: float, a0: float, *, c: float, eta: float, points: int = 101) -> ModulatedRolling:
-    """Modulated rolling on a circularly moving base, below the critical frequency.
+    """Find modulated rolling on a circling base below the critical frequency.
 
     Parameters
     ----------
     nu
-        Excitation frequency ν, a number.
+        Frequency ratio ν = Ω/ω0 of the base motion, a number.
     a0
         Acceleration amplitude of the base [g].
     c
         Slenderness.
     eta
-        Viscous friction η, above zero for a modulated rolling to exist.
+        Damping η, above zero for a modulated rolling to exist.
     points
         Number of points over one period of the modulation, odd. More are needed far below the critical frequency, where
-        the column comes near the upright.
+        the column comes near the vertical.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""A column that passes near the upright: how far the contact point runs round the rim, and what friction it needs."""
+"""A column that passes near the vertical: how far the contact point runs round the rim, and what friction it needs."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from stylobate.theory.rigid_body import below_one
 
 
 def angle_of_turn(c: Real, *, inertia_ratio: Real = 0.75, spin_ratio: Real = 0.0) -> FloatArray:
-    """Angle by which the contact point runs round the rim while a column passes close by the upright.
+    """Compute the angle by which the contact point runs round the rim in a passage near the vertical.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ def angle_of_turn(c: Real, *, inertia_ratio: Real = 0.75, spin_ratio: Real = 0.0
     Returns
     -------
     numpy.ndarray
-        Angle |Δβ| [rad], of the broadcast shape, in the limit of a passage that misses the upright by nothing.
+        Angle |Δβ| [rad], of the broadcast shape, in the limit of a passage that misses the vertical by nothing.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def angle_of_turn(c: Real, *, inertia_ratio: Real = 0.75, spin_ratio: Real = 0.0
 
 
 def required_friction(c: Real, *, inertia_ratio: Real = 0.75) -> FloatArray:
-    """Coefficient of friction that holds a column on its rim near the upright.
+    """Compute the friction coefficient that prevents slip of the rim near the vertical.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def required_friction(c: Real, *, inertia_ratio: Real = 0.75) -> FloatArray:
     -----
     m h r/J0 = κc is the ratio of the horizontal to the vertical force, or impulse, of the contact in three events on a
     base at rest: when the column is let go at a small tilt, where it accelerates about the tangent of the rim; when it
-    passes close by the upright without spin, where the force runs round with the contact point; and in the planar
+    passes close to the vertical without spin, where the force runs round with the contact point; and in the planar
     impact on the other side of the base. A base that sets the column in motion from rest asks for more: its
     acceleration is c g by then, and the coefficient of friction must be c at least.
 

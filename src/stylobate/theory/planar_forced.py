@@ -1,13 +1,13 @@
 """Rocking in a plane under straight-line base motion: the symmetric orbits of the forcing period, in closed form.
 
-Between two passages of the upright the equation (1) is linear. A motion that leaves the upright at the speed v0, comes
-back after half a forcing period H = π/ν at the speed −v0 and then repeats with the opposite sign obeys, with the rates
-λ = (η + √(η² + 4))/2 of decay and 1/λ of growth,
+Between two passages of the vertical the equation (1) is linear. Consider a motion that leaves the vertical at the speed
+v0, comes back after half a forcing period T = π/ν at −v0 and repeats with the opposite sign. It obeys, with the rates
+d = (η + √(η² + 4))/2 of decay and 1/d of growth,
 
-    f  = c [tanh(λH/2) − λ² tanh(H/2λ)] / (1 + λ²),              the forced part of α at the passage,
-    v0 = cλ [tanh(λH/2) + tanh(H/2λ)] / (1 + λ²) ± ν√(Z² − f²),  Z = a1/√((1 + ν²)² + η²ν²).
+    θ_f = c [tanh(dT/2) − d² tanh(T/2d)] / (1 + d²),                 the forced part of θ at the passage,
+    v0 = cd [tanh(dT/2) + tanh(T/2d)] / (1 + d²) ± ν√(θ_a² − θ_f²),  θ_a = a1/√((1 + ν²)² + η²ν²).
 
-The amplitude a1 enters only through Z. Without friction f = 0.
+The amplitude a1 enters only through θ_a. Without damping θ_f = 0.
 """
 
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ class PlanarOrbit:
         The two multipliers of the half-period map within the plane, complex, along a last axis of length 2; squared
         they are those of the period. Out of the plane there are none, see `planar_kick_slope`.
     stable_in_plane
-        Whether no deviation within the plane grows. Without friction nothing decays either: True then means neutrally
+        Whether no deviation within the plane grows. Without damping nothing decays either: True then means neutrally
         stable.
     """
 
@@ -73,18 +73,18 @@ class PlanarForcedResponse:
 
 
 def planar_forced_response(nu: Real, a1: Real, *, c: Real, eta: Real) -> PlanarForcedResponse:
-    """Symmetric rocking in a plane with the period of a straight-line base motion.
+    """Compute symmetric planar rocking with the period of a straight-line base motion.
 
     Parameters
     ----------
     nu
-        Excitation frequency ν, positive.
+        Frequency ratio ν = Ω/ω0 of the base motion, positive.
     a1
         Acceleration amplitude of the base [g].
     c
         Slenderness.
     eta
-        Viscous friction η.
+        Damping η.
 
     Returns
     -------
@@ -98,11 +98,11 @@ def planar_forced_response(nu: Real, a1: Real, *, c: Real, eta: Real) -> PlanarF
 
     Notes
     -----
-    From (1) with α2 = 0; derivation in the module's notes. An orbit exists if abs(f) ≤ Z, v0 > 0 and the column stays
-    on its side for the whole half period. The last is checked at the least tilt between two maxima, which is looked for
-    on 257 Chebyshev nodes and then refined. Orbits with other periods or without the symmetry are not looked for.
+    From (1) with θ_y = 0; derivation in the module's notes. An orbit exists if abs(θ_f) ≤ θ_a, v0 > 0 and the column
+    stays on its side for the whole half period. The last is checked at the minimum tilt between two maxima, which is
+    searched on 257 Chebyshev nodes and then refined. Orbits with other periods or without the symmetry are not found.
 
-    Without friction and as a1 → 0 both orbits become the free rocking (2), (3). At a1 = 0 their phase is arbitrary.
+    Without damping and as a1 → 0 both orbits become the free rocking (2), (3). At a1 = 0 their phase is arbitrary.
 
     Examples
     --------
@@ -117,7 +117,7 @@ def planar_forced_response(nu: Real, a1: Real, *, c: Real, eta: Real) -> PlanarF
 
 
 def planar_kick_slope(crossing_velocity: Real, c: Real) -> FloatArray:
-    """How the kick out of the plane at a passage of the upright depends on the distance from it.
+    """Compute how the kick out of the plane at a passage near the vertical depends on the distance from it.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def planar_kick_slope(crossing_velocity: Real, c: Real) -> FloatArray:
     -----
     From (1): Δẏ = −(2c/v) y0 [ln(1/y0) + O(1)] as y0 → 0. The relative kick grows without bound the smaller the offset,
     so the passage has no linearisation across the plane, the orbit no finite multiplier there, and rocking in a plane
-    is unstable with friction and forcing too.
+    is unstable with damping and forcing too.
 
     Examples
     --------
@@ -168,7 +168,7 @@ def _orbit(nu: FloatArray, a1: FloatArray, c: FloatArray, eta: FloatArray, branc
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Arc:
-    """The half period on the positive side: α = c + C1 e^{(τ−H)/λ} + C2 e^{−λτ} + Z cos(ντ + lag).
+    """The half period on the positive side: θ = c + C1 e^{(τ−T)/d} + C2 e^{−dτ} + θ_a cos(ντ + lag).
 
     The growing exponential is counted from its end, so that nothing overflows however long the half period is.
     """
@@ -223,7 +223,7 @@ class _Arc:
 
 
 def _arc(nu: FloatArray, a1: FloatArray, c: FloatArray, eta: FloatArray, branch: float) -> _Arc:
-    """Solve α(0) = α(H) = 0 and α̇(H) = −α̇(0), three linear equations in C1, C2 and f."""
+    """Solve θ(0) = θ(T) = 0 and θ̇(T) = −θ̇(0), three linear equations in C1, C2 and θ_f."""
     half_period, decay = np.pi / nu, 0.5 * (eta + np.hypot(eta, 2.0))
     up, down = np.tanh(0.5 * half_period / decay), np.tanh(0.5 * half_period * decay)
     share = c / (1.0 + decay**2)
@@ -247,7 +247,7 @@ def _arc(nu: FloatArray, a1: FloatArray, c: FloatArray, eta: FloatArray, branch:
 def _in_plane(nu: FloatArray, c: FloatArray, eta: FloatArray, speed: FloatArray) -> tuple[ComplexArray, BoolArray]:
     """Multipliers of the half-period map, its smooth part followed by the jump of the weight at the passage.
 
-    At the passage the acceleration jumps by 2c while the tilt falls at the speed v0, so the map of (α, α̇) is
+    At the passage the acceleration jumps by 2c while the tilt falls at the speed v0, so the map of (θ, θ̇) is
     −[[1, 0], [−2c/v0, 1]] e^{MH}: determinant e^{−ηH}, trace as below. The sign is the symmetry of the orbit.
     """
     half_period, width = np.pi / nu, np.hypot(eta, 2.0)

@@ -1,4 +1,4 @@
-"""Free rocking in a plane without friction: (2) and the period that belongs to it."""
+"""Free rocking in a plane without damping: (2) and the period that belongs to it."""
 
 import numpy as np
 
@@ -6,19 +6,19 @@ from stylobate.theory.arguments import FloatArray, Real, finite, positive
 
 
 def planar_free_period(amplitude: Real, c: Real) -> FloatArray:
-    """Period of free rocking in a plane, two passages of the upright.
+    """Compute the period of free planar rocking: two passages of the vertical.
 
     Parameters
     ----------
     amplitude
-        Largest tilt angle A0 [rad], positive.
+        Largest tilt angle θ0 [rad], positive.
     c
         Slenderness.
 
     Returns
     -------
     numpy.ndarray
-        Period in the time τ, of the broadcast shape; NaN where A0 ≥ c: the column does not come back.
+        Period in the time τ, of the broadcast shape; NaN where θ0 ≥ c: the column does not come back.
 
     Raises
     ------
@@ -27,7 +27,7 @@ def planar_free_period(amplitude: Real, c: Real) -> FloatArray:
 
     Notes
     -----
-    The inverse of the backbone (3): period = 4 arcosh[c / (c − A0)] = 8 artanh √[A0 / (2c − A0)].
+    The inverse of the backbone (3): period = 4 arcosh[c / (c − θ0)] = 8 artanh √[θ0 / (2c − θ0)].
 
     Examples
     --------
@@ -42,21 +42,21 @@ def planar_free_period(amplitude: Real, c: Real) -> FloatArray:
 
 
 def planar_free_motion(tau: Real, amplitude: Real, c: Real) -> tuple[FloatArray, FloatArray]:
-    """Free rocking in a plane at any time, from its largest tilt on the positive side at τ = 0.
+    """Compute free planar rocking at any time, from its largest tilt on the positive side at τ = 0.
 
     Parameters
     ----------
     tau
         Time τ.
     amplitude
-        Largest tilt angle A0 [rad], positive.
+        Largest tilt angle θ0 [rad], positive.
     c
         Slenderness.
 
     Returns
     -------
     tuple of numpy.ndarray
-        Signed tilt angle α [rad] and its rate dα/dτ, of the broadcast shape; NaN where A0 ≥ c.
+        Signed tilt angle θ [rad] and its rate dθ/dτ, of the broadcast shape; NaN where θ0 ≥ c.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def planar_free_motion(tau: Real, amplitude: Real, c: Real) -> tuple[FloatArray,
 
     Notes
     -----
-    (2): α = c − (c − A0) cosh τ for a quarter period either side of the largest tilt. The same arc with the opposite
+    (2): θ = c − (c − θ0) cosh τ for a quarter period either side of the largest tilt. The same arc with the opposite
     sign follows on the next half period (the printed formula lacks that sign), and so on in turn.
 
     Examples

@@ -17,14 +17,14 @@ _LEAST_FREQUENCY = 0.1
 
 
 def half_sine_overturning(nu: Real, c: Real) -> FloatArray:
-    """Least half sine of acceleration that overturns a column at rest, without friction.
+    """Compute the minimum half-sine pulse that overturns a column at rest, without damping.
 
     Parameters
     ----------
     nu
         Angular frequency ω of the pulse, a0 sin ωt over half a period, over ω0; for a block over p = √(mgR/K).
     c
-        Slenderness; for a block the angle α or its tangent, equal to the order of this theory.
+        Slenderness; for a block the tipping angle α_c or its tangent, equal to the order of this theory.
 
     Returns
     -------
@@ -63,7 +63,7 @@ def half_sine_overturning(nu: Real, c: Real) -> FloatArray:
 
 
 def one_sine_overturning_without_impact(nu: Real, c: Real) -> FloatArray:
-    """Least whole sine of acceleration that overturns a column at rest without an impact, and without friction.
+    """Compute the minimum one-sine pulse that overturns a column at rest without an impact and without damping.
 
     This is mode 2 of Zhang and Makris (2001), and often not the least amplitude that overturns: weaker pulses may
     overturn the column on its other side, after an impact.
@@ -73,7 +73,7 @@ def one_sine_overturning_without_impact(nu: Real, c: Real) -> FloatArray:
     nu
         Angular frequency ω of the pulse, a0 sin ωt over one period, over ω0; for a block over p = √(mgR/K).
     c
-        Slenderness; for a block the angle α or its tangent, equal to the order of this theory.
+        Slenderness; for a block the tipping angle α_c or its tangent, equal to the order of this theory.
 
     Returns
     -------
@@ -108,7 +108,7 @@ def one_sine_overturning_without_impact(nu: Real, c: Real) -> FloatArray:
 
 
 def one_sine_overturning_after_impact(nu: Real, c: Real, *, restitution: Real) -> tuple[FloatArray, FloatArray]:
-    """Compute the band of whole sines of acceleration that overturn a column at rest after one impact.
+    """Compute the band of one-sine pulses that overturn a column at rest after one impact.
 
     This is mode 1 of Zhang and Makris (2001). Where the band is not empty, its lower end is the least amplitude that
     overturns. Between its upper end and `one_sine_overturning_without_impact` the column survives.
@@ -118,7 +118,7 @@ def one_sine_overturning_after_impact(nu: Real, c: Real, *, restitution: Real) -
     nu
         Angular frequency ω of the pulse, a0 sin ωt over one period, over ω0; for a block over p = √(mgR/K).
     c
-        Slenderness; for a block the angle α or its tangent, equal to the order of this theory.
+        Slenderness; for a block the tipping angle α_c or its tangent, equal to the order of this theory.
     restitution
         Ratio e of the tilt rates after and before the impact, above 0 and at most 1.
 

@@ -9,7 +9,7 @@ import numpy as np
 
 
 def quarter_turn(*, step: float = 1.0 / 24.0, reach: float = 3.6) -> list[tuple[float, float, float]]:
-    """Nodes and weights of tanh–sinh quadrature over (0, π/2).
+    """Return nodes and weights of tanh–sinh quadrature over (0, π/2).
 
     Parameters
     ----------

@@ -15,13 +15,13 @@ class RollingBranch:
     Parameters
     ----------
     amplitude
-        Tilt angle A [rad].
+        Tilt angle θ [rad].
     phase
         Phase ψ by which the contact point leads the base acceleration [rad], in (−π, π].
     exists
         Whether there is such a solution.
     stable
-        Whether no deviation grows (Routh–Hurwitz). Without friction nothing decays either: True then means neutrally
+        Whether no deviation grows (Routh–Hurwitz). Without damping nothing decays either: True then means neutrally
         stable, all eigenvalues imaginary and distinct.
     eigenvalues
         The four eigenvalues of the Jacobian of (7), complex, along a last axis of length 4.
@@ -41,9 +41,9 @@ class SteadyRolling:
     Parameters
     ----------
     upper
-        Branch A+, phase near 0 away from the folds. Stable above the critical frequency.
+        Branch θ+, phase near 0 away from the folds. Stable above the critical frequency.
     lower
-        Branch A−, phase near ±π away from the folds. Always a saddle.
+        Branch θ−, phase near ±π away from the folds. Always a saddle.
     sense
         +1 anticlockwise, −1 clockwise.
     azimuth_offset
@@ -57,18 +57,18 @@ class SteadyRolling:
 
 
 def steady_rolling(nu: Real, a0: Real, *, c: Real, eta: Real) -> SteadyRolling:
-    """Steady rolling of the column round its rim on a base that moves in a circle.
+    """Compute steady rolling of the column round its rim on a base that moves in a circle.
 
     Parameters
     ----------
     nu
-        Excitation frequency ν, positive.
+        Frequency ratio ν = Ω/ω0 of the base motion, positive.
     a0
         Acceleration amplitude of the base [g].
     c
         Slenderness.
     eta
-        Viscous friction η.
+        Damping η.
 
     Returns
     -------
@@ -87,10 +87,10 @@ def steady_rolling(nu: Real, a0: Real, *, c: Real, eta: Real) -> SteadyRolling:
 
     Notes
     -----
-    (8): with D = (1+ν²)² + η²ν² the amplitudes are the roots of D A² − 2c(1+ν²) A + c² − a0² = 0, the lower from their
+    (8): with D = (1+ν²)² + η²ν² the amplitudes are the roots of D θ² − 2c(1+ν²) θ + c² − a0² = 0, the lower from their
     product, since it is a small difference when a0 is near c. The lower branch exists for a0 < c only. The phase
-    follows from a0 cos ψ = A(1+ν²) − c and a0 sin ψ = ηνA; it is arbitrary (returned as 0 and π) at a0 = 0, where both
-    branches are the backbone (5) and exist only without friction.
+    follows from a0 cos ψ = θ(1+ν²) − c and a0 sin ψ = ηνθ; it is arbitrary (returned as 0 and π) at a0 = 0, where both
+    branches are the backbone (5) and exist only without damping.
 
     Stability is decided in closed form, see `stylobate.theory.stability`, and needs no eigenvalues.
 
@@ -114,7 +114,7 @@ def steady_rolling(nu: Real, a0: Real, *, c: Real, eta: Real) -> SteadyRolling:
 
 
 def rolling_amplitudes(k: FloatArray, drag: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the roots A of (kA − 1)² + (drag A)² = a², upper and lower, and √(a²D − drag²) with D = k² + drag².
+    """Return the roots θ of (kθ − 1)² + (drag θ)² = a², upper and lower, and √(a²D − drag²) with D = k² + drag².
 
     Only positive ones; NaN for the others. All in units of c.
     """
@@ -130,7 +130,7 @@ def rolling_amplitudes(k: FloatArray, drag: FloatArray, a: FloatArray) -> tuple[
 def _branch(
     nu: FloatArray, c: FloatArray, eta: FloatArray, ratio: FloatArray, root: FloatArray, push: FloatArray
 ) -> RollingBranch:
-    """Describe the branch A = c · ratio, where a0 cos ψ = c · push and p0 = root/ratio."""
+    """Describe the branch θ = c · ratio, where a0 cos ψ = c · push and p0 = root/ratio."""
     exists = np.isfinite(ratio)
     x = 1.0 / ratio
     q = 2.0 * nu**2 - 2.0 + x
@@ -145,7 +145,7 @@ def _branch(
 
 
 def rolling_gap(a0: Real, *, c: Real, eta: Real) -> tuple[FloatArray, FloatArray]:
-    """Band of excitation frequencies in which friction leaves no steady rolling.
+    """Compute the band of frequency ratios in which damping leaves no steady rolling.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def rolling_gap(a0: Real, *, c: Real, eta: Real) -> tuple[FloatArray, FloatArray
     c
         Slenderness.
     eta
-        Viscous friction η.
+        Damping η.
 
     Returns
     -------

@@ -35,18 +35,18 @@ def rolling_required_friction(
     inertia_ratio: Real = 0.75,
     axial_ratio: Real = 0.5,
 ) -> RollingFriction:
-    """Coefficient of friction below which the contact of a slender column in steady rolling must slip.
+    """Compute the friction coefficient below which the contact of a slender column in steady rolling slips.
 
     Parameters
     ----------
     nu
-        Excitation frequency ν, positive.
+        Frequency ratio ν = Ω/ω0 of the base motion, positive.
     a0
         Acceleration amplitude of the base [g].
     c
         Slenderness.
     eta
-        Viscous friction η, a couple against the rate of tilt.
+        Damping η, a couple against the rate of tilt.
     zeta
         Spin damping ζ. Infinite, as by default, it forbids the twist, as the paper does.
     inertia_ratio
@@ -69,16 +69,16 @@ def rolling_required_friction(
     --------
     full_rolling : whose `friction_demand` is the same at any tilt.
     slipping_rolling : the steady rolling that has slip.
-    required_friction : near the upright, on a base at rest.
+    required_friction : near the vertical, on a base at rest.
 
     Notes
     -----
     The moments about the centre of mass, and not the motion of the base, decide the force: over m g it is
 
-        T_d = A(1 + (1 − κ)ν²) − c,   T_n = −ηνA
+        T_d = θ(1 + (1 − κ)ν²) − c,   T_n = −ηνθ
 
-    along the lean and across it, whether the column turns or not; the twist counts by A, which is that of
-    `steady_rolling` or `free_twist_rolling`. Without friction T_d on the upper branch falls from a0 at low frequency to
+    along the lean and across it, whether the column turns or not; the twist counts by θ, which is that of
+    `steady_rolling` or `free_twist_rolling`. Without damping T_d on the upper branch falls from a0 at low frequency to
     (1 − κ)a0 − κc at high frequency. It vanishes at ν² = a0/(κc − (1 − κ)a0), where friction is least, and there is no
     such frequency for a0 ≥ κc/(1 − κ). A column that is not to slip at any high frequency needs κc − (1 − κ)a0, less
     the harder the base shakes. For a smaller μ rolling without slip ends at

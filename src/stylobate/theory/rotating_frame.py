@@ -12,26 +12,26 @@ STATE_LENGTH = 4
 
 
 def rotating_frame_rates(state: Real, nu: Real, a0: Real, *, c: Real, eta: Real) -> FloatArray:
-    """Right-hand side of (7), the column on a circularly moving base.
+    """Evaluate the right-hand side of (7), the column on a circling base.
 
     Parameters
     ----------
     state
-        Tilt rate μ, rolling rate ω, tilt angle A > 0 and phase ψ = β − ντ, along the first axis: shape (4, ...).
+        Tilt rate θ̇, rolling rate β̇, tilt angle θ > 0 and phase ψ = β − ντ, along the first axis: shape (4, ...).
     nu
-        Excitation frequency ν.
+        Frequency ratio ν = Ω/ω0 of the base motion.
     a0
         Acceleration amplitude of the base [g].
     c
         Slenderness.
     eta
-        Viscous friction η.
+        Damping η.
 
     Returns
     -------
     numpy.ndarray
         Rates of the state in the same order, shape (4, ...). Nothing is checked but the length of the first axis: this
-        is what an integrator calls. Not defined at A = 0.
+        is what an integrator calls. Not defined at θ = 0.
 
     Raises
     ------
@@ -55,7 +55,7 @@ def rotating_frame_rates(state: Real, nu: Real, a0: Real, *, c: Real, eta: Real)
 
 
 def rotating_frame_jacobian(state: Real, a0: Real, *, eta: Real) -> FloatArray:
-    """Jacobian of (7) with respect to the state (μ, ω, A, ψ), at any state.
+    """Evaluate the Jacobian of (7) with respect to the state (θ̇, β̇, θ, ψ), at any state.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def rotating_frame_jacobian(state: Real, a0: Real, *, eta: Real) -> FloatArray:
     a0
         Acceleration amplitude of the base [g].
     eta
-        Viscous friction η.
+        Damping η.
 
     Returns
     -------
@@ -93,6 +93,6 @@ def rotating_frame_jacobian(state: Real, a0: Real, *, eta: Real) -> FloatArray:
 def _components(state: Real) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     array = np.asarray(state, dtype=np.float64)
     if array.ndim == 0 or len(array) != STATE_LENGTH:
-        message = f"state must have the four entries (μ, ω, A, ψ) along its first axis, got the shape {array.shape}"
+        message = f"state must have the four entries (θ̇, β̇, θ, ψ) along its first axis, got the shape {array.shape}"
         raise ParameterError(message)
     return array[0], array[1], array[2], array[3]

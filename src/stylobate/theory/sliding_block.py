@@ -65,7 +65,7 @@ class HorizontalSliding:
 
 
 def horizontal_sliding(a0: Real, *, static_friction: Real, kinetic_friction: Real | None = None) -> HorizontalSliding:
-    """How a block sticks and slides on a horizontal plane that shakes harmonically along itself.
+    """Compute how a block sticks and slides on a horizontal plane that shakes harmonically along itself.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def horizontal_sliding(a0: Real, *, static_friction: Real, kinetic_friction: Rea
 
 
 def sliding_amplitude(*, static_friction: Real, kinetic_friction: Real | None = None) -> FloatArray:
-    """Acceleration amplitude of a horizontal plane above which a block on it never sticks.
+    """Compute the acceleration amplitude of a horizontal plane above which a block on it never sticks.
 
     Parameters
     ----------

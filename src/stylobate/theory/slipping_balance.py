@@ -75,7 +75,7 @@ class Forced:
         return np.where(self.undecided, self.spin * cosine + self.nu * s**2, -needed)
 
     def axial_spin(self, tilt: Numbers, turn: Numbers) -> Numbers:
-        """w3, from ω_z = w3 cos A + ν sin²A."""
+        """w3, from ω_z = w3 cos θ + ν sin²θ."""
         return np.asarray((turn - self.nu * np.sin(tilt) ** 2) / np.cos(tilt))
 
     def force(self, tilt: Numbers, turn: Numbers) -> tuple[Numbers, Numbers]:
@@ -155,7 +155,7 @@ def _pivoted(here: Forced, turn: Numbers, speed: Numbers) -> tuple[Numbers, Numb
     drag = here.friction.mu * speed / (speed**EXPONENT + (SLOWED * pivot) ** EXPONENT) ** (1.0 / EXPONENT)
     twist = here.friction.mu * pivot / (pivot**EXPONENT + (EASED * speed) ** EXPONENT) ** (1.0 / EXPONENT)
     moment = here.resistance * turn + TWISTING * here.friction.patch * twist
-    # M = ηνc tan A/(1 + c tan A)
+    # M = ηνc tan θ/(1 + c tan θ)
     left = here.body.c * (here.friction.eta * here.nu - moment)
     with np.errstate(invalid="ignore", divide="ignore"):
         tilt = np.arctan(np.where(left.real > 0.0, moment / left, np.nan))

@@ -22,7 +22,7 @@ class SlippingRolling:
     Parameters
     ----------
     amplitude
-        Tilt angle A [rad], between 0 and π/2.
+        Tilt angle θ [rad], between 0 and π/2.
     phase
         Phase ψ by which the contact point leads the base acceleration [rad], in (−π, π].
     spin
@@ -65,12 +65,12 @@ def slipping_rolling(
     inertia_ratio: Real = 0.75,
     axial_ratio: Real = 0.5,
 ) -> SlippingRolling:
-    """All steady rolling of a rigid column on a base that moves in a circle, at any tilt, while its contact slips.
+    """Compute all steady rolling with slip of a rigid column on a circling base, at any tilt.
 
     Parameters
     ----------
     nu
-        Excitation frequency ν, positive.
+        Frequency ratio ν = Ω/ω0 of the base motion, positive.
     a0
         Acceleration amplitude of the base [g].
     mu
@@ -78,7 +78,7 @@ def slipping_rolling(
     c
         Slenderness.
     eta
-        Viscous friction η, a couple against the rate of tilt.
+        Damping η, a couple against the rate of tilt.
     zeta
         Spin damping ζ, a moment against rotation about the vertical. Infinite, it forbids that. Zero, with friction
         η, it leaves no steady rolling but on a patch.
@@ -111,16 +111,16 @@ def slipping_rolling(
 
     Notes
     -----
-    The contact bears the weight, and the moments about the centre of mass give its friction, with p = cos A + c sin A
+    The contact bears the weight, and the moments about the centre of mass give its friction, with p = cos θ + c sin θ
 
-        pT_d = sin A − c cos A + ν sin A ((1 − κ)ν cos A − I_a w3),   pT_n = −ην sin A cos A,
+        pT_d = sin θ − c cos θ + ν sin θ ((1 − κ)ν cos θ − I_a w3),   pT_n = −ην sin θ cos θ,
 
-    and its moment about the vertical, ηνc sin A/p, as if there were no slip. On a point |T| = μ then is an equation for
-    the tilt alone: **the base acceleration has no part in it**. To leading order in c, without friction η,
+    and its moment about the vertical, ηνc sin θ/p, as if there were no slip. On a point |T| = μ then is an equation for
+    the tilt alone: **the base acceleration has no part in it**. To leading order in c, without damping η,
 
-        A = (c ± μ)/(1 + (1 − κ)ν²),   T_d = ±μ,
+        θ = (c ± μ)/(1 + (1 − κ)ν²),   T_d = ±μ,
 
-    and the velocity of slip is against T, with U = κν|v| and w = c w3 − ν sin A
+    and the velocity of slip is against T, with U = κν|v| and w = c w3 − ν sin θ
 
         U² + 2Uκνw T_n/μ + (T_d − κνw)² + T_n² = a0².
 
@@ -143,10 +143,10 @@ def slipping_rolling(
 
     **Slip isolates.** Where a0 is large against μ and c the column is that of the paper on a base of acceleration μ,
     but turns about its centre of mass: `steady_rolling` with ν√(1 − κ), μ and η/√(1 − κ) for ν, a0 and η, and with
-    `critical_frequency` of those over √(1 − κ). A solid cylinder rolls stably, with A = (c + μ)/(1 + ν²/4), from about
+    `critical_frequency` of those over √(1 − κ). A solid cylinder rolls stably, with θ = (c + μ)/(1 + ν²/4), from about
     ν = 2ν*(μ) upwards, however hard the base shakes, also where rolling without slip would be unstable. At finite a0
     slip changes its direction as the column moves, and without η, the twist held, stability begins at ν² = (1 + 2μ/c)/
-    (1 − κ), where A = c/2, for every a0 (found numerically).
+    (1 − κ), where θ = c/2, for every a0 (found numerically).
 
     A patch that turns has no threshold of slip. It creeps: slow slip next to the turn leaves it nearly all of its
     moment, and with it rolling is near that without slip, and stable for ζ = 0 too, as long as μ is neither so large

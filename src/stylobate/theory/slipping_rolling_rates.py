@@ -16,7 +16,7 @@ EXPONENT, SLOWED, TWISTING, EASED = 3, 8.0 / (3.0 * np.pi), 3.0 * np.pi / 16.0, 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Frictions:
-    """What resists the motion, arrays of one shape: η, ζ, μ and the radius ε of the contact over h."""
+    """Resistances to the motion, arrays of one shape: η, ζ, μ and the radius ε of the contact over h."""
 
     eta: FloatArray
     zeta: FloatArray
@@ -33,33 +33,33 @@ def rates(state: Numbers, nu: FloatArray, a0: FloatArray, friction: Frictions, b
     Parameters
     ----------
     state
-        Tilt rate θ̇, rolling rate ω = β̇, tilt angle A > 0 [rad], phase ψ = β − ντ, axial angular velocity σ [ω0], and
+        Tilt rate θ̇, rolling rate β̇, tilt angle θ > 0 [rad], phase ψ = β − ντ, axial angular velocity σ [ω0], and
         the slip of the contact point along and across the lean, v_d and v_n [hω0], real or complex, along the first
         axis: shape (7, ...).
     nu
-        Excitation frequency ν.
+        Frequency ratio ν = Ω/ω0 of the base motion.
     a0
         Acceleration amplitude of the base [g].
     friction
         What resists. Infinite spin damping ζ forbids rotation about the vertical; the state must then have
-        σ cos A + ω sin²A = 0.
+        σ cos θ + β̇ sin²θ = 0.
     body
         The column.
 
     Returns
     -------
     numpy.ndarray
-        Rates of the state in the same order, shape (7, ...). Not defined at A = 0, nor without slip.
+        Rates of the state in the same order, shape (7, ...). Not defined at θ = 0, nor without slip.
 
     Notes
     -----
-    Over J0, with s = sin A, p = cos A + cs, z' = c cos A − s, w1 = −ωs, T = −μN v/|v| over m g and G2 = I_t ω²s cos A −
-    I_aωsσ − ηθ̇:
+    Over J0, with s = sin θ, p = cos θ + cs, z' = c cos θ − s, w1 = −β̇s, T = −μN v/|v| over m g and G2 = I_t β̇²s cos θ −
+    I_aβ̇sσ − ηθ̇:
 
         N = [1 + κ(z'G2/I_t − pθ̇²)]/[1 + (κ/I_t) z'(z' + pT_d/N)]
-        I_t θ̈ = G2 − N z' − p T_d,   ẇ1 = ωθ̇ cos A − (I_a/I_t)θ̇σ + (T_n + M1)/I_t,   σ̇ = (c T_n + M3)/I_a
+        I_t θ̈ = G2 − N z' − p T_d,   ẇ1 = β̇θ̇ cos θ − (I_a/I_t)θ̇σ + (T_n + M1)/I_t,   σ̇ = (c T_n + M3)/I_a
 
-    M1 = −ηw1 − Ms, M3 = M cos A, M the moment about the vertical: −ζκc²Dω_z of the spin damping, and that of the
+    M1 = −ηw1 − Ms, M3 = M cos θ, M the moment about the vertical: −ζκc²Λω_z of the spin damping, and that of the
     patch. The centre of mass has the velocity V = (v_d + pθ̇, v_n − cσ − w1) and the acceleration T/κ − a.
     """
     w2, omega, tilt, psi, w3, along, across = state

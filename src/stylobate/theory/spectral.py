@@ -6,7 +6,7 @@ from stylobate.theory.arguments import FloatArray
 
 
 def differentiation_matrix(points: int) -> FloatArray:
-    """Matrix that differentiates a function of period 1 given at j/points, exact for its trigonometric interpolant.
+    """Return the matrix that differentiates the trigonometric interpolant of a function of period 1 given at j/points.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def differentiation_matrix(points: int) -> FloatArray:
 
 
 def interpolated(values: FloatArray, fraction: FloatArray) -> FloatArray:
-    """Values of the trigonometric interpolant at any fraction of the period.
+    """Evaluate the trigonometric interpolant at any fraction of the period.
 
     Parameters
     ----------
@@ -51,6 +51,6 @@ def interpolated(values: FloatArray, fraction: FloatArray) -> FloatArray:
 
 
 def unresolved(values: FloatArray) -> float:
-    """Size of the highest harmonics against the largest, the error left by too few points."""
+    """Return the size of the highest harmonics against the largest, the error left by too few points."""
     size = np.abs(np.fft.rfft(values, axis=-1)).max(axis=0)
     return float(size[-3:].max() / size.max())

@@ -1,19 +1,19 @@
 """Stability of steady rolling on a circularly moving base, in closed form.
 
-With x = c/A, k = 1 + ν² and D = k² + η²ν², small deviations from steady rolling grow as e^{sτ} where
+With ξ = c/θ, k = 1 + ν² and D = k² + η²ν², small deviations from steady rolling grow as e^{λτ} where
 
-    (s² + ηs)² + q (s² + ηs) + p0 = 0,    q = 2ν² − 2 + x,    p0 = D − kx.
+    (λ² + ηλ)² + q (λ² + ηλ) + p0 = 0,    q = 2ν² − 2 + ξ,    p0 = D − kξ.
 
-The quartic of the Jacobian of (7) is thus a quadratic in s² + ηs. Routh–Hurwitz asks for η > 0, q > 0, p0 > 0 and
-q² + 2η²q > 4p0. The last expression is the difference x² + 2wx − 4w with w = 4ν² + η², so it says no more than
+The quartic of the Jacobian of (7) is thus a quadratic in λ² + ηλ. Routh–Hurwitz asks for η > 0, q > 0, p0 > 0 and
+q² + 2η²q > 4p0. The last expression is the difference ξ² + 2wξ − 4w with w = 4ν² + η², so it says no more than
 
-    x > x* = 4 / (1 + √(1 + 4/w)),    that is    A < c/x*.
+    ξ > ξ* = 4 / (1 + √(1 + 4/w)),    that is    θ < c/ξ*.
 
-On the branches of (8) p0 = ±x√(a0²D/c² − η²ν²): positive on the upper branch, negative on the lower. The lower branch
-is therefore a saddle wherever it exists, with exactly one positive eigenvalue: p0 < 0 makes the two roots s² + ηs real
-and of opposite sign, and only the positive one gives a positive s.
+On the branches of (8) p0 = ±ξ√(a0²D/c² − η²ν²): positive on the upper branch, negative on the lower. The lower branch
+is therefore a saddle wherever it exists, with exactly one positive eigenvalue: p0 < 0 makes the two roots λ² + ηλ real
+and of opposite sign, and only the positive one gives a positive λ.
 
-Without friction an equilibrium can at best be neutrally stable. There the same inequalities say that all four
+Without damping an equilibrium can at best be neutrally stable. There the same inequalities say that all four
 eigenvalues are imaginary and distinct: deviations stay small in the linear sense, none decays.
 """
 
@@ -23,17 +23,17 @@ from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray
 
 
 def critical_ratio(nu: FloatArray, eta: FloatArray) -> FloatArray:
-    """Return x* = c/A above which the Hopf condition of stability holds, the positive root of x² + 2wx − 4w."""
+    """Return ξ* = c/θ above which the Hopf condition of stability holds, the positive root of ξ² + 2wξ − 4w."""
     return 4.0 / (1.0 + np.sqrt(1.0 + 4.0 / (4.0 * nu**2 + eta**2)))
 
 
 def satisfies_routh_hurwitz(nu: FloatArray, x: FloatArray, eta: FloatArray, q: FloatArray, p0: FloatArray) -> BoolArray:
-    """Whether no deviation grows; without friction, whether all eigenvalues are imaginary and distinct."""
+    """Return whether no deviation grows; without damping, whether all eigenvalues are imaginary and distinct."""
     return (q > 0.0) & (p0 > 0.0) & (x > critical_ratio(nu, eta))
 
 
 def rolling_eigenvalues(eta: FloatArray, q: FloatArray, p0: FloatArray) -> ComplexArray:
-    """Return the four roots s along the last axis; each product is used for the root that would cancel."""
+    """Return the four roots λ along the last axis; each product is used for the root that would cancel."""
     with np.errstate(invalid="ignore"):  # NaN, where there is no rolling, passes through
         return _roots(eta.astype(np.complex128), q.astype(np.complex128), p0.astype(np.complex128))
 

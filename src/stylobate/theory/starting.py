@@ -25,7 +25,7 @@ _SAME = 8.0 * float(np.finfo(float).eps)
 
 
 class FirstMotion(IntEnum):
-    """What a standing column does first."""
+    """The first motion of a standing column."""
 
     NONE = 0
     """It stays."""
@@ -70,7 +70,7 @@ class StartOfMotion:
 def start_of_motion(
     along: Real = 1.0, normal: Real = 0.0, *, c: Real, friction: Real, phase: Real = 0.0, incline: Real = 0.0
 ) -> StartOfMotion:
-    """Least harmonic base motion at which a standing column slides, rocks or lifts off, and which it does.
+    """Compute the minimum harmonic base motion at which a standing column slides, rocks or lifts off.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def start_of_motion(
 def first_motion(
     along: Real, normal: Real = 0.0, *, c: Real, friction: Real, incline: Real = 0.0
 ) -> npt.NDArray[np.int64]:
-    """What a base acceleration does to a standing column.
+    """Determine whether a base acceleration makes a standing column slide, rock or lift off.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ _TERMS = 8
 
 
 def throw_number(normal: Real, *, incline: Real = 0.0) -> FloatArray:
-    """Throw number Γ of a base motion: what lies on the base leaves it if Γ > 1.
+    """Compute the throw number Γ of a base motion: a body on the base leaves it if Γ > 1.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def throw_number(normal: Real, *, incline: Real = 0.0) -> FloatArray:
 
 
 def flight_throw_number(duration: Real) -> FloatArray:
-    """Throw number at which a flight that begins in contact lasts for a given part of the period.
+    """Compute the throw number at which a flight that begins in contact lasts a given fraction of the period.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def flight_throw_number(duration: Real) -> FloatArray:
 
 
 def bounce_time(speed: Real, *, normal_restitution: Real, weight: Real = 1.0) -> FloatArray:
-    """Time of all the bounces that follow a landing under a constant normal acceleration.
+    """Compute the total time of the bounces that follow a landing under a constant normal acceleration.
 
     Parameters
     ----------

@@ -21,18 +21,18 @@ from stylobate.theory.zeros import Rows
 def wobbling_rolling(
     nu: Real, a0: Real, *, c: Real, eta: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
 ) -> FiniteTiltRolling:
-    r"""All steady rolling of a column that only tilts, on a base that moves in a circle, at any tilt.
+    r"""Compute all steady rolling of a column without twist on a circling base, at any tilt.
 
     Parameters
     ----------
     nu
-        Excitation frequency ν, positive.
+        Frequency ratio ν = Ω/ω0 of the base motion, positive.
     a0
         Acceleration amplitude of the base [g].
     c
         Slenderness.
     eta
-        Viscous friction η, a couple against the rate of tilt.
+        Damping η, a couple against the rate of tilt.
     inertia_ratio
         κ = m h²/J0; ¾ for a slender solid cylinder, as by default.
     axial_ratio
@@ -51,17 +51,17 @@ def wobbling_rolling(
     See Also
     --------
     steady_rolling : the limit of small tilts.
-    full_rolling : the same with free twist.
+    full_rolling : the same with free spin.
 
     Notes
     -----
-    Of the balances along and across the lean, with P = sin A + c(1 − cos A), p = dP/dA and
-    M = κP² + (1 − κ) sin²A + κ i_a c²(1 − cos A)²,
+    Of the balances along and across the lean, with P = sin θ + c(1 − cos θ), p = dP/dθ and
+    M = κP² + (1 − κ) sin²θ + κ i_a c²(1 − cos θ)²,
 
-        p a0 cos ψ = ½ν² dM/dA + sin A − c cos A,   P a0 sin ψ = ην sin²A,
+        p a0 cos ψ = ½ν² dM/dθ + sin θ − c cos θ,   P a0 sin ψ = ην sin²θ,
 
     the paper's solution (8) is the limit; its amplitudes differ by a part of the order c². Wobbling spins the column
-    about its axis, at w3 = −ν(1 − cos A), but not about the vertical.
+    about its axis, at w3 = −ν(1 − cos θ), but not about the vertical.
 
     Examples
     --------
@@ -91,7 +91,7 @@ def rates(state: Numbers, nu: FloatArray, a0: FloatArray, eta: FloatArray, body:
     Parameters
     ----------
     state
-        Tilt rate μ, rolling rate ω = β̇, tilt angle A > 0 [rad] and phase ψ = β − ντ, real or complex, along the first
+        Tilt rate θ̇, rolling rate β̇, tilt angle θ > 0 [rad] and phase ψ = β − ντ, real or complex, along the first
         axis: shape (4, ...).
     nu, a0, eta
         As for `wobbling_rolling`.
@@ -101,7 +101,7 @@ def rates(state: Numbers, nu: FloatArray, a0: FloatArray, eta: FloatArray, body:
     Returns
     -------
     numpy.ndarray
-        Rates of the state in the same order, shape (4, ...). Not defined at A = 0.
+        Rates of the state in the same order, shape (4, ...). Not defined at θ = 0.
 
     See Also
     --------
@@ -111,8 +111,8 @@ def rates(state: Numbers, nu: FloatArray, a0: FloatArray, eta: FloatArray, body:
     -----
     Lagrange's equations over J0, in the notation of `wobbling_rolling`:
 
-        K μ̇ = ½ω² dM/dA + sin A − c cos A − p a0 cos ψ − ημ
-        M ω̇ = −μω dM/dA + P a0 sin ψ − ηω sin²A
+        K θ̈ = ½β̇² dM/dθ + sin θ − c cos θ − p a0 cos ψ − ηθ̇
+        M β̈ = −θ̇β̇ dM/dθ + P a0 sin ψ − ηβ̇ sin²θ
     """
     mu, omega, tilt, psi = state
     inertia, slope = _about_vertical(tilt, body)
@@ -122,7 +122,7 @@ def rates(state: Numbers, nu: FloatArray, a0: FloatArray, eta: FloatArray, body:
 
 
 def _about_vertical(tilt: Numbers, body: RigidBody) -> tuple[Numbers, Numbers]:
-    """Return M, the moment of inertia of a change of azimuth, and dM/dA."""
+    """Return M, the moment of inertia of a change of azimuth, and dM/dθ."""
     s, fall, reach = np.sin(tilt), 1.0 - np.cos(tilt), body.reach(tilt)
     inertia = body.kappa * reach**2 + body.transverse * s**2 + body.axial * fall**2
     slope = body.kappa * reach * body.height(tilt) + body.transverse * s * np.cos(tilt) + body.axial * fall * s
