@@ -36,7 +36,7 @@ with tempfile.TemporaryDirectory() as folder:
     try:
         sb.studies.run_sweep(sweep, store=store, chunk_size=400, progress=stop_early)
     except KeyboardInterrupt:
-        pass
+        print("interrupted")
     unfinished = sb.studies.open_sweep(store, load=True)
     print(f"runs in the store: {unfinished.attrs['runs_done']} of 1600")
 
