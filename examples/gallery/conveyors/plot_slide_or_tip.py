@@ -3,7 +3,7 @@ Does a column slide or tip on a shaking base?
 =============================================
 
 A column slides if friction is smaller than its slenderness, and tips if friction is
-larger. This map shows what it does in the end over friction and acceleration.
+larger. This map shows its final motion over friction and acceleration.
 """
 
 import numpy as np
