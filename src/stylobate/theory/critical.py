@@ -5,10 +5,10 @@ The boundary θ = c/ξ* of `stylobate.theory.stability`, put into (8), gives the
     a0*/c = √[(1 + ν² − ξ*)² + η²ν²] / ξ*,    ξ* = 4 / (1 + √(1 + 4/(4ν² + η²))).
 
 On it a pair of eigenvalues ±iω_H crosses the imaginary axis, ω_H² = q/2. The curve begins at q = p0 = 0, on the fold at
-the lower end of the band without rolling (a Bogdanov–Takens point), where 3ν⁴ + (2 + η²)ν² = 1. From there a0* rises with
-ν without bound: observed on a fine grid for η from 0 to 100, not proved. There ν* exists, and is unique, for every
-amplitude above the one at that point. For a smaller amplitude there is none: rolling is unstable at all frequencies below the band without
-rolling and stable at all frequencies above it.
+the lower end of the band without rolling (a Bogdanov–Takens point), where 3ν⁴ + (2 + η²)ν² = 1. From there a0* rises
+with ν without bound: observed on a fine grid for η from 0 to 100, not proved. There ν* exists, and is unique, for every
+amplitude above the one at that point. For a smaller amplitude there is none: rolling is unstable at all frequencies
+below the band without rolling and stable at all frequencies above it.
 """
 
 import numpy as np

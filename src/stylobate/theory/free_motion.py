@@ -65,8 +65,9 @@ def free_motion(tilt: Real, rolling_rate: Real, c: Real) -> FreeMotion:
     ℓ² = θ1²θ2²(2 − θ1 − θ2)/(θ1 + θ2). The motion is bounded if the start lies below θ3. A start on the separatrix
     θ2 = θ3, which includes steady rolling at ω² ≤ 1/3, counts as overturning.
 
-    One period contains one passage near the vertical. As ℓ → 0 the azimuth turns by π in the passage, so its limit is the jump from one side of the vertical to the other, and `planar_free_period` is two of these periods.
-    At a rolling rate of zero the advance is reported as +π.
+    One period contains one passage near the vertical. As ℓ → 0 the azimuth turns by π in the passage, so its limit is
+    the jump from one side of the vertical to the other, and `planar_free_period` is two of these periods. At a rolling
+    rate of zero the advance is reported as +π.
 
     Examples
     --------

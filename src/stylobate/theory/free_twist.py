@@ -143,7 +143,7 @@ def free_twist_rolling(
 def free_twist_jacobian(
     state: Real, a0: Real, *, c: Real, eta: Real, zeta: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
 ) -> FloatArray:
-    """Evaluate the Jacobian of rolling with free spin on a circling base, in the frame that turns with it, at any state.
+    """Evaluate the Jacobian of rolling with free spin at any state, in the frame that turns with the base motion.
 
     Parameters
     ----------
