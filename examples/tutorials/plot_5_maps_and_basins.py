@@ -139,7 +139,7 @@ figure = sb.plot(section)
 # %%
 # Basin fractions with intervals
 # ------------------------------
-# A planar grid is one section of a four-dimensional space. To estimate how often
+# The map above is one section of a four-dimensional space. To estimate how often
 # each attractor is reached, draw random initial conditions in all four components.
 # Each fraction has its 95 % interval. :func:`stylobate.studies.basin_fractions` repeats
 # this along a parameter, with the same initial conditions at every value.

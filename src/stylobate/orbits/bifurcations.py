@@ -27,43 +27,43 @@ _CRITICAL = 1e-4
 
 
 class Kind(Enum):
-    """What happens to an orbit as the parameter passes."""
+    """Kind of a bifurcation."""
 
     FOLD = "fold"
     """Two orbits meet and vanish."""
     PITCHFORK = "pitchfork"
-    """An orbit loses a symmetry to two orbits that are each other's images."""
+    """Two orbits without the symmetry branch off, symmetry-related to each other."""
     BRANCH_POINT = "branch point"
-    """Another family crosses this one."""
+    """Another branch crosses this one."""
     PERIOD_DOUBLING = "period doubling"
     NEIMARK_SACKER = "Neimark-Sacker"
-    """A modulated motion is born or dies; not looked for without friction, where pairs stay on the unit circle."""
+    """A modulated motion branches off; not located without damping, where pairs stay on the unit circle."""
 
 
 @dataclass(frozen=True)
 class Bifurcation:
-    """Where an orbit changes in kind.
+    """A bifurcation of a periodic orbit.
 
     Attributes
     ----------
     kind
-        What happens.
+        Kind of the bifurcation.
     parameter
-        Value of the family's parameter.
+        Value of the branch's parameter.
     orbit
-        The orbit there.
+        The orbit at the bifurcation.
     multiplier
         The critical multiplier.
     coefficient
-        Of the normal form, NaN where it decides nothing: of Neimark-Sacker below zero, of a pitchfork and a period
-        doubling above zero, if what is born is stable where the orbit is not.
+        Coefficient of the normal form; NaN if it decides nothing. The bifurcation is supercritical if it is negative
+        (Neimark-Sacker) or positive (pitchfork, period doubling).
     soft
-        Whether a loss of stability here is soft: stable motions are born beside the orbit. None where the orbit is
-        unstable on both sides, at folds and branch points, and without friction: there the coefficient decides nothing.
+        Whether the loss of stability is supercritical (soft): stable motions branch off. None if the orbit is unstable
+        on both sides, at folds and branch points, and without damping: there the coefficient decides nothing.
     critical_vector
-        Disturbance of the state that neither grows nor decays (its real part), of length 1.
+        Disturbance of the state that neither grows nor decays (real part), of length 1.
     point, direction
-        The point of the family, and the sense in which it was passed.
+        Point of the branch, and the direction in which it was passed.
     """
 
     kind: Kind

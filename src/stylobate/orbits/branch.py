@@ -26,18 +26,18 @@ from stylobate.orbits.tracing import End, StepControl, Stretch, trace
 
 @dataclass(frozen=True)
 class Branch:
-    """A family of periodic orbits against one parameter.
+    """A branch of periodic orbits over one parameter.
 
     Attributes
     ----------
     parameter
-        Its name.
+        Name of the parameter.
     path
-        The points in their order along the family, those of the bifurcations among them.
+        Points in order along the branch, including its bifurcations.
     bifurcations
-        What was located on it, in the order along the family.
+        Bifurcations located on the branch, in order along it.
     ends
-        Why it ends where it begins, and where it ends.
+        Reasons why the branch ends, at its beginning and at its end.
     """
 
     parameter: str
@@ -60,7 +60,7 @@ class Branch:
         return orbit_at(self.path[index])
 
     def orbits_at(self, value: float) -> tuple[PeriodicOrbit, ...]:
-        """Return the orbits of the branch at this value of the parameter, in the order along it.
+        """Return the orbits of the branch at this value of the parameter, in order along it.
 
         Raises
         ------
@@ -126,7 +126,7 @@ class Branch:
         )
 
     def save(self, path: str | Path) -> Path:
-        """Write it to a netCDF file at `path`; `stylobate.load` reads it again."""
+        """Write the branch to a netCDF file at `path`; `stylobate.load` reads it."""
         return write(self._data(), path)
 
     def _data(self) -> xr.Dataset:
@@ -216,21 +216,21 @@ def continue_branch(
     control: StepControl | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Branch:
-    """Follow a periodic orbit over one parameter, through folds, and locate its bifurcations.
+    """Continue a periodic orbit over one parameter, through folds, and locate its bifurcations.
 
     Parameters
     ----------
     orbit
-        Where to begin.
+        Orbit from which to begin.
     parameter
         Name of a number of column, model or motion; see `with_parameters`: angular_frequency, acceleration,
         amplitude_x, amplitude_y, phase_difference, rotation, damping, slenderness …
     bounds
-        Between which values it is followed.
+        Minimum and maximum of the parameter.
     both_ways
-        Whether it is followed to larger and to smaller values; else to larger ones first only.
+        Whether to continue in both directions; otherwise only in the one that begins with larger values.
     control
-        Length of steps, and how many points at most each way.
+        Length of steps, and maximum number of points in each direction.
     progress
         Called with the parameter of each new point.
 
@@ -242,13 +242,13 @@ def continue_branch(
     Raises
     ------
     ParameterError
-        If the orbit does not lie between the bounds, these cannot be, or the parameter is not known, or is `delay`,
+        If the orbit does not lie between the bounds, the bounds are invalid, or the parameter is unknown or is `delay`,
         which changes no orbit.
 
     Notes
     -----
-    Predictor along the tangent, Newton's method across it (H. B. Keller's pseudo-arclength); bifurcations are zeros
-    of the conditions in `orbits.conditions`, found on the family by Brent's method.
+    The method is H. B. Keller's pseudo-arclength continuation: a predictor along the tangent and Newton's method across
+    it. Bifurcations are zeros of test functions, located on the branch by Brent's method.
 
     Examples
     --------

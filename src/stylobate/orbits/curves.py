@@ -59,7 +59,7 @@ _CONDITIONS: dict[Kind, Callable[[Floats], float]] = {
 
 @dataclass(frozen=True, slots=True)
 class CurvePoint:
-    """A bifurcation on a curve: both parameters, the shots of its orbit, and the critical eigenvalue of their map."""
+    """A bifurcation on a curve: both parameters, the shooting segments of its orbit, and the critical eigenvalue."""
 
     values: tuple[float, float]
     chain: Shots
@@ -68,18 +68,18 @@ class CurvePoint:
 
 @dataclass(frozen=True)
 class BifurcationCurve:
-    """Where a bifurcation lies in the plane of two parameters.
+    """The curve of a bifurcation in the plane of two parameters.
 
     Attributes
     ----------
     kind
-        Of the bifurcation.
+        Kind of the bifurcation.
     parameters
-        Names of the two.
+        Names of the two parameters.
     path
-        The points in their order.
+        Points in order along the curve.
     ends
-        Why it ends at either end.
+        Reasons why the curve ends, on either side.
     plane
         What carries the orbits.
     """
@@ -94,8 +94,8 @@ class BifurcationCurve:
     def points(self) -> xr.Dataset:
         """The points as data over `point`: both parameters, tilts [rad], the coefficient of the normal form, its sign.
 
-        `soft` is 1 where a loss of stability is soft, 0 where it is hard, −1 at folds and where the orbit is unstable
-        on both sides.
+        `soft` is 1 if the loss of stability is supercritical, 0 if it is subcritical, −1 at folds and if the orbit is
+        unstable on both sides.
         """
         coefficient = np.array([self.plane.coefficient(point) for point in self.path])
         soft = coefficient < 0.0 if self.kind is Kind.NEIMARK_SACKER else coefficient > 0.0
@@ -121,7 +121,7 @@ class BifurcationCurve:
         )
 
     def save(self, path: str | Path) -> Path:
-        """Write it to a netCDF file at `path`; `stylobate.load` reads it again."""
+        """Write the curve to a netCDF file at `path`; `stylobate.load` reads it."""
         return write(self._data(), path)
 
     def _data(self) -> xr.Dataset:
@@ -156,30 +156,31 @@ def bifurcation_curve(
     bounds: tuple[tuple[float, float], tuple[float, float]],
     control: StepControl | None = None,
 ) -> BifurcationCurve:
-    """Follow a fold, a pitchfork, a period doubling or a Neimark–Sacker point in a second parameter.
+    """Continue a fold, a pitchfork, a period doubling or a Neimark–Sacker point in a second parameter.
 
     Parameters
     ----------
     bifurcation
-        Where to begin, on a branch over its first parameter.
+        Bifurcation from which to begin, on a branch over the first parameter.
     parameter
         Name of the second parameter.
     bounds
-        Of the first and of the second parameter.
+        Minimum and maximum of the first and of the second parameter.
     control
-        Length of steps, in units of c for states and of the widths of the bounds, and how many points each way.
+        Length of steps, in units of c for states and of the widths of the bounds for parameters, and maximum number of
+        points in each direction.
 
     Raises
     ------
     ParameterError
         If the bifurcation is a branch point, the second parameter is the first, or it lies outside the bounds.
     NoOrbitError
-        If the curve could not be begun.
+        If no first point of the curve was found.
 
     Notes
     -----
-    The orbit's equations and the condition of the bifurcation together, by pseudo-arclength. How the condition changes
-    is taken by differences, which Newton's method bears; the condition itself is met to rounding.
+    Pseudo-arclength continuation of the orbit's equations together with the condition of the bifurcation. The
+    derivative of the condition is a finite difference; the condition itself is met to rounding.
     """
     require_bifurcation(bifurcation)
     require_followed(parameter)

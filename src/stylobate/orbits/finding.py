@@ -1,4 +1,4 @@
-"""Finding periodic orbits: from a guess, from theory, from a run, from many random starts."""
+"""Find periodic orbits: from a guess, from theory, from a run, from random initial conditions."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -41,10 +41,10 @@ def periodic_orbit(
     sense: int | None = None,
     rtol: float = 1e-12,
 ) -> PeriodicOrbit:
-    """Return the periodic orbit to which Newton's method leads from a guess.
+    """Find a periodic orbit by shooting: Newton's method from a guess.
 
-    The flow's derivatives are those of the variational equations, exact but for the tolerance; at the upright, which
-    only motion in a plane can pass, they jump (saltation).
+    The derivatives of the flow are those of the variational equations, exact to the tolerance. They jump (saltation)
+    at a passage through the vertical, which only planar motion can have.
 
     Parameters
     ----------
@@ -53,16 +53,16 @@ def periodic_orbit(
     motion
         A base motion that is periodic from t = 0.
     guess
-        Tilt vector [rad] and its rate [rad/s] at t = 0: x, y, ẋ, ẏ, and behind them the spin [rad/s] if the model has
-        one and it is not 0. Or a run, which is taken where it last passed the phase of t = 0. Or None for steady
-        rolling by theory (horizontal Harmonic motion): known in closed form for one of the two circles of which the
-        motion is made, and followed while the other is added.
+        Tilt vector [rad] and its rate [rad/s] at t = 0: x, y, ẋ, ẏ, then the spin [rad/s] if the model has one and it
+        is not 0. Or a run: its state when it last passed the phase of t = 0 is used. Or None for steady rolling by
+        theory (horizontal Harmonic motion): the closed form for one of the two circular components of the motion is
+        continued while the other component is added.
     periods
-        Length of the orbit in periods of the base motion; a shorter one to which it leads keeps its own.
+        Length of the orbit in periods of the base motion. If the orbit repeats sooner, its minimal period is returned.
     arcs
-        Shots in which it is closed, one a period by default; more for orbits that are very unstable.
+        Number of shooting segments, one per period by default. Use more for very unstable orbits.
     sense
-        +1 or −1: sense of rolling of the guess by theory; by default that of the larger circle.
+        Sense of rolling of the guess by theory, +1 or −1; by default that of the larger circular component.
     rtol
         Relative tolerance of the flow.
 
@@ -77,7 +77,7 @@ def periodic_orbit(
 
     Notes
     -----
-    A guess that lies in the vertical plane of a base motion along a line is taken as one of motion in that plane.
+    A guess that lies in the vertical plane of a straight base motion leads to a planar orbit.
 
     Examples
     --------
@@ -138,31 +138,31 @@ def periodic_orbits(
     periods: int = 1,
     rtol: float = 1e-12,
 ) -> tuple[PeriodicOrbit, ...]:
-    """Return the periodic orbits that are found from random starts, stable and unstable, each once.
+    """Search for periodic orbits, stable and unstable, from random initial conditions.
 
-    Orbits found already are deflated: their neighbourhood repels Newton's method, so that coexisting ones are found
-    (P. E. Farrell, Á. Birkisson, S. W. Funke, "Deflation techniques for finding distinct solutions of nonlinear
-    partial differential equations", SIAM J. Sci. Comput. 37 (2015)). Under a base motion along a line the mirror image
-    of an orbit is one too, and given with it.
+    Orbits found before are deflated: they repel Newton's method, so that coexisting orbits are found (P. E. Farrell,
+    Á. Birkisson, S. W. Funke, "Deflation techniques for finding distinct solutions of nonlinear partial differential
+    equations", SIAM J. Sci. Comput. 37 (2015)). Under a straight base motion the mirror image of an orbit is an orbit
+    too, and is returned with it.
 
     Parameters
     ----------
     model, motion
         The column and its periodic base motion.
     over
-        Ranges of the starts: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s]. By default tilts within c and
-        rates within c at the frequency of the base motion, or c in units of the model if that is larger.
+        Ranges of the initial conditions: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s]. By default tilts
+        within c and rates within c at the frequency of the base motion, or c in units of the model if that is larger.
     count, rng
-        Number of starts, and the seed or numpy.random.Generator they are drawn with.
+        Number of initial conditions; seed or numpy.random.Generator.
     periods
-        Length of the orbits in periods of the base motion; shorter ones that are found keep their own.
+        Maximum length of the orbits in periods of the base motion; all its divisors are searched too.
     rtol
         Relative tolerance of the flow.
 
     Returns
     -------
     tuple
-        By length, then by largest tilt. What is not found may still exist: this is a search, not a proof.
+        Each orbit once, sorted by length, then by maximum tilt. Other orbits may exist: this is a search, not a proof.
     """
     require_subject(model, motion)
     periods = require_whole("periods", periods, least=1)

@@ -1,4 +1,4 @@
-"""A periodic orbit and what it is like."""
+"""A periodic orbit and its properties."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -28,18 +28,18 @@ _PASSING, _LATER = 1e-9, 0.03
 
 @dataclass(frozen=True)
 class PeriodicOrbit:
-    """A periodic motion, known to rounding, with its Floquet multipliers.
+    """A periodic orbit, exact to rounding, with its Floquet multipliers.
 
     Attributes
     ----------
     model, motion
         The column and its base motion.
     periods
-        Its length, in periods of the base motion.
+        Length of the orbit in periods of the base motion.
     chain
-        The shots of which it is closed, in units of the model.
+        Its shooting segments, in units of the model.
     line
-        Unit vector of the vertical plane to which it keeps, or None.
+        Unit vector of the vertical plane of a planar orbit, or None.
     rtol
         Relative tolerance of the flow.
     """
@@ -53,7 +53,7 @@ class PeriodicOrbit:
 
     @property
     def state(self) -> Floats:
-        """State at t = 0, in units of the model; tilt and its rate along `line` for an orbit in a plane."""
+        """State at t = 0, in units of the model; tilt and its rate along `line` for a planar orbit."""
         return np.asarray(self.chain.states[0])
 
     @property
@@ -64,12 +64,12 @@ class PeriodicOrbit:
 
     @property
     def tilt_rate(self) -> Floats:
-        """Its rate at t = 0 [rad/s]."""
+        """Rate of the tilt vector at t = 0 [rad/s]."""
         return np.asarray(self._lean[2:] / self.model.time_scale)
 
     @property
     def spin(self) -> float:
-        """Angular velocity about the axis at t = 0 [rad/s]; 0 for a model that cannot turn about it."""
+        """Angular velocity about the axis at t = 0 [rad/s]; 0 for a model without spin."""
         place = self.model.spin_state
         return 0.0 if place is None or self.planar else float(self.state[place]) / self.model.time_scale
 
@@ -80,7 +80,7 @@ class PeriodicOrbit:
 
     @property
     def period(self) -> float:
-        """Its period [s]."""
+        """Period of the orbit [s]."""
         period = self.motion.period
         assert period is not None
         return self.periods * period
@@ -92,7 +92,7 @@ class PeriodicOrbit:
 
     @cached_property
     def multipliers(self) -> Complexes:
-        """Floquet multipliers, the largest first; for an orbit in a plane those of disturbances in the plane."""
+        """Floquet multipliers, the largest first; for a planar orbit those of disturbances within the plane."""
         found = np.linalg.eigvals(self._monodromy).astype(complex)
         return found[np.argsort(-np.abs(found), kind="stable")]
 
@@ -111,26 +111,26 @@ class PeriodicOrbit:
 
     @property
     def stable(self) -> bool:
-        """Whether all multipliers lie inside the unit circle; in a plane, whether it is stable in that plane.
+        """Whether all multipliers lie inside the unit circle; for a planar orbit, stability within its plane.
 
-        Without friction nothing decays: their product is 1, and True then means neutrally stable, that none lies
-        outside the unit circle by more than 1e-9, to which they are known.
+        Without damping nothing decays: the product of the multipliers is 1. True then means neutrally stable: no
+        multiplier lies outside the unit circle by more than 1e-9, their accuracy.
         """
         return is_stable(self.multipliers)
 
     @property
     def planar(self) -> bool:
-        """Whether it keeps to a vertical plane; disturbances out of it have no multiplier then."""
+        """Whether the orbit is planar; disturbances out of its plane then have no multiplier."""
         return self.line is not None
 
     @property
     def least_tilt(self) -> float:
-        """Least tilt angle [rad]."""
+        """Minimum tilt angle [rad]."""
         return self.chain.least_tilt
 
     @property
     def largest_tilt(self) -> float:
-        """Largest tilt angle [rad]."""
+        """Maximum tilt angle [rad]."""
         return self.chain.largest_tilt
 
     @cached_property
@@ -164,19 +164,19 @@ class PeriodicOrbit:
     def turns(self) -> float:
         """Turns of the contact point round the rim in one period of the base motion, anticlockwise positive.
 
-        In a plane it is 0: the contact point jumps from one side to the other.
+        It is 0 for a planar orbit: the contact point jumps from one side to the other.
         """
         return round(self.chain.turns) / self.periods
 
     @cached_property
     def inversion(self) -> bool:
-        """Whether half a period later it leans the other way: x(t + nT/2) = −x(t)."""
+        """Whether the column leans the opposite way half a period later: x(t + nT/2) = −x(t)."""
         samples = self.path.shape[1]
         return self._same(-np.roll(self.path, samples // 2, axis=1))
 
     @cached_property
     def reflection(self) -> bool:
-        """Whether half a period later it is its mirror image across the line of a base motion along one.
+        """Whether the orbit is its own mirror image, half a period later, across the line of a straight base motion.
 
         That is x(t + nT/2) = −x(t), y(t + nT/2) = y(t), x being along the line; False for other base motions.
         """
@@ -193,7 +193,7 @@ class PeriodicOrbit:
         return bool(np.all(np.abs(self.path - image) <= _SAME * np.where(size > 0.0, size, 1.0)))
 
     def save(self, path: str | Path) -> Path:
-        """Write it to a netCDF file at `path`; `stylobate.load` reads it again."""
+        """Write the orbit to a netCDF file at `path`; `stylobate.load` reads it."""
         return write(self._data(), path)
 
     def _data(self) -> xr.Dataset:

@@ -1,4 +1,4 @@
-"""From a bifurcation to the family that is born there."""
+"""Switch from a bifurcation to the branch that begins there."""
 
 from collections.abc import Callable
 
@@ -25,25 +25,25 @@ def switch_branch(
     control: StepControl | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Branch:
-    """Return the family that crosses or leaves another one at a bifurcation.
+    """Continue the branch that begins at, or crosses, a bifurcation.
 
     Parameters
     ----------
     bifurcation
         A pitchfork, a period doubling or a branch point of a branch.
     bounds
-        Between which values of the parameter it is followed, away from the bifurcation.
+        Minimum and maximum of the parameter.
     opposite
-        Of a pitchfork: take the mirror image, half a period later, of what is taken else.
+        At a pitchfork: continue the symmetry-related branch instead.
     control, progress
         As in `continue_branch`.
 
     Raises
     ------
     ParameterError
-        If nothing branches off here as a family of periodic orbits: at a fold, or where a modulated motion is born.
+        If no branch of periodic orbits begins here: at a fold or a Neimark-Sacker point.
     NoOrbitError
-        If no orbit of the new family was reached.
+        If no orbit of the new branch was reached.
     """
     require_bifurcation(bifurcation)
     control = control_of(control)

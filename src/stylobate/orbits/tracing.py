@@ -25,7 +25,7 @@ _CLOSED = 0.75
 
 
 class End(Enum):
-    """Why a family was followed no further."""
+    """Reason why a branch ends."""
 
     BOUND = "the parameter reached its bound"
     LOST = "the orbit comes within 1e-6 c of the upright"
@@ -40,20 +40,20 @@ class End(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StepControl:
-    """How a family is followed.
+    """Set the steps of a continuation.
 
     Parameters
     ----------
     first, least, largest
-        Lengths of a step, in units of c for states and of the width of the bounds for the parameter. The first one is
-        no longer than the largest.
+        First, minimum and maximum length of a step, in units of c for states and of the width of the bounds for the
+        parameter.
     most
-        Number of points at most.
+        Maximum number of points.
 
     Raises
     ------
     ParameterError
-        If a length is not positive, `most` no whole number above zero, or the least length above another one.
+        If a length is not positive, `most` is not a positive whole number, or `least` exceeds another length.
     """
 
     first: float = 5e-3

@@ -113,46 +113,45 @@ def label_attractors(
     rules: AttractorRules | None = None,
     confidence: float = 0.95,
 ) -> xr.Dataset:
-    """Return `runs` of one column under one base motion with the attractor that each has come to.
+    """Identify the attractor that each of `runs` has reached, for one column under one base motion.
 
-    A run that moves to its end is on a periodic orbit if its strobed states repeat, after up to half as many periods
-    as there are strobes. Orbits are one if their strobed states agree wherever they begin. A motion that goes on
-    without repeating is modulated rolling if it turns once round with each period of the forcing, else aperiodic:
-    quasi-periodic or chaotic. Only their sense tells those apart. A run of none of these has "not settled": it
-    still creeps, or there are too few strobes; more periods and more strobes will.
+    A run that moves to its end is on a periodic orbit if its stroboscopic samples repeat, after at most half as many
+    periods as there are samples. Two orbits are the same if their samples agree, from whichever sample they begin. A
+    motion that persists without repeating is modulated rolling if it turns once round per period of the forcing, and
+    aperiodic (quasi-periodic or chaotic) otherwise. Modulated and aperiodic motions are distinguished only by their
+    sense. All other runs have "not settled": use more periods and more stroboscopic samples.
 
-    The strobes alone decide, not the outcome of a run, which rests on its last periods: those may hold too little of a
-    slow modulation to identify it, and the run is STILL_MOVING by itself.
+    The stroboscopic samples decide, not the outcome of the run. The outcome is judged over the last periods, which can
+    be too short to identify a slow modulation: such a run is STILL_MOVING by itself.
 
     Parameters
     ----------
     runs
-        Result of an ensemble or sweep with strobes. Column and base motion are the same for all but for the start
-        phase.
+        Result of an ensemble or sweep with `strobes`. All runs have the same column and base motion; only the start
+        phase may differ.
     model, motion
         The column and its base motion.
     rules
-        When states repeat, when two orbits are one, when a motion has settled.
+        Tolerances by which attractors are identified.
     confidence
-        Of the intervals of the fractions (Wilson's), which count none of the runs not settled to an attractor at their
-        lower end and all at their upper end. Runs on a grid are taken as if drawn at random, which makes
-        their intervals too wide rather than too narrow where basins are larger than the cells.
+        Confidence level of the intervals of the fractions (Wilson's). The lower end counts no unsettled run towards
+        an attractor, the upper end counts all of them. Runs on a grid are treated as random; if basins are larger than
+        the cells, their intervals are too wide rather than too narrow.
 
     Returns
     -------
     xarray.Dataset
-        The runs with `attractor`, −1 where not computed, the strobed states left out; and over `attractor_index`, by
-        kind and size, those "not settled" last: `attractor_name`, `attractor_kind`, `attractor_period` [forcing
-        periods, 0 for none], `attractor_turns` [a forcing period; NaN where not known, see `Attractor`], mean and
-        largest tilt [rad], its strobed states
-        `attractor_tilt` [rad] and `attractor_tilt_rate` [rad/s] over `orbit_point` (those that lean farthest first),
-        `orbit_tilt` along its path, `count`, `fraction` of all runs computed, `fraction_low` and `fraction_high`.
-        `unsettled` and `computed` count runs; fractions add up to one.
+        The runs without their stroboscopic samples, with `attractor` (−1 where not computed). Over `attractor_index`,
+        by kind and size, "not settled" last: `attractor_name`, `attractor_kind`, `attractor_period` [forcing periods, 0
+        for none], `attractor_turns` [per forcing period; NaN if unknown], mean and maximum tilt [rad], `count`,
+        `fraction` of all runs computed, `fraction_low` and `fraction_high`. Over `orbit_point`, the largest tilt first:
+        the stroboscopic samples `attractor_tilt` [rad] and `attractor_tilt_rate` [rad/s]; `orbit_tilt` along the path.
+        `unsettled` and `computed` count runs. Fractions add up to one.
 
     Raises
     ------
     ParameterError
-        If the runs were followed without strobes.
+        If the runs have no stroboscopic samples.
     """
     chosen, scales = rules or AttractorRules(), OrbitScales.of(model, motion)
     found = find_attractors(runs, scales, chosen).listed()

@@ -1,4 +1,4 @@
-"""Basin fractions along a parameter: how often random starts come to each attractor."""
+"""Basin fractions along a parameter: how often random initial conditions reach each attractor."""
 
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -48,11 +48,11 @@ def basin_fractions(
     progress: Progress | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
-    """Return how often random starts come to each attractor, along one parameter.
+    """Compute basin fractions along one parameter, from random initial conditions.
 
-    The starts are the same at every value of the parameter, so that differences between values are those of the basins
-    more than those of the sample. Attractors of successive values are matched by kind, period and nearness: an orbit
-    that jumps farther than `branch_tolerance` of the rules is listed as another one.
+    The initial conditions are the same at every value of the parameter, so differences between values reflect the
+    basins more than the sample. Attractors of successive values are matched by kind, period and distance. An orbit that
+    jumps farther than `branch_tolerance` of the rules is listed as a different one.
 
     Parameters
     ----------
@@ -61,34 +61,35 @@ def basin_fractions(
     along
         One parameter of the column, the model or the base motion, with its values in order.
     over
-        Range of each start that varies: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s], start_phase [rad].
+        Range of each initial condition that varies: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s],
+        start_phase [rad].
     count, rng
-        Number of starts, drawn uniformly, and the seed or numpy.random.Generator they are drawn with.
+        Number of initial conditions, drawn uniformly; seed or numpy.random.Generator.
     duration, periods
-        How long to follow each run [s], or for how many periods of its base motion.
+        Duration of each run [s], or its number of periods of the base motion.
     attractor_rules
-        When states repeat, and when two orbits are one.
+        Tolerances by which attractors are identified.
     confidence
-        Of the intervals, each by itself; intervals of successive values go up and down together.
+        Confidence level of each interval by itself. Intervals at successive values are correlated.
     store, executor, resume, progress
         As in `run_sweep`.
     **options
-        What all runs have in common: tilt, tilt_rate, rtol, rules, strobes (by default 32, or half of what
-        shorter runs hold) …
+        Arguments of all runs: tilt, tilt_rate, rtol, rules, strobes (by default 32, or half of the periods of a
+        shorter run) …
 
     Returns
     -------
     xarray.Dataset
         Of kind "basin fractions", over the parameter and `attractor_index`: `count`, `fraction` of the runs computed
-        with `fraction_low` and `fraction_high` (none, and all, of the runs not settled counted to it), `present` where
-        the attractor was found and there `mean_tilt` [rad] of its runs and its strobed states; over the parameter
-        `unsettled` and `computed` count runs. Those "not settled" are listed last.
+        with `fraction_low` and `fraction_high` (counting none, and all, of the unsettled runs towards it); `present`
+        where the attractor was found, and there `mean_tilt` [rad] of its runs and its stroboscopic samples. Over the
+        parameter `unsettled` and `computed` count runs. "Not settled" is listed last.
 
     Raises
     ------
     ParameterError
-        If `along` has not one name, a name in `over` changes the system, an argument is out of range, or runs are
-        too short for the strobes.
+        If `along` does not have exactly one name, a name in `over` is not an initial condition, an argument is out of
+        range, or runs are too short for the stroboscopic samples.
     """
     require_starts("over", over)
     name, values = one_parameter(model, along, over)

@@ -1,4 +1,4 @@
-"""Basins of attraction: which starts lead where, on a grid of two of them or from a random sample."""
+"""Basins of attraction: the attractor of each initial condition, on a grid or from a random sample."""
 
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -44,45 +44,45 @@ def basins(
     progress: Progress | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
-    """Return where starts lead: on a grid of two of them, or `count` random ones.
+    """Compute basins of attraction, on a grid of two initial conditions or from a random sample.
 
     Parameters
     ----------
     model, motion
         The column and its base motion, the same for all runs.
     over
-        What varies, among tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s] and start_phase [rad]. Without
-        `count` two names with their values, a grid; with it any number of names with their ranges (low, high).
+        Initial conditions that vary: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s], start_phase [rad].
+        Without `count`, two names with their values make a grid. With `count`, any number of names with their ranges
+        (low, high).
     count, rng
-        Number of random starts, drawn uniformly in the ranges, and the seed or numpy.random.Generator they are drawn
-        with.
+        Number of random initial conditions, drawn uniformly in the ranges; seed or numpy.random.Generator.
     duration, periods
-        How long to follow each [s], or for how many periods of the base motion.
+        Duration of each run [s], or its number of periods of the base motion.
     attractor_rules
-        When states repeat, and when two orbits are one.
+        Tolerances by which attractors are identified.
     confidence
-        Of the intervals of the fractions.
+        Confidence level of the intervals of the fractions.
     orbits
-        Stable periodic orbits, of one period of the base motion, to which runs converge that can then end early, as of
-        `stylobate.orbits.periodic_orbit`. See "Converged runs" on the page on ensembles.
+        Stable periodic orbits of one period of the base motion, from `stylobate.orbits.periodic_orbit`. Runs that
+        converge to one of them end early; see "End converged runs early" on the page on ensembles.
     store, executor, resume, progress
         As in `run_sweep`.
     **options
-        What all runs have in common: tilt, tilt_rate (the start but for what varies), rtol, rules, strobes (by default
-        32, or half of what shorter runs hold) … With `end_converged=True` steady rolling in closed form, on a
-        circularly moving base, counts as a known orbit too.
+        Arguments of all runs: tilt, tilt_rate (the components that do not vary), rtol, rules, strobes (by default 32,
+        or half of the periods of a shorter run) … With `end_converged=True`, steady rolling in closed form under
+        circular base motion also counts as a known orbit.
 
     Returns
     -------
     xarray.Dataset
-        Of kind "basins", as `label_attractors` describes it: the runs with `attractor`, and the table of attractors
-        with the fraction of the runs that come to each.
+        Of kind "basins", as `label_attractors` describes it: the runs with their `attractor`, and the table of
+        attractors with the fraction of runs that reach each.
 
     Raises
     ------
     ParameterError
-        If an argument is out of range, a name in `over` changes the system, a grid has not two names with one value
-        or more, or runs are too short for the strobes.
+        If an argument is out of range, a name in `over` is not an initial condition, a grid does not have two names
+        with at least one value each, or runs are too short for the stroboscopic samples.
 
     Examples
     --------

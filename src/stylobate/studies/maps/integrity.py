@@ -1,4 +1,4 @@
-"""Integrity: how far from its state a column can be pushed before it overturns, and how that erodes."""
+"""Integrity: the distance from a state to the nearest initial condition that overturns, and its erosion."""
 
 from collections.abc import Mapping
 from dataclasses import fields
@@ -41,44 +41,45 @@ def integrity(
     progress: Progress | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
-    """Return the distance from a state to the nearest start that overturns.
+    """Compute the distance from a state to the nearest initial condition that overturns.
 
-    The local integrity measure of Soliman and Thompson, "Integrity measures quantifying the erosion of smooth and
-    fractal basins of attraction", J. Sound Vib. 135 (1989), on a grid of starts: tilts in units of c, rates of tilt
-    in units of cω0, distances Euclidean. A start phase among the names counts for no distance: the nearest start at
-    any phase.
+    This is the local integrity measure of Soliman and Thompson, "Integrity measures quantifying the erosion of smooth
+    and fractal basins of attraction", J. Sound Vib. 135 (1989), on a grid of initial conditions. Tilts are in units of
+    c, tilt rates in units of cω0; distances are Euclidean. A start phase in `over` does not count towards the
+    distance: the result is the distance at the worst phase.
 
     Parameters
     ----------
     model, motion
         The column and its base motion.
     over
-        Values of each start that varies, increasing: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s], and
-        start_phase [rad]. Starts not named are those of `tilt` and `tilt_rate`.
+        Values of each initial condition that varies, increasing: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y
+        [rad/s], start_phase [rad]. `tilt` and `tilt_rate` set the others.
     reference
-        The state from which distances are taken, by the same names; 0, a column that stands, where it names none.
+        State from which distances are measured, by the same names; 0 (a standing column) for names left out.
     duration, periods
-        How long to follow each run [s], or for how many periods of the base motion.
+        Duration of each run [s], or its number of periods of the base motion.
     store, executor, resume, progress
         As in `run_sweep`.
     **options
-        What all runs have in common: tilt, tilt_rate, rtol, rules …
+        Arguments of all runs: tilt, tilt_rate, rtol, rules …
 
     Returns
     -------
     xarray.Dataset
-        Of kind "integrity": the runs over the grid; `distance`; `resolution`, half the diagonal of the largest cell;
-        `distance_low` and `distance_high`, between which the boundary is: the distance less two resolutions, and the
-        distance itself, which an overturning start proves. The lower end holds for boundaries that are smooth on the
-        scale of the grid; finer tongues may come nearer. `at_least` is true where no overturning start is nearer than
-        the edge of the grid or a start that is not known (failed, lifted off or not computed), to which the distance
-        then reaches, with `distance_high` infinite; and the `nearest` overturning start over `start`, NaN there.
+        Of kind "integrity": the runs over the grid; `distance`; `resolution`, half the diagonal of the largest cell.
+        The boundary lies between `distance_low` and `distance_high`. The upper end is the distance itself: a run at
+        this distance overturned. The lower end is two resolutions less; it holds for boundaries that are smooth on the
+        scale of the grid, and finer tongues may come nearer. `at_least` is True if no run overturned nearer than the
+        edge of the grid, or nearer than a run of unknown outcome (failed, lifted off, not computed). `distance` then
+        reaches to there, and `distance_high` is infinite. `nearest` is the nearest initial condition that overturned,
+        over `start`; NaN if there is none.
 
     Raises
     ------
     ParameterError
-        If an argument is out of range, a name in `over` changes the system, the reference lies outside the grid, or
-        `tilt_limit` is given: a run stopped there is not known to be safe.
+        If an argument is out of range, a name in `over` is not an initial condition, the reference lies outside the
+        grid, or `tilt_limit` is given: a run stopped there may still overturn.
     """
     require_starts("over", over)
     require_values("over", over)
@@ -104,12 +105,12 @@ def erosion(
     progress: Progress | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
-    """Return the distance to the nearest overturning start along a parameter, such as the amplitude as it grows.
+    """Compute the integrity measure along a parameter, such as a growing amplitude.
 
     Parameters
     ----------
     along
-        One parameter of the model or the base motion with its values, such as acceleration [m/s²].
+        One parameter of the model or the base motion, with its values, such as acceleration [m/s²].
     model, motion, over, reference, duration, periods, store, executor, resume, progress, **options
         As in `integrity`.
 
@@ -117,14 +118,14 @@ def erosion(
     -------
     xarray.Dataset
         Of kind "erosion", over the parameter: `distance`, `distance_low`, `distance_high`, `resolution`, `at_least`
-        and `nearest` as in `integrity`; and `integrity`, the distance over that at the first value, between
-        `integrity_low` and `integrity_high`, the ratios of the ends of both distances. Where the first distance is an
-        `at_least`, all the ratios are too high and their lower end is 0: the grid should reach farther.
+        and `nearest` as in `integrity`. `integrity` is the distance over the distance at the first value, between
+        `integrity_low` and `integrity_high`. If `at_least` is True at the first value, all ratios are too high and
+        their lower end is 0: use a grid that reaches farther.
 
     Raises
     ------
     ParameterError
-        As in `integrity`; or if `along` has not one name, or one that changes the units of the distance.
+        As in `integrity`; or if `along` does not have exactly one name, or changes the units of the distance.
     """
     require_starts("over", over)
     require_values("over", over)

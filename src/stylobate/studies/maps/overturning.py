@@ -39,30 +39,30 @@ def overturning_map(
     Parameters
     ----------
     model, motion
-        What all runs have in common but for what varies.
+        The column and its base motion. What `over` names replaces their values.
     over
         Two names with their values: parameters of the column, the model or the base motion, such as
-        angular_frequency [rad/s], acceleration [m/s²], start_phase [rad], damping, size; or components of the start,
-        tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s].
+        angular_frequency [rad/s], acceleration [m/s²], start_phase [rad], damping, size; or components of the initial
+        condition, tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s].
     duration, periods
-        How long to follow each run [s], or for how many periods of its base motion.
+        Duration of each run [s], or its number of periods of the base motion.
     store, executor, resume, progress
         As in `run_sweep`.
     **options
-        What all runs have in common: tilt [rad] and tilt_rate [rad/s] (the start, by default at rest), rtol, rules …
+        Arguments of all runs: tilt [rad] and tilt_rate [rad/s] (initial condition, by default at rest), rtol, rules …
         With `end_converged=True` runs on a circularly moving base end early once they have converged to steady rolling,
-        which the model must state in closed form; see "Converged runs" on the page on ensembles.
+        which the model must state in closed form; see "End converged runs early" on the page on ensembles.
 
     Returns
     -------
     xarray.Dataset
-        Of kind "overturning map": the runs over the two names, with `outcome`, the time it was decided at, `uncertain`
-        and all variables of ensembles; over `outcome_name`, `count` and `share` of the runs computed; and `computed`.
+        Of kind "overturning map". Over the two names: `outcome`, `decided_at`, `uncertain` and all variables of
+        `simulate_ensemble`. Over `outcome_name`: `count` and `share` of the runs computed. `computed` counts the runs.
 
     Raises
     ------
     ParameterError
-        If `over` has not two names with one value or more, or an argument is out of range.
+        If `over` does not have two names with at least one value each, or an argument is out of range.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Orbits in strobed states: which runs repeat, after how many periods, and which of them are on the same orbit."""
+"""Orbits in stroboscopic samples: which runs repeat, after how many periods, and which are on the same orbit."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -29,34 +29,34 @@ _NEAR = 0.1
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AttractorRules:
-    """When strobed states repeat, when two orbits are one, and when a motion that does not repeat has settled.
+    """Tolerances by which attractors are identified from stroboscopic samples.
 
-    The first two are parts of the tilt c/(1 + ν²) and the tilt rate cν/(1 + ν²) of free rolling (5) at the forcing
-    frequency ν: the size of the motions in question at every frequency.
+    The first two are fractions of the tilt c/(1 + ν²) and the tilt rate cν/(1 + ν²) of free rolling (5) at the
+    frequency ratio ν of the forcing. This is the size of the motions at every frequency.
 
     Parameters
     ----------
     repeat_tolerance
-        A run repeats every k periods if all its strobed states differ from the last k by less than this.
+        A run repeats every k periods if all its samples differ from the last k by less than this.
     match_tolerance
-        Runs are on the same orbit if their strobed states differ by less than this, and those of one orbit differ by
-        more. Well above `repeat_tolerance`: a run that still creeps is farther from its orbit than it moves while it
-        is watched, and one that spirals in must not pass for an orbit of several periods.
+        Two runs are on the same orbit if their samples differ by less than this. Samples of one orbit must differ by
+        more. It must be well above `repeat_tolerance`: a slowly converging run is farther from its orbit than it moves
+        during the samples, and a run that spirals in must not count as an orbit of several periods.
     settled_tolerance
-        A run that does not repeat is settled if the differences of successive strobed states are as large, in the
-        geometric mean, in the second half of the strobes as in the first, to this part; and if those after k strobes,
-        where they are small beside the former, do not shrink by more: else it nears an orbit of k periods …
+        A run that does not repeat is settled if its successive samples differ by as much in the second half of the
+        samples as in the first, in the geometric mean and to this relative tolerance. Differences after k samples, if
+        they are much smaller, must not shrink by more either: otherwise the run approaches an orbit of k periods.
     sampling_errors
-        … or to so many standard errors of the two means: the few differences of a chaotic run scatter, and their
-        means with them, while those of a run that creeps shrink one after the other. Needs 32 strobes or more.
+        Number of standard errors of the two means by which they may differ as well: the differences of a chaotic run
+        scatter, while those of a converging run shrink steadily. Needs 32 samples or more.
     branch_tolerance
-        Along a parameter, a periodic orbit is the continuation of one at an earlier value if their strobed states
-        differ by less than this; else it begins a branch. To be widened where the values are far apart.
+        Along a parameter, a periodic orbit continues one at an earlier value if their samples differ by less than
+        this. Otherwise it begins a branch. Increase it if the values are far apart.
 
     Raises
     ------
     ParameterError
-        If one of them is not positive.
+        If a tolerance is not positive.
     """
 
     repeat_tolerance: float = 1e-3

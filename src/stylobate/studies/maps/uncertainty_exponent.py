@@ -1,4 +1,4 @@
-"""How uncertain the final state is near the boundary of a basin: the uncertainty exponent."""
+"""Uncertainty exponent of a basin boundary."""
 
 import logging
 from collections.abc import Callable, Mapping, Sequence
@@ -57,54 +57,56 @@ def uncertainty_exponent(
     progress: Progress | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
-    """Return how the share of uncertain starts falls with the error of the start, f(ε) ~ ε^α, and the dimension.
+    """Estimate the uncertainty exponent υ of a basin boundary, f(ε) ~ ε^υ, and the boundary's dimension.
 
-    A random start is uncertain at ε if it comes to another attractor when one of its components is shifted by +ε or
-    −ε; a run that overturned has come to another one than any that did not, though that be unsettled. α = 1 is a smooth
-    boundary; the smaller α, the less a better known start helps. The boundary has the dimension D − α within the D
-    starts that vary: McDonald, Grebogi, Ott, Yorke, "Fractal basin boundaries", Physica D 17 (1985).
-    Each ε has starts of its own, so that the shares err independently and the standard error of α is that of the fit
-    (`fit_power_law`).
+    A random initial condition is uncertain at ε if the run reaches another attractor when one component is shifted by
+    +ε or −ε. A run that overturned counts as different from every run that did not, even from an unsettled one. υ = 1
+    means a smooth boundary; the smaller υ, the less a more accurate initial condition helps. The boundary has the
+    dimension D − υ within the D initial conditions that vary: McDonald, Grebogi, Ott, Yorke, "Fractal basin
+    boundaries", Physica D 17 (1985). Each ε has its own sample, so the errors of the fractions are independent, and
+    the standard error of υ is that of the fit.
 
     Parameters
     ----------
     model, motion
         The column and its base motion.
     over
-        Range of each start that varies: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s], start_phase [rad].
+        Range of each initial condition that varies: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s],
+        start_phase [rad].
     shifted
-        The one among them that is shifted.
+        Name of the component that is shifted.
     shifts
-        ε, in its unit, increasing; by default 8 in geometric order between 1e-5 and 3e-2 of its range. Not so small
-        that the integration error (rtol) decides.
+        Values of ε in the unit of `shifted`, increasing; by default 8 in geometric order between 1e-5 and 3e-2 of its
+        range. They must be large against the integration error (rtol).
     count, rng
-        Number of starts for each ε, three runs each, and the seed or numpy.random.Generator they are drawn with.
+        Number of initial conditions per ε, three runs each; seed or numpy.random.Generator.
     overturning_only
-        Classify only whether the column overturns: the boundary of the safe starts.
+        Consider only the boundary between overturning and survival.
     duration, periods
-        How long to follow each run [s], or for how many periods of the base motion.
+        Duration of each run [s], or its number of periods of the base motion.
     attractor_rules
-        When states repeat, and when two orbits are one.
+        Tolerances by which attractors are identified.
     confidence
-        Of the intervals of the shares.
+        Confidence level of the intervals of the fractions.
     store, executor, resume, progress
         As in `run_sweep`.
     **options
-        What all runs have in common: tilt, tilt_rate, rtol, rules, strobes …
+        Arguments of all runs: tilt, tilt_rate, rtol, rules, strobes …
 
     Returns
     -------
     xarray.Dataset
-        Of kind "uncertainty exponent", over `epsilon`: `uncertain` of `pairs` starts, `fraction`, `fraction_low`,
-        `fraction_high`, `fitted` and the `fit`; `dropped`, the number of starts that stay undecided, because a
-        run is unsettled or failed and none differs for certain; and `uncertainty_exponent`, its `standard_error`,
-        `boundary_dimension`, `misfit`. A warning is logged where more than a tenth of the starts is dropped.
+        Of kind "uncertainty exponent". Over `epsilon`: the number of `uncertain` among `pairs` initial conditions,
+        `fraction`, `fraction_low`, `fraction_high`, `fitted` and the `fit`; `dropped`, the number of initial conditions
+        that cannot be classified, because a run is unsettled or failed and none differs for certain. Also
+        `uncertainty_exponent`, its `standard_error`, `boundary_dimension`, `misfit`. A warning is logged if more than
+        a tenth of the initial conditions is dropped.
 
     Raises
     ------
     ParameterError
-        If an argument is out of range, a name in `over` changes the system, runs are too short for the strobes, or
-        `tilt_limit` is given with `overturning_only`: a run stopped there is not known to overturn.
+        If an argument is out of range, a name in `over` is not an initial condition, runs are too short for the
+        stroboscopic samples, or `tilt_limit` is given with `overturning_only`: a run stopped there may not overturn.
     """
     require_starts("over", over)
     epsilon = _shifts(shifts, over, shifted)
@@ -211,7 +213,7 @@ def exponent_of(
     dimension
         Number D of the starts that vary.
     confidence
-        Of the intervals of the shares.
+        Confidence level of the intervals of the fractions.
     """
     differ, agree = _compared(np.reshape(states, (3, epsilon.size, -1)))
     if overturned is not None:
@@ -238,8 +240,8 @@ def exponent_of(
             "fraction_high": ("epsilon", high, {"units": "1", "long_name": f"upper {interval}"}),
             "fitted": ("epsilon", law.used, {"long_name": "used for the fit"}),
             "fit": ("epsilon", law.at(epsilon), {"units": "1", "long_name": "fraction by the fit"}),
-            "uncertainty_exponent": ((), law.exponent, {"units": "1", "long_name": "uncertainty exponent α"}),
-            "standard_error": ((), law.standard_error, {"units": "1", "long_name": "standard error of α"}),
+            "uncertainty_exponent": ((), law.exponent, {"units": "1", "long_name": "uncertainty exponent υ"}),
+            "standard_error": ((), law.standard_error, {"units": "1", "long_name": "standard error of υ"}),
             "boundary_dimension": (
                 (),
                 dimension - law.exponent,

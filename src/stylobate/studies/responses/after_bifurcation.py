@@ -26,31 +26,30 @@ def after_bifurcation(
     rng: Rng = 0,
     progress: Callable[[int, int], None] | None = None,
 ) -> xr.Dataset:
-    """Return what runs come to that begin near the orbit of a bifurcation, at values of the parameter around it.
+    """Count the outcomes of runs near the orbit of a bifurcation, at values of the parameter around it.
 
-    Where the loss of stability is soft they come to what is born beside the orbit, as long as that lives; where it is
-    hard they leave for elsewhere at once.
+    Beyond a supercritical loss of stability the runs reach the attractors that branch off, as long as these exist.
+    Beyond a subcritical one they leave for distant attractors.
 
     Parameters
     ----------
     bifurcation
-        Of a branch, see `sb.orbits.continue_branch`.
+        A bifurcation of a branch, see `sb.orbits.continue_branch`.
     values
         Values of the branch's parameter.
     count, size, rng
-        Number of starts at each value: the orbit's state at the bifurcation, off by normal disturbances of tilt and
-        of tilt rate (per unit of the model's time) of this size, in units of c; and their seed or
-        numpy.random.Generator.
+        Number of runs at each value; standard deviation, in units of c, of the normal disturbances of tilt and of tilt
+        rate (per unit of the model's time) from the orbit at the bifurcation; seed or numpy.random.Generator.
     periods
-        How many periods of the base motion each is followed.
+        Duration of each run in periods of the base motion.
     progress
-        Called with how many values are done, and of how many.
+        Called with the number of values done and of all values.
 
     Returns
     -------
     xarray.Dataset
         `count` over the parameter and `fate`: overturned, at rest, rolling, modulated and so on, classified as by
-        `label_attractors`, with the length of orbits that take more than one period; and those not settled.
+        `label_attractors`, with the length of orbits of more than one period; also "not settled".
 
     Raises
     ------

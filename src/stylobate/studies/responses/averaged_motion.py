@@ -1,4 +1,4 @@
-"""The averaged slow flow (10), integrated, to lay beside the full motion."""
+"""The averaged slow flow (10), integrated, to compare with the full motion."""
 
 import numpy as np
 import xarray as xr
@@ -24,7 +24,7 @@ def averaged_motion(
     samples: int = 1001,
     rtol: float = 1e-9,
 ) -> xr.Dataset:
-    """Integrate the averaged equations (10) from a start of the full motion.
+    """Integrate the averaged equations (10) from an initial condition of the full motion.
 
     Parameters
     ----------
@@ -33,11 +33,11 @@ def averaged_motion(
     motion
         A horizontal harmonic motion without ramp. For circular motion the flow is exact.
     tilt, tilt_rate
-        The start, as for `simulate` [rad], [rad/s]; the tilt must not be zero.
+        Initial condition, as for `simulate` [rad], [rad/s]; the tilt must not be zero.
     duration
-        How long to follow it [s].
+        Duration [s].
     sense
-        The sense of rolling about which to average, +1 or −1; by default that of the larger circular part.
+        Sense of rolling about which to average, +1 or −1; by default that of the larger circular component.
     samples
         Number of samples.
     rtol
@@ -46,15 +46,15 @@ def averaged_motion(
     Returns
     -------
     xarray.Dataset
-        `amplitude`, `azimuth` and `phase` [rad] over `time` [s]; it ends early where the averaged tilt passes through
-        zero or grows beyond a hundred times c.
+        `amplitude`, `azimuth` and `phase` [rad] over `time` [s]. It ends early if the averaged tilt passes through
+        zero or exceeds a hundred times c.
 
     Raises
     ------
     ParameterError
         If an argument is out of range.
     UnsupportedError
-        If the model is another one, or a subclass with equations of its own.
+        If the model is not `Slender`, or is a subclass with equations of its own.
 
     Examples
     --------

@@ -36,7 +36,7 @@ def averaging_map(
     sense: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> xr.Dataset:
-    """Return over a parameter and the frequency how averaged rolling compares with the exact orbit of its family.
+    """Compare averaged rolling with the exact orbit, over a parameter and the frequency.
 
     Parameters
     ----------
@@ -47,21 +47,21 @@ def averaging_map(
     angular_frequency
         Frequencies [rad/s], increasing.
     sense
-        Of rolling, +1 or −1; by default that of the larger circle of the base motion.
+        Sense of rolling, +1 or −1; by default that of the larger circular component of the base motion.
     progress
-        Called with how many values are done, and of how many.
+        Called with the number of values done and of all values.
 
     Returns
     -------
     xarray.Dataset
         Over the parameter and `angular_frequency`: `exact` and `averaged` (1 stable, 0 unstable, −1 no such rolling),
         `error`, the mean tilt of the exact orbit over the averaged one less 1, and `swing`, its largest tilt over the
-        averaged one. Without friction stable means neutrally stable.
+        averaged one. Without damping stable means neutrally stable.
 
     Raises
     ------
     ParameterError
-        If values are none, or negative where none can be, or the frequencies do not rise from above zero.
+        If values are missing or have an impossible sign, or the frequencies are not positive and increasing.
     """
     require_subject(model, motion)
     frequencies, chosen = require_rising_frequencies(angular_frequency), require_values(values, parameter)

@@ -36,7 +36,7 @@ def exact_response(
     control: StepControl | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> xr.Dataset:
-    """Return exact rolling against the frequency of the base motion: tilts, phase, stability, bifurcations.
+    """Compute the exact frequency response of rolling: tilts, phase, stability and bifurcations.
 
     Parameters
     ----------
@@ -45,31 +45,31 @@ def exact_response(
     angular_frequency
         Lowest and highest frequency [rad/s].
     orbit
-        Where to begin: of this model under this motion at a frequency of the range. By default rolling by theory, at
-        the highest frequency at which it is found.
+        Orbit from which to begin, of this model under this motion at a frequency within the range. By default rolling
+        by theory, at the highest frequency at which it is found.
     sense
-        Of rolling, +1 or −1, for the orbit by theory.
+        Sense of rolling, +1 or −1, for the orbit by theory.
     generations
-        How many times families that are born at pitchforks and period doublings are followed: 0 for none.
+        Number of successive switches to branches that begin at pitchforks and period doublings; 0 for none.
     control
-        Length of steps along the families.
+        Length of steps along the branches.
     progress
         Called with the frequency of each new orbit.
 
     Returns
     -------
     xarray.Dataset
-        Over `point`: `angular_frequency`, `mean_tilt`, `least_tilt`, `largest_tilt`, `phase` [rad], `stable` (of an
-        orbit in a plane, in that plane; without friction, neutrally), multipliers, and `branch`, the family of each. A
-        bifurcation is a point of its family, at which it is not called stable. Over `branch_index`: name, length in
-        periods, ends. Over `bifurcation`: kind, frequency, branch, mean tilt, coefficient, and `bifurcation_soft` (1
-        soft, 0 hard, −1 not decided). For rolling that theory knows, its curves over `averaged_frequency`, exact for
-        circular motion.
+        Over `point`: `angular_frequency`, `mean_tilt`, `least_tilt`, `largest_tilt`, `phase` [rad], `stable` (of a
+        planar orbit: within its plane; without damping: neutrally), multipliers, and the `branch` of each. A
+        bifurcation is a point of its branch, and is not marked stable. Over `branch_index`: name, length in periods,
+        ends. Over `bifurcation`: kind, frequency, branch, mean tilt, coefficient, and `bifurcation_soft` (1
+        supercritical, 0 subcritical, −1 not decided). If theory has a solution, its curves over `averaged_frequency`,
+        exact for circular motion.
 
     Raises
     ------
     ParameterError
-        If the range is none, or `orbit` is one of another model or base motion.
+        If the range is invalid, or `orbit` belongs to another model or base motion.
     NoOrbitError
         If no orbit was found to begin with.
 

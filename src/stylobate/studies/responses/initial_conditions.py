@@ -1,4 +1,4 @@
-"""Starts on known motions: the steady rolling of the closed forms."""
+"""Initial conditions on known motions: the steady rolling of the closed forms."""
 
 import math
 from typing import TypedDict
@@ -15,40 +15,40 @@ _BRANCHES = ("upper", "lower")
 
 
 class Start(TypedDict):
-    """The start of a run, as keyword arguments of `simulate`."""
+    """Initial condition of a run, as keyword arguments of `simulate`."""
 
     tilt: tuple[float, float]
     tilt_rate: tuple[float, float]
 
 
 class TurningStart(Start):
-    """The start of a run of a column that may turn about its axis."""
+    """Initial condition of a column with axial rotation (spin)."""
 
     spin: float
 
 
 def steady_start(model: Model, motion: Harmonic, *, branch: str = "upper", sense: int | None = None) -> Start:
-    """Return the start at t = 0 on the steady rolling of a harmonic motion without ramp.
+    """Compute the initial condition of steady rolling under a harmonic motion without ramp.
 
-    Exact for circular motion, averaged for elliptic and straight motion: (8) of the slender model, and of the others
-    `free_twist_rolling`, `wobbling_rolling` and `full_rolling`.
+    It is exact for circular motion and averaged for elliptic and straight motion: (8) for the slender model, and
+    `free_twist_rolling`, `wobbling_rolling` and `full_rolling` for the others.
 
     Parameters
     ----------
     model
-        Slender, slender rolling, wobbling or rolling, without rolling resistance; couples of the contact.
+        Slender, slender rolling, wobbling or rolling, without rolling resistance.
     motion
         A horizontal harmonic motion.
     branch
-        "upper" or "lower"; at finite tilt "upper" is the stable branch or, if none is, that of a phase near 0. Of
-        slender rolling only the upper one is known.
+        "upper" or "lower". At finite tilt "upper" is the stable branch, or the one with a phase near 0 if none is
+        stable. Slender rolling has the upper branch only.
     sense
-        +1 anticlockwise or −1 clockwise; by default that of the larger circular part of the motion.
+        +1 anticlockwise or −1 clockwise; by default that of the larger circular component of the motion.
 
     Returns
     -------
     Start
-        `tilt` [rad], `tilt_rate` [rad/s]; of a model that may turn a `TurningStart`, with `spin` [rad/s] too.
+        `tilt` [rad], `tilt_rate` [rad/s]. For a model with a spin a `TurningStart`, which also has `spin` [rad/s].
 
     Raises
     ------

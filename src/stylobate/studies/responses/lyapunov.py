@@ -38,28 +38,28 @@ def lyapunov_exponents(
     blocks: int = 10,
     rtol: float = 1e-10,
 ) -> xr.Dataset:
-    """Return the rates at which motions near by part from this one, in the mean over a long time.
+    """Compute Lyapunov exponents: the mean exponential rates at which nearby motions separate.
 
-    The derivatives of the flow over each period, exact but for the tolerance, carry orthogonal directions, which are
-    made orthogonal again once a period by QR: G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn, "Lyapunov
-    characteristic exponents for smooth dynamical systems and for Hamiltonian systems; a method for computing all of
-    them", Meccanica 15 (1980) 9 and 21.
+    The derivative of the flow over each period, exact to the tolerance, carries orthogonal directions, which a QR
+    decomposition makes orthogonal again once per period: G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn,
+    "Lyapunov characteristic exponents for smooth dynamical systems and for Hamiltonian systems; a method for computing
+    all of them", Meccanica 15 (1980) 9 and 21.
 
     Parameters
     ----------
     model, motion
         The column and its base motion, periodic from t = 0.
     tilt, tilt_rate
-        Start [rad], [rad/s], shape (2,). One in the vertical plane of a base motion along a line keeps to it, and has
-        the two exponents of motion in that plane.
+        Initial condition [rad], [rad/s], shape (2,). If it lies in the vertical plane of a straight base motion, the
+        motion is planar, and has the two exponents of planar motion.
     periods
-        Periods that are counted.
+        Number of periods that are evaluated.
     skip
-        Periods before them, in which the motion settles and the directions turn to where they belong.
+        Number of periods before them, while the motion settles and the directions align.
     count
-        How many exponents, the largest first; all by default.
+        Number of exponents, the largest first; all by default.
     blocks
-        Parts of the counted periods whose scatter gives the error.
+        Number of blocks of the counted periods; their scatter gives the error.
     rtol
         Relative tolerance of the flow.
 
@@ -68,8 +68,8 @@ def lyapunov_exponents(
     xarray.Dataset
         Of kind "Lyapunov exponents", over `exponent`: `lyapunov_exponent` [1/s] and `per_period`, with their errors
         `error` [1/s] and `per_period_error`, see below. Over `period` (counted) and `exponent`: `running` [1/s], the
-        estimate from the periods up to there. `periods_counted`, less than asked for where the motion ended; then the
-        exponents are NaN and `attrs["ending"]` states why; `attrs["periods_skipped"]` is how many went before them.
+        estimate from the periods so far. `periods_counted` is less than `periods` if the motion ended early; then the
+        exponents are NaN, and `attrs["ending"]` states why. `attrs["periods_skipped"]` counts the periods skipped.
 
     Raises
     ------
@@ -80,11 +80,12 @@ def lyapunov_exponents(
 
     Notes
     -----
-    Errors are the larger of two: the standard error by the scatter of the blocks, which is that of a chaotic motion;
-    and the range over which the summed growth strays from a straight line, over the number of periods. The second
-    bounds the error on a torus, or on a periodic orbit whose multipliers are complex: there the sums swing, and blocks
-    that hold a whole number of swings would agree by chance. Both fall as 1/`periods` there, as 1/√`periods` in chaos;
-    for real multipliers the exponents are right to the tolerance.
+    Each error is the larger of two estimates. The first is the standard error from the scatter of the blocks, which is
+    appropriate for a chaotic motion. The second is the range over which the summed growth deviates from a straight
+    line, divided by the number of periods. It bounds the error on a torus, or on a periodic orbit with complex
+    multipliers: there the sums oscillate, and blocks with a whole number of oscillations would agree by chance. Errors
+    fall as 1/`periods` on a torus and as 1/√`periods` in chaos. For real multipliers the exponents are accurate to the
+    tolerance.
 
     Examples
     --------

@@ -29,38 +29,38 @@ def poincare_section(
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> xr.Dataset:
-    """Return the states of columns once a period, where the base motion has the phase of t = 0.
+    """Compute Poincaré sections: states once per period, when the base motion has the phase of t = 0.
 
-    A periodic orbit is as many points as it has periods, a quasi-periodic one fills closed curves, a chaotic one a set
-    of broken dimension.
+    A periodic orbit gives as many points as it has periods, a quasi-periodic motion fills closed curves, and a chaotic
+    motion a set of fractal dimension.
 
     Parameters
     ----------
     model, motion
         The column and its base motion, periodic from t = 0.
     tilt, tilt_rate
-        Starts [rad], [rad/s]: shape (2,), (n, 2), or DataArrays, as in `simulate_ensemble`.
+        Initial conditions [rad], [rad/s]: shape (2,), (n, 2), or DataArrays, as in `simulate_ensemble`.
     periods
-        Periods for which the columns are followed.
+        Duration of the runs in periods.
     skip
-        Periods at the beginning that are left out, for the motion to settle.
+        Number of periods at the beginning to leave out, while the motion settles.
     rtol, rest_energy, threads, progress
         As in `simulate_ensemble`.
 
     Returns
     -------
     xarray.Dataset
-        Of kind "Poincaré section", over `run` (or the dimensions of the starts) and `period`, the number of periods
-        since t = 0, from `skip` to `periods`: `section_tilt` [rad] and `section_tilt_rate` [rad/s] along `axis`, NaN
-        after a column has come to rest for good or overturned; and of each run `outcome`, `decided_at` [s],
-        `uncertain`.
+        Of kind "Poincaré section", over `run` (or the dimensions of the initial conditions) and `period`, the number of
+        periods since t = 0, from `skip` to `periods`: `section_tilt` [rad] and `section_tilt_rate` [rad/s] along
+        `axis`, NaN after a column has overturned or come to rest for good. For each run also `outcome`, `decided_at`
+        [s], `uncertain`.
 
     Raises
     ------
     ParameterError
         If an argument is out of range.
     UnsupportedError
-        If the base motion has no period, or not from t = 0 on.
+        If the base motion is not periodic from t = 0.
 
     Examples
     --------

@@ -20,10 +20,10 @@ from stylobate.theory.averaging import circular_components
 def response_curves(
     model: Model, motion: BaseMotion, *, angular_frequency: npt.ArrayLike | Sequence[float]
 ) -> xr.Dataset:
-    """Return amplitude and phase of steady rolling against the frequency of a harmonic base motion.
+    """Compute amplitude and phase of steady rolling over the frequency of a harmonic base motion.
 
-    For circular motion the solution (8) is exact; for elliptic and straight motion it is the averaged one, (10) with
-    the two circular parts of the ellipse, one for each sense of rolling.
+    For circular motion the solution (8) is exact. For elliptic and straight motion it is the averaged solution (10)
+    with the two circular components of the ellipse, one for each sense of rolling.
 
     Parameters
     ----------

@@ -56,34 +56,33 @@ def slow_sweep(
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> xr.Dataset:
-    """Follow columns by direct integration while a parameter steps through its values: jumps and hysteresis show.
+    """Integrate columns while a parameter steps through its values, to show jumps and hysteresis.
 
-    At each value a column goes on from where it was at the value before, tilt and tilt rate in SI units. Each step
-    lasts a whole number of periods of its own, so that every step begins at the phase of t = 0: with the frequency
-    the base acceleration goes on without a jump, and only its rate changes. Nothing but `simulate_ensemble` is used:
-    the sweep is a check of branches of periodic orbits that owes them nothing.
+    At each value a column continues from its state at the value before, tilt and tilt rate in SI units. Each step
+    lasts a whole number of its own periods, so every step begins at the phase of t = 0. If the frequency steps, the
+    base acceleration is continuous and only its rate jumps. The sweep uses direct integration only, so it is an
+    independent check of branches of periodic orbits.
 
     Parameters
     ----------
     model, motion
         The column and its base motion, periodic from t = 0.
     parameter
-        What steps: a name of `simulate_ensemble`'s parameters.
+        Name of the parameter that steps, one of those of `simulate_ensemble`.
     values
-        Its values, in their order: shape (n,), or (n, m) for m sweeps that differ.
+        Its values in order: shape (n,), or (n, m) for m different sweeps.
     tilt, tilt_rate
-        Starts at the first value [rad], [rad/s]: shape (2,), or (m, 2) for m sweeps.
+        Initial conditions at the first value [rad], [rad/s]: shape (2,), or (m, 2) for m sweeps.
     periods_each
-        Periods for which each value is held. Friction η forgets what a step disturbs as exp(−ηω0 t/2), but near a
-        bifurcation far more slowly: there a sweep lags behind. Each step is a push as well, which near the edge of a
-        basin can overturn a column that smaller steps would keep.
+        Periods for which each value is held. The disturbance by a step decays as exp(−ηω0 t/2), but far more slowly
+        near a bifurcation, where a sweep lags behind. Near the edge of a basin a step can overturn a column that
+        smaller steps would not overturn.
     back
-        Go back through the values after the last.
+        Return through the values after the last one.
     rtol, rest_energy, threads
         As in `simulate_ensemble`.
     rules
-        When a motion counts as rolling, rocking or modulated, at each value. With n = `rules.periods`, 25 by default,
-        the last 2n + 1 periods are looked at.
+        Rules of the outcome at each value. With n = `rules.periods`, 25 by default, the last 2n + 1 periods decide.
     progress
         Called as `progress(steps done, steps in all)`.
 
@@ -93,16 +92,16 @@ def slow_sweep(
         Of kind "slow sweep", over (step, sweep), `parameter` among the coordinates: over the last 2n + 1 periods of
         each step `mean_tilt`, `least_tilt`, `largest_tilt` [rad], `turns_per_period`, anticlockwise positive, and the
         `outcome`; `end_tilt` [rad] and `end_tilt_rate` [rad/s], the state at the phase of t = 0 with which the step
-        ends. A column that overturned (or lifted off, or failed) has that outcome there and NaN; after it nothing is
-        computed. One that came to rest has tilts and turns of zero; it goes on from rest, as a later value may release
-        it.
+        ends. A column that overturned (or lifted off, or failed) has this outcome and NaN; later steps are not
+        computed. A column at rest has tilts and turns of zero; it continues from rest, since a later value may make it
+        move.
 
     Raises
     ------
     ParameterError
         If an argument is out of range.
     UnsupportedError
-        If the base motion has no period, or not from t = 0 on.
+        If the base motion is not periodic from t = 0.
     Interrupted
         After Ctrl-C; its `partial` is the Dataset with the steps that were done.
 

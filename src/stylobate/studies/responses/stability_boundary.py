@@ -47,10 +47,10 @@ def stability_boundary(
     sense: int | None = None,
     control: StepControl | None = None,
 ) -> xr.Dataset:
-    """Return the curves on which exact rolling loses its stability, beside the critical frequency of theory.
+    """Compute the curves on which exact rolling loses stability, with the critical frequency of theory.
 
-    At a few values of the parameter rolling is followed over the frequency; from each bifurcation at which it loses
-    its stability a curve is followed in both.
+    At a few values of the parameter rolling is continued over the frequency. From each bifurcation at which it loses
+    stability, a curve is continued in both parameters.
 
     Parameters
     ----------
@@ -61,24 +61,25 @@ def stability_boundary(
     angular_frequency
         Lowest and highest frequency [rad/s].
     values
-        Values of the parameter at which rolling is followed over the frequency; by default five across the bounds.
+        Values of the parameter at which rolling is continued over the frequency; by default five across the bounds.
     sense
-        Of rolling, +1 or −1; by default that of the larger circle of the base motion.
+        Sense of rolling, +1 or −1; by default that of the larger circular component of the base motion.
     control
         Length of steps along the curves.
 
     Returns
     -------
     xarray.Dataset
-        Over `point`: `angular_frequency` [rad/s], the parameter, `curve`, `soft` (1 soft, 0 hard, −1 not decided),
-        `coefficient`; over `curve_index`: `curve_kind`, `curve_end`. Over `theory_parameter`: `theory_frequency`
-        [rad/s], the critical frequency (exact for circular motion, averaged else), NaN where there is none.
-        `attrs["rolling"]` states the stability of rolling where it was checked: "stable", "unstable" or both.
+        Over `point`: `angular_frequency` [rad/s], the parameter, `curve`, `soft` (1 supercritical, 0 subcritical, −1
+        not decided), `coefficient`. Over `curve_index`: `curve_kind`, `curve_end`. Over `theory_parameter`:
+        `theory_frequency` [rad/s], the critical frequency (exact for circular motion, averaged otherwise), NaN if there
+        is none.
+        `attrs["rolling"]` states the stability of rolling at the points checked: "stable", "unstable" or both.
 
     Raises
     ------
     ParameterError
-        If bounds or values are none, or there is no friction, without which nothing decays.
+        If bounds or values are invalid, or there is no damping, without which nothing decays.
     NoOrbitError
         If rolling was found at none of the values.
 

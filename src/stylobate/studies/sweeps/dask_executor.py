@@ -24,25 +24,26 @@ _AHEAD = 2
 
 @dataclass(frozen=True, slots=True)
 class Dask:
-    """Each block a task of Dask distributed, on one thread.
+    """Compute each block as a task of Dask distributed, on one thread.
 
-    A block whose worker dies is computed again by another one. With a store the workers write into it themselves, so
-    they must see the same disk; without one the results travel to this process. A script that starts workers on this
-    machine must do so under `if __name__ == "__main__":`, for each worker imports it.
+    If a worker dies, its block is computed again by another one. With a store the workers write into it directly, so
+    they must see the same disk; without a store the results are sent to this process. A script that starts workers on
+    this machine must do so under `if __name__ == "__main__":`, because each worker imports it.
 
     Parameters
     ----------
     address
-        A scheduler that runs, such as "tcp://10.0.0.1:8786". None starts workers on this machine, for this sweep only.
+        Address of a running scheduler, such as "tcp://10.0.0.1:8786". None starts workers on this machine, for this
+        sweep only.
     workers
-        How many to start on this machine; None for one a core.
+        Number of workers to start on this machine; None for one per core.
     client
-        A `dask.distributed.Client` to use instead; it is left open.
+        A `dask.distributed.Client` to use instead; it stays open.
 
     Raises
     ------
     ParameterError
-        If `workers` is no whole number of at least 1, or is given with an address or a client.
+        If `workers` is not a whole number of at least 1, or is given with an address or a client.
     """
 
     address: str | None = None

@@ -32,12 +32,12 @@ class Executor(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Threads:
-    """One block after the other, each on `threads` threads of this process; None for all cores.
+    """Compute blocks one after the other, each on `threads` threads of this process; None for all cores.
 
     Raises
     ------
     ParameterError
-        If `threads` is no whole number of at least 1.
+        If `threads` is not a whole number of at least 1.
     """
 
     threads: int | None = None

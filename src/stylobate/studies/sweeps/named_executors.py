@@ -11,7 +11,7 @@ def executor_from(text: str) -> Threads | Dask:
     Raises
     ------
     ParameterError
-        If it names none.
+        If `text` names no executor.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""`run_sweep`: compute a sweep, or what is missing of it."""
+"""`run_sweep`: compute a sweep, or its missing runs."""
 
 from contextlib import closing
 from pathlib import Path
@@ -25,22 +25,22 @@ def run_sweep(
 ) -> xr.Dataset:
     """Compute all runs of `sweep`, chunk by chunk.
 
-    Every run is the same, bit for bit on one machine, whatever the chunks and the executor.
+    Every run is the same bit for bit on one machine, for all chunk sizes and executors.
 
     Parameters
     ----------
     sweep
-        What to compute.
+        The runs to compute.
     store
-        Folder of a Zarr store to be made, such as "map.zarr"; None keeps the results in memory.
+        Folder of a new Zarr store, such as "map.zarr"; None keeps the results in memory.
     executor
         `Threads()`, the default, or `Dask(…)`.
     resume
-        Continue the store if it exists: what it holds is not computed again.
+        Continue the store if it exists: only missing runs are computed.
     chunk_size
-        Largest number of runs in a chunk; by default about a 64th of the sweep, between 1024 and 16384.
+        Maximum number of runs in a chunk; by default about a 64th of the sweep, between 1024 and 16384.
     progress
-        Called with the number of runs done and of runs in all.
+        Called with the number of runs done and of all runs.
 
     Returns
     -------
@@ -54,7 +54,7 @@ def run_sweep(
     ParameterError
         If an argument is out of range.
     Interrupted
-        On Ctrl-C; `partial` holds what was computed, and so does the store.
+        On Ctrl-C; `partial` and the store hold the runs computed so far.
 
     Examples
     --------

@@ -164,15 +164,15 @@ def _compute_again(chunks: Chunks, damaged: list[int]) -> None:
 
 
 def open_sweep(path: str | Path, *, load: bool = False) -> xr.Dataset:
-    """Return the results in the store at `path`, finished or not: outcome −1 and NaN where nothing is computed.
+    """Open the store of a sweep, finished or not: outcome −1 and NaN where nothing is computed.
 
     Parameters
     ----------
     path
-        The store that `run_sweep` wrote.
+        Folder of a store that `run_sweep` wrote.
     load
-        Read everything into memory at once. Otherwise a variable is read when it is used, and of a selection
-        (`isel`, `sel`) only the chunks it touches; `.chunk()` on the result gives Dask arrays, if Dask is installed.
+        Read everything into memory at once. Otherwise a variable is read when it is used, and only the chunks that a
+        selection (`isel`, `sel`) touches. If Dask is installed, `.chunk()` on the result gives Dask arrays.
 
     Returns
     -------

@@ -26,31 +26,30 @@ from stylobate.studies.sweeps.recipe import DEFAULTS, Recipe, RunOptions
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Sweep:
-    """Many runs that differ in some quantities: `Sweep.grid`, `Sweep.random` or `Sweep.points`.
+    """Describe many runs that differ in some quantities: `Sweep.grid`, `Sweep.random` or `Sweep.points`.
 
-    What can vary: the starts tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y, spin [rad/s]; duration [s]; and every name
-    that `simulate_ensemble` takes as a parameter, such as acceleration [m/s²], angular_frequency [rad/s], damping or
-    size.
+    These can vary: the initial conditions tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y, spin [rad/s]; duration [s];
+    and every parameter of `simulate_ensemble`, such as acceleration [m/s²], angular_frequency [rad/s], damping or size.
 
     Parameters
     ----------
     model, motion
-        What all runs have in common but for what varies.
+        The column and its base motion. What varies replaces their values.
     design
-        Which values the runs have.
+        Values of the quantities that vary.
     duration
-        How long to follow each run [s] …
+        Duration of each run [s].
     periods
-        … or for how many periods of its base motion.
+        Duration of each run in periods of its base motion, instead of `duration`.
     options
         Further arguments of `simulate_ensemble`: tilt, tilt_rate, spin, method, rtol, atol, tilt_limit, rest_energy,
-        max_steps, samples, strobes, rules, demands, known_orbits (a list); and end_converged, to end runs early that
-        have converged to steady rolling in closed form.
+        max_steps, samples, strobes, rules, demands, known_orbits (a list); and end_converged, to end runs early
+        that have converged to steady rolling in closed form.
 
     Raises
     ------
     ParameterError
-        If something cannot be swept; the message names it.
+        If a quantity cannot vary; the message names it.
 
     Examples
     --------
@@ -121,9 +120,9 @@ class Sweep:
     ) -> Self:
         """Return a sweep of `count` runs drawn uniformly between these bounds.
 
-        `rng` is a seed or a numpy.random.Generator. The same seed gives the same runs however they are chunked, and the
-        first of a longer sweep are those of a shorter one. Of a generator one number is drawn and kept as the seed, so
-        that a store can be resumed.
+        `rng` is a seed or a numpy.random.Generator. The same seed gives the same runs for all chunk sizes, and the
+        first runs of a longer sweep are those of a shorter one. From a generator one number is drawn and kept as the
+        seed, so that a store can be resumed.
         """
         return cls._of(Box.of(over, count, rng), model, motion, duration=duration, periods=periods, options=options)
 
@@ -162,7 +161,7 @@ class Sweep:
         return math.prod(self.shape)
 
     def estimated_bytes(self, chunk_size: int | None = None) -> int:
-        """Return what a store of this sweep will take on disk at most [bytes]: compression is not counted."""
+        """Estimate the maximum size of a store of this sweep on disk [bytes], without compression."""
         return bytes_on_disk(self.layout, self.design, Blocks.of(self.shape, chunk_size))
 
     @property
