@@ -1,6 +1,7 @@
 """Read kinds, numbers and tables of description files from their declarations, for the page on file formats."""
 
 import inspect
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import MISSING, dataclass, fields, is_dataclass
 from functools import cache
@@ -64,7 +65,7 @@ def kinds(part: str) -> list[Kind]:
 
 
 def _kind(name: str, make: Callable[..., Any]) -> Kind:
-    text = (inspect.getdoc(make) or "").partition("\n")[0]
+    text = _as_noun((inspect.getdoc(make) or "").partition("\n")[0])
     if name == _READ_FROM_FILES:
         return Kind(name, text, (), ())
     declared = parameters_of(make)
@@ -72,6 +73,16 @@ def _kind(name: str, make: Callable[..., Any]) -> Kind:
     others += ["motion"] if "self" in inspect.signature(make).parameters else []
     needed = [one for one in declared if declared[one].required]
     return Kind(name, text, (*others, *needed), tuple(one for one in declared if not declared[one].required))
+
+
+def _as_noun(text: str) -> str:
+    """Turn the first line of a constructor's docstring into what it makes.
+
+    >>> _as_noun("Make a motion on a circle."), _as_noun("Scale this motion by `factor`.")
+    ('A motion on a circle.', 'Scale this motion by `factor`.')
+    """
+    noun = re.sub(r"^(?:Make|Return|Create|Build|Construct) ", "", text)
+    return noun[:1].upper() + noun[1:]
 
 
 def numbers(part: str) -> list[Number]:

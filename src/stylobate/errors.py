@@ -48,7 +48,7 @@ class StylobateError(Exception):
 
 
 class ParameterError(StylobateError, ValueError):
-    """An argument no column, motion or run can have; the message names it, its value and the remedy."""
+    """Invalid argument of a column, base motion or run; the message names argument, value and remedy."""
 
 
 class _ProblemsError(ParameterError):
@@ -92,16 +92,16 @@ class FileError(StylobateError):
 
 
 class WorkerLostError(StylobateError):
-    """A worker process ended before its result, for example because memory ran out."""
+    """A worker process died before its result, for example because memory ran out."""
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C in the middle of many runs.
+    """Ctrl-C interrupted a computation of many runs.
 
     Attributes
     ----------
     partial
-        The result so far, an xarray.Dataset: outcome −1 and NaN where nothing had been computed.
+        The result so far, an xarray.Dataset; runs that were not computed have outcome −1 and NaN.
     """
 
     def __init__(self, message: str, partial: Any) -> None:
@@ -114,7 +114,7 @@ class UnlikelyInputWarning(UserWarning):
 
 
 class Outcome(IntEnum):
-    """The outcome of a run: a code, as arrays and files hold it, with its words.
+    """Outcome of a run: a code, as in arrays and files, with a label.
 
     Examples
     --------
@@ -124,36 +124,36 @@ class Outcome(IntEnum):
     """
 
     AT_REST = 0
-    """It stands on its base and the base motion cannot release it, or it stood to the end of the run."""
+    """The column stands on its base and the base motion cannot uplift it, or it stood to the end of the run."""
     ROCKING = 1
-    """A periodic motion whose contact point does not travel round the rim."""
+    """Periodic motion; the contact point does not travel round the rim."""
     ROLLING = 2
-    """A periodic motion whose contact point goes once round the rim in each period of the base motion."""
+    """Periodic motion; the contact point travels once round the rim in each period of the base motion."""
     MODULATED = 3
-    """Rolling at the mean rate of the base motion that does not repeat: the tilt is modulated."""
+    """Rolling at the mean rate of the base motion with a modulated tilt; the motion does not repeat."""
     OVERTURNED = 4
-    """It cannot come back (or has passed the stated limit where no proof exists)."""
+    """The column cannot come back; if the model has no proof of this, it passed a stated limit."""
     STILL_MOVING = 5
-    """None of the others by the end of the run: it may overturn later, or its motion is free or not steady."""
+    """No other outcome by the end of the run: the column may overturn later, or its motion is free or not steady."""
     LIMIT_REACHED = 6
     """The tilt reached the limit that the user set."""
     LIFTED_OFF = 7
-    """The base dropped away: the contact would have to pull. A model that can fly continues to the end."""
+    """The base dropped away, and the contact would need tension. A model that can fly continues to the end."""
     FAILED = 8
-    """The integration could not go on; the run's `reason` says why."""
+    """The integration failed; `reason` of the run states the cause."""
     SLID = 9
-    """It stands upright to the end, and its base slides."""
+    """The column stands upright to the end, and its base slides."""
     SURVIVED = 10
-    """It outlived a base motion that ends: it still moves, and has too little energy to overturn any more.
+    """The column survived a base motion that ends: it still moves, and has too little energy to overturn.
 
-    A column that has come to rest by the end of the run is AT_REST; one that may overturn later is STILL_MOVING.
+    A column that has come to rest by the end of the run is AT_REST; a column that may overturn later is STILL_MOVING.
     """
     STOPPED = 11
-    """A terminal event of the user's own ended the run: see `EventFunction`."""
+    """A terminal event function ended the run: see `EventFunction`."""
 
     @property
     def label(self) -> str:
-        """The words for people, such as "at rest"."""
+        """The label of the outcome, such as "at rest"."""
         return self.name.lower().replace("_", " ")
 
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-"""What a number is, declared once, where it is a field or an argument: `Annotated[float, Quantity("η", …)]`.
+"""Declare a number once, at its field or argument: `Annotated[float, Quantity(symbol="η", …)]`.
 
 Checks, bounds in studies, units and names in Datasets, and the controls of the laboratory follow from the declaration:
 `parameters_of` reads it from a frozen dataclass or from a named constructor.
@@ -27,30 +27,30 @@ _CF_POWERS = str.maketrans({"²": "2", "³": "3"})
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Quantity:
-    """What a number is and which values it can have.
+    """Declaration of a number: symbol, unit, meaning and range of values.
 
     Parameters
     ----------
     symbol
-        As in equations, such as "η"; empty where it has none.
+        Symbol in equations, such as "η"; empty without symbol.
     unit
-        As in text, such as "m/s²"; empty for a number without dimension.
+        Unit in text, such as "m/s²"; empty for a dimensionless number.
     text
-        What it is, in a few words, as on an axis.
+        Meaning in a few words, as on an axis.
     ge, gt, le, lt
-        Bounds: at least, above, at most, below.
+        Bounds: greater or equal, greater, less or equal, less.
     note
-        A remedy, behind the bounds in a message.
+        Remedy, added to the bounds in a message.
     slider
-        The range of a control; None where the range depends on the case.
+        Range of a control; None if the range depends on the case.
     components
-        How many numbers it consists of.
+        Number of components.
     choices
-        The only values it can have; empty for any within the bounds.
+        Allowed values; empty for any value within the bounds.
     dissipates
-        Whether it takes energy from the column.
+        Whether the number dissipates energy of the column.
     lossless
-        The value with which a number that dissipates takes no energy.
+        Value of a dissipation parameter without energy loss.
     """
 
     symbol: str = ""
@@ -68,7 +68,7 @@ class Quantity:
     lossless: float = 0.0
 
     def __repr__(self) -> str:
-        """Return it as signatures show it: symbol, unit and bounds."""
+        """Write the declaration as in signatures: symbol, unit and bounds."""
         unit = f"in {self.unit}" if self.unit else ""
         return " ".join(
             part for part in (self.symbol, unit, self.demand.removeprefix("be ").removeprefix("lie ")) if part
@@ -92,13 +92,13 @@ class Quantity:
 
     @property
     def cf_units(self) -> str:
-        """The unit as netCDF files have it: "m s-2" for "m/s²", "1" for none."""
+        """The unit in netCDF files: "m s-2" for "m/s²", "1" for a dimensionless number."""
         above, _, below = self.unit.translate(_CF_POWERS).partition("/")
         inverse = (f"{part}-1" if part.isalpha() else f"{part[:-1]}-{part[-1]}" for part in below.split())
         return " ".join((*(one for one in above.split() if one != "1"), *inverse)) or "1"
 
     def accepts(self, values: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        """Return which values are inside the bounds; NaN and infinities are not."""
+        """Check which values are inside the bounds; NaN and infinities are not."""
         array = np.asarray(values, dtype=float)
         inside: npt.NDArray[np.bool_] = np.isfinite(array)
         if self.ge is not None:
@@ -110,12 +110,12 @@ class Quantity:
         return inside & (array <= (LARGEST if self.le is None else self.le))
 
     def checked(self, name: str, value: Any) -> float:
-        """Return `value` as a float.
+        """Check `value` and return it as a float.
 
         Raises
         ------
         ParameterError
-            If it is no real number, is outside the bounds, or is too large to compute with.
+            If the value is not a real number, is outside the bounds, or is too large to compute with.
         """
         number = as_float(name, value)
         above = (self.ge is None or number >= self.ge) and (self.gt is None or number > self.gt)
@@ -130,7 +130,7 @@ class Quantity:
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A number or a choice that something is made with."""
+    """A declared argument: a number or a choice."""
 
     name: str
     quantity: Quantity
@@ -139,31 +139,31 @@ class Parameter:
 
     @property
     def required(self) -> bool:
-        """Whether it must be given."""
+        """Whether the argument has no default."""
         return self.default is inspect.Parameter.empty
 
     @property
     def choices(self) -> tuple[Any, ...]:
-        """The words or whole numbers it can be; empty for any number within the bounds."""
+        """Allowed words or whole numbers; empty for any number within the bounds."""
         return get_args(self.annotation) if get_origin(self.annotation) is Literal else self.quantity.choices
 
     @property
     def whole(self) -> bool:
-        """Whether it is a whole number."""
+        """Whether the number is whole."""
         return self.annotation is int or int in get_args(self.annotation)
 
     @property
     def optional(self) -> bool:
-        """Whether it can be None."""
+        """Whether None is allowed."""
         return NoneType in get_args(self.annotation)
 
     def checked(self, value: Any) -> Any:
-        """Return `value` as a float, a tuple of floats, a whole number, or the choice that it is.
+        """Check `value` and return it as a float, a tuple of floats, a whole number or a choice.
 
         Raises
         ------
         ParameterError
-            If it cannot have this value.
+            If the value is not allowed.
         """
         if value is None and self.optional:
             return None
@@ -195,7 +195,7 @@ class Declared:
         self.validate()
 
     def validate(self) -> None:
-        """Raise ParameterError for numbers that do not go together; each of them has been checked by itself."""
+        """Raise ParameterError for numbers that contradict each other; each number has been checked before."""
 
     def __reduce_ex__(self, protocol: Any) -> Any:
         """Let a value of a class in a file of the user's be unpickled in another process, by the place of the class."""

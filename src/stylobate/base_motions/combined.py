@@ -1,4 +1,4 @@
-"""Base motions, and what they combine to: sums, and scaled, rotated and delayed copies."""
+"""Base motions and their combinations: sums, and scaled, rotated and delayed copies."""
 
 import math
 from abc import abstractmethod
@@ -21,10 +21,10 @@ _LARGEST_DENOMINATOR = 64
 
 
 class BaseMotion(MotionContract):
-    """The motion of the base from t = 0 on, in SI units, along x, y (horizontal) and z (up).
+    """Motion of the base from t = 0 on, in SI units, along x, y (horizontal) and z (up).
 
     Motions combine: `first + second`, `2.0 * motion`, `motion.rotated(angle)`, `motion.scaled(factor, vertical=0.0)`,
-    `motion.delayed(delay)`. Each is a value; combining makes a new one.
+    `motion.delayed(delay)`. Motions are immutable; each combination is a new motion.
 
     Notes
     -----
@@ -35,22 +35,22 @@ class BaseMotion(MotionContract):
     __slots__ = ()
 
     def made_by(self) -> tuple[Callable[..., "BaseMotion"], Mapping[str, Any]]:
-        """Return what makes this motion, and the arguments: by default its class and its declared numbers.
+        """Return the constructor of this motion and its arguments: by default its class and its declared numbers.
 
-        A class that states it by another constructor does so for itself, not for its subclasses.
+        A class that overrides this method does so for itself, not for its subclasses.
         """
         return type(self), {name: getattr(self, name) for name in parameters_of(type(self))}
 
     def scaled(self, factor: Factor, *, vertical: VerticalFactor | None = None) -> "Scaled":
-        """Return this motion times `factor`; its vertical component times `vertical` where that is given."""
+        """Scale this motion by `factor`; the vertical component by `vertical`, if given."""
         return Scaled(motion=self, factor=factor, vertical=factor if vertical is None else vertical)
 
     def rotated(self, angle: Angle) -> "Rotated":
-        """Return this motion turned by `angle` [rad] about the vertical, anticlockwise seen from above."""
+        """Rotate this motion by `angle` [rad] about the vertical, anticlockwise seen from above."""
         return Rotated(motion=self, angle=angle)
 
     def delayed(self, delay: Delay) -> "Delayed":
-        """Return this motion begun `delay` [s] later; the base does not accelerate before."""
+        """Delay this motion by `delay` [s]; the base does not accelerate before."""
         return Delayed(motion=self, delay=delay)
 
     def __add__(self, other: object) -> "Sum":
@@ -66,27 +66,27 @@ class BaseMotion(MotionContract):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sum(BaseMotion):
-    """The sum of `motions`; of none, a base at rest."""
+    """Sum of `motions`; without motions, a base at rest."""
 
     motions: tuple[BaseMotion, ...] = ()
 
     @classmethod
     def at_rest(cls) -> Self:
-        """Return the sum of no motions, a base that does not move."""
+        """Make a base that does not move: the sum of no motions."""
         return cls()
 
     def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
-        """Return that it is the sum of its motions, or a base at rest."""
+        """Return the constructor: the sum of the motions, or a base at rest."""
         return (Sum, {"motions": self.motions}) if self.motions else (Sum.at_rest, {})
 
     def validate(self) -> None:
-        """Raise ParameterError unless all `motions` are."""
+        """Raise ParameterError unless all `motions` are base motions."""
         object.__setattr__(self, "motions", tuple(self.motions))
         for motion in self.motions:
             require_motion("motions", motion)
 
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
-        """Return the sum of the displacements (`order` 0), velocities (1) or accelerations (2)."""
+        """Sum the displacements (`order` 0), velocities (1) or accelerations (2)."""
         t = np.asarray(time, dtype=float)
         x, y, z = np.zeros_like(t), np.zeros_like(t), np.zeros_like(t)
         for motion in self.motions:
@@ -95,11 +95,11 @@ class Sum(BaseMotion):
         return x, y, z
 
     def largest_horizontal(self, since: float = 0.0) -> float:
-        """Return the sum of the parts' bounds [m/s²]: never below sup |a_h|, and above it where peaks do not meet."""
+        """Sum the bounds of the parts [m/s²]: at least sup |a_h|, and above it if the peaks do not coincide."""
         return math.fsum(motion.largest_horizontal(since) for motion in self.motions)
 
     def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
-        """Return the sums of the parts' bounds [m/s²]."""
+        """Sum the bounds of the parts [m/s²]."""
         ranges = [motion.vertical_range(since) for motion in self.motions]
         return math.fsum(low for low, _ in ranges), math.fsum(high for _, high in ranges)
 
@@ -151,7 +151,7 @@ class Sum(BaseMotion):
 
 
 class Following(BaseMotion):
-    """What has all the properties of another motion but those that a subclass changes."""
+    """A motion with all properties of another motion, except those that a subclass changes."""
 
     __slots__ = ()
 
@@ -209,7 +209,7 @@ class Following(BaseMotion):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Transformed(Following):
-    """A copy of `motion` that has all its properties but those a subclass changes."""
+    """A copy of `motion` with all its properties, except those that a subclass changes."""
 
     motion: BaseMotion
 
@@ -237,13 +237,13 @@ class Transformed(Following):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scaled(Transformed):
-    """`motion` with its horizontal part times `factor` and its vertical part times `vertical`."""
+    """The base motion `motion`, scaled horizontally by `factor` and vertically by `vertical`."""
 
     factor: Factor
     vertical: VerticalFactor
 
     def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
-        """Return that it is a scaled copy of its motion."""
+        """Return the constructor: `BaseMotion.scaled`, with its arguments."""
         return BaseMotion.scaled, {"motion": self.motion, "factor": self.factor, "vertical": self.vertical}
 
     def changed(self, x: Any, y: Any, z: Any) -> tuple[Any, Any, Any]:
@@ -262,28 +262,28 @@ class Scaled(Transformed):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rotated(Transformed):
-    """`motion` turned by `angle` [rad] about the vertical."""
+    """The base motion `motion`, rotated by `angle` [rad] about the vertical."""
 
     angle: Angle
 
     def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
-        """Return that it is a rotated copy of its motion."""
+        """Return the constructor: `BaseMotion.rotated`, with its arguments."""
         return BaseMotion.rotated, {"motion": self.motion, "angle": self.angle}
 
     def changed(self, x: Any, y: Any, z: Any) -> tuple[Any, Any, Any]:
-        """Return the turned vector."""
+        """Return the rotated vector."""
         cos, sin = math.cos(self.angle), math.sin(self.angle)
         return cos * x - sin * y, sin * x + cos * y, z
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Delayed(Transformed):
-    """`motion` begun `delay` [s] later, without acceleration before; a negative delay skips its first part."""
+    """The base motion `motion`, delayed by `delay` [s]; a negative delay skips its first part."""
 
     delay: Delay
 
     def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
-        """Return that it is a delayed copy of its motion."""
+        """Return the constructor: `BaseMotion.delayed`, with its arguments."""
         return BaseMotion.delayed, {"motion": self.motion, "delay": self.delay}
 
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
@@ -328,7 +328,7 @@ BASE_AT_REST = Sum()
 
 
 def require_motion(name: str, motion: object) -> None:
-    """Raise ParameterError if `motion` is none."""
+    """Raise ParameterError unless `motion` is a base motion."""
     if not isinstance(motion, BaseMotion):
         message = f"{name} must be a base motion such as Harmonic.circular(...), got {motion!r}"
         raise ParameterError(message)

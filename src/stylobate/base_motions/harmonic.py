@@ -33,10 +33,10 @@ _SERIES_TERMS = 18
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Harmonic(BaseMotion):
-    """Base acceleration a_i cos(Ωt + start_phase + φ_i) along x, y and z, with an optional smooth start.
+    """Harmonic base acceleration a_i cos(Ωt + start_phase + φ_i) along x, y and z, with an optional ramp.
 
-    The named constructors say it in the terms at hand: `circular`, `straight`, `elliptic`, `vertical` by acceleration;
-    `displacement_amplitude`, `stroke`, `orbit` by the path of the base.
+    Named constructors specify it by acceleration (`circular`, `straight`, `elliptic`, `vertical`, `oblique`) or by the
+    path of the base (`displacement_amplitude`, `stroke`, `orbit`).
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ class Harmonic(BaseMotion):
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
-        """Return a motion on an ellipse: amplitudes (a1, a2) [m/s²], `phase` φ2 of the second axis to the first."""
+        """Make a motion on an ellipse: amplitudes (a1, a2) [m/s²], `phase` φ2 of the second axis to the first."""
         a1, a2 = amplitude
         return cls(
             amplitude=(a1, a2, 0.0),
@@ -113,7 +113,7 @@ class Harmonic(BaseMotion):
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
-        """Return a motion on a circle with constant `acceleration` [m/s²]; `sense` +1 anticlockwise, −1 clockwise."""
+        """Make a motion on a circle with constant `acceleration` [m/s²]; `sense` +1 anticlockwise, −1 clockwise."""
         return cls.elliptic(
             amplitude=(acceleration, acceleration),
             phase=-sense * math.pi / 2.0,
@@ -133,7 +133,7 @@ class Harmonic(BaseMotion):
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
-        """Return a motion along a horizontal line at `direction` [rad] from x, amplitude `acceleration` [m/s²]."""
+        """Make a motion along a horizontal line at `direction` [rad] from x, amplitude `acceleration` [m/s²]."""
         return cls.elliptic(
             amplitude=(acceleration * math.cos(direction), acceleration * math.sin(direction)),
             phase=0.0,
@@ -153,7 +153,7 @@ class Harmonic(BaseMotion):
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
-        """Return a vertical motion of amplitude `acceleration` [m/s²]; add it to a horizontal one with `+`."""
+        """Make a vertical motion of amplitude `acceleration` [m/s²]; add it to a horizontal motion with `+`."""
         return cls(
             amplitude=(0.0, 0.0, acceleration),
             angular_frequency=angular_frequency,
@@ -174,7 +174,7 @@ class Harmonic(BaseMotion):
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
-        """Return a motion along a line that rises at `angle` [rad] towards `direction` [rad], as of a conveyor.
+        """Make a motion along a line that rises at `angle` [rad] towards `direction` [rad], as of a conveyor.
 
         As in all studies `acceleration` is the horizontal amplitude [m/s²]; the vertical one is tan(angle) times it.
         """
@@ -203,7 +203,7 @@ class Harmonic(BaseMotion):
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
-        """Return the motion whose displacement is d_i cos(Ωt + start_phase + φ_i), d = `amplitude` (x, y, z) [m]."""
+        """Make a motion with the displacement d_i cos(Ωt + start_phase + φ_i), d = `amplitude` (x, y, z) [m]."""
         square = angular_frequency**2
         x, y, z = (-square * number for number in amplitude)
         return cls(
@@ -225,7 +225,7 @@ class Harmonic(BaseMotion):
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
-        """Return a straight motion by its `stroke` from peak to peak [m], `frequency` [Hz] and `direction` [rad]."""
+        """Make a straight motion by its `stroke` from peak to peak [m], `frequency` [Hz] and `direction` [rad]."""
         half = stroke / 2.0
         return cls.displacement_amplitude(
             amplitude=(half * math.cos(direction), half * math.sin(direction), 0.0),
@@ -245,7 +245,7 @@ class Harmonic(BaseMotion):
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
-        """Return a circular motion by the `diameter` of its path [m] and its turns a minute (an orbital shaker)."""
+        """Make a circular motion by the `diameter` of its path [m] and turns per minute, as of an orbital shaker."""
         radius = diameter / 2.0
         return cls.displacement_amplitude(
             amplitude=(radius, radius, 0.0),
@@ -256,7 +256,7 @@ class Harmonic(BaseMotion):
         )
 
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
-        """Return the displacement (`order` 0), velocity (1) or acceleration (2) along x, y and z."""
+        """Compute the displacement (`order` 0), velocity (1) or acceleration (2) along x, y and z."""
         t = np.asarray(time, dtype=float)
         frequency = self.angular_frequency
         gain = (-1.0, 1.0, 1.0)[order] / frequency ** (ACCELERATION - order)
@@ -273,13 +273,13 @@ class Harmonic(BaseMotion):
         return x, y, z
 
     def largest_horizontal(self, since: float = 0.0) -> float:
-        """Return sup |a_h| = |p| + |q|, p and q being the two circular motions that make the ellipse [m/s²]."""
+        """Compute sup |a_h| = |p| + |q| [m/s²], where p and q are the circular motions that make the ellipse."""
         del since
         p, q = self._circular_parts()
         return abs(p) + abs(q)
 
     def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
-        """Return the least and the largest vertical acceleration [m/s²]."""
+        """Return the minimum and maximum vertical acceleration [m/s²]."""
         del since
         largest = abs(self.amplitude[2])
         return -largest, largest
@@ -299,7 +299,7 @@ class Harmonic(BaseMotion):
 
     @property
     def highest_frequency(self) -> float:
-        """Ω [rad/s]; the ramp is a stretch of its own, see `breaks`."""
+        """Ω [rad/s]; the ramp ends at `breaks`."""
         return self.angular_frequency
 
     @property
@@ -354,7 +354,7 @@ def _exact(ratio: float) -> float:
 
 
 def as_harmonic(motion: BaseMotion) -> Harmonic | None:
-    """Return `motion` as one Harmonic if it is one that was scaled and turned, else None."""
+    """Convert a scaled or rotated harmonic motion to one Harmonic; None for other motions."""
     if type(motion) is Harmonic:
         return motion
     if not isinstance(motion, (Scaled, Rotated)) or type(motion) not in (Scaled, Rotated):

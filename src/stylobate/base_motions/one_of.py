@@ -11,7 +11,7 @@ from stylobate.errors import ParameterError
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OneOf(Following):
-    """The motion of the number `chosen` among `motions`, counted from 0; ensembles vary it under the name `motion`.
+    """One of several base motions: number `chosen` of `motions`, from 0; ensembles vary it as `motion`.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class OneOf(Following):
         return OneOf, {"motions": self.motions, "chosen": self.chosen}
 
     def choose(self, number: float) -> Self:
-        """Return this with the motion of another `number` chosen."""
+        """Choose the motion with another `number`."""
         return replace(self, chosen=number)  # type: ignore[arg-type]  # checked where it is made
 
     @property

@@ -32,7 +32,7 @@ MOST_CYCLES = 1e5
 
 
 class SweepLaw(StrEnum):
-    """How the frequency of a sweep goes from its first to its last value."""
+    """Law of the frequency of a sweep from its first to its last value."""
 
     LINEAR = "linear"
     """By as many hertz in any second."""
@@ -41,7 +41,7 @@ class SweepLaw(StrEnum):
 
 
 class SweepQuantity(StrEnum):
-    """What keeps its amplitude during a sweep."""
+    """Quantity with a constant amplitude during a sweep."""
 
     ACCELERATION = "acceleration"
     DISPLACEMENT = "displacement"
@@ -49,7 +49,7 @@ class SweepQuantity(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SineSweep(BaseMotion):
-    """A straight motion of constant amplitude of acceleration or of displacement, and of a frequency that changes.
+    """A sine sweep along a line: constant amplitude of acceleration or displacement, and varying frequency.
 
     `linear` and `logarithmic` make one by `acceleration` or by `displacement`.
 
@@ -130,7 +130,7 @@ class SineSweep(BaseMotion):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Return a sweep by as many hertz in any second, of this `acceleration` [m/s²] or `displacement` [m]."""
+        """Make a linear sweep (constant hertz per second) by `acceleration` [m/s²] or `displacement` [m]."""
         amplitude, quantity = _given_amplitude(acceleration, displacement)
         return cls(
             amplitude=amplitude,
@@ -158,7 +158,7 @@ class SineSweep(BaseMotion):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Return a sweep by as many octaves in any second, of this `acceleration` [m/s²] or `displacement` [m]."""
+        """Make a logarithmic sweep (constant octaves per second) by `acceleration` [m/s²] or `displacement` [m]."""
         amplitude, quantity = _given_amplitude(acceleration, displacement)
         return cls(
             amplitude=amplitude,

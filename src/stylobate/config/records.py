@@ -259,47 +259,47 @@ class DescribedRecord(Record):
     # Methods of slotted classes cannot say super().
 
     def scaled(self, factor: float, *, vertical: float | None = None) -> "DescribedRecord":  # type: ignore[override]
-        """Return this record times `factor`; its vertical component times `vertical` where that is given."""
+        """Scale this record by `factor`; the vertical component by `vertical`, if given."""
         return self._after(ScaledStep(factor=factor, vertical=vertical), Record.scaled(self, factor, vertical=vertical))
 
     def rotated(self, angle: float) -> "DescribedRecord":  # type: ignore[override]
-        """Return this record turned by `angle` [rad] about the vertical, anticlockwise seen from above."""
+        """Rotate this record by `angle` [rad] about the vertical, anticlockwise seen from above."""
         return self._after(RotatedStep(angle=angle), Record.rotated(self, angle))
 
     def delayed(self, delay: float) -> "DescribedRecord":  # type: ignore[override]
-        """Return this record begun `delay` [s] later."""
+        """Delay this record by `delay` [s]."""
         return self._after(DelayedStep(delay=delay), Record.delayed(self, delay))
 
     def inverted(self) -> "DescribedRecord":
-        """Return this record with its horizontal components in the opposite sense, the vertical as it is."""
+        """Reverse the horizontal components of this record; the vertical component stays."""
         return self._after(InvertedStep(), Record.inverted(self))
 
     def trimmed(self, begin: float | None = None, end: float | None = None) -> "DescribedRecord":
-        """Return the samples from time `begin` to `end` [s]; the first of them comes at `start`."""
+        """Keep the samples from time `begin` to `end` [s]; the first of them is at `start`."""
         return self._after(TrimmedStep(begin=begin, end=end), Record.trimmed(self, begin, end))
 
     def padded(self, *, before: float = 0.0, after: float = 0.0) -> "DescribedRecord":
-        """Return this record with `before` and `after` [s] of zeros, in whole steps, none shorter than asked."""
+        """Add `before` and `after` [s] of zeros to this record, rounded up to whole steps."""
         return self._after(PaddedStep(before=before, after=after), Record.padded(self, before=before, after=after))
 
     def with_tail(self, length: float) -> "DescribedRecord":
-        """Return this record with `length` [s] of rest appended."""
+        """Append `length` [s] of zeros: a free-vibration tail."""
         return self._after(TailStep(length=length), Record.with_tail(self, length))
 
     def resampled(self, step: float) -> "DescribedRecord":
-        """Return this record at another `step` [s], band-limited (see `records.resampling`)."""
+        """Resample this record to another `step` [s], band-limited (see `records.resampling`)."""
         return self._after(ResampledStep(step=step), Record.resampled(self, step))
 
     def filtered(
         self, *, highpass: float | None = None, lowpass: float | None = None, order: int = 4, causal: bool = False
     ) -> "DescribedRecord":
-        """Return this record through a Butterworth filter with corners in Hz (see `records.filtering`)."""
+        """Filter this record by a Butterworth filter with corners in Hz (see `records.filtering`)."""
         step = FilteredStep(highpass=highpass, lowpass=lowpass, order=order, causal=causal)
         found = Record.filtered(self, highpass=highpass, lowpass=lowpass, order=order, causal=causal)
         return self._after(step, found)
 
     def baseline_corrected(self, degree: int = 1) -> "DescribedRecord":
-        """Return this record less the derivative of a polynomial fitted to its velocity (see `records.baseline`)."""
+        """Subtract the derivative of a polynomial fitted to the velocity (see `records.baseline`)."""
         return self._after(BaselineStep(degree=degree), Record.baseline_corrected(self, degree))
 
 

@@ -58,78 +58,79 @@ def simulate_ensemble(
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> xr.Dataset:
-    """Follow many columns, each from its start to its outcome.
+    """Integrate many columns, each from its initial state until its outcome is decided.
 
-    The runs are integrated as those of `simulate`, with the same events, outcomes and tolerances, many at a time in
-    compiled code. The equations are compiled for the machine when a model first meets a kind of base motion,
-    and kept in the user's cache folder ($STYLOBATE_CACHE names another). A run's result does not depend on the other
-    runs.
+    The runs have the events, outcomes and tolerances of `simulate`; many runs advance together in compiled code. A
+    kernel is compiled at the first use of a model with a kind of base motion, and kept in the user's cache folder
+    ($STYLOBATE_CACHE names another one). The result of a run does not depend on the other runs.
 
     Parameters
     ----------
     model
-        The column with its equations of motion.
+        Model of the column.
     motion
-        The base motion; None is a base at rest.
+        Base motion; None for a base at rest.
     tilt, tilt_rate
-        Starts [rad], [rad/s]: shape (2,) for all, (n, 2) with the dimension `run`, or a DataArray with a dimension
-        "axis" and any others.
+        Initial tilt vectors [rad] and their rates [rad/s]: shape (2,) for all runs, (n, 2) with the dimension `run`, or
+        a DataArray with a dimension "axis" and any others.
     spin
-        Angular velocity about the axis at the start [rad/s], of models that know it; of the shapes of `duration`.
+        Initial angular velocity about the axis [rad/s], for models that have it; shapes as for `duration`.
     duration
-        How long to follow them [s]: a number, shape (n,), or a DataArray.
+        Duration of the runs [s]: a number, shape (n,), or a DataArray.
     parameters
-        Numbers of column, model and motion that differ between the runs, by name, each of the shapes of `duration`;
-        the names are those of `with_parameters`. All arrays are broadcast together by the names of their dimensions.
+        Numbers of column, model and motion that differ between the runs, by name; shapes as for `duration`. The names
+        are those of `with_parameters`. All arrays are broadcast together by the names of their dimensions.
     method
-        How motion in space is integrated: "dop853" as in `simulate`, or "taylor" by Taylor series of order 16, with
-        which a column that rolls steadily takes less than half of the steps. Runs that pass near the upright, and so
-        most maps, are faster by the former.
+        Integration of three-dimensional motion: "dop853" as in `simulate`, or "taylor", Taylor series of order 16.
+        Columns in steady rolling take less than half of the steps with "taylor". Runs that pass near the vertical, as
+        in most maps, are faster with "dop853".
     rtol, atol, tilt_limit, rest_energy, max_steps, rules
         As in `simulate`; the same for all runs.
     samples
-        Keep histories, at so many equal times over each run.
+        Number of samples of each history, at equal times over the run; no histories by default.
     strobes
-        Keep so many of the last states at which the base motion has phase zero (Ωt + start_phase a whole number of
-        turns), one a period.
+        Number of stroboscopic samples kept, the last ones: states at which the base motion has phase zero
+        (Ωt + start_phase a whole number of turns), one per period.
     demands
-        Follow what the contact must bear too, for which steps take about a fifth longer.
+        Whether to compute the contact demand too; steps then take about a fifth longer.
     recheck
-        Repeat the runs in doubt as `simulate` does, and mark those `uncertain` of which the outcome changes. Of runs
-        under earthquakes one in six is in doubt; in three dimensions repeating them takes about as long as all runs.
+        Whether to repeat runs in doubt as `simulate` does, and to mark runs with another outcome as `uncertain`. One in
+        six runs under earthquakes is in doubt; in three dimensions the repetition takes about as long as all runs.
     known_orbits
         Stable periodic orbits to which runs may converge, each a `KnownOrbit`. A run ends early, as ROLLING or ROCKING,
-        if its distance from such an orbit falls as the orbit's multiplier demands, and it will thus repeat when its
-        outcome is judged at its full duration. Runs in a vertical plane are not compared with orbits. See
-        "Converged runs" on the page on ensembles.
+        if its distance from such an orbit falls as the multiplier of the orbit requires; the run would then repeat at
+        its full duration. Planar runs are not compared with orbits. See "Converged runs" on the page on ensembles.
     threads
-        Threads to run on; by default all cores.
+        Number of threads; all cores by default.
     progress
-        Called as `progress(runs done, runs in all)` now and then.
+        Called from time to time as `progress(finished runs, all runs)`.
 
     Returns
     -------
     xarray.Dataset
-        Over the dimensions of the arguments: `outcome` (codes, see its `flag_meanings`), when it was decided, the end
-        state, the largest and least tilt, turns of the contact point, and over the last periods mean tilt, phase of
-        the lean to the base acceleration, mean rolling rate and repetition; NaN where a run has none. With `strobes`
-        also `strobe_tilt` and `strobe_tilt_rate`, the last strobe last; with `samples` also `sample_time`,
-        `sampled_tilt` and `sampled_tilt_rate`; NaN before the run began and after it ended. Of models with a spin also
-        `end_spin`. With `demands` the `largest_friction_demand`, `largest_pivoting_demand` and `least_normal_force`
-        (over the weight): within each step by parabolas through values at its quarters, and while the column stands,
-        where friction demand is |a_h|/(g + a_z).
-        Of models that change between kinds of contact also `end_contact`, `end_footprint`, `end_twist`, how long each
-        kind lasted (`time_slipping` and so on), and the numbers of `impacts` and `slips`.
+        Over the dimensions of the arguments: `outcome` (codes, see its `flag_meanings`), the time of its decision, the
+        end state, maximum and minimum tilt, turns of the contact point; over the last periods mean tilt, phase of the
+        lean to the base acceleration, mean rolling rate and repetition. Values that a run does not have are NaN.
+
+        * With `strobes`: `strobe_tilt` and `strobe_tilt_rate`, in the order of time.
+        * With `samples`: `sample_time`, `sampled_tilt` and `sampled_tilt_rate`. They and the stroboscopic samples are
+          NaN before the start and after the end of a run.
+        * Models with a spin: `end_spin`.
+        * With `demands`: `largest_friction_demand`, `largest_pivoting_demand` and `least_normal_force` (over the
+          weight), interpolated within each step by parabolas through its quarter points. While the column stands, the
+          friction demand is |a_h|/(g + a_z).
+        * Models that change between kinds of contact: `end_contact`, `end_footprint`, `end_twist`, the duration of each
+          kind (`time_slipping` and so on), and the numbers of `impacts` and `slips`.
 
     Raises
     ------
     ParameterError
-        If an argument is out of range, two have different lengths along a dimension, or two of the parameters say
-        contrary things: slenderness changes the radius, size the lengths.
+        If an argument is out of range, two arguments have different lengths along a dimension, or two parameters
+        contradict each other: slenderness changes the radius, size the lengths.
     UnsupportedError
-        If the model cannot be compiled or the motion lacks a number that is to be changed.
+        If the model cannot be compiled, or the motion lacks a number that is varied.
     Interrupted
-        After Ctrl-C; its `partial` is the Dataset with what had been computed.
+        After Ctrl-C; its `partial` is the Dataset of the finished runs.
 
     Examples
     --------

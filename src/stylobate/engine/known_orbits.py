@@ -21,10 +21,10 @@ MOST_ORBITS = 16
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KnownOrbit:
-    """A stable periodic orbit of one period of the base motion, the same or another one for each run.
+    """A stable periodic orbit of one base period, common to all runs or different for each run.
 
     Each number has the shapes of `simulate_ensemble`: one for all runs, an array with the dimension `run`, or a
-    DataArray. NaN in any number of a run states that this run has no such orbit.
+    DataArray. NaN in any number of a run means that this run has no such orbit.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class KnownOrbit:
         Angular velocity about the axis at phase zero [rad/s], of models with a spin.
     multiplier
         Largest modulus of the Floquet multipliers of all states of the model, between 0 and 1. The multipliers of
-        disturbances within a plane do not suffice.
+        planar disturbances alone do not suffice.
     turns
         Turns of the contact point in one period, anticlockwise positive: +1 or −1 for rolling, 0 for rocking.
     mean_tilt
@@ -64,11 +64,11 @@ class KnownOrbit:
         _require("turns", self.turns, "be -1 or 1 for rolling, 0 for rocking", _whole_turns)
 
     def numbers(self) -> Mapping[str, ArrayLike]:
-        """Return its numbers by name."""
+        """Return the numbers of the orbit by name."""
         return {name: getattr(self, name) for name in self.__slots__}
 
     def plain(self) -> dict[str, Any]:
-        """Return its numbers as plain values, without labels."""
+        """Return the numbers of the orbit as plain values, without labels."""
         return {name: np.asarray(value, dtype=float).tolist() for name, value in self.numbers().items()}
 
 

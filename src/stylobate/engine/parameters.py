@@ -125,7 +125,7 @@ def check_names(
 
 
 def with_parameters(model: Model, motion: BaseMotion, /, **values: float) -> tuple[Model, BaseMotion]:
-    """Return `model` and `motion` with these numbers changed: the objects behind one run of an ensemble.
+    """Change numbers of `model` and `motion` by name: the objects of one run of an ensemble.
 
     Parameters
     ----------

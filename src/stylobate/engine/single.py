@@ -47,50 +47,51 @@ def simulate(
     recheck: bool = True,
     events: Sequence[EventFunction | Callable[[float, dict[str, Any]], float]] = (),
 ) -> Response:
-    """Follow one column from a start to its outcome.
+    """Integrate one column from its initial state until its outcome is decided.
 
-    Integrates with DOP853 (Hairer, Nørsett, Wanner, "Solving Ordinary Differential Equations I"), piece by piece
-    between events: release from rest, coming to rest, overturning, the tilt limit, lift-off. Start and base motion that
-    lie in one vertical plane to 8 ulp are integrated in that plane. It is compiled at the first use of a model, and has
-    the bits of `simulate_ensemble`.
+    The run is integrated by DOP853 (Hairer, Nørsett, Wanner, "Solving Ordinary Differential Equations I") between
+    events: uplift, rest, overturning, the tilt limit, lift-off. If initial state and base motion lie in one vertical
+    plane to 8 ulp, the run is integrated in that plane. A kernel is compiled at the first use of a model; the results
+    equal those of `simulate_ensemble` to the bit.
 
     Parameters
     ----------
     model
-        The column with its equations of motion, such as `Slender(column, damping=0.1)`.
+        Model of the column, such as `Slender(column, damping=0.1)`.
     motion
-        The base motion; None is a base at rest.
+        Base motion; None for a base at rest.
     tilt
-        Tilt vector at t = 0: where the column leans, its length the tilt angle [rad].
+        Initial tilt vector [rad]: it points to the side where the column leans, and its length is the tilt angle.
     tilt_rate
-        Its rate [rad/s].
+        Initial rate of the tilt vector [rad/s].
     spin, twist
-        Angular velocity about its axis [rad/s] and angle of turn about it [rad], of models that know them.
+        Initial angular velocity about the axis [rad/s] and angle of rotation about it [rad], for models that have them.
     position
-        Centre of the footprint circle in the frame of the base [m], of models that carry it along.
+        Initial centre of the footprint circle in the frame of the base [m], for models that have it.
     velocity, clearance
-        Of models that can slip and fly: velocity of the lowest point of the rim, or of the base, relative to the plane
-        [m/s], and its height above it [m].
+        Initial velocity of the lowest point of the column relative to the plane [m/s], and height of this point above
+        the plane [m]; for models that can slip and fly.
     duration
-        How long to follow it [s]; where it is left out, to a free tail of 20/p after a base motion that ends, such as a
-        record, a pulse or a sine sweep.
+        Duration of the run [s]. Under a base motion that ends, such as a record, a pulse or a sine sweep, the default
+        is the duration of the motion and a free-vibration tail of 20/`column.frequency_parameter`.
     friction_coefficient
-        Of the contact: where more friction is needed the result warns. Models that slip have their own.
+        Friction coefficient of the contact; the result warns if the run needs more friction. Models that can slip have
+        a number of their own.
     rtol, atol
         Local error tolerances of the integrator, relative and absolute [rad]; `atol` is 0.01 rtol c by default.
     tilt_limit
-        A tilt that ends the run [rad]; none by default.
+        Tilt that ends the run [rad]; none by default.
     rest_energy
         ε: with friction, rest is entered below the energy ε c² where the base motion holds the column down. By default
         the smaller of 1e-4 and 0.015/ν², ν being the mean dimensionless frequency of the base motion; if that can
         release the column again, at most a hundredth of the energy with which it does, but not below 1e-8, and not
         below 1e-5 under a record or a brief motion.
     max_steps
-        Steps after which the run ends as FAILED. The log warns beforehand where more are expected.
+        Maximum number of integration steps; a longer run ends as FAILED. The log warns if more steps are expected.
     samples
         Number of samples in `data`; by default enough to draw every swing.
     rules
-        When a motion counts as rolling, rocking or modulated.
+        Thresholds that classify a motion as rolling, rocking or modulated.
     recheck
         Repeat a run in doubt with a hundredth of the rest energy and ten times the tolerance: one that was released
         again after it had come to rest and then overturned or tilted beyond half of its tipping angle, that came back

@@ -24,7 +24,7 @@ _PER_HALF_PERIOD, _FEWEST, _MOST = 8, 65, 100_001
 
 @dataclass(frozen=True, slots=True)
 class EventFunction:
-    """A function of time and state, whose zeros are events of a run.
+    """Function of time and state whose zeros are events of a run.
 
     Parameters
     ----------
@@ -33,10 +33,10 @@ class EventFunction:
     function
         Called with the time [s] and the state; returns a number that changes sign at an event. The state is a dict of
         the variables of `Response.data` at that time, in SI units: "tilt" and "tilt_rate" (arrays of x and y),
-        "amplitude", "resting", "base_acceleration" (x, y and z), and what the model adds, such as "energy", "spin",
+        "amplitude", "resting", "base_acceleration" (x, y and z), and outputs of the model such as "energy", "spin",
         "twist" and "footprint".
     direction
-        Positive: only where the function rises; negative: only where it falls; 0: both.
+        Positive: only zeros at which the function rises; negative: only zeros at which it falls; 0: both.
     terminal
         Whether the event ends the run; a whole number n ends the run at the nth event.
 
@@ -44,8 +44,8 @@ class EventFunction:
     -----
     Plain functions are accepted as in `scipy.integrate.solve_ivp`: they have the name `function.__name__` and the
     optional attributes `direction` and `terminal`. A function that is zero at the start has no event there. It is
-    evaluated at five points of each step: two sign changes between neighbouring points are not seen. Where an impact
-    changes the velocities and the function changes its sign, the event is at the impact.
+    evaluated at five points of each step; two sign changes between neighbouring points are not detected. If the
+    function changes its sign because an impact changes the velocities, the event is at the impact.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What an assessment finds: columns under records, with all numbers of its report; saved and shown again."""
+"""Result of an assessment: columns under records, with all numbers of the report."""
 
 import json
 from collections.abc import Mapping
@@ -16,16 +16,16 @@ _FORMAT = "stylobate assessment 1"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Assessment:
-    """Columns under records: whether they stood, how close it was, and how sure that is.
+    """Result of an assessment: verdicts, margins and robustness of columns under records.
 
     Attributes
     ----------
     data
         Datasets by name: "columns", "records", "spectra", "ground_motions", "verdicts", "margins", "histories" and
-        "summary"; "robustness", "planar" and "fragility" where they were asked for.
+        "summary"; "robustness", "planar" and "fragility" if they were requested.
     setting
-        What was assessed, as plain values: title, version, models, dissipation, friction, processing of the records,
-        scales, what the scan of margins looked at, the `ReportDetails`, the versions of the software.
+        Inputs of the assessment as plain values: title, version, models, dissipation, friction, processing of the
+        records, scales, range of the margins, the `ReportDetails`, versions of the software.
     """
 
     data: Mapping[str, xr.Dataset]
@@ -45,7 +45,7 @@ class Assessment:
 
     @classmethod
     def load(cls, path: str | Path) -> "Assessment":
-        """Return the assessment saved in the netCDF file `path`.
+        """Read the assessment saved in the netCDF file `path`.
 
         Raises
         ------

@@ -23,17 +23,17 @@ EVENT_KINDS = (
     *("release", "rest", "overturned", "limit", "lifted", "failed", "impact", "passage"),
     *("slide", "stop", "slip", "reverse", "stick", "lift", "land", "stroke", "jam"),
 )
-"""Kinds of events that runs find without being asked."""
+"""Kinds of events that runs detect by default."""
 
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something that happened in a run: its `kind` and `time` [s].
+    """An event of a run: its `kind` and `time` [s].
 
-    Kinds are "release", "rest", "overturned", "limit", "lifted" and "failed"; "impact", where a passage of the upright
-    costs energy, and "passage" for one in a plane that costs none; of models that can slip and fly also
-    "slide" and "stop" of the base, "slip", "reverse" and "stick" of the rim, "lift", "land", "stroke" and "jam".
-    An event of a user's own `EventFunction` has its name as the kind.
+    Kinds of all models: "release" (uplift), "rest", "overturned", "limit", "lifted" and "failed"; "impact", a passage
+    through the vertical with energy loss, and "passage", a planar one without. Kinds of models that can slip and fly:
+    "slide" and "stop" of the base face; "slip", "reverse" and "stick" of the rim; "lift" and "land"; "stroke", an
+    impact of the base face; "jam", dynamic jamming. An event of an `EventFunction` has the name of the function.
     """
 
     kind: str
@@ -44,7 +44,7 @@ class Event:
 
     @property
     def repeats(self) -> bool:
-        """Whether it belongs to every swing, an impact or a passage, and is left out of pictures and summaries."""
+        """Whether the event occurs in every swing (impact or passage); figures and summaries leave it out."""
         return self.kind in ("impact", "passage")
 
 
@@ -65,36 +65,36 @@ class _Data:
 
 @dataclass(frozen=True, kw_only=True)
 class Response:
-    """The motion of one column: its outcome and its history.
+    """Result of one run: outcome, history, events and provenance.
 
     Attributes
     ----------
     outcome
         The outcome.
     reason
-        One line that says how the outcome was decided.
+        One line that states how the outcome was decided.
     decided_at
-        Time at which it was decided [s].
+        Time of the decision [s].
     uncertain
-        Whether a small change could alter the outcome: a passage within 1e-8 c of the upright out of a plane, or a
-        run cut short by its step limit.
+        Whether a small change could alter the outcome: a three-dimensional passage within 1e-8 c of the vertical, a run
+        that reached its step limit, or a repeated run with another outcome (see `recheck` of `simulate`).
     planar
-        Whether the motion was integrated in one vertical plane, because start and base motion lie in it.
+        Whether the run was integrated in one vertical plane, which contains initial state and base motion.
     data
         Dataset over `time` [s]: `tilt` and `tilt_rate` (time, axis), `amplitude`, `azimuth`, `rolling_rate`,
-        `resting`, the base motion, and what else the model gives; units in the attributes.
+        `resting`, the base motion, and other outputs of the model; units in the attributes.
     events
-        What happened when.
+        Events in the order of time.
     thresholds
-        The numbers that decided, by name.
+        Numbers that decided the outcome, by name.
     measures
-        Summary numbers, by name: largest and least tilt, turns of the contact point, steps, impacts, and for periodic
-        base motion the mean rolling rate and the repetition of the last periods; largest demands on the contact.
+        Summary numbers, by name: maximum and minimum tilt, turns of the contact point, steps, impacts, maximum contact
+        demand; for periodic base motion the mean rolling rate and the repetition of the last periods.
     provenance
-        Everything needed to run it again: version, column, model, motion, start, tolerances.
+        All inputs that repeat the run: version, column, model, base motion, initial state, tolerances.
     warnings
-        A line for each thing that the contact would not have borne although the model assumes it: lifting off, and
-        slipping where a friction coefficient is given.
+        A line for each contact demand that a real contact could not supply: tension (lift-off), or more friction than
+        a given friction coefficient.
     """
 
     outcome: Outcome
@@ -118,12 +118,12 @@ class Response:
             object.__setattr__(self, name, plain_value(getattr(self, name)))
 
     def sample(self, time: npt.ArrayLike) -> "xr.Dataset":
-        """Return the data at other times [s], from the integrator's dense output.
+        """Compute the data at other times [s], from the dense output of the integrator.
 
         Raises
         ------
         UnsupportedError
-            If this result was loaded from a file, which keeps samples only.
+            If the result was loaded from a file: files keep samples only.
         ParameterError
             If a time lies outside the run.
         """

@@ -1,4 +1,4 @@
-"""When a motion under a periodic base motion counts as rolling, rocking or modulated."""
+"""Rules that classify a motion under a periodic base motion as rolling, rocking or modulated."""
 
 from dataclasses import dataclass
 
@@ -7,28 +7,29 @@ from stylobate.errors import require_positive, require_whole
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OutcomeRules:
-    """Thresholds of the outcomes that are judged over the last periods of a run.
+    """Thresholds that classify the motion over the last periods of a run.
 
     Parameters
     ----------
     periods
-        Number n of forcing periods at the end of the run that are looked at.
+        Number n of base periods at the end of the run that are compared.
     frequency_tolerance
-        Rolling and modulated: the mean of β̇ differs from the forcing frequency by less than this part of it. For a
-        modulated motion the mean follows from the average lag behind the forcing over the last n periods and over
-        the n before.
+        Rolling and modulated rolling: maximum relative difference of the mean rolling rate and the base frequency. For
+        modulated rolling the mean follows from the mean phase lag over the last n periods and over the n before.
     repeat_tolerance
-        The motion repeats if states one period apart differ by less than this part of the largest tilt and rate.
+        Periodic motion: maximum difference of states one period apart, as a fraction of the maximum tilt and rate.
     rest_tilt
-        Rolling: the tilt never falls below this part of c.
-    settled_tolerance, modulation_floor
-        Modulated: states one period apart differ by more than the floor, and over the last n periods by as much as
-        over the n before, to this part. A difference that shrinks or grows is a motion still on its way.
+        Rolling: minimum tilt, as a fraction of c.
+    settled_tolerance
+        Modulated rolling: maximum relative change of the difference of states one period apart, from the n periods
+        before to the last n periods. A difference that shrinks or grows further is still a transient.
+    modulation_floor
+        Modulated rolling: minimum difference of states one period apart, as a fraction of the maximum tilt and rate.
 
     Raises
     ------
     ParameterError
-        If a number is not positive, or `periods` no whole number.
+        If a number is not positive, or `periods` is not a whole number.
     """
 
     periods: int = 10

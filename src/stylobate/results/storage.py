@@ -20,7 +20,7 @@ OWN_FORMATS = "stylobate "
 
 
 def read_dataset(path: str | Path) -> xr.Dataset:
-    """Return what the netCDF file `path` holds, read into memory; times stay numbers.
+    """Read the Dataset in the netCDF file `path` into memory; times stay numbers.
 
     Raises
     ------
@@ -31,7 +31,7 @@ def read_dataset(path: str | Path) -> xr.Dataset:
 
 
 def read_tree(path: str | Path) -> xr.DataTree:
-    """Return the groups that the netCDF file `path` holds, read into memory; times stay numbers.
+    """Read the groups of the netCDF file `path` into memory; times stay numbers.
 
     Raises
     ------
@@ -44,8 +44,8 @@ def read_tree(path: str | Path) -> xr.DataTree:
 def write_netcdf(data: xr.Dataset | xr.DataTree, path: str | Path) -> Path:
     """Write `data` to the netCDF file `path`, with a checksum at its end, and return the path.
 
-    The file is made in memory: a full disk then is an error of this process and not of the HDF5 library, which would
-    end it.
+    The file is made in memory, so that a full disk raises an error in this process; the HDF5 library would end the
+    process.
 
     Raises
     ------

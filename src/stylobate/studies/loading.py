@@ -12,7 +12,7 @@ Orbits = orbits.PeriodicOrbit | orbits.Branch | orbits.BifurcationCurve
 
 
 def load(path: str | Path) -> results.Response | results.Assessment | Orbits | xr.Dataset:
-    """Read a saved result, whatever kind of result it is.
+    """Read a saved result of any kind.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ from stylobate.quantities import checked_arguments, parameters_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pulse(AlongLine):
-    """A motion along a line that begins and ends: a `waveform` from the time `start` on.
+    """A pulse along a line: a `waveform` from the time `start` on.
 
     The named constructors make the pulses of the literature. All take `direction`, `start` and `vertical`.
 
@@ -70,7 +70,7 @@ class Pulse(AlongLine):
     """
 
     def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
-        """Return the constructor of its waveform, and the numbers of both; `Pulse` for a waveform without one."""
+        """Return the constructor of the waveform and the numbers of both; `Pulse` for other waveforms."""
         make = getattr(Pulse, self.waveform.constructor, Pulse)
         line = {name: getattr(self, name) for name in parameters_of(Pulse)}
         wave = {name: getattr(self.waveform, name) for name in parameters_of(type(self.waveform))}
@@ -89,7 +89,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Return the acceleration A sin(ωt + φ) over so many `cycles`; A [m/s²], ω [rad/s], φ = `phase` [rad]."""
+        """Make the acceleration A sin(ωt + φ) over `cycles` periods; A [m/s²], ω [rad/s], φ = `phase` [rad]."""
         waveform = Sinusoid(acceleration=acceleration, angular_frequency=angular_frequency, phase=phase, cycles=cycles)
         return cls(waveform=waveform, direction=direction, start=start, vertical=vertical)
 
@@ -104,7 +104,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Return half a sine of acceleration, A sin ωt over π/ω (Housner 1963); it leaves the velocity 2A/ω."""
+        """Make half a sine of acceleration, A sin ωt over π/ω (Housner 1963); it leaves the velocity 2A/ω."""
         return cls.sinusoidal(
             acceleration=acceleration,
             angular_frequency=angular_frequency,
@@ -125,7 +125,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Return half a cosine of acceleration, A cos ωt over π/ω: half a sine of velocity; the base goes on 2A/ω²."""
+        """Make half a cosine of acceleration, A cos ωt over π/ω: half a sine of velocity; the base moves by 2A/ω²."""
         return cls.sinusoidal(
             acceleration=acceleration,
             angular_frequency=angular_frequency,
@@ -147,7 +147,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Return one sine of acceleration, A sin ωt over 2π/ω (Zhang and Makris 2001); the base goes on 2πA/ω²."""
+        """Make one sine of acceleration, A sin ωt over 2π/ω (Zhang and Makris 2001); the base moves by 2πA/ω²."""
         return cls.sinusoidal(
             acceleration=acceleration,
             angular_frequency=angular_frequency,
@@ -167,7 +167,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Return one cosine of acceleration, A cos ωt over 2π/ω (Zhang and Makris 2001): forward and back."""
+        """Make one cosine of acceleration, A cos ωt over 2π/ω (Zhang and Makris 2001): forward and back."""
         return cls.sinusoidal(
             acceleration=acceleration,
             angular_frequency=angular_frequency,
@@ -188,7 +188,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Return the forward pulse of velocity ½V(1 − cos ωt), one sine of acceleration ½ωV (Makris 1997)."""
+        """Make the forward pulse of velocity ½V(1 − cos ωt), one sine of acceleration ½ωV (Makris 1997)."""
         return cls.one_sine(
             acceleration=0.5 * angular_frequency * velocity,
             angular_frequency=angular_frequency,
@@ -208,7 +208,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Return the forward-and-back pulse of velocity V sin ωt, one cosine of acceleration ωV (Makris 1997)."""
+        """Make the forward-and-back pulse of velocity V sin ωt, one cosine of acceleration ωV (Makris 1997)."""
         return cls.one_cosine(
             acceleration=angular_frequency * velocity,
             angular_frequency=angular_frequency,
@@ -229,7 +229,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Return the pulse Cₙ of velocity V[sin(ωt + φ) − sin φ], n = `cycles` ≥ 1, over (n + ½ − φ/π) periods.
+        """Make the pulse Cₙ of velocity V[sin(ωt + φ) − sin φ], n = `cycles` ≥ 1, over (n + ½ − φ/π) periods.
 
         φ is such that the base ends where it began, without velocity (Makris 1997; Zhang and Makris 2001): 0.0697 π
         for n = 1, 0.0410 π for n = 2.
@@ -256,7 +256,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Return a symmetric Ricker wavelet of this peak [m/s²], see `stylobate.base_motions.pulses.Ricker`."""
+        """Make a symmetric Ricker wavelet with this peak [m/s²]; see `stylobate.base_motions.pulses.Ricker`."""
         waveform = Ricker(acceleration=acceleration, angular_frequency=angular_frequency)
         return cls(waveform=waveform, direction=direction, start=start, vertical=vertical)
 
@@ -271,7 +271,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Return an antisymmetric one, see `stylobate.base_motions.pulses.AntisymmetricRicker`."""
+        """Make an antisymmetric Ricker wavelet; see `stylobate.base_motions.pulses.AntisymmetricRicker`."""
         waveform = AntisymmetricRicker(acceleration=acceleration, angular_frequency=angular_frequency)
         return cls(waveform=waveform, direction=direction, start=start, vertical=vertical)
 
@@ -288,7 +288,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Return a Gabor wavelet of `velocity` [m/s] and `frequency` [Hz], see `base_motions.pulses.Gabor`."""
+        """Make a Gabor wavelet of `velocity` [m/s] and `frequency` [Hz]; see `base_motions.pulses.Gabor`."""
         waveform = Gabor(velocity=velocity, frequency=frequency, phase=phase, oscillations=oscillations)
         return cls(waveform=waveform, direction=direction, start=start, vertical=vertical)
 
@@ -305,7 +305,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Return a near-fault pulse by its `velocity` A [m/s], `frequency` f [Hz], `phase` ν and `oscillations` γ > 1.
+        """Make a near-fault pulse by its `velocity` A [m/s], `frequency` f [Hz], `phase` ν and `oscillations` γ > 1.
 
         See `stylobate.base_motions.pulses.MavroeidisPapageorgiou`.
         """

@@ -18,7 +18,7 @@ _HALVINGS = 60
 
 
 class Waveform(Declared, ABC):
-    """An acceleration along a line from the time 0 to `duration`, and what follows from it.
+    """An acceleration along a line from the time 0 to `duration`, with its integrals and extremes.
 
     Notes
     -----
@@ -34,7 +34,7 @@ class Waveform(Declared, ABC):
     @property
     @abstractmethod
     def duration(self) -> float:
-        """How long it lasts [s]."""
+        """Duration of the waveform [s]."""
 
     @property
     @abstractmethod
@@ -43,7 +43,7 @@ class Waveform(Declared, ABC):
 
     @abstractmethod
     def derivative(self, time: Floats, order: int) -> Floats:
-        """Return the displacement (`order` 0) [m], velocity (1) [m/s] or acceleration (2) [m/s²].
+        """Compute the displacement (`order` 0) [m], velocity (1) [m/s] or acceleration (2) [m/s²].
 
         Parameters
         ----------

@@ -57,7 +57,7 @@ class Direction:
 
     @classmethod
     def parse(cls, text: str) -> Self | None:
-        """Return the direction that a name such as "090", "NS", "S61W", "HNZ", "UP" or "L1" states, or None.
+        """Parse the direction in a name such as "090", "NS", "S61W", "HNZ", "UP" or "L1"; None for other names.
 
         >>> Direction.parse("360").azimuth, Direction.parse("up").vertical, Direction.parse("Corralitos")
         (0.0, 1, None)
@@ -84,7 +84,7 @@ class Direction:
 
     @classmethod
     def of(cls, given: "float | str | Direction") -> "Direction":
-        """Return the direction that a user states as an azimuth [degrees] or a name.
+        """Convert an azimuth [degrees] or a name to a direction.
 
         Raises
         ------

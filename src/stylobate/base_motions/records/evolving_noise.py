@@ -40,7 +40,7 @@ _ROWS = 256
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvolvingNoise:
-    """A stochastic model of an accelerogram, by six numbers and the corner of the high-pass.
+    """Stochastic model of an accelerogram, with six numbers and the corner of a high-pass filter.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ class EvolvingNoise:
     def record(
         self, rng: np.random.Generator, *, step: float = 0.01, components: int = 1, name: str = "synthetic"
     ) -> Record:
-        """Return one realization.
+        """Generate one realization.
 
         Parameters
         ----------
@@ -133,7 +133,7 @@ class EvolvingNoise:
         )
 
     def envelope(self, time: Floats) -> Floats:
-        """Return q(t), the standard deviation of x at times of any shape [m/s²]."""
+        """Compute q(t), the standard deviation of x at times of any shape [m/s²]."""
         shape, scale = self._modulation()
         t = np.maximum(np.asarray(time, dtype=float), 0.0) / scale
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -142,7 +142,7 @@ class EvolvingNoise:
         return np.asarray(np.sqrt(2.0 * STANDARD_GRAVITY * self.arias / math.pi * np.nan_to_num(density)))
 
     def angular_frequency(self, time: Floats) -> Floats:
-        """Return ω_f(τ), (3), at times of any shape [rad/s]."""
+        """Compute ω_f(τ), (3), at times of any shape [rad/s]."""
         f = self.frequency + self.frequency_rate * (np.asarray(time, dtype=float) - self.middle_time)
         return 2.0 * math.pi * np.maximum(f, _LEAST_FREQUENCY * self.frequency)
 

@@ -22,14 +22,14 @@ _SAME_STEP = 1e-9
 
 
 class Lengths(Enum):
-    """How components of different lengths are joined."""
+    """Handling of components of unequal length."""
 
     TRIM = "all end with the shortest"
     PAD = "the shorter ones go on with zeros"
 
 
 class Steps(Enum):
-    """How components of different time steps are joined."""
+    """Handling of components of unequal time step."""
 
     REFUSE = "an error"
     RESAMPLE = "all are resampled to the finest step"

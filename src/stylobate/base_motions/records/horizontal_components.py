@@ -14,7 +14,7 @@ _DEGREES = np.arange(180)
 
 
 class HorizontalComponent(Enum):
-    """How one peak is made of the two horizontal components of a motion.
+    """Definition of one peak for the two horizontal components of a motion.
 
     D. M. Boore, "Orientation-independent, nongeometric-mean measures of seismic intensity from two horizontal
     components of motion", BSSA 100 (2010).
@@ -31,7 +31,7 @@ class HorizontalComponent(Enum):
 
     @classmethod
     def named(cls, name: "str | HorizontalComponent", argument: str = "component") -> "HorizontalComponent":
-        """Return the definition of this name; letter case and spaces do not matter.
+        """Find the definition with this name; letter case and spaces do not matter.
 
         Raises
         ------

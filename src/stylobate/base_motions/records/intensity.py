@@ -16,7 +16,7 @@ _ONSET, _MIDDLE_END, _END = 0.05, 0.75, 0.95
 
 
 def intensity_measures(record: Record) -> xr.Dataset:
-    """Return the intensity measures of each component and of the horizontal motion.
+    """Compute the intensity measures of each component and of the horizontal motion.
 
     Returns
     -------
@@ -82,12 +82,12 @@ def intensity_measures(record: Record) -> xr.Dataset:
 
 
 def arias_intensity(record: Record) -> Floats:
-    """Return I = π/(2g) ∫ a² dt along x, y and z, shape (3,) [m/s]."""
+    """Compute the Arias intensity I = π/(2g) ∫ a² dt along x, y and z, shape (3,) [m/s]."""
     return np.asarray(math.pi / (2.0 * STANDARD_GRAVITY) * energy(record.samples, record.step)[-1])
 
 
 def cumulative_absolute_velocity(record: Record) -> Floats:
-    """Return ∫ |a| dt along x, y and z, shape (3,) [m/s]."""
+    """Compute the cumulative absolute velocity ∫ |a| dt along x, y and z, shape (3,) [m/s]."""
     left, right = np.abs(record.samples[:-1]), np.abs(record.samples[1:])
     size = left + right
     crosses = record.samples[:-1] * record.samples[1:] < 0.0
@@ -97,7 +97,7 @@ def cumulative_absolute_velocity(record: Record) -> Floats:
 
 
 def significant_duration(record: Record, begin: float = _ONSET, end: float = _END) -> Floats:
-    """Return the time in which ∫ a² dt grows from the part `begin` to the part `end` of its total, shape (3,) [s].
+    """Compute the time in which ∫ a² dt grows from the fraction `begin` to `end` of its total, shape (3,) [s].
 
     Zero where there is no acceleration.
     """
@@ -126,7 +126,7 @@ def _reached(record: Record, grown: Floats, axis: int, part: float) -> float:
 
 
 def rocking_measures(record: Record, column: Column) -> xr.Dataset:
-    """Return the dimensionless measures of the horizontal motion that order how `column` rocks.
+    """Compute the dimensionless intensity measures of the horizontal motion for the rocking of `column`.
 
     Returns
     -------

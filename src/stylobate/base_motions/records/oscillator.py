@@ -17,7 +17,7 @@ from stylobate.base_motions.records.record import Floats
 
 
 def oscillator_response(acceleration: Floats, step: float, period: float, damping: float) -> tuple[Floats, Floats]:
-    """Return relative displacement and velocity at the samples, from rest.
+    """Compute relative displacement and velocity of an oscillator at the samples, from rest.
 
     Parameters
     ----------

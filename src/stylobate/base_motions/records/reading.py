@@ -30,7 +30,7 @@ _BEYOND_ALL = 1e30
 
 
 class RecordFormat(Enum):
-    """How a file is written."""
+    """Format of a record file."""
 
     AT2 = "PEER AT2"
     ASC = "ESM and ITACA ASC, with the header of DYNA 1.x"
@@ -48,7 +48,7 @@ def read_record(
     axis: str | None = None,
     format: RecordFormat | None = None,  # noqa: A002  the word of the field
 ) -> Record:
-    """Return the record in one file.
+    """Read a record from one file.
 
     Parameters
     ----------

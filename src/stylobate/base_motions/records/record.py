@@ -24,7 +24,7 @@ _KNOT_SLACK = 1e-6
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Record(BaseMotion):
-    """Accelerations at equal steps, linear between the samples; zero before the first and after the last.
+    """A ground-motion record: accelerations at equal time steps, linear between samples, zero outside them.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ class Record(BaseMotion):
         step: float,
         **more: Any,
     ) -> Self:
-        """Return the record with these accelerations along x, y and z, shape (n,) each [m/s²]; zero where not given.
+        """Make a record from accelerations along x, y and z, shape (n,) each [m/s²]; missing components are zero.
 
         Raises
         ------
@@ -130,7 +130,7 @@ class Record(BaseMotion):
 
     @property
     def axes(self) -> tuple[str, ...]:
-        """Names of the axes along which it accelerates."""
+        """Names of the axes with acceleration."""
         return tuple(name for name, moves in zip(AXES, np.any(self.samples != 0.0, axis=0), strict=True) if moves)
 
     @property
@@ -159,7 +159,7 @@ class Record(BaseMotion):
         )
 
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
-        """Return the displacement (`order` 0), velocity (1) or acceleration (2), exact for the linear interpolation."""
+        """Compute the displacement (`order` 0), velocity (1) or acceleration (2), exact for linear interpolation."""
         t = np.asarray(time, dtype=float)
         length = self.step * (len(self.samples) - 1)
         since = np.minimum(np.maximum(t - self.start, 0.0), length)
@@ -178,14 +178,14 @@ class Record(BaseMotion):
         return values[..., 0], values[..., 1], values[..., 2]
 
     def largest_horizontal(self, since: float = 0.0) -> float:
-        """Return sup |a_h| from the time `since` [s] on, exactly [m/s²]: |a_h| is convex on a step."""
+        """Compute sup |a_h| from the time `since` [s] on, exactly [m/s²]: |a_h| is convex on a step."""
         if since > self.end:
             return 0.0
         x, y, _ = self.derivative(since, ACCELERATION)
         return max(math.hypot(x, y), float(self._largest[self._knot_after(since)]))
 
     def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
-        """Return inf a_z and sup a_z from the time `since` [s] on, exactly [m/s²]; the base ends at zero."""
+        """Compute inf a_z and sup a_z from the time `since` [s] on, exactly [m/s²]; the acceleration ends at zero."""
         if since > self.end:
             return 0.0, 0.0
         knot, now = self._knot_after(since), float(self.derivative(since, ACCELERATION)[2])
@@ -195,7 +195,7 @@ class Record(BaseMotion):
         return min(max(0, math.ceil((time - self.start) / self.step)), len(self.samples) - 1)
 
     def directions(self) -> tuple[tuple[float, float], ...]:
-        """Return one horizontal sample where all lie on one line, else two that do not; none if all are zero."""
+        """Return one horizontal sample if all lie on one line, else two that do not; none if all are zero."""
         x, y = self.samples[:, 0], self.samples[:, 1]
         longest = int(np.argmax(np.hypot(x, y)))
         size = float(np.hypot(x[longest], y[longest]))
@@ -220,7 +220,7 @@ class Record(BaseMotion):
 
     @property
     def mean_frequency(self) -> float:
-        """Root mean square of ȧ over that of a, all components together [rad/s]: so often does a pass zero, over π.
+        """Root mean square of ȧ over that of a, all components together [rad/s]; a passes zero at this rate over π.
 
         S. O. Rice, "Mathematical analysis of random noise", Bell Syst. Tech. J. 23 (1944).
         """
@@ -239,14 +239,14 @@ class Record(BaseMotion):
     # A record that was scaled, turned or delayed is a record still: it can be filtered and measured.
 
     def scaled(self, factor: float, *, vertical: float | None = None) -> "Record":  # type: ignore[override]
-        """Return this record times `factor`; its vertical component times `vertical` where that is given."""
+        """Scale this record by `factor`; the vertical component by `vertical`, if given."""
         factor = require_finite("factor", factor)
         vertical = factor if vertical is None else require_finite("vertical", vertical)
         note = f"scaled by {factor!r}" + (f", vertical by {vertical!r}" if vertical != factor else "")
         return self.changed(note, samples=self.samples * [factor, factor, vertical])
 
     def scaled_to(self, peak: float) -> "Record":
-        """Return this record, all components times one factor, with sup |a_h| = `peak` [m/s²].
+        """Scale all components of this record by one factor, so that sup |a_h| = `peak` [m/s²].
 
         Raises
         ------
@@ -260,7 +260,7 @@ class Record(BaseMotion):
         return self.scaled(require_positive("peak", peak, "m/s²") / largest)
 
     def rotated(self, angle: float) -> "Record":  # type: ignore[override]
-        """Return this record turned by `angle` [rad] about the vertical, anticlockwise seen from above."""
+        """Rotate this record by `angle` [rad] about the vertical, anticlockwise seen from above."""
         angle = require_finite("angle", angle, "rad")
         x, y, z = self.samples.T
         cos, sin = math.cos(angle), math.sin(angle)
@@ -268,16 +268,16 @@ class Record(BaseMotion):
         return self.changed(f"turned by {angle!r} rad", samples=samples)
 
     def delayed(self, delay: float) -> "Record":  # type: ignore[override]
-        """Return this record begun `delay` [s] later."""
+        """Delay this record by `delay` [s]."""
         delay = require_finite("delay", delay, "s")
         return self.changed(f"delayed by {delay!r} s", start=self.start + delay)
 
     def inverted(self) -> "Record":
-        """Return this record with its horizontal components in the opposite sense, the vertical as it is."""
+        """Reverse the horizontal components of this record; the vertical component stays."""
         return self.changed("polarity reversed", samples=self.samples * [-1.0, -1.0, 1.0])
 
     def trimmed(self, begin: float | None = None, end: float | None = None) -> "Record":
-        """Return the samples from time `begin` to `end` [s]; the first of them comes at `start`.
+        """Keep the samples from time `begin` to `end` [s]; the first of them is at `start`.
 
         Raises
         ------
@@ -294,14 +294,14 @@ class Record(BaseMotion):
         return self.changed(f"trimmed to {begin!r} s … {end!r} s", samples=self.samples[kept])
 
     def padded(self, *, before: float = 0.0, after: float = 0.0) -> "Record":
-        """Return this record with `before` and `after` [s] of zeros, in whole steps, none shorter than asked."""
+        """Add `before` and `after` [s] of zeros to this record, rounded up to whole steps."""
         counts = [self._steps("before", before), self._steps("after", after)]
         samples = np.pad(self.samples, (counts, (0, 0)))
         note = f"padded with {counts[0]} zeros before and {counts[1]} after"
         return self.changed(note, samples=samples)
 
     def with_tail(self, length: float) -> "Record":
-        """Return this record with `length` [s] of rest appended, in which the column may yet overturn or come to rest.
+        """Append `length` [s] of zeros: a free-vibration tail in which the column may overturn or come to rest.
 
         Run to its `duration`: whether a column survived is known after the tail, not at the last sample.
         """
@@ -312,7 +312,7 @@ class Record(BaseMotion):
         return math.ceil(require_not_negative(name, length, "s") / self.step - _KNOT_SLACK)
 
     def resampled(self, step: float) -> "Record":
-        """Return this record at another `step` [s], band-limited (see `records.resampling`)."""
+        """Resample this record to another `step` [s], band-limited (see `records.resampling`)."""
         from stylobate.base_motions.records.resampling import resampled  # noqa: PLC0415  takes SciPy
 
         samples, note = resampled(self.samples, self.step, step)
@@ -321,7 +321,7 @@ class Record(BaseMotion):
     def filtered(
         self, *, highpass: float | None = None, lowpass: float | None = None, order: int = 4, causal: bool = False
     ) -> "Record":
-        """Return this record through a Butterworth filter with corners in Hz (see `records.filtering`)."""
+        """Filter this record by a Butterworth filter with corners in Hz (see `records.filtering`)."""
         from stylobate.base_motions.records.filtering import filtered  # noqa: PLC0415
 
         samples, note = filtered(
@@ -330,14 +330,14 @@ class Record(BaseMotion):
         return self.changed(note, samples=samples)
 
     def baseline_corrected(self, degree: int = 1) -> "Record":
-        """Return this record less the derivative of a polynomial fitted to its velocity (see `records.baseline`)."""
+        """Subtract the derivative of a polynomial fitted to the velocity (see `records.baseline`)."""
         from stylobate.base_motions.records.baseline import baseline_corrected  # noqa: PLC0415
 
         samples, note = baseline_corrected(self.samples, self.step, degree)
         return self.changed(note, samples=samples)
 
     def changed(self, note: str, **changes: Any) -> "Record":
-        """Return this record with other fields and one more `note` in its provenance."""
+        """Replace fields of this record and add a `note` to its provenance."""
         return replace(self, provenance=(*self.provenance, note), **changes)
 
 

@@ -23,7 +23,7 @@ def sample_names() -> tuple[str, ...]:
 
 
 def sample_record(name: str = "el centro 1940") -> Record:
-    """Return a record that comes with the package.
+    """Load a record that comes with the package.
 
     Parameters
     ----------

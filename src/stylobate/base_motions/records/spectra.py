@@ -18,7 +18,7 @@ _PERCENTILES = {"rotd00": 0.0, "rotd50": 50.0, "rotd100": 100.0}
 
 
 def response_spectra(record: Record, periods: npt.ArrayLike, *, damping: float = 0.05) -> xr.Dataset:
-    """Return the elastic response spectra of a record.
+    """Compute the elastic response spectra of a record.
 
     Parameters
     ----------

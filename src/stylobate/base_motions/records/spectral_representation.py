@@ -62,7 +62,7 @@ class CloughPenzien:
 def random_vibration(
     density: Density, *, duration: float, step: float, rng: np.random.Generator, components: int = 1, name: str = ""
 ) -> Record:
-    """Return stationary random vibration of a given power spectral density.
+    """Generate stationary random vibration with a given power spectral density.
 
     Parameters
     ----------
