@@ -22,7 +22,7 @@ from stylobate.results import Assessment
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "docs" / "_static" / "assess"
 STUDY = ROOT / "examples" / "assess" / "study.toml"
-_LINE = 108
+_LINE = 122
 
 
 def assessed(store: Path) -> Assessment:
@@ -33,8 +33,8 @@ def assessed(store: Path) -> Assessment:
 
 def head(found: Assessment, spectra: Figure) -> Figure:
     """Return how the report begins: title, verdicts, findings, spectra; drawn, for the page itself needs a browser."""
-    figure = Figure(figsize=(7.4, 11.0))
-    words, below = figure.subplots(2, 1, height_ratios=(7.6, 3.4))
+    figure = Figure(figsize=(7.4, 9.4))
+    words, below = figure.subplots(2, 1, height_ratios=(6.0, 3.4))
     for axes in (words, below):
         axes.set_axis_off()
     title, *lines = summary_text(found, [verdict_table(found)]).splitlines()

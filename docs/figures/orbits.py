@@ -171,7 +171,8 @@ def curves() -> Figure:
     left.set_ylim(0.0, 0.4)
     left.legend(fontsize=8, frameon=False, loc="lower right")
 
-    inset = right.inset_axes((0.68, 0.3, 0.3, 0.42))
+    inset = right.inset_axes((0.6, 0.26, 0.26, 0.42))
+    inset.yaxis.tick_right()
     bounds = ((0.4, 2.0), (0.0, 0.0835))
     half = rolling(ellipse(0.04), (0.9, 4.0))
     fork = sb.orbits.bifurcation_curve(half.bifurcations[-1], "amplitude_y", bounds=bounds, control=fine)

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from stylobate.plots.kinds import figure_of
-from stylobate.plots.labels import axis_label
+from stylobate.plots.labels import axis_label, unit_label
 from stylobate.plots.style import GREY, PALETTE, STABLE_WIDTH, UNSTABLE_WIDTH, new_figure, styled
 
 _DASHED = (0, (4, 2))
@@ -46,7 +46,7 @@ def plot_exact_response(curves: xr.Dataset) -> Figure:
     for index in range(curves.sizes["branch_index"]):
         part = curves.isel(point=np.nonzero(curves["branch"].to_numpy() == index)[0])
         colour = PALETTE[index % len(PALETTE)]
-        name = str(curves["branch_name"][index].item())
+        name = str(curves["branch_name"][index].item()).replace("rad/s", unit_label(curves["angular_frequency"]))
         for axes, quantity in zip(panels, quantities, strict=False):
             _draw(axes, part, quantity, colour, name if axes is tilt else None)
         _shade(tilt, part, colour)

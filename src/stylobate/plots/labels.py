@@ -26,6 +26,8 @@ _OWN_UNITS = {
 _OWN_LABELS = {
     "angular_frequency": r"base frequency $\Omega/\omega_0$",
     "acceleration": "base acceleration $a/g$",
+    "amplitude_x": "base acceleration along x, $a_x/g$",
+    "amplitude_y": "base acceleration along y, $a_y/g$",
     "base_acceleration": "base acceleration $a/g$",
     "time": r"time $\omega_0 t$",
     "spin": r"spin $\sigma/\omega_0$",
