@@ -51,9 +51,9 @@ class Sliding(Model):
     static_friction_coefficient
         Up to which a contact does not slip; by default the kinetic one, and not below it.
     patch
-        Radius r_p of the contact of the rim, in units of the base radius. A patch resists turning about the vertical by a
-        moment up to (3π/16) μN r_p; force and moment fade into each other as it slips and turns. While it does neither,
-        the column rolls as on rubber. 0 is a point.
+        Radius r_p of the contact of the rim, in units of the base radius. A patch resists rotation about the vertical
+        by a moment up to (3π/16) μN r_p; slip reduces the moment, and rotation the force. While it does neither, the
+        column rolls as on rubber. 0 is a point.
     normal_restitution
         e_n, speed at which the struck point leaves the plane over that of its approach.
     damping, spin_damping, rolling_resistance
