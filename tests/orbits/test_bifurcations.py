@@ -170,7 +170,7 @@ def test_runs_stay_with_the_orbit_above_and_leave_it_below(straight_branches, a1
 
 def test_bifurcations_tell_themselves_in_one_line(straight_branches):
     (found,) = straight_branches[0.04].bifurcations
-    assert repr(found) == "Bifurcation(pitchfork at angular_frequency = 1.087672063, soft)"
+    assert repr(found) == "Bifurcation(pitchfork at angular_frequency = 1.087672063, supercritical)"
     assert found.state is found.orbit.state or np.array_equal(found.state, found.orbit.state)
 
 

@@ -74,18 +74,18 @@ def _print_exact(curves: "xr.Dataset") -> None:
         )
     ]
     print_table(
-        f"{curves.sizes['point']} exact orbits in {len(names)} families; their bifurcations",
+        f"{curves.sizes['point']} exact orbits on {len(names)} branches; their bifurcations",
         rows,
-        ("bifurcation", "Ω", "family", "mean tilt", "loss of stability"),
+        ("bifurcation", "Ω", "branch", "mean tilt", "loss of stability"),
     )
-    print_table(f"where orbits are {stability_of(curves)}", _stable_ranges(curves), ("family", "Ω", "mean tilt"))
+    print_table(f"where orbits are {stability_of(curves)}", _stable_ranges(curves), ("branch", "Ω", "mean tilt"))
 
 
-_SOFTNESS = {1: "soft", 0: "hard", -1: ""}
+_SOFTNESS = {1: "supercritical", 0: "subcritical", -1: ""}
 
 
 def _stable_ranges(curves: "xr.Dataset") -> list[list[str]]:
-    """Return the stretches of each family on which orbits are stable, between the points that bound them."""
+    """Return the stretches of each branch on which orbits are stable, between the points that bound them."""
     rows = []
     for index, name in enumerate(curves["branch_name"].to_numpy()):
         part = curves.isel(point=np.nonzero(curves["branch"].to_numpy() == index)[0])

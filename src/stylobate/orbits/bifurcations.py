@@ -83,7 +83,7 @@ class Bifurcation:
 
     def __repr__(self) -> str:
         """Describe it in one line."""
-        how = {True: ", soft", False: ", hard", None: ""}[self.soft]
+        how = {True: ", supercritical", False: ", subcritical", None: ""}[self.soft]
         return f"Bifurcation({self.kind.value} at {self.point.family.name} = {self.parameter:.10g}{how})"
 
 

@@ -25,7 +25,7 @@ BIFURCATION_MARKS = {
 }
 """Marker and name of each kind."""
 
-_FILLS = {1: ("black", ", soft loss"), 0: ("white", ", hard loss"), -1: ("#bbbbbb", "")}
+_FILLS = {1: ("black", ", supercritical"), 0: ("white", ", subcritical"), -1: ("#bbbbbb", "")}
 
 
 @figure_of("exact response")

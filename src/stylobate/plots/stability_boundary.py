@@ -29,10 +29,10 @@ _NAMES = {"Neimark-Sacker": "Neimark–Sacker"}
 @figure_of("stability boundary")
 @styled
 def plot_stability_boundary(boundary: xr.Dataset) -> Figure:
-    """Return a figure of curves of the kind "stability boundary".
+    """Draw curves of the kind "stability boundary".
 
-    Bold where stability is lost softly, half as bold where it is lost hard, thin where the orbit is unstable on both
-    sides of the curve. Where there is no curve a note states the stability of rolling.
+    Curves are bold if the loss of stability is supercritical, half as bold if it is subcritical, and thin if the orbit
+    is unstable on both sides. If there is no curve, a note states the stability of rolling.
     """
     figure = new_figure(4.4)
     axes = figure.subplots()
@@ -42,7 +42,11 @@ def plot_stability_boundary(boundary: xr.Dataset) -> Figure:
         part = boundary.isel(point=np.nonzero(boundary["curve"].to_numpy() == index)[0])
         x, y, soft = (part[key].to_numpy() for key in ("angular_frequency", str(parameter.name), "soft"))
         colour, line = _STYLES[str(name)]
-        for chosen, how, width in ((soft == 1, "soft", 2.6), (soft == 0, "hard", 1.6), (soft == -1, _UNDECIDED, 0.7)):
+        for chosen, how, width in (
+            (soft == 1, "supercritical", 2.6),
+            (soft == 0, "subcritical", 1.6),
+            (soft == -1, _UNDECIDED, 0.7),
+        ):
             added = "" if str(name) == "fold" else f", {how}"
             for first, last in _runs(chosen):
                 label = _NAMES.get(str(name), str(name)) + added

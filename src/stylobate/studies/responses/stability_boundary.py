@@ -194,7 +194,11 @@ def _joined(curves: list[BifurcationCurve], parameter: str) -> xr.Dataset:
     return xr.Dataset(
         {
             "curve": ("point", np.repeat(np.arange(len(tables)), lengths)),
-            "soft": ("point", column("soft"), {"long_name": "1 where the loss is soft, 0 hard, -1 not decided"}),
+            "soft": (
+                "point",
+                column("soft"),
+                {"long_name": "1 if supercritical, 0 subcritical, -1 not decided"},
+            ),
             "coefficient": ("point", column("coefficient"), {"long_name": "coefficient of the normal form"}),
             "least_tilt": ("point", column("least_tilt"), {"units": "rad"}),
             "largest_tilt": ("point", column("largest_tilt"), {"units": "rad"}),
