@@ -43,7 +43,7 @@ class Column:
     axial_inertia
         Moment of inertia I_a about the axis of the column [kg m²].
     height
-        Height of the whole body [m], where it is known; it bounds the others and serves drawings.
+        Height of the whole body [m], if known. It bounds the other numbers and serves drawings.
     gravity
         Acceleration of gravity g [m/s²].
 
@@ -86,7 +86,7 @@ class Column:
 
     @classmethod
     def solid(cls, *, radius: Radius, height: Height, density: Density, gravity: Gravity = STANDARD_GRAVITY) -> Self:
-        """Return a solid cylinder of `radius` [m], `height` [m] and `density` [kg/m³]."""
+        """Describe a solid cylinder by `radius` [m], `height` [m] and `density` [kg/m³]."""
         return cls.frustum(radius=radius, top_radius=radius, height=height, density=density, gravity=gravity)
 
     @classmethod
@@ -99,9 +99,9 @@ class Column:
         density: Density,
         gravity: Gravity = STANDARD_GRAVITY,
     ) -> Self:
-        """Return a tube of outer `radius` and `inner_radius` [m], `height` [m] and wall `density` [kg/m³].
+        """Describe a tube by outer `radius` and `inner_radius` [m], `height` [m] and wall `density` [kg/m³].
 
-        It stands on its outer rim as a solid cylinder does: what counts for tipping is the outer radius.
+        The tube tips over its outer rim, as a solid cylinder does.
         """
         radius = require_positive("radius", radius, "m")
         inner_radius = require_positive("inner_radius", inner_radius, "m")
@@ -132,7 +132,7 @@ class Column:
         density: Density,
         gravity: Gravity = STANDARD_GRAVITY,
     ) -> Self:
-        """Return a solid frustum of a cone: `radius` at the base, `top_radius`, `height` [m], `density` [kg/m³]."""
+        """Describe a solid frustum of a cone by base `radius`, `top_radius`, `height` [m] and `density` [kg/m³]."""
         a = require_positive("radius", radius, "m")
         b = require_positive("top_radius", top_radius, "m")
         height = require_positive("height", height, "m")
@@ -164,7 +164,7 @@ class Column:
         inertia_ratio: Annotated[float, Quantity(symbol="κ", text="m h²/J0", gt=0.0, slider=(0.3, 0.95))] = 0.75,
         axial_ratio: Annotated[float, Quantity(symbol="i_a", text="I_a/(m r²)", gt=0.0, slider=(0.1, 1.0))] = 0.5,
     ) -> Self:
-        """Return a column with m = g = ω0 = 1, for which SI numbers are the numbers of the dimensionless equations.
+        """Describe a column with m = g = ω0 = 1: its SI numbers are the numbers of the dimensionless equations.
 
         Parameters
         ----------
@@ -183,7 +183,7 @@ class Column:
         Raises
         ------
         ParameterError
-            If a ratio is out of range or no body can have them.
+            If a ratio is out of range, or no body of revolution has these ratios.
         """
         c = require_positive("slenderness", slenderness)
         ratio = require_positive("inertia_ratio", inertia_ratio)
@@ -210,15 +210,15 @@ class Column:
         )
 
     def with_slenderness(self, slenderness: float) -> Self:
-        """Return this column with the base radius that gives c = r/h = `slenderness`.
+        """Copy the column with the base radius that gives c = r/h = `slenderness`.
 
-        Height of the centre of mass, mass and transverse inertia stay; the axial inertia goes with r².
+        Height of the centre of mass, mass and transverse inertia are kept; the axial inertia is proportional to r².
         """
         radius = require_positive("slenderness", slenderness) * self.mass_height
         return replace(self, radius=radius, axial_inertia=self.axial_inertia * (radius / self.radius) ** 2)
 
     def resized(self, size: float) -> Self:
-        """Return a column of the same shape and density with all lengths times `size`."""
+        """Copy the column at the same shape and density, with all lengths times `size`."""
         size = require_positive("size", size)
         return replace(
             self,

@@ -1,4 +1,4 @@
-"""What a base motion is: an acceleration against time, and what integrators and criteria ask of it."""
+"""The contract of a base motion: an acceleration against time, and its properties for integrators and criteria."""
 
 import math
 from abc import ABC, abstractmethod
@@ -18,7 +18,7 @@ Components = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray
 
 
 class MotionContract(Declared, ABC):
-    """What a motion of the base states of itself, from t = 0 on, in SI units, along x, y (horizontal) and z (up)."""
+    """The properties of a base motion from t = 0 on, in SI units, along x, y (horizontal) and z (up)."""
 
     __slots__ = ()
 

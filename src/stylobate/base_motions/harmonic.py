@@ -47,13 +47,13 @@ class Harmonic(BaseMotion):
     angular_frequency
         Ω [rad/s].
     start_phase
-        Phase of the whole motion at t = 0 [rad]. Without it a harmonic motion starts at its peak.
+        Phase of the whole motion at t = 0 [rad]. With 0 a harmonic motion starts at its peak.
     ramp
-        Time over which the amplitude rises from 0 to full as ½(1 − cos(πt/ramp)) [s]; 0 starts at once.
+        Time in which the amplitude grows from 0 to its full value as ½(1 − cos(πt/ramp)) [s]; 0 for none.
 
     Notes
     -----
-    Velocity and displacement are those without drift in the steady motion.
+    Velocity and displacement are those of the steady motion, without drift.
 
     Raises
     ------
@@ -240,7 +240,7 @@ class Harmonic(BaseMotion):
         cls,
         *,
         diameter: Annotated[float, Quantity(unit="m", text="diameter of the circle", gt=0.0)],
-        rpm: Annotated[float, Quantity(unit="1/min", text="turns a minute", gt=0.0)],
+        rpm: Annotated[float, Quantity(unit="1/min", text="turns per minute", gt=0.0)],
         sense: Sense = 1,
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,

@@ -1,4 +1,4 @@
-"""One of several motions, chosen by its number: so that runs under different records are one ensemble."""
+"""One of several motions, selected by its number: runs under different records become one ensemble."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -18,12 +18,12 @@ class OneOf(Following):
     motions
         At least one.
     chosen
-        Which of them it is.
+        Number of the motion.
 
     Raises
     ------
     ParameterError
-        If there are none, or none of this number.
+        If `motions` is empty or has no motion with this number.
 
     Examples
     --------

@@ -56,21 +56,21 @@ class SineSweep(BaseMotion):
     Parameters
     ----------
     amplitude
-        Of the quantity that keeps it [m/s²] or [m].
+        Amplitude of the constant quantity [m/s²] or [m].
     quantity
         Acceleration: it is A cos ψ(t). Displacement: it is D cos ψ(t), and the acceleration −D(ψ̇² cos ψ + ψ̈ sin ψ).
     law
         ψ̇/2π goes from the first frequency to the last linearly, or exponentially.
     frequencies
-        First and last frequency [Hz], either way up.
+        First and last frequency [Hz], rising or falling.
     length
-        How long it takes [s]; nothing comes after.
+        Duration of the sweep [s].
     direction
         Azimuth of the line [rad] from x.
     start_phase
-        ψ at the beginning [rad]; without it the acceleration (displacement) starts at its peak.
+        ψ at the beginning [rad]; with 0 the acceleration (displacement) starts at its peak.
     start
-        When it begins [s].
+        Time at which the sweep begins [s].
     vertical
         Vertical acceleration over the horizontal one.
 
@@ -89,7 +89,7 @@ class SineSweep(BaseMotion):
 
     Examples
     --------
-    >>> sweep = SineSweep.logarithmic(acceleration=0.5, frequencies=(0.5, 8.0), length=120.0)  # 2 octaves a minute
+    >>> sweep = SineSweep.logarithmic(acceleration=0.5, frequencies=(0.5, 8.0), length=120.0)  # 2 octaves per minute
     >>> print(sweep.frequency([0.0, 30.0, 60.0]).round(6))
     [0.5 1.  2. ]
     """

@@ -31,9 +31,11 @@ def _dissipation(chosen: Chosen) -> list[Option]:
 
 @command(
     Option(
-        "scaled_to", "slenderness to which the case is scaled, with its tilts and base motion; repeat it", list[float]
+        "scaled_to",
+        "slenderness to which the case is scaled, with its tilts and base motion; can be repeated",
+        list[float],
     ),
-    Option("reference", "model from which differences are taken; rolling by default", str),
+    Option("reference", "model from which distances are measured; rolling by default", str),
     Option("model", type=str, hidden=True),
     argument="TOML description, or a saved run (.nc)",
     groups=(
@@ -47,7 +49,7 @@ def _dissipation(chosen: Chosen) -> list[Option]:
 def hierarchy(options: Options) -> None:
     """Compare all models of the hierarchy in one case.
 
-    A file is that of `simulate`; the kind of its model is ignored. --samples keeps histories, which --figure draws.
+    The file is that of `simulate`; the kind of its model is ignored. --samples keeps histories; --figure draws them.
 
     Examples
     --------

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 def simulate(options: Options) -> None:
     """Integrate one column from its initial state until its outcome is decided.
 
-    State everything as options or in a TOML file with the same names; options win. Examples:
+    Pass options, or a TOML file with the same names; options override the file. Examples:
 
     stylobate simulate --radius 0.5 --height 10 --density 2700 --damping 0.02 --motion straight
     --acceleration 1.5 --angular-frequency 4 --start-phase 1.57 --duration 30
@@ -36,7 +36,7 @@ def simulate(options: Options) -> None:
 
     stylobate simulate --radius 0.3 --height 3 --density 2700 --record quake_NS.txt --record quake_EW.txt --units g
 
-    A run under a record, a pulse or a sine sweep needs no duration: it includes a free vibration of 20/p after it.
+    Under a record, a pulse or a sine sweep the duration is optional: the run then adds a free vibration of 20/p.
     """
     check_writable(options["figure"], options["output"])
     fields = config.SimulationConfig.model_fields

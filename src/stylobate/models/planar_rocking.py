@@ -99,7 +99,7 @@ def impact_map(
 class PlanarRocking(TiltVectorModel):
     """A body that rocks in a vertical plane from one edge to the other: Housner's model, at finite angles.
 
-    Start and base motion must lie in one vertical plane. Of the column it takes the half width r, the height h of the
+    Initial tilt and base motion must lie in one vertical plane. The model uses the half width r, the height h of the
     centre of mass and the transverse inertia; `PlanarRocking.block` makes the rectangular block of the literature.
 
     Parameters
@@ -107,17 +107,17 @@ class PlanarRocking(TiltVectorModel):
     column
         The body.
     damping
-        Viscous friction η = D1/(ω0 J0).
+        Viscous damping η = D1/(ω0 J0).
     rolling_resistance
-        Lever arm δ of the normal force, in units of the radius, against the angular velocity.
+        Lever arm μ_r of the normal force, in units of the radius, against the angular velocity.
     restitution
-        e, the part of the angular velocity that is left after an impact; None for Housner's value 1 − 2 m r²/K, by
-        which the body keeps its angular momentum about the edge that it lands on. Measured values lie on either side.
+        e, fraction of the angular velocity that remains after an impact; None for Housner's value 1 − 2 m r²/K, by
+        which the body keeps its angular momentum about the edge on which it lands. Measured values lie on either side.
 
     Raises
     ------
     ParameterError
-        If `column` is no Column, a friction is negative or not finite, or `restitution` lies outside 0 to 1.
+        If `column` is not a Column, a damping parameter is negative or not finite, or `restitution` is outside 0 to 1.
 
     Notes
     -----
@@ -144,18 +144,18 @@ class PlanarRocking(TiltVectorModel):
         restitution: float | None = None,
         gravity: float = STANDARD_GRAVITY,
     ) -> Self:
-        """Return the model of a uniform rectangular block, seen in its plane, 1 m thick across it.
+        """Describe a uniform rectangular block in its plane, 1 m thick across it.
 
         Parameters
         ----------
         width, height
-            Of the block [m].
+            Width and height of the block [m].
         density
-            [kg/m³].
+            Density [kg/m³].
         damping, restitution
-            As of the model; Housner's restitution is 1 − 1.5 sin²α here, tan α = width/height.
+            As in the model; Housner's restitution is 1 − 1.5 sin²α here, with tan α = width/height.
         gravity
-            [m/s²].
+            Acceleration of gravity [m/s²].
 
         Raises
         ------
@@ -202,7 +202,7 @@ class PlanarRocking(TiltVectorModel):
 
     @property
     def comes_to_rest(self) -> bool:
-        """Whether there is friction, or loss at impacts."""
+        """Whether there is damping, or loss at impacts."""
         return self.damping > 0.0 or self.rolling_resistance > 0.0 or self.impact_restitution < 1.0
 
     @property

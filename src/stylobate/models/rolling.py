@@ -208,40 +208,40 @@ def impact_map(
 
 @dataclass(frozen=True, slots=True)
 class Rolling(SpinningModel):
-    """The rigid column that rolls without slip on the rim of its base, at any tilt below π/2, and may turn.
+    """A rigid column that rolls without slip on the rim of its base, with spin, at any tilt below π/2.
 
     Its state is the tilt vector α = θ(cos β, sin β), its rate and the spin w3, the angular velocity about its axis;
-    twist and footprint follow from them. Regular at the upright but for what is physical: the contact point races round
-    the rim, past the upright by the angle π√(K/J0) where the column has no spin.
+    twist and footprint follow from them. The equations are regular at the vertical except for a physical singularity:
+    the contact point races round the rim, by the angle π√(K/J0) if the column has no spin.
 
     Parameters
     ----------
     column
         The column.
     damping
-        Viscous friction η = D1/(ω0 J0), a couple −D1 times the angular velocity across the axis: −D1(w1 u + w2 n), n
+        Viscous damping η = D1/(ω0 J0), a couple −D1 times the angular velocity across the axis: −D1(w1 u + w2 n), n
         horizontal and u across axis and n.
     spin_damping
-        ζ, by a moment −D0 times the angular velocity about the vertical, D0 = ζ ω0 I_a D/i_a: a column that spins
+        ζ, by a moment −D0 times the angular velocity about the vertical, D0 = ζ ω0 I_a Λ/i_a: a column that spins
         upright loses its spin at the rate ζ ω0.
     rolling_resistance
-        Lever arm δ of the normal force, in units of the radius: a couple of size δ r N against the horizontal part of
-        the angular velocity, fading out below the rate 1e-3 ω0.
+        Lever arm μ_r of the normal force, in units of the radius: a couple μ_r r N against the horizontal component of
+        the angular velocity, which fades out below the rate 1e-3 ω0.
     restitution
-        e, the part of the tilt rate that is left after a passage of the upright; 1 for no loss, the limit of grazing
+        e, fraction of the tilt rate that remains after a passage of the vertical; 1 for no loss, the limit of grazing
         rolling. `theory.housner_restitution` computes Housner's value for planar impacts.
     passage_tilt
-        A least tilt counts as a passage of the upright below this [rad]; by default 0.01 c.
+        Minimum tilt below which a swing counts as a passage of the vertical [rad]; by default 0.01 c.
 
     Raises
     ------
     ParameterError
-        If `column` is no Column, a friction is negative or not finite, or `restitution` lies outside 0 to 1.
+        If `column` is not a Column, a damping parameter is negative or not finite, or `restitution` is outside 0 to 1.
 
     Notes
     -----
-    Overturning is judged at a tilt of π/2: spin holds no column up for certain, nor lets it fall. With κ = m h²/J0,
-    i_a = I_a/(m r²), D = 1 + i_a − κ, in units of 1/ω0, h and g, w = c w3 + w1, d and n horizontal along the lean and
+    A tilt of π/2 counts as overturned: no point of no return is known for a column with spin. With κ = m h²/J0,
+    i_a = I_a/(m r²), Λ = 1 + i_a − κ, in units of 1/ω0, h and g, w = c w3 + w1, d and n horizontal along the lean and
     across it, the equations are those of Newton and Euler with the force N, T_d, T_n at the contact, and
 
     K θ̈ = −(1 + a_z) z' − ρ' a_d − κρ'β̇w + (1 − κ)β̇² sin θ cos θ − I_a β̇ w3 sin θ + M2,
@@ -277,7 +277,7 @@ class Rolling(SpinningModel):
 
     @property
     def comes_to_rest(self) -> bool:
-        """Whether there is friction."""
+        """Whether there is damping, rolling resistance or loss."""
         return self.damping > 0.0 or self.rolling_resistance > 0.0 or self.restitution < 1.0
 
     @property

@@ -85,14 +85,14 @@ class Slender(TiltVectorModel):
     Parameters
     ----------
     column
-        The column; its slenderness c should be well below 1.
+        The column; its slenderness c must be well below 1 for small errors.
     damping
-        Viscous friction η = D1/(ω0 J0), dimensionless; D1 is `damping_coefficient`.
+        Viscous damping η = D1/(ω0 J0), dimensionless; D1 is `damping_coefficient` [N m s].
 
     Raises
     ------
     ParameterError
-        If `column` is no Column or `damping` is negative or not finite.
+        If `column` is not a Column, or `damping` is negative or not finite.
 
     Notes
     -----
@@ -115,7 +115,7 @@ class Slender(TiltVectorModel):
 
     @property
     def damping_coefficient(self) -> float:
-        """D1 = η ω0 J0, friction moment by angular velocity [N m s]."""
+        """D1 = η ω0 J0, damping couple per angular velocity [N m s]."""
         return self.damping * self.column.frequency_scale * self.column.base_inertia
 
     @property
@@ -125,7 +125,7 @@ class Slender(TiltVectorModel):
 
     @property
     def comes_to_rest(self) -> bool:
-        """Whether there is friction."""
+        """Whether there is damping."""
         return self.damping > 0.0
 
     @property

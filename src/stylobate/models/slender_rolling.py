@@ -142,26 +142,26 @@ def passage(
 
 @dataclass(frozen=True, slots=True)
 class SlenderRolling(SpinningModel):
-    """A slender column that rolls without slip: small tilt, the twist free.
+    """A slender column that rolls without slip, with spin, at small tilt.
 
-    With σ = w3/ω0, κ = m h²/J0, i_a = I_a/(m r²), D = 1 + i_a − κ, û = α/|α|, n across it, a_n = a_h·n, and contact
+    With σ = w3/ω0, κ = m h²/J0, i_a = I_a/(m r²), Λ = 1 + i_a − κ, û = α/|α|, n across it, a_n = a_h·n, and contact
     couples,
 
-    α̈ = (1 + a_z)(α − c û) − a_h + n a_n (1 − κ)/D − cκσβ̇ û − η[(α̇·û)û + ((1 + i_a)/D)(α̇·n) n] − cκζσ n,
-    σ̇ = a_n (1 − κ)/(cκD) − (η/(cD)) (α̇·n) − ζσ,
+    α̈ = (1 + a_z)(α − c û) − a_h + n a_n (1 − κ)/Λ − cκσβ̇ û − η[(α̇·û)û + ((1 + i_a)/Λ)(α̇·n) n] − cκζσ n,
+    σ̇ = a_n (1 − κ)/(cκΛ) − (η/(cΛ)) (α̇·n) − ζσ,
 
-    in units of 1/ω0 and g. The base spins the column up, and a column that may spin answers a base acceleration across
-    its lean with i_a/D of what one answers that cannot turn.
+    in units of 1/ω0 and g. The base spins the column up. Across its lean, a column with spin responds to a base
+    acceleration with i_a/Λ of the response of a column without spin.
 
     Parameters
     ----------
     column
-        The column; its slenderness c should be well below 1.
+        The column; its slenderness c must be well below 1 for small errors.
     damping
-        Viscous friction η = D1/(ω0 J0), a couple −D1 against the rate of tilt.
+        Viscous damping η = D1/(ω0 J0), a couple −D1 against the rate of tilt.
     spin_damping
-        ζ, by a moment −D0 times the angular velocity about the vertical, D0 = ζ ω0 I_a D/i_a: a column that spins
-        upright loses its spin at the rate ζ ω0. Without any, and with damping, steady rolling dies out.
+        ζ, by a moment −D0 times the angular velocity about the vertical, D0 = ζ ω0 I_a Λ/i_a: a column that spins
+        upright loses its spin at the rate ζ ω0. Without spin damping, but with damping, steady rolling dies out.
     couples
         "contact": both couples act on the rolling body, and so through the force at the contact too; this is the limit
         of the body at finite tilt. "isotropic": −η α̇ and −ζσ alone, as in the equations of a column that cannot turn.
@@ -169,11 +169,11 @@ class SlenderRolling(SpinningModel):
     Raises
     ------
     ParameterError
-        If `column` is no Column, `damping` or `spin_damping` is negative or not finite, or `couples` none of the two.
+        If `column` is not a Column, `damping` or `spin_damping` is negative or not finite, or `couples` is unknown.
 
     Notes
     -----
-    Overturning is judged at a tilt of π/2: spin holds no column up for certain, nor lets it fall.
+    A tilt of π/2 counts as overturned: no point of no return is known for a column with spin.
     """
 
     column: Column
@@ -201,7 +201,7 @@ class SlenderRolling(SpinningModel):
 
     @property
     def comes_to_rest(self) -> bool:
-        """Whether there is friction."""
+        """Whether there is damping."""
         return self.damping > 0.0
 
     @property

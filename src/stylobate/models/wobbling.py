@@ -202,24 +202,24 @@ def impact_map(
 
 @dataclass(frozen=True, slots=True)
 class Wobbling(TiltVectorModel):
-    """The rigid column that rolls on the rim of its base at any tilt below π/2 and cannot turn.
+    """A rigid column that rolls on the rim of its base without axial rotation, at any tilt below π/2.
 
-    Its angular velocity has no part along e3 + Z, the bisector of axis and vertical: it tilts without twist, the
-    footprint of its base stays where it was. This is the holonomic form of the paper's assumption.
+    Its angular velocity has no component along e3 + Z, the bisector of axis and vertical: it tilts without twist, and
+    the footprint of its base stays in place. This is the holonomic form of the source paper's assumption.
 
     Parameters
     ----------
     column
         The column.
     damping
-        Viscous friction η = D1/(ω0 J0), a couple −D1(w1 u + w2 n).
+        Viscous damping η = D1/(ω0 J0), a couple −D1(w1 u + w2 n).
     rolling_resistance
-        Lever arm δ of the normal force, in units of the radius: a couple of size δ r N against the horizontal part of
-        the angular velocity, fading out below the rate 1e-3 ω0.
+        Lever arm μ_r of the normal force, in units of the radius: a couple μ_r r N against the horizontal component of
+        the angular velocity, which fades out below the rate 1e-3 ω0.
     restitution
-        e, the part of the tilt rate that is left after a passage of the upright; 1 for no loss.
+        e, fraction of the tilt rate that remains after a passage of the vertical; 1 for no loss.
     passage_tilt
-        A least tilt counts as a passage of the upright below this [rad]; by default 0.01 c.
+        Minimum tilt below which a swing counts as a passage of the vertical [rad]; by default 0.01 c.
     constraint
         "pure_tilt": ω·(e3 + Z) = 0. "rubber": ω·Z = 0, no rotation about the vertical at all, as of a contact that
         cannot pivot; it is not holonomic, differs by O(c²), and the footprint wanders.
@@ -227,8 +227,8 @@ class Wobbling(TiltVectorModel):
     Raises
     ------
     ParameterError
-        If `column` is no Column, a friction is negative or not finite, `restitution` lies outside 0 to 1, or
-        `constraint` is none of the two.
+        If `column` is not a Column, a damping parameter is negative or not finite, `restitution` is outside 0 to 1,
+        or `constraint` is unknown.
 
     Notes
     -----

@@ -42,18 +42,18 @@ class Pulse(AlongLine):
     direction
         Azimuth of the line [rad] from x.
     start
-        When it begins [s]. A wavelet that is largest in its middle is so half its duration later.
+        Time at which the pulse begins [s]. The peak of a wavelet in its middle follows half its duration later.
     vertical
         Vertical acceleration over the horizontal one.
 
     Notes
     -----
     The base is at rest until the pulse begins: velocity and displacement are the integrals of the acceleration. A pulse
-    that leaves a velocity, as half a sine does, is followed by a uniform motion, which the column does not feel.
+    that leaves a velocity, as half a sine does, is followed by a uniform motion, to which the column does not respond.
 
-    Ricker and Gabor wavelets never end. They are cut 8 standard deviations of their bell from the middle, where it is
-    1.3e-14 of its height; the acceleration there is below 1e-11 of its largest value, and the velocity that is
-    left below 1e-12 of its own.
+    Ricker and Gabor wavelets never end. They are cut 8 standard deviations of their envelope from the middle, where
+    the envelope is 1.3e-14 of its height. The acceleration there is below 1e-11 of its peak, and the remaining
+    velocity is below 1e-12 of the peak velocity.
 
     Raises
     ------

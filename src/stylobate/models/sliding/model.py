@@ -37,37 +37,37 @@ _PASSAGE = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Sliding(Model):
-    """The rigid column in unilateral contact with Coulomb friction: it can slip, pivot, lift off and land again.
+    """A rigid column in unilateral contact with Coulomb friction: it can slip, pivot, lift off and land.
 
-    It stands on its base, at rest or sliding; rolls on its rim, or slips there; or flies. What changes one into another
-    is an event that is located, and impacts are instants. No parameter regularises friction.
+    The column stands on its base, at rest or sliding; rolls or slips on its rim; or flies. Changes between these states
+    are located events, and impacts are instantaneous. No parameter regularises friction.
 
     Parameters
     ----------
     column
         The column.
     friction_coefficient
-        Kinetic μ, of contacts that slip and of impacts; 0 is a plane without friction.
+        Kinetic coefficient μ of slipping contacts and of impacts; 0 for a plane without friction.
     static_friction_coefficient
-        Up to which a contact does not slip; by default the kinetic one, and not below it.
+        Coefficient up to which a contact does not slip; by default the kinetic one, and not below it.
     patch
         Radius r_p of the contact of the rim, in units of the base radius. A patch resists rotation about the vertical
         by a moment up to (3π/16) μN r_p; slip reduces the moment, and rotation the force. While it does neither, the
         column rolls as on rubber. 0 is a point.
     normal_restitution
-        e_n, speed at which the struck point leaves the plane over that of its approach.
+        e_n, normal speed of the struck point after an impact over that before it.
     damping, spin_damping, rolling_resistance
         As for `Rolling`, while the rim touches.
     passage_tilt
-        Where a tilt below this stops falling [rad], the base strikes the plane; by default 0.01 c.
+        Minimum tilt of a swing below which the base strikes the plane [rad]; by default 0.01 c.
     incline, incline_direction
-        Angle of the plane to the horizontal [rad], and azimuth of the way down. Base motions are given along the plane
-        and along its normal.
+        Angle of the plane to the horizontal [rad], and azimuth of its downward direction [rad]. Base motions refer to
+        the plane and its normal.
 
     Raises
     ------
     ParameterError
-        If `column` is no Column, a number is out of range, or the static coefficient is below the kinetic one.
+        If `column` is not a Column, a number is out of range, or the static coefficient is below the kinetic one.
 
     Notes
     -----
