@@ -76,6 +76,19 @@ sphinx_gallery_conf = {
     "gallery_dirs": ["tutorials", "gallery"],
     "filename_pattern": r"\.py$",
     "within_subsection_order": "FileNameSortKey",
+    "subsection_order": [
+        f"../examples/gallery/{folder}"
+        for folder in (
+            "rocking_and_rolling",
+            "columns_and_motions",
+            "earthquakes",
+            "maps_and_basins",
+            "orbits",
+            "models",
+            "conveyors",
+            "plots_and_animations",
+        )
+    ],
     "image_scrapers": ("figure_scraper.new_figures", "matplotlib"),
     "ignore_repr_types": r"matplotlib|Animation",  # shown as images, not as text
     "image_srcset": ["2x"],

@@ -15,10 +15,12 @@ curves = sb.studies.exact_response(model, line, angular_frequency=(1.2, 3.0))
 kinds = curves["bifurcation_kind"].values
 for kind, at in zip(kinds, curves["bifurcation_angular_frequency"].values, strict=True):
     print(f"{kind} at {at:.6f} ω₀")
+averaged = float(curves["averaged_critical_frequency"])
+print(f"averaged theory: stable above {averaged:.6f} ω₀")
 
 figure = sb.plot(curves)
 
 # %%
-# Bold: stable orbits. The averaged theory of rolling (dashed) is close to the mean
-# tilt, but it puts the loss of stability at a frequency that is too low. See
-# :doc:`/results/exact-orbits`.
+# Bold: stable orbits; shaded: the range of the tilt over a period. The averaged theory
+# of rolling (dashed) is close to the mean tilt, but its critical frequency is too low.
+# See :doc:`/results/exact-orbits`.
