@@ -1,9 +1,10 @@
 """
-How likely does a column overturn at a given intensity? A fragility curve
-=========================================================================
+How likely is overturning at a given intensity? A fragility curve
+=================================================================
 
 Fit a lognormal fragility curve to runs under 20 synthetic records at 10 scales, with
-intervals from a bootstrap over the records.
+intervals from a bootstrap over the records. An engineer combines the curve with the
+seismic hazard of a site.
 """
 
 import numpy as np
@@ -17,6 +18,7 @@ quakes = {}
 for seed in range(20):
     made = noise.record(np.random.default_rng(seed), components=2, step=0.02)
     quakes[f"synthetic {seed}"] = made.trimmed(0.0, 14.0).scaled_to(1.0)  # m/s²
+
 column = sb.Column.solid(radius=0.4, height=4.0, density=2700.0)  # m, m, kg/m³
 runs = sb.earthquakes.incremental_dynamic_analysis(
     sb.Slender(column, damping=0.03), quakes, scales=np.geomspace(1.6, 10.0, 10)

@@ -27,5 +27,5 @@ figure = sb.plot(found)
 
 # %%
 # Above the diagonal the round column tilts farther than the planar block. The two also
-# lose energy in different ways: the block at each impact, the round column by damping
-# only. See :doc:`/how-to/scaled-records`.
+# lose energy in different ways: both by the same damping, and the block at each impact,
+# too. See :doc:`/how-to/scaled-records`.
