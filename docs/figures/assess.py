@@ -1,4 +1,4 @@
-"""Draws the figures of the page "Assessing columns under records" into docs/_static/assess.
+"""Draws the figures of the page "Assess columns under records and write a report" into docs/_static/assess.
 
 Run it with `python docs/figures/assess.py`; it runs the study examples/assess/study.toml, some minutes on one core.
 """

@@ -1,6 +1,6 @@
-"""Draws the figures of the page "spectra" into docs/_static/spectra; takes some minutes on two cores.
+"""Draws the figures of the page "Overturning spectra and rocking spectra" into docs/_static/spectra.
 
-Run it with `python docs/figures/spectra.py`.
+Run it with `python docs/figures/spectra.py`; it takes some minutes on two cores.
 """
 
 import numpy as np
@@ -14,7 +14,7 @@ STONE = sb.Column.solid(radius=0.5, height=5.0, density=2000.0)
 
 
 def pulse() -> xr.Dataset:
-    """Overturn by one sine: frequency and amplitude, for three frictions."""
+    """Overturn by one sine: frequency and amplitude, for three damping values."""
     column = sb.Column.dimensionless(slenderness=0.1)
     sine = sb.Pulse.one_sine(acceleration=0.1, angular_frequency=1.0)
     over = {"angular_frequency": np.linspace(0.5, 9.0, 86) * column.frequency_parameter, "damping": [0.02, 0.1, 0.2]}

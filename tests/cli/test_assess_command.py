@@ -139,7 +139,7 @@ def test_how_to_compute_is_refused_where_nothing_is_computed(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("gone", "told"),
     [
-        ("[dissipation]", "dissipation is missing: how fast a column in space loses energy"),
+        ("[dissipation]", "dissipation is missing: it decides the outcome"),
         ("friction_coefficient", "friction_coefficient is missing"),
         ("units", "the file names no unit"),
     ],

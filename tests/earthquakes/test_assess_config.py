@@ -45,7 +45,7 @@ def test_a_study_describes_the_arguments_of_assess():
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        ({"dissipation": None}, ["dissipation is missing: how fast a column in space loses energy"]),
+        ({"dissipation": None}, ["dissipation is missing: it decides the outcome"]),
         ({"friction_coefficient": None}, ["friction_coefficient is missing: the friction between"]),
         (
             {"dissipation": None, "columns": {"tank": {**COLUMN, "hight": 1}}},

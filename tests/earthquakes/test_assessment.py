@@ -429,7 +429,7 @@ def test_many_records_give_a_fragility_and_few_give_none(found):
         ({"margin_scales": [1.0]}, "margin_scales must be positive numbers, 2 or more"),
         (
             {"columns": {"planar": sb.PlanarRocking(sb.Column.dimensionless(0.1))}},
-            "must be a model of a column in space",
+            "must be a three-dimensional model",
         ),
     ],
 )

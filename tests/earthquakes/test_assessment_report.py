@@ -173,7 +173,7 @@ def test_the_page_names_every_record_column_and_what_it_rests_on(found, page):
     wanted += [record["digest"] for record in found.setting["records"].values()]
     for words in wanted:
         assert words in text, words
-    for heading in ("Assumptions", "What is not covered", "What the contact must bear", "Software", "References"):
+    for heading in ("Assumptions", "What is not covered", "Contact demand", "Software", "References"):
         assert heading in page.headings
 
 
@@ -192,7 +192,9 @@ def test_a_column_that_always_overturns_and_one_that_never_moves_are_described_s
     always, never = _only(found, "slim <1>", "strong"), _only(found, "stout", "weak & quiet")
     (row,) = verdict_table(always).rows
     assert row[1] == "NOT shown safe"
-    assert row[2].startswith("Overturned at the recorded level under the one record (strong). Least overturning scale")
+    assert row[2].startswith(
+        "Overturned at the recorded level under the one record (strong). Smallest overturning scale"
+    )
     findings = dict(column_findings(never, "stout").rows)
     assert findings["tilt, at the recorded level"] == "It did not rock."
     assert "No scale factor from 0.475 to 3 overturned it" in findings["margin"]
@@ -379,8 +381,8 @@ def test_the_history_shows_the_last_run_that_stands_and_the_first_that_overturns
     ("need", "slipping", "first", "told"),
     [
         (0.4, np.nan, 0, "No scale factor that was run for the margin needed more than the stated friction."),
-        (0.5, 2.5, 0, "needs more friction than stated is 2.5, above the least scale that overturned it: beyond"),
-        (0.9, 0.8, 1, "is 0.8, in some case below the least scale that overturned it: the base would slip first"),
+        (0.5, 2.5, 0, "needs more friction than stated is 2.5, above the smallest overturning scale: beyond"),
+        (0.9, 0.8, 1, "is 0.8, in some case below the smallest overturning scale: the base would slip first"),
         (np.nan, np.nan, 0, "The friction needed at other scales was not computed."),
     ],
 )

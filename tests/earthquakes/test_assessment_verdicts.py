@@ -146,7 +146,9 @@ def test_a_column_overturned_as_recorded_is_not_shown_safe_and_the_records_are_n
         "overturned at the recorded level under 1 of 3 records (A) and under 1 more only at another dissipation than "
         "central (B at low)."
     )
-    assert least_overturning_scale(assessment, "k") == "Least overturning scale of all cases: 0.7 (B, low dissipation)."
+    assert (
+        least_overturning_scale(assessment, "k") == "Smallest overturning scale of all cases: 0.7 (B, low dissipation)."
+    )
 
 
 def test_a_column_overturned_at_one_stated_dissipation_only_is_not_shown_safe():
@@ -206,12 +208,12 @@ def test_a_column_that_slides_before_it_rocks_is_not_described_where_a_record_ca
 @pytest.mark.parametrize(
     ("least", "decided", "words"),
     [
-        (2.0, 5.0, "Least overturning scale of all cases: 2 (B, low dissipation)."),
-        (2.0, 3.0, "Least overturning scale of all cases: 2 (B, low dissipation)."),
+        (2.0, 5.0, "Smallest overturning scale of all cases: 2 (B, low dissipation)."),
+        (2.0, 3.0, "Smallest overturning scale of all cases: 2 (B, low dissipation)."),
         (
             2.0,
             0.4,
-            "Least overturning scale of all cases: 2 (B, low dissipation); not every scale from 0.4 on was decided.",
+            "Smallest overturning scale of all cases: 2 (B, low dissipation); not every scale from 0.4 on was decided.",
         ),
         (
             2.0,
@@ -234,21 +236,20 @@ def test_the_least_scale_is_stated_with_the_scales_that_were_not_decided(least, 
 @pytest.mark.parametrize(
     ("slid", "words"),
     [
-        ({}, "By the model that slides it did not overturn, and slid by up to 12 mm."),
+        ({}, "With the sliding model it did not overturn, and slid by up to 12 mm."),
         (
             {"A": (-1, 0)},
-            "By the model that slides it was not decided under A, did not overturn under B, C, and slid by up to 12 "
-            "mm.",
+            "With the sliding model it was not decided under A, did not overturn under B, C, and slid by up to 12 mm.",
         ),
         (
             {"A": (1, 0), "B": (-1, 0)},
-            "By the model that slides it overturned under A, was not decided under B, did not overturn under C, and "
+            "With the sliding model it overturned under A, was not decided under B, did not overturn under C, and "
             "slid by up to 12 mm.",
         ),
-        (dict.fromkeys(RECORDS, (-1, 0)), "By the model that slides it was not decided under A, B, C."),
+        (dict.fromkeys(RECORDS, (-1, 0)), "With the sliding model it was not decided under A, B, C."),
         (
             {"C": (0, 1)},
-            "By the model that slides it did not overturn, and slid by up to 12 mm. Rounding could change the outcome "
+            "With the sliding model it did not overturn, and slid by up to 12 mm. Rounding could change the outcome "
             "under C.",
         ),
     ],

@@ -101,7 +101,7 @@ def test_overturned_columns_lie_in_the_margins():
     np.testing.assert_array_equal(points[:, 1] > end, np.isinf(space))
     inside = np.isfinite(worst) & np.isfinite(space)
     np.testing.assert_allclose(points[inside], np.stack([worst, space], axis=-1)[inside])
-    assert "in space only: 1, in a plane only: 0, in both: 2" in axes.get_title(loc="left")
+    assert "in three dimensions only: 1, planar only: 0, both: 2" in axes.get_title(loc="left")
 
 
 def test_directions_are_drawn_by_the_least_scale_that_overturns():
@@ -148,6 +148,6 @@ def test_flips_are_counted_by_change():
     table, bars = figure.axes
     assert [bar.get_width() for bar in bars.patches] == [1.0, 1.0, 0.0]
     assert [text.get_text() for text in table.get_xticklabels()] == ["quake 0 *", "quake 1", "quake 2"]
-    assert table.get_title(loc="left") == "1 of 3 verdicts stand under every change (*)"
+    assert table.get_title(loc="left") == "1 of 3 verdicts stay under every change (*)"
     colours = np.array([patch.get_facecolor() for patch in table.patches]).reshape(3, 3, 4)
     assert len(np.unique(colours.reshape(9, 4), axis=0)) == 5

@@ -53,7 +53,7 @@ def test_what_is_not_fitted_or_not_monotone_is_said(reached):
     names = legend_of(figure)
     assert any("never\nno fit: none reached\nmedian above" in name for name in names)
     title = figure.axes[0].get_title(loc="left")
-    assert "not monotone: 1 of 20 records" in title
+    assert "not monotonic: 1 of 20 records" in title
     assert "runs counted as computed" in title
     assert "runs taken as independent" in title
 
@@ -100,4 +100,4 @@ def test_bands_of_records_that_are_not_monotone_are_named(reached, records):
     labels = [label.get_text() for label in axes.get_yticklabels()]
     assert [label for label in labels if label.endswith("*")] == ["r0 *"]
     assert figure.get_figheight() <= 9.0
-    assert legend_of(figure) == ["safe", "reached", "safe again"]
+    assert legend_of(figure) == ["survives", "reached", "survives again"]

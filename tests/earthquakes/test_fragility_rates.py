@@ -111,6 +111,14 @@ def test_the_probability_is_that_of_a_poisson_process():
     assert found["probability"].item() == pytest.approx(1.0 - np.exp(-50.0 * found["annual_rate"].item()), rel=1e-12)
 
 
+def test_one_limit_state_that_is_selected_has_its_rate():
+    fits = lognormal_fragility(2.0, 0.3)
+    (name,) = fits["limit_state"].values
+    one = annual_rate(fits.sel(limit_state=name), BENT)
+    assert one["limit_state"].values.tolist() == [name]
+    assert one["annual_rate"].item() == annual_rate(fits, BENT)["annual_rate"].item()
+
+
 def test_a_limit_state_without_a_fit_has_no_rate():
     found = annual_rate(fit_fragility([1.0, 2.0], [0, 0]), BENT)
     assert np.isnan(found["annual_rate"].item())

@@ -117,7 +117,7 @@ def test_a_record_in_one_direction_is_a_record():
 
 
 def test_a_planar_model_is_not_compared_with_itself():
-    with pytest.raises(sb.errors.UnsupportedError, match="model must be a column in space"):
+    with pytest.raises(sb.errors.UnsupportedError, match="model must be three-dimensional"):
         planar_bias(sb.PlanarRocking(slender(0.1).column), pulse(0.1), scales=[1.0])
     with pytest.raises(sb.errors.ParameterError, match="directions must hold at least one angle"):
         planar_bias(slender(0.1), pulse(0.1), scales=[1.0], directions=[])

@@ -138,7 +138,7 @@ def test_bands_of_one_column_lie_along_the_amplitude_with_the_peak_tilts_between
     (tilts,) = [line for line in axes.lines if line.get_marker() == "." and len(line.get_xdata()) == 5]
     expected = np.array([0.01, np.nan, np.nan, 0.04, np.nan]) / float(found["tipping_angle"])
     np.testing.assert_allclose(tilts.get_ydata(), expected, rtol=1e-12)
-    assert {"peak tilt where it stands", "uncertain: 1 run"} <= set(legend_of(figure))
+    assert {"peak tilt where it survives", "uncertain: 1 run"} <= set(legend_of(figure))
 
 
 def test_a_single_value_of_a_parameter_is_drawn_as_one_column():
@@ -152,7 +152,7 @@ def test_a_band_too_narrow_to_be_seen_is_drawn_and_counted_as_such(over):
     found = bands(over, [SAFE, SAFE, FALLEN, SAFE, SAFE], record)
     narrow = found.assign(band_from=0.0 * found["band_from"] + 3.0, band_to=0.0 * found["band_to"] + 3.001)
     count = 1 if over is None else 3
-    label = f"overturns, narrower than drawn: {count} band{'s' if count > 1 else ''}"
+    label = f"overturns, narrower than drawn: {count} interval{'s' if count > 1 else ''}"
     figure = sb.plot(narrow)
     assert label in legend_of(figure)
     (axes,) = figure.axes

@@ -66,9 +66,9 @@ def _row(fits: "xr.Dataset", rates: "xr.Dataset | None", place: int) -> dict[str
 def print_fits(runs: "xr.Dataset", fits: "xr.Dataset", parts: "xr.Dataset | None", rates: "xr.Dataset | None") -> None:
     """Print a row for each limit state, and remarks that readers of the table need."""
     unit = _UNITS.get(str(fits["median"].attrs.get("units")), "")
-    header = ["limit state", f"median{unit}", "dispersion", "reached", "not monotone"]
+    header = ["limit state", f"median{unit}", "dispersion", "reached", "not monotonic"]
     if rates is not None:
-        header += ["a year", f"in {rates.attrs['years']:g} years"]
+        header += ["per year", f"in {rates.attrs['years']:g} years"]
     rows = [_row(fits, rates, place) for place in range(fits.sizes["limit_state"])]
     over = " × ".join(plural(runs.sizes[dim], str(dim).replace("_", " ")) for dim in runs["outcome"].dims)
     title = f"{number_of_runs(runs, f': {over}')}; {model_named(runs)}; over the {runs.attrs['intensity']}"
@@ -79,7 +79,7 @@ def print_fits(runs: "xr.Dataset", fits: "xr.Dataset", parts: "xr.Dataset | None
     if few := few_records(records):
         print(few)
     if worst > 0:
-        print(f"not monotone: {worst} of {records} records are safe again at a higher scale than one that is not")
+        print(f"not monotonic: {worst} of {records} records survive at a scale above one that reached a limit state")
     if parts is not None:
         print(describe_parts(parts))
     if rates is not None:
@@ -143,7 +143,7 @@ def _remarks_on_rates(rows: Sequence[Mapping[str, Any]]) -> list[str]:
     lines = [f"annual rates: up to {100.0 * max(shares):.0f} % from beyond the hazard curve"] if shares else []
     for row in rows:
         if why := row["rate_withheld"]:
-            bounds = f"it is between {row['rate_low']:.1e} and {row['rate_high']:.1e} a year"
+            bounds = f"it is between {row['rate_low']:.1e} and {row['rate_high']:.1e} per year"
             lines.append(f"annual rate of {row['name']!r}: withheld: {why}; {bounds}")
     return lines
 

@@ -1,4 +1,4 @@
-"""A fragility as it is described: the runs, the fits to them, what of it is of records, and how often in a year."""
+"""A fragility study from its description: runs, fitted curves, parts of the dispersion, and annual rates."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -37,7 +37,7 @@ _OF_SAMPLES, _OF_RESAMPLES, _OF_PARTS = range(3)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FragilityStudy:
-    """Records, scales and spreads, and what is made of the runs.
+    """A fragility study: records, scales and uncertain properties, and the fits to the runs.
 
     Parameters
     ----------
@@ -46,15 +46,15 @@ class FragilityStudy:
     scales, rotations, vertical, tail, intensity, component
         As for `incremental_dynamic_analysis`.
     spreads, samples
-        How properties spread, and how many samples of them are drawn; none without spreads.
+        Distributions of properties, and the number of samples drawn; none without spreads.
     seed
-        Of everything drawn.
+        Seed of all random numbers.
     counting, confidence, resamples
         As for `fit_fragility`.
     hazard
         The hazard curve, in `intensity` and `component`.
     years
-        For which probabilities are stated.
+        Time for which probabilities are stated.
     options
         Of all runs.
     """
@@ -79,7 +79,7 @@ class FragilityStudy:
 
     @classmethod
     def of(cls, setup: FragilitySetup) -> Self:
-        """Return the study that is described.
+        """Build the study of a description.
 
         Raises
         ------
@@ -118,7 +118,7 @@ class FragilityStudy:
         resume: bool = False,
         progress: Progress | None = None,
     ) -> xr.Dataset:
-        """Return the incremental dynamic analysis, with the samples of the properties."""
+        """Run the incremental dynamic analysis, with the samples of the properties."""
         remark_on({"column": self.model.column}, self.records)
         samples = None
         if self.spreads:
@@ -142,7 +142,7 @@ class FragilityStudy:
         )
 
     def fits(self, runs: xr.Dataset) -> xr.Dataset:
-        """Return the fragility of each limit state; intervals from resamples where there are two records or more."""
+        """Fit the fragility of each limit state; from two records on, intervals are a bootstrap over records."""
         several = runs.sizes.get("record", 1) >= _LEAST
         return fragility_of_runs(
             runs,
@@ -153,7 +153,7 @@ class FragilityStudy:
         )
 
     def parts(self, runs: xr.Dataset, limit_state: str = _OVERTURNING) -> xr.Dataset | None:
-        """Split the dispersion into records and properties; None where the data do not suffice.
+        """Split the dispersion into records and properties; None if the data do not suffice.
 
         It needs one rotation, one choice of the vertical component, and at least two records and two samples.
         """
@@ -167,7 +167,7 @@ class FragilityStudy:
         return dispersion_parts(level, plain, confidence=self.confidence, rng=rng).assign_attrs(limit_state=limit_state)
 
     def rates(self, fits: xr.Dataset) -> xr.Dataset | None:
-        """Return annual rates of the limit states, None without a hazard."""
+        """Compute annual rates of the limit states; None without a hazard."""
         return None if self.hazard is None else annual_rate(fits, self.hazard, years=self.years)
 
     def _stream(self, place: int) -> np.random.Generator:

@@ -1,4 +1,4 @@
-"""Incremental dynamic analysis: each record at many scales, from rest to overturning and perhaps safe again."""
+"""Incremental dynamic analysis: each record at many scales, up to overturning and beyond."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -54,10 +54,10 @@ def incremental_dynamic_analysis(
     progress: Progress | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
-    """Compute the outcome of a column under each record at each scale.
+    """Compute the response of a column to each record at each scale (incremental dynamic analysis).
 
-    All runs begin upright at rest unless `tilt` says otherwise; the column is released when the base acceleration
-    exceeds c g. Each lasts to the end of its record and a `tail` of free vibration longer.
+    All runs start upright at rest unless `tilt` is given. The column starts to rock when the base acceleration exceeds
+    c g. Each run lasts to the end of its record, plus the free-vibration time `tail`.
 
     Parameters
     ----------
@@ -68,32 +68,34 @@ def incremental_dynamic_analysis(
     scales
         Factors of the records, vertical components included; positive.
     rotations
-        Angles about the vertical by which the records are turned [rad]. Turning the base turns the motion of a round
-        column that stands upright on level ground and changes nothing else: there it shows how repeatable a run is.
+        Angles about the vertical by which the records are rotated [rad]. For a round column that stands upright on
+        level ground, a rotation of the base rotates the motion and changes nothing else: it shows how repeatable a
+        run is.
     vertical
-        Whether the vertical component acts, with and without it for (True, False).
+        Whether the vertical component acts; (True, False) runs both.
     parameters
-        Numbers of column and model that differ from one property sample to the next, such as {"damping": […], "size":
-        […]}, arrays of one length as from `property_samples`; or numbers that all runs have.
+        Parameters of column and model that differ between property samples, such as {"damping": […], "size": […]}:
+        arrays of one length, as from `property_samples`; or numbers for all runs.
     tail
-        How long columns are followed after the end of the record [s]; by default 20/p, of each column its own p.
+        Free-vibration time after the end of the record [s]; by default 20/p with p = `frequency_parameter` of each
+        column.
     intensity, component
         The intensity measure of each run, and the definition of its horizontal component: "RotD50", "RotD100",
-        "geometric mean" or "larger component". A motion along one line has one component, the same in all of them.
+        "geometric mean" or "larger component". For a motion along one line all definitions agree.
     store, executor, resume, progress
         As in `run_sweep`.
     **options
-        What all runs have in common, as in `simulate_ensemble`.
+        Options of all runs, as in `simulate_ensemble`.
 
     Returns
     -------
     xarray.Dataset
         Of kind "incremental dynamic analysis". Over `record`, `rotation` [rad], `vertical`, `property_sample` and
-        `scale`: all variables of ensembles; `tilt_ratio`, the largest tilt over α = atan c, infinite where the column
-        overturned and NaN where a run is undecided; `intensity` (over what it depends on); `followed`, the duration
-        [s]; and over `limit_state` too `reached`, from `limit_states`. A dimension of one record given alone, or of
-        one rotation, or one answer to `vertical`, is left out but for its coordinate; `property_sample` is there
-        where samples are given. `computed` is the number of runs computed.
+        `scale`: all variables of ensembles; `tilt_ratio`, the peak tilt over α = atan c, infinite if the column
+        overturned and NaN if the run is undecided; `intensity` (over the dimensions it depends on); `followed`, the
+        duration [s]; and, over `limit_state` too, `reached`, from `limit_states`. A single record, rotation or choice
+        of `vertical` has a coordinate and no dimension; `property_sample` exists if samples are given. `computed` is
+        the number of runs computed.
 
     Raises
     ------
@@ -104,8 +106,8 @@ def incremental_dynamic_analysis(
 
     Notes
     -----
-    D. Vamvatsikos and C. A. Cornell, "Incremental dynamic analysis", Earthquake Engng Struct. Dyn. 31 (2002). Nothing
-    is taken to be monotonic: every scale is run.
+    D. Vamvatsikos and C. A. Cornell, "Incremental dynamic analysis", Earthquake Engng Struct. Dyn. 31 (2002). Every
+    scale is run: survival need not be monotonic.
 
     Examples
     --------

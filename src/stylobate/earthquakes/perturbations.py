@@ -1,4 +1,4 @@
-"""Small changes of record, column and integration under which a verdict should stand."""
+"""Small changes of record, column and integration that should not alter a verdict."""
 
 import math
 from abc import ABC, abstractmethod
@@ -23,7 +23,7 @@ class PerturbationOf(Enum):
 
 
 class Perturbation(ABC):
-    """A small change; a subclass says what it changes, and what it does."""
+    """A small change of record, column or integration; a subclass overrides the members that it changes."""
 
     __slots__ = ()
 
@@ -32,35 +32,35 @@ class Perturbation(ABC):
     @property
     @abstractmethod
     def name(self) -> str:
-        """What it is called in tables and figures."""
+        """Its name in tables and figures."""
 
     def changed_motion(self, motion: BaseMotion) -> BaseMotion | None:
-        """Return the base motion after the change; None where it cannot be changed so."""
+        """Return the base motion after the change; None if this change does not apply."""
         return motion
 
     def changed_values(self, model: Model) -> dict[str, float] | None:
-        """Return the parameters of column and model after the change; None where there is nothing to change."""
+        """Return the parameters of column and model after the change; None if there is nothing to change."""
         del model
         return {}
 
     @property
     def scale_factor(self) -> float:
-        """By what the scale of the record is multiplied."""
+        """Factor on the scale of the record."""
         return 1.0
 
     @property
     def turn(self) -> float:
-        """By what the record is turned about the vertical [rad]."""
+        """Rotation of the record about the vertical [rad]."""
         return 0.0
 
     def delay(self, motion: BaseMotion) -> float:
-        """Return by how much later the base motion begins [s]."""
+        """Return the delay of the base motion [s]."""
         del motion
         return 0.0
 
     @property
     def tolerance_factor(self) -> float:
-        """By what the tolerances of the integration are multiplied."""
+        """Factor on the tolerances of the integration."""
         return 1.0
 
     @property
@@ -79,7 +79,7 @@ class _Scaled(Perturbation):
 
 @dataclass(frozen=True, slots=True)
 class ScaledRecord(_Scaled):
-    """The record, all components, times `factor`."""
+    """Multiply all components of the record by `factor`."""
 
     of: ClassVar[PerturbationOf] = PerturbationOf.RECORD
 
@@ -96,7 +96,7 @@ class ScaledRecord(_Scaled):
 
 @dataclass(frozen=True, slots=True)
 class TurnedRecord(Perturbation):
-    """The record turned by `angle` [rad] about the vertical; a round column on level ground does not feel it."""
+    """Rotate the record by `angle` [rad] about the vertical; this does not affect a round column on level ground."""
 
     angle: float
     of: ClassVar[PerturbationOf] = PerturbationOf.RECORD
@@ -117,7 +117,7 @@ class TurnedRecord(Perturbation):
 
 @dataclass(frozen=True, slots=True)
 class Polarity(Perturbation):
-    """The horizontal components in the opposite sense, which is half a turn; a round column does not feel it."""
+    """Reverse the horizontal components, which is half a turn; this does not affect a round column."""
 
     of: ClassVar[PerturbationOf] = PerturbationOf.RECORD
 
@@ -134,7 +134,7 @@ class Polarity(Perturbation):
 
 @dataclass(frozen=True, slots=True)
 class ComponentScaled(Perturbation):
-    """One component of a record times `factor`: an error of one channel. `axis` is "x", "y" or "z"."""
+    """Multiply one component of a record by `factor`: an error of one channel. `axis` is "x", "y" or "z"."""
 
     axis: str
     factor: float
@@ -163,7 +163,7 @@ class ComponentScaled(Perturbation):
 
 @dataclass(frozen=True, slots=True)
 class WithoutVertical(Perturbation):
-    """The record without its vertical component."""
+    """Remove the vertical component of the record."""
 
     of: ClassVar[PerturbationOf] = PerturbationOf.RECORD
 
@@ -179,7 +179,7 @@ class WithoutVertical(Perturbation):
 
 @dataclass(frozen=True, slots=True)
 class Shifted(Perturbation):
-    """The record begun a part of its step later: it is the same record, integrated between other times."""
+    """Delay the record by a fraction of its step: the same record, integrated between other times."""
 
     part: float = 0.5
     of: ClassVar[PerturbationOf] = PerturbationOf.RECORD
@@ -193,13 +193,13 @@ class Shifted(Perturbation):
         return f"{self.part:g} steps later"
 
     def delay(self, motion: BaseMotion) -> float:
-        """Return the part of a step [s]; that of a motion without steps is 2/ω of its highest frequency."""
+        """Return the fraction of a step [s]; the step of a motion without steps is 2/ω of its highest frequency."""
         return self.part * (motion.step if isinstance(motion, Record) else 2.0 / motion.highest_frequency)
 
 
 @dataclass(frozen=True, slots=True)
 class Resampled(Perturbation):
-    """A record at `factor` times its step, band-limited."""
+    """Resample the record at `factor` times its step, band-limited."""
 
     factor: float = 0.5
     of: ClassVar[PerturbationOf] = PerturbationOf.RECORD
@@ -219,7 +219,7 @@ class Resampled(Perturbation):
 
 @dataclass(frozen=True, slots=True)
 class Filtered(Perturbation):
-    """A record through a Butterworth filter, corners in Hz, both ways."""
+    """Filter the record by a Butterworth filter, corners in Hz, forwards and backwards."""
 
     highpass: float | None = None
     lowpass: float | None = None
@@ -242,7 +242,7 @@ class Filtered(Perturbation):
 
 @dataclass(frozen=True, slots=True)
 class DissipationScaled(_Scaled):
-    """Every dissipation of the model times `factor`: damping, and the loss of an impact, 1 − restitution."""
+    """Multiply every dissipation of the model by `factor`: damping, and the loss at impacts, 1 − restitution."""
 
     of: ClassVar[PerturbationOf] = PerturbationOf.DISSIPATION
 
@@ -265,7 +265,7 @@ class DissipationScaled(_Scaled):
 
 @dataclass(frozen=True, slots=True)
 class SlendernessScaled(_Scaled):
-    """The base radius, and with it the slenderness, times `factor`."""
+    """Multiply the base radius, and with it the slenderness, by `factor`."""
 
     of: ClassVar[PerturbationOf] = PerturbationOf.GEOMETRY
 
@@ -281,7 +281,7 @@ class SlendernessScaled(_Scaled):
 
 @dataclass(frozen=True, slots=True)
 class SizeScaled(_Scaled):
-    """All lengths of the column times `factor`."""
+    """Multiply all lengths of the column by `factor`."""
 
     of: ClassVar[PerturbationOf] = PerturbationOf.GEOMETRY
 
@@ -298,7 +298,7 @@ class SizeScaled(_Scaled):
 
 @dataclass(frozen=True, slots=True)
 class ToleranceScaled(_Scaled):
-    """The tolerances of the integration times `factor`."""
+    """Multiply the tolerances of the integration by `factor`."""
 
     of: ClassVar[PerturbationOf] = PerturbationOf.INTEGRATION
 
@@ -315,7 +315,7 @@ class ToleranceScaled(_Scaled):
 
 @dataclass(frozen=True, slots=True)
 class RestEnergy(Perturbation):
-    """The energy below which a column comes to rest, `rest_energy` of `simulate`, another `value`.
+    """Set the energy below which a column comes to rest, `rest_energy` of `simulate`, to another `value`.
 
     A column that comes to rest forgets the motion that was left; with a lower threshold it goes on hopping, and the
     next push finds it elsewhere. No threshold is the right one: that of a floor is not known.
@@ -357,4 +357,4 @@ SMALL_PERTURBATIONS: tuple[Perturbation, ...] = (
     *(ToleranceScaled(factor) for factor in (0.01, 100.0)),
     *(RestEnergy(value) for value in (1e-6, 1e-7)),
 )
-"""The changes under which `robustness` repeats a verdict, unless others are given."""
+"""The default changes of `robustness`."""

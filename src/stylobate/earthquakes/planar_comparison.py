@@ -1,4 +1,4 @@
-"""Housner's planar column against the column in space, record by record: which of the two falls, and the bias."""
+"""Planar (Housner) against three-dimensional rocking, record by record: which column overturns, and the ratio."""
 
 import math
 from collections.abc import Sequence
@@ -41,24 +41,25 @@ def planar_bias(
     progress: Progress | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
-    """Return the answer of Housner's planar column to each horizontal component, against that of the column in space.
+    """Compare Housner's planar column under each horizontal component with the three-dimensional column.
 
-    The planar column sees the component along one direction and the vertical one; of several directions the worst
-    counts, as in practice. The column in space sees the whole record.
+    The planar column sees the component along one direction and the vertical one; the worst of several directions
+    counts, as in practice. The three-dimensional column sees the whole record. For a comparison with equal dissipation
+    pass `planar=PlanarRocking(column, damping=…, restitution=1.0)`.
 
     Parameters
     ----------
     model
-        The column in space.
+        The three-dimensional column.
     records, scales, tail, intensity
         As for `incremental_dynamic_analysis`.
     directions
-        Azimuths of the planes [rad]; by default the two components of the records.
+        Azimuths of the planes [rad], from x anticlockwise; by default the two components of the records.
     planar
-        The planar column; by default that of the same body with the same `damping` and `rolling_resistance`, and
-        with Housner's restitution at impacts, which keeps the angular momentum about the edge on which it lands.
+        The planar column; by default the same body with the same `damping` and `rolling_resistance`, and with
+        Housner's restitution at impacts, which conserves the angular momentum about the edge on which it lands.
     least_ratio
-        Peak tilts below this fraction of α are no rocking; their ratio is left out (NaN).
+        Peak tilts below this fraction of α do not count as rocking; their ratio is NaN.
     executor, progress, **options
         As for `incremental_dynamic_analysis`.
 
@@ -66,18 +67,18 @@ def planar_bias(
     -------
     xarray.Dataset
         Of kind "planar bias". Over `record`, `direction` and `scale` `planar_outcome` and `planar_tilt_ratio`; over
-        `record` and `scale` `outcome` and `tilt_ratio` of the column in space, `worst_planar_tilt_ratio`, the largest
-        over the directions, `log_ratio` = ln(tilt in space/worst planar tilt) where both rock and neither overturns,
-        and `intensity`. Over `record` `least_overturning` and, over `direction` too, `least_planar_overturning`: the
-        least of the scales that overturns, NaN where none does; `worst_least_planar_overturning`, and
-        `log_capacity_ratio` = ln(least scale in space/least planar one). Over `scale` the bias: `bias`, the mean of
-        `log_ratio` over the records, its `scatter` (standard deviation), `standard_error` (scatter/√records) and
-        `compared`, how many records; `overall_bias`, `overall_scatter`, `overall_standard_error` and
-        `overall_compared`, those of the mean of `log_ratio` over the scales of each record; `only_space` and
-        `only_planar`, over `scale`, how many records overturn one of the two only. Also `capacity_bias`,
-        `capacity_scatter`, `capacity_standard_error`, `capacities_compared` of
-        `log_capacity_ratio`. All these are NaN of fewer than two records. A positive bias of tilts, or a negative one
-        of capacities, says that the planar column is on the unsafe side.
+        `record` and `scale` `outcome` and `tilt_ratio` of the three-dimensional column, `worst_planar_tilt_ratio`, the
+        maximum over the directions, `log_ratio` = ln(three-dimensional/worst planar tilt) if both rock and neither
+        overturns, and `intensity`. Over `record` `least_overturning` and, over `direction` too,
+        `least_planar_overturning`: the smallest of the scales that overturns, NaN if none does;
+        `worst_least_planar_overturning`, and `log_capacity_ratio` = ln(smallest scale, three-dimensional/planar). Over
+        `scale` the bias: `bias`, the mean of `log_ratio` over the records, its `scatter` (standard deviation),
+        `standard_error` (scatter/√records) and `compared`, how many records; `overall_bias`, `overall_scatter`,
+        `overall_standard_error` and `overall_compared`, those of the mean of `log_ratio` over the scales of each
+        record; `only_space` and `only_planar`, over `scale`, how many records overturn only one of the two. Also
+        `capacity_bias`, `capacity_scatter`, `capacity_standard_error`, `capacities_compared` of `log_capacity_ratio`.
+        All these are NaN for fewer than two records. If the bias of tilts is positive, or the bias of capacities
+        negative, the planar column is unconservative.
 
     Raises
     ------
@@ -88,9 +89,9 @@ def planar_bias(
 
     Notes
     -----
-    With the same restitution, and no loss else, `Wobbling` under a record along one line is the planar column: the
-    ratio is 1. In space a column hardly ever passes the upright, so that restitution takes next to nothing from it:
-    the bias is of geometry and dissipation together, and as good as the dissipation chosen for both.
+    With the same restitution and no other loss, `Wobbling` under a record along one line is the planar column: the
+    ratio is 1. In three dimensions a column seldom passes the vertical, so restitution takes hardly any energy from
+    it. The bias therefore combines geometry and dissipation, and depends on the dissipation chosen for both.
 
     Examples
     --------
@@ -99,12 +100,12 @@ def planar_bias(
     >>> planar = sb.PlanarRocking(model.column, damping=0.02, restitution=1.0)
     >>> pulse = sb.Pulse.one_sine(acceleration=1.0, angular_frequency=8.0)
     >>> found = planar_bias(model, pulse, scales=[0.25, 0.3], directions=[0.0], planar=planar)
-    >>> found["log_ratio"].values.round(3).tolist()    # a slender column in its plane
+    >>> found["log_ratio"].values.round(3).tolist()    # a slender column, planar motion
     [[0.0, 0.0]]
     """
     if not isinstance(model, Model) or model.planar_only:
         message = (
-            f"model must be a column in space, such as Wobbling(column), to compare with a planar one; got {model!r}"
+            f"model must be three-dimensional to compare with a planar one (got {model!r}). Use one such as Wobbling."
         )
         raise UnsupportedError(message)
     angles = checked_values("directions", "rotation", np.atleast_1d(np.asarray(directions)))
@@ -173,14 +174,16 @@ def _compared(space: xr.Dataset, flat: xr.Dataset, least_ratio: float) -> xr.Dat
             "planar_outcome": flat["outcome"],
             "planar_tilt_ratio": flat["tilt_ratio"],
             "worst_planar_tilt_ratio": worst,
-            "log_ratio": _named(log_ratio, "ln(peak tilt in space/in a plane)"),
+            "log_ratio": _named(log_ratio, "ln(peak tilt, three-dimensional/planar)"),
             "intensity": space["intensity"],
-            "only_space": _records((fallen == 1) & (planar_fallen == 0), "records that overturn it in space only"),
-            "only_planar": _records((fallen == 0) & (planar_fallen == 1), "records that overturn it in a plane only"),
+            "only_space": _records((fallen == 1) & (planar_fallen == 0), "records that overturn the 3-D column only"),
+            "only_planar": _records(
+                (fallen == 0) & (planar_fallen == 1), "records that overturn the planar column only"
+            ),
             "least_overturning": least,
             "least_planar_overturning": least_flat,
             "worst_least_planar_overturning": worst_least,
-            "log_capacity_ratio": _named(log_capacity, "ln(least overturning scale in space/in a plane)"),
+            "log_capacity_ratio": _named(log_capacity, "ln(smallest overturning scale, three-dimensional/planar)"),
             **bias_of(log_ratio),
             **_moments(
                 log_ratio.mean("scale"),
@@ -196,7 +199,7 @@ def _compared(space: xr.Dataset, flat: xr.Dataset, least_ratio: float) -> xr.Dat
 
 
 def bias_of(log_ratio: xr.DataArray) -> dict[str, xr.DataArray]:
-    """Return mean, scatter, standard error and number over the records of ln(tilt in space/planar tilt)."""
+    """Return mean, scatter, standard error and number over the records of ln(three-dimensional/planar tilt)."""
     return _moments(log_ratio, ("bias", "scatter", "standard_error", "compared"))
 
 
@@ -214,11 +217,11 @@ def _records(chosen: xr.DataArray, long_name: str) -> xr.DataArray:
 
 def _least_scale(fallen: xr.DataArray) -> xr.DataArray:
     least = fallen["scale"].where(fallen == 1).min("scale")
-    return least.assign_attrs(units="1", long_name="least scale that overturns")
+    return least.assign_attrs(units="1", long_name="smallest overturning scale")
 
 
 def _moments(values: xr.DataArray, names: tuple[str, str, str, str]) -> dict[str, xr.DataArray]:
-    """Return mean, standard deviation, standard error and number over the records; NaN where they are too few."""
+    """Return mean, standard deviation, standard error and number over the records; NaN if they are too few."""
     number = values.notnull().sum("record")
     enough = number >= _LEAST
     mean = values.mean("record").where(enough)

@@ -1,4 +1,4 @@
-"""Uncertain properties of a column: how each spreads, and samples of them."""
+"""Uncertain properties of a column: their distributions, and samples."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from stylobate.studies.sweeps.quantities import Floats
 
 
 class Spread(Protocol):
-    """How a property spreads."""
+    """The distribution of an uncertain property."""
 
     def draw(self, nominal: float, shares: Floats) -> Floats:
         """Return the values below which these `shares` of the distribution lie; `nominal` is that of the model."""
@@ -24,7 +24,7 @@ class Spread(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class LognormalSpread:
-    """The logarithm is normal.
+    """A lognormal distribution.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class LognormalSpread:
 
 @dataclass(frozen=True, slots=True)
 class NormalSpread:
-    """Normal, cut at `least` and `most`.
+    """A normal distribution, truncated at `least` and `most`.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class NormalSpread:
 
 @dataclass(frozen=True, slots=True)
 class UniformSpread:
-    """Even between two values: what is known of a property of which only bounds are known."""
+    """A uniform distribution between two values, for a property of which only bounds are known."""
 
     least: float
     most: float
@@ -100,20 +100,19 @@ class UniformSpread:
 
 
 def property_samples(model: Model, spreads: Mapping[str, Spread], *, count: int, rng: Rng) -> dict[str, Floats]:
-    """Return samples of uncertain properties, independent of each other, for the argument `parameters`.
+    """Draw independent samples of uncertain properties, for the argument `parameters`.
 
     Parameters
     ----------
     model
-        The column as it is thought to be.
+        The column with its nominal properties.
     spreads
-        How each property spreads, by the names of parameters of column and model: damping, slenderness (changes the
-        radius), size (all lengths at one density; nominally 1), restitution, mass_height …
+        The distribution of each property, by the names of parameters of column and model: damping, slenderness (changes
+        the radius), size (all lengths at one density; nominally 1), restitution, mass_height …
     count
         The number of samples.
     rng
-        The seed or numpy.random.Generator that draws them; the first samples of a longer series are those of a shorter
-        one.
+        Seed or numpy.random.Generator. A longer series begins with the samples of a shorter one.
 
     Returns
     -------
@@ -123,7 +122,7 @@ def property_samples(model: Model, spreads: Mapping[str, Spread], *, count: int,
     Raises
     ------
     ParameterError
-        If a name is no number of column or model, or a spread does not suit it.
+        If a name is no parameter of column or model, or a distribution does not suit it.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Does the verdict stand? Every run again under small changes of record, dissipation, geometry and integration."""
+"""Robustness of verdicts: every run repeated under small changes of record, dissipation, geometry and integration."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -42,10 +42,10 @@ def robustness(
     progress: Progress | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
-    """Return which verdicts on a column flip under small changes, and how far the peak tilts then lie apart.
+    """Repeat the verdicts on a column under small changes; report which flip, and the scatter of the peak tilts.
 
-    A single rocking run is barely repeatable: near the boundary of overturning, and after many passages near the
-    upright, a change far below what is known of record and column gives another answer.
+    A single rocking run is barely repeatable. Near the boundary of overturning, and after many passages near the
+    vertical, a change far below the uncertainty of record and column changes the verdict.
 
     Parameters
     ----------
@@ -56,22 +56,22 @@ def robustness(
     changes
         The changes, one at a time; by default `SMALL_PERTURBATIONS`.
     rotations
-        Angles by which the records are turned [rad].
+        Angles by which the records are rotated [rad].
     executor, progress, **options
         As for `incremental_dynamic_analysis`.
 
     Returns
     -------
     xarray.Dataset
-        Of kind "robustness". Over `record` (and `rotation`, where there are several) and `change`: `outcome` (−1 where
-        the change does not apply, such as another step for a pulse), `tilt_ratio` (infinite where overturned),
-        `applies`; over `limit_state` too `reached` and `flips`, whether the limit state is reached with the change and
-        not without, or the other way round. Without `change`: `outcome_as_given`, `tilt_ratio_as_given`,
-        `reached_as_given` of the run without changes; `changes_compared`, how many perturbations apply and are decided;
-        `share_flipped` of them; `repeatable`, True where none flips overturning; `tilt_ratio_low` and
-        `tilt_ratio_high`, the ends of the peak tilts over all changes, infinite where one overturns; `tilt_dispersion`,
-        the standard deviation of ln(peak tilt) of those that do not overturn. Along `change` its name and `change_of`:
-        record, dissipation, geometry or integration. Its `provenance` holds model, records, options and changes.
+        Of kind "robustness". Over `record` (and `rotation`, if there are several) and `change`: `outcome` (−1 if the
+        change does not apply, such as another step for a pulse), `tilt_ratio` (infinite if overturned), `applies`;
+        over `limit_state` too `reached`, and `flips`: True if the change alters whether the limit state is reached.
+        Without `change`: `outcome_as_given`, `tilt_ratio_as_given`, `reached_as_given` of the run without changes;
+        `changes_compared`, how many changes apply and are decided; `share_flipped`, the fraction of these that flip;
+        `repeatable`, True if none flips overturning; `tilt_ratio_low` and `tilt_ratio_high`, minimum and maximum of
+        the peak tilts over all changes, infinite if one overturns; `tilt_dispersion`, the standard deviation of ln(peak
+        tilt) of those that do not overturn. Along `change` its name and `change_of`: record, dissipation, geometry or
+        integration. Its `provenance` holds model, records, options and changes.
 
     Raises
     ------
@@ -268,17 +268,17 @@ def _as_dataset(
     one = {"units": "1"}
     return changed.assign(
         applies=(changed["outcome"] != NOT_COMPUTED).assign_attrs(long_name="the change applies"),
-        flips=flips.assign_attrs(long_name="another verdict than as given"),
+        flips=flips.assign_attrs(long_name="the change alters the verdict"),
         outcome_as_given=given["outcome"],
         tilt_ratio_as_given=given["tilt_ratio"],
         reached_as_given=given["reached"],
         changes_compared=compared.assign_attrs(**one, long_name="changes that apply and are decided"),
         share_flipped=(flips.sum("change") / compared.where(compared > 0)).assign_attrs(
-            **one, long_name="share of the changes that flip the verdict"
+            **one, long_name="fraction of the changes that flip the verdict"
         ),
         repeatable=(~overturning.any("change")).assign_attrs(long_name="no change flips overturning"),
-        tilt_ratio_low=peaks.min("change").assign_attrs(**one, long_name="least peak tilt / α_c"),
-        tilt_ratio_high=peaks.max("change").assign_attrs(**one, long_name="largest peak tilt / α_c"),
+        tilt_ratio_low=peaks.min("change").assign_attrs(**one, long_name="minimum peak tilt / α_c"),
+        tilt_ratio_high=peaks.max("change").assign_attrs(**one, long_name="maximum peak tilt / α_c"),
         tilt_dispersion=logs.std(dim="change", ddof=1).assign_attrs(**one, long_name="scatter of ln(peak tilt)"),
         change_of=("change", [change.of.value for change in changes]),
     ).assign_attrs(kind="robustness", scale=scale)

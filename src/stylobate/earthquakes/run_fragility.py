@@ -21,16 +21,16 @@ def fragility_of_runs(
     resamples: int = 0,
     rng: Rng | None = None,
 ) -> xr.Dataset:
-    """Return the fragility of each limit state from an incremental dynamic analysis.
+    """Fit fragility curves to an incremental dynamic analysis, one for each limit state.
 
     Parameters
     ----------
     runs
-        From `incremental_dynamic_analysis`, whole or in part; one that was interrupted has runs not known.
+        From `incremental_dynamic_analysis`, complete or partial; after an interruption some runs are not known.
     counting
-        Which runs count as reached where a record is safe again at a higher scale.
+        How runs above the first that reached the limit state count, if the column survives there.
     confidence, resamples, rng
-        As for `fit_fragility`. Without resamples of the records the intervals take runs as independent.
+        As for `fit_fragility`. Without `resamples` the intervals treat runs as independent.
 
     Returns
     -------

@@ -71,59 +71,58 @@ def assess(
     Parameters
     ----------
     columns
-        Models of columns in space, by name; the numbers in `dissipation` replace theirs.
+        Three-dimensional models of columns, by name; the values in `dissipation` replace theirs.
     records
         Base motions that end: a sequence, or a mapping from names. Results list them in the order of their names.
     dissipation
-        By level, of which there are "low", "central" and "high" at least, numbers of the model that it declares as
-        dissipating, such as damping; the same ones at each level. There is no default: it must be stated.
+        Dissipation parameters of the model, such as damping, by level: "low", "central", "high" and any others. Each
+        level states the same ones. Required: there is no default.
     friction_coefficient
-        Of the contact between column and base, one or one for each column by name: what the friction that a run
-        needs is compared with. It must be stated.
+        Friction coefficient of the contact between column and base, one for all or one by column. The friction demand
+        of each run is compared with it. Required.
     scales
         Factors of the records at which verdicts are given; vertical components are scaled with them.
     margin_scales
-        Factors looked at for the bands that overturn, by default 60 from 0.2 to 5, evenly in their logarithm; besides
-        them the `scales` and what the changes make of them.
+        Factors of the search for overturning intervals, by default 60 from 0.2 to 5, evenly in their logarithm; the
+        `scales` and their small changes are added.
     width
-        Relative width to which the edges of bands are found.
+        Relative width to which the ends of overturning intervals are located.
     tail
-        How long columns are followed after a record [s]; by default 20/p.
+        Free-vibration time after a record [s]; by default 20/p.
     changes
         Small changes under which each verdict is repeated; by default `SMALL_PERTURBATIONS`; an empty
         sequence for none.
     changes_at
-        Levels of dissipation at which they are, such as ["central"]; by default every one that is stated.
+        Levels of dissipation with small changes, such as ["central"]; by default every stated one.
     sliding
-        Whether columns that slide before they rock, their friction being below r/h, are followed by the model `Sliding`
-        too, under each record at each of the `scales`: some seconds a run.
+        Whether columns that slide before they rock (friction coefficient below r/h) are also run with the model
+        `Sliding`, under each record at each of the `scales`: some seconds per run.
     planar
-        Whether Housner's planar column answers too.
+        Whether to compare with Housner's planar column.
     contact
         Whether runs compute contact demands.
     least_records
-        Fewer records give no fragility: by default what its intervals need to be as wide as they claim.
+        With fewer records no fragility is fitted, because its intervals would be too narrow.
     title, notes
-        What the assessment is called; assumptions of its author, for the report.
+        Title of the assessment; assumptions of its author, for the report.
     details
         Author, project, date, design spectrum and the period of Sa, for the report.
     store
-        A folder that keeps each part that is computed: with it an interrupted assessment goes on where it was, and
-        logs how much of it was known.
+        A folder that keeps each computed part: with it an interrupted assessment resumes, and logs how much it had.
     executor
         As in `run_sweep`.
     progress
-        Called with what is computed, the runs done and about how many there are.
+        Called with the name of the part, the runs done and the approximate number of runs.
     **options
         Of all runs, as in `simulate_ensemble`, such as `rest_energy`, the energy below which a column comes to rest.
 
     Returns
     -------
     Assessment
-        Its data: "columns" and "records", their numbers; "verdicts" over column, record, dissipation, vertical and
-        scale: `overturned` (1, 0, −1 not decided), `outcome`, `tilt_ratio`, what the contact must bear; "margins" over
+        Its data: "columns" and "records", their properties; "verdicts" over column, record, dissipation, vertical and
+        scale: `overturned` (1, 0, −1 not decided), `outcome`, `tilt_ratio`, contact demand; "margins" over
         column, case, record and band; "robustness" over column, dissipation, scale, record and change; "sliding" over
-        column, record and scale; "planar"; "fragility" over column where there are records enough; "histories" over
+        column, record and scale; "planar"; "fragility" over column if there are enough records; "histories" over
         column and run, of the record that governs each; "summary", counts;
         "spectra" over record and period, "ground_motions" over record and instant, as the report draws them.
 
@@ -137,11 +136,11 @@ def assess(
     Warns
     -----
     UnlikelyInputWarning
-        Of a column of more than 60 m, and of records whose names differ by case only.
+        For a column of more than 60 m, and for records whose names differ by case only.
 
     Notes
     -----
-    Records are sorted by name and every column is computed by itself: the order of either changes no number.
+    Records are sorted by name and columns are computed separately: their order changes no number.
 
     Examples
     --------

@@ -150,20 +150,20 @@ def checked_dissipation(dissipation: Mapping[str, Mapping[str, float]] | None) -
     ParameterError
         If low, central and high are not all stated, name different numbers, or none.
     """
-    remedy = "state it for low, central and high, such as low = {damping = 0.005}"
+    remedy = "State it for low, central and high, such as low = {damping = 0.005}"
     if not isinstance(dissipation, Mapping) or not dissipation:
-        message = f"dissipation is missing: how fast a column in space loses energy decides its fate; {remedy}"
+        message = f"dissipation is missing: it decides the outcome of a three-dimensional column. {remedy}"
         raise ParameterError(message)
     missing = [level for level in LEVELS if level not in dissipation]
     if missing:
-        message = f"dissipation: {' and '.join(missing)} must be stated too; {remedy}"
+        message = f"dissipation: {' and '.join(missing)} must be stated too. {remedy}"
         raise ParameterError(message)
     names = set(dissipation[CENTRAL])
     if not names or any(set(level) != names for level in dissipation.values()):
         given = ", ".join(
             f"{level} {' and '.join(sorted(numbers)) or 'nothing'}" for level, numbers in dissipation.items()
         )
-        message = f"dissipation must name the same numbers at each level, got {given}; {remedy}"
+        message = f"dissipation must name the same numbers at each level, got {given}. {remedy}"
         raise ParameterError(message)
     unknown = sorted(names.difference(OF_DISSIPATION))
     if unknown:
@@ -192,7 +192,7 @@ def _levels_named(given: Sequence[str] | None, levels: Mapping[str, Any]) -> tup
 
 def _at_levels(name: str, model: Model, levels: Mapping[str, Mapping[str, float]]) -> dict[str, Model]:
     if not isinstance(model, Model) or model.planar_only:
-        message = f"columns: {name!r} must be a model of a column in space, such as Wobbling(column), got {model!r}"
+        message = f"columns: {name!r} must be a three-dimensional model (got {model!r}). Use one such as Wobbling."
         raise ParameterError(message)
     lacking = [number for number in levels[CENTRAL] if number not in model_names(model)]
     if lacking:

@@ -322,7 +322,7 @@ def _problems_of_the_margin(scales: npt.NDArray[np.float64]) -> list[str]:
 
 _NEEDED = {
     "dissipation": (
-        "how fast a column in space loses energy decides its fate and is seldom known; state it for three levels, such "
+        "it decides the outcome of a three-dimensional column and is seldom known. State it for three levels, such "
         "as [dissipation] low = {damping = 0.005}, central = {damping = 0.02}, high = {damping = 0.05}"
     ),
     "friction_coefficient": "the friction between column and base, with which what the runs need is compared",

@@ -152,10 +152,10 @@ def band_legend(found: xr.Dataset, *, hairlines: int, wide_edges: bool) -> list[
     """Return the entries of a legend for what is drawn of all the bands `found`."""
     entries: list[Patch | Line2D] = [
         Patch(label=name, **fill_options(look))
-        for name, look in (("safe", _SAFE), ("overturns", _FALLEN), ("safe again", _AGAIN))
+        for name, look in (("survives", _SAFE), ("overturns", _FALLEN), ("survives again", _AGAIN))
     ]
     if hairlines:
-        label = f"overturns, narrower than drawn: {plural(hairlines, 'band')}"
+        label = f"overturns, narrower than drawn: {plural(hairlines, 'interval')}"
         entries.append(Line2D([], [], **_THIN, label=label))
     if bool(found["undecided_from"].notnull().any()):
         entries.append(Patch(label=undecided_label(found["outcome"]), **fill_options(UNDECIDED)))

@@ -54,7 +54,7 @@ def plot_bands_of_one(found: xr.Dataset) -> Figure:
     axes.set_ylim(bottom=0.0)
     axes.grid(visible=False)
     axes.set_title(_title(found), fontsize="small")
-    tilts = Line2D([], [], color=BLACK, marker=".", markersize=4.0, linewidth=0.9, label="peak tilt where it stands")
+    tilts = Line2D([], [], color=BLACK, marker=".", markersize=4.0, linewidth=0.9, label="peak tilt where it survives")
     handles = band_legend(found, hairlines=len(regions.hairlines), wide_edges=regions.has_wide_edges)
     figure.legend(handles=[*handles, tilts, *run_legend(counts, _DOT)], loc="outside lower center", ncols=3)
     return figure

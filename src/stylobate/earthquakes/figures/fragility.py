@@ -125,7 +125,7 @@ def _title_lines(found: xr.Dataset) -> list[str]:
         lines.append(f"band: {found.attrs['band']}")
     worst = int(found["non_monotone_records"].max()) if "non_monotone_records" in found else 0
     if worst > 0:
-        lines.append(f"not monotone: {worst} of {found.attrs['records']} records safe again higher up,")
+        lines.append(f"not monotonic: {worst} of {found.attrs['records']} records survive a higher scale,")
         lines.append(f"runs counted {found.attrs['counting']}")
     return lines
 
@@ -204,9 +204,9 @@ def plot_reached_bands(found: xr.Dataset) -> Figure:
     reached = found["band_reached"].to_numpy()
     low, high = found["band_from"].to_numpy(), found["band_to"].to_numpy()
     kinds = {
-        "safe": (~reached & ~(low > first[owner]), SKY, "", "o"),
+        "survives": (~reached & ~(low > first[owner]), SKY, "", "o"),
         "reached": (reached, VERMILION, "", "s"),
-        "safe again": (~reached & (low > first[owner]), BLUE, "////", "D"),
+        "survives again": (~reached & (low > first[owner]), BLUE, "////", "D"),
     }
     legend: list[Patch] = []
     for name, (chosen, colour, hatch, mark) in kinds.items():
@@ -226,8 +226,6 @@ def plot_reached_bands(found: xr.Dataset) -> Figure:
     _plain_ticks(axes)
     axes.grid(visible=False, axis="y")
     share = 100.0 * float(found.attrs["non_monotone_share"])
-    axes.set_title(
-        f"{found.attrs['limit_state']}: {share:.0f} % of {rows} records are safe again at a higher scale (*)"
-    )
+    axes.set_title(f"{found.attrs['limit_state']}: {share:.0f} % of {rows} records survive again at a higher scale (*)")
     figure.legend(handles=legend, loc="outside right upper")
     return figure

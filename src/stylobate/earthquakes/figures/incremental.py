@@ -144,11 +144,13 @@ def _legend(names: list[str]) -> list[Line2D]:
             for name, (colour, mark, width) in zip(names, looks, strict=True)
         ]
     handles.append(Line2D([], [], color=GREY, marker="x", markersize=4.0, linestyle="none", label="overturned"))
-    again = Line2D([], [], color=GREY, marker="o", mfc="white", markersize=4.0, linestyle="none", label="safe again")
+    again = Line2D(
+        [], [], color=GREY, marker="o", mfc="white", markersize=4.0, linestyle="none", label="survives again"
+    )
     return [*handles, again]
 
 
 def _title(found: xr.Dataset, *, quantiles: bool) -> str:
     others = [plural(found.sizes[dim], str(dim).replace("_", " ")) for dim in found["tilt_ratio"].dims]
     note = f"runs: {', '.join(others)}"
-    return note if quantiles else f"{note}; no quantiles, for intensities differ between them"
+    return note if quantiles else f"{note}; no quantiles: the records have different intensities"

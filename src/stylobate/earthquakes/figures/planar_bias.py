@@ -1,4 +1,4 @@
-"""The column in space against Housner's planar one: peak tilts of both, and what depends on the direction."""
+"""The three-dimensional column against Housner's planar one: peak tilts, and overturning by direction."""
 
 import numpy as np
 import numpy.typing as npt
@@ -24,10 +24,10 @@ _MARGIN = 0.07
 @figure_of("planar bias")
 @styled
 def plot_planar_bias(found: xr.Dataset) -> Figure:
-    """Return a figure of the peak tilts of the column in space against those of the worst planar one.
+    """Draw the peak tilts of the three-dimensional column against those of the worst planar one.
 
     A point for each record and scale. Columns that overturn lie in the margins: on the right the planar one, above the
-    one in space, in the corner both. Above the diagonal the planar column is on the unsafe side.
+    three-dimensional one, in the corner both. Above the diagonal the planar column is on the unsafe side.
     """
     figure = new_figure(_HEIGHT, width=6.4)
     axes = figure.subplots()
@@ -61,27 +61,28 @@ def _overturned(flat: Floats, space: Floats) -> str:
     both = np.count_nonzero(falls & falls_in_space)
     only_space = np.count_nonzero(falls_in_space & np.isfinite(flat))
     only_flat = np.count_nonzero(falls & np.isfinite(space))
-    return f"runs that overturn in space only: {only_space}, in a plane only: {only_flat}, in both: {both}"
+    return f"runs that overturn in three dimensions only: {only_space}, planar only: {only_flat}, both: {both}"
 
 
 def _bias(found: xr.Dataset) -> str:
     number = int(found["overall_compared"])
     bias, scatter, error = (float(found[f"overall_{name}"]) for name in ("bias", "scatter", "standard_error"))
     if not np.isfinite(bias):
-        return f"{plural(number, 'record')} in which both rock and none overturns: too few for a bias"
+        return f"{plural(number, 'record')} in which both rock and neither overturns: too few for a mean ratio"
     return (
-        f"mean of ln(space/plane) over {number} records {bias:+.2f} ± {error:.2f} (standard error),\n"
-        f"scatter {scatter:.2f}; where both rock and neither overturns"
+        f"peak tilt, three-dimensional/planar: geometric mean {np.exp(bias):.2f} over {number} records\n"
+        f"(ln {bias:+.2f} ± {error:.2f} standard error, scatter {scatter:.2f}; where both rock and neither overturns)"
     )
 
 
 @styled
 def plot_directions(found: xr.Dataset) -> Figure:
-    """Return polar figures over the direction: the least scale that overturns, or with one scale the peak tilt over α.
+    """Draw the smallest overturning scale over the direction, or the peak tilt over α if there is one scale.
 
-    Of a planar bias the planar column by its direction, and that in space, which knows none. Of an incremental
-    dynamic analysis by the rotation of the record. Open marks on the rim: not overturned by any of the scales. A plane
-    has two senses, in which a column without another asymmetry answers alike: both are drawn.
+    For a planar bias, the polar figures show the planar column in each direction, and the three-dimensional column,
+    which has no direction. For an incremental dynamic analysis they show each rotation of the record. Open marks on the
+    rim: not overturned by any of the scales. A plane has two senses, in which a column without another asymmetry
+    answers alike: both are drawn.
 
     Raises
     ------
@@ -108,8 +109,8 @@ def plot_directions(found: xr.Dataset) -> Figure:
     if not turned:
         figure.legend(
             handles=[
-                Line2D([], [], color=VERMILION, marker="o", markersize=4.0, label="in a plane, by its direction"),
-                Line2D([], [], color=BLUE, linewidth=1.8, label="in space, the whole record"),
+                Line2D([], [], color=VERMILION, marker="o", markersize=4.0, label="planar, in this direction"),
+                Line2D([], [], color=BLUE, linewidth=1.8, label="three-dimensional, the whole record"),
             ],
             loc="outside lower center",
             ncols=2,
@@ -120,7 +121,7 @@ def plot_directions(found: xr.Dataset) -> Figure:
 
 def _quantity(found: xr.Dataset) -> str:
     if found.sizes["scale"] > 1:
-        return "least scale that overturns"
+        return "smallest overturning scale"
     return rf"peak tilt $\theta/\alpha_c$ at scale {found['scale'].item():g}"
 
 

@@ -16,10 +16,10 @@ from stylobate.text import plural
 
 _STATE = "overturning"
 _LOOKS = {
-    "stands, as given": OUTCOME_LOOKS[Outcome.AT_REST],
+    "survives, as given": OUTCOME_LOOKS[Outcome.AT_REST],
     "overturns, as given": OUTCOME_LOOKS[Outcome.OVERTURNED],
     "flips: now overturns": Look("#D55E00", "xx"),
-    "flips: now stands": Look("#74C0EA", "////", "#333333"),
+    "flips: now survives": Look("#74C0EA", "////", "#333333"),
     "does not apply, or not known": UNFINISHED,
 }
 _ROW, _FRAME, _TALLEST = 0.19, 1.6, 9.0
@@ -49,11 +49,11 @@ def plot_robustness(found: xr.Dataset) -> Figure:
     table.grid(visible=False)
     flips = (cells == 2) | (cells == 3)  # noqa: PLR2004  places in _LOOKS
     bars.barh(np.arange(changes), flips.sum(axis=1), 0.75, color=_LOOKS["flips: now overturns"].colour)
-    bars.set(xlabel="records flipped", xlim=(0.0, max(1.0, 1.1 * flips.sum(axis=1).max())))
+    bars.set(xlabel="records with a flip", xlim=(0.0, max(1.0, 1.1 * flips.sum(axis=1).max())))
     bars.grid(visible=False, axis="y")
     bars.xaxis.get_major_locator().set_params(integer=True)
     standing = int(np.count_nonzero(~flips.any(axis=0)))
-    table.set_title(f"{standing} of {records} verdicts stand under every change (*)")
+    table.set_title(f"{standing} of {records} verdicts stay under every change (*)")
     figure.legend(
         handles=[Patch(label=name, **fill_options(look)) for name, look in _LOOKS.items()],
         loc="outside lower center",

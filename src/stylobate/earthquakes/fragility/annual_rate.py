@@ -32,7 +32,7 @@ _UNITS = {"m s-2": " m/s²", "m s-1": " m/s"}
 
 
 def annual_rate(fragility: xr.Dataset, hazard: HazardCurve, *, years: float = 50.0, bins: int = 40) -> xr.Dataset:
-    """Return how often in a year each limit state is reached, and by which intensities.
+    """Compute the annual rate at which each limit state is reached, and the contribution of each intensity.
 
     Parameters
     ----------
@@ -51,14 +51,14 @@ def annual_rate(fragility: xr.Dataset, hazard: HazardCurve, *, years: float = 50
         Of kind "annual rate". Over `limit_state`: `annual_rate` [1/a], the curve continued beyond its ends with the
         slopes it has there; `rate_within` the curve; `rate_below` and `rate_above`, the two continuations; `rate_low`
         and `rate_high`, bounds, see the notes; `share_beyond` of the rate, a warning is logged above a tenth;
-        `withheld_reason`, where more than half lies beyond, why tables and figures withhold the rate, else empty;
+        `withheld_reason`, why tables and figures withhold the rate if more than half lies beyond, else empty;
         `probability` in `years` years, 1 − exp(−rate·years). NaN for limit states without a fit. Over `bin` within the
         curve: `contribution` [1/a], `bin_from`, `bin_to`, `bin_intensity`. Also the curve, over `point`.
 
     Raises
     ------
     ParameterError
-        If `fragility` is no fragility, its unit or horizontal component is not that of the hazard, or a number is out
+        If `fragility` is no fragility, its unit or horizontal component differs from the hazard, or a number is out
         of range.
 
     Notes
@@ -66,7 +66,7 @@ def annual_rate(fragility: xr.Dataset, hazard: HazardCurve, *, years: float = 50
     Beyond the upper end the intensities are not known, their rate λ_n is: between P(x_n)λ_n and λ_n, whatever the
     curve does. Below the lower end it is 0 or more, and at most `rate_below` if the curve is concave on logarithmic
     axes, as hazard curves are; that is infinite where a steep curve is continued too far. Median and dispersion are
-    taken as known.
+    treated as known.
 
     Examples
     --------
@@ -79,6 +79,8 @@ def annual_rate(fragility: xr.Dataset, hazard: HazardCurve, *, years: float = 50
     _require_fragility(fragility, hazard)
     time = require_positive("years", years, "a")
     count = require_whole("bins", bins, least=1)
+    if LIMIT_STATE not in fragility.dims:  # one was selected
+        fragility = fragility.expand_dims(LIMIT_STATE)
     parts = [
         _parts(float(m), float(beta), hazard, count)
         for m, beta in zip(fragility["median"].to_numpy(), fragility["dispersion"].to_numpy(), strict=True)

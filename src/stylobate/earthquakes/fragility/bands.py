@@ -1,6 +1,6 @@
-"""Bands of intensity, record by record, in which a column is safe, fails, and is safe again.
+"""Intervals of intensity, record by record, in which a column survives, fails, and survives again.
 
-Overturning is not monotone: more of the same motion may bring the column home. See Zhang and Makris, "Rocking response
+Overturning is not monotonic: a column may survive a stronger motion. See Zhang and Makris, "Rocking response
 of free-standing blocks under cycloidal pulses", J. Eng. Mech. 127 (2001).
 """
 
@@ -14,25 +14,25 @@ from stylobate.errors import ParameterError
 
 
 def reached_bands(scale: Data, reached: Data, *, record: Data | None = None) -> xr.Dataset:
-    """Return the bands of successive scales with one answer, for each record, and whether the record is monotone.
+    """Find the intervals of successive scales with the same verdict for each record, and whether it is monotonic.
 
-    Bands are as fine as the scales: what happens between two of them is not seen.
+    Intervals are as fine as the scales: changes between two scales are not seen.
 
     Parameters
     ----------
     scale
         Scale or intensity of each run, positive.
     reached
-        Whether each run reached the limit state, as in `fit_fragility`; one limit state. Runs not known are left out.
+        Whether each run reached the limit state, as in `fit_fragility`; one limit state. Undecided runs are left out.
     record
-        Which record each run had; by default the dimension or coordinate `record` of `reached`, or one record.
+        The record of each run; by default the dimension or coordinate `record` of `reached`, or one record.
 
     Returns
     -------
     xarray.Dataset
-        Of kind "reached bands". Over `record`: `monotone`, False where it is safe again above a scale that reached it;
-        `first_reached` [as scale], NaN where none did; `last_safe`, NaN where none was; `safe_again`, the number of
-        safe bands above the first reached; `runs`. Over `band`, by record and scale: `band_record`, `band_reached`,
+        Of kind "reached bands". Over `record`: `monotone`, False if it survives above a scale that reached it;
+        `first_reached` [as scale], NaN if none did; `last_safe`, NaN if none was; `safe_again`, the number of surviving
+        intervals above the first reached; `runs`. Over `band`, by record and scale: `band_record`, `band_reached`,
         `band_from` and `band_to`, the first and last scale computed in it, and `band_runs`. Attribute
         `non_monotone_share` of the records.
 

@@ -44,7 +44,7 @@ def lognormal_fragility(
     units: str = "1",
     component: str | HorizontalComponent | None = None,
 ) -> xr.Dataset:
-    """Build a fragility that is known from elsewhere, without data or intervals.
+    """Build a fragility from a known median and dispersion, without data or intervals.
 
     Parameters
     ----------
@@ -53,9 +53,9 @@ def lognormal_fragility(
     dispersion
         Standard deviation β of the logarithm of the capacity.
     name, units
-        Of the limit state and of the intensity.
+        Name of the limit state, and unit of the intensity.
     component
-        Definition of the horizontal component of the intensity, such as "RotD50"; None where it has none.
+        Definition of the horizontal component of the intensity, such as "RotD50"; None if it has none.
 
     Returns
     -------

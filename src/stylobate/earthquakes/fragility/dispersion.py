@@ -30,7 +30,7 @@ _ROUNDING = 1e-12
 
 
 class Samples(Enum):
-    """How property samples and records go together."""
+    """Whether all records share the property samples."""
 
     CROSSED = "crossed"
     """Every record meets the same property samples."""
@@ -90,7 +90,7 @@ def dispersion_parts(
     resamples: int = 10_000,
     rng: Rng,
 ) -> xr.Dataset:
-    """Return the dispersion of capacities that is of records, of properties, and of both together.
+    """Separate the dispersion of capacities from record to record and from uncertain properties.
 
     Parameters
     ----------
@@ -100,9 +100,9 @@ def dispersion_parts(
     reached
         1, 0 or −1 for not known, over the dimensions `record`, `property_sample` and `scale`, of one limit state.
     samples
-        Whether all records meet the same property samples.
+        Whether all records share the property samples.
     confidence
-        Of the intervals.
+        Confidence level of the intervals.
     resamples, rng
         How many mean squares are drawn for the intervals, and the seed or numpy.random.Generator. The draws are those
         of normal r, p, e.
@@ -114,10 +114,10 @@ def dispersion_parts(
         `record_dispersion` β_RR, `property_dispersion` β_P, `joint_dispersion` β_E, each with `_low` and `_high`; an
         estimate whose variance is not positive is 0. Over `record` and `property_sample` `log_capacity`; over each of
         them `median_of_record`, `median_of_sample` and the `dispersion_of_record`, `dispersion_of_sample` of the
-        capacities in it. Attributes `non_monotone_share` of the series that are safe again above their capacity,
+        capacities in it. Attributes `non_monotone_share` of the series that survive above their capacity,
         `never_reached` and `reached_at_once`, numbers of series whose capacity is beyond the scales, or not known;
-        `resolution`, the dispersion that the steps between scales hide, d/√12: an estimate of 0 is none seen above it.
-        Where there are such, capacities are NaN there and so are all dispersions: give more scales.
+        `resolution`, the dispersion that the steps between scales hide, d/√12: an estimate of 0 means that none was
+        detected above it. If a capacity is beyond the scales, it and all dispersions are NaN: give more scales.
 
     Raises
     ------

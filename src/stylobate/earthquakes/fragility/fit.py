@@ -26,31 +26,31 @@ def fit_fragility(
     resamples: int = 0,
     rng: Rng | None = None,
 ) -> xr.Dataset:
-    """Return the lognormal fragility P = Φ(ln(x/median)/dispersion) that makes the runs most likely.
+    """Fit the lognormal fragility curve P = Φ(ln(x/median)/dispersion) by maximum likelihood.
 
-    Maximum likelihood with binomial counts: Baker, "Efficient analytical fragility function fitting using dynamic
-    structural analysis", Earthquake Spectra 31 (2015). Runs of one record go together, most of all one record at many
-    scales: the likelihood takes them as independent, and its intervals are then too narrow. With `resamples` the
-    intervals come from resampled whole records.
+    The likelihood uses binomial counts: Baker, "Efficient analytical fragility function fitting using dynamic
+    structural analysis", Earthquake Spectra 31 (2015). It treats runs as independent. Runs of one record are not, least
+    of all one record at many scales, and its intervals are then too narrow. With `resamples` the intervals come from a
+    bootstrap over records.
 
     Parameters
     ----------
     intensity
-        Intensity of each run, positive; its unit and name are kept where it is a DataArray.
+        Intensity of each run, positive; a DataArray keeps its unit and name.
     reached
         Whether each run reached the limit state: True, False, or 1, 0 and −1 for not known. A DataArray may have the
         dimension `limit_state`, as from `limit_states`; each is fitted by itself. Plain arrays have one shape,
         DataArrays are broadcast by the names of their dimensions.
     record
-        Which record each run had, numbers or names; by default the dimension or coordinate `record` of `reached`.
+        The record of each run, numbers or names; by default the dimension or coordinate `record` of `reached`.
     property_sample
-        Which sample of the column's properties each run had. It parts the runs of a record for `counting`.
+        The sample of the column's properties of each run. It separates the runs of a record for `counting`.
     counting
-        Which runs count as reached where a record is safe again at a higher intensity.
+        How runs above the first that reached the limit state count, if the column survives there.
     confidence
-        Of the intervals.
+        Confidence level of the intervals.
     resamples
-        How many bootstrap samples of the records; 0 for intervals by profile likelihood.
+        Number of bootstrap samples of the records; 0 for intervals by profile likelihood.
     rng
         The seed or numpy.random.Generator that draws them.
 
@@ -58,13 +58,13 @@ def fit_fragility(
     -------
     xarray.Dataset
         Of kind "fragility", over `limit_state`: `median`, `dispersion`, each with `_low` and `_high`; `status`, a
-        FitStatus: NaN stands for median and dispersion unless it is FITTED, and their interval is what can be said all
-        the same; `covariance` of (ln median, ln dispersion) over `parameter` and `other_parameter`, from the observed
-        information, or of the resamples; `log_likelihood`; `runs`, `runs_reached`, `runs_not_known`;
-        `largest_safe` and `least_reached` intensity; `records`, and `non_monotone_records` that are safe again above an
-        intensity that reached it (−1 where no record is named); `resamples_without_fit`. Over `curve`:
+        FitStatus: unless it is FITTED, median and dispersion are NaN, and their intervals contain what the data show;
+        `covariance` of (ln median, ln dispersion) over `parameter` and `other_parameter`, from the observed
+        information, or of the resamples; `log_likelihood`; `runs`, `runs_reached`, `runs_not_known`; `largest_safe` and
+        `least_reached` intensity; `records`, and `non_monotone_records`, under which the column survives above an
+        intensity that reached the limit state (−1 if no record is named); `resamples_without_fit`. Over `curve`:
         `curve_intensity`, within the data, and there `probability` with the ends of its interval at each. Over
-        `stripe`: what was observed, see `stripe_share`, with intervals of Wilson, which take runs as independent.
+        `stripe`: what was observed, see `stripe_share`, with intervals of Wilson, which treat runs as independent.
 
     Raises
     ------
@@ -74,10 +74,10 @@ def fit_fragility(
     Notes
     -----
     The band of the curve is that of a + b ln x, normal with the covariance of the fit, or from the percentiles of the
-    resamples, corrected for bias and for few records. Below about 20 records the interval of the dispersion is too
-    narrow all the same. A resample without a fit counts beyond both ends of an interval; one that an intensity
-    separates has the dispersion 0 and its median in the middle of the gap. Where the data themselves have no fit, the
-    intervals are by profile likelihood even with resamples.
+    resamples, corrected for bias and for few records. Below about 20 records the interval of the dispersion is still
+    too narrow. A resample without a fit counts beyond both ends of an interval; one that an intensity separates has the
+    dispersion 0 and its median in the middle of the gap. If the data themselves have no fit, the intervals are by
+    profile likelihood even with resamples.
 
     Examples
     --------
@@ -98,7 +98,11 @@ def fit_fragility(
     return (
         xr.merge([curves_table(seen, x, curves), observed_shares(seen, level)], combine_attrs="override")
         .assign(
-            non_monotone_records=(LIMIT_STATE, fallen_back, {"long_name": "records safe again at a higher intensity"})
+            non_monotone_records=(
+                LIMIT_STATE,
+                fallen_back,
+                {"long_name": "records with survival above an intensity that reached it"},
+            )
         )
         .assign_attrs(
             kind="fragility",

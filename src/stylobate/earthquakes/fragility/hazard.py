@@ -24,9 +24,9 @@ class HazardCurve:
     rate
         Mean annual rate λ [1/a] at which each is exceeded, positive, nowhere increasing with intensity.
     units, quantity
-        Of the intensity, as on axes: "m s-2", "peak ground acceleration".
+        Unit and name of the intensity, as on axes: "m s-2", "peak ground acceleration".
     component
-        Definition of the horizontal component of the intensity, such as "RotD50"; None where it has none.
+        Definition of the horizontal component of the intensity, such as "RotD50"; None if it has none.
     origin
         Where the rates come from, in words.
 
@@ -54,7 +54,7 @@ class HazardCurve:
     ) -> Self:
         """Convert probabilities of exceedance within an investigation time [a] to a curve of annual rates.
 
-        Occurrences are taken as a Poisson process: rate = −ln(1 − probability)/investigation time.
+        Occurrences are treated as a Poisson process: rate = −ln(1 − probability)/investigation time.
 
         Parameters
         ----------

@@ -20,7 +20,7 @@ def limit_states(
 ) -> xr.DataArray:
     """Find which limit states each run reached: peak tilts in fractions of α = atan(c), and overturning.
 
-    α is the tilt at which the mass centre of a column that tilts over its rim stands above the point of contact. The
+    α is the tilt at which the centre of mass of a column on its rim stands above the contact point. The
     smallest tilt by default, 0.001 α, separates columns that rock from those that stand. It is not uplift: an upright
     column lifts as soon as |a_h| > c (g + a_z), and may then tilt less.
 

@@ -21,12 +21,12 @@ LIMIT_STATE = "limit_state"
 
 
 class Counting(Enum):
-    """Which runs of a record count as reached where it is safe again at a higher intensity."""
+    """How runs above the first that reached the limit state count, if the column survives there."""
 
     AS_COMPUTED = "as computed"
-    """Each run by itself."""
+    """Each run as computed."""
     FIRST = "first"
-    """Every run above the first that reached it: what was reached once stays reached."""
+    """Every run above the first that reached it counts as reached."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -121,7 +121,7 @@ class Observations:
         return replace(self, reached=reached)
 
     def non_monotone(self) -> Integers:
-        """Return the number of records that are safe again above an intensity that reached each limit state."""
+        """Count the records that survive above an intensity that reached each limit state."""
         if self.record is None or self.series is None:
             return np.full(len(self.names), NOT_KNOWN, dtype=np.int64)
         found = []

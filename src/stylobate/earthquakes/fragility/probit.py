@@ -26,18 +26,18 @@ _LOG_ROOT_2PI = 0.5 * np.log(2.0 * np.pi)
 
 
 class FitStatus(IntEnum):
-    """Whether data determine a lognormal fragility; where they do not, what they look like."""
+    """Whether the data determine a lognormal fragility, and if not, the reason."""
 
     FITTED = 0
-    """Median and dispersion are the most likely ones."""
+    """Median and dispersion have the maximum likelihood."""
     NO_RUNS = 1
-    """For no run it is decided whether it reached the limit state."""
+    """Every run is undecided."""
     NONE_REACHED = 2
     """No run reached it: the median lies above, the dispersion is open."""
     ALL_REACHED = 3
     """Every run reached it: the median lies below, the dispersion is open."""
     ONE_INTENSITY = 4
-    """All runs have one intensity: the share reached there is all that is known."""
+    """All runs have one intensity: only the fraction reached there is known."""
     SEPARATED = 5
     """Each run reached it above some intensity and none below: the median lies in the gap, the dispersion may be 0."""
     NOT_INCREASING = 6

@@ -1,4 +1,4 @@
-"""All bands of amplitude in which a base motion overturns a column: overturning spectra."""
+"""All overturning intervals of the amplitude of a base motion: overturning spectra."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -42,12 +42,12 @@ def overturning_bands(
     progress: Progress | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
-    """Return all bands of amplitude in which a base motion overturns a column, over any parameters.
+    """Find all overturning intervals of the amplitude of a base motion, over any parameters.
 
-    Overturning is not monotone: above a scale that overturns the column may be safe again. So each case is run at all
-    `scales`, and every change between neighbours, from overturned to not, or from decided to undecided, is halved until
-    its ends are as near as `width`. So is every pair that overturns in opposite directions: between them may be a gap
-    in which it does not. Over the size, or the frequency of a pulse, this is the overturning spectrum of the motion.
+    Overturning is not monotonic: a column may survive a scale above one that overturns it. So each case is run at all
+    `scales`. Every change between neighbours, from overturned to not, or from decided to undecided, is bisected until
+    its ends agree to `width`. So is every pair that overturns in opposite directions, because the column may survive
+    between them. Over the size, or the frequency of a pulse, the result is the overturning spectrum of the motion.
 
     Parameters
     ----------
@@ -58,18 +58,19 @@ def overturning_bands(
     over
         Parameters with their values, as for `overturning_map`: size (all lengths times it at one density), slenderness,
         damping, rotation [rad], …; angular_frequency [rad/s], here of a pulse too, whose other numbers stay; `motion`,
-        the numbers of those in a `OneOf`. By default one case.
+        the places of the motions in a `OneOf`. By default one case.
     width
-        Relative width, high/low − 1, to which edges are halved.
+        Relative width, high/low − 1, to which edges are bisected.
     tail
-        Free-vibration time after the end of the base motion [s]; by default 40/p of each case. What has not overturned
-        by then counts as safe. After 20/p that may be wrong nearer than about 10⁻⁶ to an edge, after 40/p than 10⁻¹².
+        Free-vibration time after the end of the base motion [s]; by default 40/p of each case. A column that has not
+        overturned by then counts as surviving. Within about 10⁻⁶ of an edge that may be wrong after 20/p, within 10⁻¹²
+        after 40/p.
     duration
-        Instead, how long to follow all [s]; needed for a motion that never ends.
+        Instead of `tail`, the length of all runs [s]; required for a motion that never ends.
     store, executor, resume, progress
         As in `run_sweep`; the store keeps the runs at the edges too.
     **options
-        What all runs have in common: tilt, tilt_rate, rtol, rules …
+        Options of all runs: tilt, tilt_rate, rtol, rules …
 
     Returns
     -------
@@ -77,17 +78,17 @@ def overturning_bands(
         Of kind "overturning bands": the runs over the names and `scale`, with `outcome`, `uncertain` and all that
         ensembles hold; and over the names and `band`, from the weakest on, NaN beyond the last:
 
-        * `band_from`, `band_to`: the least and the largest scale that was seen to overturn;
-        * `safe_below`, `safe_above`: the nearest scales outside that were seen not to; NaN where the band is
-          `open_below` or `open_above`, reaching the first or last scale, or a run that is not decided, for which
-          `undecided_below` or `undecided_above` is True;
+        * `band_from`, `band_to`: the smallest and the largest scale of the interval that overturned;
+        * `safe_below`, `safe_above`: the nearest scales outside that did not; NaN if the interval is `open_below` or
+          `open_above`, reaching the first or last scale, or an undecided run, for which `undecided_below` or
+          `undecided_above` is True;
         * `uncertain_below`, `uncertain_above`: a small change may move that edge.
 
-        A run that failed or lifted off is not decided: it ended before it showed whether the column overturns. No band
-        and no safe interval reaches across. Over the names and `stretch`: `undecided_from` and `undecided_to`, the
-        nearest decided scales on both sides, or the ends of the scan. `bands` counts bands; `reversals` the changes of
-        direction in them between which no safe scale was found; `unknown` the undecided runs of the scan; `decided_to`
-        is the largest scale up to which every run was decided. Coordinates normalize: `frequency_parameter` p,
+        A run that failed or lifted off is undecided: it ended before it showed whether the column overturns. No
+        interval extends across it. Over the names and `stretch`: `undecided_from` and `undecided_to`, the nearest
+        decided scales on both sides, or the ends of the scan. `bands` counts intervals; `reversals` the changes of
+        direction in them without a surviving scale between; `unknown` the undecided runs of the scan; `decided_to` is
+        the largest scale up to which every run was decided. Coordinates normalize: `frequency_parameter` p,
         `tipping_angle` α, `rim_distance` R, `acceleration_ratio` (peak horizontal base acceleration over g tan α, at
         scale 1) and, of pulses and harmonic motions, `frequency_ratio` ω/p.
 
@@ -108,18 +109,18 @@ def overturning_bands(
 
     See Also
     --------
-    reached_bands : bands of runs that were made already, as fine as their scales.
+    reached_bands : intervals of existing runs, as fine as their scales.
 
     Notes
     -----
-    A band narrower than the step between two scales may be missed, and so may a gap on both sides of which the column
-    overturns in nearly one direction: nothing short of all scales excludes them.
+    An interval narrower than the step between two scales may be missed. So may a gap on both sides of which the column
+    overturns in nearly one direction.
 
-    That overturning may cease above an amplitude is in Zhang and Makris, "Rocking response of free-standing blocks
+    Survival above an overturning amplitude is described in Zhang and Makris, "Rocking response of free-standing blocks
     under cycloidal pulses", J. Eng. Mech. 127 (2001), and for records in Yim, Chopra and Penzien, "Rocking response of
     rigid blocks to earthquakes", Earthquake Eng. Struct. Dyn. 8 (1980).
 
-    Without dissipation motion in space may overturn later than any tail.
+    Without dissipation a three-dimensional motion may overturn later than any `tail`.
 
     Examples
     --------
@@ -217,7 +218,7 @@ class _Search:
                 provenance=self.provenance,
                 width=self.width,
                 scale_step=step - 1.0,
-                resolution=f"bands and gaps narrower than the step between scales, a factor {step:.4g}, may be missed",
+                resolution=f"intervals and gaps narrower than the step of scales, a factor {step:.4g}, may be missed",
                 runs=sum(self.done) or computed,
             )
         )

@@ -41,11 +41,11 @@ def rocking_spectrum(
     progress: Progress | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
-    """Return the peak tilt and the peak rate of tilt of columns of many sizes under one base motion.
+    """Compute the peak tilt and the peak rate of tilt of columns of many sizes under one base motion.
 
     The rocking spectrum of Makris and Konstantinidis, "The rocking spectrum and the limitations of practical design
-    methodologies", Earthquake Eng. Struct. Dyn. 32 (2003): there of Housner's block, `PlanarRocking`, here of any
-    model.
+    methodologies", Earthquake Eng. Struct. Dyn. 32 (2003), defines it for Housner's block, `PlanarRocking`; it
+    works for any model here.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def rocking_spectrum(
     -------
     xarray.Dataset
         Of kind "rocking spectrum", over the names: `peak_tilt_ratio`, peak tilt over α; `peak_rate_ratio`, peak rate
-        of the tilt vector over p [rad]; both NaN where the column overturned or its end is not known, see `outcome`;
+        of the tilt vector over p [rad]; both NaN if the column overturned or the run is undecided, see `outcome`;
         and all variables of ensembles. Coordinates as for `overturning_bands`, and `rocking_period` 2π/p [s].
 
     Raises

@@ -92,7 +92,7 @@ def _overturned(cases: Cases, where: str) -> str:
 
 
 def least_overturning_scale(assessment: Assessment, column: str) -> str:
-    """Return the least scale that overturned the column in any case, or the largest that was run, in a sentence."""
+    """Return the smallest overturning scale the column in any case, or the largest that was run, in a sentence."""
     least, words = _least(assessment, column)
     decided, highest = largest_decided(assessment, column), float(assessment.setting["margin_scales"][1])
     if math.isnan(decided):
@@ -102,11 +102,11 @@ def least_overturning_scale(assessment: Assessment, column: str) -> str:
     open_scales = "" if known else f"; not every scale from {number(decided)} on was decided"
     if math.isnan(least):
         return f"No scale up to {number(decided)} overturned it in any case{open_scales}."
-    return f"Least overturning scale of all cases: {words}{open_scales}."
+    return f"Smallest overturning scale of all cases: {words}{open_scales}."
 
 
 def _least(assessment: Assessment, column: str) -> tuple[float, str]:
-    """Return the least scale that overturned the column in any case, and that in words; NaN where none did."""
+    """Return the smallest overturning scale the column in any case, and that in words; NaN where none did."""
     least = assessment.data["margins"]["least_overturning"].sel(column=column).transpose("case", "record")
     if bool(least.isnull().all()):
         return math.nan, ""
@@ -162,7 +162,7 @@ def _slid(assessment: Assessment, column: str, scale: float) -> str:
     slid = [] if math.isnan(most) else [f"and slid by up to {number(1000.0 * most)} mm"]
     doubtful = names[runs["uncertain"].to_numpy() == 1].tolist()
     doubt = f" Rounding could change the outcome under {listed(doubtful)}." if doubtful else ""
-    return f" By the model that slides it {', '.join([*found, *slid])}.{doubt}"
+    return f" With the sliding model it {', '.join([*found, *slid])}.{doubt}"
 
 
 def _reservations(assessment: Assessment, column: str, scale: float, cases: Cases) -> list[str]:

@@ -123,7 +123,7 @@ def tilts_figure(assessment: Assessment, column: str, scale: float) -> Figure:
     ticks = {0.0: "0", 0.25: "0.25", 0.5: "0.5", 0.75: "0.75", 1.0: "1", _FALLEN: "overturned"}
     ticks |= {_UNKNOWN: "not\ndecided"} if undecided else {}
     axes.set_xticks(list(ticks), list(ticks.values()))
-    axes.set_title(f"{column}, scale {scale:g}: largest tilt")
+    axes.set_title(f"{column}, scale {scale:g}: peak tilt")
     figure.legend(handles=handles, loc="outside lower center", ncols=4)
     return figure
 
@@ -157,7 +157,7 @@ def contact_figure(assessment: Assessment, column: str) -> Figure:
     axes.axvline(stated, color=VERMILION, linestyle="--", linewidth=1.6)
     handles.append(Line2D([], [], color=VERMILION, linestyle="--", label=f"stated coefficient {stated:g}"))
     axes.set(xlim=(0.0, None), xlabel="friction force needed / normal force [1]")
-    axes.set_title(f"{column}: what the contact must bear")
+    axes.set_title(f"{column}: contact demand")
     figure.legend(handles=handles, loc="outside lower center", ncols=3)
     return figure
 
@@ -239,7 +239,7 @@ def _run_words(run: xr.Dataset) -> str:
     elif math.isinf(tilt):
         came_to = "overturned"
     else:
-        came_to = f"did not overturn, largest tilt {number(tilt)} α" if tilt > 0.0 else "did not move"
+        came_to = f"did not overturn, peak tilt {number(tilt)} α" if tilt > 0.0 else "did not move"
     case = str(run["case"].item())
     level = f"{case} dissipation" if "," not in case else case.replace(",", " dissipation,")
     return f"scale {number(float(run['scale']), 4)}, {level}: {came_to}"

@@ -19,8 +19,8 @@ def bands_by_record(assessment: Assessment) -> Table:
         "column",
         "record",
         "case of dissipation",
-        "least scale that overturned",
-        "bands found that overturned",
+        "smallest overturning scale",
+        "overturning intervals found",
         "runs not decided",
     )
     rows = [
@@ -35,8 +35,8 @@ def governing(assessment: Assessment) -> Table:
     """Return the governing record of each column, and the largest tilt in each of its runs that are drawn."""
     own, runs = assessment.data["summary"], assessment.data["histories"]
     header = (
-        *("column", "governing record", "least scale that overturned", "least of all cases", "scale of the run"),
-        *("its largest tilt / α", "tilt [°]", "displacement [mm]", "azimuth, from x to y", "at [s]"),
+        *("column", "governing record", "smallest overturning scale", "smallest of all cases", "scale of the run"),
+        *("its peak tilt / α", "tilt [°]", "displacement [mm]", "azimuth, from x to y", "at [s]"),
     )
     rows = []
     for column in own["column"].to_numpy():
@@ -59,10 +59,10 @@ def drawn_runs(histories: xr.Dataset) -> list[tuple[float, xr.Dataset]]:
 
 
 def friction_to_margin(assessment: Assessment) -> Table:
-    """Return the friction needed below the least scale that overturned, and the least scale that needs too much."""
+    """Return the friction needed below the smallest overturning scale, and the smallest scale that needs too much."""
     header = (
-        *("column", "record", "case of dissipation", "least scale that overturned", "friction needed below it"),
-        *("stated", "least scale that needs more"),
+        *("column", "record", "case of dissipation", "smallest overturning scale", "friction needed below it"),
+        *("stated", "smallest scale that needs more"),
     )
     margins, rows = assessment.data["margins"], []
     for where, one in cells(margins, "column", "record", "case") if assessment.setting["contact"] else ():

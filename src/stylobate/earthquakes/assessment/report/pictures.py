@@ -70,7 +70,7 @@ def _of_column(assessment: Assessment, column: str, place: int) -> Pictures:
             continue
         found[f"tilts-{place}-scale-{scale:g}"] = Picture(
             tilts_figure(assessment, column, scale),
-            f"{column}, records times {scale:g}: largest tilts at each dissipation, vertical component included, "
+            f"{column}, records times {scale:g}: peak tilts at each dissipation, vertical component included, "
             "and those of the planar column where it was computed.",
         )
         if "robustness" in assessment.data:

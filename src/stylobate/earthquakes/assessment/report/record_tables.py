@@ -81,13 +81,13 @@ def intensities(assessment: Assessment) -> Table:
 
 
 def margin_intensities(assessment: Assessment) -> Table:
-    """Return PGA, PGV and Sa of each record times the least scale that overturned a column.
+    """Return PGA, PGV and Sa of each record times the smallest overturning scale of a column.
 
-    That is the least at the central dissipation, and the least of all cases where it is less.
+    That is the least at the central dissipation, and the smallest of all cases where it is less.
     """
     period = _period(assessment)
     header = (
-        *("column", "record", "governs", "case", "least scale that overturned", "definition", "PGA [g]", "PGA [m/s²]"),
+        *("column", "record", "governs", "case", "smallest overturning scale", "definition", "PGA [g]", "PGA [m/s²]"),
         *("PGV [m/s]", f"Sa({period:g} s) [g]", f"Sa({period:g} s) [m/s²]", "PGA, vector [g]"),
     )
     least = assessment.data["margins"]["least_overturning"]

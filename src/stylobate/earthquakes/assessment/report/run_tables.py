@@ -87,7 +87,7 @@ def every_run(assessment: Assessment) -> Table:
     """Return every run at the stated scales."""
     header = (
         *("column", "record", "scale", "dissipation", "vertical", "verdict", *TILT_HEADER),
-        *("friction needed", "enough", "pivoting moment / (N r)", "least normal force / weight"),
+        *("friction needed", "enough", "pivoting moment / (N r)", "minimum normal force / weight"),
     )
     rows = []
     for where, one in cells(assessment.data["verdicts"], *_PLACES, "dissipation", "vertical"):
@@ -106,7 +106,7 @@ def every_run(assessment: Assessment) -> Table:
 def sliding(assessment: Assessment) -> Table:
     """Return the runs by the model that slides, of the columns that slide before they rock."""
     header = (
-        *("column", "record", "scale", "verdict by the model that slides", "largest slip [mm]", "slip left [mm]"),
+        *("column", "record", "scale", "verdict with the sliding model", "largest slip [mm]", "slip left [mm]"),
         "sliding for [s]",
     )
     if "sliding" not in assessment.data:
@@ -142,8 +142,8 @@ def small_changes(assessment: Assessment) -> Table:
 def planar(assessment: Assessment) -> Table:
     """Return the verdicts in three dimensions beside those of the planar column."""
     header = (
-        *("column", "record", "scale", "three-dimensional", "largest tilt / α", "planar (worse component)"),
-        "largest tilt / α",
+        *("column", "record", "scale", "three-dimensional", "peak tilt / α", "planar (worse component)"),
+        "peak tilt / α",
     )
     if "planar" not in assessment.data:
         return Table(header, [])

@@ -66,14 +66,14 @@ def report_sections(
             [_verdict_text(assessment), *shown("summary", "verdicts-by-record")],
         ),
         Section(
-            "What the contact must bear",
+            "Contact demand",
             [_contact_text(assessment), *drawn("contact"), *shown("contact-by-record", "contact-to-margin", "sliding")],
         ),
         Section(
-            "Does the verdict stand under small changes",
+            "Robustness under small changes",
             [_robust_text(assessment), *drawn("robustness"), *shown("robustness")],
         ),
-        Section("Against the planar calculation", [*_planar_text(assessment), *shown("planar", "planar-bias")]),
+        Section("Comparison with the planar calculation", [*_planar_text(assessment), *shown("planar", "planar-bias")]),
         Section("Fragility", [_fragility_text(assessment), *drawn("fragility"), *shown("fragility")]),
         Section("Columns and damping", [_model_text(assessment), *shown("columns", "dissipation")]),
         Section("Assumptions", [_assumptions(assessment)]),
@@ -104,8 +104,8 @@ def _intensity_text(assessment: Assessment) -> str:
     del assessment
     return (
         "PGA, PGV and Sa (5 % damping) are RotD50, the median over all horizontal directions (Boore 2010); of a record "
-        "along one axis they are those of this component. “Vector” is the largest length of the horizontal vector, "
-        "which is never less than RotD50: compare hazard curves and design spectra with RotD50. Drift is a velocity of "
+        "along one axis they are those of this component. “Vector” is the peak of the horizontal vector, "
+        "which is never below RotD50: compare hazard curves and design spectra with RotD50. Drift is a velocity of "
         "more than 5 % of PGV at the end of a record, along x, y or z."
     )
 
@@ -115,11 +115,11 @@ def _margin_text(assessment: Assessment) -> str:
     resolution = assessment.setting["resolution"]
     return (
         f"Every record was run at {count} scale factors from {number(low)} to {number(high)}, and every change of the "
-        f"outcome was bisected to {100.0 * assessment.setting['width']:g} %. The margin is the least scale factor that "
-        "overturned the column. Overturning is not monotonic: a column may survive above that scale, so the last table "
-        "lists every interval found. Near the limit the outcome is erratic: a scan at other factors finds other narrow "
-        f"intervals. {resolution[0].upper()}{resolution[1:]}. “Governs” marks the record whose runs are drawn. “>” "
-        "marks records that overturned the column at no scale: the value is that of the largest scale decided."
+        f"outcome was bisected to {100.0 * assessment.setting['width']:g} %. The margin is the smallest scale factor "
+        "that overturned the column. Overturning is not monotonic: a column may survive above that scale, so the last "
+        "table lists every interval found. Near the limit the outcome is erratic: a scan at other factors finds other "
+        f"narrow intervals. {resolution[0].upper()}{resolution[1:]}. “Governs” marks the record whose runs are drawn. "
+        "“>” marks records that overturned the column at no scale: the value is that of the largest scale decided."
     )
 
 
@@ -134,7 +134,11 @@ def _tilt_text() -> str:
 
 def _verdict_text(assessment: Assessment) -> str:
     tail = assessment.setting["tail"]
-    followed = f"{tail} of free motion" if isinstance(tail, str) else f"{number(tail)} s of free motion"
+    followed = (
+        f"{tail} of free vibration (p: frequency parameter, in the table of columns)"
+        if isinstance(tail, str)
+        else f"{number(tail)} s of free vibration"
+    )
     return (
         f"Records at the scale factors {scales(assessment.setting['scales'])}, at every stated dissipation, with the "
         f"vertical component and without where a record has one. Each run went on for {followed} after its record; "
@@ -147,7 +151,7 @@ def _contact_text(assessment: Assessment) -> str:
     if not assessment.setting["contact"]:
         return "The friction needed was not computed (contact = false): it is not known whether the base would slip."
     return (
-        "The friction needed is the largest ratio of horizontal to normal force in a run, up to overturning if the "
+        "The friction needed is the peak ratio of horizontal to normal force in a run, up to overturning if the "
         "column overturned. Where it exceeds the stated coefficient the base would slip, and the run no longer "
         "describes the column. A normal force of zero would be lift-off. The last table gives the friction needed at "
         "the scale factors that were run for the margin."
@@ -157,16 +161,18 @@ def _contact_text(assessment: Assessment) -> str:
 def _robust_text(assessment: Assessment) -> str:
     changes = assessment.setting["changes"]
     if not changes:
-        return "Not asked for: no verdict was repeated under small changes, so it is not known which are repeatable."
+        return (
+            "No verdict was repeated under small changes (robustness = false), so it is not known which are repeatable."
+        )
     return (
         "Each verdict was repeated under small changes of record, dissipation, size and integration, one at a time: "
-        f"{', '.join(changes)}. A cross: a run was not decided, so neither is whether the verdict "
-        "stands. No mark: the change does not apply to the record."
+        f"{', '.join(changes)}. A cross: a run was not decided, so it is not known "
+        "whether the verdict stays the same. No mark: the change does not apply to the record."
     )
 
 
 def _planar_text(assessment: Assessment) -> list[str]:
-    return list(PLANAR) if "planar" in assessment.data else ["Not asked for."]
+    return list(PLANAR) if "planar" in assessment.data else ["Not computed (planar = false)."]
 
 
 def _fragility_text(assessment: Assessment) -> str:
@@ -174,7 +180,7 @@ def _fragility_text(assessment: Assessment) -> str:
     few = few_records(count)
     if "fragility" not in assessment.data:
         why = few or "a probability needs more records"
-        return f"Not fitted: at least {least} records are asked for (least_records). {why[0].upper()}{why[1:]}."
+        return f"Not fitted: at least {least} records are required (least_records). {why[0].upper()}{why[1:]}."
     return (f"{few}. " if few else "") + (
         f"Lognormal curves by maximum likelihood over the peak ground acceleration (RotD50) of {count} "
         "scaled records, at the central dissipation; intervals by bootstrap over the records. Records with survival "

@@ -70,9 +70,9 @@ def _tilt(assessment: Assessment, name: str, scale: float) -> str:
         others = ratios.size < runs.sizes["record"]
         return f"It did not rock{' under the other records' if others else ''}."
     if float(most) < SMALLEST_TILT:
-        return f"It hardly rocked: the largest tilt without overturning is below {SMALLEST_TILT:g} α."
+        return f"It hardly rocked: the peak tilt without overturning is below {SMALLEST_TILT:g} α."
     words = tilt_words(float(most), assessment.data["columns"].sel(column=name))
-    return f"Largest tilt without overturning: {words} ({most['record'].item()})."
+    return f"Peak tilt without overturning: {words} ({most['record'].item()})."
 
 
 def _margin(assessment: Assessment, name: str, own: xr.Dataset) -> str:
@@ -85,7 +85,7 @@ def _margin(assessment: Assessment, name: str, own: xr.Dataset) -> str:
         sentence = f"No scale factor from {number(low)} to {number(high)} overturned it at central dissipation."
     else:
         sentence = (
-            f"At central dissipation the least scale that overturned it is {number(least, 4)} ({record})"
+            f"At central dissipation the smallest overturning scale is {number(least, 4)} ({record})"
             f"{_lasting(assessment, name, record)}. {_intensity(assessment, name, record)}"
         )
     if not math.isnan(least_of_all) and least_of_all != least:
@@ -93,12 +93,12 @@ def _margin(assessment: Assessment, name: str, own: xr.Dataset) -> str:
     again = int(own["stands_again"])
     if again:
         under = records(again, assessment.data["records"].sizes["record"])
-        sentence += f" Some larger scales did not overturn it, under {under}: more shaking is not always worse."
+        sentence += f" Some larger scales did not overturn it, under {under}: survival is not monotonic in the scale."
     return sentence
 
 
 def _intensity(assessment: Assessment, column: str, record: str) -> str:
-    """Return PGA, PGV and Sa of a record at the least scale that overturned a column."""
+    """Return PGA, PGV and Sa of a record at the smallest overturning scale of a column."""
     table = margin_intensities(assessment)
     row = next(row for row in table.rows if tuple(row[:2]) == (column, record))
     cells = dict(zip(table.header, row, strict=True))
@@ -132,27 +132,27 @@ def _contact(assessment: Assessment, name: str, own: xr.Dataset) -> str:
     else:
         at_stated = (
             f"Some run needed a friction of {number(need)}, above the stated coefficient {number(stated)}: "
-            "there the base would slip, which these runs do not follow."
+            "there the base would slip, which these runs do not describe."
         )
     return f"{at_stated} {_contact_to_margin(own)}"
 
 
 def _contact_to_margin(own: xr.Dataset) -> str:
-    """Return the friction needed up to the margin, and the least scale that needs more than is stated."""
+    """Return the friction needed up to the margin, and the smallest scale that needs more than is stated."""
     need, slipping = (float(own[name]) for name in ("friction_to_margin", "least_slipping"))
     if math.isnan(need) and math.isnan(slipping):
         return "The friction needed at other scales was not computed."
     if math.isnan(slipping):
         return "No scale factor that was run for the margin needed more than the stated friction."
-    sentence = f"The least scale that needs more friction than stated is {number(slipping, 4)}"
+    sentence = f"The smallest scale that needs more friction than stated is {number(slipping, 4)}"
     if math.isnan(float(own["least_of_all"])):
         return f"{sentence}: beyond that scale the base would slip, and these runs do not describe the column."
     if int(own["slips_first"]):
         return (
-            f"{sentence}, in some case below the least scale that overturned it: the base would slip first, and these "
+            f"{sentence}, in some case below the smallest overturning scale: the base would slip first, and these "
             "runs do not give its margin."
         )
-    return f"{sentence}, above the least scale that overturned it: beyond that scale the base would slip."
+    return f"{sentence}, above the smallest overturning scale: beyond that scale the base would slip."
 
 
 def _stated_scales(assessment: Assessment) -> str:
@@ -169,6 +169,6 @@ def how_to_read(assessment: Assessment) -> str:
     )
     return (
         "How to read this: a verdict reports the runs that were made, of a rigid column under these records only. "
-        "“Did not overturn” is no proof that the column cannot overturn. A single rocking run is barely repeatable "
+        "“Did not overturn” does not prove that the column cannot overturn. A single rocking run is barely repeatable "
         f"near the limit. {repeated}"
     )

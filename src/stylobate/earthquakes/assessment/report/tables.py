@@ -46,7 +46,7 @@ def _summary(assessment: Assessment) -> Table:
     header = (
         *("column", "scale", "did not overturn it", "overturned it", "not decided", "overturned it in some case"),
         *("depend on dissipation", "depend on vertical", *optional.values()),
-        *(f"largest {name}" for name in TILT_HEADER),
+        *(f"peak {name}" for name in TILT_HEADER),
         "largest friction needed",
     )
     rows = []
@@ -59,7 +59,7 @@ def _summary(assessment: Assessment) -> Table:
 
 def _fragility(assessment: Assessment) -> Table:
     header = (
-        *("column", "limit state", "median PGA, RotD50 [m/s²]", "from", "to", "dispersion β", "from", "to", "runs"),
+        *("column", "limit state", "median PGA, RotD50 [m/s²]", "from", "to", "dispersion β_f", "from", "to", "runs"),
         *("reached", "records with survival above an overturning scale"),
     )
     if "fragility" not in assessment.data:

@@ -10,9 +10,9 @@ ASSUMPTIONS: tuple[tuple[str, str], ...] = (
         "with what the joint can bear",
     ),
     ("dissipation", "the stated one: low, central and high levels, none of them measured by this program"),
-    ("after the record", "the base stands still and the column is followed on for the stated time"),
+    ("after the record", "the base stands still; the run continues for the stated free-vibration time"),
     ("scaled records", "all components times one factor, the time axis unchanged"),
-    ("direction", "a round column on level ground has no weak direction: a turned record turns the motion and no more"),
+    ("direction", "a round column on level ground has no weak direction: rotating the record only rotates the motion"),
 )
 
 NOT_COVERED: tuple[tuple[str, str], ...] = (
@@ -28,17 +28,17 @@ NOT_COVERED: tuple[tuple[str, str], ...] = (
 )
 
 SLIP_AND_FLIGHT: dict[bool, tuple[str, str]] = {
-    False: ("slip and flight", "the model that slides (kind sliding) was not run: sliding = false"),
+    False: ("slip and flight", "the sliding model (kind sliding) was not run: sliding = false"),
     True: (
         "slip and flight",
-        "the model that slides (kind sliding) was run only for columns that slide before they rock, at the central "
+        "the sliding model (kind sliding) was run only for columns that slide before they rock, at the central "
         "dissipation; all other runs assume that the base neither slips nor lifts off",
     ),
 }
 """What is not covered, by whether `sliding` was asked for."""
 
 VERDICT_CLASSES: tuple[tuple[str, str], ...] = (
-    ("NOT shown safe", "some record overturned the column at some stated dissipation"),
+    ("NOT shown safe", "at least one record overturned the column at some stated dissipation"),
     (
         "Survival NOT robust",
         "no record overturned it at any stated dissipation, but the vertical component, a smaller scale, a small "
@@ -96,7 +96,7 @@ REFERENCES: tuple[tuple[str, str], ...] = (
     ),
     (
         "equations of motion",
-        "stylobate, documentation, pages Models, Theory and Method: a rigid body whose rim rolls without slip, viscous "
+        "stylobate, documentation, pages Models and Equations: a rigid body whose rim rolls without slip, viscous "
         "damping of its tilting",
     ),
     (

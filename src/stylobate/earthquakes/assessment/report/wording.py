@@ -33,7 +33,7 @@ def tilt(value: float) -> str:
 
 
 def least_scale(margins: xr.Dataset) -> str:
-    """Return the least scale that overturned, of one column, case and record, with the next below that did not."""
+    """Return the smallest overturning scale, of one column, case and record, with the next below that did not."""
     if int(margins["bands"]) == 0:
         if undecided := undecided_scales(margins):
             return f"none found; {undecided}"
