@@ -224,11 +224,11 @@ def test_many_narrow_bands_of_a_kind_are_one():
 def test_on_a_fine_map_textures_are_left_out_where_classes_mix():
     axes = new_figure(3.0).subplots()
     codes = np.zeros((80, 80), dtype=int)
-    codes[:, 40:] = np.arange(80)[:, None] % 2  # mixed on the right
+    codes[:, 60:] = np.arange(80)[:, None] % 2  # mixed on the right
     looks = [MapClass(0, "one", Look("#ffffff", "///")), MapClass(1, "other", Look("#000000", "..."))]
     draw_cells(axes, np.arange(80.0), np.arange(80.0), codes, looks)
     (texture,) = axes.patches
-    assert texture.get_path().vertices[:, 0].max() < 41.0
+    assert texture.get_path().vertices[:, 0].max() < 61.0
 
 
 def test_what_has_not_settled_looks_like_what_still_moves():

@@ -1,6 +1,7 @@
 """Maps of classes: cells filled and textured, with their legend."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -22,8 +23,9 @@ _FRAME = "#555555"
 _EQUAL = 1e-6
 _LEAST_FOR_SPACING = 3
 # On maps of this many cells or more each way a texture is drawn only where a class fills this fraction of the cells
-# about, within so many of them to each side: elsewhere it would look like noise.
-_FINE, _FILLED, _ABOUT = 60, 0.97, 4
+# about, within so many of them to each side: elsewhere it would look like noise. A class of which less than the last
+# fraction lies so has no texture.
+_FINE, _FILLED, _ABOUT, _LEAST = 60, 0.97, 4, 0.5
 
 
 def cell_edges(values: npt.ArrayLike) -> Floats:
@@ -98,7 +100,8 @@ def _coherent(inside: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
     padded = np.pad(inside.astype(float), _ABOUT, mode="edge")
     filled = np.lib.stride_tricks.sliding_window_view(padded, (window, window)).mean(axis=(2, 3)) >= _FILLED
     around = np.lib.stride_tricks.sliding_window_view(np.pad(filled, _ABOUT), (window, window)).any(axis=(2, 3))
-    return np.asarray(inside & around)
+    found = np.logical_and(inside, around)
+    return np.asarray(found if np.sum(found) >= _LEAST * np.sum(inside) else np.zeros_like(inside))
 
 
 def _texture(outline: Path, look: Look) -> PathPatch:
@@ -135,7 +138,9 @@ def class_legend(codes: Integers, classes: Sequence[MapClass]) -> list[Patch]:
     for one in classes:
         count = int(np.count_nonzero(codes == one.code))
         if count:
-            entries.append(Patch(label=f"{one.name}  {percent(count, codes.size)}", **fill_options(one.look)))
+            plain = one.look.texture and not _coherent(codes == one.code).any()
+            look = replace(one.look, texture="") if plain else one.look
+            entries.append(Patch(label=f"{one.name}  {percent(count, codes.size)}", **fill_options(look)))
     return entries
 
 
