@@ -147,6 +147,7 @@ def _mark_events(axes: Axes, run: Response) -> None:
             textcoords="offset points",
             ha="right" if event.time > _LATE * run.data["time"][-1] else "left",
             fontsize=7.5,
+            bbox={"facecolor": "white", "alpha": 0.75, "linewidth": 0.0, "pad": 0.5},
             arrowprops={"arrowstyle": "-|>", "color": BLACK, "linewidth": 0.6, "mutation_scale": 7},
         )
 

@@ -95,10 +95,11 @@ def _draw_state(axes: Axes, state: xr.Dataset, place: int) -> Line2D:
 
 
 def _named(state: xr.Dataset, *, fitted: bool) -> str:
-    name = str(state["limit_state"].item())
+    name = str(state["limit_state"].item()).replace("α", r"$\alpha_c$")
     unit = axis_label(state["median"]).partition("[")[2].rstrip("]")
     if fitted:
-        return f"{name}\nmedian {state['median'].item():.3g} {unit}".rstrip() + f", β {state['dispersion'].item():.2g}"
+        median = f"{name}\nmedian {state['median'].item():.3g} {unit}".rstrip()
+        return rf"{median}, $\beta_f$ = {state['dispersion'].item():.2g}"
     meanings = str(state["status"].attrs["flag_meanings"]).split()
     reason = meanings[int(state["status"])].lower().replace("_", " ")
     low, high = (state[f"median_{side}"].item() for side in ("low", "high"))
@@ -171,7 +172,7 @@ def plot_annual_rate(found: xr.Dataset) -> Figure:
 
 
 def _rate_of(state: xr.Dataset, years: float) -> str:
-    name = str(state["limit_state"].item())
+    name = str(state["limit_state"].item()).replace("α", r"$\alpha_c$")
     rate, low, high = (state[key].item() for key in ("annual_rate", "rate_low", "rate_high"))
     if not np.isfinite(rate):
         return f"{name}\nno fit"
