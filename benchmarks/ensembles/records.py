@@ -70,7 +70,7 @@ def _lanes(over: dict[str, xr.DataArray]) -> xr.Dataset:
 def _drawn(runs: xr.Dataset, over: dict[str, xr.DataArray], count: int) -> list[tuple[bool, Answer]]:
     """Return of some runs that moved whether they overturned in lanes, and what the loop over SciPy says."""
     rng = np.random.default_rng(12)
-    moved = np.argwhere(runs["releases"].values > 0)
+    moved = np.argwhere(runs["uplifts"].values > 0)
     chosen = moved[rng.choice(len(moved), min(count, len(moved)), replace=False)]
     overturned = runs["outcome"].values == sb.Outcome.OVERTURNED
     pairs = []
@@ -146,7 +146,7 @@ def _no_return(model: sb.Model, largest: float, least: float):
 def _table(runs: xr.Dataset, seconds: float, pairs: list[tuple[bool, Answer]]) -> str:
     count, threads = runs["outcome"].size, usual_threads()
     per_core = count / seconds / threads
-    moved = float((runs["releases"] > 0).mean())
+    moved = float((runs["uplifts"] > 0).mean())
     loop = sum(answer.seconds for _, answer in pairs) / len(pairs)
     same = sum(ours == answer.overturned for ours, answer in pairs)
     moving_rate = per_core * moved  # runs that never move cost little in either

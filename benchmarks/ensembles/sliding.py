@@ -94,7 +94,7 @@ def _cases(count: int) -> list[Case]:
 def _row(name: str, seconds: float, runs: xr.Dataset) -> str:
     count, steps = runs.sizes["run"], float(runs["steps"].mean())
     overturned = runs["outcome"] == sb.Outcome.OVERTURNED
-    shares = [runs["releases"] > 0, runs["slips"] > 0 if "slips" in runs else None, overturned]
+    shares = [runs["uplifts"] > 0, runs["slips"] > 0 if "slips" in runs else None, overturned]
     cells = ["–" if share is None else f"{100.0 * float(share.mean()):.0f} %" for share in shares]
     per_step = f"{1e6 * seconds / (count * steps):.2g}"
     return f"| {name} | {number(count / seconds)} | {number(steps)} | {per_step} | {' | '.join(cells)} |"

@@ -51,7 +51,7 @@ def draw_family(axes: Axes, branch: sb.orbits.Branch, colour: str, label: str, t
     axes.plot(x, y / C, color=colour, linewidth=1.0, linestyle=(0, (4, 2)))
     axes.plot(x, np.where(touching, y / C, np.nan), color=colour, linewidth=2.6, label=label)
     for one in branch.bifurcations:
-        filled = one.soft is not None
+        filled = one.supercritical is not None
         axes.plot(
             one.parameter,
             getattr(one.orbit, tilt) / C,

@@ -160,7 +160,7 @@ print(run.outcome.name, "-", run.reason)
 # Symmetric rolling leans the opposite way half a period later:
 # :math:`\boldsymbol\theta(t + T/2) = -\boldsymbol\theta(t)`. At the pitchfork two
 # orbits without this symmetry branch off, symmetry-related to each other.
-# ``soft`` is True: the pitchfork is supercritical, and these orbits are stable.
+# ``supercritical`` is True, so these orbits are stable.
 asymmetric = sb.orbits.switch_branch(pitchfork, bounds=(1.5, 2.5))
 related = sb.orbits.switch_branch(pitchfork, bounds=(1.5, 2.5), opposite=True)
 for bifurcation in asymmetric.bifurcations:

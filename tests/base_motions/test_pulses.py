@@ -394,5 +394,5 @@ def test_a_pulse_too_weak_to_release_a_column_is_known_to_leave_it_at_rest():
     below, above = (P.ricker(acceleration=share * capacity, angular_frequency=8.0) for share in (1.0, 1.5))
     runs = [sb.simulate(sb.Slender(COLUMN), pulse, duration=2.0) for pulse in (below, above)]
     assert runs[0].outcome is sb.Outcome.AT_REST
-    assert "release" in [event.kind for event in runs[1].events]
+    assert "uplift" in [event.kind for event in runs[1].events]
     assert runs[0].decided_at == 0.0

@@ -46,7 +46,7 @@ def test_runs_stay_below_and_begin_above_with_what_is_told(c, mu, ratio, incline
     below, above = (shaken(model, least * factor, ratio) for factor in (1.0 - 1e-3, 1.0 + 1e-2))
     assert not below.events
     assert below.measures["largest_tilt"] == 0.0
-    begins = {FirstMotion.SLIDE: "slide", FirstMotion.ROCK: "release"}
+    begins = {FirstMotion.SLIDE: "slide", FirstMotion.ROCK: "uplift"}
     assert above.events[0].kind == begins[FirstMotion(int(found["first_motion"]))]
 
 
@@ -65,7 +65,7 @@ def test_what_rocks_slips_on_its_rim_only_as_it_bears_more():
     assert gently.measures["time_slipping"] == 0.0
     assert gently.measures["time_rolling"] > 0.0
     kinds = [event.kind for event in hard.events]
-    assert kinds[0] == "release"
+    assert kinds[0] == "uplift"
     assert "slip" in kinds
     assert hard.measures["time_sliding"] == 0.0
 

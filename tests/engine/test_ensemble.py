@@ -99,7 +99,7 @@ def test_runs_are_those_of_simulate_but_where_they_are_sensitive(motion):
         run = runs.isel(run=i)
         assert names(runs)[i] == single.outcome.name
         assert bool(run["planar"]) == single.planar
-        assert int(run["releases"]) == sum(event.kind == "release" for event in single.events)
+        assert int(run["uplifts"]) == sum(event.kind == "uplift" for event in single.events)
         assert float(run["decided_at"]) == pytest.approx(single.decided_at, abs=1e-5)
         assert float(run["largest_tilt"]) == pytest.approx(single.measures["largest_tilt"], rel=1e-5, abs=1e-9)
 
@@ -147,8 +147,8 @@ def test_an_acceleration_of_just_the_limit_leaves_the_column_standing():
     runs = sb.simulate_ensemble(
         MODEL, LINE.rotated(-0.3), duration=50.0, parameters={"acceleration": [C, np.nextafter(C, 0.0), C * 1.01]}
     )
-    assert runs["releases"].to_numpy().tolist()[:2] == [0, 0]
-    assert runs["releases"].to_numpy()[2] > 0
+    assert runs["uplifts"].to_numpy().tolist()[:2] == [0, 0]
+    assert runs["uplifts"].to_numpy()[2] > 0
     assert names(runs)[:2] == ["AT_REST", "AT_REST"]
 
 

@@ -57,10 +57,10 @@ def test_runs_are_those_of_the_single_engine():
         last = single.sample(min(end, float(single.data["time"][-1]))).isel(time=0)
         for name in ("tilt", "spin", "twist", "footprint"):
             np.testing.assert_allclose(run[f"end_{name}"], last[name], atol=1e-7, err_msg=name)
-        assert run["impacts"] == events["land"] + events["stroke"]
+        assert run["impacts"] == events["land"] + events["face_impact"]
         assert (run["outcome"] == sb.Outcome.OVERTURNED) == ("overturned" in events)
         kinds += events
-    assert {"slip", "stick", "stroke", "land", "slide", "overturned"} <= set(kinds)
+    assert {"slip", "stick", "face_impact", "land", "slide", "overturned"} <= set(kinds)
 
 
 def compared(motion, starts, numbers, duration):

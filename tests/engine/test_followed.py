@@ -255,7 +255,7 @@ def test_what_is_counted_of_contacts_is_what_the_trace_shows(case):
     kinds = [event.kind for event in run.events]
     told = Contacts.of(run.batch)
     assert told.noted[0, Change.SLIPS] == sum(kind in ("slip", "slide", "reverse") for kind in kinds)
-    assert told.noted[0, Change.IMPACTS] == sum(kind in ("land", "stroke") for kind in kinds)
+    assert told.noted[0, Change.IMPACTS] == sum(kind in ("land", "face_impact") for kind in kinds)
     trajectory = run.trajectory
     # A short time in which one kind becomes another counts to that.
     leaps = np.flatnonzero(trajectory.stretches[:, Trace.KIND] == TraceKind.LEAP)
@@ -268,5 +268,5 @@ def test_what_is_counted_of_contacts_is_what_the_trace_shows(case):
 
 def test_a_column_that_rocks_in_a_plane_does_not_travel_round():
     run = slid("rests and is released")
-    assert sum(event.kind == "stroke" for event in run.events) > 10
+    assert sum(event.kind == "face_impact" for event in run.events) > 10
     assert abs(run.log(Log.LAST_AZIMUTH) - run.log(Log.FIRST_AZIMUTH)) <= 0.5

@@ -79,7 +79,7 @@ def test_a_frequency_that_is_missing_or_much_too_low_is_refused(shape, frequency
 @pytest.mark.parametrize("shape", ["sine", "half"])
 def test_a_motion_that_gives_its_frequency_releases_as_the_same_motion_of_the_package(shape):
     run = sb.simulate(MODEL, Own(shape), duration=3.0 * PERIODS)
-    assert run.events[0].kind == "release"
+    assert run.events[0].kind == "uplift"
     assert run.events[0].time == pytest.approx(math.asin(1.0 / 3.0) / 0.7, rel=1e-9)
     assert run.outcome is sb.Outcome.OVERTURNED
 

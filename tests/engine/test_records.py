@@ -82,7 +82,7 @@ def test_a_column_that_just_uplifts_comes_to_rest_again(above):
     runs = sb.simulate_ensemble(
         MODEL, RECORD, duration=RECORD.duration + 5.0, parameters={"scale": [scale / above, scale * above]}
     )
-    np.testing.assert_array_equal(runs["releases"] > 0, [False, True])
+    np.testing.assert_array_equal(runs["uplifts"] > 0, [False, True])
     assert not np.any(runs["outcome"] == sb.Outcome.FAILED)
     assert runs["steps"].values.max() < 20_000
 
@@ -90,7 +90,7 @@ def test_a_column_that_just_uplifts_comes_to_rest_again(above):
 def test_passages_as_slow_as_rest_leave_the_outcome_certain():
     scales = np.linspace(0.3, 2.0, 60)
     runs = sb.simulate_ensemble(MODEL, RECORD, duration=RECORD.duration + 5.0, parameters={"scale": scales})
-    assert (runs["releases"].values > 0).sum() > 20
+    assert (runs["uplifts"].values > 0).sum() > 20
     assert runs["uncertain"].values.mean() < 0.1
 
 

@@ -61,7 +61,7 @@ def test_release_comes_when_a_straight_acceleration_reaches_c(excess, start_phas
         released = 0.0
     first = run.events[0]
     # The margin of 8 ulp shifts the instant by 8 ulp/(Ω √(2 excess)), below 1e-10.
-    assert first.kind == "release"
+    assert first.kind == "uplift"
     assert first.time == pytest.approx(released, abs=1e-9)
 
 
@@ -81,7 +81,7 @@ def test_release_comes_when_an_elliptic_acceleration_reaches_the_weight_left(sta
     above = int(np.argmax(values > 0.0))
     expected = grid[0] if above == 0 else brentq(excess, grid[above - 1], grid[above], xtol=1e-14)
     run = sb.simulate(model(0.1), motion, duration=10.0)
-    assert run.events[0].kind == "release"
+    assert run.events[0].kind == "uplift"
     assert run.events[0].time == pytest.approx(expected, abs=1e-9)
 
 
@@ -98,7 +98,7 @@ def test_a_release_between_samples_is_not_missed(width):
 def test_release_of_a_delayed_motion_comes_at_its_onset():
     motion = sb.Harmonic.circular(acceleration=0.15, angular_frequency=2.0).delayed(3.3)
     run = sb.simulate(model(0.1), motion, duration=5.0)
-    assert run.events[0] == sb.Event("release", pytest.approx(3.3, abs=1e-9))
+    assert run.events[0] == sb.Event("uplift", pytest.approx(3.3, abs=1e-9))
     assert float(run.sample(3.29).amplitude[0]) == 0.0
     assert float(run.sample(3.6).amplitude[0]) > 0.0
 
@@ -132,7 +132,7 @@ def test_motion_after_release_agrees_with_starts_ever_closer_to_the_upright(shap
     coarse, fine = reference(5e-4), reference(2.5e-4)
     error = (fine - coarse) / 3.0  # second order in δ
     found = np.concatenate([run.data.tilt.to_numpy()[-1], run.data.tilt_rate.to_numpy()[-1]])
-    assert run.events[0] == sb.Event("release", 0.0)
+    assert run.events[0] == sb.Event("uplift", 0.0)
     assert np.abs(error).max() < 1e-5
     # What is left is of the third order in δ, less than a tenth of what was removed.
     np.testing.assert_allclose(found, fine + error, rtol=0.0, atol=0.1 * np.abs(error).max() + 1e-9 * C)
@@ -180,7 +180,7 @@ def test_rest_is_followed_by_release_when_the_base_begins_to_move():
     motion = sb.Harmonic.circular(acceleration=0.13, angular_frequency=2.0, ramp=30.0).delayed(40.0)
     run = sb.simulate(model(1.0), motion, tilt=(0.01, 0.0), duration=70.0, recheck=False)
     kinds = [event.kind for event in run.events]
-    assert kinds[:2] == ["rest", "release"]
+    assert kinds[:2] == ["rest", "uplift"]
     rest, release = run.events[:2]
     assert rest.time < 40.0
     # ½(1 − cos(π s/30)) 0.13 = c

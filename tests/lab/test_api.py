@@ -75,7 +75,7 @@ def test_a_description_is_told_without_a_run(client):
     told = client.post("/api/describe", json={**CIRCLE, "duration": 5.0}).json()
     assert "sb.Harmonic.circular(" in told["python"]
     assert told["column"]["slenderness"] == pytest.approx(0.1)
-    assert told["column"]["releasing_acceleration"] == pytest.approx(0.1)
+    assert told["column"]["uplift_acceleration"] == pytest.approx(0.1)
 
 
 def test_response_curves_are_those_of_theory(client):

@@ -247,7 +247,7 @@ def test_standing_before_release_needs_the_friction_at_which_rocking_begins():
     motion = sb.Pulse.half_sine(acceleration=0.405, angular_frequency=3.0)
     run = sb.simulate(STOUT, motion, duration=20.0)
     runs = sb.simulate_ensemble(STOUT, motion, duration=[20.0], demands=True)
-    assert run.events[0].kind == "release"
+    assert run.events[0].kind == "uplift"
     for demand in (run.measures["largest_friction_demand"], float(runs["largest_friction_demand"][0])):
         assert demand >= 0.4 * (1.0 - 1e-9)
 

@@ -93,7 +93,7 @@ def test_a_column_shaken_off_its_base_does_not_depend_on_how_it_departs(name, se
         ),
         (early, duration), begun, "DOP853", rtol=1e-12, atol=1e-22,
     )  # fmt: skip
-    assert [event.kind for event in run.events] == ["release"]
+    assert [event.kind for event in run.events] == ["uplift"]
     np.testing.assert_allclose(run.data["tilt"][-1], by_hand.y[:2, -1], rtol=0.0, atol=2e-6 * C)
     if model.spin_state is not None:
         spin = float(run.data["spin"][-1]) / COLUMN.frequency_scale

@@ -134,7 +134,7 @@ def test_it_leaves_its_base_at_the_acceleration_that_tips_it():
     below, above = (LINE.scaled(factor * limit) for factor in (0.999, 1.02))
     assert sb.simulate(sb.PlanarRocking(SOLID), below, duration=5.0).outcome is sb.Outcome.AT_REST
     run = sb.simulate(sb.PlanarRocking(SOLID), above, duration=5.0)
-    assert run.events[0].kind == "release"
+    assert run.events[0].kind == "uplift"
     assert run.measures["largest_tilt"] > 0.0
 
 

@@ -96,7 +96,7 @@ def test_it_begins_to_move_where_and_as_theory_says(c, mu, incline):
     model = sb.Sliding(
         sb.Column.dimensionless(slenderness=c), friction_coefficient=mu, incline=incline, incline_direction=math.pi
     )
-    kinds = {FirstMotion.ROCK: "release", FirstMotion.SLIDE: "slide"}
+    kinds = {FirstMotion.ROCK: "uplift", FirstMotion.SLIDE: "slide"}
     for factor in (0.999, 1.001):
         size = factor * float(known.amplitude)
         run = sb.simulate(model, vibration(size, 0.5 * size, 0.7), duration=2.0 * TURN)

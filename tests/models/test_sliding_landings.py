@@ -84,7 +84,7 @@ def test_a_landing_is_one_impulse_at_the_lowest_point_within_the_cone(restitutio
 @pytest.mark.parametrize("friction", [0.02, 0.3, 1.5])
 def test_a_stroke_of_the_base_never_adds_energy(friction, restitution, moving):
     rng = np.random.default_rng(5)
-    stroke = float(sb.Sliding(COLUMN).guard_names.index("stroke"))
+    stroke = float(sb.Sliding(COLUMN).guard_names.index("face_impact"))
     # Where all moves at once the slip and spin may hold most of the energy.
     scale = 3.0 if moving == "all" else 1.0
     for c, kappa, axial in rng.uniform([0.05, 0.5, 0.3], [0.9, 0.8, 0.5], (100, 3)):
@@ -131,7 +131,7 @@ def test_a_stroke_of_the_base_never_adds_energy(friction, restitution, moving):
 )
 def test_no_stroke_adds_energy_to_a_squat_column_that_spins_and_slips(column, numbers, start):
     run = sb.simulate(sb.Sliding(column, damping=0.03, **numbers), **start, samples=4001)
-    assert sum(event.kind == "stroke" for event in run.events) > 0
+    assert sum(event.kind == "face_impact" for event in run.events) > 0
     energy = run.data["energy"].to_numpy()
     assert np.all(np.diff(energy) <= 1e-8 * energy[0])
 

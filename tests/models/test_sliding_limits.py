@@ -45,7 +45,7 @@ def test_released_by_the_base_it_is_rolling(friction):
     runs = [
         sb.simulate(model, shaking, duration=1.5, rtol=1e-11) for model in (sliding, sb.Rolling(COLUMN, **friction))
     ]
-    assert [event.kind for event in runs[0].events] == [event.kind for event in runs[1].events] == ["release"]
+    assert [event.kind for event in runs[0].events] == [event.kind for event in runs[1].events] == ["uplift"]
     assert runs[0].events[0].time == pytest.approx(runs[1].events[0].time, abs=1e-13)
     # Both depart by the same series, which rolling resistance has no part in.
     found, known = (run.sample([0.7, 1.0, 1.5]) for run in runs)
@@ -76,7 +76,7 @@ def test_rocking_in_a_plane_is_planar_rocking_with_the_restitution_of_housner(di
     planar = sb.PlanarRocking(COLUMN, restitution=float(theory.housner_restitution(c, inertia_ratio=kappa)))
     seen = np.linspace(0.3, 9.8, 25)
     runs = [sb.simulate(model, tilt=tuple(0.5 * c * way), duration=10.0, rtol=1e-11) for model in (sliding, planar)]
-    assert sum(event.kind == "stroke" for event in runs[0].events) > 2
+    assert sum(event.kind == "face_impact" for event in runs[0].events) > 2
     found, known = (run.sample(seen) for run in runs)
     same(found, known, ["tilt", "tilt_rate"], CLOSED)
 
@@ -85,7 +85,7 @@ def test_each_stroke_of_the_base_takes_the_energy_that_housner_has_it_take():
     c, kappa = COLUMN.slenderness, COLUMN.inertia_ratio
     run = sb.simulate(sb.Sliding(COLUMN, friction_coefficient=ROUGH), tilt=(0.5 * c, 0.0), duration=10.0, rtol=1e-11)
     housner = 1.0 - 2.0 * kappa * c**2 / (1.0 + kappa * c**2)
-    strokes = [event.time for event in run.events if event.kind == "stroke"]
+    strokes = [event.time for event in run.events if event.kind == "face_impact"]
     assert len(strokes) > 2
     for time in strokes:
         before, after = run.sample([time - 0.01, time + 0.01])["energy"].to_numpy()
@@ -102,7 +102,7 @@ def test_a_stroke_sticks_with_the_friction_that_theory_requires(friction, sticks
         sb.Sliding(COLUMN, friction_coefficient=coefficient, static_friction_coefficient=ROUGH),
         tilt=(0.01 * c, 0.0), duration=0.3, rtol=1e-11, rest_energy=0.0,
     )  # fmt: skip
-    stroke = next(event for event in run.events if event.kind == "stroke")
+    stroke = next(event for event in run.events if event.kind == "face_impact")
     slip = run.sample([stroke.time + 1e-6])["slip_velocity"].to_numpy()
     assert (np.hypot(*slip[0]) < 1e-12) == sticks
 

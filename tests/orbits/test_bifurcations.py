@@ -30,7 +30,7 @@ def test_steady_rolling_loses_its_stability_at_the_published_frequency(a0, publi
     assert found.kind is Kind.NEIMARK_SACKER
     # The condition is known to 1e-11 (multipliers) and its slope is of the order 1.
     assert found.parameter == pytest.approx(published, abs=1e-9)
-    assert found.soft
+    assert found.supercritical
     assert abs(found.multiplier) == pytest.approx(1.0, abs=1e-9)
     turn = float(sb.theory.crossing_frequency(a0, c=C, eta=0.1)) * 2.0 * math.pi / published
     expected = complex(math.cos(turn), math.sin(turn))
@@ -47,7 +47,7 @@ def test_bifurcations_of_circular_motion_are_those_of_theory(eta, a0):
     assert found.kind is Kind.NEIMARK_SACKER
     assert found.parameter == pytest.approx(expected, abs=1e-9)
     assert math.copysign(1.0, found.coefficient) == math.copysign(1.0, coefficient)
-    assert found.soft == (coefficient < 0.0)
+    assert found.supercritical == (coefficient < 0.0)
 
 
 def test_normal_form_of_the_map_and_of_the_flow_agree_in_size():
@@ -94,7 +94,7 @@ def test_straight_line_motion_has_its_pitchfork_where_published(straight_branche
     (found,) = straight_branches[a1].bifurcations
     assert found.kind is Kind.PITCHFORK
     assert found.parameter == pytest.approx(published, abs=1e-8)
-    assert found.soft
+    assert found.supercritical
     assert found.orbit.inversion
     assert abs(found.multiplier - 1.0) < 1e-6
     assert np.linalg.norm(found.critical_vector) == pytest.approx(1.0, rel=1e-12)
@@ -104,7 +104,7 @@ def test_elliptic_motion_has_its_pitchfork_where_published(ellipse_branch):
     (found,) = ellipse_branch.bifurcations
     assert found.kind is Kind.PITCHFORK
     assert found.parameter == pytest.approx(1.436505083, abs=1e-8)
-    assert found.soft
+    assert found.supercritical
 
 
 @pytest.mark.parametrize("a1", PITCHFORKS)
@@ -180,7 +180,7 @@ def test_a_branch_lists_its_bifurcations_in_its_data(straight_branches):
     (found,) = branch.bifurcations
     assert list(points["bifurcation_kind"].to_numpy()) == ["pitchfork"]
     assert points["bifurcation_parameter"].to_numpy() == pytest.approx([found.parameter], rel=1e-15)
-    assert list(points["bifurcation_soft"].to_numpy()) == [1]
+    assert list(points["bifurcation_supercritical"].to_numpy()) == [1]
     nu = points["angular_frequency"].to_numpy()
     away = np.abs(nu - found.parameter) > 1e-8
     np.testing.assert_array_equal(points["stable"].to_numpy()[away], (nu > found.parameter)[away])

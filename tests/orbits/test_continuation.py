@@ -54,7 +54,7 @@ def test_a_branch_goes_round_its_fold_to_the_lower_branch(side, nu, bounds):
     # The tilt goes with the square root of the distance from the fold.
     assert fold.orbit.mean_tilt == pytest.approx(C * (1.0 + at**2) / d, rel=1e-6)
     assert abs(fold.multiplier - 1.0) < 1e-5
-    assert fold.soft is None
+    assert fold.supercritical is None
     rolling = sb.theory.steady_rolling(nu, a0, c=C, eta=eta)
     tilts = sorted(orbit.mean_tilt for orbit in branch.orbits_at(nu * 1.01 if side else nu * 0.99))
     rolling = sb.theory.steady_rolling(nu * 1.01 if side else nu * 0.99, a0, c=C, eta=eta)

@@ -28,7 +28,7 @@ def test_the_neimark_sacker_curve_is_the_critical_frequency_of_theory(modulating
     frequency, acceleration = np.transpose([point.values for point in curve.path])
     # Both are told to about 1e-10 of the widths of the bounds.
     np.testing.assert_allclose(frequency, sb.theory.critical_frequency(acceleration, c=C, eta=ETA), atol=2e-9)
-    np.testing.assert_array_equal(curve.points["soft"], 1)
+    np.testing.assert_array_equal(curve.points["supercritical"], 1)
 
 
 def test_the_curve_over_friction_too(modulating):
@@ -48,7 +48,7 @@ def test_the_fold_curve_is_where_the_two_branches_of_rolling_meet():
     positive, negative = a0**2 * (1.0 + nu**2) ** 2, eta**2 * nu**2 * (C**2 - a0**2)
     np.testing.assert_allclose(positive, negative, rtol=1e-8)
     assert np.ptp(a0) > 0.005
-    np.testing.assert_array_equal(curve.points["soft"], -1)
+    np.testing.assert_array_equal(curve.points["supercritical"], -1)
 
 
 def test_the_pitchfork_curve_meets_what_is_located_at_other_amplitudes():

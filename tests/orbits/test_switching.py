@@ -90,14 +90,14 @@ def test_runs_beside_the_old_orbit_end_on_a_new_one(straight_branches, asymmetri
 
 def test_the_asymmetric_orbit_doubles_its_period(doublings):
     assert doublings[0].parameter == pytest.approx(1.571124, abs=1e-6)
-    assert doublings[0].soft
+    assert doublings[0].supercritical
     assert abs(doublings[0].multiplier + 1.0) < 1e-6
 
 
 def test_both_images_double_at_the_same_frequency(asymmetric_branches, doublings):
     image = [one for one in asymmetric_branches[0.13][1].bifurcations if one.kind is Kind.PERIOD_DOUBLING]
     assert image[0].parameter == pytest.approx(doublings[0].parameter, abs=1e-9)
-    assert image[0].soft
+    assert image[0].supercritical
 
 
 def test_orbits_of_twice_the_length_are_born_stable(doublings, doubled_branch):

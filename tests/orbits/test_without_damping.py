@@ -72,5 +72,5 @@ def test_without_damping_a_pitchfork_is_neither_soft_nor_hard():
     motion = sb.Harmonic.straight(acceleration=0.04, angular_frequency=2.0)
     branch = continue_branch(periodic_orbit(MODEL, motion), "angular_frequency", bounds=(1.0, 2.0))
     (pitchfork,) = (one for one in branch.bifurcations if one.kind is Kind.PITCHFORK)
-    assert pitchfork.soft is None
+    assert pitchfork.supercritical is None
     assert math.isnan(pitchfork.coefficient)

@@ -73,7 +73,7 @@ class Course:
     def released_from_rest(self) -> bool:
         """Whether the column came to rest in the run and was released again."""
         kinds = [event.kind for event in self.events]
-        return "rest" in kinds and "release" in kinds[kinds.index("rest") :]
+        return "rest" in kinds and "uplift" in kinds[kinds.index("rest") :]
 
     def follow(self, state: tuple[float, ...]) -> None:
         """Go on from `state` at time 0 to the end."""
@@ -112,7 +112,7 @@ class Course:
         # The departure itself lifts the column by the third power of its duration: shown as rest.
         if not self._rest(held, later):
             return None
-        self._note("release", release)
+        self._note("uplift", release)
         return state
 
     def _rest(self, held: tuple[float, ...], until: float) -> bool:

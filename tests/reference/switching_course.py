@@ -97,7 +97,7 @@ class SwitchingCourse:
     def released_from_rest(self) -> bool:
         """Whether the column came to rest in the run and was released again."""
         kinds = [event.kind for event in self.events]
-        return "rest" in kinds and "release" in kinds[kinds.index("rest") :]
+        return "rest" in kinds and "uplift" in kinds[kinds.index("rest") :]
 
     @property
     def slips(self) -> int:

@@ -61,7 +61,7 @@ def test_what_is_born_at_a_pitchfork_begins_at_the_orbit_that_bears_it(straight)
     assert float(born["angular_frequency"][0]) == float(straight["bifurcation_angular_frequency"][1])
     assert not bool(born["stable"][0])
     assert bool(born["stable"][1])
-    assert int(straight["bifurcation_soft"][1]) == 1
+    assert int(straight["bifurcation_supercritical"][1]) == 1
 
 
 def test_a_branch_does_not_depend_on_its_steps(straight):

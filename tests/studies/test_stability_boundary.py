@@ -22,7 +22,7 @@ def test_under_circular_motion_the_boundary_is_the_closed_form():
     critical = sb.theory.critical_frequency(found["acceleration"].to_numpy(), c=C, eta=ETA)
     # The theory's own root is told to about 1e-10, the curve to 1e-10 of its bounds.
     np.testing.assert_allclose(found["angular_frequency"], critical, atol=2e-9)
-    np.testing.assert_array_equal(found["soft"], 1)
+    np.testing.assert_array_equal(found["supercritical"], 1)
     assert bool(found["theory_is_exact"])
 
 

@@ -78,7 +78,7 @@ def _without_curves(result: "xr.Dataset") -> str:
 def _print(result: "xr.Dataset") -> None:
     parameter = str(result.attrs["parameter"])
     unit = str(result[parameter].attrs.get("units", "")).replace(" s-2", "/s²").replace(" s-1", "/s")
-    softness = {1: "supercritical", 0: "subcritical", -1: ""}
+    labels = {1: "supercritical", 0: "subcritical", -1: ""}
     rows = []
     for index, kind in enumerate(result["curve_kind"].to_numpy()):
         part = result.isel(point=np.nonzero(result["curve"].to_numpy() == index)[0])
@@ -88,7 +88,7 @@ def _print(result: "xr.Dataset") -> None:
                 str(kind),
                 f"{float(part['angular_frequency'][k]):.8g} rad/s",
                 f"{float(part[parameter][k]):.6g} {unit}".strip(),
-                softness[int(part["soft"][k])],
+                labels[int(part["supercritical"][k])],
             ]
             for k in shown
         ]

@@ -64,11 +64,11 @@ def _print_exact(curves: "xr.Dataset") -> None:
 
     names = curves["branch_name"].to_numpy()
     rows = [
-        [str(kind), f"{float(at):.9g} rad/s", str(names[branch]), f"{float(tilt):.6g} rad", _SOFTNESS[int(soft)]]
-        for kind, at, branch, tilt, soft in zip(
+        [str(kind), f"{float(at):.9g} rad/s", str(names[branch]), f"{float(tilt):.6g} rad", _LABELS[int(supercritical)]]
+        for kind, at, branch, tilt, supercritical in zip(
             *(
                 curves[f"bifurcation_{name}"].to_numpy()
-                for name in ("kind", "angular_frequency", "branch", "mean_tilt", "soft")
+                for name in ("kind", "angular_frequency", "branch", "mean_tilt", "supercritical")
             ),
             strict=True,
         )
@@ -81,7 +81,7 @@ def _print_exact(curves: "xr.Dataset") -> None:
     print_table(f"where orbits are {stability_of(curves)}", _stable_ranges(curves), ("branch", "Ω", "mean tilt"))
 
 
-_SOFTNESS = {1: "supercritical", 0: "subcritical", -1: ""}
+_LABELS = {1: "supercritical", 0: "subcritical", -1: ""}
 
 
 def _stable_ranges(curves: "xr.Dataset") -> list[list[str]]:

@@ -19,7 +19,7 @@ from stylobate.results import Event
 Floats = npt.NDArray[np.float64]
 
 _EVENTS = {
-    TraceKind.RELEASE: "release",
+    TraceKind.RELEASE: "uplift",
     TraceKind.REST: "rest",
     TraceKind.IMPACT: "impact",
     TraceKind.PASSAGE: "passage",

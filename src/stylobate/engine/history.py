@@ -90,7 +90,7 @@ def _samples(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Flo
     attributes = {
         "slenderness": column.slenderness,
         "base_radius": column.radius,
-        "release_acceleration": column.slenderness * column.gravity,
+        "uplift_acceleration": column.slenderness * column.gravity,
     }
     return Samples(time, variables, attributes)
 

@@ -20,14 +20,14 @@ _ENDINGS = {
     Status.LIMIT: "its tilt reached tilt_limit",
     Status.LIFTED: "the base accelerates downwards faster than gravity",
 }
-_STANDS = {True: "can neither tip nor move it", False: "cannot release it"}
+_STANDS = {True: "can neither tip nor move it", False: "cannot uplift it"}
 _JAMMED = "its contact jams: with friction as large as this no motion of a rigid body follows (Painlevé's paradox)"
 _UPRIGHT = {
     Outcome.SLID: "it stands upright, and its base slides on the plane to the end",
     Outcome.LIFTED_OFF: "it stays upright, and leaves the plane again and again",
 }
 _UNPROVED = "its tilt reached π/2, which counts as overturned"
-_RELEASED = "it may yet be released: follow it longer"
+_RELEASED = "it may still be uplifted: follow it longer"
 _TOO_SMALL = "its step became smaller than the rounding of the time"
 _RACING = (
     "; it passes the vertical so closely that the contact point races round the rim, and no passage costs energy: "
@@ -77,7 +77,7 @@ def _failure(model: Model, followed: Followed) -> str:
 
 def _standing(model: Model, motion: BaseMotion, followed: Followed) -> str:
     releases = int(followed.log(Log.RELEASES))
-    before = f", released {plural(releases, 'time')} before" if releases else ""
+    before = f", uplifted {plural(releases, 'time')} before" if releases else ""
     left = motion.duration - followed.trajectory.end * model.time_scale
     to_come = math.isfinite(left) and left > 0.0
     stops = f", {left:.4g} s before the base motion stops; {_RELEASED}" if to_come else ""

@@ -89,7 +89,7 @@ def coarse(
 def hop_energy(
     frequency: npt.ArrayLike, largest: npt.ArrayLike, least_vertical: npt.ArrayLike, capacity: npt.ArrayLike
 ) -> Floats:
-    """Return the energy [c²] that a harmonic peak gives a column it has just released; NaN if it cannot release it.
+    """Return the energy [c²] that a harmonic peak gives a column it has just released; NaN if it cannot uplift it.
 
     With |a_h| = c(1 + δ) at the peak the excess lasts 2√(2δ)/ν and leaves the speed (4/3)√2 c δ^{3/2}/ν.
     """

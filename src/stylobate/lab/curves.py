@@ -76,16 +76,19 @@ def plain_exact(found: xr.Dataset) -> dict[str, Any]:
         {"name": str(label), **{name: numbers(found[name].to_numpy()[owner == index]) for name in names}}
         for index, label in enumerate(found["branch_name"].to_numpy())
     ]
-    softness = {1: True, 0: False, -1: None}
+    decided = {1: True, 0: False, -1: None}
     bifurcations = [
         {
             "kind": str(kind),
             "angular_frequency": float(frequency),
             "mean_tilt": float(tilt),
-            "soft": softness[int(soft)],
+            "supercritical": decided[int(supercritical)],
         }
-        for kind, frequency, tilt, soft in zip(
-            *(found[f"bifurcation_{name}"].to_numpy() for name in ("kind", "angular_frequency", "mean_tilt", "soft")),
+        for kind, frequency, tilt, supercritical in zip(
+            *(
+                found[f"bifurcation_{name}"].to_numpy()
+                for name in ("kind", "angular_frequency", "mean_tilt", "supercritical")
+            ),
             strict=True,
         )
     ]

@@ -46,7 +46,7 @@ def plain_column(model: Model) -> dict[str, float]:
     column = model.column
     return {
         **{name: float(getattr(column, name)) for name in OF_ANY_COLUMN},
-        "releasing_acceleration": column.slenderness * column.gravity,
+        "uplift_acceleration": column.slenderness * column.gravity,
     }
 
 

@@ -57,7 +57,7 @@ class Bifurcation:
     coefficient
         Coefficient of the normal form; NaN if it decides nothing. The bifurcation is supercritical if it is negative
         (Neimark-Sacker) or positive (pitchfork, period doubling).
-    soft
+    supercritical
         Whether the loss of stability is supercritical (soft): stable motions branch off. None if the orbit is unstable
         on both sides, at folds and branch points, and without damping: there the coefficient decides nothing.
     critical_vector
@@ -71,7 +71,7 @@ class Bifurcation:
     orbit: PeriodicOrbit
     multiplier: complex
     coefficient: float
-    soft: bool | None
+    supercritical: bool | None
     critical_vector: Floats
     point: Point
     direction: Floats
@@ -83,7 +83,7 @@ class Bifurcation:
 
     def __repr__(self) -> str:
         """Describe it in one line."""
-        how = {True: ", supercritical", False: ", subcritical", None: ""}[self.soft]
+        how = {True: ", supercritical", False: ", subcritical", None: ""}[self.supercritical]
         return f"Bifurcation({self.kind.value} at {self.point.family.name} = {self.parameter:.10g}{how})"
 
 
@@ -138,14 +138,14 @@ def _classified(point: Point, sense: Floats, name: str) -> Bifurcation | None:
     orbit, family = orbit_at(point), point.family
     values = point.map_multipliers
     period_map = PeriodMap(orbit.system, orbit.state, family.covered, family.sense)
-    kind, critical, coefficient, soft = _KINDS[name], _CRITICAL_VALUES[name], math.nan, None
+    kind, critical, coefficient, supercritical = _KINDS[name], _CRITICAL_VALUES[name], math.nan, None
     if name == "Neimark-Sacker":
         pairs = [m for m in values if m.imag > 0.0 and abs(abs(m) - 1.0) < _CRITICAL]
         if not pairs:
             return None  # two reciprocal real multipliers
         critical = complex(pairs[0])
         coefficient = neimark_sacker_coefficient(period_map, critical)
-        soft = coefficient < 0.0
+        supercritical = coefficient < 0.0
     nearest = complex(values[np.argmin(np.abs(values - critical))])
     if abs(nearest - critical) > _CRITICAL:
         return None
@@ -154,12 +154,12 @@ def _classified(point: Point, sense: Floats, name: str) -> Bifurcation | None:
         kind = Kind.PITCHFORK if family.sense < 0.0 else kind
         if not without_damping(point.multipliers):
             coefficient = period_doubling_coefficient(period_map)
-            soft = coefficient > 0.0
+            supercritical = coefficient > 0.0
     if np.sum(np.abs(values) > 1.0 + _CRITICAL) > 0:
-        soft = None  # it is unstable on both sides
+        supercritical = None  # it is unstable on both sides
     vector: Floats = critical_vectors(point.map_derivative, nearest)[0].real
     multiplier = nearest**2 if family.sense < 0.0 else nearest
-    return Bifurcation(kind, point.value, orbit, multiplier, coefficient, soft, vector, point, sense)
+    return Bifurcation(kind, point.value, orbit, multiplier, coefficient, supercritical, vector, point, sense)
 
 
 _KINDS = {

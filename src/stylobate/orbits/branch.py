@@ -19,7 +19,7 @@ from stylobate.orbits.arguments import control_of, enclosing, require_followed, 
 from stylobate.orbits.bifurcations import Bifurcation, between, orbit_at
 from stylobate.orbits.multipliers import is_stable
 from stylobate.orbits.orbit import PeriodicOrbit
-from stylobate.orbits.saving import BRANCH, SOFT, attributes_of, write
+from stylobate.orbits.saving import BRANCH, SUPERCRITICAL, attributes_of, write
 from stylobate.orbits.shooting import WHY_LOST, arcs_of
 from stylobate.orbits.tracing import End, StepControl, Stretch, trace
 
@@ -140,7 +140,7 @@ class Branch:
             "multiplier_real": np.array([one.multiplier.real for one in found], dtype=float),
             "multiplier_imaginary": np.array([one.multiplier.imag for one in found], dtype=float),
             "coefficient": np.array([one.coefficient for one in found], dtype=float),
-            "soft": np.array([SOFT[one.soft] for one in found], dtype=np.int8),
+            "supercritical": np.array([SUPERCRITICAL[one.supercritical] for one in found], dtype=np.int8),
         }
         vectors = {
             "critical_vector": (family.system.order, [one.critical_vector for one in found]),
@@ -182,7 +182,7 @@ def _table_of(bifurcations: tuple[Bifurcation, ...]) -> dict[str, tuple[str, lis
         "bifurcation_kind": (dim, [one.kind.value for one in bifurcations]),
         "bifurcation_parameter": (dim, [one.parameter for one in bifurcations]),
         "bifurcation_coefficient": (dim, [one.coefficient for one in bifurcations]),
-        "bifurcation_soft": (dim, [{True: 1, False: 0, None: -1}[one.soft] for one in bifurcations]),
+        "bifurcation_supercritical": (dim, [{True: 1, False: 0, None: -1}[one.supercritical] for one in bifurcations]),
         "bifurcation_mean_tilt": (dim, [one.orbit.mean_tilt for one in bifurcations]),
         "bifurcation_largest_tilt": (dim, [one.orbit.largest_tilt for one in bifurcations]),
     }

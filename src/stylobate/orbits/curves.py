@@ -94,11 +94,11 @@ class BifurcationCurve:
     def points(self) -> xr.Dataset:
         """The points as data over `point`: both parameters, tilts [rad], the coefficient of the normal form, its sign.
 
-        `soft` is 1 if the loss of stability is supercritical, 0 if it is subcritical, −1 at folds and if the orbit is
-        unstable on both sides.
+        `supercritical` is 1 if the loss of stability is supercritical, 0 if it is subcritical, −1 at folds and if the
+        orbit is unstable on both sides.
         """
         coefficient = np.array([self.plane.coefficient(point) for point in self.path])
-        soft = coefficient < 0.0 if self.kind is Kind.NEIMARK_SACKER else coefficient > 0.0
+        supercritical = coefficient < 0.0 if self.kind is Kind.NEIMARK_SACKER else coefficient > 0.0
         decided = np.array([_only_critical(point) for point in self.path]) & ~np.isnan(coefficient)
         angle = np.abs(np.angle([point.multiplier for point in self.path]))
         system = self.plane.system
@@ -107,7 +107,7 @@ class BifurcationCurve:
                 "least_tilt": ("point", [p.chain.least_tilt for p in self.path], {"units": "rad"}),
                 "largest_tilt": ("point", [p.chain.largest_tilt for p in self.path], {"units": "rad"}),
                 "coefficient": ("point", coefficient, {"long_name": "coefficient of the normal form"}),
-                "soft": ("point", np.where(decided, soft, -1).astype(np.int8)),
+                "supercritical": ("point", np.where(decided, supercritical, -1).astype(np.int8)),
                 "multiplier_angle": ("point", angle, {"units": "rad", "long_name": "angle of the critical eigenvalue"}),
             },
             coords={name: ("point", [p.values[k] for p in self.path]) for k, name in enumerate(self.parameters)},

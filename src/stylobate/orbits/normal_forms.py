@@ -1,4 +1,4 @@
-"""Is a loss of stability soft or hard: normal-form coefficients of the map over one period.
+"""Is a loss of stability supercritical or subcritical: normal-form coefficients of the map over one period.
 
 Yu. A. Kuznetsov, "Elements of Applied Bifurcation Theory", 3rd ed., sections 5.4 and 8.7: coefficients of maps on the
 critical manifold. The map's first derivative is exact; its second and third ones are differences of it, right to about
@@ -88,7 +88,7 @@ def critical_vectors(matrix: Floats, multiplier: complex) -> tuple[Complexes, Co
 
 
 def neimark_sacker_coefficient(period_map: PeriodMap, multiplier: complex) -> float:
-    """Return d, the first Lyapunov coefficient of the map: below zero a stable torus is born (soft loss)."""
+    """Return d, the first Lyapunov coefficient of the map: below zero a stable torus is born (supercritical)."""
     matrix = period_map.derivative(np.zeros_like(period_map.state))
     q, p = critical_vectors(matrix, multiplier)
     unit = multiplier / abs(multiplier)
@@ -101,7 +101,7 @@ def neimark_sacker_coefficient(period_map: PeriodMap, multiplier: complex) -> fl
 
 
 def period_doubling_coefficient(period_map: PeriodMap) -> float:
-    """Return the cubic coefficient of the flip: above zero a stable orbit of double period is born (soft loss)."""
+    """Return the cubic coefficient of the flip: above zero a stable orbit of double period is born (supercritical)."""
     matrix = period_map.derivative(np.zeros_like(period_map.state))
     q, p = critical_vectors(matrix, -1.0 + 0.0j)
     inner = np.linalg.solve(np.eye(len(matrix)) - matrix, period_map.b(q, q))

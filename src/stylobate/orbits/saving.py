@@ -16,7 +16,7 @@ from stylobate.results.storage import write_netcdf
 ORBIT, BRANCH, CURVE = "stylobate orbit 1", "stylobate branch 1", "stylobate bifurcation curve 1"
 """The formats of their files."""
 
-SOFT = {True: 1, False: 0, None: -1}
+SUPERCRITICAL = {True: 1, False: 0, None: -1}
 """How a file states whether a loss of stability is supercritical; -1 where that is undecided."""
 
 _SUFFIX = ".nc"

@@ -115,8 +115,8 @@ def _draw_theory(axes: Axes, curves: xr.Dataset, name: str) -> None:
 def _mark(axes: Axes, curves: xr.Dataset) -> None:
     kinds = curves["bifurcation_kind"].to_numpy().astype(str)
     for kind, (marker, name) in BIFURCATION_MARKS.items():
-        for soft, (fill, decided) in _FILLS.items():
-            chosen = (kinds == kind) & (curves["bifurcation_soft"].to_numpy() == soft)
+        for supercritical, (fill, decided) in _FILLS.items():
+            chosen = (kinds == kind) & (curves["bifurcation_supercritical"].to_numpy() == supercritical)
             if not chosen.any():
                 continue
             axes.plot(

@@ -17,7 +17,7 @@ from stylobate.plots.style import BLACK, DASHES, GREY, PALETTE, new_figure, styl
 from stylobate.results import Response
 
 _EVENT_NAMES = {
-    "release": "uplift",
+    "uplift": "uplift",
     "rest": "at rest",
     "overturned": "overturned",
     "limit": "tilt limit",
@@ -80,7 +80,7 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
         tilt.axhline(c, **_LIMIT)
         orbit.add_patch(Circle((0.0, 0.0), c, fill=False, **_LIMIT))
     if shaken:
-        for level in {float(run.data.attrs["release_acceleration"]) for run in runs}:
+        for level in {float(run.data.attrs["uplift_acceleration"]) for run in runs}:
             axes["base"].axhline(level, **_LIMIT)
         axes["base"].set_ylabel(axis_label(runs[0].data["base_acceleration"]))
     axes["base" if shaken else "azimuth"].set_xlabel(axis_label(runs[0].data["time"]))

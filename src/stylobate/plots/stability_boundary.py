@@ -40,12 +40,14 @@ def plot_stability_boundary(boundary: xr.Dataset) -> Figure:
     labelled: set[str] = set()
     for index, name in enumerate(boundary["curve_kind"].to_numpy()):
         part = boundary.isel(point=np.nonzero(boundary["curve"].to_numpy() == index)[0])
-        x, y, soft = (part[key].to_numpy() for key in ("angular_frequency", str(parameter.name), "soft"))
+        x, y, supercritical = (
+            part[key].to_numpy() for key in ("angular_frequency", str(parameter.name), "supercritical")
+        )
         colour, line = _STYLES[str(name)]
         for chosen, how, width in (
-            (soft == 1, "supercritical", 2.6),
-            (soft == 0, "subcritical", 1.6),
-            (soft == -1, _UNDECIDED, 0.7),
+            (supercritical == 1, "supercritical", 2.6),
+            (supercritical == 0, "subcritical", 1.6),
+            (supercritical == -1, _UNDECIDED, 0.7),
         ):
             added = "" if str(name) == "fold" else f", {how}"
             for first, last in _runs(chosen):

@@ -20,8 +20,8 @@ _PLAIN = ("decided_at", "uncertain", "planar", "thresholds", "measures", "proven
 
 
 EVENT_KINDS = (
-    *("release", "rest", "overturned", "limit", "lifted", "failed", "impact", "passage"),
-    *("slide", "stop", "slip", "reverse", "stick", "lift", "land", "stroke", "jam"),
+    *("uplift", "rest", "overturned", "limit", "lifted", "failed", "impact", "passage"),
+    *("slide", "stop", "slip", "reverse", "stick", "lift", "land", "face_impact", "jam"),
 )
 """Kinds of events that runs detect by default."""
 
@@ -30,9 +30,9 @@ EVENT_KINDS = (
 class Event:
     """An event of a run: its `kind` and `time` [s].
 
-    Kinds of all models: "release" (uplift), "rest", "overturned", "limit", "lifted" and "failed"; "impact", a passage
+    Kinds of all models: "uplift" (uplift), "rest", "overturned", "limit", "lifted" and "failed"; "impact", a passage
     through the vertical with energy loss, and "passage", a planar one without. Kinds of models that can slip and fly:
-    "slide" and "stop" of the base face; "slip", "reverse" and "stick" of the rim; "lift" and "land"; "stroke", an
+    "slide" and "stop" of the base face; "slip", "reverse" and "stick" of the rim; "lift" and "land"; "face_impact", an
     impact of the base face; "jam", dynamic jamming. An event of an `EventFunction` has the name of the function.
     """
 

@@ -15,7 +15,7 @@ def column_rows(column: "Column") -> Rows:
     """Return the numbers of the column that decide."""
     return [
         ("column", f"c = {column.slenderness:.5g}, ω0 = {column.frequency_scale:.5g} rad/s, mass {column.mass:.6g} kg"),
-        ("released above", f"{column.slenderness * column.gravity:.5g} m/s² of horizontal acceleration"),
+        ("uplifts above", f"{column.slenderness * column.gravity:.5g} m/s² of horizontal acceleration"),
     ]
 
 

@@ -76,8 +76,8 @@ def agree(runs, outcome_in, end_of, ends_of):
             sensitive += 1
         assert bool(data["planar"][index]) is single.planar
         assert bool(data["uncertain"][index]) is single.uncertain
-        releases = sum(event.kind == "release" for event in single.events)
-        assert int(data["releases"][index]) == releases
+        releases = sum(event.kind == "uplift" for event in single.events)
+        assert int(data["uplifts"][index]) == releases
         largest = single.measures["largest_tilt"]
         assert float(data["largest_tilt"][index]) == pytest.approx(largest, rel=1e-4)
     return disagreeing, sensitive

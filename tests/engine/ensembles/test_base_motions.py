@@ -152,8 +152,8 @@ def test_a_motion_of_ones_own_releases_a_column_from_rest(runs_of, outcome_in, e
     motion = Burst(bend=0.0 if planar else 0.8, vertical=0.0)
     runs = runs_of(STONE, motion, 3, **still, parameters={"scale": [1.0, 1.5, 2.0]})
     data = expect_as_alone(runs, outcome_in, end_of, ends_of)
-    assert int(data["releases"][0]) == 0
-    assert int(data["releases"][2]) >= 1
+    assert int(data["uplifts"][0]) == 0
+    assert int(data["uplifts"][2]) >= 1
 
 
 # Bounds that fall are taken anew with each piece of the table: what they prove is told at most a piece later.

@@ -25,7 +25,7 @@ def test_a_column_at_rest_stays_while_the_acceleration_is_exactly_c(frequency, s
     np.testing.assert_array_equal(data["decided_at"], 0.0)
     np.testing.assert_array_equal(data["end_time"], [10.0, 1000.0])
     np.testing.assert_array_equal(data["largest_tilt"], 0.0)
-    np.testing.assert_array_equal(data["releases"], 0)
+    np.testing.assert_array_equal(data["uplifts"], 0)
     assert not data["uncertain"].any()
 
 

@@ -40,7 +40,7 @@ def test_release_comes_when_a_straight_acceleration_reaches_c(runs_of, excess):
         duration=np.concatenate([late, early]),
         parameters={"start_phase": np.tile(phases, 2)},
     )
-    releases = both.together()["releases"].to_numpy()
+    releases = both.together()["uplifts"].to_numpy()
     np.testing.assert_array_equal(releases[:5], 1 if excess > 1e-6 else releases[:5])
     np.testing.assert_array_equal(releases[5:], 0)
     np.testing.assert_array_equal(releases[:5], [len(both.alone(i).events) for i in range(5)])
@@ -62,7 +62,7 @@ def test_release_between_weight_and_push_is_that_of_a_root(runs_of, start_phase)
     expected = 0.0 if above == 0 else brentq(excess, grid[above - 1], grid[above], xtol=1e-14)
     later = 1e-3 / 2.3
     runs = runs_of(MODEL, motion, 2, tilt=(0.0, 0.0), duration=[expected + later + 1e-9, max(expected, 1e-9)])
-    np.testing.assert_array_equal(runs.together()["releases"], [1, 0])
+    np.testing.assert_array_equal(runs.together()["uplifts"], [1, 0])
 
 
 def test_marginal_releases_overturn_at_the_time_of_single_runs(runs_of):
@@ -256,8 +256,8 @@ def test_a_space_motion_that_rests_goes_on_in_the_plane_of_a_straight_base_motio
     for index in range(3):
         single = runs.alone(index)
         kinds = [event.kind for event in single.events]
-        assert kinds[:2] == ["rest", "release"]
-        assert int(data["releases"][index]) == kinds.count("release") == 1
+        assert kinds[:2] == ["rest", "uplift"]
+        assert int(data["uplifts"][index]) == kinds.count("uplift") == 1
         assert outcome_in(data, index) is single.outcome
         # It moved in space before.
         assert bool(data["planar"][index]) is single.planar is False

@@ -139,7 +139,7 @@ def test_a_model_that_calls_another_models_functions(written):
     expect_as_alone(model, CIRCLE, **TURNING)
     pushed = expect_as_alone(model, STRAIGHT, **FROM_REST)
     assert bool(pushed["planar"])
-    assert int(pushed["releases"]) == 1
+    assert int(pushed["uplifts"]) == 1
     resting = {"tilt": (0.02, 0.0), "tilt_rate": (0.0, 0.01), "duration": 200.0}
     at_rest = sb.simulate_ensemble(model, CIRCLE.scaled(0.0), **resting)
     assert int(at_rest["outcome"][0]) == sb.Outcome.AT_REST

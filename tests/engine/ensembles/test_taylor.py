@@ -98,7 +98,7 @@ def test_random_runs_differ_from_those_of_the_other_method_no_more_than_from_the
     assert np.all(abs(data["decided_at"] - usual["decided_at"]).to_numpy()[same] <= (10.0 * times + 1e-8)[same])
     calm = ~changed & (ends < 1e-6) & (times < 1e-6)
     assert calm.mean() > 0.7
-    for name in ("planar", "uncertain", "releases"):
+    for name in ("planar", "uncertain", "uplifts"):
         np.testing.assert_array_equal(data[name][calm], usual[name][calm], err_msg=name)
     # Measured on cubics and quintics by the other method; at a peak the tilt changes with the square of the time.
     for name, allowed in (("largest_tilt", 1e-6), ("least_tilt", 1e-4), ("time_of_largest_tilt", 1e-4)):
@@ -111,7 +111,7 @@ def test_runs_in_a_plane_are_those_of_the_other_method_to_the_last_bit(mixed_run
     runs = replace(runs, tilt=0.0 * runs.tilt, tilt_rate=0.0 * runs.tilt_rate)
     data, usual = (runs.together(method=method) for method in ("taylor", "dop853"))
     assert bool(data["planar"].all())
-    assert int(data["releases"].max()) > 0
+    assert int(data["uplifts"].max()) > 0
     assert data.drop_attrs(deep=False).identical(usual.drop_attrs(deep=False))
 
 
@@ -213,8 +213,8 @@ def test_every_other_motion_moves_runs_as_it_does_alone(outcome_in, end_of, ends
 def test_a_motion_of_ones_own_releases_a_column_from_rest(outcome_in, end_of, ends_of):
     still = {"tilt": (0.0, 0.0), "duration": 6.0, "rtol": 1e-10}
     data, single = expect_as_alone(STONE, Swell().scaled(2.0), outcome_in, end_of, ends_of, **still)
-    releases = sum(event.kind == "release" for event in single.events)
-    assert int(data["releases"][0]) == releases >= 1
+    releases = sum(event.kind == "uplift" for event in single.events)
+    assert int(data["uplifts"][0]) == releases >= 1
 
 
 # What is told of a run besides its end.
@@ -356,8 +356,8 @@ def test_a_column_is_released_when_it_is_alone(runs_of, outcome_in, end_of, ends
     runs = runs_of(MODEL, motion, 1, tilt=(0.0, 0.0), duration=4.0, rtol=1e-11)
     data, single = runs.together(method="taylor"), runs.alone(0)
     assert outcome_in(data) is single.outcome
-    releases = sum(event.kind == "release" for event in single.events)
-    assert int(data["releases"][0]) == releases >= 1
+    releases = sum(event.kind == "uplift" for event in single.events)
+    assert int(data["uplifts"][0]) == releases >= 1
     np.testing.assert_allclose(ends_of(data)[0], end_of(single), rtol=0.0, atol=1e-7)
 
 
@@ -368,8 +368,8 @@ def test_a_space_motion_that_rests_goes_on_in_the_plane_of_a_straight_base_motio
     data = runs.together(method="taylor")
     for index in range(2):
         single = runs.alone(index)
-        assert [event.kind for event in single.events][:2] == ["rest", "release"]
-        assert int(data["releases"][index]) == 1
+        assert [event.kind for event in single.events][:2] == ["rest", "uplift"]
+        assert int(data["uplifts"][index]) == 1
         assert outcome_in(data, index) is single.outcome
         assert bool(data["planar"][index]) is False
         np.testing.assert_allclose(data["end_tilt"][index], single.data["tilt"].to_numpy()[-1], rtol=0.0, atol=1e-6)

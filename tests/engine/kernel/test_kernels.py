@@ -86,7 +86,7 @@ for motion, energy, tilt, rate in (
 ):
     options = {"duration": 6.0, "rtol": 1e-9, "samples": 3, "rest_energy": energy}
     data = sb.simulate_ensemble(model, motion, tilt=tilt, tilt_rate=rate, **options)
-    names = ("outcome", "decided_at", "releases", "end_tilt", "largest_tilt", "turns", "sampled_tilt")
+    names = ("outcome", "decided_at", "uplifts", "end_tilt", "largest_tilt", "turns", "sampled_tilt")
     found += [np.nan_to_num(data[name].values, nan=-1.0).ravel().tolist() for name in names]
 print(json.dumps(found))
 """

@@ -87,7 +87,7 @@ QUANTITIES: Mapping[str, Quantity] = {
     "mean_twist_rate": _numbers("mean rate of the twist over the last periods", "rad s-1"),
     "impacts": Quantity(np.int32, (), {"long_name": "landings, and strokes of the base"}),
     "slips": Quantity(np.int32, (), {"long_name": "how often a contact that held began to slip"}),
-    "releases": Quantity(np.int32, (), {"long_name": "releases from rest"}),
+    "uplifts": Quantity(np.int32, (), {"long_name": "uplifts from rest"}),
     "steps": Quantity(np.int32, (), {"long_name": "integration steps"}),
     "strobe_tilt": _numbers("tilt vector at phase zero of the base motion", "rad", "strobe", "axis"),
     "strobe_tilt_rate": _numbers("its rate at phase zero of the base motion", "rad s-1", "strobe", "axis"),
@@ -173,7 +173,7 @@ def _all(batch: Batch) -> Arrays:
         "phase": late.phase,
         "mean_rolling_rate": 2.0 * math.pi * late.turned / (late.span * scale),
         "repetition": late.repetition,
-        "releases": batch.log(Log.RELEASES),
+        "uplifts": batch.log(Log.RELEASES),
         "steps": batch.log(Log.STEPS),
     }
     if batch.plan.options.demands:

@@ -64,7 +64,10 @@ _EXACT = table(
                     "kind": text("such as Neimark-Sacker"),
                     "angular_frequency": number("[rad/s]"),
                     "mean_tilt": number("[rad]"),
-                    "soft": {"type": ["boolean", "null"], "description": "whether it is soft; null if undecided"},
+                    "supercritical": {
+                        "type": ["boolean", "null"],
+                        "description": "whether it is supercritical; null if undecided",
+                    },
                 },
             ),
         ),

@@ -31,7 +31,7 @@ _COLUMN = table(
     "The numbers of the column that decide.",
     {
         **{name: declared(one) for name, one in OF_ANY_COLUMN.items()},
-        "releasing_acceleration": number("c g, the horizontal acceleration that tips the standing column [m/s²]"),
+        "uplift_acceleration": number("c g, the horizontal acceleration that tips the standing column [m/s²]"),
     },
 )
 
@@ -145,7 +145,7 @@ _RUN = table(
         "planar": flag("whether it moved in one vertical plane"),
         "warnings": listed("one line each", {"type": "string"}),
         "events": listed(
-            "releases, impacts and the like", table("", {"kind": text("what happened"), "time": number("when [s]")})
+            "uplifts, impacts and others", table("", {"kind": text("what happened"), "time": number("when [s]")})
         ),
         "measures": ref("Measures"),
         "summary": listed("labels and values", exactly("", text("label"), text("value"))),

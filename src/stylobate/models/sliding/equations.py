@@ -6,12 +6,12 @@ from stylobate.models.finite_tilt import TINY, cosine, sine_over_angle
 from stylobate.models.sliding.balance import balance
 from stylobate.models.sliding.phases import FLYING, RESTING, ROLLING, SLIDING, SLIPPING
 
-GUARDS = ("lift", "friction", "support", "rest", "jam", "fallen", "stroke")
+GUARDS = ("lift", "friction", "support", "rest", "jam", "fallen", "face_impact")
 """What each of the `guards` watches, in their order.
 
 "lift": the contact presses. "friction": it holds, or still slips. "support": a base stands firm, or there is air under
 the rim. "rest": a column that rocks has energy left. "jam": Painlevé's denominator. "fallen": a tilt below π/2.
-"stroke": no base strikes the plane, which it does where a tilt below `passage_tilt` stops falling.
+"face_impact": no base strikes the plane, which it does where a tilt below `passage_tilt` stops falling.
 """
 
 STILL = 1e-10

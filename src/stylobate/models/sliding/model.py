@@ -224,8 +224,8 @@ class Sliding(Model):
 
     def event_of(self, margin: str, before: int, after: int) -> str:
         """Return what an event is called that ended a kind of contact, by its margin, and led to another one."""
-        if margin in ("jam", "stroke") or after == Contact.JAMMED:
-            return "stroke" if margin == "stroke" and after != Contact.JAMMED else "jam"
+        if margin in ("jam", "face_impact") or after == Contact.JAMMED:
+            return "face_impact" if margin == "face_impact" and after != Contact.JAMMED else "jam"
         return _EVENTS.get((Contact(before), Contact(after)), "")
 
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
@@ -298,13 +298,13 @@ class Sliding(Model):
 
 _EVENTS: Mapping[tuple[Contact, Contact], str] = {
     (Contact.RESTING, Contact.SLIDING): "slide",
-    (Contact.RESTING, Contact.ROLLING): "release",
-    (Contact.RESTING, Contact.SLIPPING): "release",
+    (Contact.RESTING, Contact.ROLLING): "uplift",
+    (Contact.RESTING, Contact.SLIPPING): "uplift",
     (Contact.RESTING, Contact.FLYING): "lift",
     (Contact.SLIDING, Contact.RESTING): "stop",
     (Contact.SLIDING, Contact.SLIDING): "reverse",
-    (Contact.SLIDING, Contact.ROLLING): "release",
-    (Contact.SLIDING, Contact.SLIPPING): "release",
+    (Contact.SLIDING, Contact.ROLLING): "uplift",
+    (Contact.SLIDING, Contact.SLIPPING): "uplift",
     (Contact.SLIDING, Contact.FLYING): "lift",
     (Contact.ROLLING, Contact.RESTING): "rest",
     (Contact.ROLLING, Contact.SLIDING): "rest",

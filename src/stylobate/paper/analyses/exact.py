@@ -52,7 +52,7 @@ def _branch(motion: Harmonic) -> Branch:
 
 def _lost(branch: Branch) -> Bifurcation:
     """Return the bifurcation at which stability is lost as the frequency falls."""
-    return max((one for one in branch.bifurcations if one.soft is not None), key=lambda one: one.parameter)
+    return max((one for one in branch.bifurcations if one.supercritical is not None), key=lambda one: one.parameter)
 
 
 def _circular() -> Finding:
@@ -76,7 +76,7 @@ def _circular() -> Finding:
         f"{lost.kind.value} bifurcation at ν = {lost.parameter:.9f}, {gap:.0e} from the closed form; supercritical: "
         "a stable modulated motion bifurcates.",
         judged(
-            max(errors) < 1e-8 and gap < 1e-7 and lost.kind is Kind.NEIMARK_SACKER and bool(lost.soft),  # noqa: PLR2004
+            max(errors) < 1e-8 and gap < 1e-7 and lost.kind is Kind.NEIMARK_SACKER and bool(lost.supercritical),  # noqa: PLR2004
             Verdict.SHARPENED,
         ),
     )
@@ -92,7 +92,7 @@ def _boundaries(straight: dict[float, Branch]) -> Finding:
         averaged = float(theory.critical_frequency(part, c=_C, eta=DAMPING))
         lines.append(f"{name}: {one.parameter:.6f} (averaged {averaged:.4f})")
         higher.append(one.parameter > averaged)
-    pitchforks = all(one.kind is Kind.PITCHFORK and one.soft for one, _ in lost.values())
+    pitchforks = all(one.kind is Kind.PITCHFORK and one.supercritical for one, _ in lost.values())
     return Finding(
         "conclusion 4",
         "Averaging gives the frequency above which rolling is stable under straight-line motion.",

@@ -62,7 +62,7 @@ def exact_response(
         Over `point`: `angular_frequency`, `mean_tilt`, `least_tilt`, `largest_tilt`, `phase` [rad], `stable` (of a
         planar orbit: within its plane; without damping: neutrally), multipliers, and the `branch` of each. A
         bifurcation is a point of its branch, and is not marked stable. Over `branch_index`: name, length in periods,
-        ends. Over `bifurcation`: kind, frequency, branch, mean tilt, coefficient, and `bifurcation_soft` (1
+        ends. Over `bifurcation`: kind, frequency, branch, mean tilt, coefficient, and `bifurcation_supercritical` (1
         supercritical, 0 subcritical, −1 not decided). If theory has a solution, its curves over `averaged_frequency`,
         exact for circular motion.
 

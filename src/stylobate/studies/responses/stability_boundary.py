@@ -70,8 +70,8 @@ def stability_boundary(
     Returns
     -------
     xarray.Dataset
-        Over `point`: `angular_frequency` [rad/s], the parameter, `curve`, `soft` (1 supercritical, 0 subcritical, −1
-        not decided), `coefficient`. Over `curve_index`: `curve_kind`, `curve_end`. Over `theory_parameter`:
+        Over `point`: `angular_frequency` [rad/s], the parameter, `curve`, `supercritical` (1 yes, 0 no, −1 not
+        decided), `coefficient`. Over `curve_index`: `curve_kind`, `curve_end`. Over `theory_parameter`:
         `theory_frequency` [rad/s], the critical frequency (exact for circular motion, averaged otherwise), NaN if there
         is none.
         `attrs["rolling"]` states the stability of rolling at the points checked: "stable", "unstable" or both.
@@ -194,9 +194,9 @@ def _joined(curves: list[BifurcationCurve], parameter: str) -> xr.Dataset:
     return xr.Dataset(
         {
             "curve": ("point", np.repeat(np.arange(len(tables)), lengths)),
-            "soft": (
+            "supercritical": (
                 "point",
-                column("soft"),
+                column("supercritical"),
                 {"long_name": "1 if supercritical, 0 subcritical, -1 not decided"},
             ),
             "coefficient": ("point", column("coefficient"), {"long_name": "coefficient of the normal form"}),

@@ -152,7 +152,7 @@ const COLOURS: Readonly<Record<string, string>> = {
   limit: "vermilion",
   failed: "vermilion",
   rest: "green",
-  release: "blue",
+  uplift: "blue",
   lifted: "purple",
   lift: "purple",
   land: "purple",

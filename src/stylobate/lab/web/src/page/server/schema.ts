@@ -115,7 +115,7 @@ export type ColumnNumbers = {
   /** p of the literature [rad/s] */
   readonly frequency_parameter: number;
   /** c g, the horizontal acceleration that tips the standing column [m/s²] */
-  readonly releasing_acceleration: number;
+  readonly uplift_acceleration: number;
 };
 
 /** The result of a map of a model that slides: what the column does. */
@@ -227,8 +227,8 @@ export type ExactOrbits = {
     readonly angular_frequency: number;
     /** [rad] */
     readonly mean_tilt: number;
-    /** whether it is soft; null if undecided */
-    readonly soft: boolean | null;
+    /** whether it is supercritical; null if undecided */
+    readonly supercritical: boolean | null;
   })[];
 };
 
@@ -482,7 +482,7 @@ export type Run = {
   readonly planar: boolean;
   /** one line each */
   readonly warnings: readonly string[];
-  /** releases, impacts and the like */
+  /** uplifts, impacts and others */
   readonly events: readonly ({
     /** what happened */
     readonly kind: string;
