@@ -41,9 +41,9 @@ def test_counts_are_those_of_the_classes(found):
 
 
 def test_a_map_of_contacts_needs_a_contact_that_slips():
-    with pytest.raises(sb.errors.UnsupportedError, match="model rolling holds its contact"):
+    with pytest.raises(sb.errors.UnsupportedError, match="model rolling assumes permanent contact"):
         sb.conveying.contact_map(sb.Rolling(COLUMN), LINE, over={"acceleration": [1.0], "damping": [0.1]}, periods=2.0)
-    with pytest.raises(sb.errors.UnsupportedError, match="model slender holds its contact"):
+    with pytest.raises(sb.errors.UnsupportedError, match="model slender assumes permanent contact"):
         sb.conveying.drift(sb.Slender(COLUMN), LINE, over={"acceleration": [1.0]})
 
 

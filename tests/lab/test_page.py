@@ -226,7 +226,7 @@ def test_a_map_of_an_earlier_case_is_marked_cancelled_and_no_longer_clickable(wa
     page.wait_for_function(f"() => {plane}.filled")
     moved(page, "damping", 0.2)
     panel = page.locator(".plane-panel.map.stale")
-    panel.get_by_text("This picture is of an earlier case").wait_for()
+    panel.get_by_text("This picture shows an earlier case").wait_for()
     assert len(ended) == 1
     shown(page)  # the start is on the branch at the new damping
     before = page.evaluate("() => window.stylobate.state().description")

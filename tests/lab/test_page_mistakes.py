@@ -124,7 +124,7 @@ def test_planar_rocking_says_what_it_changes_and_another_model_brings_it_back(pa
     model = page.get_by_label("Model", exact=True)
     before = page.evaluate(f"() => {STATE}.description")
     model.select_option("planar_rocking")
-    line = page.get_by_text("the motion is now straight and the start lies in its plane")
+    line = page.get_by_text("the motion is now straight and the initial condition lies in its plane")
     line.wait_for()
     assert page.evaluate(f"() => {STATE}.description.motion.kind") == "straight"
     shown(page)
@@ -198,7 +198,7 @@ def test_a_long_verdict_and_its_button_are_read_whole(page, height):
     page.set_viewport_size({"width": 1280, "height": height})
     page.route(re.compile("/api/simulate"), answer)
     field_of(page, "damping").fill("0.11")
-    button = page.get_by_role("button", name=re.compile("^Follow to"))
+    button = page.get_by_role("button", name=re.compile("^Simulate to"))
     button.wait_for()
     verdict = page.locator(".verdict")
     assert verdict.evaluate("one => one.scrollHeight <= one.clientHeight")

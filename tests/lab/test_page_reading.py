@@ -15,7 +15,7 @@ ANSWER = "window.stylobate.laboratory.answer"
 
 def test_the_note_under_the_curves_names_the_model_that_they_are_of(page):
     note = page.locator(".response > .note")
-    own, others = re.compile("^Steady rolling, in closed form"), re.compile("^Steady rolling of the slender column")
+    own, others = re.compile("^Steady rolling, in closed form"), re.compile("^Steady rolling of a slender column")
     model = page.get_by_label("Model", exact=True)
     for kind, told in (("wobbling", others), ("slender", own)):
         model.select_option(kind)

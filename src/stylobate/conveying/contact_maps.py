@@ -1,4 +1,4 @@
-"""What a column that can slip does over two parameters: stays, slides, rocks or rolls, flies, overturns."""
+"""Contact maps: over two parameters a column stays, slides, rocks or rolls, flies or overturns."""
 
 from collections.abc import Mapping
 from enum import IntEnum
@@ -23,18 +23,18 @@ _PLANE = 2
 
 
 class ContactClass(IntEnum):
-    """What a column did in a run, by the kinds of contact that it had."""
+    """Class of a run by the kinds of contact that occurred in it."""
 
     STAYS = 0
-    """It stood all the time, and its base did not move on the plane."""
+    """The column stood throughout, and its base did not move on the plane."""
     SLIDES = 1
-    """Its base slid; it never tipped."""
+    """The base slid; the column never tipped."""
     ROCKS = 2
-    """It rocked or rolled on its rim without slip."""
+    """The column rocked or rolled on its rim without slip."""
     SLIDES_AND_ROCKS = 3
-    """It rocked or rolled, and slipped on its rim or slid on its base."""
+    """The column rocked or rolled, and slipped on its rim or slid on its base."""
     FLIES = 4
-    """It left the plane."""
+    """The column left the plane."""
     OVERTURNS = 5
     FAILED = 6
 
@@ -57,7 +57,7 @@ def contact_map(
     progress: Progress | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
-    """Return what a column that can slip does over two parameters, such as friction and acceleration of the base.
+    """Compute a contact map: the kinds of contact over two parameters, such as friction and base acceleration.
 
     Parameters
     ----------
@@ -66,23 +66,23 @@ def contact_map(
     motion, over, duration, periods, store, executor, resume, progress, **options
         As for `overturning_map`.
     least_share
-        A kind of contact counts that takes more than this share of a run.
+        Smallest fraction of a run; a kind of contact with a smaller one does not count.
 
     Returns
     -------
     xarray.Dataset
-        Of kind "contact map": the runs over the two names, with `contact_class` (see its `flag_meanings`) and all that
-        ensembles hold; over `class_name`, `count` and `share` of the runs computed; and `computed`.
+        Of kind "contact map": the runs over the two names, with `contact_class` (see its `flag_meanings`) and all
+        variables of ensembles; over `class_name`, `count` and `share` of the computed runs; and `computed`.
 
     Raises
     ------
     ParameterError
-        If `over` has not two names with one value or more, or an argument is out of range.
+        If `over` does not have two names with at least one value each, or an argument is out of range.
     UnsupportedError
         If the model does not change between kinds of contact.
     """
     if not model.switches:
-        message = f"model {model.name} holds its contact: a contact map needs one that slips, such as Sliding(column)"
+        message = f"model {model.name} assumes permanent contact without slip. A contact map needs Sliding(column)."
         raise UnsupportedError(message)
     if not isinstance(over, Mapping) or len(over) != _PLANE:
         message = f'over must name two parameters, such as "friction_coefficient" and "acceleration"; got {over!r}'
@@ -114,7 +114,7 @@ def class_shares(runs: xr.Dataset, least_share: float = 1e-3) -> xr.Dataset:
 
 
 def contact_classes(runs: xr.Dataset, least_share: float = 1e-3) -> xr.DataArray:
-    """Return the `ContactClass` of each run, −1 where none has been computed."""
+    """Classify each run by its `ContactClass`; −1 marks runs that are not computed."""
     least = least_share * runs["end_time"]
 
     def took(*kinds: str) -> xr.DataArray:

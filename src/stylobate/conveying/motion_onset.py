@@ -1,4 +1,4 @@
-"""From which acceleration on a standing column slides, rocks or is lifted, over its slenderness."""
+"""Onset of motion: the base acceleration at which a standing column slides, rocks or lifts off."""
 
 import json
 
@@ -40,21 +40,21 @@ def start_boundary(
     vertical_phase: float = 0.0,
     incline: npt.ArrayLike | None = None,
 ) -> xr.Dataset:
-    """Return the least acceleration of the base that moves a standing column, and what it then does first.
+    """Compute the smallest base acceleration that moves a standing column, and the motion that begins first.
 
-    The base moves along a line and along the normal of the plane, harmonically, at any frequency: what begins to move
-    follows from forces alone. On an incline the line is that of the steepest way.
+    The base vibrates harmonically along a line and along the normal of the plane. The frequency does not matter: the
+    onset follows from forces alone. On an incline the line is the line of steepest descent.
 
     Parameters
     ----------
     model
-        `Sliding`: its gravity counts, and what is not listed below.
+        A `Sliding` model. Its gravity is used, and its values of the parameters that are not given below.
     slenderness
         Values of c.
     friction_coefficient
-        Values of the static μ; by default that of the model.
+        Values of the static friction coefficient μ; by default that of the model.
     vertical_ratio
-        Values of the amplitude along the normal over that along the line.
+        Values of the ratio of the amplitudes along the normal and along the line.
     vertical_phase
         Phase of the motion along the normal [rad]; 0 is an oblique line.
     incline
@@ -64,28 +64,28 @@ def start_boundary(
     -------
     xarray.Dataset
         Of kind "start boundary". Over `slenderness`, `friction_coefficient`, `vertical_ratio` and `incline`:
-        `acceleration`, the least amplitude along the line that moves the column [m/s²], 0 where it does not stay on
-        the plane at rest, infinite where it always stays; `first_motion`, a `theory.FirstMotion`; and the amplitudes
-        `slide`, `rock` and `lift_off` at which it leaves the cone of friction, at which the forces leave its base, and
-        at which its weight is gone [m/s²].
+        `acceleration`, the smallest amplitude along the line that moves the column [m/s²]. It is 0 if the column does
+        not stay on the plane at rest, and infinite if it always stays. `first_motion` is a `theory.FirstMotion`. The
+        amplitudes `slide`, `rock` and `lift_off` [m/s²] are those at which friction is exceeded, at which the resultant
+        force leaves the base, and at which the normal force vanishes.
 
     Raises
     ------
     ParameterError
-        If a list is empty or holds a number out of range.
+        If a list is empty or contains a number out of range.
     UnsupportedError
         If the model does not slide.
 
     See Also
     --------
     stylobate.theory.start_of_motion : the closed form.
-    contact_map : what a column does after that.
+    contact_map : the motion after the onset.
 
     Notes
     -----
-    The smaller of μ and c alone decides what begins. What comes after it is not symmetrical. A column that slides
-    from rest, μ < c, bears |T| ≤ μN < cN whatever the base does: it never tips as long as it stays on the plane. One
-    that rocks, c < μ, bears more as it falls and turns, and may slip on its rim.
+    The smaller of μ and c decides which motion begins. The two cases then differ. If μ < c, the column slides from
+    rest, and |T| ≤ μN < cN holds for every base motion: it never tips as long as it stays on the plane. If c < μ, the
+    column rocks; its contact demand grows while it falls and spins, so it may slip on its rim.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What friction does to steady rolling under circular base motion: where it ends by slip, and where slip goes on."""
+"""Friction and steady rolling under circular base motion: the onset of slip, and rolling with slip."""
 
 import json
 from collections.abc import Callable, Sequence
@@ -38,18 +38,18 @@ _ROUND = 1e-9
 
 
 class RollingRegime(IntEnum):
-    """What steady rolling there is at a friction and a frequency."""
+    """Steady rolling at one friction coefficient and one frequency."""
 
     NONE = 0
-    """None at all."""
+    """No steady rolling exists."""
     UNSTABLE = 1
-    """Some, with or without slip, none of it stable."""
+    """Steady rolling exists, with or without slip; none of it is stable."""
     WITHOUT_SLIP = 2
-    """Stable without slip."""
+    """Rolling without slip is stable."""
     WITH_SLIP = 3
-    """Stable with a contact that always slips."""
+    """Rolling with a contact that always slips is stable."""
     BOTH = 4
-    """Both are stable."""
+    """Rolling without slip and rolling with slip are both stable."""
 
 
 STEADY_ROLLING = ("no steady rolling", "none stable", "stable without slip", "stable with slip", "both stable")
@@ -59,45 +59,49 @@ STEADY_ROLLING = ("no steady rolling", "none stable", "stable without slip", "st
 def slipping_boundary(
     model: Model, motion: BaseMotion, *, friction_coefficient: npt.ArrayLike, angular_frequency: Sequence[float]
 ) -> xr.Dataset:
-    """Return over friction and frequency where a column rolls round its rim in steady motion, stably, or slipping.
+    """Compute where steady rolling is stable, with and without slip, over friction coefficient and frequency.
 
     Parameters
     ----------
     model
-        `Sliding` or `Rolling`, which may turn, or `Wobbling` with the constraint "rubber", which may not; with damping,
-        on a point and a level plane. A friction coefficient of its own does not count.
+        `Sliding` or `Rolling`, which can spin, or `Wobbling` with the constraint "rubber", which cannot. It needs
+        damping, a point contact and a level plane. Its own friction coefficient is not used.
     motion
-        A horizontal circular motion; its acceleration is kept, its frequency replaced.
+        A horizontal circular motion; its acceleration is used, its frequency is replaced.
     friction_coefficient
-        Values of μ, rising; kinetic and static are the same.
+        Increasing values of μ, kinetic and static.
     angular_frequency
-        Frequencies [rad/s], rising.
+        Increasing angular frequencies [rad/s].
 
     Returns
     -------
     xarray.Dataset
-        Of kind "slipping boundary", exact at any tilt. Over `angular_frequency` and `branch`: `rolling_amplitude` [rad]
-        and `rolling_stable` of steady rolling without slip, and the `required_friction` of it. Over
-        `friction_coefficient`, `angular_frequency` and `branch`: `slips`, whether that is more than there is. With
-        `slipping_branch` instead: `slipping_amplitude` [rad], `slip_speed` [m/s], `slip_power` [W] and
-        `slipping_stable` of steady rolling with slip, NaN where there is none. Over the two: `steady_rolling`, a
-        `RollingRegime`. Over `friction_coefficient`: `rolling_from`, `rolling_to`, `slipping_from` and `slipping_to`
-        [rad/s], the lowest and the highest frequency at which rolling without slip, and with it, is stable, NaN where
-        it is nowhere, the end of the frequencies asked for where it goes on there. What begins and ends between two
-        neighbours of these is missed.
+        Of kind "slipping boundary", exact at any tilt.
+
+        * Over `angular_frequency` and `branch`: `rolling_amplitude` [rad], `rolling_stable` and `required_friction` of
+          steady rolling without slip.
+        * Over `friction_coefficient`, `angular_frequency` and `branch`: `slips`, whether rolling needs more friction
+          than there is.
+        * With `slipping_branch` instead: `slipping_amplitude` [rad], `slip_speed` [m/s], `slip_power` [W] and
+          `slipping_stable` of steady rolling with slip, NaN where there is none.
+        * Over the two: `steady_rolling`, a `RollingRegime`.
+        * Over `friction_coefficient`: `rolling_from`, `rolling_to`, `slipping_from` and `slipping_to` [rad/s], the
+          lowest and the highest frequency at which rolling without and with slip is stable. They are NaN if it is
+          stable nowhere, and the end of the given frequencies if it remains stable there. A stable interval between
+          two neighbouring frequencies is missed.
 
     Raises
     ------
     ParameterError
-        If frictions or frequencies are no rising positive numbers, or the model has no damping, or no spin damping
-        while it may turn: nothing decays then, or nothing ends the spin.
+        If friction coefficients or frequencies are not increasing positive numbers. If the model has no damping, or
+        can spin and has no spin damping: then no steady rolling is asymptotically stable.
     UnsupportedError
-        If theory knows no steady rolling with slip of the model, or the motion is not circular.
+        If the theory does not cover steady rolling with slip for the model, or the motion is not circular.
 
     See Also
     --------
     stylobate.theory.slipping_rolling, stylobate.theory.full_rolling : the equations.
-    stability_boundary : where rolling without slip loses its stability under any harmonic motion.
+    stability_boundary : stability of rolling without slip under any harmonic motion.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Where a vibrating base walks a column to, and how it turns it: the question of a conveyor."""
+"""Mean transport velocity and mean rate of rotation of a column on a vibrating base."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -38,9 +38,9 @@ def drift(
     progress: Progress | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
-    """Return the mean velocity at which a vibrating base walks a column along, and the rate at which it turns it.
+    """Compute the mean transport velocity of a column on a vibrating base, and its mean rate of rotation.
 
-    Both are means over the last periods, from a whole number of them before the end to the end.
+    Both are means over the last periods of the base motion, a whole number of them.
 
     Parameters
     ----------
@@ -51,9 +51,9 @@ def drift(
     over
         One or two names with their values, as for `overturning_map`.
     periods
-        For how many periods of its base motion each column is followed.
+        Duration of each run in periods of its base motion.
     late
-        Over how many of the last ones the means are taken.
+        Number of last periods over which the means are taken.
     store, executor, resume, progress, **options
         As for `overturning_map`; `late` sets the `rules`.
 
@@ -61,14 +61,14 @@ def drift(
     -------
     xarray.Dataset
         Of kind "drift": the runs over the names, with `mean_velocity` (axis) and `transport_speed` [m/s],
-        `mean_twist_rate` [rad/s], `contact_class`, `throw_number` and all variables of ensembles; NaN where a column
-        did not move on to the end, as one that overturns; 0 where it came to rest for good. A column that runs away
-        down a slope has the mean velocity of these periods, which grows with them.
+        `mean_twist_rate` [rad/s], `contact_class`, `throw_number` and all variables of ensembles. Velocities are NaN
+        for a column that did not move on to the end, such as one that overturned, and 0 for one that came to rest
+        for good. A column that accelerates down a slope has the mean velocity of these periods, which grows with them.
 
     Raises
     ------
     ParameterError
-        If `over` has not one or two names, `late` leaves no periods before, or an argument is out of range.
+        If `over` does not have one or two names, `periods` does not exceed `late`, or an argument is out of range.
     UnsupportedError
         If the model does not change between kinds of contact, or the base motion has no period.
 
@@ -83,7 +83,7 @@ def drift(
     [0.0, 0.388]
     """
     if not model.switches:
-        message = f"model {model.name} holds its contact: a drift needs one that slips, such as Sliding(column)"
+        message = f"model {model.name} assumes permanent contact without slip. A drift needs Sliding(column)."
         raise UnsupportedError(message)
     if not isinstance(motion, BaseMotion) or (motion.period is None and "angular_frequency" not in over):
         got = "a base at rest" if motion in (None, BASE_AT_REST) else repr(motion)

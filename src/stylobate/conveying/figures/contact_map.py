@@ -1,4 +1,4 @@
-"""Maps of what a column that can slip does, and where a vibrating base walks it to."""
+"""Figures of contact maps and of mean transport velocities."""
 
 import numpy as np
 import numpy.typing as npt
@@ -24,7 +24,7 @@ _STILL = 1e-9
 @figure_of("contact map")
 @styled
 def plot_contact_map(found: xr.Dataset) -> Figure:
-    """Return a figure of a contact map: what the column did over two parameters."""
+    """Draw a contact map: the kinds of contact over two parameters."""
     figure = new_figure(_HEIGHT)
     axes = figure.subplots()
     figure.legend(
@@ -36,9 +36,9 @@ def plot_contact_map(found: xr.Dataset) -> Figure:
 @figure_of("drift")
 @styled
 def plot_drift(found: xr.Dataset) -> Figure:
-    """Return a figure of a drift: velocity over one parameter, and rate of turn if it turns; or the speed over two.
+    """Draw mean transport velocity and rate of rotation over one parameter, or the speed over two.
 
-    A dotted line is where the throw number is 1, beyond which a base that is pressed down by nothing but weight hops.
+    A dotted line marks the throw number 1, above which a standing column hops.
     """
     if found["outcome"].ndim == _PLANE:
         figure = new_figure(_HEIGHT)

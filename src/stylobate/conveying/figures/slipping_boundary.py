@@ -1,4 +1,4 @@
-"""What friction does to steady rolling: its tilt over the frequency with and without slip, and which is stable."""
+"""Figure of steady rolling with and without slip: tilt over frequency, and regions of stability."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -43,18 +43,19 @@ _LOOKS = (
 @figure_of("slipping boundary")
 @styled
 def plot_slipping_boundary(found: xr.Dataset, *, friction_coefficient: Sequence[float] | None = None) -> Figure:
-    """Return a figure of steady rolling with slip: its tilt over the frequency above, where it is stable below.
+    """Draw steady rolling with slip: tilt over frequency above, regions of stability below.
 
-    Above in black rolling without slip, and in colours that with slip, at a few frictions: bold where stable, thin and
-    dashed where not. A marker on the black line is where that friction ends it. Below what is stable over frequency and
-    friction, with the friction that stable rolling without slip needs; ticks at the right are the frictions above.
+    Above: rolling without slip in black, rolling with slip in colours for a few friction coefficients. Stable parts are
+    bold, unstable ones thin and dashed. A marker on the black line shows where that coefficient no longer suffices.
+    Below: regions of stability over frequency and friction coefficient, with the friction that stable rolling without
+    slip needs. Markers at the right show the coefficients of the curves above.
 
     Parameters
     ----------
     found
         Of the kind "slipping boundary".
     friction_coefficient
-        Up to four frictions for the curves, each taken as the nearest of `found`; by default four spread over them.
+        Up to four friction coefficients for the curves; the nearest of `found` are drawn. By default four are chosen.
     """
     figure = new_figure(_HEIGHT, width=_WIDTH)
     tilt, plane = figure.subplots(2, 1, sharex=True)

@@ -1,4 +1,4 @@
-"""From which acceleration on a standing column slides, rocks or is lifted, over its slenderness."""
+"""Figure of the onset of motion over slenderness."""
 
 import numpy as np
 import numpy.typing as npt
@@ -40,16 +40,16 @@ _REGIONS: dict[str, Look] = {"stays": _STAYS, "slides": _SLIDES, "rocks": _ROCKS
 @figure_of("start boundary")
 @styled
 def plot_start_boundary(found: xr.Dataset) -> Figure:
-    """Return a figure of the start of motion over slenderness, a panel for each ratio and incline.
+    """Draw the onset of motion over slenderness, with one panel for each vertical ratio and incline.
 
-    Black the acceleration from which the column rocks, in colours that from which it slides, one for each friction:
-    bold where it is what happens first, thin and dashed where the other one has happened before. With one friction the
-    regions are filled. Dash-dotted, where the figure reaches it, the acceleration that leaves it no weight.
+    The black line is the onset of rocking, coloured lines are the onset of sliding for each friction coefficient. A
+    line is bold where its motion begins first, thin and dashed elsewhere. With one coefficient the regions are filled.
+    A dash-dotted line, if in range, is the acceleration at which the normal force vanishes.
 
     Raises
     ------
     ParameterError
-        If there are more than four frictions, or more than four panels: choose some by `found.sel`.
+        If there are more than four friction coefficients or panels. Choose some by `found.sel`.
     """
     chosen = [name for name in ("friction_coefficient", "vertical_ratio", "incline") if name not in found.dims]
     found = found.expand_dims(chosen)

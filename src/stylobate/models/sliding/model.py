@@ -71,14 +71,14 @@ class Sliding(Model):
 
     Notes
     -----
-    In the limits it is another model: for large μ, as long as N > 0 and the base does not strike, it is `Rolling`; with
-    a large patch it rolls as on rubber; a column with c above μ slides as a block.
+    Limits: for large μ, as long as N > 0 and the base face does not strike, the model equals `Rolling`. With a large
+    patch it rolls as on rubber. A column with c above μ slides as a block.
 
-    The rules that end what would not end by itself: a rebound slower than 1e-5 √(κgh) is none; slip slower than 1e-10
-    of that is none, and where Painlevé's denominator falls to 1e-3 slip ends by an impulse; below the energy of rest of
-    a run a column on its rim is set down, where the plane holds it. Impacts follow A. Chatterjee and A. Ruina (1998),
-    and never add energy. A stroke of the base is an impact of the rim on the other side, in the plane of the motion;
-    without slip and rebound it is Housner's. While the base stands on the plane its pressure counts as even.
+    Thresholds: a rebound slower than 1e-5 √(κgh) is plastic. Slip slower than 1e-10 √(κgh) sticks. Where Painlevé's
+    denominator falls to 1e-3, slip ends by an impulse. A column on its rim with less than the rest energy of the run is
+    set down on its base if the plane holds it. Impacts follow A. Chatterjee and A. Ruina (1998), and never add energy.
+    An impact of the base face is an impact of the opposite rim point, in the plane of the motion; without slip and
+    rebound it is Housner's. The pressure under a standing base is even.
     """
 
     column: Column

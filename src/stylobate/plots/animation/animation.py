@@ -1,4 +1,4 @@
-"""A run as pictures that move: shown in a notebook, or written as GIF, MP4 or a page."""
+"""Animations of a run: shown in a notebook, or saved as GIF, MP4 or web page."""
 
 import base64
 import math
@@ -40,18 +40,18 @@ _SUFFIXES = (".gif", ".mp4", ".html")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Animation:
-    """A motion with how it is shown; a notebook shows it as a GIF.
+    """An animation of a run; a notebook shows it as a GIF.
 
     Attributes
     ----------
     motion
-        The instants of which there are pictures.
+        The motion, sampled at the frames.
     history
-        The same motion sampled finer, for paths and curves.
+        The same motion with finer samples, for paths and curves.
     look
         Size, view, title.
     frames_per_second
-        Pictures in a second.
+        Frames per second.
     """
 
     motion: DrawnMotion
@@ -60,11 +60,11 @@ class Animation:
     frames_per_second: float
 
     def __len__(self) -> int:
-        """Return the number of pictures."""
+        """Return the number of frames."""
         return int(self.motion.time.size)
 
     def pictures(self, progress: Progress | None = None) -> Iterator[Image.Image]:
-        """Yield the pictures in order; after each, `progress` is called with the number done and the total."""
+        """Yield the frames in order; call `progress` after each with the number done and the total."""
         drawing = Drawing(self.motion, self.history, self.look)
         for index in range(len(self)):
             yield drawing.picture(index)
@@ -72,22 +72,22 @@ class Animation:
                 progress(index + 1, len(self))
 
     def gif(self, progress: Progress | None = None) -> bytes:
-        """Return the bytes of a GIF; after each picture, `progress` is called with the number done and the total."""
+        """Render a GIF and return its bytes; call `progress` after each frame with the number done and the total."""
         drawing = Drawing(self.motion, self.history, self.look)
         return gif_of(drawing.picture, len(self), self.frames_per_second, progress)
 
     def html(self) -> str:
-        """Return a page of its own in which the motion can be turned about, stopped and slowed down.
+        """Return the text of a web page in which one can turn, stop and slow down the motion.
 
         Raises
         ------
         UnsupportedError
-            If the viewer was not built: wheels hold it.
+            If the viewer was not built. Wheels contain it.
         """
         return page_of(self.history.as_dict())
 
     def save(self, path: str | Path, progress: Progress | None = None) -> Path:
-        """Write the animation to `path`: a .gif, an .mp4 or an .html by its suffix; return the path.
+        """Save the animation as .gif, .mp4 or .html, by the suffix of `path`, and return the path.
 
         Raises
         ------
@@ -130,30 +130,30 @@ def animate(
     azimuth: float = -68.0,
     elevation: float = 20.0,
 ) -> Animation:
-    """Return a run as pictures that move, and write them to `path` where one is given.
+    """Animate a run, and save the animation if a `path` is given.
 
-    The column has flutes, one of them marked, so that rolling and spin are seen; it stands on a slab that moves with
-    the base over marks on the ground, and leaves the path of its contact point there. Below runs the history of the
-    tilt. Nothing is enlarged, and nothing drawn that was not computed: a column that overturns is shown until it cannot
-    come back.
+    The column has flutes, one of them marked, so that rolling and spin can be told apart. It stands on a slab that
+    moves with the base over marks on the ground; the path of the contact point stays on the slab. The history of the
+    tilt is drawn below. The scale is true, and each frame shows a computed state: a column that overturns is shown
+    until overturning is certain.
 
     Parameters
     ----------
     run
-        A run; one that was loaded has its samples joined by straight lines.
+        A run. The samples of a loaded run are interpolated linearly.
     path
-        File to write: a .gif, an .mp4 (which needs the extra `video`), or an .html, a page of its own in which the
-        motion can be turned about, stopped and slowed down.
+        File to write: .gif, .mp4 (needs the extra `video`), or .html, a web page in which one can turn, stop and slow
+        down the motion.
     size
-        Width and height of the pictures [pixels].
+        Width and height of the frames [pixels].
     frames_per_second
-        Pictures in a second, 50 at most.
+        Frames per second, at most 50.
     speed
-        Seconds of the run in a second of the animation. There are 1500 pictures at most: long runs need more speed.
+        Seconds of the run per second of the animation. At most 1500 frames are drawn: long runs need a larger speed.
     title
-        A line in the pictures; of a page its heading, by default the outcome.
+        A line in the frames, or the heading of a web page; by default the outcome.
     azimuth, elevation
-        Where one looks from [degrees].
+        Direction of view [degrees].
 
     Returns
     -------
@@ -163,7 +163,7 @@ def animate(
     Raises
     ------
     ParameterError
-        If an argument is out of range, or the suffix of `path` none of these.
+        If an argument is out of range, or the suffix of `path` is not one of these.
     UnsupportedError
         If an MP4 is asked for without the extra `video`, or a page without its viewer.
     FileError
@@ -172,7 +172,7 @@ def animate(
     Warns
     -----
     UnlikelyInputWarning
-        If there are fewer than four pictures of each swing of the base: one then sees another motion.
+        If there are fewer than four frames per period of the base: the animation would show another motion.
 
     Examples
     --------

@@ -27,34 +27,34 @@ _DIGITS = 7
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrawnMotion:
-    """Poses of a column and displacements of its base at n instants, equal steps apart; positions in the base's frame.
+    """Poses of a column and displacements of its base at n equal time steps; positions are in the frame of the base.
 
     Attributes
     ----------
     shape
-        The body.
+        The shape of the column.
     incline, incline_direction
-        Of the plane [rad].
+        Angle of the plane and azimuth of the way down [rad].
     time
         Shape (n,) [s]: from the start of the run to its end.
     tilt, tilt_rate
         Shape (n, 2) [rad], [rad/s].
     twist, spin
-        Angle of turn about the axis and angular velocity about it, shape (n,) [rad], [rad/s]; no spin of models that
-        do not provide it.
+        Angle of rotation about the axis and angular velocity about it, shape (n,) [rad], [rad/s]; the spin is None for
+        models without it.
     footprint, contact_point
-        Centre of the circle on the base about which the contact point lies, and that point, shape (n, 2) [m]. Where
-        the column stands upright the contact point is where it was last, or first will be.
+        Centre of the footprint circle on the base, and contact point, shape (n, 2) [m]. While the column stands
+        upright, the contact point is the last one, or the first one to come.
     resting
-        Where the whole base touches, shape (n,).
+        Whether the whole base is in contact, shape (n,).
     clearance
-        Height of the lowest point above the base, shape (n,) [m], of models that fly.
+        Height of the lowest point above the base, shape (n,) [m], for models with flight.
     base
         Displacement of the base, shape (n, 3) [m].
     friction_demand
-        Shape (n,), of models that provide it.
+        Friction force over normal force, shape (n,), for models that provide it.
     friction_coefficient
-        Of the contact, where it is known.
+        Friction coefficient of the contact, if known.
     outcome, decided_at, title
         The outcome, when it was decided [s], and a line that states both.
     """
@@ -161,19 +161,19 @@ class DrawnMotion:
 
 
 def drawn_motion(run: Response, *, frames_per_second: float | None = None, title: str | None = None) -> dict[str, Any]:
-    """Return the motion of a run as plain numbers that a page, or any other program, can draw.
+    """Convert a run to poses as plain numbers, for a web page or another program to draw.
 
-    Lengths in m, angles in rad, times in s; z upwards. Positions are given in the frame of the base, whose own
-    displacement is `base`. The column is turned by the unit quaternion `rotation` (w, x, y, z), Rz(β) Ry(θ) Rz(χ − β),
-    and the centre of its bottom circle is `centre`. Nothing is drawn that was not computed: of a column that overturned
-    the motion ends where it was decided that it cannot come back.
+    Lengths are in m, angles in rad, times in s; z points up. Positions are in the frame of the base, whose displacement
+    is `base`. The unit quaternion `rotation` (w, x, y, z) turns the column, Rz(β) Ry(θ) Rz(γ − β), and `centre` is the
+    centre of its bottom circle. All poses are computed states: the motion of a column that overturned ends when
+    overturning was certain.
 
     Parameters
     ----------
     run
-        A run; of one that was loaded the kept samples are joined by straight lines.
+        A run. The samples of a loaded run are interpolated linearly.
     frames_per_second
-        Instants per second of the run's own time; by default as many as its samples. There are 2000 at most.
+        Poses per second of the run; by default one per sample. There are at most 2000.
     title
         A line of text; by default the outcome.
 
@@ -181,14 +181,14 @@ def drawn_motion(run: Response, *, frames_per_second: float | None = None, title
     -------
     dict
         Lists of equal length by name: "time", "tilt", "tilt_rate", "twist", "spin", "footprint", "contact_point",
-        "resting", "clearance", "base", "rotation", "centre", "friction_demand", seven digits each; None for what the
-        model does not provide, and in place of a demand that is not finite. Beside them "column", "plane",
+        "resting", "clearance", "base", "rotation", "centre", "friction_demand", with seven digits. A quantity that the
+        model does not provide, or a demand that is not finite, is None. Also "column", "plane",
         "friction_coefficient", "outcome", "decided_at" and "title".
 
     Raises
     ------
     ParameterError
-        If `run` is no run, or `frames_per_second` not positive.
+        If `run` is not a run, or `frames_per_second` is not positive.
     """
     return DrawnMotion.of(run, frames_per_second=frames_per_second, title=title).as_dict()
 

@@ -305,7 +305,7 @@ export class Laboratory {
     const restored = await this.#controls.record.restore(this.view.description.motion["upload"]).catch(() => false);
     if (restored) return this.refresh();
     this.#controls.record.askAgain();
-    const line = "This case needs a record that the server does not hold. Choose its files again.";
+    const line = "The server does not have the record of this case. Choose its files again.";
     this.#problems.show([line], { earlier: this.#answer !== null });
   }
 
@@ -329,7 +329,7 @@ export class Laboratory {
     return new Tabs<Tab>(
       "Planes",
       [
-        { name: "orbit", title: "Tilt orbit", panel: this.#motion.orbit.root },
+        { name: "orbit", title: "Tilt path", panel: this.#motion.orbit.root },
         { name: "map", title: "Overturning map", panel: map.root },
         { name: "basin", title: "Basin", panel: basin.root },
         { name: "numbers", title: "Numbers", panel: this.#motion.numbers.root },

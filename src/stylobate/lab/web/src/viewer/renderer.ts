@@ -19,7 +19,7 @@ export function newDrawing(): Drawing {
   const context = canvas.getContext("webgl2", { antialias: !software, stencil: true, alpha: false });
   if (context === null) {
     throw new Error(
-      "This browser draws no 3D (WebGL 2 is missing or switched off): allow hardware acceleration, or use another browser",
+      "This browser cannot draw 3D (WebGL 2 is missing or switched off). Allow hardware acceleration, or use another browser",
     );
   }
   const renderer = new WebGLRenderer({ canvas, context });

@@ -84,7 +84,7 @@ export class Stage {
     if (before === undefined || !sameBody(before, motion)) this.resetCamera();
     else if (viewOn(before) !== viewOn(motion)) this.#lookAt(this.#drawn!);
     this.#name(
-      `${motion.title.replace(/([^.!?])$/, "$1.")} Arrow keys turn the view, plus and minus go nearer and back, Home resets it.`,
+      `${motion.title.replace(/([^.!?])$/, "$1.")} Arrow keys turn the view, plus and minus zoom, Home resets the view.`,
     );
   }
 
@@ -148,7 +148,8 @@ export class Stage {
     copy.width = this.canvas.width;
     copy.height = this.canvas.height;
     const context = copy.getContext("2d");
-    if (context === null) throw new Error("This browser makes no pictures from a canvas: take a screenshot instead");
+    if (context === null)
+      throw new Error("This browser cannot save the canvas as a picture. Take a screenshot instead");
     context.drawImage(this.canvas, 0, 0);
     paintNote(
       context,

@@ -9,7 +9,10 @@ const AFTER = inOnePlane(BEFORE);
 const TURN = new PlaneTurn(BEFORE, AFTER);
 
 test("what was changed for one plane is said in a line and comes back with another model", () => {
-  assert.match(TURN.lineFor(AFTER), /^Planar rocking: the motion is now straight and the start lies in its plane\./);
+  assert.match(
+    TURN.lineFor(AFTER),
+    /^Planar rocking: the motion is now straight and the initial condition lies in its plane\./,
+  );
   assert.deepEqual(TURN.undone(AFTER), BEFORE);
 });
 
@@ -18,7 +21,7 @@ test("what the reader has changed meanwhile stays", () => {
   const changed = { ...AFTER, motion };
   assert.equal(
     TURN.lineFor(changed),
-    "Planar rocking: the start lies in its plane. Another model brings back what was set.",
+    "Planar rocking: the initial condition lies in its plane. Choose another model to restore the earlier values.",
   );
   assert.deepEqual(TURN.undone(changed), { ...BEFORE, motion });
 });

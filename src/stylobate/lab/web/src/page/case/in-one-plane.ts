@@ -45,9 +45,11 @@ export class PlaneTurn {
     const starts = kept.some((name) => name !== "motion");
     const parts = [
       ...(kept.includes("motion") ? [`the motion is now ${this.#motionNow()}`] : []),
-      ...(starts ? ["the start lies in its plane"] : []),
+      ...(starts ? ["the initial condition lies in its plane"] : []),
     ];
-    return parts.length === 0 ? "" : `Planar rocking: ${parts.join(" and ")}. Another model brings back what was set.`;
+    return parts.length === 0
+      ? ""
+      : `Planar rocking: ${parts.join(" and ")}. Choose another model to restore the earlier values.`;
   }
 
   #kept(description: Description): readonly Turned[] {

@@ -40,7 +40,8 @@ const UNITS: Readonly<Record<string, Readonly<Record<string, string>>>> = {
 /** What is said of a kind in other words than the server's. */
 const ABOUT: Readonly<Record<string, string>> = {
   record: "A recorded earthquake.",
-  dimensionless: "No scale of its own: m = g = ω₀ = 1. Accelerations are in g, frequencies in ω₀ = √(m g h/J₀).",
+  dimensionless:
+    "Dimensionless: m = g = ω₀ = 1. Accelerations are a/g, frequencies Ω/ω₀ with ω₀ = √(m g h/J₀), times ω₀t.",
 };
 
 const [SHAKING, SHAKERS, PULSES, NEAR_FAULT, SWEEPS, EARTHQUAKES] = [
@@ -56,9 +57,9 @@ const NAMES: Readonly<Record<string, readonly [name: string, group?: string]>> =
   elliptic: ["elliptic", SHAKING],
   harmonic: ["three components", SHAKING],
   vertical: ["vertical", SHAKING],
-  oblique: ["oblique, as of a conveyor", SHAKERS],
+  oblique: ["oblique (vibratory conveyor)", SHAKERS],
   orbit: ["orbital shaker", SHAKERS],
-  stroke: ["shaker along a line, by its stroke", SHAKERS],
+  stroke: ["straight shaker, by stroke", SHAKERS],
   displacement_amplitude: ["by displacement amplitudes", SHAKERS],
   half_sine: ["half sine", PULSES],
   half_cosine: ["half cosine", PULSES],

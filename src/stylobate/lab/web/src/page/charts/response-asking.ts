@@ -17,7 +17,7 @@ import { ScaledResponse } from "../server/scaled-response";
 import type { View } from "../view/state";
 
 /** Why a run is not started on an orbit of a column that may turn. */
-const SPINS = "These orbits spin about the axis, at a rate that is not known here. Start on the upper branch instead.";
+const SPINS = "These orbits spin about the axis at a rate that is unknown here. Start on the upper branch instead.";
 
 export type JobStart = (
   kind: string,
@@ -112,7 +112,7 @@ export class ResponseAsking {
     this.#asked.curves = wanted;
     if (body !== null) return this.#curves.want(body, { jump });
     this.#curves.cancel();
-    this.panel.clear("Response curves need a harmonic base motion in the horizontal.");
+    this.panel.clear("Response curves need a horizontal harmonic base motion.");
   }
 
   #take({ curves, slenderness }: ScaledCurves): void {

@@ -55,7 +55,7 @@ export class ResponsePanel {
   constructor(hearing: ResponseHearing) {
     this.#hearing = hearing;
     this.#ask = button("Exact orbits", { class: "small" }, () => this.#askExact());
-    this.#ask.title = "Follow the periodic orbits of the model itself over the range";
+    this.#ask.title = "Continue the exact periodic orbits of the model over the range";
     [this.#from, this.#to] = [this.#rangeField("from"), this.#rangeField("to")];
     const range = element("span", { class: "range-fields" }, "Ω", this.#from, "–", this.#to, this.#unit);
     const heading = element(
@@ -186,7 +186,7 @@ export class ResponsePanel {
       return;
     }
     this.#ask.textContent = "Cancel";
-    this.#elapsed.begin("Exact orbits are being followed…");
+    this.#elapsed.begin("Computing exact orbits…");
     this.#job = this.#hearing.exact(
       ({ note }) => {
         if (note) this.#elapsed.begin(`${capital(note)}…`);
@@ -281,6 +281,6 @@ export class ResponsePanel {
     if (right || empty) {
       this.report(this.#about);
       this.#hearing.range(right ? [from, to] : null);
-    } else this.report("The range must rise from above zero; leave both fields empty for the usual one.");
+    } else this.report("The range must rise from above zero; leave both fields empty for the default range.");
   }
 }

@@ -9,7 +9,7 @@ export function aboutCurves(curves: ResponseCurves, own: boolean): string {
   const how = curves.averaged ? "by averaging" : "in closed form";
   return own
     ? `Steady rolling, ${how}.`
-    : `Steady rolling of the slender column that cannot turn, ${how}; exact orbits are of this model.`;
+    : `Steady rolling of a slender column that cannot spin, ${how}; exact orbits are those of this model.`;
 }
 
 /** Returns how many families of exact orbits there are, and where they bifurcate. */

@@ -57,7 +57,7 @@ export class Controls {
     this.#description = first;
     const id = newId("preset");
     const options = about.presets.map((preset) => [preset.id, preset.title] as const);
-    this.#presets = choice([["", "A case of one's own"], ...options], { id }, (value) => this.#choosePreset(value));
+    this.#presets = choice([["", "Your own case"], ...options], { id }, (value) => this.#choosePreset(value));
     this.#forms = { column: this.#form("column"), model: this.#form("model"), motion: this.#form("motion") };
     const reset = button("Reset", { class: "small" }, () => this.#choosePreset(this.#from?.id ?? ""));
     this.#changed.append("changed ", reset);
@@ -85,7 +85,7 @@ export class Controls {
       section("Column", this.#forms.column.root),
       section("Model", this.#forms.model.root),
       section("Base motion", this.#forms.motion.root),
-      section("Start and length", this.#start.root, length),
+      section("Initial condition and duration", this.#start.root, length),
     );
   }
 
@@ -203,7 +203,8 @@ function isToy({ column, motion }: Description): boolean {
   return column["shape"] === "dimensionless" && motion["kind"] === "record";
 }
 
-const TOY = "The record is in m/s², and the g of this column is 1 m/s²: choose a shape with lengths, such as solid.";
+const TOY =
+  "The record is in m/s², but a dimensionless column has g = 1 m/s². Choose a shape with lengths, such as solid.";
 
 const USUAL_DURATION = 60; // s
 

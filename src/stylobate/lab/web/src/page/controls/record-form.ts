@@ -21,7 +21,7 @@ const OWN = "\u0000own"; // no sample has this name
 /** What the server asks for in its own words, and in those of this form. */
 const ASKED: readonly (readonly [RegExp, string])[] = [
   [/state units, .*$/, "choose its unit above."],
-  [/units must be left out or '(.*?)', which.*$/, "the file says that its unit is $1; choose “unit: from the file”."],
+  [/units must be left out or '(.*?)', which.*$/, "the file states the unit $1; choose “unit: from the file”."],
   [/state step\b.*$/, "enter the time step above."],
   [/name that \(units\)/, "choose that above"],
   [/List the files of the event together, or set single.*$/, "Choose all files of the event together, if it has more"],
@@ -49,7 +49,7 @@ export class RecordForm {
   readonly #units = choice(UNITS, { "aria-label": "Unit of the record" }, () => this.#send());
   readonly #step = element("input", {
     inputmode: "decimal",
-    "aria-label": "Time step of the record [s], where the file states none",
+    "aria-label": "Time step of the record [s], if the file states none",
     placeholder: "time step [s]: from the file",
   });
   readonly #summary = element("p", { class: "hint", "aria-live": "polite" });
@@ -64,7 +64,7 @@ export class RecordForm {
     this.#changed = changed;
     const [id, fileId] = [newId("record"), newId("files")];
     const samples = about.samples.map(({ name }) => [name, capital(name)] as const);
-    this.#source = choice([...samples, [OWN, "Own files…"]], { id }, (value) => this.#choose(value));
+    this.#source = choice([...samples, [OWN, "Your own files…"]], { id }, (value) => this.#choose(value));
     this.#files.id = fileId;
     this.#files.addEventListener("change", () => this.#send());
     const label = element("label", { for: fileId, class: "visually-hidden" }, "Files of the record, one to three");
@@ -106,7 +106,7 @@ export class RecordForm {
   askAgain(): void {
     const section = this.root.closest("details");
     if (section !== null) section.open = true;
-    this.#report("This case needs a record that the server does not hold. Choose its files again.");
+    this.#report("The server does not have the record of this case. Choose its files again.");
   }
 
   #choose(value: string): void {
@@ -142,7 +142,7 @@ export class RecordForm {
       this.#changed({ kind: "record", upload: received.upload, scale: this.#motion["scale"] ?? 1 });
     } catch (error) {
       if (error instanceof Unreachable)
-        this.#report("The server does not answer; choose the files again when it does.");
+        this.#report("The server does not answer. Choose the files again when it does.");
       else this.#report(error instanceof Refused ? error.problems.map(inWordsOfForm).join(" ") : String(error));
     }
   }

@@ -12,7 +12,7 @@ export async function captioned(picture: Blob, lines: readonly string[]): Promis
   const [size, margin] = [LETTERS * unit, 12 * unit];
   const canvas = document.createElement("canvas");
   const pen = canvas.getContext("2d");
-  if (pen === null) throw new Error("This browser makes no pictures from a canvas: take a screenshot instead");
+  if (pen === null) throw new Error("This browser cannot save the canvas as a picture. Take a screenshot instead");
   const font = `${size}px system-ui, sans-serif`;
   pen.font = font;
   const room = drawn.width - 2 * margin;

@@ -2,12 +2,12 @@
 
 import { button } from "./dom";
 
-/** Returns the button that enlarges a panel and brings it back; Escape brings it back too. */
+/** Returns the button that enlarges a panel and brings it back; Escape restores it too. */
 export function enlarging(panel: () => HTMLElement, name: string): HTMLButtonElement {
   const made = button("⤢", { class: "icon enlarge", "aria-pressed": "false", "aria-label": `Enlarge ${name}` }, () =>
     set(!panel().classList.contains("large")),
   );
-  made.title = `Enlarge ${name}; Escape brings it back`;
+  made.title = `Enlarge ${name}; Escape restores it`;
   const set = (large: boolean): void => {
     panel().classList.toggle("large", large);
     made.setAttribute("aria-pressed", String(large));

@@ -33,9 +33,9 @@ export class ExportMenu {
 
   constructor(exported: Exported) {
     this.#exported = exported;
-    this.#gif = this.#item("Moving picture (GIF)", () => this.#animate());
+    this.#gif = this.#item("Animation (GIF)", () => this.#animate());
     const items = [
-      this.#item("Picture of the stage (PNG)", () => void this.#picture()),
+      this.#item("Picture of the motion (PNG)", () => void this.#picture()),
       this.#gif,
       this.#item("Python…", () => void this.#text("python")),
       this.#item("TOML for the command line…", () => void this.#text("toml")),
@@ -81,14 +81,14 @@ export class ExportMenu {
   #animate(): void {
     if (this.#job !== null) {
       this.#job.cancel();
-      this.#finished("The moving picture was cancelled.");
+      this.#finished("The animation was cancelled.");
       return;
     }
-    this.#gif.textContent = "Cancel the moving picture";
-    this.#report("The moving picture is being made…");
+    this.#gif.textContent = "Cancel the animation";
+    this.#report("Rendering the animation…");
     this.#job = new Job("animation", this.#exported.description(), {
       report: ({ done, total }) => {
-        if (total > 0) this.#report(`Moving picture: ${Math.round((100 * done) / total)} %`);
+        if (total > 0) this.#report(`Animation: ${Math.round((100 * done) / total)} %`);
       },
       ended: (last, error) => {
         if (last?.state === "done") void this.#save(last.id);
@@ -108,7 +108,7 @@ export class ExportMenu {
 
   #finished(text: string): void {
     this.#job = null;
-    this.#gif.textContent = "Moving picture (GIF)";
+    this.#gif.textContent = "Animation (GIF)";
     this.#report(text);
   }
 
@@ -129,6 +129,6 @@ export class ExportMenu {
   }
 
   #link(): void {
-    this.#dialog.show("A link to this view, while the laboratory runs here", this.#exported.link(), null);
+    this.#dialog.show("A link to this view; it works while the laboratory runs here", this.#exported.link(), null);
   }
 }

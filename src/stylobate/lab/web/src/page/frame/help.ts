@@ -5,36 +5,39 @@ import { button, element } from "./dom";
 type Entry = readonly [mark: string, text: string];
 
 const SEEN: readonly Entry[] = [
-  ["blue", "path of the point of the rim that touches the base; the dark dot is where it touches now"],
-  ["green", "path of the tip of the axis"],
-  ["muted", "ring: the circle of the rim's contact, about the centre of the footprint"],
-  ["vermilion", "marked flute and radius of the top: they show spin about the axis"],
+  ["blue", "path of the contact point of the rim on the base; the dark dot is the present contact point"],
+  ["green", "path of the top end of the axis"],
+  ["muted", "ring: the circle of the rim, about the centre of the footprint"],
+  ["vermilion", "marked flute and radius of the top face: they show the rotation about the axis"],
 ];
 
 const TICKS: readonly Entry[] = [
-  ["blue", "uplift: the column leaves its stand"],
-  ["green", "it comes to rest"],
-  ["purple", "it leaves the base, or lands"],
-  ["vermilion", "it is certain that it overturns"],
-  ["muted", "any other event: an impact, the beginning or end of a slip"],
+  ["blue", "uplift: the column tips onto its rim"],
+  ["green", "the column comes to rest"],
+  ["purple", "the column leaves the base, or lands"],
+  ["vermilion", "overturning is certain"],
+  ["muted", "any other event: an impact, the beginning or end of slip"],
 ];
 
 const WORDS: readonly Entry[] = [
   [
     "c",
-    "slenderness r/h = tan α: radius of the base over the height of the centre of mass. Tilts are shown in units of c.",
+    "slenderness r/h, the tangent of the tipping angle: radius of the base over the height of the centre of mass. Tilts are shown as θ/c.",
   ],
-  ["c g", "the horizontal acceleration that makes the standing column lift off: weaker shaking leaves it standing."],
-  ["η", "damping of the tilt; ζ: damping of the spin about the axis. Both dimensionless."],
+  [
+    "c g",
+    "the horizontal acceleration at which a standing column tips onto its rim (uplift). Under weaker shaking it stays at rest.",
+  ],
+  ["η", "damping of the tilt; ζ: damping of the spin. Both are dimensionless."],
   ["Ω", "angular frequency of the base motion."],
-  ["ω₀", "√(m g h/J₀), the column’s own frequency scale, with J₀ about the centre of the base."],
-  ["θ, β", "tilt from the vertical, and its azimuth. The tilt vector is θ (cos β, sin β)."],
-  ["rolling", "the tilted column goes round on its rim, once in each period of the base."],
-  ["branch", "one family of steady rolling over the frequency. Drag the marker along the bold, stable one."],
-  ["basin", "the set of starts that lead to the same motion in the long run."],
+  ["ω₀", "√(m g h/J₀), the frequency scale of the column, with J₀ about a diameter of the base."],
+  ["θ, β", "tilt angle from the vertical, and the azimuth of the lean. The tilt vector is θ (cos β, sin β)."],
+  ["rolling", "the tilted column rolls round its rim, once per period of the base."],
+  ["branch", "one family of steady rolling over the frequency. The stable branch is bold; drag the marker along it."],
+  ["basin", "basin of attraction: the set of initial conditions that lead to the same long-term motion."],
   [
     "overturned",
-    "the tilt is beyond the point of no return. The fall that follows is drawn pale and was not computed.",
+    "the tilt is beyond the point of no return. The fall that follows is drawn pale; it was not computed.",
   ],
 ];
 
@@ -45,32 +48,32 @@ export class Help {
   constructor() {
     const close = button("Close", { class: "primary" }, () => this.#dialog.close());
     this.#dialog.append(
-      element("h2", {}, "What is seen here"),
+      element("h2", {}, "Legend and glossary"),
       element(
         "p",
         {},
-        "A round column stands free on a base that shakes: does it stay, rock, roll or overturn? " +
-          "Set the case on the left, watch the motion, and see on the right why it goes as it does. " +
-          "Everything is drawn to scale; no tilt is exaggerated.",
+        "A free-standing round column on a shaking base: does it stay, rock, roll or overturn? " +
+          "Set the case on the left, watch the motion, and read on the right which curves and maps explain it. " +
+          "Everything is drawn to scale, without exaggeration.",
       ),
       element("h3", {}, "In the picture"),
       list(SEEN, true),
       element("h3", {}, "Ticks above the time"),
       list(TICKS, true),
-      element("h3", {}, "Letters and words"),
+      element("h3", {}, "Symbols and terms"),
       list(WORDS, false),
       element("h3", {}, "Keys"),
       element(
         "p",
         {},
-        "Space plays and pauses, arrows step, N goes to the next event. In a number field, up and down step.",
+        "Space: play and pause. Arrow keys: step. N: next event. In a number field, up and down change the number.",
       ),
       element("div", { class: "dialog-bar" }, close),
     );
     this.#dialog.addEventListener("click", (event) => {
       if (event.target === this.#dialog) this.#dialog.close(); // beside the box
     });
-    const open = button("?", { class: "icon", "aria-label": "Help", title: "What is seen here" }, () =>
+    const open = button("?", { class: "icon", "aria-label": "Help", title: "Legend and glossary" }, () =>
       this.#dialog.showModal(),
     );
     this.root = element("div", { class: "help-button" }, open, this.#dialog);

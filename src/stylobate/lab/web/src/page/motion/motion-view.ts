@@ -14,7 +14,7 @@ import { Transport } from "./transport";
 import { Verdict } from "./verdict";
 
 /** The message of a run that takes long. */
-const FIRST = "computing… the first run of a model and long runs take time;";
+const FIRST = "computing… The first run of a model and long runs take time;";
 
 export interface MotionHearing {
   /** The run is to be followed for so long [s]. */

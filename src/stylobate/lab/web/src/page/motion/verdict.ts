@@ -29,7 +29,7 @@ export class Verdict {
     const outcome = element("span", { class: "visually-hidden" }, `${capital(answer.label)}.`);
     const reason = element("span", { class: "reason" }, `${sentence(answer.reason)}${at}`);
     const marks = answer.uncertain
-      ? [element("strong", { class: "badge unsure", title: "A small change could alter the outcome" }, "Uncertain")]
+      ? [element("strong", { class: "badge unsure", title: "A small change could change the outcome" }, "Uncertain")]
       : [];
     const wanted = durationWanted(answer.reason);
     const longer = wanted === null ? [] : [this.#followOn(wanted)];
@@ -41,7 +41,7 @@ export class Verdict {
   }
 
   #followOn(duration: number): HTMLButtonElement {
-    return button(`Follow to ${withUnit(duration, "s", 4)}`, { class: "small" }, () => this.#lasting(duration));
+    return button(`Simulate to ${withUnit(duration, "s", 4)}`, { class: "small" }, () => this.#lasting(duration));
   }
 
   /** Shows the outcome as it is known at a time of the run: the badge is hidden from readers of the screen. */
@@ -75,6 +75,6 @@ export function verdictOf(answer: Answer): string {
 }
 
 function decisionOf({ outcome, decided_at: at }: Answer): string {
-  const reached = UNDECIDED.includes(outcome) ? "Followed to" : "Decided at";
+  const reached = UNDECIDED.includes(outcome) ? "Simulated to" : "Decided at";
   return at === null ? "" : ` ${reached} ${withUnit(at, "s")}.`;
 }

@@ -58,9 +58,9 @@ export class Classes {
   #remark(): readonly HTMLElement[] {
     if (!this.#attractors.some((one) => shareOf(one) !== null)) return [];
     const open = this.#attractors.some((one) => one.kind === UNSETTLED)
-      ? " A start that has not settled may lead to any of them: the upper end of each interval counts it there."
+      ? " An initial condition that has not settled may lead to any attractor. The upper end of each interval counts it there."
       : "";
-    return [element("li", { class: "hint" }, `In brackets: 95 % intervals, in per cent.${open}`)];
+    return [element("li", { class: "hint" }, `In brackets: 95 % intervals in per cent.${open}`)];
   }
 }
 

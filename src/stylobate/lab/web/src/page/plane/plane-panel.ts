@@ -88,7 +88,7 @@ export class PlanePanel {
     this.root.classList.toggle("stale", stale);
     if (this.#axes === null) this.#rest(plane, quantities);
     else this.#redraw();
-    if (stale) this.#readout.textContent = "This picture is of an earlier case: compute it again.";
+    if (stale) this.#readout.textContent = "This picture shows an earlier case. Compute it again.";
   }
 
   /** The job that fills the picture from now on. */
@@ -148,7 +148,7 @@ export class PlanePanel {
       return;
     }
     this.#stop();
-    this.#readout.textContent = "Cancelled; what had been computed stays.";
+    this.#readout.textContent = "Cancelled. The computed cells stay.";
     this.#hearing.cancelled();
   }
 
@@ -227,7 +227,7 @@ export class PlanePanel {
     const { x, y } = this.#axes;
     this.#canvas.canvas.setAttribute(
       "aria-label",
-      `${kind} over ${words(x.name)} and ${words(y.name)}; arrow keys point at a cell, Enter starts its motion`,
+      `${kind} over ${words(x.name)} and ${words(y.name)}; arrow keys select a cell, Enter starts its motion`,
     );
   }
 
@@ -269,8 +269,8 @@ export class PlanePanel {
 }
 
 const HINTS: Readonly<Record<PlaneKind, string>> = {
-  map: "The outcome over two quantities. Compute it, then click a cell to see its motion.",
-  basin: "Where each start leads in the long run. Compute it, then click a start to see its motion.",
+  map: "The outcome over two quantities. Compute the map, then click a cell to see its motion.",
+  basin: "The long-term motion for each initial condition. Compute the basins, then click a cell to see its motion.",
 };
 
 function lengthInWords({ periods, duration }: Part): string {

@@ -16,7 +16,7 @@ export class Connection {
     this.root.append(
       "The server does not answer. Start it again with ",
       element("code", {}, "stylobate lab"),
-      "; the page goes on by itself.",
+      "; the page then continues by itself.",
     );
     setInterval(() => void this.#watch(), WATCH);
   }

@@ -202,5 +202,5 @@ function planeRead(what: string, text: string): Value {
 
 /** Returns the line for a link that cannot be followed. */
 export function inWords(reason: string): string {
-  return `This link cannot be followed: ${reason.replace(/\.$/, "")}. The first preset is shown instead.`;
+  return `This link cannot be opened: ${reason.replace(/\.$/, "")}. The first preset is shown instead.`;
 }

@@ -32,7 +32,7 @@ export function menuOf(motion: MotionView, now: () => Shown): ExportMenu {
 
 function captionOf(motion: MotionView, { view, answer }: Shown): readonly string[] {
   const { time, to } = motion.clock;
-  const fall = motion.falling ? " The fall is drawn on and was not computed." : "";
+  const fall = motion.falling ? " The fall is drawn, not computed." : "";
   const at = `At ${joined(clockTime(time, to), "s")} of ${joined(clockTime(to, to), "s")}.${fall}`;
   return answer === null ? [] : [`${verdictOf(answer)} ${at}`, caseInWords(view.description)];
 }
