@@ -34,8 +34,8 @@ def _declared() -> Mapping[str, Number]:
 NUMBERS: Mapping[str, Number] = {
     **_declared(),
     "scale": Number("", "", "scale factor", 0.1, 4.0),
-    "rotation": Number("", "rad", "turned by", -3.142, 3.142),
-    "tail": Number("", "s", "rest after the record"),
+    "rotation": Number("", "rad", "rotation about the vertical", -3.142, 3.142),
+    "tail": Number("", "s", "free-vibration time after the record"),
 }
 
 OF_ANY_COLUMN = {
@@ -45,7 +45,7 @@ OF_ANY_COLUMN = {
         if hasattr(Column, name) and name != "height"  # which not all have
     },
     "frequency_scale": Quantity(unit="rad/s", text="ω0"),
-    "frequency_parameter": Quantity(unit="rad/s", text="p of the literature"),
+    "frequency_parameter": Quantity(unit="rad/s", text="frequency parameter √(m g R/K)"),
 }
 """The attributes of a column that the page shows."""
 

@@ -112,7 +112,7 @@ export type ColumnNumbers = {
   readonly axial_inertia: number;
   /** ω0 [rad/s] */
   readonly frequency_scale: number;
-  /** p of the literature [rad/s] */
+  /** frequency parameter √(m g R/K) [rad/s] */
   readonly frequency_parameter: number;
   /** c g, the horizontal acceleration that tips the standing column [m/s²] */
   readonly uplift_acceleration: number;
