@@ -83,7 +83,7 @@ docs: $(VENV)/.core $(VENV)/.docs  ## the documentation into docs/_build/html
 
 FIGURES := $(filter-out %/saving.py %/choose_a_model.py,$(wildcard docs/figures/*.py))
 
-figures: $(VENV)/.core  ## all figures and animations of the documentation into docs/_static, a quarter of an hour on two cores
+figures: $(VENV)/.core  ## all figures and animations of the documentation into docs/_static, ten minutes on two cores
 	for one in $(FIGURES); do echo "$$one"; $(BIN)/python "$$one" || exit 1; done
 
 bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks, beside the engines that can be installed, into docs/_static

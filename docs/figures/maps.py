@@ -1,4 +1,4 @@
-"""Draws the figures of the page "maps" into docs/_static/maps; takes a minute or two on two cores.
+"""Draws the figures of the page "maps" into docs/_static/maps; takes three minutes on two cores.
 
 Run it with `python docs/figures/maps.py`. The column is that of the paper, c = η = 0.1, in its units.
 """

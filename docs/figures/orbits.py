@@ -1,6 +1,6 @@
 """Draws the figures of "Exact periodic orbits" and "What exact orbits tell" into docs/_static/orbits.
 
-Run it with `python docs/figures/orbits.py`; it takes two minutes on one core. The column is that of the paper,
+Run it with `python docs/figures/orbits.py`; it takes four minutes on two cores. The column is that of the paper,
 c = η = 0.1, in its units.
 """
 

@@ -1,6 +1,6 @@
 """Draws the figures of the page "Overturning spectra and rocking spectra" into docs/_static/spectra.
 
-Run it with `python docs/figures/spectra.py`; it takes some minutes on two cores.
+Run it with `python docs/figures/spectra.py`; it takes seconds on two cores.
 """
 
 import numpy as np
