@@ -61,7 +61,8 @@ for note in mine.provenance:
 # --------------------------
 #
 # Plot the components and their response spectra (5 % damping), then print the
-# intensities.
+# intensities. In a program of your own, save each figure:
+# ``figure.savefig("record.png")``.
 periods = np.geomspace(0.05, 5.0, 60)
 spectra = sb.records.response_spectra(quake, periods, damping=0.05)
 figure = sb.earthquakes.plot_records([quake], {quake.name: spectra})
@@ -162,7 +163,7 @@ scales = np.linspace(0.5, 2.0, 31)
 intervals = sb.earthquakes.overturning_bands(model, quake, scales=scales, width=0.005)
 ends = zip(intervals["band_from"].values, intervals["band_to"].values, strict=True)
 for low, high in ends:
-    print(f"overturns from {low:.2f} to {high:.2f} times the record")
+    print(f"overturns from {low:.3f} to {high:.3f} times the record")
 figure = sb.plot(intervals)
 
 # %%

@@ -274,7 +274,7 @@ def test_a_given_fragility_has_half_of_its_probability_at_the_median():
         (([1.0, 2.0], [0.0, np.nan]), {}, "reached must hold True or False"),
         (([1.0, 2.0, 3.0], [0, 1]), {}, "intensity must have the shape of reached"),
         (([1.0, 2.0], [0, 1]), {"record": [1]}, "record must have the shape of reached"),
-        (([1.0, 2.0], [0, 1]), {"resamples": 10}, "resamples must be 0 unless two or more records are named, got 10"),
+        (([1.0, 2.0], [0, 1]), {"resamples": 10}, r"resamples: requires two or more records \(got 10 resamples\)"),
         (([1.0, 2.0], [0, 1]), {"resamples": 10, "record": [1, 2]}, "rng: required to resample the records"),
         (([1.0, 2.0], [0, 1]), {"counting": Counting.FIRST}, "counting must be Counting.AS_COMPUTED"),
         (([1.0, 2.0], [0, 1]), {"confidence": 95.0}, "confidence must lie between 0 and 1, got 95.0"),

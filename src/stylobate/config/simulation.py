@@ -205,7 +205,7 @@ def refuse_own_classes(provenance: Mapping[str, Any]) -> None:
             if "record" in provenance[name]:
                 message = (
                     f"the run was under the record {provenance[name]['record']!r}, read in Python, whose numbers are "
-                    f'not kept; describe it (kind = "record") to have it repeated'
+                    f'not kept. Describe it (kind = "record", in Python sb.config.RecordMotion) to repeat the run.'
                 )
                 raise UnsupportedError(message)
             message = f"the run used a {name} of its own, of which only the repr is kept: {provenance[name]['repr']}"

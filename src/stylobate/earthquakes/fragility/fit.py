@@ -120,7 +120,7 @@ def _replicates(seen: Observations, draws: int, rng: Rng | None) -> list[Replica
     if not draws:
         return []
     if seen.record is None or seen.record.max() < 1:
-        message = f"resamples must be 0 unless two or more records are named, got {draws}; give record"
+        message = f"resamples: requires two or more records (got {draws} resamples). Add records, or pass resamples=0."
         raise ParameterError(message)
     if rng is None:
         message = "rng: required to resample the records (got None). Pass a seed, for example rng=0."
