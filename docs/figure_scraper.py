@@ -1,5 +1,6 @@
 """Puts animations, and figures drawn without pyplot such as those of `sb.plot`, into tutorials and gallery."""
 
+import logging
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -10,6 +11,9 @@ from sphinx_gallery.scrapers import figure_rst
 from stylobate.plots import Animation
 
 _DPI = 100
+
+# A page is the same whether its kernels were compiled before or not.
+logging.getLogger("stylobate.compiling").setLevel(logging.ERROR)
 
 
 def new_figures(block: Any, block_vars: dict[str, Any], gallery_conf: dict[str, Any], **options: Any) -> str:

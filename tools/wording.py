@@ -1,8 +1,7 @@
 """Find words that the project's texts avoid, and code too wide for a page: `python tools/wording.py [prefix …]`.
 
-Each rule has a pattern and the words to write instead. `PAGE_RULES` hold for README, documentation and examples.
-`PENDING` lists the places that still wait to be rewritten; a place that needs no exception is reported, so that
-the list only shrinks. With prefixes of paths, every problem below them is shown, exceptions included.
+Each rule has a pattern and the words to write instead. `PAGE_RULES` hold for README, documentation and examples. With
+prefixes of paths, only what stands below them is shown.
 """
 
 import re
@@ -43,9 +42,6 @@ PAGE_RULES = {
     ),
 }
 
-# Prefixes of paths.
-PENDING = ("docs/",)
-
 _WIDTH = 88  # columns that a page shows without scrolling
 _PAGES = ("docs/", "README.md", "examples/", "paper/")
 _READ = {".py", ".pyi", ".ts", ".css", ".html", ".md", ".rst"}
@@ -53,18 +49,11 @@ _FOLDERS = ("src", "docs", "examples", "paper", "README.md", "CONTRIBUTING.md", 
 
 
 def main(prefixes: Sequence[str] = ()) -> int:
-    """Print each place that breaks a rule, and each exception that is not needed; return the exit status."""
-    found = list(problems())
-    pending = () if prefixes else PENDING
+    """Print each place that breaks a rule; return the exit status."""
     lines = [
         f"{path}:{line}: {word!r}: use {remedy}"
-        for path, line, word, remedy in found
-        if path.startswith(tuple(prefixes) or "") and not path.startswith(pending or "\0")
-    ]
-    lines += [
-        f"tools/wording.py: {prefix} needs no exception any more. Remove it."
-        for prefix in pending
-        if not any(path.startswith(prefix) for path, *_ in found)
+        for path, line, word, remedy in problems()
+        if path.startswith(tuple(prefixes) or "")
     ]
     print("\n".join(lines), end="\n" if lines else "")
     return 1 if lines else 0

@@ -39,7 +39,7 @@ def fractions() -> xr.Dataset:
 
 
 def erosion() -> xr.Dataset:
-    """How near the upright the nearest overturning start comes as the amplitude of circular motion grows."""
+    """How near the vertical the nearest overturning start comes as the amplitude of circular motion grows."""
     circle = sb.Harmonic.circular(acceleration=0.1, angular_frequency=2.0)
     axis = np.linspace(-0.105, 0.105, 43)
     over = {"tilt_x": axis, "tilt_y": axis, "start_phase": np.linspace(0.0, 2.0 * np.pi, 8, endpoint=False)}

@@ -146,7 +146,7 @@ def add_legend(figure: Figure) -> None:
 
 
 def dissipation() -> Figure:
-    """The tilt of a free column by the frictions one can choose, in space and in a plane."""
+    """The tilt of a free column for each damping parameter, three-dimensional and planar."""
     figure = Figure(figsize=(7.4, 3.4), layout="constrained")
     column = sb.Column.dimensionless(0.2)
     e = float(sb.theory.housner_restitution(0.2))

@@ -68,7 +68,7 @@ def mass(axes: Axes, x: float, y: float) -> None:
 
 
 def draw_at_rest(axes: Axes) -> None:
-    """The upright column: its lengths and the tipping angle."""
+    """The vertical column: its lengths and the tipping angle."""
     slab(axes, -0.95, 0.95)
     axes.add_patch(Rectangle((-R, 0.0), 2.0 * R, H, facecolor=STONE, edgecolor=EDGE, lw=1.3))
     axes.plot([0.0, 0.0], [0.0, H + 0.12], color=PALE, lw=0.8, ls=(0, (8, 3, 1.5, 3)))
@@ -117,7 +117,7 @@ def draw_tilted(axes: Axes) -> None:
     axes.add_patch(Circle((R, 0.0), 0.05, facecolor=VERMILION, edgecolor="white", lw=0.8, zorder=6))
     word(axes, R + 0.13, 0.13, "contact\npoint", VERMILION, ha="left", va="bottom")
     axes.plot([R + 0.05, R + 0.16], [0.04, 0.13], color=VERMILION, lw=0.7)
-    arrow(axes, (-0.78, -0.5 * FLOOR), (-0.1, -0.5 * FLOOR), GREEN, lw=2.2, mutation_scale=14)
+    arrow(axes, (-0.1, -0.5 * FLOOR), (-0.78, -0.5 * FLOOR), GREEN, lw=2.2, mutation_scale=14)
     write(axes, 0.02, -0.5 * FLOOR, "$a$", GREEN)
     word(axes, 0.02, -0.48, "base acceleration", GREEN, size=9.5)
     axes.set(xlim=(-1.03, 1.1), ylim=(-0.6, 2.35))

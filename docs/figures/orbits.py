@@ -1,4 +1,4 @@
-"""Draws the figures of "Exact periodic orbits" and "What exact orbits tell" into docs/_static/orbits.
+"""Draws the figures of "Exact periodic orbits" and "What exact orbits show" into docs/_static/orbits.
 
 Run it with `python docs/figures/orbits.py`; it takes four minutes on two cores. The column is that of the paper,
 c = η = 0.1, in its units.

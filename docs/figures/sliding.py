@@ -36,7 +36,7 @@ def gentle() -> Figure:
 
 
 def hard() -> Figure:
-    """The same column, which may turn, on a base that shakes hard."""
+    """The same column, free to spin, on a base that shakes hard."""
     found = sb.conveying.slipping_boundary(
         sb.Sliding(COLUMN, damping=ETA, spin_damping=1.0),
         sb.Harmonic.circular(acceleration=0.5, angular_frequency=1.0),
