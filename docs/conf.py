@@ -9,7 +9,10 @@ from typing import Any
 from sphinx.domains.math import MathDomain
 
 _HERE = Path(__file__).parent
-sys.path[:0] = [str(_HERE), str(_HERE / "extensions")]  # `figure_scraper`, and the directives of the reference
+sys.path[:0] = [
+    str(_HERE),
+    str(_HERE / "extensions"),
+]  # `figure_scraper`, and the directives of the reference
 
 project = "stylobate"
 author = "The stylobate developers"
@@ -33,7 +36,13 @@ extensions = [
     "stylobate_reference",  # docs/extensions: summaries, options of commands and fields of files from declarations
 ]
 exclude_patterns = ["_build", "inventories", "extensions"]
-myst_enable_extensions = ["dollarmath", "colon_fence", "deflist", "attrs_inline", "attrs_block"]
+myst_enable_extensions = [
+    "dollarmath",
+    "colon_fence",
+    "deflist",
+    "attrs_inline",
+    "attrs_block",
+]
 myst_heading_anchors = 3
 myst_html_meta = {
     "description": "Free-standing round columns on shaking bases: simulate whether they stay, rock, roll or overturn.",
@@ -119,25 +128,34 @@ html_show_sphinx = False
 _CODE = re.compile(r"(`[^`]*`)")
 
 
-def _escape_bars(app: Any, what: str, name: str, thing: object, options: object, lines: list[str]) -> None:
+def _escape_bars(
+    app: Any, what: str, name: str, thing: object, options: object, lines: list[str]
+) -> None:
     del app, what, name, thing, options
     for index, line in enumerate(lines):
         if "|" in line and not line.lstrip().startswith(">>>"):
             parts = _CODE.split(line)
-            lines[index] = "".join(part if part.startswith("`") else part.replace("|", r"\|") for part in parts)
+            lines[index] = "".join(
+                part if part.startswith("`") else part.replace("|", r"\|")
+                for part in parts
+            )
 
 
 # Napoleon takes what stands before a colon in the first line of a property for its type: the colon hides from it.
 _HIDDEN_COLON = "\ue000"
 
 
-def _hide_colons(app: Any, what: str, name: str, thing: object, options: object, lines: list[str]) -> None:
+def _hide_colons(
+    app: Any, what: str, name: str, thing: object, options: object, lines: list[str]
+) -> None:
     del app, name, thing, options
     if what in ("attribute", "data", "property") and lines:
         lines[0] = lines[0].replace(":", _HIDDEN_COLON)
 
 
-def _show_colons(app: Any, what: str, name: str, thing: object, options: object, lines: list[str]) -> None:
+def _show_colons(
+    app: Any, what: str, name: str, thing: object, options: object, lines: list[str]
+) -> None:
     del app, what, name, thing, options
     lines[:] = [line.replace(_HIDDEN_COLON, ":") for line in lines]
 
@@ -156,7 +174,9 @@ def _aliases() -> dict[str, str]:
         "~numpy.typing.NDArray[~numpy.int64]": npt.NDArray[np.int64],
         "~numpy.typing.NDArray[~numpy.bool]": npt.NDArray[np.bool_],
     }
-    return {stringify_annotation(alias, "smart"): name for name, alias in named.items()} | {
+    return {
+        stringify_annotation(alias, "smart"): name for name, alias in named.items()
+    } | {
         "~xarray.core.dataset.Dataset": "~xarray.Dataset",
         "~xarray.core.dataarray.DataArray": "~xarray.DataArray",
         "~xarray.core.datatree.DataTree": "~xarray.DataTree",

@@ -16,45 +16,71 @@ _DPI = 100
 logging.getLogger("stylobate.compiling").setLevel(logging.ERROR)
 
 
-def new_figures(block: Any, block_vars: dict[str, Any], gallery_conf: dict[str, Any], **options: Any) -> str:
+def new_figures(
+    block: Any, block_vars: dict[str, Any], gallery_conf: dict[str, Any], **options: Any
+) -> str:
     """Save each new figure or animation that a variable of the example holds; return its RST."""
     del block, options
     variables = block_vars["example_globals"]
     shown = variables.setdefault("__shown__", [])
     images = []
     for value in list(variables.values()):
-        if not isinstance(value, (Figure, Animation)) or any(value is one for one in shown):
+        if not isinstance(value, (Figure, Animation)) or any(
+            value is one for one in shown
+        ):
             continue
         shown.append(value)
-        if isinstance(value, Figure) and getattr(value.canvas, "manager", None) is not None:
+        if (
+            isinstance(value, Figure)
+            and getattr(value.canvas, "manager", None) is not None
+        ):
             continue  # pyplot's own, which sphinx-gallery finds, and closes afterwards
         path = PurePosixPath(next(block_vars["image_path_iterator"]))
         images.append(_saved(value, path, gallery_conf))
     return "\n".join(images)
 
 
-def _saved(picture: Figure | Animation, path: PurePosixPath, gallery_conf: dict[str, Any]) -> str:
+def _saved(
+    picture: Figure | Animation, path: PurePosixPath, gallery_conf: dict[str, Any]
+) -> str:
     if isinstance(picture, Animation):
         moving = picture.save(path.with_suffix(".gif"))
-        return figure_rst([moving], gallery_conf["src_dir"], "Animation: the column on its base")
+        return figure_rst(
+            [moving], gallery_conf["src_dir"], "Animation: the column on its base"
+        )
     picture.savefig(path, dpi=_DPI)
     paths = {0: path}
     for factor in gallery_conf["image_srcset"]:
-        paths[factor] = path.with_name(f"{path.stem}_{factor:.2f}".replace(".", "_") + f"x{path.suffix}")
+        paths[factor] = path.with_name(
+            f"{path.stem}_{factor:.2f}".replace(".", "_") + f"x{path.suffix}"
+        )
         picture.savefig(paths[factor], dpi=factor * _DPI)
-    return figure_rst([path], gallery_conf["src_dir"], _description(picture), srcsetpaths=[paths])
+    return figure_rst(
+        [path], gallery_conf["src_dir"], _description(picture), srcsetpaths=[paths]
+    )
 
 
 def _description(figure: Figure) -> str:
     """Return what the panels of a figure show, by their titles and axes, as a text that stands for the figure."""
     suptitle = getattr(figure, "_suptitle", None)
     panels = [suptitle.get_text()] if suptitle else []
-    panels += [words for axes in figure.axes if axes.get_label() != "<colorbar>" and (words := _panel(axes))]
+    panels += [
+        words
+        for axes in figure.axes
+        if axes.get_label() != "<colorbar>" and (words := _panel(axes))
+    ]
     return "; ".join(dict.fromkeys(panels)).replace("$", "").replace("\\", "")
 
 
 def _panel(axes: Axes) -> str:
-    title = next((text for place in ("left", "center", "right") if (text := axes.get_title(loc=place))), "")
+    title = next(
+        (
+            text
+            for place in ("left", "center", "right")
+            if (text := axes.get_title(loc=place))
+        ),
+        "",
+    )
     x, y = axes.get_xlabel(), axes.get_ylabel()
     over = f"{y} against {x}" if x and y else y or x
     return ": ".join(part for part in (title, over) if part)

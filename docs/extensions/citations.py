@@ -29,16 +29,30 @@ def software() -> str:
     cited = citation()
     authors = " and ".join(f"{{{one['name']}}}" for one in cited["authors"])
     year = str(cited.get("date-released", ""))[:4]
-    fields = {"author": authors, "title": cited["title"], "year": year, "version": str(cited["version"])}
-    return bibtex("software", "stylobate", fields | {"url": cited.get("repository-code", "")})
+    fields = {
+        "author": authors,
+        "title": cited["title"],
+        "year": year,
+        "version": str(cited["version"]),
+    }
+    return bibtex(
+        "software", "stylobate", fields | {"url": cited.get("repository-code", "")}
+    )
 
 
 def paper() -> str:
     """Write the entry of the source paper, the first reference."""
     one = citation()["references"][0]
-    authors = " and ".join(f"{author['family-names']}, {author['given-names']}" for author in one["authors"])
+    authors = " and ".join(
+        f"{author['family-names']}, {author['given-names']}"
+        for author in one["authors"]
+    )
     fields = {"author": authors, "title": one["title"], "journal": one["journal"]}
-    return bibtex("article", "munitsyn2021", fields | {"year": str(one["date-published"])[:4], "url": one["url"]})
+    return bibtex(
+        "article",
+        "munitsyn2021",
+        fields | {"year": str(one["date-published"])[:4], "url": one["url"]},
+    )
 
 
 class Citation(SphinxDirective):

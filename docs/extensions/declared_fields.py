@@ -69,10 +69,19 @@ def _kind(name: str, make: Callable[..., Any]) -> Kind:
     if name == _READ_FROM_FILES:
         return Kind(name, text, (), ())
     declared = parameters_of(make)
-    others = [one for one in ("motion", "motions") if one in inspect.signature(make).parameters]
+    others = [
+        one
+        for one in ("motion", "motions")
+        if one in inspect.signature(make).parameters
+    ]
     others += ["motion"] if "self" in inspect.signature(make).parameters else []
     needed = [one for one in declared if declared[one].required]
-    return Kind(name, text, (*others, *needed), tuple(one for one in declared if not declared[one].required))
+    return Kind(
+        name,
+        text,
+        (*others, *needed),
+        tuple(one for one in declared if not declared[one].required),
+    )
 
 
 def _as_noun(text: str) -> str:
@@ -88,13 +97,24 @@ def _as_noun(text: str) -> str:
 def numbers(part: str) -> list[Number]:
     """List the declared numbers of all kinds of a part; one that differs between kinds has a row for each meaning."""
     found: dict[tuple[str, str, str, str, str], list[str]] = {}
-    makers = {name: make for name, make in PARTS[part]().items() if name != _READ_FROM_FILES}
+    makers = {
+        name: make for name, make in PARTS[part]().items() if name != _READ_FROM_FILES
+    }
     for kind, make in makers.items():
         for name, parameter in parameters_of(make).items():
-            key = (name, _text(parameter), parameter.quantity.unit, _default(parameter), range_of(parameter))
+            key = (
+                name,
+                _text(parameter),
+                parameter.quantity.unit,
+                _default(parameter),
+                range_of(parameter),
+            )
             found.setdefault(key, []).append(kind)
     ordered = sorted(found, key=lambda key: [one[0] for one in found].index(key[0]))
-    return [Number(*key, () if len(found[key]) == len(makers) else tuple(found[key])) for key in ordered]
+    return [
+        Number(*key, () if len(found[key]) == len(makers) else tuple(found[key]))
+        for key in ordered
+    ]
 
 
 def numbers_of_runs() -> list[Number]:
@@ -106,7 +126,9 @@ def numbers_of_runs() -> list[Number]:
 
 
 def _text(parameter: Parameter) -> str:
-    return " ".join(one for one in (parameter.quantity.text, parameter.quantity.symbol) if one)
+    return " ".join(
+        one for one in (parameter.quantity.text, parameter.quantity.symbol) if one
+    )
 
 
 def _default(parameter: Parameter) -> str:
@@ -153,18 +175,32 @@ def table_of(place: str) -> type:
 def fields_of(cls: type, left_out: Iterable[str] = ()) -> list[Field]:
     """List the keys of a table, with the texts of the parameters in the docstring of its class."""
     texts = described(cls)
-    found = _fields_of_config(cls) if issubclass(cls, BaseModel) else _fields_of_dataclass(cls)
+    found = (
+        _fields_of_config(cls)
+        if issubclass(cls, BaseModel)
+        else _fields_of_dataclass(cls)
+    )
     skipped = {*left_out, "kind", "shape", "file_sha256"}
-    return [Field(name, kind, default, texts.get(name, "")) for name, kind, default in found if name not in skipped]
+    return [
+        Field(name, kind, default, texts.get(name, ""))
+        for name, kind, default in found
+        if name not in skipped
+    ]
 
 
 def _fields_of_config(cls: type[BaseModel]) -> list[tuple[str, str, str]]:
     rows = []
     for name, one in cls.model_fields.items():
         needed = one.default is PydanticUndefined and one.default_factory is None
-        default = "" if needed or one.default is PydanticUndefined else _plain(one.default)
-        words = type_in_words(Annotated[one.annotation, *one.metadata] if one.metadata else one.annotation)
-        rows.append((one.alias or name, words + (", needed" if needed else ""), default))
+        default = (
+            "" if needed or one.default is PydanticUndefined else _plain(one.default)
+        )
+        words = type_in_words(
+            Annotated[one.annotation, *one.metadata] if one.metadata else one.annotation
+        )
+        rows.append(
+            (one.alias or name, words + (", needed" if needed else ""), default)
+        )
     return rows
 
 
@@ -172,7 +208,11 @@ def _fields_of_dataclass(cls: type) -> list[tuple[str, str, str]]:
     assert is_dataclass(cls)
     hints = inspect.get_annotations(cls, eval_str=True)
     return [
-        (one.name, type_in_words(hints[one.name]), "" if one.default is MISSING else _shown(one.default))
+        (
+            one.name,
+            type_in_words(hints[one.name]),
+            "" if one.default is MISSING else _shown(one.default),
+        )
         for one in fields(cls)
     ]
 
@@ -184,7 +224,13 @@ def _plain(default: Any) -> str:
     return "" if default in ((), "") else _shown(default)
 
 
-_PLAIN_TYPES = {float: "number", int: "whole number", str: "text", bool: "true or false", NoneType: ""}
+_PLAIN_TYPES = {
+    float: "number",
+    int: "whole number",
+    str: "text",
+    bool: "true or false",
+    NoneType: "",
+}
 _PLURALS = {
     "number": "numbers",
     "whole number": "whole numbers",
@@ -205,7 +251,9 @@ def type_in_words(annotation: Any) -> str:
         return _IN_WORDS[origin](arguments)
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return "table"
-    return _PLAIN_TYPES.get(annotation, getattr(annotation, "__name__", str(annotation)))
+    return _PLAIN_TYPES.get(
+        annotation, getattr(annotation, "__name__", str(annotation))
+    )
 
 
 def _choice_in_words(arguments: tuple[Any, ...]) -> str:
@@ -214,8 +262,14 @@ def _choice_in_words(arguments: tuple[Any, ...]) -> str:
 
 
 def _list_in_words(arguments: tuple[Any, ...]) -> str:
-    words = " or ".join(_PLURALS.get(one, one) for one in type_in_words(arguments[0]).split(" or "))
-    return f"list of {words}" if arguments[-1] is Ellipsis or len(arguments) == 1 else f"{len(arguments)} {words}"
+    words = " or ".join(
+        _PLURALS.get(one, one) for one in type_in_words(arguments[0]).split(" or ")
+    )
+    return (
+        f"list of {words}"
+        if arguments[-1] is Ellipsis or len(arguments) == 1
+        else f"{len(arguments)} {words}"
+    )
 
 
 _IN_WORDS: Mapping[Any, Callable[[tuple[Any, ...]], str]] = {
@@ -249,5 +303,7 @@ def _parameters(docstring: str) -> dict[str, str]:
                 break
             names = [one.strip() for one in line.partition(":")[0].split(",")]
         elif line.strip():
-            texts |= {name: f"{texts.get(name, '')} {line.strip()}".strip() for name in names}
+            texts |= {
+                name: f"{texts.get(name, '')} {line.strip()}".strip() for name in names
+            }
     return texts

@@ -11,7 +11,16 @@ from stylobate.cli.declarations import Option, written
 from stylobate.cli.own_classes import Chosen
 
 # Panels whose options many commands share, in the order of the page. Each is a section of the page.
-SHARED_PANELS = ("Run", "Axes", "Column", "Model", "Base motion", "Record", "Computing", "Output")
+SHARED_PANELS = (
+    "Run",
+    "Axes",
+    "Column",
+    "Model",
+    "Base motion",
+    "Record",
+    "Computing",
+    "Output",
+)
 
 _WORDS = {"Path": "FILE", "str": "TEXT", "int": "INTEGER", "float": "NUMBER"}
 
@@ -57,8 +66,12 @@ def explanation(name: str) -> tuple[list[str], list[str]]:
     """Return the paragraphs of a command's help, and its examples."""
     text = COMMANDS[name].load().function.__doc__ or ""
     paragraphs = [" ".join(part.split()) for part in text.split("\n\n")]
-    paragraphs = [one.removesuffix(" Examples:").removesuffix(" Example:") for one in paragraphs]
-    paragraphs = [one for one in paragraphs if one not in ("Examples:", "Examples --------")]
+    paragraphs = [
+        one.removesuffix(" Examples:").removesuffix(" Example:") for one in paragraphs
+    ]
+    paragraphs = [
+        one for one in paragraphs if one not in ("Examples:", "Examples --------")
+    ]
     paragraphs = [one.removeprefix("Examples -------- ") for one in paragraphs]
     examples = [one for one in paragraphs if one.startswith("stylobate ")]
     return [one for one in paragraphs if one not in examples], examples
@@ -95,8 +108,14 @@ def shared_options() -> dict[str, list[Row]]:
         for option in options_of(entry.load()):
             if option.panel in found:
                 found[option.panel].setdefault(option.name, Counter())[row(option)] += 1
-    shared = {panel: [rows.most_common(1)[0] for rows in named.values()] for panel, named in found.items()}
-    return {panel: [one for one, count in rows if count > 1] for panel, rows in shared.items()}
+    shared = {
+        panel: [rows.most_common(1)[0] for rows in named.values()]
+        for panel, named in found.items()
+    }
+    return {
+        panel: [one for one, count in rows if count > 1]
+        for panel, rows in shared.items()
+    }
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +154,10 @@ def split(name: str) -> tuple[list[Row], list[Sharing]]:
 def _sharings(options: list[Option], shared: dict[str, list[Row]]) -> Iterator[Sharing]:
     for panel, rows in shared.items():
         flags = [one.flag for one in rows]
-        taken = tuple(row(one).flag for one in options if one.panel == panel and row(one) in rows)
+        taken = tuple(
+            row(one).flag for one in options if one.panel == panel and row(one) in rows
+        )
         if taken:
-            yield Sharing(panel, taken, tuple(flag for flag in flags if flag not in taken))
+            yield Sharing(
+                panel, taken, tuple(flag for flag in flags if flag not in taken)
+            )

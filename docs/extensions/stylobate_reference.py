@@ -30,7 +30,9 @@ class summary(nodes.General, nodes.Element):  # noqa: N801  docutils names nodes
     """Stands for the summary of a page until everything on the page is read."""
 
 
-def table(header: Sequence[str], rows: Iterable[Sequence[Cell]], widths: Sequence[int]) -> nodes.table:
+def table(
+    header: Sequence[str], rows: Iterable[Sequence[Cell]], widths: Sequence[int]
+) -> nodes.table:
     """Make a table of texts and nodes."""
     group = nodes.tgroup(cols=len(header))
     group += [nodes.colspec(colwidth=width) for width in widths]
@@ -92,13 +94,19 @@ def fill_summaries(app: Sphinx, document: nodes.document) -> None:
     for place in list(document.findall(summary)):
         by_section: dict[nodes.section, list[nodes.Element]] = {}
         for described in document.findall(addnodes.desc):
-            if described["domain"] == "py" and addnodes.desc not in map(type, _above(described)):
-                by_section.setdefault(next(_sections_above(described)), []).append(described)
+            if described["domain"] == "py" and addnodes.desc not in map(
+                type, _above(described)
+            ):
+                by_section.setdefault(next(_sections_above(described)), []).append(
+                    described
+                )
         made: list[nodes.Node] = []
         for section, entries in by_section.items():
             if len(by_section) > 1:
                 made.append(_section_link(section))
-            made.append(table(("name", "description"), list(_summary_rows(entries)), (35, 65)))
+            made.append(
+                table(("name", "description"), list(_summary_rows(entries)), (35, 65))
+            )
         place.replace_self(made)
 
 
@@ -115,15 +123,29 @@ def _sections_above(node: nodes.Node) -> Iterator[nodes.section]:
 def _section_link(section: nodes.section) -> nodes.paragraph:
     title = section[0].astext()
     link = nodes.reference("", title, internal=True, refid=section["ids"][0])
-    return nodes.paragraph("", "", nodes.strong("", "", link), classes=["summary-section"])
+    return nodes.paragraph(
+        "", "", nodes.strong("", "", link), classes=["summary-section"]
+    )
 
 
 def _summary_rows(entries: Iterable[nodes.Element]) -> Iterator[tuple[Cell, Cell]]:
     for described in entries:
         signature = next(iter(described.findall(addnodes.desc_signature)))
-        link = nodes.reference("", "", code(signature["fullname"]), internal=True, refid=signature["ids"][0])
-        paragraph = next((one for one in described[-1].children if isinstance(one, nodes.paragraph)), None)
-        yield [link], [] if paragraph is None else [one.deepcopy() for one in paragraph.children]
+        link = nodes.reference(
+            "",
+            "",
+            code(signature["fullname"]),
+            internal=True,
+            refid=signature["ids"][0],
+        )
+        paragraph = next(
+            (one for one in described[-1].children if isinstance(one, nodes.paragraph)),
+            None,
+        )
+        yield (
+            [link],
+            [] if paragraph is None else [one.deepcopy() for one in paragraph.children],
+        )
 
 
 class CommandDirective(SphinxDirective):
@@ -137,16 +159,30 @@ class CommandDirective(SphinxDirective):
         usage = declared_options.usage(name)
         texts, examples = declared_options.explanation(name)
         own, sharings = declared_options.split(name)
-        made: list[nodes.Node] = [nodes.paragraph("", "", *inline(text)) for text in texts]
+        made: list[nodes.Node] = [
+            nodes.paragraph("", "", *inline(text)) for text in texts
+        ]
         made.append(_console(usage))
         argument = declared_options.argument_text(name)
         if argument:
             source = usage.rpartition(" ")[2].strip("[]")
-            made.append(nodes.paragraph("", "", code(source), nodes.Text(": "), *inline(argument), nodes.Text(".")))
+            made.append(
+                nodes.paragraph(
+                    "",
+                    "",
+                    code(source),
+                    nodes.Text(": "),
+                    *inline(argument),
+                    nodes.Text("."),
+                )
+            )
         if own:
             made.append(option_table(own, name))
         if sharings:
-            made += [nodes.paragraph("", "Options shared with other commands:"), _sharings(sharings)]
+            made += [
+                nodes.paragraph("", "Options shared with other commands:"),
+                _sharings(sharings),
+            ]
         if examples and "without-examples" not in self.options:
             made.append(_console("\n".join(map(wrapped_command, examples))))
         return made
@@ -158,9 +194,16 @@ def _console(text: str) -> nodes.literal_block:
 
 def wrapped_command(example: str) -> str:
     """Write an example as it is typed, broken before options that do not fit."""
-    words = [one if set(one).isdisjoint(" '*") else shlex.quote(one) for one in shlex.split(example)]
+    words = [
+        one if set(one).isdisjoint(" '*") else shlex.quote(one)
+        for one in shlex.split(example)
+    ]
     parts = re.sub(r" (?=--)", "\n", " ".join(words)).splitlines()
-    lines = textwrap.wrap(" ".join(part.replace(" ", "\0") for part in parts), _CONSOLE_WIDTH, break_long_words=False)
+    lines = textwrap.wrap(
+        " ".join(part.replace(" ", "\0") for part in parts),
+        _CONSOLE_WIDTH,
+        break_long_words=False,
+    )
     return "$ " + " \\\n    ".join(line.replace("\0", " ") for line in lines)
 
 
@@ -169,7 +212,12 @@ def _sharings(sharings: Iterable[declared_options.Sharing]) -> nodes.bullet_list
     for one in sharings:
         link = nodes.reference("", one.panel, internal=True, refid=panel_id(one.panel))
         words = one.words()
-        items.append(nodes.list_item("", nodes.paragraph("", "", link, *inline(f": {words}" if words else ""))))
+        items.append(
+            nodes.list_item(
+                "",
+                nodes.paragraph("", "", link, *inline(f": {words}" if words else "")),
+            )
+        )
     return nodes.bullet_list("", *items)
 
 
@@ -183,7 +231,11 @@ def option_table(rows: Iterable[declared_options.Row], name: str) -> nodes.table
     return table(
         ("option", "value", "meaning"),
         [
-            (code(one.flag, ids=[f"{name}{one.flag[1:]}"]), code(one.values) if one.values else "", one.text)
+            (
+                code(one.flag, ids=[f"{name}{one.flag[1:]}"]),
+                code(one.values) if one.values else "",
+                one.text,
+            )
             for one in rows
         ],
         (25, 20, 55),
@@ -213,7 +265,9 @@ class CommandList(SphinxDirective):
 def _command_link(name: str) -> nodes.reference:
     """Link to the section of a command, whose title is its usage without "[OPTIONS]"."""
     title = declared_options.title(name)
-    return nodes.reference("", "", code(name), internal=True, refid=nodes.make_id(title))
+    return nodes.reference(
+        "", "", code(name), internal=True, refid=nodes.make_id(title)
+    )
 
 
 class Kinds(SphinxDirective):
@@ -226,10 +280,14 @@ class Kinds(SphinxDirective):
             (code(one.name), one.text, codes(one.needed), codes(one.optional))
             for one in declared_fields.kinds(self.arguments[0])
         ]
-        return [table(("kind", "meaning", "needed", "optional"), rows, (18, 37, 20, 25))]
+        return [
+            table(("kind", "meaning", "needed", "optional"), rows, (18, 37, 20, 25))
+        ]
 
 
-def _numbers(rows: Iterable[declared_fields.Number], *, with_kinds: bool) -> nodes.table:
+def _numbers(
+    rows: Iterable[declared_fields.Number], *, with_kinds: bool
+) -> nodes.table:
     header = ("name", "meaning", "unit", "default", "values", "kinds")
     made = [
         (
@@ -243,7 +301,9 @@ def _numbers(rows: Iterable[declared_fields.Number], *, with_kinds: bool) -> nod
         for one in rows
     ]
     count = len(header) if with_kinds else len(header) - 1
-    return table(header[:count], [row[:count] for row in made], (20, 30, 8, 10, 17, 15)[:count])
+    return table(
+        header[:count], [row[:count] for row in made], (20, 30, 8, 10, 17, 15)[:count]
+    )
 
 
 class Numbers(SphinxDirective):
@@ -271,8 +331,15 @@ class Fields(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         left_out = self.options.get("without", "").split()
         rows = [
-            (code(one.name), one.type, code(one.default) if one.default else "", one.text)
-            for one in declared_fields.fields_of(declared_fields.table_of(self.arguments[0]), left_out)
+            (
+                code(one.name),
+                one.type,
+                code(one.default) if one.default else "",
+                one.text,
+            )
+            for one in declared_fields.fields_of(
+                declared_fields.table_of(self.arguments[0]), left_out
+            )
         ]
         return [table(("key", "value", "default", "meaning"), rows, (20, 22, 16, 42))]
 

@@ -42,7 +42,12 @@ def rolling() -> sb.plots.Animation:
 def coin() -> sb.plots.Animation:
     """A disc let go on its rim wobbles faster the lower it comes."""
     disc = sb.Column.solid(radius=0.04, height=0.008, density=8000.0)
-    run = sb.simulate(sb.Rolling(disc, rolling_resistance=0.02), tilt=(0.6, 0.0), tilt_rate=(0.0, 8.0), duration=2.7)
+    run = sb.simulate(
+        sb.Rolling(disc, rolling_resistance=0.02),
+        tilt=(0.6, 0.0),
+        tilt_rate=(0.0, 8.0),
+        duration=2.7,
+    )
     return sb.animate(run, speed=0.3, **SHOWN)
 
 
@@ -73,7 +78,9 @@ REST = 20.0
 def without_drift(motion: DrawnMotion) -> DrawnMotion:
     """Return a motion whose base is displaced by the record without its drift, which no column feels."""
     ground = sb.sample_record("el centro 1940 corrected").scaled(SCALE)
-    start, moved = (ground.displacement(REST + time) for time in (np.zeros(1), motion.time))
+    start, moved = (
+        ground.displacement(REST + time) for time in (np.zeros(1), motion.time)
+    )
     return replace(motion, base=np.asarray(moved - start))
 
 
@@ -88,9 +95,13 @@ def home() -> bytes:
         both = {}
         for pace in (1.0, PACE):
             title = f"{3.0 * size:g} m high, El Centro 1940 × {SCALE:g}"
-            one = sb.animate(run, size=SIDE, frames_per_second=RATE, speed=pace, title=title)
+            one = sb.animate(
+                run, size=SIDE, frames_per_second=RATE, speed=pace, title=title
+            )
             look = replace(one.look, scale=scale)
-            both[pace] = Drawing(without_drift(one.motion), without_drift(one.history), look)
+            both[pace] = Drawing(
+                without_drift(one.motion), without_drift(one.history), look
+            )
         scale = both[1.0].pixels_per_metre
         drawings.insert(0, both)
     end = float(drawings[1][1.0].motion.time[-1])
@@ -103,7 +114,10 @@ def home() -> bytes:
         for place, both in enumerate(drawings):
             times = both[pace].motion.time
             sheet.paste(
-                both[pace].picture(min(int(np.searchsorted(times, time)), times.size - 1)), (place * SIDE[0], 0)
+                both[pace].picture(
+                    min(int(np.searchsorted(times, time)), times.size - 1)
+                ),
+                (place * SIDE[0], 0),
             )
         return sheet
 
@@ -114,7 +128,10 @@ DRAWINGS: tuple[Callable[[], sb.plots.Animation], ...] = (temple, rolling, coin,
 
 if __name__ == "__main__":
     FOLDER.mkdir(parents=True, exist_ok=True)
-    chosen = sys.argv[1:] or [home.__name__, *(drawing.__name__ for drawing in DRAWINGS)]
+    chosen = sys.argv[1:] or [
+        home.__name__,
+        *(drawing.__name__ for drawing in DRAWINGS),
+    ]
     if home.__name__ in chosen:
         print("home", (STATIC / "home.gif").write_bytes(home()) / 1e6, "MB")
     for drawing in DRAWINGS:

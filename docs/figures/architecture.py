@@ -40,11 +40,15 @@ DUTIES = {
 
 def layers() -> list[list[str]]:
     """Return the rooms of each layer, the highest first."""
-    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"][
-        "contracts"
-    ]
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))[
+        "tool"
+    ]["importlinter"]["contracts"]
     (found,) = (one["layers"] for one in contracts if one["type"] == "layers")
-    return [[room.strip() for room in layer.split("|")] for layer in found if layer != "__main__"]
+    return [
+        [room.strip() for room in layer.split("|")]
+        for layer in found
+        if layer != "__main__"
+    ]
 
 
 def draw() -> Figure:
@@ -59,14 +63,42 @@ def draw() -> Figure:
         for column, room in enumerate(row):
             x = 1.0 + column * width
             axes.add_patch(
-                Rectangle((x, y + 0.08), width - 1.0, 0.84, facecolor="#eef2f7", edgecolor="#8792a2", lw=0.7)
+                Rectangle(
+                    (x, y + 0.08),
+                    width - 1.0,
+                    0.84,
+                    facecolor="#eef2f7",
+                    edgecolor="#8792a2",
+                    lw=0.7,
+                )
             )
             alone = len(row) == 1
-            axes.text(x + 1.5, y + (0.5 if alone else 0.68), room, size=8.5, weight="bold", va="center")
+            axes.text(
+                x + 1.5,
+                y + (0.5 if alone else 0.68),
+                room,
+                size=8.5,
+                weight="bold",
+                va="center",
+            )
             at = (x + 18.0, y + 0.5) if alone else (x + 1.5, y + 0.3)
             axes.text(*at, DUTIES[room], size=7.5, va="center", color="#3c4856")
-    axes.annotate("", (96.5, 0.1), (96.5, len(rows) - 0.1), arrowprops={"arrowstyle": "-|>", "color": "#5d6b7d"})
-    axes.text(98.3, len(rows) / 2, "imports", rotation=90, size=9, ha="center", va="center", color="#5d6b7d")
+    axes.annotate(
+        "",
+        (96.5, 0.1),
+        (96.5, len(rows) - 0.1),
+        arrowprops={"arrowstyle": "-|>", "color": "#5d6b7d"},
+    )
+    axes.text(
+        98.3,
+        len(rows) / 2,
+        "imports",
+        rotation=90,
+        size=9,
+        ha="center",
+        va="center",
+        color="#5d6b7d",
+    )
     return figure
 
 

@@ -14,7 +14,10 @@ from matplotlib.image import imread
 from saving import save
 
 import stylobate as sb
-from stylobate.earthquakes.assessment.report.figures import margins_figure, robustness_figure
+from stylobate.earthquakes.assessment.report.figures import (
+    margins_figure,
+    robustness_figure,
+)
 from stylobate.earthquakes.assessment.report.record_figures import spectra_figure
 from stylobate.earthquakes.assessment.report.summary import summary_text, verdict_table
 from stylobate.results import Assessment
@@ -27,8 +30,12 @@ _LINE = 122
 
 def assessed(store: Path) -> Assessment:
     """Return the assessment of the example."""
-    setup = sb.earthquakes.config.AssessConfig.parse(sb.config.read_config(STUDY)).build()
-    return sb.earthquakes.assess(setup.columns, setup.records, **setup.options, store=store)
+    setup = sb.earthquakes.config.AssessConfig.parse(
+        sb.config.read_config(STUDY)
+    ).build()
+    return sb.earthquakes.assess(
+        setup.columns, setup.records, **setup.options, store=store
+    )
 
 
 def head(found: Assessment, spectra: Figure) -> Figure:

@@ -34,18 +34,25 @@ def models() -> dict[str, sb.Model]:
 def measure() -> list[str]:
     """Return the rows of the table."""
     space = sb.sample_record("el centro 1940")
-    planar = type(space).from_components(x=space.samples[:, 0], z=space.samples[:, 2], step=space.step)
+    planar = type(space).from_components(
+        x=space.samples[:, 0], z=space.samples[:, 2], step=space.step
+    )
     seconds = dict.fromkeys(models(), np.inf)
     overturned = {}
     for _ in range(ROUNDS):
         for name, model in models().items():
             motion = planar if name == "PlanarRocking" else space
             begun = time.process_time()
-            runs = sb.simulate_ensemble(model, motion, duration=62.0, parameters={"scale": SCALES}, threads=1)
+            runs = sb.simulate_ensemble(
+                model, motion, duration=62.0, parameters={"scale": SCALES}, threads=1
+            )
             seconds[name] = min(seconds[name], time.process_time() - begun)
             overturned[name] = float((runs["outcome"] == sb.Outcome.OVERTURNED).mean())
     unit = seconds["Slender"]
-    return [f"| `{name}` | {seconds[name] / unit:.1f} | {100.0 * overturned[name]:.0f} % |" for name in seconds]
+    return [
+        f"| `{name}` | {seconds[name] / unit:.1f} | {100.0 * overturned[name]:.0f} % |"
+        for name in seconds
+    ]
 
 
 if __name__ == "__main__":

@@ -17,7 +17,9 @@ PAGES = (
     "getting-started/first-steps",
     "how-to/choose-damping",
 )
-_BLOCK = re.compile(r"(% skip: next\n\n)?^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+_BLOCK = re.compile(
+    r"(% skip: next\n\n)?^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE
+)
 
 
 def shown(page: str, text: str) -> set[str]:
@@ -35,7 +37,9 @@ def draw(page: str) -> None:
         if not skipped and not code.startswith(">>>"):
             exec(compile(code, f"{page}.md", "exec"), namespace)  # noqa: S102  the code of our own page
     for name in sorted(names):
-        picture = Image.open(name).convert("RGB").quantize(256, dither=Image.Dither.NONE)
+        picture = (
+            Image.open(name).convert("RGB").quantize(256, dither=Image.Dither.NONE)
+        )
         picture.save(kept / name, optimize=True)
         print(f"{page}: {name}, {picture.width} x {picture.height}")
 

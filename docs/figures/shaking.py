@@ -11,16 +11,29 @@ import stylobate as sb
 
 FOLDER = STATIC / "shaking"
 
-MODEL = sb.Slender(sb.Column.solid(radius=0.4, height=4.0, density=2700.0), damping=0.03)
+MODEL = sb.Slender(
+    sb.Column.solid(radius=0.4, height=4.0, density=2700.0), damping=0.03
+)
 QUAKES = sb.records.EvolvingNoise(
-    arias=1.2, duration_5_95=8.0, middle_time=5.0, frequency=2.5, frequency_rate=-0.1, bandwidth=0.3
+    arias=1.2,
+    duration_5_95=8.0,
+    middle_time=5.0,
+    frequency=2.5,
+    frequency_rate=-0.1,
+    bandwidth=0.3,
 )
 
 
 def quakes(count: int) -> dict[str, sb.Record]:
     """Records along x and y, each with the same peak of the horizontal vector: of one PGA in RotD100."""
-    made = (QUAKES.record(np.random.default_rng(seed), components=2, step=0.02) for seed in range(count))
-    return {f"quake {place + 1}": one.trimmed(0.0, 14.0).scaled_to(1.0) for place, one in enumerate(made)}
+    made = (
+        QUAKES.record(np.random.default_rng(seed), components=2, step=0.02)
+        for seed in range(count)
+    )
+    return {
+        f"quake {place + 1}": one.trimmed(0.0, 14.0).scaled_to(1.0)
+        for place, one in enumerate(made)
+    }
 
 
 def analysis() -> Figure:
@@ -28,7 +41,9 @@ def analysis() -> Figure:
     found = sb.earthquakes.incremental_dynamic_analysis(
         MODEL, quakes(12), scales=np.linspace(1.6, 5.4, 20), component="RotD100"
     )
-    bands = sb.earthquakes.reached_bands(found["intensity"], found["reached"].sel(limit_state="overturning"))
+    bands = sb.earthquakes.reached_bands(
+        found["intensity"], found["reached"].sel(limit_state="overturning")
+    )
     print(bands["monotone"].to_numpy(), np.unique(found["outcome"], return_counts=True))
     return sb.plot(found)
 
@@ -44,8 +59,12 @@ def directions() -> Figure:
     """Three of them, the planar column in every direction."""
     angles = np.radians(np.arange(0.0, 180.0, 10.0))
     scales = np.geomspace(1.6, 12.0, 30)
-    found = sb.earthquakes.planar_bias(MODEL, dict(list(quakes(12).items())[:3]), scales=scales, directions=angles)
-    print(found[["least_overturning", "worst_least_planar_overturning", "capacity_bias"]])
+    found = sb.earthquakes.planar_bias(
+        MODEL, dict(list(quakes(12).items())[:3]), scales=scales, directions=angles
+    )
+    print(
+        found[["least_overturning", "worst_least_planar_overturning", "capacity_bias"]]
+    )
     return sb.earthquakes.plot_directions(found)
 
 
@@ -60,9 +79,24 @@ def bias_usual() -> Figure:
 
 
 def _bias(planar: sb.PlanarRocking | None) -> Figure:
-    found = sb.earthquakes.planar_bias(MODEL, quakes(12), scales=np.linspace(1.6, 5.4, 20), planar=planar)
-    names = ("overall_bias", "overall_scatter", "overall_standard_error", "overall_compared")
-    print({name: float(found[name]) for name in (*names, *(name.replace("overall", "capacity") for name in names[:3]))})
+    found = sb.earthquakes.planar_bias(
+        MODEL, quakes(12), scales=np.linspace(1.6, 5.4, 20), planar=planar
+    )
+    names = (
+        "overall_bias",
+        "overall_scatter",
+        "overall_standard_error",
+        "overall_compared",
+    )
+    print(
+        {
+            name: float(found[name])
+            for name in (
+                *names,
+                *(name.replace("overall", "capacity") for name in names[:3]),
+            )
+        }
+    )
     return sb.plot(found)
 
 
@@ -71,7 +105,9 @@ def fragility() -> Figure:
     found = sb.earthquakes.incremental_dynamic_analysis(
         MODEL, quakes(40), scales=np.geomspace(1.6, 10.0, 14), component="RotD100"
     )
-    fits = sb.earthquakes.fragility_of_runs(found, resamples=500, rng=np.random.default_rng(0))
+    fits = sb.earthquakes.fragility_of_runs(
+        found, resamples=500, rng=np.random.default_rng(0)
+    )
     print(fits[["median", "dispersion", "non_monotone_records"]])
     return sb.plot(fits.isel(limit_state=[1, 2, 4]))
 

@@ -18,7 +18,13 @@ def run() -> Figure:
     """A column let go on a plane of little friction: it rolls, slips, rolls and stands."""
     model = sb.Sliding(COLUMN, friction_coefficient=0.06, damping=0.05)
     found = sb.simulate(model, tilt=(0.05, 0.0), tilt_rate=(0.0, 0.05), duration=30.0)
-    print({name: value for name, value in found.measures.items() if name.startswith("time_")})
+    print(
+        {
+            name: value
+            for name, value in found.measures.items()
+            if name.startswith("time_")
+        }
+    )
     return sb.plot(found)
 
 
@@ -32,7 +38,9 @@ def gentle() -> Figure:
     )
     shown = found.sel(friction_coefficient=[0.03, 0.04, 0.05, 0.06], method="nearest")
     print(shown["rolling_from"].to_numpy(), shown["rolling_to"].to_numpy())
-    return sb.conveying.plot_slipping_boundary(found, friction_coefficient=[0.03, 0.04, 0.05])
+    return sb.conveying.plot_slipping_boundary(
+        found, friction_coefficient=[0.03, 0.04, 0.05]
+    )
 
 
 def hard() -> Figure:
@@ -46,7 +54,9 @@ def hard() -> Figure:
     shown = found.sel(friction_coefficient=[0.03, 0.05, 0.07, 0.1], method="nearest")
     for name in ("rolling_from", "rolling_to", "slipping_from", "slipping_to"):
         print(name, shown[name].to_numpy())
-    return sb.conveying.plot_slipping_boundary(found, friction_coefficient=[0.03, 0.05, 0.07])
+    return sb.conveying.plot_slipping_boundary(
+        found, friction_coefficient=[0.03, 0.05, 0.07]
+    )
 
 
 def start() -> Figure:
@@ -66,7 +76,10 @@ def drift() -> Figure:
     found = sb.conveying.drift(
         sb.Sliding(part),
         sb.Harmonic.oblique(acceleration=1.0, angular_frequency=60.0, angle=0.52),
-        over={"acceleration": np.linspace(1.0, 30.0, 59), "friction_coefficient": np.linspace(0.02, 0.6, 30)},
+        over={
+            "acceleration": np.linspace(1.0, 30.0, 59),
+            "friction_coefficient": np.linspace(0.02, 0.6, 30),
+        },
     )
     print(found["outcome"].to_series().value_counts())
     return sb.plot(found)

@@ -17,15 +17,22 @@ def pulse() -> xr.Dataset:
     """Overturn by one sine: frequency and amplitude, for three damping values."""
     column = sb.Column.dimensionless(slenderness=0.1)
     sine = sb.Pulse.one_sine(acceleration=0.1, angular_frequency=1.0)
-    over = {"angular_frequency": np.linspace(0.5, 9.0, 86) * column.frequency_parameter, "damping": [0.02, 0.1, 0.2]}
-    return sb.earthquakes.overturning_bands(sb.Slender(column), sine, scales=np.geomspace(1.0, 20.0, 41), over=over)
+    over = {
+        "angular_frequency": np.linspace(0.5, 9.0, 86) * column.frequency_parameter,
+        "damping": [0.02, 0.1, 0.2],
+    }
+    return sb.earthquakes.overturning_bands(
+        sb.Slender(column), sine, scales=np.geomspace(1.0, 20.0, 41), over=over
+    )
 
 
 def one() -> xr.Dataset:
     """Overturn one column by El Centro 1940, three components, at many scales."""
     column = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)
     quake = sb.sample_record("el centro 1940")
-    return sb.earthquakes.overturning_bands(sb.Slender(column, damping=0.03), quake, scales=np.geomspace(0.5, 2.0, 61))
+    return sb.earthquakes.overturning_bands(
+        sb.Slender(column, damping=0.03), quake, scales=np.geomspace(0.5, 2.0, 61)
+    )
 
 
 def record() -> xr.Dataset:
@@ -34,14 +41,18 @@ def record() -> xr.Dataset:
     over = {"size": np.geomspace(0.2, 4.0, 27), "slenderness": [0.1, 0.15, 0.2]}
     model = sb.Slender(STONE, damping=0.05)
     scales = np.geomspace(0.25, 4.0, 41)
-    return sb.earthquakes.overturning_bands(model, quake, scales=scales, over=over, width=3e-3)
+    return sb.earthquakes.overturning_bands(
+        model, quake, scales=scales, over=over, width=3e-3
+    )
 
 
 def rocking() -> xr.Dataset:
     """Peaks under the same record at its own scale."""
     quake = sb.sample_record("el centro 1940")
     over = {"size": np.geomspace(0.1, 10.0, 60), "slenderness": [0.1, 0.15, 0.2, 0.25]}
-    return sb.earthquakes.rocking_spectrum(sb.Slender(STONE, damping=0.05), quake, over=over)
+    return sb.earthquakes.rocking_spectrum(
+        sb.Slender(STONE, damping=0.05), quake, over=over
+    )
 
 
 if __name__ == "__main__":
