@@ -32,17 +32,17 @@ CASES = {
     "spins freely": (sb.Rolling(COLUMN), LINE, (0.2 * C, 0.1 * C), STILL, 6.0, "STEP"),
     "wobbles": (sb.Wobbling(COLUMN, rolling_resistance=0.05), CIRCLE, (0.3 * C, 0.0), (0.0, 0.05), 4.0, "STEP"),
     "overturns": (sb.Slender(COLUMN), CIRCLE.scaled(4.0), (0.3 * C, 0.0), STILL, 40.0, "STEP overturned"),
-    "is released": (sb.Slender(COLUMN, damping=0.1), STRONG_CIRCLE, STILL, STILL, 2.0, "STAND STEP release"),
-    "passes the upright": (sb.Slender(COLUMN), STRONG, STILL, STILL, 1.0, "STAND PLANE_STEP release passage"),
+    "is released": (sb.Slender(COLUMN, damping=0.1), STRONG_CIRCLE, STILL, STILL, 2.0, "STAND STEP uplift"),
+    "passes the upright": (sb.Slender(COLUMN), STRONG, STILL, STILL, 1.0, "STAND PLANE_STEP uplift passage"),
     "rocks and rests": (
         *(sb.PlanarRocking(COLUMN, restitution=0.8), STRONG, STILL, STILL, 2.0),
-        "STAND PLANE_STEP release impact rest",
+        "STAND PLANE_STEP uplift impact rest",
     ),
     "leaps past the upright": (sb.Slender(COLUMN), BASE_AT_REST, (0.3 * C, 0.0), (0.0, 1e-11 * C), 3.0, "STEP LEAP"),
     "strikes its base": (sb.Wobbling(COLUMN, restitution=0.9), CIRCLE, (0.2 * C, 0.0), (0.0, 1e-4), 3.0, "STEP impact"),
     "rests, then rocks in a plane": (
         *(sb.Wobbling(COLUMN, restitution=0.3), STRONG.delayed(2.0), (0.02 * C, 0.01 * C), STILL, 2.8),
-        "STEP LEAP STAND PLANE_STEP release impact rest",
+        "STEP LEAP STAND PLANE_STEP uplift impact rest",
     ),
 }
 RTOL = 1e-10
@@ -213,7 +213,7 @@ SLIDING = {
     ),
     "strikes its base": (
         *(sb.Sliding(COLUMN, friction_coefficient=0.4), CIRCLE, LEANS, STILL, Turning(twist=0.3), 1.2),
-        "stroke stick",
+        "face_impact stick",
     ),
     "is thrown": (
         sb.Sliding(COLUMN, friction_coefficient=0.5, normal_restitution=0.2),
@@ -227,7 +227,7 @@ SLIDING = {
     ),
     "rests and is released": (
         *(sb.Sliding(COLUMN, friction_coefficient=0.6), STRONG.delayed(1.5), (0.0, 0.02 * C), STILL, Turning(), 1.9),
-        "stroke rest release",
+        "face_impact rest uplift",
     ),
     "overturns": (sb.Sliding(COLUMN), BASE_AT_REST, (1.2 * C, 0.0), (0.3, 0.1), Turning(), 9.0, "overturned"),
 }
