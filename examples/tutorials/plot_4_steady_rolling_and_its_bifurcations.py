@@ -202,5 +202,7 @@ figure = sb.plot(response)
 # --------------
 # * :doc:`/how-to/orbits`: orbits from guesses, runs and random initial conditions;
 #   bifurcation curves in two parameters.
+# * :doc:`/how-to/base-motions`: ellipses and other base motions. Replace ``line`` by a
+#   ``sb.Harmonic.elliptic(...)`` to repeat this tutorial for an ellipse.
 # * :doc:`/how-to/bifurcation-studies`: stability boundaries, slow sweeps, chaos.
 # * :doc:`/results/exact-orbits`: what happens below the pitchfork.

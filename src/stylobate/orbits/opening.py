@@ -92,8 +92,8 @@ def rolling_by_theory(model: Model, motion: BaseMotion, sense: int | None) -> Fl
             step *= 0.5
             if step < _LEAST_PART:
                 message = (
-                    f"guess must be given: rolling in the sense {sense:+d} is lost when {done:.3g} of the circle "
-                    "against it is added"
+                    f"{_GIVE}: rolling in the sense {sense:+d} was continued from its circle only up to {done:.3g} of "
+                    "the circle of opposite sense"
                 )
                 raise NoOrbitError(message)
             continue
