@@ -1,5 +1,6 @@
 """The figures of the source paper and those that go beyond it, from the data of its check."""
 
+import re
 from typing import Any
 
 import numpy as np
@@ -237,7 +238,8 @@ def pressure(data: xr.Dataset) -> Figure:
     axes.add_patch(Circle((0.0, 0.0), 1.0, fill=False, color=BLACK, linewidth=3.0, alpha=0.35, label="rim"))
     for k, motion in enumerate(data["motion"].to_numpy()):
         part = data["path"].sel(motion=motion)
-        axes.plot(part.sel(axis="x"), part.sel(axis="y"), color=PALETTE[k], linestyle=DASHES[k], label=str(motion))
+        label = re.sub(r"\ba(\d)\b", r"$a_\1$", str(motion))
+        axes.plot(part.sel(axis="x"), part.sel(axis="y"), color=PALETTE[k], linestyle=DASHES[k], label=label)
     axes.set_aspect("equal")
     axes.set_xlim(-1.15, 1.15)
     axes.set_ylim(-1.15, 1.15)
