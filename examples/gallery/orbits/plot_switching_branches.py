@@ -21,6 +21,15 @@ mirrored = sb.orbits.switch_branch(pitchfork, bounds=(1.5, 2.0), opposite=True)
 print(pitchfork)
 print(asymmetric.bifurcations[0])
 
+figure = sb.plot([symmetric, asymmetric], labels=["symmetric", "asymmetric"])
+
+# %%
+# Bold: stable orbits; shaded: the range of the tilt over a period. The mirrored branch
+# has the same tilt as the asymmetric one.
+#
+# The paths of the tilt at one frequency below the pitchfork are two stable motions,
+# each the mirror image of the other, and the unstable symmetric one between them:
+
 figure, axes = plt.subplots(figsize=(7.2, 3.8), layout="constrained")
 branches = {"symmetric": symmetric, "asymmetric": asymmetric, "mirrored": mirrored}
 for name, branch in branches.items():
@@ -32,6 +41,4 @@ axes.set(xlabel="tilt θ_x / c", ylabel="tilt θ_y / c")
 axes.legend(loc="center")
 
 # %%
-# Paths of the tilt at one frequency below the pitchfork: two stable motions, each the
-# mirror image of the other, and the unstable symmetric one between them. See
-# :func:`stylobate.orbits.switch_branch` and :doc:`/how-to/orbits`.
+# See :func:`stylobate.orbits.switch_branch` and :doc:`/how-to/orbits`.

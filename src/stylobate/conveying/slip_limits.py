@@ -13,6 +13,7 @@ import xarray as xr
 from stylobate import theory
 from stylobate.base_motions import BaseMotion, Harmonic
 from stylobate.config import provenance_of_run
+from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.errors import ParameterError, UnsupportedError
 from stylobate.models import Model
 from stylobate.models.closed_form import ClosedForm, RollingLaw
@@ -21,7 +22,7 @@ from stylobate.models.inheritance import closed_form_of
 from stylobate.results.outcomes import flag_attributes
 from stylobate.studies.ranges import require_rising_frequencies
 from stylobate.studies.responses.rolling_frame import RollingFrame
-from stylobate.studies.sweeps.quantities import attributes_of, checked_values
+from stylobate.studies.sweeps.quantities import checked_values
 from stylobate.theory.averaging import circular_components
 
 Floats = npt.NDArray[np.float64]

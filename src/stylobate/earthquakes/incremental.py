@@ -16,6 +16,7 @@ from stylobate.earthquakes.following import tail_of
 from stylobate.earthquakes.fragility import limit_states
 from stylobate.earthquakes.intensities import Intensity, IntensityMeasure, SpectralAcceleration
 from stylobate.earthquakes.named_records import Records, named_records
+from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.engine.parameters import changed_model
 from stylobate.errors import Outcome, ParameterError, require_finite
 from stylobate.models import Model
@@ -25,7 +26,7 @@ from stylobate.studies.maps.safe_distance import UNRESOLVED
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.labelled import labelled_sweep
-from stylobate.studies.sweeps.quantities import Floats, attributes_of, checked_values
+from stylobate.studies.sweeps.quantities import Floats, checked_values
 from stylobate.studies.sweeps.recipe import RunOptions
 
 _SET_BY_ARGUMENTS = {

@@ -16,6 +16,7 @@ from stylobate.earthquakes.fragility.observations import LIMIT_STATE
 from stylobate.earthquakes.incremental import tilt_ratios
 from stylobate.earthquakes.named_records import Records, named_records
 from stylobate.earthquakes.perturbations import SMALL_PERTURBATIONS, Perturbation
+from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.engine.parameters import changed_model
 from stylobate.errors import ParameterError, require_positive
 from stylobate.models import Model
@@ -23,7 +24,7 @@ from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.sweeps import Executor, Sweep, run_sweep
 from stylobate.studies.sweeps.computing import Progress
-from stylobate.studies.sweeps.quantities import Floats, attributes_of, checked_values
+from stylobate.studies.sweeps.quantities import Floats, checked_values
 from stylobate.studies.sweeps.recipe import DEFAULTS, RunOptions
 
 _KEPT = ("outcome", "largest_tilt", "uncertain")

@@ -11,6 +11,7 @@ from stylobate import config, studies
 from stylobate.lab.json_values import numbers
 from stylobate.lab.messages import Emit, Note
 from stylobate.orbits import StepControl
+from stylobate.orbits.saving import SUPERCRITICAL_OF
 from stylobate.text import plural
 
 _ORBITS = 400
@@ -76,13 +77,12 @@ def plain_exact(found: xr.Dataset) -> dict[str, Any]:
         {"name": str(label), **{name: numbers(found[name].to_numpy()[owner == index]) for name in names}}
         for index, label in enumerate(found["branch_name"].to_numpy())
     ]
-    decided = {1: True, 0: False, -1: None}
     bifurcations = [
         {
             "kind": str(kind),
             "angular_frequency": float(frequency),
             "mean_tilt": float(tilt),
-            "supercritical": decided[int(supercritical)],
+            "supercritical": SUPERCRITICAL_OF[int(supercritical)],
         }
         for kind, frequency, tilt, supercritical in zip(
             *(

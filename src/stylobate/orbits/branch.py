@@ -12,6 +12,7 @@ import xarray as xr
 
 from stylobate.config import provenance_of_run
 from stylobate.engine.flow.tableau import Status
+from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.engine.parameters import present_value
 from stylobate.errors import NoOrbitError, ParameterError, require_finite
 from stylobate.orbits.arclength import Family, Floats, Point, on_family
@@ -19,7 +20,7 @@ from stylobate.orbits.arguments import control_of, enclosing, require_followed, 
 from stylobate.orbits.bifurcations import Bifurcation, between, orbit_at
 from stylobate.orbits.multipliers import is_stable
 from stylobate.orbits.orbit import PeriodicOrbit
-from stylobate.orbits.saving import BRANCH, SUPERCRITICAL, attributes_of, write
+from stylobate.orbits.saving import BRANCH, SUPERCRITICAL, file_attributes, write
 from stylobate.orbits.shooting import WHY_LOST, arcs_of
 from stylobate.orbits.tracing import End, StepControl, Stretch, trace
 
@@ -111,7 +112,7 @@ class Branch:
                 **_table_of(self.bifurcations),
             },
             coords={
-                self.parameter: ("point", [point.value for point in self.path]),
+                self.parameter: ("point", [point.value for point in self.path], attributes_of(self.parameter)),
                 "axis": ["x", "y"],
                 "part": ["real", "imaginary"],
             },
@@ -161,7 +162,7 @@ class Branch:
                 },
             },
             attrs={
-                **attributes_of(family.system, BRANCH, family.periods),
+                **file_attributes(family.system, BRANCH, family.periods),
                 "parameter": self.parameter,
                 "span": family.span,
                 "sense": family.sense,
@@ -182,7 +183,7 @@ def _table_of(bifurcations: tuple[Bifurcation, ...]) -> dict[str, tuple[str, lis
         "bifurcation_kind": (dim, [one.kind.value for one in bifurcations]),
         "bifurcation_parameter": (dim, [one.parameter for one in bifurcations]),
         "bifurcation_coefficient": (dim, [one.coefficient for one in bifurcations]),
-        "bifurcation_supercritical": (dim, [{True: 1, False: 0, None: -1}[one.supercritical] for one in bifurcations]),
+        "bifurcation_supercritical": (dim, [SUPERCRITICAL[one.supercritical] for one in bifurcations]),
         "bifurcation_mean_tilt": (dim, [one.orbit.mean_tilt for one in bifurcations]),
         "bifurcation_largest_tilt": (dim, [one.orbit.largest_tilt for one in bifurcations]),
     }

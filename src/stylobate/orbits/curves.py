@@ -14,12 +14,13 @@ import xarray as xr
 from stylobate.config import provenance_of_run
 from stylobate.engine.flow.periodic import Numbers, PeriodicSystem
 from stylobate.engine.flow.tableau import Status
+from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.engine.parameters import present_value
 from stylobate.errors import NoOrbitError, ParameterError, StylobateError
 from stylobate.orbits.arguments import control_of, enclosing, require_bifurcation, require_followed
 from stylobate.orbits.bifurcations import Bifurcation, Kind
 from stylobate.orbits.normal_forms import PeriodMap, neimark_sacker_coefficient, period_doubling_coefficient
-from stylobate.orbits.saving import CURVE, attributes_of, write
+from stylobate.orbits.saving import CURVE, file_attributes, write
 from stylobate.orbits.shooting import Shots, shots
 from stylobate.orbits.tracing import ASTRAY, End, StepControl
 
@@ -110,7 +111,10 @@ class BifurcationCurve:
                 "supercritical": ("point", np.where(decided, supercritical, -1).astype(np.int8)),
                 "multiplier_angle": ("point", angle, {"units": "rad", "long_name": "angle of the critical eigenvalue"}),
             },
-            coords={name: ("point", [p.values[k] for p in self.path]) for k, name in enumerate(self.parameters)},
+            coords={
+                name: ("point", [p.values[k] for p in self.path], attributes_of(name))
+                for k, name in enumerate(self.parameters)
+            },
             attrs={
                 "kind": "bifurcation curve",
                 "bifurcation": self.kind.value,
@@ -134,7 +138,7 @@ class BifurcationCurve:
                 "multiplier": (("point", "part"), np.stack([critical.real, critical.imag], axis=-1)),
             },
             attrs={
-                **attributes_of(plane.system, CURVE, 1),
+                **file_attributes(plane.system, CURVE, 1),
                 "bifurcation": self.kind.name,
                 "parameters": json.dumps(self.parameters),
                 "spans": np.array(plane.spans),

@@ -13,7 +13,7 @@ from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.engine.forcing import common_line
 from stylobate.models import Model
 from stylobate.orbits.multipliers import is_stable
-from stylobate.orbits.saving import ORBIT, attributes_of, write
+from stylobate.orbits.saving import ORBIT, file_attributes, write
 from stylobate.orbits.shooting import Shots
 
 Floats = npt.NDArray[np.float64]
@@ -199,7 +199,7 @@ class PeriodicOrbit:
     def _data(self) -> xr.Dataset:
         """Return the states from which it is shot again."""
         states = (("arc", "state"), self.chain.states)
-        return xr.Dataset({"states": states}, attrs=attributes_of(self.system, ORBIT, self.periods))
+        return xr.Dataset({"states": states}, attrs=file_attributes(self.system, ORBIT, self.periods))
 
     def __repr__(self) -> str:
         """Describe it in one line."""

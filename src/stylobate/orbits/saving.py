@@ -17,7 +17,10 @@ ORBIT, BRANCH, CURVE = "stylobate orbit 1", "stylobate branch 1", "stylobate bif
 """The formats of their files."""
 
 SUPERCRITICAL = {True: 1, False: 0, None: -1}
-"""How a file states whether a loss of stability is supercritical; -1 where that is undecided."""
+"""Code in files and tables of whether a loss of stability is supercritical; −1 if that is undecided."""
+
+SUPERCRITICAL_OF = {code: supercritical for supercritical, code in SUPERCRITICAL.items()}
+"""Meaning of the code."""
 
 _SUFFIX = ".nc"
 
@@ -51,7 +54,7 @@ def path_of(path: str | Path) -> Path:
         raise ParameterError(message) from None
 
 
-def attributes_of(system: PeriodicSystem, format_name: str, periods: int) -> dict[str, Any]:
+def file_attributes(system: PeriodicSystem, format_name: str, periods: int) -> dict[str, Any]:
     """Return what a file states of the system and the length of an orbit.
 
     Raises

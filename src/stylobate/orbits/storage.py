@@ -20,7 +20,7 @@ from stylobate.orbits.bifurcations import Bifurcation, Kind, orbit_at
 from stylobate.orbits.branch import Branch
 from stylobate.orbits.curves import BifurcationCurve, CurvePoint, Plane
 from stylobate.orbits.orbit import PeriodicOrbit
-from stylobate.orbits.saving import BRANCH, CURVE, ORBIT, SUPERCRITICAL, path_of
+from stylobate.orbits.saving import BRANCH, CURVE, ORBIT, SUPERCRITICAL_OF, path_of
 from stylobate.orbits.shooting import shots
 from stylobate.orbits.tracing import End
 from stylobate.results.storage import read_dataset
@@ -85,7 +85,6 @@ def _read_branch(data: xr.Dataset) -> Branch:
         _shot(family, states, float(value))
         for states, value in zip(data["states"].to_numpy(), data["value"].to_numpy(), strict=True)
     )
-    supercritical = {code: label for label, code in SUPERCRITICAL.items()}
     found = []
     for index in range(data.sizes["bifurcation"]):
         one = {str(key): data[key][index].to_numpy() for key in data.data_vars if str(key).startswith("bifurcation_")}
@@ -97,7 +96,7 @@ def _read_branch(data: xr.Dataset) -> Branch:
                 orbit_at(point),
                 complex(float(one["bifurcation_multiplier_real"]), float(one["bifurcation_multiplier_imaginary"])),
                 float(one["bifurcation_coefficient"]),
-                supercritical[int(one["bifurcation_supercritical"])],
+                SUPERCRITICAL_OF[int(one["bifurcation_supercritical"])],
                 one["bifurcation_critical_vector"],
                 point,
                 one["bifurcation_direction"],

@@ -76,14 +76,14 @@ def in_own_units(result: _Result) -> _Result:
     Parameters
     ----------
     result
-        A run, a sequence of runs, or the Dataset of a study.
+        A run, the Dataset of a study, or a sequence of either.
     """
     found: Any = result
     if isinstance(found, Response) and _is_dimensionless(found.provenance):
         found = replace(found, data=_relabelled(found.data))
     elif isinstance(found, xr.Dataset) and _is_dimensionless(json.loads(found.attrs.get("provenance", "{}"))):
         found = _relabelled(found)
-    elif isinstance(found, Sequence) and any(isinstance(one, Response) for one in found):
+    elif isinstance(found, Sequence) and any(isinstance(one, Response | xr.Dataset) for one in found):
         found = [in_own_units(one) for one in found]
     return found  # type: ignore[no-any-return]
 

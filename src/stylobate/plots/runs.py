@@ -26,6 +26,8 @@ _EVENT_NAMES = {
 }
 # Heights of a panel, of a row of kinds of contact, and of what is about the rows [inches].
 _PANEL, _ROW, _GAP = 1.75, 0.19, 0.3
+# Where the base does not move, two panels have the height of three, so that the path beside them has room.
+_HIGH_PANEL = 1.5 * _PANEL
 # The name of an event later than this part of the run stands to its left.
 _LATE = 0.8
 # A line whose direction has no more than this part along x runs along y, but for rounding.
@@ -92,7 +94,8 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
 
 def _panels(contact: ContactHistory | None, *, shaken: bool) -> tuple[Figure, dict[str, Axes]]:
     """Return a figure and its panels by name; kinds of contact are drawn, the base has a panel if it moves."""
-    heights = {"tilt": _PANEL, "contact": 0.0, "azimuth": _PANEL, "base": _PANEL}
+    panel = _PANEL if shaken else _HIGH_PANEL
+    heights = {"tilt": panel, "contact": 0.0, "azimuth": panel, "base": panel}
     if contact is None:
         del heights["contact"]
     else:

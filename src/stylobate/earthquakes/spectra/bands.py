@@ -14,13 +14,14 @@ from stylobate.earthquakes.spectra.band_table import band_table
 from stylobate.earthquakes.spectra.cases import Cases
 from stylobate.earthquakes.spectra.edges import Edges, Ends, Integers
 from stylobate.earthquakes.spectra.provenance import provenance_of_spectrum
+from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.errors import Interrupted, ParameterError, require_positive
 from stylobate.models import Model
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.sweeps import Executor, run_sweep
 from stylobate.studies.sweeps.computing import Progress, silent
-from stylobate.studies.sweeps.quantities import Floats, attributes_of, checked_values
+from stylobate.studies.sweeps.quantities import Floats, checked_values
 from stylobate.studies.sweeps.recipe import RunOptions
 
 # Nearer than this the ends of an edge differ by rounding only.

@@ -12,12 +12,13 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.base_motions.one_of import members_of
 from stylobate.base_motions.varying import frequency_of
+from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.engine.parameters import with_parameters
 from stylobate.errors import ParameterError, require_positive
 from stylobate.models import Model
 from stylobate.studies.checks import remark_on_lengths, require_values
 from stylobate.studies.sweeps import Sweep
-from stylobate.studies.sweeps.quantities import OF_A_RUN, Floats, attributes_of, check_quantities, checked_values
+from stylobate.studies.sweeps.quantities import OF_A_RUN, Floats, check_quantities, checked_values
 from stylobate.studies.sweeps.recipe import RunOptions
 
 Integers = npt.NDArray[np.int64]

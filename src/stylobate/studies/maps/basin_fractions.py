@@ -11,6 +11,7 @@ import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.engine import with_parameters
+from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.errors import MOST_RUNS, require_whole
 from stylobate.models import Model
 from stylobate.results.outcomes import NOT_COMPUTED
@@ -26,7 +27,6 @@ from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.designs import Box, whole
 from stylobate.studies.sweeps.labelled import labelled_sweep
-from stylobate.studies.sweeps.quantities import attributes_of
 from stylobate.studies.sweeps.recipe import RunOptions
 
 

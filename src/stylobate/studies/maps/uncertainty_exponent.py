@@ -11,6 +11,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
+from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.errors import MOST_RUNS, Outcome, ParameterError, require_whole
 from stylobate.models import Model
 from stylobate.results.outcomes import NOT_COMPUTED
@@ -26,7 +27,7 @@ from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.designs import Box, whole
 from stylobate.studies.sweeps.labelled import labelled_sweep
-from stylobate.studies.sweeps.quantities import attributes_of, checked_values
+from stylobate.studies.sweeps.quantities import checked_values
 from stylobate.studies.sweeps.recipe import RunOptions
 
 # Shifts where nobody names others: this many, geometric, between these parts of the range of the start shifted.

@@ -8,12 +8,12 @@ import xarray as xr
 
 from stylobate.config import provenance_of_run
 from stylobate.engine import simulate_ensemble
+from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.errors import ParameterError, require_positive, require_whole
 from stylobate.orbits import Bifurcation
 from stylobate.orbits.arguments import require_bifurcation
 from stylobate.results.random_numbers import Rng, seed_of
 from stylobate.studies.maps.attractors import label_attractors
-from stylobate.studies.sweeps.quantities import attributes_of
 
 
 def after_bifurcation(

@@ -10,6 +10,7 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.config import provenance_of_run
 from stylobate.engine import with_parameters
+from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.errors import NoOrbitError
 from stylobate.models import Model
 from stylobate.orbits import Branch, continue_branch
@@ -18,7 +19,6 @@ from stylobate.studies.ranges import require_rising_frequencies, require_values
 from stylobate.studies.responses.first_orbit import first_orbit
 from stylobate.studies.responses.orbit_families import between_bifurcations
 from stylobate.studies.responses.response_curves import response_curves
-from stylobate.studies.sweeps.quantities import attributes_of
 
 Floats = npt.NDArray[np.float64]
 

@@ -12,12 +12,13 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.config import provenance_of_run
 from stylobate.engine import simulate_ensemble, with_parameters
+from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.errors import Interrupted, Outcome, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.orbits.arguments import require_subject
 from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED, outcome_attributes
-from stylobate.studies.sweeps.quantities import Floats, attributes_of, checked_values
+from stylobate.studies.sweeps.quantities import Floats, checked_values
 
 # Samples in a period, of which the mean tilt is made.
 _SAMPLES = 64

@@ -9,6 +9,7 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.config import provenance_of_run
 from stylobate.engine import with_parameters
+from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError, require_positive
 from stylobate.models import Model
 from stylobate.orbits import (
@@ -26,7 +27,6 @@ from stylobate.studies.ranges import require_bounds, require_frequencies
 from stylobate.studies.responses.first_orbit import first_orbit
 from stylobate.studies.responses.orbit_families import between_bifurcations
 from stylobate.studies.responses.response_curves import response_curves
-from stylobate.studies.sweeps.quantities import attributes_of
 
 _THEORY_POINTS = 201
 # A bifurcation this near to a curve, in parts of the widths of the bounds, lies on it.

@@ -10,10 +10,10 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.engine import simulate_ensemble
+from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.sweeps.blocks import DISK_BLOCK, Block, Blocks
 from stylobate.studies.sweeps.designs import Design, whole
-from stylobate.studies.sweeps.quantities import attributes_of
 from stylobate.studies.sweeps.recipe import Recipe
 
 # Bytes of a value of a coordinate.

@@ -21,6 +21,7 @@ import lazy_loader
 import numpy as np
 import xarray as xr
 
+from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.errors import FileError
 from stylobate.files import written_aside
 from stylobate.studies.sweeps.blocks import Block, Blocks
@@ -28,7 +29,6 @@ from stylobate.studies.sweeps.chunks import MARK, METADATA, OUTCOME, Chunks, Sta
 from stylobate.studies.sweeps.computing import Arrays
 from stylobate.studies.sweeps.designs import whole
 from stylobate.studies.sweeps.layout import Layout, bytes_of_block, bytes_on_disk
-from stylobate.studies.sweeps.quantities import attributes_of
 from stylobate.studies.sweeps.resuming import differences
 from stylobate.studies.sweeps.sweep import Sweep
 from stylobate.text import plural
