@@ -149,6 +149,24 @@ def test_stroke_is_from_peak_to_peak():
     assert motion.period == pytest.approx(0.2)
 
 
+def test_a_stroke_that_rises_is_measured_along_its_line():
+    angle, direction = 0.436, 0.3
+    motion = sb.Harmonic.stroke(stroke=0.6e-3, frequency=50.0, angle=angle, direction=direction)
+    line = np.array([math.cos(angle) * math.cos(direction), math.cos(angle) * math.sin(direction), math.sin(angle)])
+    path = motion.displacement(np.linspace(0.0, 0.02, 2001))
+    assert np.ptp(path @ line) == pytest.approx(0.6e-3, rel=1e-12)
+    np.testing.assert_allclose(path, np.outer(path @ line, line), rtol=0.0, atol=1e-18)
+    oblique = sb.Harmonic.oblique(
+        acceleration=motion.largest_horizontal(),
+        angular_frequency=motion.angular_frequency,
+        angle=angle,
+        direction=direction,
+        start_phase=math.pi,  # the displacement is positive at the start
+    )
+    time = np.linspace(0.0, 0.04, 17)
+    np.testing.assert_allclose(motion.acceleration(time), oblique.acceleration(time), rtol=0.0, atol=1e-11)
+
+
 @pytest.mark.parametrize("sense", [1, -1])
 def test_orbit_is_a_circle_of_its_diameter_at_its_speed(sense):
     motion = sb.Harmonic.orbit(diameter=0.02, rpm=300.0, sense=sense)

@@ -20,6 +20,7 @@ from stylobate.base_motions.numbers import (
     Phase,
     Phases,
     Ramp,
+    Rise,
     Sense,
     StartPhase,
 )
@@ -169,7 +170,7 @@ class Harmonic(BaseMotion):
         *,
         acceleration: Acceleration,
         angular_frequency: AngularFrequency,
-        angle: Annotated[float, Quantity(unit="rad", text="rise above the horizontal", slider=(-1.5, 1.5))],
+        angle: Rise,
         direction: Direction = 0.0,
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
@@ -221,14 +222,20 @@ class Harmonic(BaseMotion):
         *,
         stroke: Annotated[float, Quantity(unit="m", text="stroke from peak to peak", gt=0.0)],
         frequency: Frequency,
+        angle: Rise = 0.0,
         direction: Direction = 0.0,
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
-        """Make a straight motion by its `stroke` from peak to peak [m], `frequency` [Hz] and `direction` [rad]."""
+        """Make a straight motion by its `stroke` from peak to peak [m] and its `frequency` [Hz].
+
+        The line rises at `angle` [rad] above the horizontal, as of a conveyor, towards `direction` [rad]. The stroke is
+        measured along the line.
+        """
         half = stroke / 2.0
+        horizontal = half * math.cos(angle)
         return cls.displacement_amplitude(
-            amplitude=(half * math.cos(direction), half * math.sin(direction), 0.0),
+            amplitude=(horizontal * math.cos(direction), horizontal * math.sin(direction), half * math.sin(angle)),
             angular_frequency=2.0 * math.pi * frequency,
             start_phase=start_phase,
             ramp=ramp,

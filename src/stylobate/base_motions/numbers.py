@@ -17,6 +17,7 @@ Ramp = Annotated[float, Quantity(unit="s", text="time in which it grows to its a
 Direction = Annotated[
     float, Quantity(unit="rad", text="direction in the plane, from x towards y", slider=(-3.142, 3.142))
 ]
+Rise = Annotated[float, Quantity(unit="rad", text="rise above the horizontal", slider=(-1.5, 1.5))]
 Sense = Annotated[int, Quantity(text="+1 anticlockwise, −1 clockwise", choices=(1, -1))]
 Start = Annotated[float, Quantity(unit="s", text="when it begins", ge=0.0)]
 VerticalRatio = Annotated[float, Quantity(text="vertical acceleration over the horizontal one", slider=(-1.0, 1.0))]
