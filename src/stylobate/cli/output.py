@@ -9,7 +9,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stylobate.errors import FileError, ParameterError
+from stylobate.errors import FileError, ParameterError, require_positive
 from stylobate.files import write_whole
 
 if TYPE_CHECKING:
@@ -110,6 +110,23 @@ def check_writable(figure: Path | None, output: Path | None = None, *, stores: b
     for path in (figure, output):
         if path is not None:
             check_place(path)
+
+
+def check_animation(path: Path, speed: float | None) -> None:
+    """Raise an error now for an animation that could not be made when the run is done.
+
+    Raises
+    ------
+    ParameterError
+        If the suffix is none of an animation, or the speed is not positive.
+    FileError
+        If there is a folder in the place of the file, or none in which it could be.
+    """
+    from stylobate.plots.animation.animation import checked_path  # noqa: PLC0415  only animations need it
+
+    check_place(checked_path(path))
+    if speed is not None:
+        require_positive("speed", speed)
 
 
 def check_place(path: Path) -> None:

@@ -1,26 +1,27 @@
 """`stylobate simulate`: one column, one base motion, one outcome."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stylobate import config, engine
 from stylobate.cli.command import command
-from stylobate.cli.declarations import OUTPUT, RECORD, run_numbers
+from stylobate.cli.declarations import OUTPUT, RECORD, Option, run_numbers
 from stylobate.cli.options import Options
-from stylobate.cli.output import check_writable, deliver, print_table
+from stylobate.cli.output import check_animation, check_writable, deliver, print_table
 from stylobate.cli.overlay import overlay
 from stylobate.cli.parts import COLUMN, MODEL, MOTION
 from stylobate.cli.source import read_source
 from stylobate.config.run_numbers import SingleRun
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from stylobate.column import Column
     from stylobate.results import Response
     from stylobate.results.summary import Rows
 
 
 @command(
+    Option("animation", "animate the run into this file (.gif, .mp4, .html)", Path),
+    Option("speed", "seconds of the run per second of the animation; 1 by default"),
     argument="TOML description, or a saved run (.nc) to repeat",
     groups=(run_numbers(SingleRun), COLUMN, MODEL, MOTION, RECORD, OUTPUT),
 )
@@ -36,19 +37,31 @@ def simulate(options: Options) -> None:
 
     stylobate simulate --radius 0.3 --height 3 --density 2700 --record quake_NS.txt --record quake_EW.txt --units g
 
+    stylobate simulate run.toml --animation run.html --speed 0.5
+
     Under a record, a pulse or a sine sweep the duration is optional: the run then adds a free vibration of 20/p.
     """
     check_writable(options["figure"], options["output"])
+    if options["animation"] is not None:
+        check_animation(options["animation"], options["speed"])
     fields = config.SimulationConfig.model_fields
     values = overlay(read_source(options["source"]), options, fields)
     setup = config.SimulationConfig.parse(values).build()
     options.refuse_unused()
     run = engine.simulate(setup.model, setup.motion, **setup.options)
     deliver(run, options, _save, _summary, lambda run: print_table("run", _rows(run, setup.model.column)))
+    if options["animation"] is not None:
+        _animate(run, options["animation"], options["speed"])
 
 
-def _save(run: "Response", path: "Path") -> None:
+def _save(run: "Response", path: Path) -> None:
     run.save(path)
+
+
+def _animate(run: "Response", path: Path, speed: float | None) -> None:
+    from stylobate.plots import animate  # noqa: PLC0415  heavy, and for one option only
+
+    animate(run, path, speed=1.0 if speed is None else speed)
 
 
 def _summary(run: "Response") -> dict[str, Any]:
