@@ -16,6 +16,7 @@ from stylobate.config import (
     provenance_of_run,
     read_config,
 )
+from stylobate.config.motions import describe_motion
 from stylobate.errors import ConfigError, FileError, ParameterError, UnlikelyInputWarning, UnsupportedError
 
 MODEL = sb.Slender(sb.Column.solid(radius=0.3, height=3.0, density=2700.0), damping=0.05)
@@ -82,7 +83,7 @@ def test_every_method_can_be_described_and_what_was_done_in_python_is_remembered
     in_file = RecordMotion.parse({**raw.values(), "processing": [step]}).build()
     in_python = apply(raw.build())
     expected = apply(sb.read_record(quakes / "second_NS.txt", "g", step=0.01))
-    for found in (in_file, in_python, in_python.description.build(), pickle.loads(pickle.dumps(in_python))):  # noqa: S301  our own
+    for found in (in_file, in_python, describe_motion(in_python).build(), pickle.loads(pickle.dumps(in_python))):  # noqa: S301  our own
         assert found == expected
         assert found.provenance == expected.provenance
 
@@ -108,13 +109,33 @@ def test_several_records_are_one_motion_of_a_saved_result(quakes):
     assert config_of(stored).build().motion == shaken
 
 
-def test_a_record_read_in_python_is_told_and_cannot_be_repeated(quakes):
-    record = sb.read_record(quakes / "second_NS.txt", "g", step=0.01).scaled(2.0)
+def test_records_read_in_python_are_read_again_from_their_files(quakes):
+    one = sb.read_record(quakes / "second_NS.txt", "g", step=0.01, axis="y").scaled(2.0, vertical=1.0)
+    (several,) = sb.read_records(
+        {"mine": [quakes / "second_NS.txt", quakes / "second_EW.txt"]},
+        "g",
+        step=0.01,
+        directions={"second_NS.txt": 30.0, "second_EW.txt": 120.0},
+    )
+    for record in (one, several.filtered(highpass=0.2), sb.sample_record("el centro 1940 corrected").scaled(0.5)):
+        stored = json.loads(json.dumps(provenance_of_run(MODEL, record, duration=1.0)))
+        again = config_of(stored).build().motion
+        assert (again, again.name, again.provenance) == (record, record.name, record.provenance)
+
+
+def test_a_run_under_a_record_made_from_samples_cannot_be_repeated():
+    record = sb.Record(samples=[0.0, 1.0, 0.0], step=0.01, name="triangle").scaled(2.0)
     stored = provenance_of_run(MODEL, record, duration=1.0)
-    assert stored["motion"]["processing"] == ["read from second_NS.txt, in g as given", "scaled by 2.0"]
+    assert stored["motion"]["processing"] == ["scaled by 2.0"]
     assert stored["motion"]["digest"] == record.digest
-    with pytest.raises(UnsupportedError, match=r"the record 'second_NS', read in Python.*kind = \"record\""):
+    with pytest.raises(UnsupportedError, match=r"the record 'triangle', made from samples that are not kept\. Write"):
         config_of(stored)
+
+
+def test_a_change_of_the_samples_themselves_forgets_the_files(quakes):
+    record = sb.read_record(quakes / "second_NS.txt", "g", step=0.01)
+    assert record.origin is not None
+    assert record.changed("by hand", samples=record.samples * 2.0).origin is None
 
 
 def test_without_a_duration_a_run_outlasts_its_record_by_twenty_time_scales(quakes):
@@ -216,7 +237,7 @@ def test_events_that_a_study_lists_are_those_that_read_records_is_given(quakes):
     )
     assert tuple(found.values()) == tuple(sorted(expected, key=lambda record: record.name))
     assert list(found) == ["first", "mine", "second"]
-    again = json.loads(json.dumps(found["mine"].description.values()))
+    again = json.loads(json.dumps(describe_motion(found["mine"]).values()))
     assert RecordMotion.parse(again).build() == found["mine"]
     assert RecordMotion.parse(again).build().name == "mine"
     short = {**event, "directions": [0]}

@@ -3,14 +3,13 @@ from .hierarchy import HierarchyConfig
 from .map import MapConfig
 from .record_collection import EventConfig, RecordsConfig
 from .record_files import relocated
-from .records import DescribedRecord, RecordMotion
+from .records import RecordMotion
 from .response import ResponseConfig
 from .simulation import Setup, SimulationConfig, config_of, provenance_of_run, read_config
 from .snippets import as_python, as_toml
 
 __all__ = [
     "BasinConfig",
-    "DescribedRecord",
     "EventConfig",
     "HierarchyConfig",
     "MapConfig",

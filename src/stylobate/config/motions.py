@@ -8,7 +8,7 @@ from stylobate.base_motions import BaseMotion, Record
 from stylobate.base_motions.declared import MOTIONS
 from stylobate.config.declared import config_of_kind, one_of
 from stylobate.config.description import Config
-from stylobate.config.records import DescribedRecord, RecordMotion
+from stylobate.config.records import RecordMotion
 from stylobate.errors import UnsupportedError
 from stylobate.kinds import Place, with_places
 from stylobate.quantities import is_declared, states
@@ -107,13 +107,10 @@ def describe_motion(motion: BaseMotion) -> Config:
     ------
     UnsupportedError
         If the motion is of a class that cannot be loaded from its place, has numbers that are not declared, or is a
-        record that was read in Python.
+        record that was made from samples.
     """
-    if isinstance(motion, DescribedRecord):
-        return motion.description
-    if type(motion) is Record:
-        message = f"the record {motion.name!r} has no description that names its files; results keep its repr only"
-        raise UnsupportedError(message)
+    if isinstance(motion, Record):
+        return _described_record(motion)
     own = "made_by" not in vars(type(motion))  # a subclass is another motion
     make, arguments = BaseMotion.made_by(motion) if own else motion.made_by()
     kind = MOTIONS.name_of(make)
@@ -124,6 +121,14 @@ def describe_motion(motion: BaseMotion) -> Config:
         raise UnsupportedError(message)
     config = _BY_KIND.get(kind) or _config(kind, make)
     return config.parse({"kind": kind, **{name: _described(value) for name, value in arguments.items()}})
+
+
+def _described_record(record: Record) -> Config:
+    if record.origin is None:
+        message = f"the record {record.name!r} was not read from files; results keep its repr only"
+        raise UnsupportedError(message)
+    origin = record.origin
+    return RecordMotion.parse({"kind": "record", **origin.reading, "processing": list(origin.processing)})
 
 
 def _described(value: Any) -> Any:

@@ -11,7 +11,7 @@ from stylobate.base_motions import Record
 from stylobate.base_motions.records.events import Event
 from stylobate.base_motions.records.sources import find_files
 from stylobate.config.description import Config
-from stylobate.config.records import DescribedRecord, Reading, RecordMotion
+from stylobate.config.records import Reading, RecordMotion
 from stylobate.errors import ConfigError, FileError, ParameterError
 
 
@@ -84,7 +84,7 @@ class RecordsConfig(Reading):
             raise ConfigError(problems)
         return {record.name: record for record in found if not self.only or record.name in self.only}
 
-    def _builders(self, problems: list[str]) -> list[Callable[[], DescribedRecord]]:
+    def _builders(self, problems: list[str]) -> list[Callable[[], Record]]:
         """Return a function for each record that builds it; a line in `problems` where files are not found."""
         samples = [RecordMotion(sample=name, processing=self.processing).build for name in self.samples]
         files = [(one, _collected(partial(_files_of, one), problems)) for one in self.event]
@@ -100,11 +100,11 @@ class RecordsConfig(Reading):
         events = self.find((*source, *listed), self.directions)
         return [event for event in events if event.paths not in listed]
 
-    def _stated(self, event: EventConfig, paths: tuple[Path, ...]) -> DescribedRecord:
+    def _stated(self, event: EventConfig, paths: tuple[Path, ...]) -> Record:
         directions = event.directions or self._own(paths)
         return self._motion(paths, name=event.name, directions=directions).build()
 
-    def _found(self, event: Event) -> DescribedRecord:
+    def _found(self, event: Event) -> Record:
         record = self.join(event)
         return self._motion(event.paths, directions=self._own(event.paths)).describe(record)
 

@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
@@ -12,25 +12,20 @@ from stylobate.base_motions import Record
 from stylobate.base_motions.records import Lengths, RecordFormat, Steps, read_record, sample_record
 from stylobate.base_motions.records.events import Event, find_events
 from stylobate.base_motions.records.grouping import join_event, reader, remark_on_missing_components
+from stylobate.base_motions.records.origin import RecordOrigin
 from stylobate.base_motions.records.sources import RecordSource
 from stylobate.config.description import Config
 from stylobate.config.record_steps import (
     AnyStep,
-    BaselineStep,
-    DelayedStep,
-    FilteredStep,
-    InvertedStep,
-    PaddedStep,
     RecordStep,
-    ResampledStep,
     RotatedStep,
     ScaledStep,
     TailStep,
-    TrimmedStep,
     processed,
 )
 from stylobate.errors import FileError, ParameterError
 
+_LAST = ("scale", "rotation", "tail")
 _LONGEST_EVENT = 3  # two horizontal components and a vertical one
 
 
@@ -124,8 +119,8 @@ class RecordMotion(Reading):
             return ()
         return (self.path,) if isinstance(self.path, str) else self.path
 
-    def build(self) -> "DescribedRecord":
-        """Read the record; it keeps this description and the SHA-256 of its files.
+    def build(self) -> Record:
+        """Read the record; its origin has this description and the SHA-256 of its files.
 
         Raises
         ------
@@ -138,8 +133,8 @@ class RecordMotion(Reading):
         self._checked_files()
         return self.describe(self._read())
 
-    def describe(self, record: Record) -> "DescribedRecord":
-        """Process the `record` that was read from the files, and attach its description.
+    def describe(self, record: Record) -> Record:
+        """Process the `record` that was read from the files, and state its origin.
 
         Warns
         -----
@@ -148,18 +143,16 @@ class RecordMotion(Reading):
         """
         if not (self.single or self.axis or (self.columns and isinstance(self.path, str))):
             remark_on_missing_components(record)
-        digests = self._checked_files()
+        self._checked_files()
         steps = (*self.processing, *self._last())
-        paths = tuple(str(Path(path).absolute()) for path in self.paths)
-        kept = self.model_copy(
-            update={
-                "path": paths[0] if isinstance(self.path, str) else paths or None,
-                "file_sha256": dict(zip(paths, digests, strict=True)),
-                "processing": steps,
-                **dict.fromkeys(("scale", "rotation", "tail")),
-            }
-        )
-        return DescribedRecord.of(processed(record, steps), kept)
+        reading = self.model_dump(exclude_defaults=True, exclude={"path", "file_sha256", "processing", *_LAST})
+        if self.path is None:
+            origin = RecordOrigin(reading)
+        else:
+            paths = [Path(path) for path in self.paths]
+            origin = RecordOrigin.of_files(paths[0] if isinstance(self.path, str) else paths, **reading)
+        done = replace(origin, processing=tuple(step.values() for step in steps))
+        return replace(processed(record, steps), origin=done)
 
     def _last(self) -> list[AnyStep]:
         """Return scale, rotation and tail as steps."""
@@ -172,8 +165,8 @@ class RecordMotion(Reading):
             last.append(TailStep(length=self.tail))
         return last
 
-    def _checked_files(self) -> list[str]:
-        """Return the SHA-256 of each file; a line where one is not what it was."""
+    def _checked_files(self) -> None:
+        """Raise ParameterError if no files are named, or a file is not what it was."""
         if (self.path is None) == (self.sample is None):
             message = "path (one file, or those of one event) or sample must be given, one of them"
             raise ParameterError(message)
@@ -189,7 +182,6 @@ class RecordMotion(Reading):
                     "put the old file back, or describe the run again"
                 )
                 raise ParameterError(message)
-        return digests
 
     def _sha256(self, path: str) -> str:
         try:
@@ -227,80 +219,6 @@ class RecordMotion(Reading):
             if getattr(self, name):
                 message = f"{name} does not belong to {what}; leave it out"
                 raise ParameterError(message)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class DescribedRecord(Record):
-    """A record with the `description` from which it can be built again, processing included."""
-
-    description: RecordMotion
-
-    @classmethod
-    def of(cls, record: Record, description: RecordMotion) -> "DescribedRecord":
-        """Attach a description to `record`."""
-        return cls(
-            samples=record.samples,
-            step=record.step,
-            start=record.start,
-            name=record.name,
-            provenance=record.provenance,
-            description=description,
-        )
-
-    def _after(self, step: AnyStep, record: Record) -> "DescribedRecord":
-        more = {"processing": (*self.description.processing, step)}
-        return DescribedRecord.of(record, self.description.model_copy(update=more))
-
-    def changed(self, note: str, **changes: Any) -> Record:
-        """Return a record with other fields and without a description; the `note` records the change."""
-        fields = {name: getattr(self, name) for name in ("samples", "step", "start", "name")} | changes
-        return Record(**fields, provenance=(*self.provenance, note))
-
-    # Methods of slotted classes cannot say super().
-
-    def scaled(self, factor: float, *, vertical: float | None = None) -> "DescribedRecord":  # type: ignore[override]
-        """Scale this record by `factor`; the vertical component by `vertical`, if given."""
-        return self._after(ScaledStep(factor=factor, vertical=vertical), Record.scaled(self, factor, vertical=vertical))
-
-    def rotated(self, angle: float) -> "DescribedRecord":  # type: ignore[override]
-        """Rotate this record by `angle` [rad] about the vertical, anticlockwise seen from above."""
-        return self._after(RotatedStep(angle=angle), Record.rotated(self, angle))
-
-    def delayed(self, delay: float) -> "DescribedRecord":  # type: ignore[override]
-        """Delay this record by `delay` [s]."""
-        return self._after(DelayedStep(delay=delay), Record.delayed(self, delay))
-
-    def inverted(self) -> "DescribedRecord":
-        """Reverse the horizontal components of this record; the vertical component stays."""
-        return self._after(InvertedStep(), Record.inverted(self))
-
-    def trimmed(self, begin: float | None = None, end: float | None = None) -> "DescribedRecord":
-        """Keep the samples from time `begin` to `end` [s]; the first of them is at `start`."""
-        return self._after(TrimmedStep(begin=begin, end=end), Record.trimmed(self, begin, end))
-
-    def padded(self, *, before: float = 0.0, after: float = 0.0) -> "DescribedRecord":
-        """Add `before` and `after` [s] of zeros to this record, rounded up to whole steps."""
-        return self._after(PaddedStep(before=before, after=after), Record.padded(self, before=before, after=after))
-
-    def with_tail(self, length: float) -> "DescribedRecord":
-        """Append `length` [s] of zeros: a free-vibration tail."""
-        return self._after(TailStep(length=length), Record.with_tail(self, length))
-
-    def resampled(self, step: float) -> "DescribedRecord":
-        """Resample this record to another `step` [s], band-limited (see `records.resampling`)."""
-        return self._after(ResampledStep(step=step), Record.resampled(self, step))
-
-    def filtered(
-        self, *, highpass: float | None = None, lowpass: float | None = None, order: int = 4, causal: bool = False
-    ) -> "DescribedRecord":
-        """Filter this record by a Butterworth filter with corners in Hz (see `records.filtering`)."""
-        step = FilteredStep(highpass=highpass, lowpass=lowpass, order=order, causal=causal)
-        found = Record.filtered(self, highpass=highpass, lowpass=lowpass, order=order, causal=causal)
-        return self._after(step, found)
-
-    def baseline_corrected(self, degree: int = 1) -> "DescribedRecord":
-        """Subtract the derivative of a polynomial fitted to the velocity (see `records.baseline`)."""
-        return self._after(BaselineStep(degree=degree), Record.baseline_corrected(self, degree))
 
 
 def anchored(values: Any, folder: Path) -> Any:

@@ -204,8 +204,8 @@ def refuse_own_classes(provenance: Mapping[str, Any]) -> None:
         if provenance[name].get("kind") == "other":
             if "record" in provenance[name]:
                 message = (
-                    f"the run was under the record {provenance[name]['record']!r}, read in Python, whose numbers are "
-                    f'not kept. Describe it (kind = "record", in Python sb.config.RecordMotion) to repeat the run.'
+                    f"the run was under the record {provenance[name]['record']!r}, made from samples that are not "
+                    f"kept. Write the record to a file (sb.records.write_at2) and read it to repeat such a run."
                 )
                 raise UnsupportedError(message)
             message = f"the run used a {name} of its own, of which only the repr is kept: {provenance[name]['repr']}"
@@ -220,7 +220,7 @@ def _described(describe: Callable[[], Config], thing: object) -> dict[str, Any]:
 
 
 def _identity_of_record(thing: object) -> dict[str, Any]:
-    """Return the identity of a record that was read in Python."""
+    """Return the identity of a record that was made from samples."""
     if not isinstance(thing, Record):
         return {}
     return {"record": thing.name, "digest": thing.digest, "processing": list(thing.provenance)}

@@ -8,6 +8,7 @@ import pytest
 import stylobate as sb
 from stylobate.base_motions.records import Direction
 from stylobate.config import RecordsConfig
+from stylobate.config.motions import describe_motion
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning
 
 COUNT = 50
@@ -156,10 +157,12 @@ def test_every_event_of_a_full_folder_is_found(tmp_path):
 @pytest.mark.parametrize("names", SETS, ids=lambda names: names[0])
 def test_a_described_event_is_built_again_from_its_files(tmp_path, names):
     written(tmp_path, names)
-    (record,) = RecordsConfig(source=str(tmp_path), units="m/s2", step=0.01).build().values()
-    again = record.description.build()
-    assert (again, again.name, again.provenance) == (record, record.name, record.provenance)
-    assert (record,) == read(tmp_path)
+    (described,) = RecordsConfig(source=str(tmp_path), units="m/s2", step=0.01).build().values()
+    (record,) = read(tmp_path)
+    assert described == record
+    for one in (described, record):
+        again = describe_motion(one).build()
+        assert (again, again.name, again.provenance) == (record, record.name, record.provenance)
 
 
 @pytest.mark.parametrize("names", APART, ids=lambda names: names[0])
@@ -170,9 +173,10 @@ def test_names_of_different_events_are_not_joined(tmp_path, names):
     found = read(tmp_path, single=True)
     assert len({record.name for record in found}) == 2
     described = RecordsConfig(source=str(tmp_path), units="m/s2", step=0.01, single=True).build().values()
-    assert [(one.name, one.provenance) for one in (record.description.build() for record in described)] == [
-        (record.name, record.provenance) for record in found
-    ]
+    for records in (found, described):
+        assert [(one.name, one.provenance) for one in (describe_motion(record).build() for record in records)] == [
+            (record.name, record.provenance) for record in found
+        ]
 
 
 @pytest.mark.parametrize(

@@ -222,6 +222,12 @@ def test_a_broken_file_gets_one_clear_line(tmp_path, content, units, message):
 
 
 def test_files_that_cannot_be_opened_are_named(tmp_path):
+    with pytest.raises(FileError, match=r"\*\.AT2: cannot be read.*Read folders and patterns with read_records"):
+        sb.read_record(tmp_path / "*.AT2")
+    with pytest.raises(
+        FileError, match=r"cannot be read: Is a directory\. Read folders and patterns with read_records"
+    ):
+        sb.read_record(tmp_path)
     with pytest.raises(FileError, match=r"none\.txt: cannot be read: No such file"):
         sb.read_record(tmp_path / "none.txt", "g")
     cut = written(tmp_path, "cut.gz", gzip.compress(NEW.encode())[:60])

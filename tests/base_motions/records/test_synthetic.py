@@ -130,3 +130,12 @@ def test_arguments_of_random_vibration_are_checked():
         random_vibration(DENSITY, duration=1.0, step=0.01, rng=rng, components=4)
     with pytest.raises(ParameterError, match="density must give finite numbers"):
         random_vibration(lambda f: -f, duration=1.0, step=0.01, rng=rng)
+
+
+def test_realizations_have_names_of_their_own():
+    rng = np.random.default_rng(1)
+    first, second = MODEL.record(rng), MODEL.record(rng)
+    assert first.name.startswith("synthetic ")
+    assert first.name != second.name
+    assert MODEL.record(np.random.default_rng(1)).name == first.name
+    assert MODEL.record(rng, name="mine").name == "mine"

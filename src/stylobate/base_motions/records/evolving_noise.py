@@ -14,7 +14,7 @@ The accelerogram is z̈: (5), a critically damped oscillator, takes off what wou
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import brentq
@@ -96,7 +96,7 @@ class EvolvingNoise:
             raise ParameterError(message)
 
     def record(
-        self, rng: np.random.Generator, *, step: float = 0.01, components: int = 1, name: str = "synthetic"
+        self, rng: np.random.Generator, *, step: float = 0.01, components: int = 1, name: str | None = None
     ) -> Record:
         """Generate one realization.
 
@@ -109,7 +109,8 @@ class EvolvingNoise:
         components
             1, 2 or 3 independent ones of the same model, along x, y and z: x and y are the principal axes.
         name
-            What the record is called.
+            Name of the record; by default "synthetic" and six digits of its digest, so that realizations differ in
+            name.
 
         Returns
         -------
@@ -128,9 +129,10 @@ class EvolvingNoise:
         x = self.envelope(time)[:, np.newaxis] * self._unit_process(time, noise)  # (1)
         silent = math.ceil(_swing_forgotten() / (2.0 * math.pi * self.corner) / step)
         x = np.pad(x, ((0, silent), (0, 0)))
-        return Record(
-            samples=self._without_drift(x, step), step=step, name=name, provenance=(f"realization of {self!r}",)
+        record = Record(
+            samples=self._without_drift(x, step), step=step, name="", provenance=(f"realization of {self!r}",)
         )
+        return replace(record, name=f"synthetic {record.digest[:6]}" if name is None else name)
 
     def envelope(self, time: Floats) -> Floats:
         """Compute q(t), the standard deviation of x at times of any shape [m/s²]."""

@@ -12,7 +12,8 @@ import numpy as np
 from stylobate.base_motions.records.axes import Directed, along_axes
 from stylobate.base_motions.records.component import Component, Direction
 from stylobate.base_motions.records.events import Event, EventFile, Read, find_events
-from stylobate.base_motions.records.reading import RecordFormat, as_record, read_component
+from stylobate.base_motions.records.origin import RecordOrigin
+from stylobate.base_motions.records.reading import RecordFormat, as_record, plain_reading, read_component
 from stylobate.base_motions.records.record import Record
 from stylobate.base_motions.records.sources import RecordSource
 from stylobate.base_motions.records.trimming import warn_of_lost_shaking
@@ -114,11 +115,22 @@ def read_records(
     that are only known to be perpendicular (L and T, H1 and H2, X and Y) are x and y, in this order. A single
     horizontal component acts along x.
     """
-    found = find_events(source, reader(step, columns, format), directions)
-    records = tuple(join_event(event, units, lengths, steps) for event in found)
+    reading = {
+        "single": True,
+        "lengths": lengths.name.lower(),
+        "steps": steps.name.lower(),
+        **plain_reading(units, step, columns, format),
+    }
+    records = []
+    for event in find_events(source, reader(step, columns, format), directions):
+        record = join_event(event, units, lengths, steps)
+        stated = {path.name: directions[path.name] for path in event.paths if directions and path.name in directions}
+        name = event.name if isinstance(source, Mapping) else None
+        origin = RecordOrigin.of_files(event.paths, name=name, directions=stated or None, **reading)
+        records.append(replace(record, origin=origin))
     for record in () if single else records:
         remark_on_missing_components(record)
-    return records
+    return tuple(records)
 
 
 def reader(

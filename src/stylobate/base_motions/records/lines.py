@@ -47,7 +47,9 @@ def read_bytes(path: Path) -> bytes:
         content = gzip.decompress(content) if content.startswith(_GZIP) else content
     except (OSError, EOFError, zlib.error) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        message = f"{path}: cannot be read: {reason}"
+        several = path.is_dir() or "*" in path.name
+        remedy = ". Read folders and patterns with read_records" if several else ""
+        message = f"{path}: cannot be read: {reason}{remedy}"
         raise FileError(message) from error
     if not content.strip():
         message = f"{path}: the file is empty"

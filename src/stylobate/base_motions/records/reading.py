@@ -3,8 +3,10 @@
 import os
 import warnings
 from collections.abc import Mapping
+from dataclasses import replace
 from enum import Enum
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +16,7 @@ from stylobate.base_motions.records.component import Component
 from stylobate.base_motions.records.layout import plain_table
 from stylobate.base_motions.records.lines import REMARKS, Text, is_binary, read_bytes
 from stylobate.base_motions.records.named_columns import is_csv, read_csv
+from stylobate.base_motions.records.origin import RecordOrigin
 from stylobate.base_motions.records.record import AXES, Floats, Record
 from stylobate.base_motions.records.sources import require_path
 from stylobate.base_motions.records.tables import read_table
@@ -84,7 +87,24 @@ def read_record(
     """
     path = require_path("path", path)
     step = None if step is None else require_positive("step", step, "s")
-    return as_record(read_component(path, step, columns, format), path, units, axis)
+    record = as_record(read_component(path, step, columns, format), path, units, axis)
+    origin = RecordOrigin.of_files(path, axis=axis, single=True, **plain_reading(units, step, columns, format))
+    return replace(record, origin=origin)
+
+
+def plain_reading(
+    units: str | None,
+    step: float | None,
+    columns: Mapping[str, str] | None,
+    format: RecordFormat | None,  # noqa: A002
+) -> dict[str, Any]:
+    """Return arguments of the reading as plain values, as the origin of a record has them."""
+    return {
+        "units": units,
+        "step": step,
+        "columns": None if columns is None else dict(columns),
+        "format": None if format is None else format.name.lower(),
+    }
 
 
 def read_component(

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from stylobate.base_motions.base import ACCELERATION, VELOCITY, Components
 from stylobate.base_motions.combined import BaseMotion
 from stylobate.base_motions.records.knots import corners, integrals, largest_from_each, mean_frequency
+from stylobate.base_motions.records.origin import RecordOrigin
 from stylobate.errors import ParameterError, require_finite, require_not_negative, require_positive
 
 Floats = npt.NDArray[np.float64]
@@ -39,6 +40,9 @@ class Record(BaseMotion):
         What the record is called.
     provenance
         Where it comes from and what was done to it, one line each, in order.
+    origin
+        How it can be made again; None if it was made from samples. Reading a file sets it, and each method of
+        processing adds to it.
 
     Raises
     ------
@@ -67,6 +71,7 @@ class Record(BaseMotion):
     start: float = 0.0
     name: str = ""
     provenance: tuple[str, ...] = ()
+    origin: RecordOrigin | None = None
     _velocity: Floats = field(init=False)
     _displacement: Floats = field(init=False)
     _largest: Floats = field(init=False)
@@ -241,9 +246,10 @@ class Record(BaseMotion):
     def scaled(self, factor: float, *, vertical: float | None = None) -> "Record":  # type: ignore[override]
         """Scale this record by `factor`; the vertical component by `vertical`, if given."""
         factor = require_finite("factor", factor)
+        origin = self._then("scaled", factor=factor, vertical=vertical)
         vertical = factor if vertical is None else require_finite("vertical", vertical)
         note = f"scaled by {factor!r}" + (f", vertical by {vertical!r}" if vertical != factor else "")
-        return self.changed(note, samples=self.samples * [factor, factor, vertical])
+        return self.changed(note, samples=self.samples * [factor, factor, vertical], origin=origin)
 
     def scaled_to(self, peak: float) -> "Record":
         """Scale all components of this record by one factor, so that sup |a_h| = `peak` [m/s²].
@@ -265,16 +271,18 @@ class Record(BaseMotion):
         x, y, z = self.samples.T
         cos, sin = math.cos(angle), math.sin(angle)
         samples = np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
-        return self.changed(f"turned by {angle!r} rad", samples=samples)
+        return self.changed(f"turned by {angle!r} rad", samples=samples, origin=self._then("rotated", angle=angle))
 
     def delayed(self, delay: float) -> "Record":  # type: ignore[override]
         """Delay this record by `delay` [s]."""
         delay = require_finite("delay", delay, "s")
-        return self.changed(f"delayed by {delay!r} s", start=self.start + delay)
+        origin = self._then("delayed", delay=delay)
+        return self.changed(f"delayed by {delay!r} s", start=self.start + delay, origin=origin)
 
     def inverted(self) -> "Record":
         """Reverse the horizontal components of this record; the vertical component stays."""
-        return self.changed("polarity reversed", samples=self.samples * [-1.0, -1.0, 1.0])
+        samples = self.samples * [-1.0, -1.0, 1.0]
+        return self.changed("polarity reversed", samples=samples, origin=self._then("inverted"))
 
     def trimmed(self, begin: float | None = None, end: float | None = None) -> "Record":
         """Keep the samples from time `begin` to `end` [s]; the first of them is at `start`.
@@ -284,6 +292,7 @@ class Record(BaseMotion):
         ParameterError
             If fewer than two samples lie between.
         """
+        origin = self._then("trimmed", begin=begin, end=end)
         begin = self.start if begin is None else require_finite("begin", begin, "s")
         end = self.end if end is None else require_finite("end", end, "s")
         slack = _KNOT_SLACK * self.step
@@ -291,14 +300,14 @@ class Record(BaseMotion):
         if np.count_nonzero(kept) < 2:  # noqa: PLR2004  a step has two ends
             message = f"begin and end must leave two samples of {self!r}, got {begin!r} s and {end!r} s"
             raise ParameterError(message)
-        return self.changed(f"trimmed to {begin!r} s … {end!r} s", samples=self.samples[kept])
+        return self.changed(f"trimmed to {begin!r} s … {end!r} s", samples=self.samples[kept], origin=origin)
 
     def padded(self, *, before: float = 0.0, after: float = 0.0) -> "Record":
         """Add `before` and `after` [s] of zeros to this record, rounded up to whole steps."""
         counts = [self._steps("before", before), self._steps("after", after)]
         samples = np.pad(self.samples, (counts, (0, 0)))
         note = f"padded with {counts[0]} zeros before and {counts[1]} after"
-        return self.changed(note, samples=samples)
+        return self.changed(note, samples=samples, origin=self._then("padded", before=before, after=after))
 
     def with_tail(self, length: float) -> "Record":
         """Append `length` [s] of zeros: a free-vibration tail in which the column may overturn or come to rest.
@@ -306,7 +315,8 @@ class Record(BaseMotion):
         Run to its `duration`: whether a column survived is known after the tail, not at the last sample.
         """
         count = self._steps("length", length)
-        return self.changed(f"tail of {count} zeros", samples=np.pad(self.samples, ((0, count), (0, 0))))
+        samples = np.pad(self.samples, ((0, count), (0, 0)))
+        return self.changed(f"tail of {count} zeros", samples=samples, origin=self._then("with_tail", length=length))
 
     def _steps(self, name: str, length: float) -> int:
         return math.ceil(require_not_negative(name, length, "s") / self.step - _KNOT_SLACK)
@@ -316,7 +326,10 @@ class Record(BaseMotion):
         from stylobate.base_motions.records.resampling import resampled  # noqa: PLC0415  takes SciPy
 
         samples, note = resampled(self.samples, self.step, step)
-        return self.changed(note, samples=samples, step=float(step)) if note else self
+        if not note:
+            return self
+        origin = self._then("resampled", step=float(step))
+        return self.changed(note, samples=samples, step=float(step), origin=origin)
 
     def filtered(
         self, *, highpass: float | None = None, lowpass: float | None = None, order: int = 4, causal: bool = False
@@ -324,21 +337,24 @@ class Record(BaseMotion):
         """Filter this record by a Butterworth filter with corners in Hz (see `records.filtering`)."""
         from stylobate.base_motions.records.filtering import filtered  # noqa: PLC0415
 
-        samples, note = filtered(
-            self.samples, self.step, highpass=highpass, lowpass=lowpass, order=order, causal=causal
-        )
-        return self.changed(note, samples=samples)
+        arguments: dict[str, Any] = {"highpass": highpass, "lowpass": lowpass, "order": order, "causal": causal}
+        samples, note = filtered(self.samples, self.step, **arguments)
+        return self.changed(note, samples=samples, origin=self._then("filtered", **arguments))
 
     def baseline_corrected(self, degree: int = 1) -> "Record":
         """Subtract the derivative of a polynomial fitted to the velocity (see `records.baseline`)."""
         from stylobate.base_motions.records.baseline import baseline_corrected  # noqa: PLC0415
 
         samples, note = baseline_corrected(self.samples, self.step, degree)
-        return self.changed(note, samples=samples)
+        return self.changed(note, samples=samples, origin=self._then("baseline_corrected", degree=degree))
 
-    def changed(self, note: str, **changes: Any) -> "Record":
-        """Replace fields of this record and add a `note` to its provenance."""
-        return replace(self, provenance=(*self.provenance, note), **changes)
+    def changed(self, note: str, *, origin: RecordOrigin | None = None, **changes: Any) -> "Record":
+        """Replace fields of this record and add a `note` to its provenance; without an `origin` it has none."""
+        return replace(self, provenance=(*self.provenance, note), origin=origin, **changes)
+
+    def _then(self, method: str, **arguments: Any) -> RecordOrigin | None:
+        """Return the origin of this record after one more method."""
+        return None if self.origin is None else self.origin.then(method, **arguments)
 
 
 def _checked(samples: npt.ArrayLike) -> Floats:

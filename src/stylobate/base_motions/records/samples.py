@@ -4,6 +4,7 @@ from dataclasses import replace
 from importlib.resources import as_file, files
 
 from stylobate.base_motions.records.grouping import read_records
+from stylobate.base_motions.records.origin import RecordOrigin
 from stylobate.base_motions.records.record import Record
 from stylobate.errors import ParameterError
 
@@ -59,5 +60,5 @@ def sample_record(name: str = "el centro 1940") -> Record:
         (record,) = read_records([here / file for file in _FILES], units="g")
     record = replace(record, name=key, provenance=(_SOURCE, *record.provenance))
     if key == _WITHOUT_DRIFT:
-        return record.padded(before=_REST, after=_REST).filtered(highpass=_CORNER, order=_ORDER)
-    return record
+        record = record.padded(before=_REST, after=_REST).filtered(highpass=_CORNER, order=_ORDER)
+    return replace(record, origin=RecordOrigin({"sample": key}))
