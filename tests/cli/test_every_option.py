@@ -89,7 +89,7 @@ COMPUTING = (
         "earthquakes.FragilityStudy.runs",
     ),
     *("earthquakes.assess", "paper.check_paper", "lab.serving.serve"),
-    *("cli.records.print_table", "earthquakes.plot_records"),
+    *("cli.records.print_table", "base_motions.records.response_spectra"),
 )
 
 STUDY = """
@@ -111,16 +111,23 @@ class ComputedError(Exception):
 
 @pytest.fixture(autouse=True, scope="module")
 def parsers_are_kept():
-    """Make the parser of a command once for each choice of model and motion: it is asked a thousand times."""
-    kept, made = {}, Command.program
+    """Make options and parser of a command once for each choice of model and motion: they are asked a thousand times."""
+    kept, made, parsers, parser = {}, Command.options, {}, Command.program
+
+    def options(self, chosen):
+        key = id(self), repr(chosen)
+        if key not in kept:
+            kept[key] = made(self, chosen)
+        return kept[key]
 
     def program(self, name, arguments=()):
         key = name, repr(self._chosen(arguments))
-        if key not in kept:
-            kept[key] = made(self, name, arguments)
-        return kept[key]
+        if key not in parsers:
+            parsers[key] = parser(self, name, arguments)
+        return parsers[key]
 
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Command, "options", options)
         patch.setattr(Command, "program", program)
         yield
 
