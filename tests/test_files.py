@@ -4,6 +4,7 @@ import os
 import resource
 import subprocess
 import sys
+from contextlib import contextmanager
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
@@ -14,6 +15,7 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate import orbits
+from stylobate.cli.main import run as run_command
 from stylobate.cli.output import check_writable
 from stylobate.cli.saved import open_saved
 from stylobate.errors import FileError
@@ -148,16 +150,27 @@ RUN = ["simulate", "--slenderness", "0.1", "--motion", "circular", "--accelerati
 RUN += ["--angular-frequency", "2", "--tilt", "0.03", "0.01", "--duration", "60"]
 
 
-@pytest.mark.parametrize("option", ["--output", "--figure"])
-def test_a_command_on_a_full_disk_ends_with_one_line(option, tmp_path):
-    path = tmp_path / ("run.nc" if option == "--output" else "run.png")
-    limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (4096, 4096))
-    command = [sys.executable, "-m", "stylobate", *RUN]
-    subprocess.run(command, capture_output=True, check=True)  # its kernel is kept in a file too
-    command += [option, str(path)]
-    ended = subprocess.run(command, capture_output=True, text=True, check=False, preexec_fn=limit)
-    assert ended.returncode == 2
-    assert ended.stderr == f"stylobate: cannot write {path}: File too large\n"
+@contextmanager
+def no_file_longer_than(size):
+    """Files of this process end at a size, as on a full disk."""
+    before, most = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, most))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (before, most))
+
+
+@pytest.mark.parametrize(("option", "name"), [("--output", "run.nc"), ("--figure", "run.png")])
+def test_a_command_on_a_full_disk_ends_with_one_line(option, name, tmp_path, capsys):
+    path = tmp_path / name
+    assert run_command([*RUN, option, str(path)]) == 0  # its kernel is kept in a file too
+    assert path.stat().st_size > 4096
+    path.unlink()
+    capsys.readouterr()
+    with no_file_longer_than(4096):
+        assert run_command([*RUN, option, str(path)]) == 2
+    assert capsys.readouterr().err == f"stylobate: cannot write {path}: File too large\n"
     assert not list(tmp_path.iterdir())
 
 

@@ -72,8 +72,15 @@ def test_a_file_says_the_same_as_options(tmp_path, capsys):
     assert (told["confidence"], told["provenance"]["strobes"]) == (0.9, 24)
 
 
-@pytest.mark.parametrize("how", [GRID, SAMPLE])
-@pytest.mark.parametrize("name", ["basin.nc", "basin.zarr"])
+@pytest.mark.parametrize(
+    ("name", "how"),
+    [
+        ("basin.nc", GRID),
+        ("basin.zarr", SAMPLE),
+        pytest.param("basin.nc", SAMPLE, marks=pytest.mark.slow),
+        pytest.param("basin.zarr", GRID, marks=pytest.mark.slow),
+    ],
+)
 def test_saved_basins_are_shown_and_repeated(name, how, tmp_path, capsys):
     path = tmp_path / name
     assert run([*BASIN, *how, "--output", str(path), "--json"]) == 0
@@ -101,7 +108,7 @@ def test_a_sample_instead_of_the_grid_of_a_file(tmp_path, capsys):
 
 def test_after_ctrl_c_a_store_goes_on(tmp_path, capsys, interrupted):
     store = tmp_path / "basin.zarr"
-    large = [*BASIN, "--random", "2000", *SAMPLE[2:]]
+    large = [*BASIN, "--periods", "20", "--random", "2000", *SAMPLE[2:]]
     assert run([*large, "--output", str(store), "--figure", str(tmp_path / "unfinished.png"), "--json"]) == 130
     told = json.loads(capsys.readouterr().out)
     assert 0 < told["computed"] < told["runs"] == 2000
