@@ -4,8 +4,8 @@ import os
 import resource
 import subprocess
 import sys
-from contextlib import contextmanager
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 

@@ -1,9 +1,11 @@
 """An option that is given is used or refused, whatever the command: nothing is dropped without a word."""
 
+import functools
 from typing import get_args
 
 import pytest
 
+from stylobate.base_motions.records import samples
 from stylobate.cli.command import Command
 from stylobate.cli.commands import COMMANDS
 from stylobate.cli.main import run
@@ -110,8 +112,12 @@ class ComputedError(Exception):
 
 
 @pytest.fixture(autouse=True, scope="module")
-def parsers_are_kept():
-    """Make options and parser of a command once for each choice of model and motion: they are asked a thousand times."""
+def parsers_and_records_are_kept():
+    """Make options and parser of a command once for each choice of kinds, and read a record once.
+
+    They are asked for a thousand times.
+    """
+    read = functools.cache(lambda paths, units, plain=samples.read_records: plain(list(paths), units=units))
     kept, made, parsers, parser = {}, Command.options, {}, Command.program
 
     def options(self, chosen):
@@ -127,6 +133,7 @@ def parsers_are_kept():
         return parsers[key]
 
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(samples, "read_records", lambda paths, *, units: read(tuple(paths), units))
         patch.setattr(Command, "options", options)
         patch.setattr(Command, "program", program)
         yield
@@ -202,9 +209,20 @@ def test_no_option_of_a_run_is_refused_with_every_column_model_and_motion(capsys
         for option in list(never.values()):
             if not with_option(["simulate", *base], option, capsys)[1]:
                 del never[option.name]
-    # Words, files and what belongs to files, and a sign: none of the values above.
+    # Words, files and options that belong to files, and a sign: none of the values above.
     words = {"shape", "model", "constraint", "couples", "motion"}
-    files = {"record", "record_direction", "single", "sample_record", "units", "step", "figure", "output"}
+    files = {
+        "record",
+        "record_direction",
+        "single",
+        "sample_record",
+        "units",
+        "step",
+        "figure",
+        "output",
+        "animation",
+        "speed",
+    }
     assert set(never) == {*words, *files, "sense"}
 
 

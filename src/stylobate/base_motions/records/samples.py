@@ -1,7 +1,6 @@
 """Records that come with the package."""
 
 from dataclasses import replace
-from functools import cache
 from importlib.resources import as_file, files
 
 from stylobate.base_motions.records.grouping import read_records
@@ -56,11 +55,6 @@ def sample_record(name: str = "el centro 1940") -> Record:
     if key not in sample_names():
         message = f"name must be one of {', '.join(map(repr, sample_names()))}, got {name!r}"
         raise ParameterError(message)
-    return _read(key)
-
-
-@cache  # records do not change
-def _read(key: str) -> Record:
     folder = files("stylobate.base_motions.records") / "data"
     with as_file(folder) as here:
         (record,) = read_records([here / file for file in _FILES], units="g")
