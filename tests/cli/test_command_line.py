@@ -75,6 +75,20 @@ def test_response_as_json_has_every_curve(capsys):
     assert len(told["amplitude"][0][0]) == len(told["angular_frequency"]) == 5
 
 
+def test_simulate_animates_the_run_it_prints(tmp_path, capsys):
+    page = tmp_path / "run.html"
+    assert run(["simulate", *COLUMN, *MOTION, *START, "--animation", str(page), "--speed", "4", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["outcome"]
+    assert page.read_text(encoding="utf-8").startswith("<!")
+    for options, line in (
+        (["--animation", "run.avi"], "path must end with .gif, .mp4 or .html, got 'run.avi'"),
+        (["--animation", str(page), "--speed", "0"], "speed must be positive, got 0.0"),
+        (["--speed", "2"], "--speed: simulate does not use it"),
+    ):
+        assert run(["simulate", *COLUMN, *MOTION, *START, *options]) == 2
+        assert line in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("arguments", "lines"),
     [

@@ -75,7 +75,8 @@ def test_bad_questions_are_told_in_one_line(arguments, line, capsys):
 def test_what_varies_must_be_told(capsys):
     assert run(["drift", *BLOCK, *SLOPE]) == 2
     assert (
-        "drift.x is missing. State the number that varies, such as --x acceleration 2 30 29." in capsys.readouterr().err
+        "drift.x is missing. State what varies: --x acceleration 2 30 29, or --x acceleration 9 9 1 for one run."
+        in capsys.readouterr().err
     )
 
 

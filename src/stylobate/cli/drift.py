@@ -66,7 +66,9 @@ def _prepared(saved: "xr.Dataset | None", options: Options) -> "tuple[Callable[.
     kind = conveying.config.DriftConfig
     values = with_axes(study_values(saved, options, kind, {"model": {"kind": "sliding"}}), options, "drift")
     if not values.get("drift"):
-        message = "drift.x is missing. State the number that varies, such as --x acceleration 2 30 29."
+        message = (
+            "drift.x is missing. State what varies: --x acceleration 2 30 29, or --x acceleration 9 9 1 for one run."
+        )
         raise ParameterError(message)
     merge(values, "drift", options.pick("late"))
     setup = kind.parse(values).build()
