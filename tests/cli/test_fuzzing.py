@@ -16,10 +16,10 @@ def in_a_folder_of_its_own(monkeypatch, tmp_path):
 
 def test_hostile_input_is_refused_or_computed(capsys):
     report = Report(processor_time=1.0)
-    for seed in range(200):
+    for seed in range(100):
         report.add(case(seed, QUICK), capsys)
     assert not [fault for fault in report.faults if fault[1] != SILENT]  # silence is measured with the full time
-    assert report.counts["refused"] > 100
+    assert report.counts["refused"] > 50
     assert report.counts["computed"] > 2
 
 

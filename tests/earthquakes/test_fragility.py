@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 from scipy.special import log_ndtr, ndtr
@@ -151,6 +151,7 @@ def test_the_same_seed_gives_the_same_intervals():
     xr.testing.assert_identical(first, second)
 
 
+@settings(max_examples=20)
 @given(factor=st.floats(1e-3, 1e3), seed=st.integers(0, 20))
 def test_another_unit_of_the_intensity_scales_the_median_and_nothing_else(factor, seed):
     intensity, reached = runs(np.random.default_rng(seed), 80)

@@ -36,21 +36,24 @@ def test_boundaries_of_another_column_with_a_free_twist_are_not_confirmed(monkey
     assert finding().verdict is Verdict.NOT_CONFIRMED
 
 
-def test_curves_of_figure_2_lie_on_their_sides_of_the_backbone():
-    data = circular.response_data()
-    lower, upper = data["amplitude"].sel(branch="lower"), data["amplitude"].sel(branch="upper")
-    assert bool(((lower < data["backbone"]) | lower.isnull()).all())
-    assert bool(((upper > data["backbone"]) | upper.isnull()).all())
+@pytest.fixture(scope="module")
+def response():
+    return circular.response_data()
 
 
-def test_stable_parts_of_figure_2_begin_at_the_critical_frequencies():
-    data = circular.response_data()
-    spacing = float(np.diff(data["nu"])[0])
+def test_curves_of_figure_2_lie_on_their_sides_of_the_backbone(response):
+    lower, upper = response["amplitude"].sel(branch="lower"), response["amplitude"].sel(branch="upper")
+    assert bool(((lower < response["backbone"]) | lower.isnull()).all())
+    assert bool(((upper > response["backbone"]) | upper.isnull()).all())
+
+
+def test_stable_parts_of_figure_2_begin_at_the_critical_frequencies(response):
+    spacing = float(np.diff(response["nu"])[0])
     for a0 in circular.CIRCULAR_AMPLITUDES:
-        stable = data["stable"].sel(a0=a0, branch="upper")
-        first = float(data["nu"][int(np.argmax(stable.to_numpy()))])
+        stable = response["stable"].sel(a0=a0, branch="upper")
+        first = float(response["nu"][int(np.argmax(stable.to_numpy()))])
         assert abs(first - float(theory.critical_frequency(a0, c=0.1, eta=0.1))) <= spacing
-        assert not bool(data["stable"].sel(a0=a0, branch="lower").any())
+        assert not bool(response["stable"].sel(a0=a0, branch="lower").any())
 
 
 def test_curves_of_the_critical_frequency_meet_in_their_limits():
