@@ -9,6 +9,8 @@ from filelock import FileLock
 
 from stylobate import earthquakes
 from stylobate.cli.main import run
+from stylobate.earthquakes.assessment.report import document
+from stylobate.earthquakes.assessment.report.pictures import report_pictures
 
 STUDY = """
 title = "One column"
@@ -59,6 +61,15 @@ def study(tmp_path):
     return path
 
 
+@pytest.fixture
+def one_figure():
+    """Leave out the other figures, which the tests of the report draw: they take most of the time."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(document, "report_pictures", lambda found: {"margins-1": report_pictures(found)["margins-1"]})
+        yield
+
+
+@pytest.mark.usefixtures("one_figure")
 def test_a_study_gives_a_report_that_is_kept_and_shown_again(study, tmp_path, capsys, monkeypatch):
     folder = tmp_path / "out"
     assert run(["assess", str(study), "--folder", str(folder)]) == 0
