@@ -105,7 +105,14 @@ def test_the_program_makes_the_described_run(name):
     assert told.measures == pytest.approx(expected.measures, nan_ok=True)
 
 
-@pytest.mark.parametrize("preset", presets(), ids=lambda preset: preset.identity)
+# Others have the same kinds of column, model and motion.
+ALIKE = ("circle-weak", "line-strong", "line-weak", "modulated")
+PRESETS = [
+    pytest.param(one, id=one.identity, marks=[pytest.mark.slow] if one.identity in ALIKE else []) for one in presets()
+]
+
+
+@pytest.mark.parametrize("preset", PRESETS)
 def test_the_program_of_a_preset_shows_what_the_preset_says_and_draws_it(preset, folder):
     run = run_by(as_python(SimulationConfig.parse(preset.description)))
     assert run.outcome.name == preset.outcome
