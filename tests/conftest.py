@@ -1,4 +1,9 @@
-"""What all tests share: equations (1) written out once more, and settings of hypothesis."""
+"""What all tests share: equations (1) written out once more, and settings of hypothesis and of linear algebra."""
+
+import os
+
+# Read when NumPy is first imported. Processes that test side by side would wait for each other's threads.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 import pytest
