@@ -13,7 +13,7 @@ import stylobate as sb
 
 from .same_results import models, motions
 
-MEASURES = ("largest_tilt", "time_of_largest_tilt", "least_tilt", "turns", "steps")
+MEASURES = ("peak_tilt", "time_of_peak_tilt", "minimum_tilt", "turns", "steps")
 DURATION = 6.0
 
 

@@ -105,7 +105,7 @@ def mix(count: int) -> Workload:
     """Return `count` runs, copies of 512 random ones (seed 2) in random order, so that every engine has the same mix.
 
     Uniform and independent: start tilt in a disc of radius 0.09, its rate in one of radius 0.1; the base on an ellipse
-    of axis ratio 0.7 with largest acceleration 0.15…0.3, direction of the long axis 0…π, start phase 0…2π, ν = 1…6.
+    of axis ratio 0.7 with peak acceleration 0.15…0.3, direction of the long axis 0…π, start phase 0…2π, ν = 1…6.
     The acceleration is always above c: no run comes to rest, which equations (1) by themselves cannot follow.
     """
     rng = np.random.default_rng(2)

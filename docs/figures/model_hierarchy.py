@@ -42,10 +42,10 @@ def levels() -> Figure:
         samples=2000,
     )
     for name in (
-        "largest_tilt",
+        "peak_tilt",
         "mean_late_tilt",
-        "largest_friction_demand",
-        "largest_pivoting_demand",
+        "peak_friction_demand",
+        "peak_pivoting_demand",
     ):
         print((found[name] / found["slenderness"]).to_pandas().round(5), name)
     print(found["deviation_order"].to_pandas().round(3))
@@ -69,7 +69,7 @@ def twist() -> Figure:
     decided = found["comparison"].to_numpy() == list(sb.studies.Comparison).index(
         sb.studies.Comparison.ONLY_FIRST
     )
-    needed = found["second_largest_friction_demand"].to_numpy()[decided]
+    needed = found["second_peak_friction_demand"].to_numpy()[decided]
     print(
         np.median(needed),
         [(limit, np.mean(needed < limit)) for limit in (0.3, 0.5, 0.7)],
@@ -255,7 +255,7 @@ def dissipation() -> Figure:
                 name,
                 f"energy left {left:.5f}",
                 run.outcome.name,
-                run.measures["least_tilt"] / 0.2,
+                run.measures["minimum_tilt"] / 0.2,
             )
             axes.plot(
                 run.data["time"],

@@ -52,7 +52,7 @@ def first(branch: sb.orbits.Branch, kind: str) -> sb.orbits.Bifurcation:
 def draw_family(
     axes: Axes, branch: sb.orbits.Branch, colour: str, label: str, tilt: str
 ) -> None:
-    """Draw mean or largest tilts: stable orbits bold, unstable ones thin and dashed, bifurcations marked."""
+    """Draw mean or peak tilts: stable orbits bold, unstable ones thin and dashed, bifurcations marked."""
     points = branch.points
     x, y, stable = (
         points[name].to_numpy() for name in ("angular_frequency", tilt, "stable")
@@ -92,7 +92,7 @@ def response() -> Figure:
         steady = sb.theory.steady_rolling(theta, 0.5 * acceleration, c=C, eta=ETA).upper
         averaged = np.asarray(steady.amplitude) / C
         for axes, tilt in zip(
-            panels[:, column], ("mean_tilt", "largest_tilt"), strict=True
+            panels[:, column], ("mean_tilt", "peak_tilt"), strict=True
         ):
             draw_family(axes, symmetric, BLUE, "symmetric rolling", tilt)
             draw_family(axes, born, ORANGE, "asymmetric rolling", tilt)
@@ -338,8 +338,8 @@ def sweeps() -> Figure:
     left, right = figure.subplots(1, 2)
     symmetric = rolling(line(0.13), (1.4, 8.0))
     born = sb.orbits.switch_branch(first(symmetric, "pitchfork"), bounds=(1.5, 2.5))
-    draw_family(left, symmetric, BLUE, "symmetric", "largest_tilt")
-    draw_family(left, born, ORANGE, "asymmetric", "largest_tilt")
+    draw_family(left, symmetric, BLUE, "symmetric", "peak_tilt")
+    draw_family(left, born, ORANGE, "asymmetric", "peak_tilt")
     (start,) = symmetric.orbits_at(1.72)
     values = np.concatenate([np.arange(1.72, 1.6, -0.01), np.arange(1.6, 1.54, -0.002)])
     swept = sb.studies.slow_sweep(
@@ -382,8 +382,8 @@ def sweeps() -> Figure:
 
 
 def draw_family_over(axes: Axes, points: xr.Dataset, name: str) -> None:
-    """Draw the largest tilt of a family over any parameter, stable orbits bold."""
-    x, y, stable = (points[key].to_numpy() for key in (name, "largest_tilt", "stable"))
+    """Draw the peak tilt of a family over any parameter, stable orbits bold."""
+    x, y, stable = (points[key].to_numpy() for key in (name, "peak_tilt", "stable"))
     touching = stable | np.append(stable[1:], False) | np.append(False, stable[:-1])
     axes.plot(x, y / C, color=BLUE, linewidth=1.0, linestyle=(0, (4, 2)))
     axes.plot(
@@ -396,11 +396,11 @@ def draw_family_over(axes: Axes, points: xr.Dataset, name: str) -> None:
 
 
 def draw_sweep(axes: Axes, swept: xr.Dataset, *, down: str, up: str) -> None:
-    """Draw the largest tilt of a slow sweep, down and up, and a cross where the column overturned."""
+    """Draw the peak tilt of a slow sweep, down and up, and a cross where the column overturned."""
     one = swept.isel(sweep=0)
     at, tilt = (
         one[str(swept.attrs["parameter"])].to_numpy(),
-        one["largest_tilt"].to_numpy() / C,
+        one["peak_tilt"].to_numpy() / C,
     )
     turn = int(np.argmin(at))
     known = np.isfinite(tilt)

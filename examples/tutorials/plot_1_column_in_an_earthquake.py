@@ -97,7 +97,7 @@ print(f"tipping angle: {np.degrees(column.tipping_angle):.1f}°")
 # An upright column starts to rock when the horizontal ground acceleration exceeds c g
 # (if the vertical acceleration is small). Compare that with the record.
 print(f"rocking starts above {column.slenderness * column.gravity:.2f} m/s²")
-print(f"peak of the horizontal vector: {quake.largest_horizontal():.2f} m/s²")
+print(f"peak of the horizontal vector: {quake.peak_horizontal():.2f} m/s²")
 
 # %%
 # The record exceeds the threshold, so the column will rock. Whether it overturns needs
@@ -133,10 +133,10 @@ print(run.reason)
 # outcomes are explained in :doc:`Outcomes </explanation/outcomes>`.
 #
 # How far did the column tilt, when, and how much friction did its base need?
-peak, time = run.measures["largest_tilt"], run.measures["time_of_largest_tilt"]
+peak, time = run.measures["peak_tilt"], run.measures["time_of_peak_tilt"]
 print(f"peak tilt: {np.degrees(peak):.1f}° at {time:.1f} s")
 print(f"as a fraction of the tipping angle: {peak / column.tipping_angle:.2f}")
-print(f"friction needed: {run.measures['largest_friction_demand']:.2f}")
+print(f"friction needed: {run.measures['peak_friction_demand']:.2f}")
 
 # %%
 # If the friction coefficient of the joint is below the last number, the base would
@@ -201,7 +201,7 @@ figure = sb.plot(checks)
 # A column that stands on a point of its rim can also turn about its axis.
 # :class:`stylobate.Rolling` allows this axial rotation (spin).
 spinning = sb.simulate(sb.Rolling(column, damping=0.03), quake)
-peak = spinning.measures["largest_tilt"]
+peak = spinning.measures["peak_tilt"]
 print(f"{spinning.outcome.name}, peak tilt {np.degrees(peak):.1f}°")
 figure = sb.plot([run, spinning], labels=["Wobbling (no spin)", "Rolling (spin)"])
 

@@ -209,7 +209,7 @@ print(f"largest difference: {np.nanmax(abs(velocity - block_mm)):.2g} mm/s")
 
 lags = np.linspace(0.0, 360.0, 73)
 strong = vibration(50.0, 0.6, 25.0)
-along = strong.largest_horizontal() / GRAVITY
+along = strong.peak_horizontal() / GRAVITY
 scale = 1000.0 * GRAVITY / strong.angular_frequency
 
 figure, axes = plt.subplots(figsize=(7.0, 3.6))

@@ -129,7 +129,7 @@ print(pitchfork)
 print(f"averaging predicts stability down to {critical:.6f}")
 
 points = branch.points
-frequency, largest = points["angular_frequency"], points["largest_tilt"] / c
+frequency, largest = points["angular_frequency"], points["peak_tilt"] / c
 stable = points["stable"].values
 figure, axes = plt.subplots(figsize=(7.4, 3.7), layout="constrained")
 axes.plot(frequency, largest, color="#0072b2", linewidth=1.0, label="unstable")
@@ -137,7 +137,7 @@ bold = largest.where(stable)
 axes.plot(frequency, bold, color="#0072b2", linewidth=3.0, label="stable")
 axes.plot(
     pitchfork.parameter,
-    pitchfork.orbit.largest_tilt / c,
+    pitchfork.orbit.peak_tilt / c,
     "D",
     color="black",
     label="pitchfork",

@@ -59,11 +59,11 @@ for name, share in zip(
         print(f"{name}: {100.0 * share:.1f} %")
 
 # %%
-# The largest tilt of the survivors shows more than the outcome. The result is an
+# The peak tilt of the survivors shows more than the outcome. The result is an
 # xarray Dataset, so plot any of its variables.
 survived = found["outcome"] != sb.Outcome.OVERTURNED
 figure, axes = plt.subplots(figsize=(7.4, 4.0), layout="constrained")
-largest = found["largest_tilt"].where(survived).T / 0.1
+largest = found["peak_tilt"].where(survived).T / 0.1
 image = axes.pcolormesh(frequencies, accelerations, largest, cmap="cividis")
 axes.set(xlabel=r"frequency ratio $\Omega/\omega_0$", ylabel="amplitude $a_1$ [g]")
 figure.colorbar(image, label="maximum tilt / c (white: overturned)")

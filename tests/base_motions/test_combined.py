@@ -70,15 +70,15 @@ def test_the_bounds_hold_for_combinations_from_any_time_on(factor, vertical, ang
     motion = (ONE + TWO.delayed(delay)).scaled(factor, vertical=vertical).rotated(angle).delayed(-delay)
     acceleration = motion.acceleration(since + np.linspace(0.0, 20.0, 2001))
     low, high = motion.vertical_range(since)
-    assert np.hypot(*acceleration.T[:2]).max() <= motion.largest_horizontal(since) * (1.0 + 1e-12)
+    assert np.hypot(*acceleration.T[:2]).max() <= motion.peak_horizontal(since) * (1.0 + 1e-12)
     assert low - 1e-12 <= acceleration[:, 2].min()
     assert acceleration[:, 2].max() <= high + 1e-12
 
 
 def test_scaled_and_turned_bounds_are_exact():
-    assert ONE.scaled(-2.0).largest_horizontal() == pytest.approx(2.0 * ONE.largest_horizontal(), rel=1e-15)
+    assert ONE.scaled(-2.0).peak_horizontal() == pytest.approx(2.0 * ONE.peak_horizontal(), rel=1e-15)
     assert ONE.scaled(1.0, vertical=-0.5).vertical_range() == (-0.1, 0.1)
-    assert ONE.rotated(1.0).largest_horizontal() == ONE.largest_horizontal()
+    assert ONE.rotated(1.0).peak_horizontal() == ONE.peak_horizontal()
 
 
 @pytest.mark.parametrize(
@@ -102,7 +102,7 @@ def test_frequencies_in_no_simple_ratio_have_no_common_period():
 
 def test_a_base_at_rest_does_nothing():
     assert np.all(BASE_AT_REST.acceleration(TIME) == 0.0)
-    assert BASE_AT_REST.largest_horizontal() == 0.0
+    assert BASE_AT_REST.peak_horizontal() == 0.0
     assert BASE_AT_REST.duration == 0.0
     assert BASE_AT_REST.period is None
     assert BASE_AT_REST.highest_frequency == 0.0
@@ -159,7 +159,7 @@ class Constant(sb.BaseMotion):
         t = np.asarray(time, dtype=float)
         return 0.0 * t, 0.0 * t, self.vertical * t ** (2 - order) / (2.0, 1.0, 1.0)[order]
 
-    def largest_horizontal(self, since=0.0):
+    def peak_horizontal(self, since=0.0):
         return 0.0
 
     def vertical_range(self, since=0.0):

@@ -71,10 +71,10 @@ def test_a_ramp_joins_the_steady_motion_smoothly_and_starts_from_nothing(motion)
 
 
 @given(motion=harmonics(ramps=st.just(0.0)))
-def test_largest_horizontal_is_reached_and_never_exceeded(motion):
+def test_peak_horizontal_is_reached_and_never_exceeded(motion):
     time = np.linspace(0.0, motion.period, 4001)
     found = np.hypot(*motion.acceleration(time).T[:2]).max()
-    largest = motion.largest_horizontal()
+    largest = motion.peak_horizontal()
     assert found <= largest * (1.0 + 1e-12) + 1e-300
     assert found >= largest * (1.0 - 1e-5)  # samples miss a peak by at most (π/4000)² of it
     low, high = motion.vertical_range()
@@ -88,7 +88,7 @@ def test_largest_horizontal_is_reached_and_never_exceeded(motion):
 def test_the_bounds_hold_with_a_ramp(motion):
     time = np.linspace(0.0, 12.0, 2001)
     acceleration = motion.acceleration(time)
-    assert np.hypot(*acceleration.T[:2]).max() <= motion.largest_horizontal() * (1.0 + 1e-12) + 1e-14
+    assert np.hypot(*acceleration.T[:2]).max() <= motion.peak_horizontal() * (1.0 + 1e-12) + 1e-14
     assert np.abs(acceleration[:, 2]).max() <= motion.vertical_range()[1] * (1.0 + 1e-12) + 1e-14
 
 
@@ -116,7 +116,7 @@ def test_straight_motion_keeps_to_its_direction():
     motion = sb.Harmonic.straight(acceleration=2.0, angular_frequency=3.0, direction=math.pi / 6.0)
     np.testing.assert_allclose(motion.acceleration(0.0), [math.sqrt(3.0), 1.0, 0.0], rtol=1e-15)
     np.testing.assert_allclose(motion.acceleration(math.pi / 9.0), [math.sqrt(3.0) / 2.0, 0.5, 0.0], rtol=1e-14)
-    assert motion.largest_horizontal() == pytest.approx(2.0)
+    assert motion.peak_horizontal() == pytest.approx(2.0)
 
 
 def test_elliptic_motion_by_amplitudes_and_phase():
@@ -128,7 +128,7 @@ def test_elliptic_motion_by_amplitudes_and_phase():
 def test_vertical_motion_is_vertical():
     motion = sb.Harmonic.vertical(acceleration=3.0, angular_frequency=2.0)
     np.testing.assert_allclose(motion.acceleration(1.0), [0.0, 0.0, 3.0 * math.cos(2.0)], rtol=1e-15)
-    assert motion.largest_horizontal() == 0.0
+    assert motion.peak_horizontal() == 0.0
     assert motion.vertical_range() == (-3.0, 3.0)
 
 
@@ -145,7 +145,7 @@ def test_stroke_is_from_peak_to_peak():
     motion = sb.Harmonic.stroke(stroke=0.04, frequency=5.0, direction=0.3)
     path = motion.displacement(np.linspace(0.0, 0.2, 2001)) @ [math.cos(0.3), math.sin(0.3), 0.0]
     assert np.ptp(path) == pytest.approx(0.04, rel=1e-12)
-    assert motion.largest_horizontal() == pytest.approx(0.02 * (10.0 * math.pi) ** 2, rel=1e-14)
+    assert motion.peak_horizontal() == pytest.approx(0.02 * (10.0 * math.pi) ** 2, rel=1e-14)
     assert motion.period == pytest.approx(0.2)
 
 
@@ -157,7 +157,7 @@ def test_a_stroke_that_rises_is_measured_along_its_line():
     assert np.ptp(path @ line) == pytest.approx(0.6e-3, rel=1e-12)
     np.testing.assert_allclose(path, np.outer(path @ line, line), rtol=0.0, atol=1e-18)
     oblique = sb.Harmonic.oblique(
-        acceleration=motion.largest_horizontal(),
+        acceleration=motion.peak_horizontal(),
         angular_frequency=motion.angular_frequency,
         angle=angle,
         direction=direction,
@@ -172,7 +172,7 @@ def test_orbit_is_a_circle_of_its_diameter_at_its_speed(sense):
     motion = sb.Harmonic.orbit(diameter=0.02, rpm=300.0, sense=sense)
     path = motion.displacement([0.0, 0.05, 0.1])  # a quarter turn in 1/20 s
     np.testing.assert_allclose(path[:, :2], 0.01 * np.array([[1, 0], [0, sense], [-1, 0]]), rtol=0.0, atol=1e-15)
-    assert motion.largest_horizontal() == pytest.approx(0.01 * (10.0 * math.pi) ** 2, rel=1e-14)
+    assert motion.peak_horizontal() == pytest.approx(0.01 * (10.0 * math.pi) ** 2, rel=1e-14)
 
 
 @pytest.mark.parametrize(

@@ -54,7 +54,7 @@ def integrated(function, time, count):
 
 @every_pulse
 def test_velocity_and_displacement_are_integrals_of_the_acceleration(pulse):
-    end, largest = pulse.duration, pulse.largest_horizontal()
+    end, largest = pulse.duration, pulse.peak_horizontal()
     speed, way = largest / pulse.highest_frequency, largest / pulse.highest_frequency**2
     for time in (0.13 * end, 0.5 * end, 0.77 * end, end):
         count = math.ceil(time * pulse.highest_frequency)
@@ -91,7 +91,7 @@ def test_a_pulse_starts_from_rest_and_ends_in_uniform_motion(pulse):
 @pytest.mark.parametrize("name", BY_ACCELERATION)
 def test_the_acceleration_given_is_the_largest(name):
     pulse = BY_ACCELERATION[name]
-    assert pulse.largest_horizontal() == pytest.approx(A, rel=1e-15)
+    assert pulse.peak_horizontal() == pytest.approx(A, rel=1e-15)
     time = np.linspace(0.0, pulse.duration, 100_001)
     # At this spacing h samples miss a peak by (hω)²/8 of it at most, ω the highest frequency.
     missed = (pulse.highest_frequency * pulse.duration / 1e5) ** 2 / 8.0
@@ -133,9 +133,9 @@ def test_the_bounds_hold_from_any_time_on_and_are_met(data, share):
     if since < pulse.duration:
         time = np.append(time, np.nextafter(pulse.duration, 0.0))
     acceleration = pulse.acceleration(time)
-    largest, (low, high) = pulse.largest_horizontal(since), pulse.vertical_range(since)
+    largest, (low, high) = pulse.peak_horizontal(since), pulse.vertical_range(since)
     found = np.hypot(*acceleration.T[:2]).max()
-    whole = pulse.largest_horizontal()
+    whole = pulse.peak_horizontal()
     assert found <= largest * (1.0 + 1e-15) + 1e-300
     assert low * (1.0 + 1e-15) <= acceleration[:, 2].min()
     assert acceleration[:, 2].max() <= high * (1.0 + 1e-15)
@@ -147,9 +147,9 @@ def test_the_bounds_hold_from_any_time_on_and_are_met(data, share):
 
 @every_pulse
 def test_nothing_comes_after_the_end(pulse):
-    assert pulse.largest_horizontal(pulse.duration) == 0.0
+    assert pulse.peak_horizontal(pulse.duration) == 0.0
     assert pulse.vertical_range(pulse.duration) == (0.0, 0.0)
-    assert P(waveform=pulse.waveform, start=2.0).largest_horizontal(1.0) == pulse.largest_horizontal()
+    assert P(waveform=pulse.waveform, start=2.0).peak_horizontal(1.0) == pulse.peak_horizontal()
 
 
 @pytest.mark.parametrize(
@@ -186,7 +186,7 @@ def test_velocity_pulses_are_those_of_the_literature(name, velocity, acceleratio
     pulse = BY_VELOCITY[name]
     time = np.linspace(0.0, pulse.duration, 31)
     np.testing.assert_allclose(along(pulse.velocity(time)), velocity(time), rtol=0.0, atol=1e-6 * V)
-    assert pulse.largest_horizontal() == pytest.approx(acceleration, rel=1e-14)
+    assert pulse.peak_horizontal() == pytest.approx(acceleration, rel=1e-14)
 
 
 @pytest.mark.parametrize(("cycles", "phase"), [(1, 0.0697), (2, 0.0410)])
@@ -229,7 +229,7 @@ def test_the_spectrum_of_a_ricker_wavelet_is_largest_at_its_frequency_and_within
 def test_a_wavelet_is_cut_where_nothing_is_left(name):
     pulse = ALL[name]
     ends = np.abs(along(pulse.acceleration([0.0, np.nextafter(pulse.duration, 0.0)])))
-    assert np.all(ends < 1e-11 * pulse.largest_horizontal())
+    assert np.all(ends < 1e-11 * pulse.peak_horizontal())
     fastest = np.abs(along(pulse.velocity(np.linspace(0.0, pulse.duration, 1001)))).max()
     assert abs(along(pulse.velocity(pulse.duration))) < 1e-12 * fastest
 
@@ -281,7 +281,7 @@ def test_pulses_scale_turn_wait_and_add():
     parts = pulse.acceleration(time - 0.5) + BY_ACCELERATION["ricker"].acceleration(time - 0.5)
     np.testing.assert_allclose(combined.acceleration(time)[:, 1], -0.5 * parts[:, 0], rtol=0.0, atol=1e-14)
     np.testing.assert_allclose(combined.acceleration(time)[:, 0], 0.0, atol=1e-15)
-    assert combined.largest_horizontal(8.5) == 0.0
+    assert combined.peak_horizontal(8.5) == 0.0
     assert combined.breaks == (0.5, 0.5 + pulse.duration, 0.5 + BY_ACCELERATION["ricker"].duration)
 
 
@@ -291,7 +291,7 @@ def test_direction_and_vertical_share_set_the_line():
     np.testing.assert_allclose(pulse.acceleration(peak), [math.sqrt(3.0), 1.0, 1.0], rtol=1e-15)
     assert pulse.vertical_range() == (0.0, 1.0)
     assert pulse.scaled(-1.0).vertical_range() == (-1.0, 0.0)
-    assert P.half_sine(acceleration=-2.0, angular_frequency=W).largest_horizontal() == 2.0
+    assert P.half_sine(acceleration=-2.0, angular_frequency=W).peak_horizontal() == 2.0
     (x, y), *rest = pulse.directions()
     assert not rest
     assert math.atan2(y, x) == pytest.approx(math.pi / 6.0, rel=1e-15)
@@ -370,7 +370,7 @@ class Block(Waveform):
 def test_a_waveform_of_the_users_own_makes_a_pulse():
     pulse = P(waveform=Block(3.0, duration=2.0), start=1.0)
     np.testing.assert_allclose(along(pulse.displacement([1.0, 3.0, 4.0])), [0.0, 6.0, 12.0], rtol=1e-15)
-    assert pulse.largest_horizontal(2.9) == 3.0
+    assert pulse.peak_horizontal(2.9) == 3.0
 
 
 COLUMN = sb.Column.dimensionless(slenderness=0.1)

@@ -32,7 +32,7 @@ def differences(function, time, step):
 @pytest.mark.parametrize("sweep", SWEEPS)
 def test_velocity_and_acceleration_are_derivatives(sweep):
     time = np.linspace(0.1, 11.9, 60)
-    largest, step = sweep.largest_horizontal(), 0.02 / sweep.highest_frequency
+    largest, step = sweep.peak_horizontal(), 0.02 / sweep.highest_frequency
     # The error of the difference is (ωh)⁶/140 of the slope at ω, and that of the rounding 1e-15 over ωh.
     np.testing.assert_allclose(
         differences(sweep.velocity, time, step), sweep.acceleration(time), rtol=0.0, atol=1e-9 * largest
@@ -91,7 +91,7 @@ def test_a_sweep_that_does_not_change_is_harmonic(make, quantity):
         np.testing.assert_allclose(
             getattr(sweep, name)(time), getattr(steady, name)(time), rtol=0.0, atol=1e-12 * scale
         )
-    assert sweep.largest_horizontal() == pytest.approx(steady.largest_horizontal(), rel=1e-14)
+    assert sweep.peak_horizontal() == pytest.approx(steady.peak_horizontal(), rel=1e-14)
 
 
 def test_frequencies_go_as_the_law_says():
@@ -119,7 +119,7 @@ def test_the_bounds_hold_from_any_time_on(index, since, vertical):
     )
     acceleration = sweep.acceleration(np.linspace(since, 15.0, 4001))
     low, high = sweep.vertical_range(since)
-    assert np.hypot(*acceleration.T[:2]).max() <= sweep.largest_horizontal(since) * (1.0 + 1e-15)
+    assert np.hypot(*acceleration.T[:2]).max() <= sweep.peak_horizontal(since) * (1.0 + 1e-15)
     assert low * (1.0 + 1e-15) <= acceleration[:, 2].min()
     assert acceleration[:, 2].max() <= high * (1.0 + 1e-15)
 
@@ -129,7 +129,7 @@ def test_the_bound_is_near_what_is_reached(sweep):
     found = np.abs(sweep.acceleration(np.linspace(0.0, 12.0, 50_001))[:, 0]).max()
     # Its last peak of displacement lies within half a cycle of the end with the higher frequency.
     slack = 1e-4 if sweep.quantity is SweepQuantity.ACCELERATION else 0.15
-    assert found >= sweep.largest_horizontal() * (1.0 - slack)
+    assert found >= sweep.peak_horizontal() * (1.0 - slack)
 
 
 @pytest.mark.parametrize("sweep", SWEEPS)
@@ -146,12 +146,12 @@ def test_before_and_after_the_base_moves_uniformly(sweep):
     assert late.breaks == (1.5, 13.5)
     assert late.duration == 13.5
     assert np.all(late.acceleration([0.0, 1.4, 13.5, 17.0]) == 0.0)
-    assert late.largest_horizontal(13.5) == 0.0
+    assert late.peak_horizontal(13.5) == 0.0
     scale = np.abs(late.velocity(np.linspace(1.5, 13.5, 101))).max()
     for edge in (1.5, 13.5):
         before, after = edge - 1e-9, edge + 1e-9
         np.testing.assert_allclose(
-            late.velocity(before), late.velocity(after), rtol=0.0, atol=4e-9 * late.largest_horizontal()
+            late.velocity(before), late.velocity(after), rtol=0.0, atol=4e-9 * late.peak_horizontal()
         )
         np.testing.assert_allclose(late.displacement(before), late.displacement(after), rtol=0.0, atol=4e-9 * scale)
     np.testing.assert_allclose(

@@ -31,7 +31,7 @@ def test_simulate_prints_what_simulate_finds(capsys):
     motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
     found = sb.simulate(model, motion, tilt=(0.04, 0.0), tilt_rate=(0.0, 0.07), duration=20.0)
     assert told["outcome"] == found.outcome.name
-    assert told["measures"]["largest_tilt"] == found.measures["largest_tilt"]
+    assert told["measures"]["peak_tilt"] == found.measures["peak_tilt"]
 
 
 def test_options_win_over_a_file_of_the_same_names(tmp_path, capsys):

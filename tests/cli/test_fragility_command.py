@@ -87,7 +87,7 @@ def test_options_run_what_python_runs(folder, capsys, saved):
     told = json.loads(capsys.readouterr().out)
     records = {record.name: record for record in sb.read_records(folder / "quakes")}
     runs = incremental_dynamic_analysis(MODEL, records, scales=np.geomspace(0.8, 8.0, 6))
-    np.testing.assert_array_equal(saved(folder / "runs.nc")["largest_tilt"], runs["largest_tilt"])
+    np.testing.assert_array_equal(saved(folder / "runs.nc")["peak_tilt"], runs["peak_tilt"])
     fits = fragility_of_runs(runs)
     for place, row in enumerate(told["limit_states"]):
         expected = float(fits["median"][place])
@@ -112,7 +112,7 @@ def test_a_described_study_is_that_of_its_parts(folder):
     same = incremental_dynamic_analysis(
         MODEL, study.records, scales=[0.8, 1.6, 3.2, 6.4], parameters=samples, tail=2.0, intensity="PGA/(g tan α)"
     )
-    np.testing.assert_array_equal(runs["largest_tilt"], same["largest_tilt"])
+    np.testing.assert_array_equal(runs["peak_tilt"], same["peak_tilt"])
     fits = study.fits(runs)
     assert fits.attrs["counting"] == Counting.FIRST.value
     curve = HazardCurve(**HAZARD, units="1", quantity="PGA/(g tan α)")

@@ -33,7 +33,7 @@ def test_ladder_prints_what_ladder_finds(capsys):
         duration=10.0,
     )
     assert printed["model"] == found["model"].to_numpy().tolist()
-    assert printed["largest_tilt"] == found["largest_tilt"].to_numpy().tolist()
+    assert printed["peak_tilt"] == found["peak_tilt"].to_numpy().tolist()
     assert printed["deviation"] == found["deviation"].to_numpy().tolist()
 
 
@@ -62,8 +62,8 @@ def test_demands_without_bound_are_told_in_words_and_are_null_in_json(tmp_path, 
     for command in ("hierarchy", "simulate"):
         assert run([command, str(description), "--json"]) == 0
         printed[command] = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)  # Infinity is no JSON
-    assert printed["hierarchy"]["largest_friction_demand"][0] is None
-    assert printed["simulate"]["measures"]["largest_friction_demand"] is None
+    assert printed["hierarchy"]["peak_friction_demand"][0] is None
+    assert printed["simulate"]["measures"]["peak_friction_demand"] is None
 
 
 def test_a_file_of_simulate_serves_the_ladder(tmp_path, capsys):
@@ -129,11 +129,11 @@ def test_demands_and_warnings_are_printed(capsys):
     options = ["--model", "rolling", "--spin-damping", "0.1", "--friction-coefficient", "0.02"]
     assert run(["simulate", *CASE, *options]) == 0
     table = capsys.readouterr().out
-    assert all(text in table for text in ("needs a friction coefficient of", "least normal force", "it would slip"))
+    assert all(text in table for text in ("needs a friction coefficient of", "minimum normal force", "it would slip"))
     assert run(["simulate", *CASE, *options, "--json"]) == 0
     printed = told(capsys)
     assert printed["warnings"][0].startswith("it would slip")
-    assert printed["measures"]["largest_friction_demand"] > 0.02
+    assert printed["measures"]["peak_friction_demand"] > 0.02
 
 
 def test_another_model_keeps_what_it_knows_of_the_file(tmp_path, capsys):

@@ -106,7 +106,7 @@ def test_after_ctrl_c_what_was_computed_is_in_the_file(tmp_path, capsys, interru
     partial = saved(path)
     known = partial["outcome"].values >= 0
     assert 0 < known.sum() == partial["computed"] < known.size
-    assert np.isnan(partial["largest_tilt"].values[~known]).all()
+    assert np.isnan(partial["peak_tilt"].values[~known]).all()
     whole = sb.studies.overturning_map(
         MODEL,
         CIRCLE,

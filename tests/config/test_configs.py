@@ -271,7 +271,7 @@ def test_a_motion_of_the_users_own_runs_and_its_provenance_says_it_cannot_be_rep
             t = np.asarray(time, dtype=float)
             return ((-1.0) ** order * np.exp(-t) * 0.01, np.zeros_like(t), np.zeros_like(t))
 
-        def largest_horizontal(self, since=0.0):
+        def peak_horizontal(self, since=0.0):
             return 0.01 * math.exp(-since)
 
         def vertical_range(self, since=0.0):

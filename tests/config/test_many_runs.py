@@ -34,7 +34,7 @@ def test_what_varies_may_be_missing_in_the_motion_and_is_met_exactly():
     np.testing.assert_allclose(setup.options["over"]["angular_frequency"], [1.0, 2.0, 4.0])
     found = sb.studies.overturning_map(setup.model, setup.motion, **setup.options)
     _, motion = sb.with_parameters(setup.model, setup.motion, angular_frequency=2.0, acceleration=0.2)
-    assert motion.largest_horizontal(0.0) == 0.2
+    assert motion.peak_horizontal(0.0) == 0.2
     assert found["outcome"].dims == ("angular_frequency", "acceleration")
 
 

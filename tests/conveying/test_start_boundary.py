@@ -45,7 +45,7 @@ def test_runs_stay_below_and_begin_above_with_what_is_told(c, mu, ratio, incline
     least = float(found["acceleration"])
     below, above = (shaken(model, least * factor, ratio) for factor in (1.0 - 1e-3, 1.0 + 1e-2))
     assert not below.events
-    assert below.measures["largest_tilt"] == 0.0
+    assert below.measures["peak_tilt"] == 0.0
     begins = {FirstMotion.SLIDE: "slide", FirstMotion.ROCK: "uplift"}
     assert above.events[0].kind == begins[FirstMotion(int(found["first_motion"]))]
 
@@ -55,7 +55,7 @@ def test_what_slides_from_rest_never_tips_by_horizontal_motion(excess):
     found = sb.conveying.start_boundary(model_of(0.3, 0.25), slenderness=0.3).squeeze()
     run = shaken(model_of(0.3, 0.25), excess * float(found["rock"]))
     assert set(np.unique(run.data["contact"])) <= {Contact.RESTING, Contact.SLIDING}
-    assert run.measures["largest_tilt"] == 0.0
+    assert run.measures["peak_tilt"] == 0.0
 
 
 def test_what_rocks_slips_on_its_rim_only_as_it_bears_more():

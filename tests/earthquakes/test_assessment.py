@@ -65,7 +65,7 @@ def test_verdicts_are_those_of_single_runs(found):
             told = verdicts.sel(column="slim", record=name, dissipation=level, vertical="with", scale=1.0)
             assert int(told["overturned"]) == (run.outcome is sb.Outcome.OVERTURNED)
             if run.outcome is not sb.Outcome.OVERTURNED:
-                ratio = run.measures["largest_tilt"] / column.column.tipping_angle
+                ratio = run.measures["peak_tilt"] / column.column.tipping_angle
                 assert float(told["tilt_ratio"]) == pytest.approx(ratio, rel=1e-5, abs=1e-9)
 
 
@@ -211,13 +211,13 @@ def test_the_rest_threshold_is_an_option_of_all_runs():
         )
         assert found.setting["options"] == {"rest_energy": repr(value)}
         own = found.data["verdicts"]["tilt_ratio"].sel(dissipation="central", vertical="with", scale=1.0).item()
-        shown = found.data["histories"]["largest_tilt_ratio"].sel(run="stated").item()
+        shown = found.data["histories"]["peak_tilt_ratio"].sel(run="stated").item()
         scanned = found.data["margins"]["tilt_ratio"].sel(case="central", margin_scale=1.0).item()
         assert own == pytest.approx(shown, rel=1e-7)
         assert own == pytest.approx(scanned, rel=1e-7)
         tilts[value] = own
         run = sb.simulate(sb.Slender(column.column, damping=0.6), twice, duration=10.0, rest_energy=value)
-        assert own == pytest.approx(run.measures["largest_tilt"] / column.column.tipping_angle, rel=1e-5)
+        assert own == pytest.approx(run.measures["peak_tilt"] / column.column.tipping_angle, rel=1e-5)
     assert abs(tilts[1e-2] - tilts[1e-7]) > 1e-3
 
 
@@ -277,7 +277,7 @@ def test_the_margin_is_drawn_by_its_two_runs_and_the_stated_one(found):
     own = margins.sel(record=found.data["summary"]["governing"].sel(column="slim").item())
     stands, overturns = runs.sel(run="stands"), runs.sel(run="overturns")
     assert float(overturns["scale"]) == float(own["least_overturning"])
-    assert (int(overturns["overturned"]), float(overturns["largest_tilt_ratio"])) == (1, np.inf)
+    assert (int(overturns["overturned"]), float(overturns["peak_tilt_ratio"])) == (1, np.inf)
     if np.isfinite(float(own["largest_below"])):
         assert float(stands["scale"]) == float(own["largest_below"])
         assert int(stands["overturned"]) == 0
@@ -286,7 +286,7 @@ def test_the_margin_is_drawn_by_its_two_runs_and_the_stated_one(found):
     if (found.data["margins"]["bands"].sel(column="stout") == 0).all():
         assert np.isnan(never["scale"].sel(run="overturns"))
         assert float(never["scale"].sel(run="stands")) == found.data["margins"]["margin_scale"].values[-1]
-        assert float(never["largest_tilt_ratio"].sel(run="stands")) > 0.0
+        assert float(never["peak_tilt_ratio"].sel(run="stands")) > 0.0
 
 
 def judged(states, least, tilt):
@@ -322,7 +322,7 @@ def judged(states, least, tilt):
         ([[0, 0], [1, 0], [1, 1]], [[0.7, 0.7], [0.5, 1.4], [0.9, 0.95]], "c"),
         # None as recorded: the least scale.
         ([[0, 0], [0, 0], [0, 0]], [[np.nan, np.nan], [2.0, 2.5], [1.9, 2.6]], "b"),
-        # None at all: the largest tilt.
+        # None at all: the peak tilt.
         ([[0, 0], [0, 0], [0, -1]], [[np.nan, np.nan]] * 3, "b"),
     ],
 )
@@ -353,8 +353,8 @@ def test_what_slides_first_is_followed_by_the_model_that_slides():
     sliding = assessment.data["sliding"].isel(scale=0)
     assert (sliding["overturned"].sel(column="slim") == -1).all()
     strong, weak = (sliding.sel(column="stout", record=name) for name in ("strong", "weak"))
-    assert float(weak["slip_path"]) == float(weak["largest_slip"]) == float(weak["time_sliding"]) == 0.0
-    assert float(strong["slip_path"]) >= float(strong["largest_slip"]) >= float(strong["residual_slip"]) > 0.0
+    assert float(weak["slip_path"]) == float(weak["peak_slip"]) == float(weak["time_sliding"]) == 0.0
+    assert float(strong["slip_path"]) >= float(strong["peak_slip"]) >= float(strong["residual_slip"]) > 0.0
     assert 0.0 < float(strong["time_sliding"]) < 4.0
     assert int(strong["overturned"]) in (0, 1)
     assert assessment.setting["sliding"] is True
@@ -450,9 +450,9 @@ def test_what_the_contact_must_bear_and_the_planar_answer_are_told():
     whole = assessed(columns=("slim",), contact=True, planar=True)
     verdicts = whole.data["verdicts"].sel(column="slim", dissipation="central", vertical="with", scale=0.5)
     run = sb.simulate(sb.Slender(model(0.2).column, damping=0.05), RECORDS[1].scaled(0.5), duration=4.0)
-    if "largest_friction_demand" in run.measures:
+    if "peak_friction_demand" in run.measures:
         told = float(verdicts["friction_demand"].sel(record="middle"))
-        assert told == pytest.approx(run.measures["largest_friction_demand"], rel=0.02)
+        assert told == pytest.approx(run.measures["peak_friction_demand"], rel=0.02)
     margins = whole.data["margins"].sel(column="slim", case="central")
     assert np.isfinite(margins["friction_demand"].sel(record="middle")).all()
     need, least = (margins[name].sel(record="middle") for name in ("friction_demand", "least_overturning"))

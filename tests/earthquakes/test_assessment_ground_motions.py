@@ -53,7 +53,7 @@ def test_peaks_are_the_median_of_the_peaks_along_all_directions():
     times = np.linspace(0.0, RECORD.end, 8 * (len(RECORD.samples) - 1) + 1)
     x, y, _ = RECORD.derivative(times, VELOCITY)
     assert velocity == pytest.approx(np.median(np.abs(np.stack([x, y], axis=-1) @ along).max(axis=0)), rel=1e-3)
-    assert acceleration <= RECORD.largest_horizontal(0.0)
+    assert acceleration <= RECORD.peak_horizontal(0.0)
 
 
 def test_a_motion_on_a_circle_has_one_peak_in_all_directions():

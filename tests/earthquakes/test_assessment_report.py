@@ -81,7 +81,9 @@ def with_contact(bare):
     by_record = demands.max(("dissipation", "vertical"))
     summary = bare.data["summary"].assign(friction_by_record=by_record, friction_demand=by_record.max("record"))
     more = {
-        "verdicts": verdicts.assign(friction_demand=demands, pivoting_demand=demands / 3.0, least_normal_force=demands),
+        "verdicts": verdicts.assign(
+            friction_demand=demands, pivoting_demand=demands / 3.0, minimum_normal_force=demands
+        ),
         "planar": told,
         "summary": summary,
     }
@@ -267,7 +269,7 @@ def test_figures_that_would_show_nothing_are_left_out(found, folder):
     names = {path.stem for path in (folder / "figures").glob("*.png")}
     assert {"records-1", "spectra-1", "margins-1", "history-1"} <= names
     still = _only(found, "stout", "weak & quiet")
-    quiet = still.data["histories"].assign(largest_tilt_ratio=("column", [0.0]))
+    quiet = still.data["histories"].assign(peak_tilt_ratio=("column", [0.0]))
     names = report_pictures(replace(still, data={**still.data, "histories": quiet}))
     assert not any(name.startswith(("margins", "tilts", "history", "robustness")) for name in names)
 

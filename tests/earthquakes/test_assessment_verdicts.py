@@ -94,7 +94,7 @@ def made(
         values = np.array([[[slid.get(name, (0, 0))] for name in RECORDS]], dtype=np.int8)
         arrays = {name: (tuple(known), values[..., place]) for place, name in enumerate(("overturned", "uncertain"))}
         still = np.where(values[..., 0] == 0, 0.012, np.nan)
-        data["sliding"] = xr.Dataset({**arrays, "largest_slip": (tuple(known), still)}, coords=known)
+        data["sliding"] = xr.Dataset({**arrays, "peak_slip": (tuple(known), still)}, coords=known)
     setting = {
         "friction_coefficient": {"k": friction},
         "contact": contact,

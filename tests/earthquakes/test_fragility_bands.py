@@ -63,7 +63,7 @@ def codes(*outcomes):
 def test_limit_states_are_nested_and_follow_the_tilt():
     c = 0.2
     tilt = np.arctan(c) * np.array([0.0, 0.05, 0.2, 0.7, 1.2])
-    runs = xr.Dataset({"outcome": codes(*[Outcome.AT_REST] * 5), "largest_tilt": ("run", tilt)})
+    runs = xr.Dataset({"outcome": codes(*[Outcome.AT_REST] * 5), "peak_tilt": ("run", tilt)})
     found = limit_states(runs, slenderness=c)
     assert found["limit_state"].values.tolist() == [
         "tilt 0.001 α",
@@ -78,19 +78,19 @@ def test_limit_states_are_nested_and_follow_the_tilt():
 
 def test_a_run_that_overturned_reached_all_and_one_that_stopped_early_does_not_tell_the_rest():
     outcomes = codes(Outcome.OVERTURNED, Outcome.FAILED, Outcome.LIMIT_REACHED, Outcome.LIFTED_OFF)
-    runs = xr.Dataset({"outcome": outcomes, "largest_tilt": ("run", [0.01, 0.06, 0.02, 0.0])})
+    runs = xr.Dataset({"outcome": outcomes, "peak_tilt": ("run", [0.01, 0.06, 0.02, 0.0])})
     found = limit_states(runs, slenderness=0.1, tilt_ratios=(1e-3, 0.5)).transpose("run", "limit_state")
     assert found.values.tolist() == [[1, 1, 1], [1, 1, -1], [1, -1, -1], [-1, -1, -1]]
 
 
 def test_a_run_not_computed_tells_nothing():
-    runs = xr.Dataset({"outcome": ("run", [-1]), "largest_tilt": ("run", [np.nan])})
+    runs = xr.Dataset({"outcome": ("run", [-1]), "peak_tilt": ("run", [np.nan])})
     assert np.all(limit_states(runs, slenderness=0.1) == -1)
 
 
 def test_the_slenderness_is_that_of_each_run():
     runs = xr.Dataset(
-        {"outcome": codes(Outcome.AT_REST, Outcome.AT_REST), "largest_tilt": ("run", [0.08, 0.08])},
+        {"outcome": codes(Outcome.AT_REST, Outcome.AT_REST), "peak_tilt": ("run", [0.08, 0.08])},
         coords={"slenderness": ("run", [0.1, 0.3])},
     )
     assert limit_states(runs, tilt_ratios=(0.5,)).sel(limit_state="tilt 0.5 α").values.tolist() == [1, 0]
@@ -118,11 +118,11 @@ def test_limit_states_of_an_ensemble_are_those_of_its_runs():
     ],
 )
 def test_mistakes_are_told(options, message):
-    runs = xr.Dataset({"outcome": codes(Outcome.AT_REST), "largest_tilt": ("run", [0.0])})
+    runs = xr.Dataset({"outcome": codes(Outcome.AT_REST), "peak_tilt": ("run", [0.0])})
     with pytest.raises(ParameterError, match=message):
         limit_states(runs, **options)
 
 
 def test_runs_without_tilts_are_refused():
-    with pytest.raises(ParameterError, match="runs must hold the variable largest_tilt, got outcome"):
+    with pytest.raises(ParameterError, match="runs must hold the variable peak_tilt, got outcome"):
         limit_states(xr.Dataset({"outcome": codes(Outcome.AT_REST)}), slenderness=0.1)

@@ -51,7 +51,7 @@ def test_runs_are_those_of_an_ensemble_under_the_scaled_records_bit_for_bit(foun
                 parameters={"scale": SCALES, "motion": 0 if acts else 1, "rotation": 0.0, "size": 1.0},
             )
             own = part.sel(vertical=acts)
-            for name in ("outcome", "largest_tilt", "end_tilt", "decided_at"):
+            for name in ("outcome", "peak_tilt", "end_tilt", "decided_at"):
                 np.testing.assert_array_equal(own[name].values, runs[name].values)
     assert len(np.unique(found["outcome"])) > 1
 
@@ -68,7 +68,7 @@ def test_each_run_has_the_column_of_its_property_sample(found):
         alone = sb.simulate(model, shaken, duration=float(run["followed"]))
         assert sb.Outcome(int(run["outcome"])) == alone.outcome
         if alone.outcome is not sb.Outcome.OVERTURNED:
-            assert float(run["largest_tilt"]) == pytest.approx(alone.measures["largest_tilt"], rel=1e-4, abs=1e-9)
+            assert float(run["peak_tilt"]) == pytest.approx(alone.measures["peak_tilt"], rel=1e-4, abs=1e-9)
         assert float(run["followed"]) == pytest.approx(RECORDS[i].duration + 20.0 / model.column.frequency_parameter)
 
 
@@ -79,9 +79,9 @@ def test_without_its_vertical_component_a_record_is_that_record(found):
         MODEL, [*flat, RECORDS[0].changed("", name="any with a vertical component")], scales=SCALES
     )
     np.testing.assert_array_equal(off["outcome"], both["outcome"][:2])
-    np.testing.assert_array_equal(off["largest_tilt"], both["largest_tilt"][:2])
+    np.testing.assert_array_equal(off["peak_tilt"], both["peak_tilt"][:2])
     on = found.sel(vertical=True).isel(rotation=0, property_sample=1)
-    assert (on["largest_tilt"].values != off["largest_tilt"].values).any()
+    assert (on["peak_tilt"].values != off["peak_tilt"].values).any()
 
 
 def test_turning_the_record_turns_the_answer_of_a_round_column(found):
@@ -99,7 +99,7 @@ def test_the_direction_of_a_line_does_not_matter(angle):
     lines = {"along x": PULSES["short"].rotated(-0.7), "turned": PULSES["short"].rotated(angle)}
     along = incremental_dynamic_analysis(MODEL, lines, scales=[1.5, 2.0, 3.0, 4.0])
     np.testing.assert_array_equal(along["outcome"][0], along["outcome"][1])
-    np.testing.assert_allclose(along["largest_tilt"][0], along["largest_tilt"][1], rtol=1e-6)
+    np.testing.assert_allclose(along["peak_tilt"][0], along["peak_tilt"][1], rtol=1e-6)
     assert 0.0 < float(along["tilt_ratio"][0, 1]) < 1.0
 
 
@@ -120,10 +120,10 @@ def test_what_was_not_asked_for_is_no_dimension():
     assert several["outcome"].dims == ("record", "property_sample", "scale")
     assert several["damping"].values.tolist() == [0.03]
     np.testing.assert_array_equal(
-        one["largest_tilt"],
+        one["peak_tilt"],
         incremental_dynamic_analysis(
             sb.with_parameters(MODEL, PULSES["short"], damping=0.03)[0], PULSES["short"], scales=[2.0]
-        )["largest_tilt"],
+        )["peak_tilt"],
     )
 
 

@@ -62,7 +62,7 @@ def test_the_worst_direction_counts_and_a_plane_across_the_pulse_sees_nothing():
         found["worst_planar_tilt_ratio"], found["planar_tilt_ratio"].max("direction", skipna=False)
     )
     weaker = in_one_direction(records["between"], 0.0)
-    assert weaker.largest_horizontal() >= abs(weaker.acceleration(0.4)[0])
+    assert weaker.peak_horizontal() >= abs(weaker.acceleration(0.4)[0])
     # A component is weaker than the whole: the plane is on the unsafe side.
     between = found.sel(record="between")
     assert float(between["log_ratio"].max()) > 0.05

@@ -34,7 +34,7 @@ def bands(over, codes, motion=PULSE, uncertain=()):
     shape = (*cases.shape, scales.size)
     found = band_table(cases, scan, Edges.between(scan))
     found = found.assign(outcome=(dims, codes.reshape(shape)), uncertain=(dims, unsure.reshape(shape)))
-    found = found.assign(largest_tilt=(dims, np.broadcast_to(0.01 * scales, shape)))
+    found = found.assign(peak_tilt=(dims, np.broadcast_to(0.01 * scales, shape)))
     coords = {**cases.coordinates(), "scale": ("scale", scales, {"long_name": "factor of the base motion"})}
     return found.assign_coords(coords).assign_attrs(kind="overturning bands", width=1e-3)
 

@@ -21,7 +21,7 @@ OFF = 1e-10
 
 @dataclass
 class Track:
-    """What became of a run: whether it overturned, its largest tilt [rad], how often it was released after a rest."""
+    """What became of a run: whether it overturned, its peak tilt [rad], how often it was released after a rest."""
 
     overturned: bool = False
     largest: float = 0.0

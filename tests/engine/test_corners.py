@@ -156,7 +156,7 @@ class Broken(BaseMotion):
         del order
         return tuple(np.full(np.shape(time), value) for value in self.values)
 
-    def largest_horizontal(self, since=0.0):
+    def peak_horizontal(self, since=0.0):
         del since
         return self.bound
 
@@ -173,7 +173,7 @@ class Broken(BaseMotion):
     [
         (Broken((math.nan, 0.0, 0.0)), "finite acceleration"),
         (Broken((0.5, 0.0)), "three arrays"),
-        (Broken((0.5, 0.0, 0.0), bound=0.1), "largest_horizontal must bound"),
+        (Broken((0.5, 0.0, 0.0), bound=0.1), "peak_horizontal must bound"),
     ],
 )
 def test_a_motion_that_breaks_its_promises_is_told(motion, told):

@@ -57,18 +57,18 @@ def test_a_single_run_whose_outcome_depends_on_the_rest_threshold_is_uncertain_a
     ("run", "expected"),
     [
         ({}, False),
-        ({"largest_tilt": 0.6}, False),
-        ({"largest_tilt": 0.6, "released_again": True}, True),
-        ({"largest_tilt": 0.4, "released_again": True}, False),
-        ({"largest_tilt": 0.94}, False),
-        ({"largest_tilt": 0.96}, True),
-        ({"overturned": True, "largest_tilt": 2.0}, False),
-        ({"overturned": True, "largest_tilt": 2.0, "released_again": True}, True),
-        ({"overturned": True, "largest_tilt": 2.0, "decided": 1.01 * LATE}, True),
+        ({"peak_tilt": 0.6}, False),
+        ({"peak_tilt": 0.6, "released_again": True}, True),
+        ({"peak_tilt": 0.4, "released_again": True}, False),
+        ({"peak_tilt": 0.94}, False),
+        ({"peak_tilt": 0.96}, True),
+        ({"overturned": True, "peak_tilt": 2.0}, False),
+        ({"overturned": True, "peak_tilt": 2.0, "released_again": True}, True),
+        ({"overturned": True, "peak_tilt": 2.0, "decided": 1.01 * LATE}, True),
     ],
 )
 def test_a_run_is_in_doubt_where_a_small_change_had_the_chance_to_grow(run, expected):
-    usual = {"overturned": False, "decided": 10.0, "largest_tilt": 0.1, "released_again": False}
+    usual = {"overturned": False, "decided": 10.0, "peak_tilt": 0.1, "released_again": False}
     given = usual | run
-    given["largest_tilt"] *= math.atan(0.2)
+    given["peak_tilt"] *= math.atan(0.2)
     assert bool(in_doubt(**given, slenderness=0.2)) is expected

@@ -101,7 +101,7 @@ def test_runs_are_those_of_simulate_but_where_they_are_sensitive(motion):
         assert bool(run["planar"]) == single.planar
         assert int(run["uplifts"]) == sum(event.kind == "uplift" for event in single.events)
         assert float(run["decided_at"]) == pytest.approx(single.decided_at, abs=1e-5)
-        assert float(run["largest_tilt"]) == pytest.approx(single.measures["largest_tilt"], rel=1e-5, abs=1e-9)
+        assert float(run["peak_tilt"]) == pytest.approx(single.measures["peak_tilt"], rel=1e-5, abs=1e-9)
 
 
 def test_a_run_does_not_depend_on_its_neighbours_its_place_or_the_threads():

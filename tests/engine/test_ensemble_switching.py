@@ -145,7 +145,7 @@ def test_without_slip_it_rolls_as_the_rolling_column():
     rough = ensemble(Sliding(COLUMN, friction_coefficient=50.0, passage_tilt=1e-9), **shared)
     rolling = sb.simulate_ensemble(sb.Rolling(COLUMN), CIRCLE, **shared, demands=True)  # a kernel of others
     np.testing.assert_array_equal(rough["slips"], 0)
-    for name in ("end_tilt", "end_spin", "largest_tilt", "turns"):
+    for name in ("end_tilt", "end_spin", "peak_tilt", "turns"):
         np.testing.assert_allclose(rough[name], rolling[name], atol=1e-7, err_msg=name)
 
 

@@ -150,7 +150,7 @@ def test_a_trace_that_is_emptied_several_times_loses_nothing(case):
 
 def test_a_step_that_is_taken_back_leaves_no_trace():
     whole = followed("spins freely")[0]
-    limit = (1.0 - 1e-7) * whole.log(Log.LARGEST_TILT)  # reached between the ends of a step
+    limit = (1.0 - 1e-7) * whole.log(Log.PEAK_TILT)  # reached between the ends of a step
     run, other = followed("spins freely", tilt_limit=limit)[0], referred("spins freely", tilt_limit=limit)
     assert run.status == Status.LIMIT
     assert run.trajectory.end * run.trajectory.model.time_scale == pytest.approx(other.events[-1].time, abs=1e-6)

@@ -48,7 +48,7 @@ def released(model, turning, duration, **options):
 @pytest.mark.parametrize("turning", [1e-2, 1e-4, 1e-7])
 @pytest.mark.parametrize("restitution", [0.9, 0.6])
 def test_a_close_passage_keeps_the_square_of_the_restitution_of_the_kinetic_energy(model_type, turning, restitution):
-    # Followed by steps, or in closed form: the smallest turning leads to a hop. What the weight did at the least tilt
+    # Followed by steps, or in closed form: the smallest turning leads to a hop. What the weight did at the minimum tilt
     # stays; the spin that rolling brings there, of the order of the turning, is no part of it.
     run = released(with_loss(model_type, restitution, passage_tilt=0.05 * C), turning, 2.0, samples=701)
     before, after = energies(run)
@@ -61,7 +61,7 @@ def test_a_close_passage_keeps_the_square_of_the_restitution_of_the_kinetic_ener
 
 @pytest.mark.parametrize("model_type", MODELS)
 def test_what_a_passage_costs_is_the_part_of_the_kinetic_energy_that_is_scaled(model_type):
-    # At the passage itself: the state there is found by following the lossless column to its least tilt.
+    # At the passage itself: the state there is found by following the lossless column to its minimum tilt.
     model = with_loss(model_type, 0.7, passage_tilt=0.2 * C)
     lossless = released(model_type(COLUMN), 0.05, 2.0, samples=20001)
     least = int(np.argmin(lossless.data["amplitude"].to_numpy()))

@@ -37,7 +37,7 @@ class Own(sb.BaseMotion):
             x = x + 0.05 * (t > 10.123)
         return (x, y, z) if order == 2 else (0.0 * t,) * 3
 
-    def largest_horizontal(self, since=0.0):
+    def peak_horizontal(self, since=0.0):
         return 0.35
 
     def vertical_range(self, since=0.0):
@@ -106,7 +106,7 @@ def test_a_broken_promise_is_refused_in_one_line_that_names_it(run, motion, told
 
 
 PROPERTIES = ("highest_frequency", "duration", "period", "breaks")
-METHODS = ("derivative", "largest_horizontal", "vertical_range", "directions")
+METHODS = ("derivative", "peak_horizontal", "vertical_range", "directions")
 
 
 @pytest.mark.parametrize("run", [sb.simulate, sb.simulate_ensemble])

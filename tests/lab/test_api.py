@@ -32,7 +32,7 @@ def test_a_run_is_that_of_the_library(client):
     values = {**CIRCLE, "tilt": [0.04, 0.0], "tilt_rate": [0.0, 0.07], "duration": 30.0, "samples": 700}
     told, run = client.post("/api/simulate", json=values).json(), described_run(values)
     assert (told["outcome"], told["reason"]) == (run.outcome.name, run.reason)
-    assert told["measures"]["largest_tilt"] == run.measures["largest_tilt"]
+    assert told["measures"]["peak_tilt"] == run.measures["peak_tilt"]
     assert told["series"]["amplitude"] == pytest.approx(run.data["amplitude"].values.tolist(), rel=SENT, abs=1e-12)
     assert told["series"]["time"][-1] == pytest.approx(30.0)
 
@@ -68,7 +68,7 @@ def test_the_python_of_a_run_makes_the_same_run(client, tmp_path, monkeypatch):
     told = client.post("/api/simulate", json={**CIRCLE, "tilt": [0.04, 0.0], "duration": 10.0}).json()
     exec(told["python"], names)  # noqa: S102  it is what users are given
     assert names["run"].outcome.name == told["outcome"]
-    assert names["run"].measures["largest_tilt"] == told["measures"]["largest_tilt"]
+    assert names["run"].measures["peak_tilt"] == told["measures"]["peak_tilt"]
 
 
 def test_a_description_is_told_without_a_run(client):
@@ -173,7 +173,7 @@ def test_an_uploaded_record_moves_the_base(client):
     run = client.post(
         "/api/simulate", json={"column": column, "motion": motion, "model": {"kind": "wobbling", "damping": 0.05}}
     ).json()
-    assert run["measures"]["largest_tilt"] > 0.0
+    assert run["measures"]["peak_tilt"] > 0.0
     assert "read_record('made.txt', units='g').scaled(1.5)" in run["python"]
 
 

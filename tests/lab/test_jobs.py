@@ -95,7 +95,7 @@ def test_exact_orbits_are_told_with_their_bifurcations(client):
     motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=last["angular_frequency"])
     model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
     run = sb.simulate(model, motion, tilt=last["tilt"], tilt_rate=last["tilt_rate"], duration=10.0)
-    for measure in ("least_tilt", "largest_tilt"):  # circular rolling: one tilt all the time
+    for measure in ("minimum_tilt", "peak_tilt"):  # circular rolling: one tilt all the time
         assert run.measures[measure] == pytest.approx(last["mean_tilt"], rel=1e-5)
     (found,) = job["result"]["bifurcations"]
     assert found["angular_frequency"] == pytest.approx(sb.theory.critical_frequency(0.065, c=0.1, eta=0.1), abs=1e-6)

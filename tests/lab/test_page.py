@@ -66,12 +66,12 @@ def test_the_motion_drawn_is_the_motion_computed(watched, preset):
 
 def test_a_moved_slider_moves_motion_and_curves(watched):
     page = watched.page
-    before = page.evaluate("() => window.stylobate.laboratory.answer.measures.largest_tilt")
+    before = page.evaluate("() => window.stylobate.laboratory.answer.measures.peak_tilt")
     slider = page.get_by_label("Damping, slider")
     slider.focus()
     with page.expect_response(re.compile("/api/response")), page.expect_response(re.compile("/api/simulate")):
         slider.press("ArrowRight")
-    page.wait_for_function(f"() => window.stylobate.laboratory.answer.measures.largest_tilt !== {before}")
+    page.wait_for_function(f"() => window.stylobate.laboratory.answer.measures.peak_tilt !== {before}")
     damping = page.evaluate("() => window.stylobate.state().description.model.damping")
     assert damping > 0.1
     page.wait_for_function(f"() => decodeURIComponent(location.hash).includes('damping:{damping}')")

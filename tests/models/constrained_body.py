@@ -87,7 +87,7 @@ class Track:
         Kinetic and potential energy, the latter from the height of the plane [J], (n,).
     gap, slip
         Height of C [m] and speed of the body there [m/s], (n,): nought but for errors of the integration.
-    largest_demand
+    peak_demand
         The largest friction per normal force at all steps of the integrator, not only at `time`.
     """
 
@@ -110,7 +110,7 @@ class Track:
     energy: np.ndarray
     gap: np.ndarray
     slip: np.ndarray
-    largest_demand: float
+    peak_demand: float
 
     @property
     def demand(self):
@@ -314,7 +314,7 @@ class ConstrainedBody:
             "slip": np.linalg.norm(states[:, VELOCITY] + np.cross(spin, arm), axis=1),
         }
         demand = np.hypot(values["friction_d"], values["friction_n"]) / values["normal"]
-        return Track(**{name: value[chosen] for name, value in values.items()}, largest_demand=float(demand.max()))
+        return Track(**{name: value[chosen] for name, value in values.items()}, peak_demand=float(demand.max()))
 
 
 def _along(vectors, directions):

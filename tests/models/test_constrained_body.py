@@ -67,7 +67,7 @@ def test_known_free_rolling():
     )  # fmt: skip
     assert_state(track, -1, known, within=2e-12)
     np.testing.assert_allclose(track.energy, 1.019148982252, rtol=0.0, atol=2e-12)
-    # The least tilt was looked for on another grid than here: both are within ½θ̈(Δt/2)², θ̈ < 0.41, of it.
+    # The minimum tilt was looked for on another grid than here: both are within ½θ̈(Δt/2)², θ̈ < 0.41, of it.
     assert track.theta.min() == pytest.approx(0.0376824, abs=1.3e-4)
 
 
@@ -96,7 +96,7 @@ def test_known_shaken_rolling():
     found = np.stack([track.normal, track.friction_d, track.friction_n], axis=1)
     np.testing.assert_allclose(found[1:], forces, rtol=0.0, atol=2e-11)
     np.testing.assert_allclose(track.demand[1:], ratios, rtol=0.0, atol=1e-12)
-    assert track.largest_demand == track.demand[-1]
+    assert track.peak_demand == track.demand[-1]
 
 
 @pytest.mark.parametrize(

@@ -40,15 +40,15 @@ def test_the_largest_demands_are_those_of_newton_and_euler(name):
         first, duration=duration, acceleration=acceleration, times=np.linspace(0.0, duration, 400)[1:-1], rtol=1e-10
     )
     weight = COLUMN.mass * COLUMN.gravity
-    friction, normal = run.measures["largest_friction_demand"], run.measures["least_normal_force"]
+    friction, normal = run.measures["peak_friction_demand"], run.measures["minimum_normal_force"]
     # Between its own samples the oracle can only have missed a little: half the curvature times a half step squared.
-    assert friction == pytest.approx(max(track.demand.max(), track.largest_demand), rel=1e-4)
+    assert friction == pytest.approx(max(track.demand.max(), track.peak_demand), rel=1e-4)
     assert friction >= track.demand.max() * (1.0 - 1e-8)
     assert normal == pytest.approx(track.normal.min() / weight, rel=1e-4)
     assert normal <= track.normal.min() / weight * (1.0 + 1e-8)
     if name != "rolling":
         moment = np.abs(track.couple[:, 2]) / (track.normal * COLUMN.radius)
-        assert run.measures["largest_pivoting_demand"] == pytest.approx(moment.max(), rel=1e-4)
+        assert run.measures["peak_pivoting_demand"] == pytest.approx(moment.max(), rel=1e-4)
 
 
 def test_demands_do_not_depend_on_the_samples_kept():
@@ -62,7 +62,7 @@ def test_demands_do_not_depend_on_the_samples_kept():
 @pytest.mark.parametrize("name", MODELS)
 def test_a_run_warns_of_slipping_where_more_friction_is_needed_than_there_is_and_only_there(name):
     model = MODELS[name]
-    needed = sb.simulate(model, CIRCLE, **begun(model), duration=3.0).measures["largest_friction_demand"]
+    needed = sb.simulate(model, CIRCLE, **begun(model), duration=3.0).measures["peak_friction_demand"]
     for share, warned in ((1.001, False), (0.999, True)):
         run = sb.simulate(model, CIRCLE, **begun(model), duration=3.0, friction_coefficient=share * needed)
         assert bool(run.warnings) is warned
@@ -90,7 +90,7 @@ def test_a_column_that_is_thrown_down_fast_would_lift_off():
             sb.Wobbling(COLUMN), tilt=(0.05, 0.0), tilt_rate=(rate * SCALE, 0.01), duration=0.1 / SCALE,
             friction_coefficient=100.0,
         )  # fmt: skip
-        assert (run.measures["least_normal_force"] < 0.0) is lifts
+        assert (run.measures["minimum_normal_force"] < 0.0) is lifts
         assert any("it would lift off" in line for line in run.warnings) is lifts
         expected = 1.0 + kappa * (
             -((C * math.cos(0.05) - math.sin(0.05)) ** 2) / (1.0 + kappa * C**2)
@@ -99,7 +99,7 @@ def test_a_column_that_is_thrown_down_fast_would_lift_off():
         assert float(run.data["normal_force"][0]) / (COLUMN.mass * COLUMN.gravity) == pytest.approx(expected, abs=1e-3)
         infinite = np.isinf(run.data["friction_demand"].to_numpy())
         np.testing.assert_array_equal(infinite, run.data["normal_force"].to_numpy() <= 0.0)
-        assert math.isinf(run.measures["largest_friction_demand"]) is lifts
+        assert math.isinf(run.measures["peak_friction_demand"]) is lifts
 
 
 # Whose normal force, m(g + a_z) to leading order, vanishes as the column lifts off, where rounding decides its sign.
@@ -115,10 +115,10 @@ def test_the_demand_of_a_run_that_lifts_off_is_unbounded_and_no_number_made_of_r
     run = sb.simulate(model, throw, tilt=(0.05, 0.0), tilt_rate=(0.0, 0.03), duration=30.0, friction_coefficient=0.3)
     assert run.outcome is sb.Outcome.LIFTED_OFF
     assert any("without bound where nothing presses on the base" in line for line in run.warnings)
-    assert run.measures["largest_friction_demand"] == math.inf
+    assert run.measures["peak_friction_demand"] == math.inf
     demand = run.data["friction_demand"].to_numpy()
     assert demand[np.isfinite(demand)].max() < 1.0 / LEAST_FORCE
-    assert sb.load(run.save(tmp_path / "run.nc")).measures["largest_friction_demand"] == math.inf
+    assert sb.load(run.save(tmp_path / "run.nc")).measures["peak_friction_demand"] == math.inf
 
 
 def test_a_ratio_to_no_normal_force_is_infinite_and_of_two_forces_that_are_none_nothing():
@@ -143,19 +143,19 @@ def test_nothing_is_demanded_of_a_contact_in_flight():
 def test_a_column_that_only_stands_needs_the_friction_of_its_base():
     run = sb.simulate(MODELS["rolling"], CIRCLE, duration=2.0, friction_coefficient=0.01)
     assert bool(run.data["resting"].all())
-    assert run.measures["largest_friction_demand"] == pytest.approx(0.05, rel=1e-12)
+    assert run.measures["peak_friction_demand"] == pytest.approx(0.05, rel=1e-12)
     assert run.warnings[0].startswith("it would slip from 0 s on")
 
 
-def test_the_largest_demand_is_that_of_the_motion_where_moving_needs_more_than_standing():
+def test_the_peak_demand_is_that_of_the_motion_where_moving_needs_more_than_standing():
     # A standing column needs |a_h|/g = 0.9 c; a brief push releases it, and the demand of the motion is what counts.
     motion = sb.Harmonic.circular(acceleration=1.05 * C * COLUMN.gravity, angular_frequency=2.0 * SCALE, ramp=8.0)
     run = sb.simulate(sb.Wobbling(COLUMN, damping=0.1), motion, duration=12.0)
     moving = ~run.data["resting"].to_numpy()
     assert 0 < moving.sum() < moving.size
     expected = run.data["friction_demand"].to_numpy()[moving].max()
-    assert run.measures["largest_friction_demand"] == pytest.approx(expected, rel=1e-3)
-    assert run.measures["largest_friction_demand"] >= expected
+    assert run.measures["peak_friction_demand"] == pytest.approx(expected, rel=1e-3)
+    assert run.measures["peak_friction_demand"] >= expected
 
 
 def test_release_from_rest_needs_the_friction_that_theory_says():
@@ -165,7 +165,7 @@ def test_release_from_rest_needs_the_friction_that_theory_says():
     # Over the normal force, which falls meanwhile by κc².
     normal = 1.0 - COLUMN.inertia_ratio * C**2 / (1.0 + COLUMN.inertia_ratio * C**2)
     friction = COLUMN.inertia_ratio * C / (1.0 + COLUMN.inertia_ratio * C**2)
-    assert run.measures["largest_friction_demand"] == pytest.approx(friction / normal, rel=1e-4)
+    assert run.measures["peak_friction_demand"] == pytest.approx(friction / normal, rel=1e-4)
     assert friction / normal == pytest.approx(known, rel=1e-12)
 
 
@@ -175,7 +175,7 @@ def test_warnings_and_demands_are_saved_and_loaded(tmp_path):
     loaded = sb.load(run.save(tmp_path / "run.nc"))
     assert loaded.warnings == run.warnings
     assert len(loaded.warnings) == 1
-    for name in ("largest_friction_demand", "largest_pivoting_demand", "least_normal_force"):
+    for name in ("peak_friction_demand", "peak_pivoting_demand", "minimum_normal_force"):
         assert loaded.measures[name] == run.measures[name]
     np.testing.assert_array_equal(loaded.data["friction_demand"], run.data["friction_demand"])
     assert loaded.provenance["friction_coefficient"] == 0.01
@@ -191,7 +191,7 @@ class _Quiet(sb.Wobbling):
 def test_a_model_that_does_not_tell_its_demands_has_none():
     run = sb.simulate(_Quiet(COLUMN), CIRCLE, tilt=(0.05, 0.0), duration=1.0, friction_coefficient=0.01)
     assert run.warnings == ()
-    assert "largest_friction_demand" not in run.measures
+    assert "peak_friction_demand" not in run.measures
 
 
 @pytest.mark.parametrize(("spin", "least"), [(0.05, 1e-5), (0.05, 1e-6), (0.3, 1e-4), (0.3, 1e-6)])
@@ -209,9 +209,9 @@ def test_what_the_contact_bears_for_a_moment_is_not_missed(spin, least):
     )  # fmt: skip
     fine = run.sample(away + np.linspace(-100.0, 100.0, 20001) * least)
     assert run.measures["least_passage"] == pytest.approx(least, rel=1e-4)
-    assert run.measures["largest_friction_demand"] >= float(fine["friction_demand"].max()) * (1.0 - 1e-6)
-    assert run.measures["least_normal_force"] <= float(fine["normal_force"].min()) + 1e-6
-    assert len(run.warnings) == (2 if run.measures["least_normal_force"] < 0.0 else 1)
+    assert run.measures["peak_friction_demand"] >= float(fine["friction_demand"].max()) * (1.0 - 1e-6)
+    assert run.measures["minimum_normal_force"] <= float(fine["normal_force"].min()) + 1e-6
+    assert len(run.warnings) == (2 if run.measures["minimum_normal_force"] < 0.0 else 1)
 
 
 # Friction demand |a_h|/(g + a_z) is a statement on the base alone while the column stands on it.
@@ -233,10 +233,10 @@ def test_a_column_that_stands_needs_the_friction_of_a_body_that_moves_with_the_b
     run = sb.simulate(STOUT, motion, duration=20.0, friction_coefficient=0.9 * expected)
     runs = sb.simulate_ensemble(STOUT, motion, duration=[20.0], demands=True)
     assert not run.events
-    assert run.measures["largest_friction_demand"] == pytest.approx(expected, rel=1e-9)
+    assert run.measures["peak_friction_demand"] == pytest.approx(expected, rel=1e-9)
     # Parabolas through 64 samples to a period: the next term is (2π/128)⁴/4! of the height.
-    assert float(runs["largest_friction_demand"][0]) == pytest.approx(expected, rel=1e-6)
-    assert run.measures["largest_pivoting_demand"] == 0.0
+    assert float(runs["peak_friction_demand"][0]) == pytest.approx(expected, rel=1e-6)
+    assert run.measures["peak_pivoting_demand"] == 0.0
     (line,) = run.warnings
     assert "slides before it rocks" in line
     assert sb.simulate(STOUT, motion, duration=20.0, friction_coefficient=1.1 * expected).warnings == ()
@@ -248,7 +248,7 @@ def test_standing_before_release_needs_the_friction_at_which_rocking_begins():
     run = sb.simulate(STOUT, motion, duration=20.0)
     runs = sb.simulate_ensemble(STOUT, motion, duration=[20.0], demands=True)
     assert run.events[0].kind == "uplift"
-    for demand in (run.measures["largest_friction_demand"], float(runs["largest_friction_demand"][0])):
+    for demand in (run.measures["peak_friction_demand"], float(runs["peak_friction_demand"][0])):
         assert demand >= 0.4 * (1.0 - 1e-9)
 
 
@@ -256,7 +256,7 @@ def test_the_base_slides_under_a_standing_column_when_the_record_first_needs_mor
     motion = sb.Record(samples=[0.0, 0.1, -0.3, 0.3, 0.0], step=1.0)
     run = sb.simulate(STOUT, motion, duration=10.0, friction_coefficient=0.2)
     runs = sb.simulate_ensemble(STOUT, motion, duration=[10.0], demands=True)
-    assert run.measures["largest_friction_demand"] == pytest.approx(0.3, rel=1e-15)
-    assert float(runs["largest_friction_demand"][0]) == pytest.approx(0.3, rel=1e-15)
+    assert run.measures["peak_friction_demand"] == pytest.approx(0.3, rel=1e-15)
+    assert float(runs["peak_friction_demand"][0]) == pytest.approx(0.3, rel=1e-15)
     # From 0.1 at 1 s to -0.3 at 2 s: |a| = 0.2 at 1.75 s.
     assert "from 1.75 s on" in run.warnings[0]

@@ -83,7 +83,7 @@ def test_the_period_at_finite_angles_is_the_integral_of_the_energy():
     alpha = SOLID.tipping_angle
 
     def slowness(s):
-        # θ = θ0 − s²: the root at the largest tilt goes away; cos(α − θ) rises with the height of the centre of mass.
+        # θ = θ0 − s²: the root at the peak tilt goes away; cos(α − θ) rises with the height of the centre of mass.
         left = alpha - (most - s * s)
         drop = math.hypot(1.0, c) * (math.cos(alpha - most) - math.cos(left))
         return 2.0 * s / math.sqrt(2.0 * drop / (1.0 + kappa * c**2)) if s > 0.0 else 0.0
@@ -135,7 +135,7 @@ def test_it_leaves_its_base_at_the_acceleration_that_tips_it():
     assert sb.simulate(sb.PlanarRocking(SOLID), below, duration=5.0).outcome is sb.Outcome.AT_REST
     run = sb.simulate(sb.PlanarRocking(SOLID), above, duration=5.0)
     assert run.events[0].kind == "uplift"
-    assert run.measures["largest_tilt"] > 0.0
+    assert run.measures["peak_tilt"] > 0.0
 
 
 def test_a_slow_push_beyond_its_strength_overturns_it_for_good():

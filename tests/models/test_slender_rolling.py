@@ -163,7 +163,7 @@ def test_runs_and_ensembles_agree(method):
     single = sb.simulate(model, circle, **start)
     together = sb.simulate_ensemble(model, circle, **start, method=method)
     assert sb.Outcome(int(together["outcome"].item())) is single.outcome
-    assert float(together["largest_tilt"].item()) == pytest.approx(single.measures["largest_tilt"], rel=1e-6)
+    assert float(together["peak_tilt"].item()) == pytest.approx(single.measures["peak_tilt"], rel=1e-6)
     np.testing.assert_allclose(together["end_tilt"].squeeze(), single.data["tilt"][-1], atol=1e-7)
 
 
@@ -205,7 +205,7 @@ def test_a_column_pushed_along_a_line_keeps_to_it_without_spin():
     assert run.planar
     assert run.outcome is same.outcome
     np.testing.assert_array_equal(run.data["spin"], 0.0)
-    assert run.measures["largest_tilt"] == pytest.approx(same.measures["largest_tilt"], rel=1e-9)
+    assert run.measures["peak_tilt"] == pytest.approx(same.measures["peak_tilt"], rel=1e-9)
 
 
 def test_it_can_be_described_and_saved(tmp_path):

@@ -67,8 +67,8 @@ def test_orbits_of_circular_motion_are_steady_rolling(nu, a0, eta):
     exact = np.array([start.real, start.imag, -nu * start.imag, nu * start.real])
     orbit = periodic_orbit(slender(eta), circle(nu, a0), guess=exact * 1.001)
     np.testing.assert_allclose(orbit.state, exact, rtol=0.0, atol=1e-11)
-    assert orbit.least_tilt == pytest.approx(rolling.amplitude, rel=1e-9)
-    assert orbit.largest_tilt == pytest.approx(rolling.amplitude, rel=1e-9)
+    assert orbit.minimum_tilt == pytest.approx(rolling.amplitude, rel=1e-9)
+    assert orbit.peak_tilt == pytest.approx(rolling.amplitude, rel=1e-9)
     assert orbit.mean_tilt == pytest.approx(rolling.amplitude, rel=1e-9)
 
 
@@ -106,8 +106,8 @@ def test_simulate_repeats_the_orbit(motion, sense):
     np.testing.assert_allclose(end["tilt_rate"], orbit.tilt_rate, rtol=0.0, atol=1e-9 * C)
     tilts = np.hypot(*run.data["tilt"].to_numpy().T)
     # Samples miss an extreme by the square of their distance.
-    assert orbit.largest_tilt == pytest.approx(tilts.max(), rel=1e-3)
-    assert orbit.least_tilt == pytest.approx(tilts.min(), rel=1e-3)
+    assert orbit.peak_tilt == pytest.approx(tilts.max(), rel=1e-3)
+    assert orbit.minimum_tilt == pytest.approx(tilts.min(), rel=1e-3)
 
 
 def test_a_stable_orbit_is_where_runs_end_and_a_run_is_a_guess():
@@ -210,7 +210,7 @@ def test_symmetric_orbits_in_a_plane_are_those_of_the_closed_form(nu, a1, eta):
         assert orbit.planar
         assert orbit.inversion
         np.testing.assert_allclose([*orbit.tilt, *orbit.tilt_rate], exact, rtol=0.0, atol=1e-10 * np.abs(exact).max())
-        assert orbit.largest_tilt == pytest.approx(float(expected.amplitude), rel=1e-3)
+        assert orbit.peak_tilt == pytest.approx(float(expected.amplitude), rel=1e-3)
         squared = expected.multipliers**2
         # Twice the same multiplier has half the digits.
         assert distance_of_sets(orbit.multipliers, squared) < 1e-7 * max(1.0, np.abs(squared).max())
@@ -235,7 +235,7 @@ def test_largest_tilts_in_a_plane_are_exact():
     response = sb.theory.planar_forced_response(3.0, 0.13, c=C, eta=ETA).fast
     motion, guess = planar_case(3.0, 0.13, response, later=0.2)
     orbit = periodic_orbit(MODEL, motion, guess=guess)
-    assert orbit.largest_tilt == pytest.approx(float(response.amplitude), rel=1e-8)
+    assert orbit.peak_tilt == pytest.approx(float(response.amplitude), rel=1e-8)
 
 
 @pytest.mark.parametrize("arcs", [2, 3, 5, 7])

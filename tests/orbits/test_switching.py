@@ -183,5 +183,5 @@ def test_a_family_ends_where_its_path_meets_the_upright():
     points = family.points
     assert set(points["turns"].values) == {1.0}
     assert float(points["angular_frequency"][-1]) == pytest.approx(0.9787, abs=1e-3)
-    # Its least tilt falls towards nothing as the end comes near.
-    assert float(points["least_tilt"][-1]) < 0.05 * float(points["least_tilt"].max())
+    # Its minimum tilt falls towards nothing as the end comes near.
+    assert float(points["minimum_tilt"][-1]) < 0.05 * float(points["minimum_tilt"].max())

@@ -41,7 +41,7 @@ def test_one_slenderness_shows_that_case_alone():
     found = sb.studies.model_hierarchy(COLUMN, CIRCLE, **CASE, slenderness=[0.2])
     tilts, demands = sb.plot(found).axes
     assert {tilts.get_xscale(), demands.get_xscale(), tilts.get_yscale()} == {"linear"}
-    top = float(found["largest_tilt"].sel(model="slender")[0]) / 0.2
+    top = float(found["peak_tilt"].sel(model="slender")[0]) / 0.2
     assert tilts.lines[0].get_xdata() == pytest.approx([top])
 
 

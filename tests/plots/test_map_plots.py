@@ -25,7 +25,7 @@ REST, OVERTURNED, ROLLING = (one for one in (Outcome.AT_REST, Outcome.OVERTURNED
 def a_map(codes, uncertain=None, **axes):
     axes = axes or {
         "angular_frequency": ("angular_frequency", [1.0, 2.0, 3.0], {"units": "rad s-1"}),
-        "acceleration": ("acceleration", [0.1, 0.2], {"units": "m s-2", "long_name": "largest acceleration"}),
+        "acceleration": ("acceleration", [0.1, 0.2], {"units": "m s-2", "long_name": "peak acceleration"}),
     }
     codes = np.array(codes, dtype=np.int8)
     flags = np.zeros(codes.shape, bool) if uncertain is None else np.array(uncertain)
@@ -66,7 +66,7 @@ def test_a_map_shows_each_run_in_its_cell_with_units_and_shares():
     figure = sb.plot(a_map([[REST, OVERTURNED], [REST, ROLLING], [REST, OVERTURNED]]))
     axes = figure.axes[0]
     assert axes.get_xlabel() == "angular frequency [rad/s]"
-    assert axes.get_ylabel() == "largest acceleration [m/s²]"
+    assert axes.get_ylabel() == "peak acceleration [m/s²]"
     assert legend_of(figure) == ["at rest  50.0 %", "rolling  16.7 %", "overturned  33.3 %"]
     (mesh,) = [one for one in axes.collections if isinstance(one, QuadMesh)]
     colours = mesh.to_rgba(mesh.get_array())[..., :3]
@@ -154,7 +154,7 @@ def test_a_sample_is_drawn_as_fractions_with_their_intervals():
     assert [text.get_text() for text in bars.get_yticklabels()] == ["rolling anticlockwise"]
     assert bars.patches[0].get_width() == 1.0
     path = orbits.lines[0].get_xydata()
-    np.testing.assert_allclose(np.hypot(*path.T), found["attractor_largest_tilt"].item(), rtol=1e-5)
+    np.testing.assert_allclose(np.hypot(*path.T), found["attractor_peak_tilt"].item(), rtol=1e-5)
 
 
 def test_fractions_along_a_parameter_fill_the_height():

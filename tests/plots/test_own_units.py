@@ -25,7 +25,7 @@ def labels(figure):
     ("model", "expected"),
     [
         (OWN, {r"base frequency $\Omega/\omega_0$", "base acceleration $a/g$"}),
-        (STONE, {"angular frequency [rad/s]", "largest horizontal acceleration of the base [m/s²]"}),
+        (STONE, {"angular frequency [rad/s]", "peak horizontal acceleration of the base [m/s²]"}),
     ],
 )
 def test_a_map_has_the_units_of_its_column(model, expected):

@@ -35,7 +35,7 @@ class Course:
     planar
         Whether all of its motion was integrated in one vertical plane.
     least_passage
-        Least tilt at a passage of the upright out of a plane [rad].
+        Minimum tilt at a passage of the upright out of a plane [rad].
     crossed
         Whether it passed the upright in a plane.
     """
@@ -206,7 +206,7 @@ class Course:
     def _take(self, leg: Leg) -> None:
         if leg.piece is not None:
             self._add(leg.piece)
-        self.least_passage = min(self.least_passage, leg.least_tilt)
+        self.least_passage = min(self.least_passage, leg.minimum_tilt)
         if leg.reason is Reason.RESTED:
             self._note("rest", self._time)
         elif leg.reason is Reason.STRUCK:

@@ -22,11 +22,11 @@ class Forcing(Along):
         x, y, z = self.motion.derivative(tau * self.time_scale, ACCELERATION)
         return float(x) / self.gravity, float(y) / self.gravity, float(z) / self.gravity
 
-    def largest_horizontal(self, since: float) -> float:
+    def peak_horizontal(self, since: float) -> float:
         """Return a bound of |a_h| [g] from `since` on."""
-        return self.motion.largest_horizontal(since * self.time_scale) / self.gravity
+        return self.motion.peak_horizontal(since * self.time_scale) / self.gravity
 
-    def least_vertical(self, since: float) -> float:
+    def minimum_vertical(self, since: float) -> float:
         """Return a bound of a_z [g] from `since` on."""
         return self.vertical_range(since)[0]
 
@@ -47,4 +47,4 @@ class Forcing(Along):
             x, y, z = ((b - a) / ahead for a, b in zip(self.at(tau), self.at(tau + ahead), strict=True))
             return math.hypot(x, y) + slenderness * abs(z)
         vertical = max(map(abs, self.vertical_range(tau)))
-        return self.highest_frequency * (self.largest_horizontal(tau) + slenderness * vertical)
+        return self.highest_frequency * (self.peak_horizontal(tau) + slenderness * vertical)

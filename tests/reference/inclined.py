@@ -35,9 +35,9 @@ class InclinedForcing(Forcing):
         felt: Floats = Forcing.along(self, tau) + np.array(self.slope)[:, np.newaxis]
         return felt
 
-    def largest_horizontal(self, since: float) -> float:
+    def peak_horizontal(self, since: float) -> float:
         """Return a bound of |a_h| [g] from `since` on."""
-        return Forcing.largest_horizontal(self, since) + math.hypot(*self.slope[:2])
+        return Forcing.peak_horizontal(self, since) + math.hypot(*self.slope[:2])
 
     def vertical_range(self, since: float) -> tuple[float, float]:
         """Return bounds of a_z [g] from `since` on."""

@@ -36,7 +36,7 @@ _NODE_TURN, _MOST_PARTS = 0.5, 64
 
 @dataclass(frozen=True, slots=True)
 class Leg:
-    """A stretch of motion: its piece, the state at its end, why it ended and the least tilt of its passages.
+    """A stretch of motion: its piece, the state at its end, why it ended and the minimum tilt of its passages.
 
     The piece is None where the first step already failed.
     """
@@ -44,7 +44,7 @@ class Leg:
     piece: Piece | None
     state: tuple[float, ...]
     reason: Reason
-    least_tilt: float = math.inf
+    minimum_tilt: float = math.inf
     failure: str = ""
 
 

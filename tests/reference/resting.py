@@ -28,8 +28,8 @@ _DEPARTURE = 1e-3
 
 def stays_for_good(model: Model, forcing: Forcing, since: float) -> bool:
     """Return whether nothing from `since` on can release a column at rest."""
-    weight = 1.0 + forcing.least_vertical(since)
-    return weight > 0.0 and forcing.largest_horizontal(since) <= model.rest_capacity * weight
+    weight = 1.0 + forcing.minimum_vertical(since)
+    return weight > 0.0 and forcing.peak_horizontal(since) <= model.rest_capacity * weight
 
 
 def release_time(model: Model, forcing: Forcing, start: float, end: float) -> float | None:

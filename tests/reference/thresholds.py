@@ -48,5 +48,5 @@ def _default_rest_energy(model: Model, forcing: Forcing) -> float:
 
 
 def _forced(model: Model, forcing: Forcing) -> tuple[float, float, float, float]:
-    least = forcing.least_vertical(0.0)
-    return forcing.mean_frequency, forcing.largest_horizontal(0.0), least, model.rest_capacity
+    least = forcing.minimum_vertical(0.0)
+    return forcing.mean_frequency, forcing.peak_horizontal(0.0), least, model.rest_capacity

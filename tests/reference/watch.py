@@ -48,7 +48,7 @@ class Watch:
         tilt = np.hypot(*self.model.tilt(sampled))
         found = []
         for reason, condition, suspected in (
-            (Reason.LIFTED, self._pull, self.forcing.least_vertical(start) <= -1.0),
+            (Reason.LIFTED, self._pull, self.forcing.minimum_vertical(start) <= -1.0),
             (Reason.OVERTURNED, self._beyond_return, tilt[-1] > self._no_return_tilt(end)),
             (Reason.LIMIT, self._beyond_limit, tilt.max() > self.thresholds.tilt_limit),
             (Reason.RESTED, self._below_rest_energy, rests and tilt.min() < self._rest_tilt),
@@ -97,11 +97,11 @@ class Watch:
         return self._least_force(tau) >= 0.0
 
     def _least_force(self, tau: float) -> float:
-        weight = 1.0 + self.forcing.least_vertical(tau)
-        return self.model.rest_capacity * weight - self.forcing.largest_horizontal(tau)
+        weight = 1.0 + self.forcing.minimum_vertical(tau)
+        return self.model.rest_capacity * weight - self.forcing.peak_horizontal(tau)
 
     def _no_return_tilt(self, tau: float) -> float:
-        limit = self.model.least_safe_tilt(self.forcing.largest_horizontal(tau), self.forcing.least_vertical(tau))
+        limit = self.model.least_safe_tilt(self.forcing.peak_horizontal(tau), self.forcing.minimum_vertical(tau))
         return limit if math.isfinite(limit) else self.thresholds.overturned_tilt
 
     def _motion(self, states: Callable[[Floats], Floats], tau: float) -> tuple[float, float, float]:

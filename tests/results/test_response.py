@@ -193,7 +193,7 @@ def test_the_data_agree_among_themselves(run):
         assert data[name].attrs["long_name"], name
     # Sought between the samples: above the largest of them, by less than the parabola through 48 samples a swing.
     largest = float(data.amplitude.max())
-    assert largest <= run.measures["largest_tilt"] <= largest * (1.0 + 0.5 * (math.pi / 48.0) ** 2)
+    assert largest <= run.measures["peak_tilt"] <= largest * (1.0 + 0.5 * (math.pi / 48.0) ** 2)
     assert run.measures["turns"] == pytest.approx(float(data.azimuth[-1] - data.azimuth[0]) / (2.0 * math.pi))
 
 

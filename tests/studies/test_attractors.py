@@ -362,7 +362,7 @@ def test_rolling_under_circular_motion_is_the_closed_form(sense):
     steady = sb.theory.steady_rolling(3.0, 0.065, c=0.1, eta=0.1).upper.amplitude
     assert found["attractor_name"].values.tolist() == [f"rolling {'anti' if sense > 0 else ''}clockwise"]
     assert found["attractor_turns"].item() == sense
-    for size in ("attractor_mean_tilt", "attractor_largest_tilt"):
+    for size in ("attractor_mean_tilt", "attractor_peak_tilt"):
         assert found[size].item() == pytest.approx(steady, rel=2e-6)
     assert np.hypot(*found["attractor_tilt"].values[0, 0]) == pytest.approx(steady, rel=2e-6)
     assert found.attrs["kind"] == "attractors"

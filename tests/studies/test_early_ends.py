@@ -24,7 +24,7 @@ SLENDER = MODELS["slender"]
 def ended_early(early, full):
     """Return which runs ended early, once the others are seen to be the same to the last bit."""
     ended = early["end_time"].values < full["end_time"].values
-    for name in ("outcome", "end_time", "largest_tilt", "mean_tilt"):
+    for name in ("outcome", "end_time", "peak_tilt", "mean_tilt"):
         np.testing.assert_array_equal(early[name].values[~ended], full[name].values[~ended], err_msg=name)
     return ended
 

@@ -30,7 +30,7 @@ def test_circular_motion_has_the_response_of_the_exact_solution():
     steady = sb.theory.steady_rolling(curves["angular_frequency"].to_numpy(), 0.065, c=C, eta=ETA).upper
     np.testing.assert_allclose(curves["mean_tilt"], steady.amplitude, rtol=1e-10)
     np.testing.assert_allclose(curves["phase"], steady.phase, atol=1e-9)
-    np.testing.assert_allclose(curves["least_tilt"], curves["largest_tilt"], rtol=1e-9)
+    np.testing.assert_allclose(curves["minimum_tilt"], curves["peak_tilt"], rtol=1e-9)
     # On the bifurcation itself neither of the two calls it stable alike.
     apart = np.abs(curves["angular_frequency"] - curves["averaged_critical_frequency"]) > 1e-6
     np.testing.assert_array_equal(curves["stable"][apart], steady.stable[apart])
@@ -176,7 +176,7 @@ def test_rocking_has_no_averaged_rolling_beside_it():
 
 
 def test_every_number_has_its_unit(wide):
-    for name in ("mean_tilt", "least_tilt", "largest_tilt", "phase", "tilt", "bifurcation_mean_tilt"):
+    for name in ("mean_tilt", "minimum_tilt", "peak_tilt", "phase", "tilt", "bifurcation_mean_tilt"):
         assert wide[name].attrs["units"] == "rad"
     for name in ("angular_frequency", "bifurcation_angular_frequency"):
         assert wide[name].attrs["units"] == "rad s-1"

@@ -37,7 +37,7 @@ def test_levels_are_the_runs_of_their_models():
     for model in models:
         run = sb.simulate(model, CIRCLE, **START, duration=10.0, friction_coefficient=0.05)
         told = found.sel(model=model.name)
-        for name in ("largest_tilt", "largest_friction_demand", "largest_pivoting_demand", "least_normal_force"):
+        for name in ("peak_tilt", "peak_friction_demand", "peak_pivoting_demand", "minimum_normal_force"):
             assert float(told[name]) == run.measures[name]
         assert sb.Outcome(int(told["outcome"])) is run.outcome
         assert str(told["warnings"].to_numpy()) == "; ".join(run.warnings)
@@ -65,10 +65,10 @@ def test_without_friction_and_base_motion_the_twist_is_no_matter():
 
 def test_differences_are_taken_from_the_reference(scaled):
     assert scaled.attrs["reference"] == "rolling"
-    assert float(abs(scaled["largest_tilt_difference"].sel(model="rolling")).max()) == 0.0
+    assert float(abs(scaled["peak_tilt_difference"].sel(model="rolling")).max()) == 0.0
     found = sb.studies.model_hierarchy(COLUMN, CIRCLE, **FRICTIONS, **START, duration=5.0, reference="slender")
-    expected = found["largest_tilt"] - float(found["largest_tilt"].sel(model="slender"))
-    np.testing.assert_array_equal(found["largest_tilt_difference"], expected)
+    expected = found["peak_tilt"] - float(found["peak_tilt"].sel(model="slender"))
+    np.testing.assert_array_equal(found["peak_tilt_difference"], expected)
 
 
 def test_late_means_are_those_of_steady_rolling():

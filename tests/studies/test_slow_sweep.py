@@ -43,7 +43,7 @@ def test_a_sweep_stays_on_the_exact_solution_8_while_that_is_stable(downward):
     left = np.abs(np.diff(exact.amplitude, prepend=exact.amplitude[0])) * np.exp(rate * settling)
     # Errors of rtol of a step, some hundred of them while they decay.
     allowed = 10.0 * left + 100.0 * RTOL * exact.amplitude
-    for name in ("mean_tilt", "least_tilt", "largest_tilt"):
+    for name in ("mean_tilt", "minimum_tilt", "peak_tilt"):
         assert (np.abs(steady[name].values - exact.amplitude) < allowed).all()
     np.testing.assert_allclose(steady["turns_per_period"], 1.0, atol=1e-6)
     assert set(outcomes(downward)[:12]) == {Outcome.ROLLING}
@@ -59,7 +59,7 @@ def test_below_the_critical_frequency_it_is_modulated_and_then_overturns(downwar
     modulated = slice(int(np.flatnonzero(nu < CRITICAL - 0.01)[0]), lost)
     assert set(told[modulated]) <= {Outcome.MODULATED, Outcome.STILL_MOVING}
     assert told[modulated].count(Outcome.MODULATED) > 0.8 * len(told[modulated])
-    swing = (one["largest_tilt"] - one["least_tilt"]).values[modulated]
+    swing = (one["peak_tilt"] - one["minimum_tilt"]).values[modulated]
     assert (np.diff(swing) > 0.0).all()
     # It turns with the base: the lean swings about that of steady rolling by less than half a turn.
     np.testing.assert_allclose(one["turns_per_period"].values[modulated], 1.0, atol=0.5 / 51)
@@ -69,8 +69,8 @@ def test_modulated_rolling_swings_as_far_as_published(downward):
     near = downward.isel(sweep=0, step=int(np.abs(downward["angular_frequency"].values[:, 0] - 1.36).argmin()))
     steady = sb.theory.steady_rolling(1.36, 0.065, c=0.1, eta=0.1).upper.amplitude
     # Two published digits, 51 periods hold about 49 swings of which one comes within a percent of the extremes.
-    assert float(near["least_tilt"]) / steady == pytest.approx(0.64, abs=0.01)
-    assert float(near["largest_tilt"]) / steady == pytest.approx(1.29, abs=0.01)
+    assert float(near["minimum_tilt"]) / steady == pytest.approx(0.64, abs=0.01)
+    assert float(near["peak_tilt"]) / steady == pytest.approx(1.29, abs=0.01)
 
 
 def test_after_overturning_nothing_is_computed(downward):
@@ -79,7 +79,7 @@ def test_after_overturning_nothing_is_computed(downward):
     after = downward.isel(step=slice(lost + 1, None))
     assert after.sizes["step"] > 0
     assert (after["outcome"] == NOT_COMPUTED).all()
-    for name in ("mean_tilt", "largest_tilt", "end_tilt"):
+    for name in ("mean_tilt", "peak_tilt", "end_tilt"):
         assert downward[name].isel(step=slice(lost, None)).isnull().all()
 
 
@@ -100,9 +100,9 @@ def test_a_sweep_of_a_straight_line_stays_on_the_exact_orbit_to_the_pitchfork_an
         near = np.concatenate([exact.tilt, exact.tilt_rate])
         assert np.abs(state - near).max() < kept * RTOL * np.abs(near).max()
         assert float(end["mean_tilt"]) == pytest.approx(exact.mean_tilt, rel=kept * RTOL)
-        # The orbit's largest tilt is met to half a sample of 512: 1 − cos(π/512).
+        # The orbit's peak tilt is met to half a sample of 512: 1 − cos(π/512).
         tilts = np.hypot(*exact.states(512)[:2])
-        assert float(end["largest_tilt"]) == pytest.approx(tilts.max(), rel=2e-5)
+        assert float(end["peak_tilt"]) == pytest.approx(tilts.max(), rel=2e-5)
 
 
 @pytest.fixture(scope="module")
@@ -123,7 +123,7 @@ def test_past_the_fold_of_8_it_falls_to_rest_and_stays_there_on_the_way_back(ove
     rolling = [one is Outcome.ROLLING for one in told]
     assert rolling == [*(nu[:6] > fold), *([False] * 5)]
     assert set(told) == {Outcome.ROLLING, Outcome.AT_REST}
-    for name in ("mean_tilt", "least_tilt", "largest_tilt", "turns_per_period"):
+    for name in ("mean_tilt", "minimum_tilt", "peak_tilt", "turns_per_period"):
         assert (over_a_fold[name].values[~np.array(rolling)] == 0.0).all()
 
 
@@ -177,7 +177,7 @@ def test_a_mirrored_start_on_a_straight_line_rolls_the_other_way():
         MODEL, STRAIGHT, values=[3.0, 2.8], tilt=orbit.tilt * sides, tilt_rate=orbit.tilt_rate * sides
     )
     np.testing.assert_allclose(swept["turns_per_period"], [[1.0, -1.0]] * 2, atol=1e-6)
-    np.testing.assert_array_equal(swept["largest_tilt"][:, 0], swept["largest_tilt"][:, 1])
+    np.testing.assert_array_equal(swept["peak_tilt"][:, 0], swept["peak_tilt"][:, 1])
 
 
 def test_an_interrupted_sweep_hands_over_the_steps_that_were_done(monkeypatch):

@@ -25,7 +25,7 @@ def test_two_circular_motions_make_the_base_motion(a1, a2, phi2, time):
 
 
 @given(a1=amplitude, a2=amplitude, phi2=angle)
-def test_largest_acceleration_is_the_sum_of_both(a1, a2, phi2):
+def test_peak_acceleration_is_the_sum_of_both(a1, a2, phi2):
     p, q = circular_components(a1, a2, phi2)
     time = np.linspace(0.0, 2.0 * np.pi, 2001)
     largest = np.abs(a1 * np.cos(time) + 1j * a2 * np.cos(time + phi2)).max()

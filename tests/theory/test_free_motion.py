@@ -41,7 +41,7 @@ def test_agrees_with_quadrature_in_thirty_digits(tilt, rate):
     motion = free_motion(tilt, rate, 1.0)
     low, high, period, advance = quadrature(tilt, rate)
     assert motion.smallest_tilt == pytest.approx(low, rel=1e-15)
-    assert motion.largest_tilt == pytest.approx(high, rel=1e-15)
+    assert motion.peak_tilt == pytest.approx(high, rel=1e-15)
     assert motion.period == pytest.approx(period, rel=1e-12)
     assert motion.azimuth_advance == pytest.approx(advance, rel=1e-12)
 
@@ -62,7 +62,7 @@ def test_agrees_with_integration_of_the_equations_of_motion(tilt, rate):
     assert (end[0] * end[2] + end[1] * end[3]) / tilt == pytest.approx(0.0, abs=1e-9)
     assert end[4] == pytest.approx(float(motion.azimuth_advance), rel=1e-9)
     half = run.sol(0.5 * motion.period)
-    other = motion.smallest_tilt + motion.largest_tilt - tilt
+    other = motion.smallest_tilt + motion.peak_tilt - tilt
     assert np.hypot(half[0], half[1]) == pytest.approx(other, rel=1e-9)
 
 
@@ -70,7 +70,7 @@ def test_agrees_with_integration_of_the_equations_of_motion(tilt, rate):
 def test_both_turning_points_have_the_same_integrals_and_give_the_same_motion(tilt, rate):
     motion = free_motion(tilt, rate, 1.0)
     assume(np.isfinite(motion.period) and motion.period < 8.0)  # close to the separatrix the problem is ill-posed
-    for turning in (motion.smallest_tilt, motion.largest_tilt):
+    for turning in (motion.smallest_tilt, motion.peak_tilt):
         energy = 0.5 * (motion.angular_momentum / turning) ** 2 + turning - 0.5 * turning**2
         assert energy == pytest.approx(motion.energy, rel=1e-13)
         again = free_motion(turning, motion.angular_momentum / turning**2, 1.0)
@@ -92,7 +92,7 @@ def test_one_period_without_angular_momentum_is_half_the_planar_period():
     motion = free_motion(tilt, 0.0, 0.1)
     assert motion.period == pytest.approx(0.5 * planar_free_period(tilt, 0.1), rel=1e-12)
     assert (motion.smallest_tilt == 0.0).all()
-    assert motion.largest_tilt == pytest.approx(tilt, rel=1e-15)
+    assert motion.peak_tilt == pytest.approx(tilt, rel=1e-15)
 
 
 @pytest.mark.parametrize("omega", [0.7, 1.0, 3.0])
@@ -105,12 +105,12 @@ def test_small_oscillations_about_steady_rolling_have_the_linear_frequency(omega
     assert motion.azimuth_advance == pytest.approx(omega * linear, rel=1e3 * deviation)
     steady = free_motion(rolling_backbone(omega, 0.1), omega, 0.1)
     assert steady.period == pytest.approx(linear, rel=1e-10)
-    assert steady.smallest_tilt == pytest.approx(steady.largest_tilt, rel=1e-14)
+    assert steady.smallest_tilt == pytest.approx(steady.peak_tilt, rel=1e-14)
 
 
 def test_nan_where_the_column_overturns_but_the_integrals_stay():
     motion = free_motion([0.1, 0.2, 0.03, 0.05], [0.0, 0.1, 3.0, 40.0], 0.1)
-    for values in (motion.smallest_tilt, motion.largest_tilt, motion.period, motion.azimuth_advance):
+    for values in (motion.smallest_tilt, motion.peak_tilt, motion.period, motion.azimuth_advance):
         assert np.isnan(values).all()
     assert np.isfinite(motion.energy).all()
     assert np.isfinite(motion.angular_momentum).all()

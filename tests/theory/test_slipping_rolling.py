@@ -170,7 +170,7 @@ def test_it_leaves_rolling_without_slip_at_the_friction_that_needs(nu, a0, zeta,
     upper = int(held.exists.sum()) - 1
     excess = np.array([1e-5, 1e-6, 1e-7])
     found = slipping_rolling(nu, a0, **PAPER, zeta=zeta, mu=held.friction_demand[upper] * (1.0 + side * excess))
-    branch = found.exists.sum(axis=-1) - 1  # that of the largest tilt
+    branch = found.exists.sum(axis=-1) - 1  # that of the peak tilt
     rows = np.arange(3)
     speed = np.hypot(found.slip_along, found.slip_across)[rows, branch]
     off = np.array([

@@ -34,7 +34,7 @@ for axes, (name, motion) in zip(panels, motions.items(), strict=True):
     axes.plot(x, y)
     axes.set_title(name, fontsize=10)
     axes.set(xlabel="a_x [m/s²]", aspect="equal", xlim=(-1.7, 1.7), ylim=(-1.7, 1.7))
-    print(f"{name}: peak {motion.largest_horizontal():.2f} m/s²")
+    print(f"{name}: peak {motion.peak_horizontal():.2f} m/s²")
 panels[0].set_ylabel("a_y [m/s²]")
 
 # %%

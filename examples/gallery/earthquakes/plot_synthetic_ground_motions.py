@@ -24,7 +24,7 @@ figure, panels = plt.subplots(3, 1, sharex=True, sharey=True, layout="constraine
 for seed, axes in enumerate(panels):
     quake = model.record(np.random.default_rng(seed), components=2, step=0.01)
     axes.plot(quake.step * np.arange(len(quake.samples)), quake.samples[:, 0], lw=0.8)
-    peak = quake.largest_horizontal()  # m/s²
+    peak = quake.peak_horizontal()  # m/s²
     axes.set_title(f"seed {seed}: peak of the horizontal vector {peak:.1f} m/s²")
     axes.set_xlim(0.0, 20.0)
 panels[1].set_ylabel("acceleration along x [m/s²]")

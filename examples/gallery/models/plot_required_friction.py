@@ -21,7 +21,7 @@ for omega in frequency:
     circle = sb.Harmonic.circular(acceleration=amplitude, angular_frequency=omega)
     start = sb.studies.steady_start(model, circle)  # on the steady rolling
     run = sb.simulate(model, circle, duration=5.0 * circle.period, **start)
-    needed.append(run.measures["largest_friction_demand"])
+    needed.append(run.measures["peak_friction_demand"])
 theory = sb.theory.rolling_required_friction(
     frequency, amplitude, c=c, eta=eta, zeta=zeta
 )

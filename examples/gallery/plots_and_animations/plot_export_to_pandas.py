@@ -25,7 +25,7 @@ found = sb.studies.overturning_map(
 )
 
 # A table with one row a run; names of outcomes in place of codes.
-table = found[["outcome", "largest_tilt"]].to_dataframe().reset_index()
+table = found[["outcome", "peak_tilt"]].to_dataframe().reset_index()
 table["outcome"] = [sb.Outcome(code).label for code in table["outcome"]]
 print(table.head())
 # table.to_csv("runs.csv") would write a file that a spreadsheet opens.

@@ -18,7 +18,7 @@ circle = sb.Harmonic.circular(acceleration=0.17, angular_frequency=4.0, ramp=1.0
 ramps = np.linspace(0.5, 30.0, 300)
 runs = sb.simulate_ensemble(model, circle, duration=200.0, parameters={"ramp": ramps})
 fallen = (runs["outcome"] == sb.Outcome.OVERTURNED).values
-tilt = runs["largest_tilt"].values / 0.1  # in units of c
+tilt = runs["peak_tilt"].values / 0.1  # in units of c
 print(f"{fallen.sum()} of {len(ramps)} columns overturn")
 print(f"the longest ramp that overturns one is {ramps[fallen].max():.1f}/ω₀")
 

@@ -23,7 +23,7 @@ for acceleration, angular_frequency in cases:
     run = sb.simulate(model, floor, duration=60.0)
     runs.append(run)
     labels.append(f"{acceleration:g} m/s², {angular_frequency:g} rad/s")
-    peak = run.measures["largest_tilt_over_c"]
+    peak = run.measures["peak_tilt_over_c"]
     print(f"{labels[-1]}: {run.outcome.label}, peak tilt {peak:.2f} c")
 
 # %%

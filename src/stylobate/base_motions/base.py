@@ -54,7 +54,7 @@ class MotionContract(Declared, ABC):
         """
 
     @abstractmethod
-    def largest_horizontal(self, since: float = 0.0) -> float:
+    def peak_horizontal(self, since: float = 0.0) -> float:
         """Return sup |a_h| from the time `since` [s] on, or a bound above it [m/s²]."""
 
     @abstractmethod

@@ -28,7 +28,7 @@ class BaseMotion(MotionContract):
 
     Notes
     -----
-    For developers: a motion of your own implements `derivative`, `largest_horizontal`, `vertical_range` and
+    For developers: a motion of your own implements `derivative`, `peak_horizontal`, `vertical_range` and
     `directions`; `duration`, `period`, `highest_frequency`, `mean_frequency`, `breaks` and `degree` have defaults.
     """
 
@@ -94,9 +94,9 @@ class Sum(BaseMotion):
             x, y, z = x + dx, y + dy, z + dz
         return x, y, z
 
-    def largest_horizontal(self, since: float = 0.0) -> float:
+    def peak_horizontal(self, since: float = 0.0) -> float:
         """Sum the bounds of the parts [m/s²]: at least sup |a_h|, and above it if the peaks do not coincide."""
-        return math.fsum(motion.largest_horizontal(since) for motion in self.motions)
+        return math.fsum(motion.peak_horizontal(since) for motion in self.motions)
 
     def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
         """Sum the bounds of the parts [m/s²]."""
@@ -164,9 +164,9 @@ class Following(BaseMotion):
         """Return the displacement (`order` 0), velocity (1) or acceleration (2) of the motion."""
         return self.followed.derivative(time, order)
 
-    def largest_horizontal(self, since: float = 0.0) -> float:
+    def peak_horizontal(self, since: float = 0.0) -> float:
         """Return the bound of the motion [m/s²]."""
-        return self.followed.largest_horizontal(since)
+        return self.followed.peak_horizontal(since)
 
     def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
         """Return the bounds of the motion [m/s²]."""
@@ -250,9 +250,9 @@ class Scaled(Transformed):
         """Return the scaled vector."""
         return self.factor * x, self.factor * y, self.vertical * z
 
-    def largest_horizontal(self, since: float = 0.0) -> float:
+    def peak_horizontal(self, since: float = 0.0) -> float:
         """Return |factor| times the bound of the motion [m/s²]."""
-        return abs(self.factor) * self.motion.largest_horizontal(since)
+        return abs(self.factor) * self.motion.peak_horizontal(since)
 
     def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
         """Return the scaled bounds, in order [m/s²]."""
@@ -302,9 +302,9 @@ class Delayed(Transformed):
             x, y, z = (value + rate * (t - running) for value, rate in zip(values, initial, strict=True))
         return x, y, z
 
-    def largest_horizontal(self, since: float = 0.0) -> float:
+    def peak_horizontal(self, since: float = 0.0) -> float:
         """Return the bound of the motion from the delayed time on [m/s²]."""
-        return self.motion.largest_horizontal(max(0.0, since - self.delay))
+        return self.motion.peak_horizontal(max(0.0, since - self.delay))
 
     def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
         """Return the bounds of the motion from the delayed time on [m/s²], 0 included while it waits."""

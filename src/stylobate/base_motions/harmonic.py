@@ -66,7 +66,7 @@ class Harmonic(BaseMotion):
     >>> motion = Harmonic.circular(acceleration=0.65, angular_frequency=1.8)
     >>> motion.acceleration(0.0).round(12)
     array([0.65, 0.  , 0.  ])
-    >>> Harmonic.orbit(diameter=0.02, rpm=300.0).largest_horizontal()  # 0.01 m (10π rad/s)²
+    >>> Harmonic.orbit(diameter=0.02, rpm=300.0).peak_horizontal()  # 0.01 m (10π rad/s)²
     9.869604401089358
     """
 
@@ -279,7 +279,7 @@ class Harmonic(BaseMotion):
             z = np.where(early, self._ramped(t, order, az, fz), z)
         return x, y, z
 
-    def largest_horizontal(self, since: float = 0.0) -> float:
+    def peak_horizontal(self, since: float = 0.0) -> float:
         """Compute sup |a_h| = |p| + |q| [m/s²], where p and q are the circular motions that make the ellipse."""
         del since
         p, q = self._circular_parts()

@@ -31,7 +31,7 @@ class OneOf(Following):
     >>> weak, strong = (sb.Pulse.one_sine(acceleration=a, angular_frequency=3.0) for a in (1.0, 5.0))
     >>> model = sb.Slender(sb.Column.solid(radius=0.2, height=2.0, density=2700.0))
     >>> shaken = sb.OneOf(motions=(weak, strong))
-    >>> sb.with_parameters(model, shaken, motion=1)[1].largest_horizontal()
+    >>> sb.with_parameters(model, shaken, motion=1)[1].peak_horizontal()
     5.0
     """
 

@@ -196,7 +196,7 @@ class SineSweep(BaseMotion):
             along = along + first * np.minimum(since, 0.0) + last * np.maximum(since - self.length, 0.0)
         return math.cos(self.direction) * along, math.sin(self.direction) * along, self.vertical * along
 
-    def largest_horizontal(self, since: float = 0.0) -> float:
+    def peak_horizontal(self, since: float = 0.0) -> float:
         """Return a bound of |a_h| from `since` on [m/s²]: A, or D√(ψ̇⁴ + ψ̈²) at its largest; 0 after the end."""
         if since >= self.duration:
             return 0.0
@@ -209,12 +209,12 @@ class SineSweep(BaseMotion):
 
     def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
         """Return bounds of a_z from `since` on [m/s²]: `vertical` times that of |a_h|, either way."""
-        largest = abs(self.vertical) * self.largest_horizontal(since)
+        largest = abs(self.vertical) * self.peak_horizontal(since)
         return -largest, largest
 
     def directions(self) -> tuple[tuple[float, float], ...]:
-        """Return the largest acceleration along the line [m/s²]."""
-        largest = self.largest_horizontal()
+        """Return the peak acceleration along the line [m/s²]."""
+        largest = self.peak_horizontal()
         return ((largest * math.cos(self.direction), largest * math.sin(self.direction)),)
 
     @property

@@ -131,7 +131,7 @@ def _summary(result: "xr.Dataset") -> dict[str, Any]:
 
 
 def _attractor(one: "xr.Dataset") -> dict[str, Any]:
-    numbers = ("mean_tilt", "largest_tilt", "turns")
+    numbers = ("mean_tilt", "peak_tilt", "turns")
     period = int(one["attractor_period"])
     points = {"orbit_point": slice(0, max(period, 1))}
     return {

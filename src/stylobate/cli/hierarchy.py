@@ -127,12 +127,12 @@ def _row(at: "xr.Dataset", c: float, *, several: bool) -> list[str]:
         *([f"{c:.4g}"] if several else []),
         name,
         outcome_label(int(at["outcome"])) + (" (uncertain)" if bool(at["uncertain"]) else ""),
-        _cell(float(at["largest_tilt"]) / c),
+        _cell(float(at["peak_tilt"]) / c),
         _cell(float(at["mean_late_tilt"]) / c),
         _cell(float(at["mean_late_spin"])),
-        _cell(float(at["largest_friction_demand"])),
-        _cell(float(at["largest_pivoting_demand"])),
-        _cell(float(at["least_normal_force"])),
+        _cell(float(at["peak_friction_demand"])),
+        _cell(float(at["peak_pivoting_demand"])),
+        _cell(float(at["minimum_normal_force"])),
         _cell(distance),
     ]
 

@@ -294,10 +294,10 @@ class Plan:
 
 
 def tilt_ratios(runs: xr.Dataset, slenderness: float | xr.DataArray) -> xr.DataArray:
-    """Return the largest tilt over α = atan c: infinite where overturned, NaN where a run is undecided."""
+    """Return the peak tilt over α = atan c: infinite where overturned, NaN where a run is undecided."""
     codes = runs["outcome"]
     decided = ~codes.isin([NOT_COMPUTED, *UNRESOLVED])
-    ratio = (runs["largest_tilt"] / np.arctan(slenderness)).where(decided)
+    ratio = (runs["peak_tilt"] / np.arctan(slenderness)).where(decided)
     ratio = ratio.where(codes != Outcome.OVERTURNED, np.inf)
     return ratio.assign_attrs(units="1", long_name="peak tilt / α_c")
 

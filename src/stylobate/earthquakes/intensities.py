@@ -184,7 +184,7 @@ def horizontal_peak(motion: BaseMotion, order: int, component: HorizontalCompone
     if not has_two_components(motion):
         component = HorizontalComponent.ROTD100
         if order == ACCELERATION:
-            return motion.largest_horizontal(0.0)
+            return motion.peak_horizontal(0.0)
     x, y, _ = motion.derivative(_dense_times(motion), order)
     return component.peak(x, y)
 

@@ -27,7 +27,7 @@ from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.quantities import Floats, checked_values
 from stylobate.studies.sweeps.recipe import DEFAULTS, RunOptions
 
-_KEPT = ("outcome", "largest_tilt", "uncertain")
+_KEPT = ("outcome", "peak_tilt", "uncertain")
 _AS_GIVEN = 0
 
 
@@ -141,7 +141,7 @@ class _Arrays:
     """Results over record, rotation and change, the first of which is none."""
 
     outcome: npt.NDArray[np.int8]
-    largest_tilt: Floats
+    peak_tilt: Floats
     uncertain: npt.NDArray[np.bool_]
     slenderness: Floats
 

@@ -33,7 +33,7 @@ class Demands:
     Parameters
     ----------
     measures
-        `largest_friction_demand`, `largest_pivoting_demand` and `least_normal_force`, the last over m g; empty if the
+        `peak_friction_demand`, `peak_pivoting_demand` and `minimum_normal_force`, the last over m g; empty if the
         model defines no contact forces.
     warnings
         A line for each thing that a real contact would not have borne.
@@ -60,9 +60,9 @@ class Demands:
         loads = _Loads.of(model, forcing, trajectory, samples)
         friction, pivoting, pull = loads.largest().tolist()
         measures = {
-            "largest_friction_demand": friction,
-            "largest_pivoting_demand": pivoting,
-            "least_normal_force": -pull,
+            "peak_friction_demand": friction,
+            "peak_pivoting_demand": pivoting,
+            "minimum_normal_force": -pull,
         }
         warnings = []
         if pull >= 0.0:

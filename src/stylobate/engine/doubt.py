@@ -36,7 +36,7 @@ def in_doubt(
     *,
     overturned: npt.ArrayLike,
     decided: npt.ArrayLike,
-    largest_tilt: npt.ArrayLike,
+    peak_tilt: npt.ArrayLike,
     released_again: npt.ArrayLike,
     slenderness: npt.ArrayLike,
 ) -> npt.NDArray[np.bool_]:
@@ -48,15 +48,15 @@ def in_doubt(
         Whether the column overturned.
     decided
         Dimensionless time at which that was decided.
-    largest_tilt
-        Largest tilt [rad].
+    peak_tilt
+        Peak tilt [rad].
     released_again
         Whether the column came to rest in the run and was released again.
     slenderness
         c, the tangent of the tipping angle.
     """
     fell, again = np.asarray(overturned), np.asarray(released_again)
-    share = np.asarray(largest_tilt) / np.arctan(np.asarray(slenderness, dtype=float))
+    share = np.asarray(peak_tilt) / np.arctan(np.asarray(slenderness, dtype=float))
     resting = again & (fell | (share > LARGE_TILT))
     moving = np.where(fell, np.asarray(decided) > LATE, share > NEAR_BALANCE)
     return np.asarray(resting | moving)

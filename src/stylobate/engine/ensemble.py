@@ -116,7 +116,7 @@ def simulate_ensemble(
         * With `samples`: `sample_time`, `sampled_tilt` and `sampled_tilt_rate`. They and the stroboscopic samples are
           NaN before the start and after the end of a run.
         * Models with a spin: `end_spin`.
-        * With `demands`: `largest_friction_demand`, `largest_pivoting_demand` and `least_normal_force` (over the
+        * With `demands`: `peak_friction_demand`, `peak_pivoting_demand` and `minimum_normal_force` (over the
           weight), interpolated within each step by parabolas through its quarter points. While the column stands, the
           friction demand is |a_h|/(g + a_z).
         * Models that change between kinds of contact: `end_contact`, `end_footprint`, `end_twist`, the duration of each

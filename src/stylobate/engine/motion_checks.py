@@ -26,7 +26,7 @@ _ROUNDING, _REPEATS = 1e-9, 1e-6
 # Rounding of the difference of two phases, in units of that of a phase.
 _PHASES_APART = 4.0
 
-# Releases are sought by parabolas through three samples. The fraction of the largest acceleration that these may miss:
+# Releases are sought by parabolas through three samples. The fraction of the peak acceleration that these may miss:
 # 6e-5 at the true frequency, this much at a seventh of it.
 _MISSED = 0.02
 _MOST_PAIRS, _POINTS = 4000, 4096
@@ -72,7 +72,7 @@ _KINDS: dict[str, _Kind] = {
         lambda value: _vectors(value, _COMPONENTS, 2),
         "three arrays of the shape of time",
     ),
-    "largest_horizontal": (lambda motion: motion.largest_horizontal(0.0), float, "a number, in m/s²"),
+    "peak_horizontal": (lambda motion: motion.peak_horizontal(0.0), float, "a number, in m/s²"),
     "vertical_range": (
         lambda motion: motion.vertical_range(0.0),
         lambda value: _vectors([value], 1, 2),
@@ -120,12 +120,12 @@ def _check_bound(name: str, motion: BaseMotion, time: Floats) -> Floats:
     if broken.any():
         message = f"{name} must have a finite acceleration, got {parts[0][broken][0]!r} at t = {time[broken][0]!r} s"
         raise ParameterError(message)
-    largest, bound = float(np.hypot(found[0], found[1]).max()), motion.largest_horizontal(0.0)
+    largest, bound = float(np.hypot(found[0], found[1]).max()), motion.peak_horizontal(0.0)
     # The phases of two components are rounded apart where they are large.
     frequency = motion.highest_frequency if math.isfinite(motion.highest_frequency) else 0.0
     unresolved = _PHASES_APART * np.finfo(float).eps * frequency * float(time[-1])
     if not largest <= bound * (1.0 + _ROUNDING + unresolved):
-        message = f"{name}.largest_horizontal must bound |a_h|, got {bound!r} m/s² although |a_h| reaches {largest!r}"
+        message = f"{name}.peak_horizontal must bound |a_h|, got {bound!r} m/s² although |a_h| reaches {largest!r}"
         raise ParameterError(message)
     return found
 
@@ -157,10 +157,10 @@ def _problem_of_bounds(motion: BaseMotion, time: Floats, found: Floats) -> str:
                 f"vertical_range: does not bound a_z from t = {since:.4g} s on (got {low:.4g} to {high:.4g} m/s², "
                 f"a_z goes from {least:.4g} to {largest:.4g}). Return bounds outside these."
             )
-        bound = motion.largest_horizontal(since)
+        bound = motion.peak_horizontal(since)
         if not size[begin:].max() <= bound * (1.0 + _ROUNDING):
             return (
-                f"largest_horizontal: does not bound |a_h| from t = {since:.4g} s on (got {bound:.4g} m/s², "
+                f"peak_horizontal: does not bound |a_h| from t = {since:.4g} s on (got {bound:.4g} m/s², "
                 f"|a_h| reaches {size[begin:].max():.4g}). Return a bound above that."
             )
     return ""
@@ -175,7 +175,7 @@ def _problem_of_directions(motion: BaseMotion, time: Floats, found: Floats) -> s
     ux, uy = line or (0.0, 0.0)
     across = np.hypot(found[0], found[1]) if line is None else np.abs(ux * found[1] - uy * found[0])
     worst = int(np.argmax(across))
-    if across[worst] <= _ROUNDING * max(motion.largest_horizontal(0.0), float(np.abs(found[:2]).max())):
+    if across[worst] <= _ROUNDING * max(motion.peak_horizontal(0.0), float(np.abs(found[:2]).max())):
         return ""
     along = f"a line along ({ux:.4g}, {uy:.4g})" if moving else "no horizontal motion"
     return (
@@ -206,7 +206,7 @@ def _problem_of_period(motion: BaseMotion, duration: float) -> str:
     time = begin + period * np.linspace(0.0, 1.0, _SAMPLES)
     now, later = (np.stack(motion.derivative(t, ACCELERATION)) for t in (time, time + period))
     off = float(np.abs(later - now).max())
-    if off <= _REPEATS * max(float(np.abs(now).max()), motion.largest_horizontal(0.0)):
+    if off <= _REPEATS * max(float(np.abs(now).max()), motion.peak_horizontal(0.0)):
         return ""
     return (
         f"period: the acceleration does not repeat after it (got {period:.6g} s, differs by {off:.4g} m/s²). Return "

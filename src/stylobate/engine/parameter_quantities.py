@@ -51,7 +51,7 @@ _QUANTITIES = {
     "motion": VariedQuantity(
         "number of the base motion", "1", lambda values: (values >= 0.0) & (values % 1.0 == 0.0), "be whole, from 0 on"
     ),
-    "acceleration": _not_negative("largest horizontal acceleration of the base", "m s-2"),
+    "acceleration": _not_negative("peak horizontal acceleration of the base", "m s-2"),
     "scale": VariedQuantity("factor of the base motion", "1"),
     "angular_frequency": _positive("angular frequency", "rad s-1"),
     "start_phase": VariedQuantity("phase of the base motion at the start", "rad"),

@@ -193,7 +193,7 @@ def changed_motion(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotio
         motion = with_numbers(motion, numbers)
     if "acceleration" in values:
         value = require_finite("acceleration", values["acceleration"], "m/s²")
-        motion = motion.scaled(value / largest_acceleration(motion))
+        motion = motion.scaled(value / peak_acceleration(motion))
     if "scale" in values:
         motion = motion.scaled(values["scale"])
     if "rotation" in values:
@@ -209,7 +209,7 @@ def _one_of(motion: BaseMotion, number: float) -> BaseMotion:
     return chosen
 
 
-def largest_acceleration(motion: BaseMotion) -> float:
+def peak_acceleration(motion: BaseMotion) -> float:
     """Return sup |a_h| of `motion`, by which an `acceleration` scales it [m/s²].
 
     Raises
@@ -217,7 +217,7 @@ def largest_acceleration(motion: BaseMotion) -> float:
     UnsupportedError
         If it has no horizontal acceleration.
     """
-    largest = motion.largest_horizontal(0.0)
+    largest = motion.peak_horizontal(0.0)
     if not largest > 0.0:
         message = f"acceleration cannot be changed: the motion has no horizontal acceleration; {_said(motion)}"
         raise UnsupportedError(message)
@@ -273,7 +273,7 @@ def present_value(model: Model, motion: BaseMotion, name: str) -> float:
     if name in _CHANGES:
         return _CHANGES[name]
     if name == "acceleration":
-        return largest_acceleration(motion)
+        return peak_acceleration(motion)
     if name == "motion":
         return float(number_of(motion))
     if name in ELLIPSE_NAMES:

@@ -93,7 +93,7 @@ def _races(model: Model, followed: Followed) -> bool:
 def bounds_of(followed: Followed) -> tuple[float, float]:
     """Return sup |a_h| and inf a_z [g] of a whole run."""
     motions = followed.batch.motions
-    return float(motions.largest[0]), float(motions.least_vertical[0])
+    return float(motions.largest[0]), float(motions.minimum_vertical[0])
 
 
 def late_measures(followed: Followed) -> dict[str, float]:
@@ -107,8 +107,8 @@ def late_measures(followed: Followed) -> dict[str, float]:
         "mean_rolling_rate": 2.0 * math.pi * float(late.turned[0] / (late.span[0] * scale)),
         "repetition": float(late.repetition[0]),
         "mean_tilt_late": float(late.mean_tilt[0]),
-        "least_tilt_late": float(late.least_tilt[0]),
-        "largest_tilt_late": _largest_tilt(followed),
+        "minimum_tilt_late": float(late.minimum_tilt[0]),
+        "peak_tilt_late": _peak_tilt(followed),
     }
     before = float(late.repetition_before[0])
     if not math.isnan(before):
@@ -117,11 +117,11 @@ def late_measures(followed: Followed) -> dict[str, float]:
     return measures
 
 
-# Samples to each of the last periods, of which the largest tilt in them is the largest.
+# Samples to each of the last periods, of which the peak tilt in them is the largest.
 _SAMPLES = 64
 
 
-def _largest_tilt(followed: Followed) -> float:
+def _peak_tilt(followed: Followed) -> float:
     trajectory, periods = followed.trajectory, followed.batch.plan.options.rules.periods
     tau = np.linspace(trajectory.end - float(followed.late.span[0]), trajectory.end, periods * _SAMPLES + 1)
     return float(np.hypot(*trajectory.model.tilt(trajectory.states(tau))).max())

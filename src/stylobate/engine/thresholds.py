@@ -44,7 +44,7 @@ def least_rest_energy(motion: BaseMotion) -> float:
 def usual_rest_energy(
     frequency: npt.ArrayLike,
     largest: npt.ArrayLike,
-    least_vertical: npt.ArrayLike,
+    minimum_vertical: npt.ArrayLike,
     capacity: npt.ArrayLike,
     *,
     least: npt.ArrayLike,
@@ -55,7 +55,7 @@ def usual_rest_energy(
     ----------
     frequency
         The mean dimensionless frequency of the base motion; 0 for a base at rest.
-    largest, least_vertical
+    largest, minimum_vertical
         sup |a_h| and inf a_z [g].
     capacity
         |a_h|/(1 + a_z) up to which the column stays.
@@ -63,7 +63,7 @@ def usual_rest_energy(
         See `least_rest_energy`.
     """
     energy = rest_energy_for_good(frequency)
-    hop = hop_energy(frequency, largest, least_vertical, capacity)
+    hop = hop_energy(frequency, largest, minimum_vertical, capacity)
     finest = np.maximum(least, _REST_ENERGY_HOP * hop)
     return np.where(np.isnan(hop), energy, np.minimum(energy, finest))
 
@@ -78,22 +78,22 @@ def coarse(
     rest_energy: npt.ArrayLike,
     frequency: npt.ArrayLike,
     largest: npt.ArrayLike,
-    least_vertical: npt.ArrayLike,
+    minimum_vertical: npt.ArrayLike,
     capacity: npt.ArrayLike,
 ) -> npt.NDArray[np.bool_]:
     """Return whether `rest_energy` is above a hundredth of what a column has that was just released."""
-    hop = hop_energy(frequency, largest, least_vertical, capacity)
+    hop = hop_energy(frequency, largest, minimum_vertical, capacity)
     return ~np.isnan(hop) & (_REST_ENERGY_HOP * hop < np.asarray(rest_energy, dtype=float))
 
 
 def hop_energy(
-    frequency: npt.ArrayLike, largest: npt.ArrayLike, least_vertical: npt.ArrayLike, capacity: npt.ArrayLike
+    frequency: npt.ArrayLike, largest: npt.ArrayLike, minimum_vertical: npt.ArrayLike, capacity: npt.ArrayLike
 ) -> Floats:
     """Return the energy [c²] that a harmonic peak gives a column it has just released; NaN if it cannot uplift it.
 
     With |a_h| = c(1 + δ) at the peak the excess lasts 2√(2δ)/ν and leaves the speed (4/3)√2 c δ^{3/2}/ν.
     """
-    weight = 1.0 + np.asarray(least_vertical, dtype=float)
+    weight = 1.0 + np.asarray(minimum_vertical, dtype=float)
     with np.errstate(divide="ignore", invalid="ignore"):
         excess = np.asarray(largest) / (np.asarray(capacity) * weight) - 1.0
         energy = 16.0 / 9.0 * excess**3 / np.square(frequency)

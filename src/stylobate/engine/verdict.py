@@ -66,10 +66,10 @@ class Evidence:
     ----------
     turned
         How far the lean travelled round [turns].
-    least_tilt
+    minimum_tilt
         [units of c].
     repetition
-        The largest difference of states one period apart, over the largest tilt or rate.
+        The largest difference of states one period apart, over the peak tilt or rate.
     repetition_before
         The same over the n periods before; NaN where the run is too short for them.
     drift
@@ -77,7 +77,7 @@ class Evidence:
     """
 
     turned: npt.ArrayLike
-    least_tilt: npt.ArrayLike
+    minimum_tilt: npt.ArrayLike
     repetition: npt.ArrayLike
     repetition_before: npt.ArrayLike
     drift: npt.ArrayLike
@@ -89,7 +89,7 @@ def grounds(evidence: Evidence, rules: OutcomeRules) -> npt.NDArray[np.int8]:
     turned, repetition = np.abs(evidence.turned), np.asarray(evidence.repetition)
     before = np.asarray(evidence.repetition_before)
     off = np.abs(turned / n - 1.0)
-    tilted = np.asarray(evidence.least_tilt) > rules.rest_tilt
+    tilted = np.asarray(evidence.minimum_tilt) > rules.rest_tilt
     repeats = repetition < rules.repeat_tolerance
     follows = tilted & (off * n < _LESS_THAN_ONE_TURN) & ~repeats
     with np.errstate(divide="ignore", invalid="ignore"):

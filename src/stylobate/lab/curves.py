@@ -71,7 +71,7 @@ def exact_curves(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
 
 def plain_exact(found: xr.Dataset) -> dict[str, Any]:
     """Return families of exact orbits and their bifurcations."""
-    names = ("angular_frequency", "mean_tilt", "least_tilt", "largest_tilt", "phase", "stable", "tilt", "tilt_rate")
+    names = ("angular_frequency", "mean_tilt", "minimum_tilt", "peak_tilt", "phase", "stable", "tilt", "tilt_rate")
     owner = found["branch"].to_numpy()
     families = [
         {"name": str(label), **{name: numbers(found[name].to_numpy()[owner == index]) for name in names}}

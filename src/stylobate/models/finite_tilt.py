@@ -22,7 +22,7 @@ TINY = 1e-300
 # Angular rate below which rolling resistance fades out [ω0]: it is no friction that holds a column.
 FADING = 1e-3
 
-# A least tilt counts as a passage of the upright below this, unless the user sets another [c].
+# A minimum tilt counts as a passage of the upright below this, unless the user sets another [c].
 _PASSAGE = 0.01
 
 
@@ -119,16 +119,16 @@ def planar_acceleration(
     return side * acceleration, normal, swept
 
 
-def no_return_tilt(largest_horizontal: float, least_vertical: float, c: float) -> float:
+def no_return_tilt(peak_horizontal: float, minimum_vertical: float, c: float) -> float:
     """Return atan c + atan(sup|a_h|/(1 + inf a_z)) [rad], beyond which a growing tilt without spin cannot come back.
 
     From there on (1 + a_z)(sin θ − c cos θ) exceeds |a_h|(cos θ + c sin θ). It is π/2 at most, where the column lies.
     With 1 + inf a_z ≤ 0 nothing is certain and the answer is infinite.
     """
-    weight = 1.0 + least_vertical
+    weight = 1.0 + minimum_vertical
     if weight <= 0.0:
         return math.inf
-    return min(math.atan(c) + math.atan(largest_horizontal / weight), 0.5 * math.pi)
+    return min(math.atan(c) + math.atan(peak_horizontal / weight), 0.5 * math.pi)
 
 
 def energy_at_rest(tilt: float, speed: float, vertical: float, c: float, kappa: float) -> float:

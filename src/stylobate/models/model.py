@@ -241,7 +241,7 @@ class Model(Declared, ABC):
 
     @property
     def loss_tilt(self) -> float:
-        """Least tilt below which a passage near the vertical loses energy by `impact_map` [rad]; 0 without loss."""
+        """Minimum tilt below which a passage near the vertical loses energy by `impact_map` [rad]; 0 without loss."""
         return 0.0
 
     @property
@@ -313,11 +313,11 @@ class Model(Declared, ABC):
         still = (0.0,) * len(moving) if self.at_rest is None else self.at_rest(*moving, *self.parameters)
         return *still, *carried
 
-    def least_safe_tilt(self, largest_horizontal: float, least_vertical: float) -> float:
+    def least_safe_tilt(self, peak_horizontal: float, minimum_vertical: float) -> float:
         """Return `no_return_tilt` for these bounds [g], infinite where the model has none."""
         if self.no_return_tilt is None:
             return math.inf
-        return self.no_return_tilt(largest_horizontal, least_vertical, *self.parameters)
+        return self.no_return_tilt(peak_horizontal, minimum_vertical, *self.parameters)
 
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
         """Return the outputs of the model besides the tilt, by name.

@@ -43,14 +43,14 @@ def rest_energy(tilt: float, speed: float, vertical: float, c: float, *_: float)
     return 0.5 * speed * speed + c * (1.0 + vertical) * tilt
 
 
-def no_return_tilt(largest_horizontal: float, least_vertical: float, c: float, *_: float) -> float:
+def no_return_tilt(peak_horizontal: float, minimum_vertical: float, c: float, *_: float) -> float:
     """Return c + sup|a_h|/(1 + inf a_z) [rad].
 
     From (6), Ä ≥ (1 + a_z)(A − c) − |a_h| − ηȦ: beyond this tilt Ȧ ≥ 0 stays so. With 1 + inf a_z ≤ 0 nothing is
     certain and the answer is infinite.
     """
-    weight = 1.0 + least_vertical
-    return c + largest_horizontal / weight if weight > 0.0 else math.inf
+    weight = 1.0 + minimum_vertical
+    return c + peak_horizontal / weight if weight > 0.0 else math.inf
 
 
 def contact(

@@ -10,9 +10,9 @@ def rest_energy(tilt: float, speed: float, vertical: float, c: float, _eta: floa
     return finite_tilt.energy_at_rest(tilt, speed, vertical, c, kappa)
 
 
-def no_return_tilt(largest_horizontal: float, least_vertical: float, c: float, *_: float) -> float:
+def no_return_tilt(peak_horizontal: float, minimum_vertical: float, c: float, *_: float) -> float:
     """Return the tilt beyond which a growing tilt can never come back [rad]."""
-    return finite_tilt.no_return_tilt(largest_horizontal, least_vertical, c)
+    return finite_tilt.no_return_tilt(peak_horizontal, minimum_vertical, c)
 
 
 def departure(

@@ -89,8 +89,8 @@ class Branch:
         first = orbits[0]
         table = {
             "mean_tilt": ([orbit.mean_tilt for orbit in orbits], "rad", "mean tilt angle"),
-            "least_tilt": ([orbit.least_tilt for orbit in orbits], "rad", "least tilt angle"),
-            "largest_tilt": ([orbit.largest_tilt for orbit in orbits], "rad", "largest tilt angle"),
+            "minimum_tilt": ([orbit.minimum_tilt for orbit in orbits], "rad", "minimum tilt angle"),
+            "peak_tilt": ([orbit.peak_tilt for orbit in orbits], "rad", "peak tilt angle"),
             "phase": ([phase_of(orbit) for orbit in orbits], "rad", "phase of the lean to the base acceleration"),
             "turns": ([orbit.turns for orbit in orbits], "1", "turns of the contact point a period"),
         }
@@ -185,7 +185,7 @@ def _table_of(bifurcations: tuple[Bifurcation, ...]) -> dict[str, tuple[str, lis
         "bifurcation_coefficient": (dim, [one.coefficient for one in bifurcations]),
         "bifurcation_supercritical": (dim, [SUPERCRITICAL[one.supercritical] for one in bifurcations]),
         "bifurcation_mean_tilt": (dim, [one.orbit.mean_tilt for one in bifurcations]),
-        "bifurcation_largest_tilt": (dim, [one.orbit.largest_tilt for one in bifurcations]),
+        "bifurcation_peak_tilt": (dim, [one.orbit.peak_tilt for one in bifurcations]),
     }
 
 

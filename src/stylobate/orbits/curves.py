@@ -105,8 +105,8 @@ class BifurcationCurve:
         system = self.plane.system
         return xr.Dataset(
             {
-                "least_tilt": ("point", [p.chain.least_tilt for p in self.path], {"units": "rad"}),
-                "largest_tilt": ("point", [p.chain.largest_tilt for p in self.path], {"units": "rad"}),
+                "minimum_tilt": ("point", [p.chain.minimum_tilt for p in self.path], {"units": "rad"}),
+                "peak_tilt": ("point", [p.chain.peak_tilt for p in self.path], {"units": "rad"}),
                 "coefficient": ("point", coefficient, {"long_name": "coefficient of the normal form"}),
                 "supercritical": ("point", np.where(decided, supercritical, -1).astype(np.int8)),
                 "multiplier_angle": ("point", angle, {"units": "rad", "long_name": "angle of the critical eigenvalue"}),

@@ -186,7 +186,7 @@ def periodic_orbits(
                     known.extend(one.states(one.periods).T)
     # Images have the same tilts but for rounding: they stay in the order in which they were found.
     same = _SAME * system.scale
-    return tuple(sorted(found, key=lambda orbit: (orbit.periods, round(orbit.largest_tilt / same))))
+    return tuple(sorted(found, key=lambda orbit: (orbit.periods, round(orbit.peak_tilt / same))))
 
 
 def _deflated(system: PeriodicSystem, state: Floats, periods: int, known: Sequence[Floats]) -> Shots | None:

@@ -33,7 +33,7 @@ class PeriodMap:
     def derivative(self, offset: Floats) -> Floats:
         """Return the derivative at the fixed point plus `offset` [c]."""
         start = self.state + self.system.scale * offset
-        flow = self.system.carry(start, 0.0, float(self.periods), largest_tilt=np.pi)
+        flow = self.system.carry(start, 0.0, float(self.periods), peak_tilt=np.pi)
         if flow.status is not Status.DONE:
             return np.full((self.system.order, self.system.order), np.nan)
         return self.system.image(self.sense)[:, np.newaxis] * flow.by_start

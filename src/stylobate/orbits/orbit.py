@@ -124,14 +124,14 @@ class PeriodicOrbit:
         return self.line is not None
 
     @property
-    def least_tilt(self) -> float:
+    def minimum_tilt(self) -> float:
         """Minimum tilt angle [rad]."""
-        return self.chain.least_tilt
+        return self.chain.minimum_tilt
 
     @property
-    def largest_tilt(self) -> float:
+    def peak_tilt(self) -> float:
         """Maximum tilt angle [rad]."""
-        return self.chain.largest_tilt
+        return self.chain.peak_tilt
 
     @cached_property
     def path(self) -> Floats:
@@ -205,7 +205,7 @@ class PeriodicOrbit:
         """Describe it in one line."""
         stability = "stable" if self.stable else "unstable"
         kind = f"period {self.periods}, {self.turns:+.3g} turns a period"
-        return f"PeriodicOrbit({stability}, {kind}, tilt {self.least_tilt:.6g}…{self.largest_tilt:.6g} rad)"
+        return f"PeriodicOrbit({stability}, {kind}, tilt {self.minimum_tilt:.6g}…{self.peak_tilt:.6g} rad)"
 
 
 def lean_of(system: PeriodicSystem, states: Floats) -> Floats:

@@ -97,14 +97,14 @@ class Shots:
         return sum(flow.turns for flow in self.flows)
 
     @property
-    def least_tilt(self) -> float:
-        """Least tilt met."""
-        return min(flow.least_tilt for flow in self.flows)
+    def minimum_tilt(self) -> float:
+        """Minimum tilt met."""
+        return min(flow.minimum_tilt for flow in self.flows)
 
     @property
-    def largest_tilt(self) -> float:
-        """Largest tilt met."""
-        return max(flow.largest_tilt for flow in self.flows)
+    def peak_tilt(self) -> float:
+        """Peak tilt met."""
+        return max(flow.peak_tilt for flow in self.flows)
 
 
 def shots(

@@ -136,7 +136,7 @@ def backbones(data: xr.Dataset) -> Figure:
     axes.plot([], [], color=BLACK, linewidth=UNSTABLE_WIDTH, label="thin: unstable (rocking: within its plane)")
     axes.legend()
     axes.set_xlabel(r"frequency ratio $\nu$, $\omega/\omega_0$")
-    axes.set_ylabel("largest tilt angle [rad]")
+    axes.set_ylabel("peak tilt angle [rad]")
     axes.set_ylim(0.0, 1.2 * data.attrs["c"])
     return figure
 

@@ -30,7 +30,7 @@ def draw_part(axes: Axes, part: xr.Dataset, x: str, y: str, colour: str, *, labe
 
 def shade_range(axes: Axes, part: xr.Dataset, x: str, colour: str) -> None:
     """Shade the range of the tilt over a period where the orbits of one branch are stable."""
-    along, low, high = (part[name].to_numpy() for name in (x, "least_tilt", "largest_tilt"))
+    along, low, high = (part[name].to_numpy() for name in (x, "minimum_tilt", "peak_tilt"))
     axes.fill_between(along, low, high, where=_beside_stable(part), color=colour, alpha=0.15, linewidth=0.0)
 
 

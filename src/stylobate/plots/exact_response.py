@@ -24,7 +24,7 @@ _SPREAD = 0.5 * np.pi
 def plot_exact_response(curves: xr.Dataset) -> Figure:
     """Return a figure of `curves` of the kind "exact response": mean tilt with its range above, phase below.
 
-    Stable orbits are bold, unstable ones thin; a shade from the least to the largest tilt shows how far stable ones
+    Stable orbits are bold, unstable ones thin; a shade from the minimum to maximum tilt shows how far stable ones
     swing. Orbits without a phase have no panel below. Theory's curves are dashed, in grey. Bifurcations are marked:
     black if supercritical, white if subcritical, grey if that is not decided.
     """

@@ -113,7 +113,7 @@ def _draw_spin(axes: Axes, shown: xr.Dataset) -> None:
 
 def _draw_tilts(axes: Axes, found: xr.Dataset, c: float) -> None:
     place = np.arange(found.sizes["model"])[::-1]
-    for name, label, filled in (("largest_tilt", "largest", True), ("mean_late_tilt", "late mean", False)):
+    for name, label, filled in (("peak_tilt", "largest", True), ("mean_late_tilt", "late mean", False)):
         _draw_dots(axes, place, found[name].to_numpy() / c, found["model"].to_numpy(), filled=filled)
         axes.plot([], [], "o", color=GREY, markerfacecolor=GREY if filled else "white", label=label)
     axes.set_yticks(place, list(found["model"].to_numpy()))
@@ -132,8 +132,8 @@ def _draw_dots(axes: Axes, place: np.ndarray, values: np.ndarray, models: np.nda
 def _draw_demands(axes: Axes, found: xr.Dataset) -> None:
     place = np.arange(found.sizes["model"])[::-1]
     for name, label, filled in (
-        ("largest_friction_demand", "friction", True),
-        ("largest_pivoting_demand", "pivoting", False),
+        ("peak_friction_demand", "friction", True),
+        ("peak_pivoting_demand", "pivoting", False),
     ):
         values = found[name].to_numpy()
         _draw_dots(axes, place, np.where(np.isfinite(values), values, np.nan), found["model"].to_numpy(), filled=filled)

@@ -29,7 +29,7 @@ _MOST_NAMED, _MOST_MARKED = 8, 30
 def plot_slow_sweep(found: xr.Dataset) -> Figure:
     """Return a figure of tilt and turns a period against the parameter of a slow sweep.
 
-    Lines are means over the last periods at each value, bands reach from the least to the largest tilt. Full
+    Lines are means over the last periods at each value, bands reach from the minimum to maximum tilt. Full
     triangles point right where the parameter rises, hollow ones left where it falls. A cross marks where a column
     overturned, at the tilt it had before.
     """
@@ -47,8 +47,8 @@ def plot_slow_sweep(found: xr.Dataset) -> Figure:
                 which = f"sweep {sweep + 1}, " if len(sweeps) > 1 else ""
                 legend.append(_line(colour, rising=rising, label=f"{which}{'upward' if rising else 'downward'}"))
     legend = legend if len(legend) <= _MOST_NAMED else []
-    if np.any(found["largest_tilt"] - found["least_tilt"] > 0.0):
-        legend.append(Patch(color=GREY, alpha=2.0 * _BAND, linewidth=0.0, label="least to largest tilt"))
+    if np.any(found["peak_tilt"] - found["minimum_tilt"] > 0.0):
+        legend.append(Patch(color=GREY, alpha=2.0 * _BAND, linewidth=0.0, label="minimum to maximum tilt"))
     legend += _draw_ends(tilts, found)
     tilts.set_ylabel(r"tilt $\theta$ [rad]")
     tilts.set_ylim(bottom=0.0)
@@ -75,7 +75,7 @@ def _legs(values: Floats) -> Iterator[tuple[slice, bool]]:
 def _draw_leg(tilts: Axes, turns: Axes, part: xr.Dataset, colour: str, *, rising: bool) -> None:
     x = part[str(part.attrs["parameter"])].to_numpy()
     tilts.fill_between(
-        x, part["least_tilt"].to_numpy(), part["largest_tilt"].to_numpy(), color=colour, alpha=_BAND, linewidth=0.0
+        x, part["minimum_tilt"].to_numpy(), part["peak_tilt"].to_numpy(), color=colour, alpha=_BAND, linewidth=0.0
     )
     for axes, quantity in ((tilts, "mean_tilt"), (turns, "turns_per_period")):
         line = _line(colour, rising=rising)

@@ -35,9 +35,9 @@ def measure_rows(run: "Response") -> Rows:
 
 def _motion_rows(run: "Response") -> Rows:
     measures = run.measures
-    rows = [("largest tilt", f"{measures['largest_tilt']:.6g} rad, {measures['largest_tilt_over_c']:.4g} c")]
-    if measures["largest_tilt"] > 0.0:
-        rows.append(("reached at", f"{measures['time_of_largest_tilt']:.4f} s"))
+    rows = [("peak tilt", f"{measures['peak_tilt']:.6g} rad, {measures['peak_tilt_over_c']:.4g} c")]
+    if measures["peak_tilt"] > 0.0:
+        rows.append(("reached at", f"{measures['time_of_peak_tilt']:.4f} s"))
         rows.append(("turns of the contact point", f"{measures['turns']:.3f}"))
     if "mean_rolling_rate" in measures:
         rows.append(("mean rolling rate", f"{measures['mean_rolling_rate']:.6g} rad/s"))
@@ -72,9 +72,9 @@ def _contact_rows(run: "Response") -> Rows:
 def _demand_rows(run: "Response") -> Rows:
     measures = run.measures
     rows = [
-        ("needs a friction coefficient of", "largest_friction_demand", ""),
-        ("and to resist pivoting with", "largest_pivoting_demand", " of normal force times radius"),
-        ("least normal force", "least_normal_force", " of the weight"),
+        ("needs a friction coefficient of", "peak_friction_demand", ""),
+        ("and to resist pivoting with", "peak_pivoting_demand", " of normal force times radius"),
+        ("minimum normal force", "minimum_normal_force", " of the weight"),
     ]
     return [(label, _bounded(measures[name], unit)) for label, name, unit in rows if name in measures]
 

@@ -132,7 +132,7 @@ class _Bodies:
 
 
 def _steady(bodies: _Bodies, nu: Floats, a0: Floats) -> Steady:
-    """Return steady rolling of each run; of several stable branches the one of the least tilt."""
+    """Return steady rolling of each run; of several stable branches the one of the minimum tilt."""
     c, eta, zeta = bodies.slenderness, bodies.eta, bodies.zeta
     shape = {"inertia_ratio": bodies.inertia_ratio, "axial_ratio": bodies.axial_ratio}
     if bodies.law is RollingLaw.SLENDER:

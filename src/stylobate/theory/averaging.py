@@ -41,7 +41,7 @@ def circular_components(a1: Real, a2: Real, phi2: Real) -> tuple[ComplexArray, C
     -------
     tuple of numpy.ndarray
         p and q, complex, of the broadcast shape, such that
-        a1 cos ντ + i a2 cos(ντ + φ2) = p e^{iντ} + q e^{−iντ}. The largest acceleration is abs(p) + abs(q).
+        a1 cos ντ + i a2 cos(ντ + φ2) = p e^{iντ} + q e^{−iντ}. The peak acceleration is abs(p) + abs(q).
 
     Raises
     ------

@@ -54,7 +54,7 @@ def planar_backbone(omega: Real, c: Real) -> FloatArray:
     Returns
     -------
     numpy.ndarray
-        Largest tilt angle [rad], of the broadcast shape.
+        Peak tilt angle [rad], of the broadcast shape.
 
     Raises
     ------

@@ -57,7 +57,7 @@ class FiniteTiltRolling:
 # Points of the scan over the tilt; a zero is lost only where the balance bends back and forth between two of them.
 _POINTS = 256
 
-# The scan begins at this part of the least tilt at which anything happens, and ends this far [rad] below π/2.
+# The scan begins at this part of the minimum tilt at which anything happens, and ends this far [rad] below π/2.
 _LEAST, _MARGIN = 1e-9, 1e-9
 
 # Sets of parameters that are scanned at once, for the sake of memory.

@@ -16,20 +16,20 @@ class FreeMotion:
 
     Parameters
     ----------
-    smallest_tilt, largest_tilt
+    smallest_tilt, peak_tilt
         Turning points θ1 ≤ θ2 of the tilt angle [rad].
     energy
         E = ½(θ̇² + θ²β̇²) + cθ − ½θ², also where the column overturns.
     angular_momentum
         ℓ = θ²β̇, with the sign of the rolling rate, also where the column overturns.
     period
-        Time τ from one largest tilt to the next.
+        Time τ from one peak tilt to the next.
     azimuth_advance
         How far the contact point travels round the rim in that time [rad], with the sign of the rolling rate.
     """
 
     smallest_tilt: FloatArray
-    largest_tilt: FloatArray
+    peak_tilt: FloatArray
     energy: FloatArray
     angular_momentum: FloatArray
     period: FloatArray
@@ -83,7 +83,7 @@ def free_motion(tilt: Real, rolling_rate: Real, c: Real) -> FreeMotion:
     period, advance = _period_and_advance(np.minimum(start, partner), np.maximum(start, partner))
     return FreeMotion(
         smallest_tilt=c * np.minimum(start, partner),
-        largest_tilt=c * np.maximum(start, partner),
+        peak_tilt=c * np.maximum(start, partner),
         energy=0.5 * (tilt * rate) ** 2 + c * tilt - 0.5 * tilt**2,
         angular_momentum=tilt**2 * rate,
         period=period,

@@ -92,7 +92,7 @@ def equivalent_viscous_damping(amplitude: Real, *, c: Real, restitution: Real) -
     Parameters
     ----------
     amplitude
-        Largest tilt angle θ [rad].
+        Peak tilt angle θ [rad].
     c
         Slenderness.
     restitution

@@ -38,7 +38,7 @@ class ModulatedRolling:
     stable
         Whether the others lie within the unit circle.
     amplitude_range
-        Least and largest tilt angle at these times, against that of the unstable steady rolling θ+.
+        Least and peak tilt angle at these times, against that of the unstable steady rolling θ+.
     """
 
     found: bool

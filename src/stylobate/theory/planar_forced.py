@@ -28,7 +28,7 @@ class PlanarOrbit:
     Parameters
     ----------
     amplitude
-        Largest tilt angle [rad].
+        Peak tilt angle [rad].
     phase
         Phase of the base acceleration a1 cos(ντ + phase) when the column passes the upright towards positive tilt at
         τ = 0 [rad], in (−π, π].

@@ -11,7 +11,7 @@ def planar_free_period(amplitude: Real, c: Real) -> FloatArray:
     Parameters
     ----------
     amplitude
-        Largest tilt angle θ0 [rad], positive.
+        Peak tilt angle θ0 [rad], positive.
     c
         Slenderness.
 
@@ -42,14 +42,14 @@ def planar_free_period(amplitude: Real, c: Real) -> FloatArray:
 
 
 def planar_free_motion(tau: Real, amplitude: Real, c: Real) -> tuple[FloatArray, FloatArray]:
-    """Compute free planar rocking at any time, from its largest tilt on the positive side at τ = 0.
+    """Compute free planar rocking at any time, from its peak tilt on the positive side at τ = 0.
 
     Parameters
     ----------
     tau
         Time τ.
     amplitude
-        Largest tilt angle θ0 [rad], positive.
+        Peak tilt angle θ0 [rad], positive.
     c
         Slenderness.
 
@@ -65,7 +65,7 @@ def planar_free_motion(tau: Real, amplitude: Real, c: Real) -> tuple[FloatArray,
 
     Notes
     -----
-    (2): θ = c − (c − θ0) cosh τ for a quarter period either side of the largest tilt. The same arc with the opposite
+    (2): θ = c − (c − θ0) cosh τ for a quarter period either side of the peak tilt. The same arc with the opposite
     sign follows on the next half period (the printed formula lacks that sign), and so on in turn.
 
     Examples

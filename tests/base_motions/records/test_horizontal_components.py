@@ -23,7 +23,7 @@ def test_rotd_is_the_percentile_of_peaks_rotated_degree_by_degree():
         VELOCITY: [peak_velocity(record)[0] for record in turned],  # exact between samples too
     }
     # A slope of the acceleration is at most 2 sup |a|/step; of eight parabolas a step each rises by step·sup |a|/256.
-    low = RECORD.step * RECORD.largest_horizontal() / 256.0
+    low = RECORD.step * RECORD.peak_horizontal() / 256.0
     for order, tolerance in ((ACCELERATION, 1e-12), (VELOCITY, low)):
         assert horizontal_peak(RECORD, order, ROTD50) == pytest.approx(np.median(peaks[order]), abs=tolerance)
         # The largest vector lies between two directions 1° apart, at most half a degree from one.
@@ -65,7 +65,7 @@ def test_a_record_along_one_line_has_one_component_in_every_definition():
     for record in (lone, lone.rotated(0.7)):
         for order, peak in ((ACCELERATION, np.abs(lone.samples).max()), (VELOCITY, peak_velocity(lone)[0])):
             found = [horizontal_peak(record, order, one) for one in HorizontalComponent]
-            np.testing.assert_allclose(found, peak, atol=lone.step * lone.largest_horizontal() / 256.0)
+            np.testing.assert_allclose(found, peak, atol=lone.step * lone.peak_horizontal() / 256.0)
             np.testing.assert_allclose(found, found[0], rtol=1e-15)
 
 

@@ -44,7 +44,7 @@ def test_history_is_told_in_order():
 
 
 def test_scaling_to_a_peak_reaches_it():
-    assert RECORD.scaled_to(3.0).largest_horizontal() == pytest.approx(3.0, rel=1e-14)
+    assert RECORD.scaled_to(3.0).peak_horizontal() == pytest.approx(3.0, rel=1e-14)
     with pytest.raises(ParameterError, match="must have a horizontal acceleration"):
         sb.Record.from_components(z=[1.0, 2.0], step=1.0).scaled_to(1.0)
 

@@ -361,6 +361,6 @@ def test_a_record_in_another_unit_than_it_is_read_in_is_remarked_on(tmp_path):
     path.write_text("0.0\n-250.0\n120.0\n")
     with pytest.warns(UnlikelyInputWarning, match=r"gal\.txt: its peak is 250 g, read in g as given; .* such as cm/s²"):
         sb.read_record(path, "g", step=0.01)
-    assert sb.read_record(path, "gal", step=0.01).largest_horizontal() == pytest.approx(2.5)
+    assert sb.read_record(path, "gal", step=0.01).peak_horizontal() == pytest.approx(2.5)
     path.write_text("0.0\n-3.0\n")
     sb.read_record(path, "g", step=0.01)

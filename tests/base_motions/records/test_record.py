@@ -47,7 +47,7 @@ def test_after_the_end_the_base_goes_on_at_its_velocity():
 def test_what_lies_before_the_beginning_never_acts():
     past = RECORD.delayed(-10.0)
     assert past.duration == 0.0
-    assert past.largest_horizontal() == 0.0
+    assert past.peak_horizontal() == 0.0
     assert past.vertical_range() == (0.0, 0.0)
     assert not past.acceleration([0.0, 1.0]).any()
 
@@ -57,7 +57,7 @@ def test_bounds_are_the_least_from_a_time_on(samples, since):
     record = sb.Record(samples=samples, step=0.5, start=0.25)
     later = np.concatenate([[since], np.linspace(since, 6.0, 400), record.times[record.times >= since]])
     x, y, z = record.acceleration(later).T
-    assert record.largest_horizontal(since) == pytest.approx(np.hypot(x, y).max(), rel=1e-13, abs=1e-13)
+    assert record.peak_horizontal(since) == pytest.approx(np.hypot(x, y).max(), rel=1e-13, abs=1e-13)
     low, high = record.vertical_range(since)
     assert low == pytest.approx(min(z.min(), 0.0), rel=1e-13, abs=1e-13)
     assert high == pytest.approx(max(z.max(), 0.0), rel=1e-13, abs=1e-13)
@@ -68,7 +68,7 @@ def test_the_highest_frequency_bounds_the_slope_as_in_harmonic_motion(samples):
     record = sb.Record(samples=samples, step=0.1)
     slopes = np.diff(record.samples[:, :2], axis=0) / 0.1
     largest = np.hypot(*slopes.T).max()
-    assert largest <= record.highest_frequency * record.largest_horizontal() * (1.0 + 1e-12) + 1e-12
+    assert largest <= record.highest_frequency * record.peak_horizontal() * (1.0 + 1e-12) + 1e-12
 
 
 def test_breaks_are_the_knots_at_which_the_slope_changes():

@@ -78,8 +78,8 @@ def agree(runs, outcome_in, end_of, ends_of):
         assert bool(data["uncertain"][index]) is single.uncertain
         releases = sum(event.kind == "uplift" for event in single.events)
         assert int(data["uplifts"][index]) == releases
-        largest = single.measures["largest_tilt"]
-        assert float(data["largest_tilt"][index]) == pytest.approx(largest, rel=1e-4)
+        largest = single.measures["peak_tilt"]
+        assert float(data["peak_tilt"][index]) == pytest.approx(largest, rel=1e-4)
     return disagreeing, sensitive
 
 

@@ -91,7 +91,7 @@ class Burst(BaseMotion):
         x = envelope * 0.8 * np.cos(2.0 * t)
         return x, self.bend * envelope * 0.4 * np.sin(3.3 * t), self.vertical * envelope * np.cos(4.0 * t)
 
-    def largest_horizontal(self, since=0.0):
+    def peak_horizontal(self, since=0.0):
         return 1.2 * self.envelope_from(since)
 
     def vertical_range(self, since=0.0):
@@ -127,9 +127,9 @@ def test_a_tabulated_motion_is_the_motion_to_rounding(motion, end):
     u = (time - 0.5 * (rows[:, 0] + rows[:, 1])) / (0.5 * (rows[:, 1] - rows[:, 0]))
     coefficients = table.coefficients[piece]
     found = np.einsum("nap,np->an", coefficients, u[:, np.newaxis] ** np.arange(table.degree + 1))
-    assert np.abs(found - np.stack(motion.derivative(time, 2))).max() < 1e-10 * motion.largest_horizontal()
+    assert np.abs(found - np.stack(motion.derivative(time, 2))).max() < 1e-10 * motion.peak_horizontal()
     # Bounds are those from the start of each piece on.
-    np.testing.assert_allclose(table.rows[:, 2], [motion.largest_horizontal(start) for start in starts])
+    np.testing.assert_allclose(table.rows[:, 2], [motion.peak_horizontal(start) for start in starts])
 
 
 @pytest.mark.slow  # two kernels of its own; see the test by plain Python in lanes
@@ -195,7 +195,7 @@ class Broken(BaseMotion):
     def derivative(self, time, order):
         return tuple(np.full(np.shape(time), value) for value in self.values)
 
-    def largest_horizontal(self, since=0.0):
+    def peak_horizontal(self, since=0.0):
         return self.bound
 
     def vertical_range(self, since=0.0):
@@ -210,7 +210,7 @@ class Broken(BaseMotion):
     [
         (Broken((math.nan, 0.0, 0.0)), "finite acceleration"),
         (Broken((0.5, 0.0)), "three arrays"),
-        (Broken((0.5, 0.0, 0.0), bound=0.1), "largest_horizontal must bound"),
+        (Broken((0.5, 0.0, 0.0), bound=0.1), "peak_horizontal must bound"),
     ],
 )
 def test_a_motion_that_breaks_its_promises_is_told(motion, told):

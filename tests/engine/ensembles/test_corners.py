@@ -24,12 +24,12 @@ def test_a_column_at_rest_stays_while_the_acceleration_is_exactly_c(frequency, s
     np.testing.assert_array_equal(data["outcome"], sb.Outcome.AT_REST)
     np.testing.assert_array_equal(data["decided_at"], 0.0)
     np.testing.assert_array_equal(data["end_time"], [10.0, 1000.0])
-    np.testing.assert_array_equal(data["largest_tilt"], 0.0)
+    np.testing.assert_array_equal(data["peak_tilt"], 0.0)
     np.testing.assert_array_equal(data["uplifts"], 0)
     assert not data["uncertain"].any()
 
 
-def test_the_largest_acceleration_set_to_exactly_c_keeps_it_at_rest():
+def test_the_peak_acceleration_set_to_exactly_c_keeps_it_at_rest():
     motion = sb.Harmonic.circular(acceleration=0.0371, angular_frequency=1.3)
     angles = np.linspace(-3.0, 3.0, 50)
     data = sb.simulate_ensemble(
@@ -55,7 +55,7 @@ def test_free_planar_motion_without_friction_is_the_closed_form_and_conserves_en
     np.testing.assert_allclose(0.5 * v**2 + C * a - 0.5 * a**2, C * amplitude - 0.5 * amplitude**2, rtol=1e-7)
     # Exactly in its plane for ever, and never overturned.
     np.testing.assert_array_equal(data["end_tilt"][:, 1], 0.0)
-    np.testing.assert_allclose(data["largest_tilt"], amplitude, rtol=1e-8)
+    np.testing.assert_allclose(data["peak_tilt"], amplitude, rtol=1e-8)
 
 
 def test_free_motion_in_space_conserves_energy_and_angular_momentum():

@@ -94,7 +94,7 @@ def test_friction_brings_columns_to_rest_when_it_does_alone(runs_of, outcome_in,
         assert float(data["decided_at"][index]) == pytest.approx(single.decided_at, abs=2e-5)
         assert bool(data["planar"][index]) is single.planar is (rate == (0.0, 0.0))
         np.testing.assert_array_equal(data["end_tilt"][index], 0.0)
-        assert float(data["least_tilt"][index]) == 0.0
+        assert float(data["minimum_tilt"][index]) == 0.0
 
 
 def test_no_friction_never_brings_rest(runs_of, outcome_in):
@@ -118,7 +118,7 @@ def test_overturning_is_proved_when_and_where_it_is_alone(runs_of, outcome_in, d
         last = single.data["tilt"].to_numpy()[-1]
         assert float(data["direction"][index]) == pytest.approx(math.atan2(last[1], last[0]), abs=1e-6)
         # Where the proof holds for the first time: at the tilt, or where the tilt begins to grow beyond it.
-        assert float(data["largest_tilt"][index]) >= C + 0.13 - 1e-10
+        assert float(data["peak_tilt"][index]) >= C + 0.13 - 1e-10
 
 
 def test_a_start_beyond_return_has_overturned_at_once(runs_of, outcome_in):
@@ -139,10 +139,10 @@ def test_a_tilt_limit_is_met_at_the_exact_time(outcome_in):
     time = float(data["decided_at"][0])
     assert outcome_in(data) is sb.Outcome.LIMIT_REACHED
     assert C - 0.05 * math.cosh(time) + 0.04 * math.sinh(time) == pytest.approx(0.06, abs=1e-9)
-    assert float(data["largest_tilt"][0]) == pytest.approx(0.06, abs=1e-12)
+    assert float(data["peak_tilt"][0]) == pytest.approx(0.06, abs=1e-12)
 
 
-# A swing may pass the limit between two steps: the largest tilt tells that it did.
+# A swing may pass the limit between two steps: the peak tilt tells that it did.
 @pytest.mark.parametrize("short", [1e-3, 1e-4, 1e-5])
 @pytest.mark.parametrize("motion", [CIRCLE, LINE], ids=["in space", "in a plane"])
 def test_no_tilt_exceeds_the_limit_unseen(runs_of, outcome_in, motion, short):
@@ -154,14 +154,14 @@ def test_no_tilt_exceeds_the_limit_unseen(runs_of, outcome_in, motion, short):
     moving = free["outcome"].to_numpy() != sb.Outcome.OVERTURNED
     assert moving.sum() >= 5
     for index in np.flatnonzero(moving):
-        peak = float(free["largest_tilt"][index])
-        if float(free["time_of_largest_tilt"][index]) == 0.0:
+        peak = float(free["peak_tilt"][index])
+        if float(free["time_of_peak_tilt"][index]) == 0.0:
             continue
         limit = peak * (1.0 - short)
         data = runs.part([index]).together(tilt_limit=limit)
         assert outcome_in(data) is sb.Outcome.LIMIT_REACHED
-        assert float(data["largest_tilt"][0]) == pytest.approx(limit, rel=1e-8)
-        assert float(data["decided_at"][0]) < float(free["time_of_largest_tilt"][index])
+        assert float(data["peak_tilt"][0]) == pytest.approx(limit, rel=1e-8)
+        assert float(data["decided_at"][0]) < float(free["time_of_peak_tilt"][index])
         assert np.hypot(*data["end_tilt"].to_numpy()[0]) == pytest.approx(limit, rel=1e-8)
         assert float(data["end_tilt"][0] @ data["end_tilt_rate"][0]) > 0.0
 
@@ -219,7 +219,7 @@ def test_close_passages_are_uncertain_and_wide_ones_are_not(runs_of):
     np.testing.assert_array_equal(data["uncertain"], [run.uncertain for run in singles])
     np.testing.assert_array_equal(data["uncertain"], [True, True, False, False, False])
     assert not data["planar"].any()
-    np.testing.assert_allclose(data["least_tilt"], [run.measures["least_passage"] for run in singles], rtol=1e-3)
+    np.testing.assert_allclose(data["minimum_tilt"], [run.measures["least_passage"] for run in singles], rtol=1e-3)
 
 
 def test_start_and_motion_in_one_plane_are_integrated_in_it(runs_of, end_of, ends_of):

@@ -48,7 +48,7 @@ def test_outcomes_are_those_of_the_full_duration_and_other_runs_keep_their_bits(
     for name in full.data_vars:
         np.testing.assert_array_equal(early[name].values[~ended], full[name].values[~ended], err_msg=name)
     # Results over the last periods are those of the orbit, or none.
-    for name in ("mean_tilt", "mean_rolling_rate", "strobe_tilt", "strobe_tilt_rate", "largest_tilt", "least_tilt"):
+    for name in ("mean_tilt", "mean_rolling_rate", "strobe_tilt", "strobe_tilt_rate", "peak_tilt", "minimum_tilt"):
         np.testing.assert_allclose(early[name].values[ended], full[name].values[ended], rtol=0.0, atol=1e-8)
     assert np.isnan(early["repetition"].values[ended]).all()
     np.testing.assert_array_equal(early["decided_at"].values[ended], early["end_time"].values[ended])

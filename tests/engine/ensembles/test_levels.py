@@ -28,7 +28,7 @@ NAMES = [pytest.param(name, marks=[] if name.startswith("rolling") else pytest.m
 RTOL = 1e-9
 # Errors of single steps, each of rtol at most, over some hundreds of them in motions that do not diverge.
 CLOSE = 100.0 * RTOL
-DEMANDS = ("largest_friction_demand", "largest_pivoting_demand", "least_normal_force")
+DEMANDS = ("peak_friction_demand", "peak_pivoting_demand", "minimum_normal_force")
 
 
 def together_and_alone(model, motion, *, duration, tilt, tilt_rate, spin=None, demands=True, **options):
@@ -57,7 +57,7 @@ def require_same(runs, alone, *, close=CLOSE):
         assert float(runs["decided_at"][index]) == pytest.approx(run.decided_at, abs=1e-5)
         np.testing.assert_allclose(runs["end_tilt"][index], run.data["tilt"][-1], rtol=0.0, atol=close)
         np.testing.assert_allclose(runs["end_tilt_rate"][index], run.data["tilt_rate"][-1], rtol=0.0, atol=10.0 * close)
-        assert float(runs["largest_tilt"][index]) == pytest.approx(run.measures["largest_tilt"], rel=1e-6)
+        assert float(runs["peak_tilt"][index]) == pytest.approx(run.measures["peak_tilt"], rel=1e-6)
         if "spin" in run.data:
             assert float(runs["end_spin"][index]) == pytest.approx(float(run.data["spin"][-1]), abs=10.0 * close)
 
@@ -172,17 +172,17 @@ def test_demands_are_refused_of_a_model_that_tells_none():
 def test_a_column_that_never_moves_demands_what_it_takes_to_stand():
     weak = sb.Harmonic.circular(acceleration=0.05, angular_frequency=2.0)
     runs = sb.simulate_ensemble(IN_SPACE["rolling"], weak, duration=5.0, demands=True)
-    assert runs["largest_friction_demand"].item() == pytest.approx(0.05, rel=1e-12)
-    assert runs["largest_pivoting_demand"].item() == 0.0
-    assert runs["least_normal_force"].item() == pytest.approx(1.0, rel=1e-12)
+    assert runs["peak_friction_demand"].item() == pytest.approx(0.05, rel=1e-12)
+    assert runs["peak_pivoting_demand"].item() == 0.0
+    assert runs["minimum_normal_force"].item() == pytest.approx(1.0, rel=1e-12)
 
 
 def test_least_tilts_of_single_runs_are_those_of_ensembles():
     # A passage between two samples, at 0.8 % of c.
     starts = {"tilt": [(0.03, 0.0)], "tilt_rate": [(0.0, 0.0015)]}
     runs, (run,) = together_and_alone(IN_SPACE["rolling"], CIRCLE, duration=6.0, **starts)
-    assert run.measures["least_tilt"] == pytest.approx(float(runs["least_tilt"][0]), rel=1e-3)
-    assert run.measures["least_tilt"] < float(run.data["amplitude"].min())
+    assert run.measures["minimum_tilt"] == pytest.approx(float(runs["minimum_tilt"][0]), rel=1e-3)
+    assert run.measures["minimum_tilt"] < float(run.data["amplitude"].min())
 
 
 @pytest.mark.slow  # a kernel of its own

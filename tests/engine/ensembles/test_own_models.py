@@ -120,7 +120,7 @@ def test_a_model_with_the_required_members_only(written):
     assert np.abs(runs["end_tilt"][1] - runs["end_tilt"][0]).max() > 1e-4
     # No proof of overturning: it counts at π/2.
     fallen = expect_as_alone(model, CIRCLE.scaled(0.0), **{**TURNING, "tilt": (0.12, 0.0)})
-    assert float(fallen["largest_tilt"]) == pytest.approx(np.pi / 2.0, abs=1e-9)
+    assert float(fallen["peak_tilt"]) == pytest.approx(np.pi / 2.0, abs=1e-9)
     with pytest.raises(UnsupportedError, match="does not say how a column departs"):
         sb.simulate_ensemble(model, CIRCLE.scaled(3.0), duration=5.0)
 
@@ -224,7 +224,7 @@ def test_a_model_whose_tilt_is_not_its_first_state(written):
     model = written(FURTHER).Counted(COLUMN, damping=0.1)
     data = expect_as_alone(model, CIRCLE, **{**TURNING, "rtol": 1e-10})
     plain = sb.simulate_ensemble(sb.Slender(COLUMN, damping=0.1), CIRCLE, **TURNING).isel(run=0)
-    for name in ("end_tilt", "largest_tilt", "least_tilt", "turns"):
+    for name in ("end_tilt", "peak_tilt", "minimum_tilt", "turns"):
         np.testing.assert_allclose(data[name], plain[name], rtol=1e-4, atol=1e-7)
 
 

@@ -34,7 +34,7 @@ class Decaying(sb.BaseMotion):
         root = complex(-self.decay, self.angular_frequency)
         return np.real(self.peak * root ** (order - 2) * np.exp(root * t)), np.zeros_like(t), np.zeros_like(t)
 
-    def largest_horizontal(self, since=0.0):
+    def peak_horizontal(self, since=0.0):
         return abs(self.peak) * math.exp(-self.decay * since)
 
     def vertical_range(self, since=0.0):

@@ -23,7 +23,7 @@ PULSES = {
     "turned": P.type_b(velocity=0.7, angular_frequency=4.0).rotated(0.3).scaled(1.2),
 }
 FREQUENCIES = np.array([9.0, 2.5, 4.0, 6.0, 2.5])
-# Of the largest acceleration: what each of two tables may miss the motion by.
+# Of the peak acceleration: what each of two tables may miss the motion by.
 FITTED = 2e-10
 
 every_pulse = pytest.mark.parametrize("pulse", PULSES.values(), ids=PULSES)
@@ -48,8 +48,8 @@ def test_each_run_is_that_under_the_pulse_of_its_frequency(pulse):
         )
         assert sb.Outcome(int(run["outcome"])) == alone.outcome
         if alone.outcome is not sb.Outcome.OVERTURNED:  # else it ends with a step of the method's
-            assert float(run["largest_tilt"]) == pytest.approx(alone.measures["largest_tilt"], rel=1e-6, abs=1e-9)
-        moved += alone.measures["largest_tilt"] > 0.0
+            assert float(run["peak_tilt"]) == pytest.approx(alone.measures["peak_tilt"], rel=1e-6, abs=1e-9)
+        moved += alone.measures["peak_tilt"] > 0.0
     assert moved >= 3
 
 
@@ -59,7 +59,7 @@ def test_a_stretched_table_is_that_of_the_pulse_itself_whatever_its_end(pulse, e
     members = [with_numbers(pulse, {"angular_frequency": frequency}) for frequency in (2.5, 4.0, 9.0)]
     time = np.linspace(0.0, end, 500)[:-1]
     for member, table in zip(members, tabulated_alike(members, end), strict=True):
-        size = member.largest_horizontal(0.0)
+        size = member.peak_horizontal(0.0)
         assert np.abs(acceleration_of(table, time) - member.acceleration(time).T).max() <= FITTED * size
         own = tabulated(member, end)
         assert table.rows[-1, 1] >= end
@@ -98,7 +98,7 @@ def test_the_frequency_of_a_pulse_is_changed_and_told_by_its_name():
     pulse = PULSES["late sine"].scaled(2.0)
     _, faster = sb.with_parameters(MODEL, pulse, angular_frequency=8.0)
     assert faster.duration - 0.7 == pytest.approx(0.5 * (pulse.duration - 0.7))
-    assert faster.largest_horizontal(0.0) == pytest.approx(pulse.largest_horizontal(0.0))
+    assert faster.peak_horizontal(0.0) == pytest.approx(pulse.peak_horizontal(0.0))
 
 
 def test_a_map_over_the_frequency_of_a_pulse_has_its_runs():

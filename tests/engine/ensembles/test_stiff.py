@@ -76,7 +76,7 @@ def agree(run, single):
     last = single.sample(end).isel(time=0)
     for name in ("tilt", "tilt_rate", "spin", "footprint", "twist"):
         np.testing.assert_allclose(run[f"end_{name}"], last[name], atol=CLOSELY, err_msg=name)
-    for name in ("largest_tilt", "impacts"):
+    for name in ("peak_tilt", "impacts"):
         assert float(run[name]) == pytest.approx(single.measures[name], abs=CLOSELY), name
     for kind in Contact:
         if kind is not Contact.JAMMED:

@@ -1,4 +1,4 @@
-"""What is told of each run besides its end: largest and least tilt, turns, means, phase, strobes, samples."""
+"""What is told of each run besides its end: largest and minimum tilt, turns, means, phase, strobes, samples."""
 
 import math
 
@@ -51,18 +51,18 @@ def late(motion, single):
     return history["time"].to_numpy(), history["tilt"].to_numpy(), history["amplitude"].to_numpy()
 
 
-def test_largest_and_least_tilt_are_those_of_a_dense_single_run(one):
+def test_largest_and_minimum_tilt_are_those_of_a_dense_single_run(one):
     _, data, single = one
     amplitude, time = single.data["amplitude"].to_numpy(), single.data["time"].to_numpy()
     # Measured by quintics across a step, whose error goes with its sixth power; steps in a plane are the longest.
     relative = 1e-5 if single.planar else 1e-6
-    assert float(data["largest_tilt"]) == pytest.approx(amplitude.max(), rel=relative)
+    assert float(data["peak_tilt"]) == pytest.approx(amplitude.max(), rel=relative)
     # At a peak the tilt changes by half its curvature times the square of the time.
-    assert float(data["time_of_largest_tilt"]) == pytest.approx(time[amplitude.argmax()], abs=5e-3)
-    assert float(single.sample(float(data["time_of_largest_tilt"]))["amplitude"][0]) == pytest.approx(
+    assert float(data["time_of_peak_tilt"]) == pytest.approx(time[amplitude.argmax()], abs=5e-3)
+    assert float(single.sample(float(data["time_of_peak_tilt"]))["amplitude"][0]) == pytest.approx(
         amplitude.max(), rel=relative
     )
-    assert float(data["least_tilt"]) == pytest.approx(amplitude.min(), rel=1e-3, abs=1e-9)
+    assert float(data["minimum_tilt"]) == pytest.approx(amplitude.min(), rel=1e-3, abs=1e-9)
 
 
 def test_turns_are_those_of_a_single_run(one):

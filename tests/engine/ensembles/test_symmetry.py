@@ -13,7 +13,7 @@ MODEL = sb.Slender(sb.Column.dimensionless(C), damping=0.1)
 ELLIPSE = sb.Harmonic.elliptic(amplitude=(0.06, 0.03), phase=-1.2, angular_frequency=2.6, start_phase=0.4)
 TILT = 0.03 * np.stack([np.cos(np.arange(12.0)), np.sin(np.arange(12.0))], axis=1)
 RATE = np.stack([0.02 * np.sin(np.arange(12.0)), 0.05 * np.cos(np.arange(12.0))], axis=1)
-SCALARS = ("decided_at", "largest_tilt", "turns", "mean_tilt", "phase", "mean_rolling_rate")
+SCALARS = ("decided_at", "peak_tilt", "turns", "mean_tilt", "phase", "mean_rolling_rate")
 
 
 def follow(motion=ELLIPSE, tilt=TILT, rate=RATE, **arguments):
@@ -23,7 +23,7 @@ def follow(motion=ELLIPSE, tilt=TILT, rate=RATE, **arguments):
 
 # The motions here keep clear of the upright, where rounding grows; 1e-7 leaves them a factor of 10⁴ to do so.
 def same(one, other):
-    calm = (one["least_tilt"] > 1e-3 * C) & (abs(one["decided_at"] - other["decided_at"]) < 1e-7)
+    calm = (one["minimum_tilt"] > 1e-3 * C) & (abs(one["decided_at"] - other["decided_at"]) < 1e-7)
     assert float(calm.mean()) > 0.5
     np.testing.assert_array_equal(one["outcome"], other["outcome"])
     return calm.to_numpy()
@@ -94,5 +94,5 @@ def test_real_columns_give_the_dimensionless_answer():
     )
     np.testing.assert_array_equal(real["outcome"], unit["outcome"])
     np.testing.assert_allclose(real["decided_at"] * scale, unit["decided_at"], rtol=1e-6)
-    calm = (unit["least_tilt"] > 1e-3 * C).to_numpy()
+    calm = (unit["minimum_tilt"] > 1e-3 * C).to_numpy()
     np.testing.assert_allclose(real["end_tilt"][calm], unit["end_tilt"][calm], atol=1e-7)

@@ -60,7 +60,7 @@ def test_steady_rolling_has_the_mean_tilt_phase_and_rate_of_theory(runs_of):
     upper = sb.theory.steady_rolling(nu, 0.065, c=C, eta=ETA).upper
     assert set(data["outcome"].to_numpy()) == {sb.Outcome.ROLLING}
     np.testing.assert_allclose(data["mean_tilt"], upper.amplitude, rtol=1e-9)
-    np.testing.assert_allclose(data["largest_tilt"], upper.amplitude, rtol=1e-9)
+    np.testing.assert_allclose(data["peak_tilt"], upper.amplitude, rtol=1e-9)
     np.testing.assert_allclose(data["phase"], upper.phase, atol=1e-9)
     np.testing.assert_allclose(data["mean_rolling_rate"], nu, rtol=1e-9)
     np.testing.assert_allclose(data["turns"], 200.0, rtol=1e-9)
@@ -101,7 +101,7 @@ def test_random_runs_differ_from_those_of_the_other_method_no_more_than_from_the
     for name in ("planar", "uncertain", "uplifts"):
         np.testing.assert_array_equal(data[name][calm], usual[name][calm], err_msg=name)
     # Measured on cubics and quintics by the other method; at a peak the tilt changes with the square of the time.
-    for name, allowed in (("largest_tilt", 1e-6), ("least_tilt", 1e-4), ("time_of_largest_tilt", 1e-4)):
+    for name, allowed in (("peak_tilt", 1e-6), ("minimum_tilt", 1e-4), ("time_of_peak_tilt", 1e-4)):
         np.testing.assert_allclose(data[name][calm], usual[name][calm], rtol=0.0, atol=allowed, err_msg=name)
 
 
@@ -153,7 +153,7 @@ class Swell(BaseMotion):
         x, y = 0.8 * np.cos(2.0 * t), 0.32 * np.sin(3.3 * t)
         return envelope * x, envelope * y, self.vertical * envelope * np.cos(4.0 * t)
 
-    def largest_horizontal(self, since=0.0):
+    def peak_horizontal(self, since=0.0):
         return 1.2
 
     def vertical_range(self, since=0.0):
@@ -248,15 +248,15 @@ def told(request):
     return motion, data, sb.simulate(MODEL, motion, **options, samples=100_001, recheck=False)
 
 
-def test_largest_and_least_tilt_are_those_of_a_dense_single_run(told):
+def test_largest_and_minimum_tilt_are_those_of_a_dense_single_run(told):
     _, data, single = told
     amplitude, time = single.data["amplitude"].to_numpy(), single.data["time"].to_numpy()
     # Half a sample beside an extreme the tilt differs by an eighth of its curvature times the square of a sample.
     bend = np.abs(np.diff(amplitude, 2)).max() / 8.0
-    assert float(data["largest_tilt"]) == pytest.approx(amplitude.max(), rel=0.0, abs=bend + 1e-9)
-    assert float(data["time_of_largest_tilt"]) == pytest.approx(time[amplitude.argmax()], abs=time[1])
+    assert float(data["peak_tilt"]) == pytest.approx(amplitude.max(), rel=0.0, abs=bend + 1e-9)
+    assert float(data["time_of_peak_tilt"]) == pytest.approx(time[amplitude.argmax()], abs=time[1])
     # The least one is told where cubics over halves of a step have theirs: above it, by the square of what they err.
-    assert -bend - 1e-9 < float(data["least_tilt"]) - amplitude.min() < 1e-4 * amplitude.min()
+    assert -bend - 1e-9 < float(data["minimum_tilt"]) - amplitude.min() < 1e-4 * amplitude.min()
 
 
 def test_turns_and_means_are_integrals_over_a_dense_single_run(told):
@@ -310,7 +310,7 @@ def test_overturning_is_proved_when_and_where_it_is_alone(runs_of, outcome_in, d
         assert float(data["decided_at"][index]) == pytest.approx(single.decided_at, abs=1e-9)
         last = single.data["tilt"].to_numpy()[-1]
         assert float(data["direction"][index]) == pytest.approx(math.atan2(last[1], last[0]), abs=1e-8)
-        assert float(data["largest_tilt"][index]) >= C + 0.13 - 1e-10
+        assert float(data["peak_tilt"][index]) >= C + 0.13 - 1e-10
 
 
 # Steps are long: a swing may pass the limit between their ends, and more than one swing lie within.
@@ -321,14 +321,14 @@ def test_no_tilt_exceeds_the_limit_unseen(runs_of, outcome_in, short):
     motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
     runs = runs_of(MODEL, motion, 24, tilt=tilt, tilt_rate=(0.03, 0.0), duration=15.0, method="taylor")
     free = runs.together()
-    swinging = (free["outcome"] != sb.Outcome.OVERTURNED) & (free["time_of_largest_tilt"] > 0.0)
+    swinging = (free["outcome"] != sb.Outcome.OVERTURNED) & (free["time_of_peak_tilt"] > 0.0)
     assert int(swinging.sum()) >= 5
     for index in np.flatnonzero(swinging):
-        limit = float(free["largest_tilt"][index]) * (1.0 - short)
+        limit = float(free["peak_tilt"][index]) * (1.0 - short)
         data = runs.part([index]).together(tilt_limit=limit)
         assert outcome_in(data) is sb.Outcome.LIMIT_REACHED
-        assert float(data["largest_tilt"][0]) == pytest.approx(limit, rel=1e-9)
-        assert float(data["decided_at"][0]) < float(free["time_of_largest_tilt"][index])
+        assert float(data["peak_tilt"][0]) == pytest.approx(limit, rel=1e-9)
+        assert float(data["decided_at"][0]) < float(free["time_of_peak_tilt"][index])
         assert np.hypot(*data["end_tilt"].to_numpy()[0]) == pytest.approx(limit, rel=1e-9)
         assert float(data["end_tilt"][0] @ data["end_tilt_rate"][0]) > 0.0
 
@@ -345,7 +345,7 @@ def test_friction_brings_columns_to_rest_when_it_does_alone(runs_of, outcome_in,
         assert outcome_in(data, index) is single.outcome is sb.Outcome.AT_REST
         assert float(data["decided_at"][index]) == pytest.approx(single.decided_at, abs=1e-6)
         np.testing.assert_array_equal(data["end_tilt"][index], 0.0)
-        assert float(data["least_tilt"][index]) == 0.0
+        assert float(data["minimum_tilt"][index]) == 0.0
 
 
 @pytest.mark.parametrize("excess", [1e-4, 0.1, 2.0])
@@ -411,7 +411,7 @@ def test_exact_planar_motion_is_never_a_false_overturn(damping, spatial):
         assert bool((data["planar"] != spatial).all())
         assert sb.Outcome.OVERTURNED not in data["outcome"].to_numpy()
         # Each step may add the tolerance.
-        assert np.all(data["largest_tilt"] <= amplitude * (1.0 + 1e-8 * data["steps"]))
+        assert np.all(data["peak_tilt"] <= amplitude * (1.0 + 1e-8 * data["steps"]))
 
 
 # A run does not depend on those beside it.

@@ -72,7 +72,7 @@ def test_derivatives_follow_the_chain_rule(system, state):
     size = np.abs(second.by_start).max() * np.abs(first.by_start).max()
     np.testing.assert_allclose(second.end, whole.end, rtol=0.0, atol=GLOBAL * C)
     np.testing.assert_allclose(second.by_start @ first.by_start, whole.by_start, rtol=0.0, atol=GLOBAL * size)
-    assert whole.least_tilt <= min(first.least_tilt, second.least_tilt) * (1.0 + 1e-3)
+    assert whole.minimum_tilt <= min(first.minimum_tilt, second.minimum_tilt) * (1.0 + 1e-3)
 
 
 NAMES = [
@@ -153,7 +153,7 @@ def test_the_flow_ends_where_simulate_ends(begin):
 def test_the_flow_in_a_plane_ends_where_simulate_ends():
     system = PeriodicSystem(MODEL, STRAIGHT, LINE)
     flow = system.carry(IN_PLANE, 0.0, 2.0)
-    assert flow.least_tilt == 0.0
+    assert flow.minimum_tilt == 0.0
     tilt, rate = (number * np.array(LINE) for number in IN_PLANE)
     run = sb.simulate(MODEL, STRAIGHT, tilt=tilt, tilt_rate=rate, duration=2.0 * system.numbers.period, rtol=RTOL)
     assert run.planar
@@ -168,7 +168,7 @@ def test_the_published_integration_is_met(c):
     model = sb.Slender(sb.Column.dimensionless(c))
     motion = sb.Harmonic.elliptic(amplitude=(0.9 * c, 0.7 * c), phase=0.9, angular_frequency=1.7)
     system = PeriodicSystem(model, motion)
-    flow = system.carry(c * np.array([0.5, 0.2, 0.1, 0.35]), 0.0, 3.0 * 1.7 / (2.0 * math.pi), largest_tilt=math.inf)
+    flow = system.carry(c * np.array([0.5, 0.2, 0.1, 0.35]), 0.0, 3.0 * 1.7 / (2.0 * math.pi), peak_tilt=math.inf)
     expected = [0.033153473664, 0.6700240983541, 0.507152125059, -0.2563540126826]
     np.testing.assert_allclose(flow.end / c, expected, rtol=0.0, atol=1e-11)
 
@@ -194,15 +194,15 @@ def test_tilts_met_are_those_of_a_dense_run():
             part = system.carry(here, k / 2000, (k + 1) / 2000, side=side)
             here, side = part.end, part.side if system.planar else 0.0
             tilts.append(np.hypot(*here[:2]) if not system.planar else abs(here[0]))
-        assert flow.largest_tilt == pytest.approx(max(tilts), rel=1e-3)
-        assert flow.least_tilt <= min(tilts) * (1.0 + 1e-3)
+        assert flow.peak_tilt == pytest.approx(max(tilts), rel=1e-3)
+        assert flow.minimum_tilt <= min(tilts) * (1.0 + 1e-3)
 
 
 def test_a_run_through_the_upright_is_lost():
     system = PeriodicSystem(MODEL, STRAIGHT)
     flow = system.carry(np.array([0.02 * LINE[0], 0.02 * LINE[1], 0.0, 0.0]), 0.0, 1.0)
     assert flow.status is Status.LOST
-    assert flow.least_tilt < 1e-6 * C
+    assert flow.minimum_tilt < 1e-6 * C
 
 
 def test_a_run_that_never_returns_is_gone():
@@ -210,8 +210,8 @@ def test_a_run_that_never_returns_is_gone():
     assert system.safe_tilt == pytest.approx(C + 0.065, rel=1e-14)
     flow = system.carry(np.array([0.16, 0.0, 0.05, 0.0]), 0.0, 1.0)
     assert flow.status is Status.GONE
-    assert flow.largest_tilt > system.safe_tilt
-    allowed = system.carry(np.array([0.16, 0.0, 0.05, 0.0]), 0.0, 0.1, largest_tilt=10.0)
+    assert flow.peak_tilt > system.safe_tilt
+    allowed = system.carry(np.array([0.16, 0.0, 0.05, 0.0]), 0.0, 0.1, peak_tilt=10.0)
     assert allowed.status is Status.DONE
     planar = PeriodicSystem(MODEL, STRAIGHT, LINE)
     assert planar.carry(np.array([0.3, 0.1]), 0.0, 1.0).status is Status.GONE
@@ -234,7 +234,7 @@ class Wave(sb.BaseMotion):
             return angle * 0.0, angle * 0.0, angle * 0.0
         return self.acceleration_x * np.cos(angle + 0.3), self.shape * np.exp(np.sin(angle)), angle * 0.0
 
-    def largest_horizontal(self, since=0.0):
+    def peak_horizontal(self, since=0.0):
         return math.hypot(self.acceleration_x, math.e * self.shape)
 
     def vertical_range(self, since=0.0):

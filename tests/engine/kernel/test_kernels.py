@@ -86,7 +86,7 @@ for motion, energy, tilt, rate in (
 ):
     options = {"duration": 6.0, "rtol": 1e-9, "samples": 3, "rest_energy": energy}
     data = sb.simulate_ensemble(model, motion, tilt=tilt, tilt_rate=rate, **options)
-    names = ("outcome", "decided_at", "uplifts", "end_tilt", "largest_tilt", "turns", "sampled_tilt")
+    names = ("outcome", "decided_at", "uplifts", "end_tilt", "peak_tilt", "turns", "sampled_tilt")
     found += [np.nan_to_num(data[name].values, nan=-1.0).ravel().tolist() for name in names]
 print(json.dumps(found))
 """
@@ -119,7 +119,7 @@ class Burst(BaseMotion):
         wave = 0.08 * np.cos(2.0 * t), 0.04 * np.sin(3.3 * t), 0.03 * np.cos(4.0 * t)
         return tuple((order == 2) * envelope * part for part in wave)
 
-    def largest_horizontal(self, since=0.0):
+    def peak_horizontal(self, since=0.0):
         return 0.09
 
     def vertical_range(self, since=0.0):

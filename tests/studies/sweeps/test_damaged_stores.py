@@ -76,7 +76,7 @@ def test_what_was_lost_is_computed_again_with_a_notice(sweep, undamaged, path, a
 
 
 def test_a_damaged_chunk_is_computed_again(sweep, undamaged, path, caplog):
-    file = path / "largest_tilt" / "c" / "3" / "0"
+    file = path / "peak_tilt" / "c" / "3" / "0"
     file.write_bytes(bytes(reversed(file.read_bytes())))
     run_sweep(sweep, store=path, resume=True)
     assert "5 runs are computed again" in caplog.text

@@ -247,7 +247,7 @@ def test_a_mistake_in_a_worker_is_told_here(client):
             message = "the record is empty"
             raise RuntimeError(message)
 
-        def largest_horizontal(self, since=0.0):
+        def peak_horizontal(self, since=0.0):
             return 0.1
 
         def vertical_range(self, since=0.0):
@@ -267,7 +267,7 @@ def test_an_unfinished_store_opens_with_holes(grid, tmp_path):
         run_sweep(grid, store=path, chunk_size=5, progress=StopAfter(10))
     data = open_sweep(path)
     assert data.attrs["runs_done"] <= int((data["outcome"] >= 0).sum()) == 10
-    assert np.isnan(data["largest_tilt"].values[data["outcome"].values < 0]).all()
+    assert np.isnan(data["peak_tilt"].values[data["outcome"].values < 0]).all()
 
 
 def test_a_store_is_read_in_parts(grid, tmp_path, assert_same_arrays):

@@ -197,7 +197,7 @@ class Sway(sb.BaseMotion):
     def derivative(self, time, order):
         value = {body}
         return value, 0.0 * value, 0.0 * value
-    def largest_horizontal(self, since=0.0):
+    def peak_horizontal(self, since=0.0):
         return 1.0
     def vertical_range(self, since=0.0):
         return 0.0, 0.0

@@ -46,7 +46,7 @@ class AlongLine(BaseMotion):
             along = along + left * np.maximum(t - self.start - length, 0.0)
         return math.cos(self.direction) * along, math.sin(self.direction) * along, self.vertical * along
 
-    def largest_horizontal(self, since: float = 0.0) -> float:
+    def peak_horizontal(self, since: float = 0.0) -> float:
         """Return sup |a_h| from `since` on [m/s²]: exact, or above it by the margin of the waveform."""
         return max(map(abs, self._range(since)))
 
@@ -56,8 +56,8 @@ class AlongLine(BaseMotion):
         return min(low, high), max(low, high)
 
     def directions(self) -> tuple[tuple[float, float], ...]:
-        """Return the largest acceleration along the line [m/s²]."""
-        largest = self.largest_horizontal()
+        """Return the peak acceleration along the line [m/s²]."""
+        largest = self.peak_horizontal()
         return ((largest * math.cos(self.direction), largest * math.sin(self.direction)),)
 
     @property

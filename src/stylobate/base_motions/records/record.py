@@ -182,7 +182,7 @@ class Record(BaseMotion):
             values = values + self._velocity[-1] * np.maximum(t - self.start - length, 0.0)[..., np.newaxis]
         return values[..., 0], values[..., 1], values[..., 2]
 
-    def largest_horizontal(self, since: float = 0.0) -> float:
+    def peak_horizontal(self, since: float = 0.0) -> float:
         """Compute sup |a_h| from the time `since` [s] on, exactly [m/s²]: |a_h| is convex on a step."""
         if since > self.end:
             return 0.0

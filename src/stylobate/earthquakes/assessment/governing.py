@@ -24,9 +24,9 @@ first that overturns."""
 _SAMPLES = 2001
 _OF_RUNS = ("strobes", "demands", "samples")
 _DEMANDS = {
-    "largest_friction_demand": "friction_demand",
-    "largest_pivoting_demand": "pivoting_demand",
-    "least_normal_force": "least_normal_force",
+    "peak_friction_demand": "friction_demand",
+    "peak_pivoting_demand": "pivoting_demand",
+    "minimum_normal_force": "minimum_normal_force",
 }
 
 
@@ -35,7 +35,7 @@ def governing_record(verdicts: xr.Dataset, margins: xr.Dataset, scale: int) -> s
 
     A record that overturns it at the stated scale governs before one that does not; and that in the central case before
     one that does so in another. Among equals it is the one of the least scale that overturns, in the central case, then
-    in any; then the one of the largest tilt at the stated scale, then at any.
+    in any; then the one of the largest peak tilt at the stated scale, then at any.
 
     Parameters
     ----------
@@ -104,8 +104,8 @@ def histories_of(
         decided.
         Each has its `scale`, NaN where there is no such run, and its `case`. Over `sample` too: `time` [s], NaN beyond
         the end of the run; `tilt_x`, `tilt_y` and `amplitude` in units of α; `base_x`, `base_y` [m/s²]. Without:
-        `largest_tilt_ratio`, its `azimuth` [rad] and `time_of_largest_tilt` [s]; `overturned`; `outcome`;
-        `friction_demand`, `pivoting_demand`, `least_normal_force`, NaN without `contact`.
+        `peak_tilt_ratio`, its `azimuth` [rad] and `time_of_peak_tilt` [s]; `overturned`; `outcome`;
+        `friction_demand`, `pivoting_demand`, `minimum_normal_force`, NaN without `contact`.
     """
     shown = _shown(inputs, record, margins)
     known = [one for one in shown if math.isfinite(one.scale)]
@@ -159,9 +159,9 @@ def _as_dataset(run: xr.Dataset, motion: BaseMotion, alpha: float) -> xr.Dataset
         "base_y": (base[:, 1], {"units": "m s-2", "long_name": "base acceleration along y"}),
     }
     numbers = {
-        "largest_tilt_ratio": np.inf if fallen else float(run["largest_tilt"]) / alpha,
+        "peak_tilt_ratio": np.inf if fallen else float(run["peak_tilt"]) / alpha,
         "azimuth": float(run["direction"]) if fallen else math.atan2(tilt[largest, 1], tilt[largest, 0]),
-        "time_of_largest_tilt": float(run["time_of_largest_tilt"]),
+        "time_of_peak_tilt": float(run["time_of_peak_tilt"]),
         "overturned": float(fallen),
         **{own: float(run[name]) if name in run else math.nan for name, own in _DEMANDS.items()},
     }

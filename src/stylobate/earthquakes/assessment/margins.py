@@ -20,7 +20,7 @@ _BAND = ("band_from", "band_to", "safe_below", "safe_above")
 _FLAGS = ("open_below", "open_above", "undecided_below", "undecided_above")
 _STRETCH = ("undecided_from", "undecided_to")
 _COUNTS = ("bands", "unknown", "decided_to")
-_RUNS = ("outcome", "largest_tilt", "friction_demand")
+_RUNS = ("outcome", "peak_tilt", "friction_demand")
 
 
 def margins_of(inputs: Inputs, column: str, parts: Parts, *, contact: bool, executor: Executor | None) -> xr.Dataset:
@@ -45,9 +45,9 @@ def margins_of(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exec
     found = of_one_width([_bands(inputs, column, case, parts, contact, executor) for case in cases])
     joined: xr.Dataset = xr.concat(found, dim=xr.Variable("case", cases), data_vars="all", join="override")
     body = inputs.columns[column][CENTRAL].column
-    scanned = joined[["outcome", "largest_tilt"]].sel(case=CENTRAL)
+    scanned = joined[["outcome", "peak_tilt"]].sel(case=CENTRAL)
     reached = limit_states(scanned, slenderness=body.slenderness).transpose("record", "limit_state", "margin_scale")
-    labelled = joined.drop_vars("largest_tilt").assign(
+    labelled = joined.drop_vars("peak_tilt").assign(
         tilt_ratio=tilt_ratios(joined, body.slenderness),
         reached=reached.drop_vars("case"),
         standing_slip=standing_slip(inputs, column, cases),
@@ -140,8 +140,8 @@ def _found(
 def _as_dataset(found: xr.Dataset, names: list[str], width: float) -> xr.Dataset:
     plain = found.rename(motion="record", scale="margin_scale")
     plain = plain.drop_vars([name for name in plain.coords if name != "margin_scale"]).assign_coords(record=names)
-    demand = plain.get("largest_friction_demand", xr.full_like(plain["largest_tilt"], np.nan))
-    about = {"units": "1", "long_name": "largest friction force over normal force"}
+    demand = plain.get("peak_friction_demand", xr.full_like(plain["peak_tilt"], np.nan))
+    about = {"units": "1", "long_name": "peak friction force over normal force"}
     plain = plain.assign(friction_demand=demand.assign_attrs(about))
     kept = plain[[*_BAND, *_FLAGS, *_STRETCH, *_COUNTS, *_RUNS]].transpose("record", ...)
     flags = {name: kept[name].astype(float) for name in (*_FLAGS, "bands", "unknown")}

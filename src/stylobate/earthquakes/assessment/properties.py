@@ -52,12 +52,12 @@ def record_properties(inputs: Inputs) -> xr.Dataset:
     axes = np.array([_peaks(motion) for motion in motions])
     numbers = {
         "peak_acceleration": (
-            [motion.largest_horizontal(0.0) for motion in motions],
+            [motion.peak_horizontal(0.0) for motion in motions],
             "m s-2",
             "PGA, horizontal vector",
         ),
         **{
-            f"peak_acceleration_{axis}": (axes[:, place], "m s-2", f"largest acceleration along {axis}")
+            f"peak_acceleration_{axis}": (axes[:, place], "m s-2", f"peak acceleration along {axis}")
             for place, axis in enumerate("xyz")
         },
         "peak_velocity": ([peak_horizontal_velocity(motion) for motion in motions], "m s-1", "PGV, horizontal vector"),

@@ -20,7 +20,7 @@ _OPTIONS = tuple(name for name in numbers_of(Accuracy) if name != "tilt_limit")
 _NUMBERS = {
     "tilt_ratio": ("1", "peak tilt / α_c"),
     "residual_slip": ("m", "distance of the footprint from its place at the end"),
-    "largest_slip": ("m", "largest distance of the footprint from its place"),
+    "peak_slip": ("m", "largest distance of the footprint from its place"),
     "slip_path": ("m", "length of the path of slip"),
     "time_sliding": ("s", "how long it slid on its base"),
 }
@@ -34,7 +34,7 @@ def sliding_of(inputs: Inputs, column: str, parts: Parts) -> xr.Dataset:
     -------
     xarray.Dataset
         Over `record` and `scale`: `outcome`; `overturned` (1, 0, −1 not decided); `uncertain` (1 where rounding could
-        change the outcome); `tilt_ratio`, infinite where it overturned; `residual_slip`, `largest_slip` and
+        change the outcome); `tilt_ratio`, infinite where it overturned; `residual_slip`, `peak_slip` and
         `slip_path` [m]; `time_sliding` [s]. A column that rocks before it slides is not followed: outcome and
         `overturned` −1, NaN.
     """
@@ -88,7 +88,7 @@ def _run(inputs: Inputs, column: str, record: str, scale: float, parts: Parts) -
         run = simulate(model, motion, duration=duration, **options)
         fallen, undecided = run.outcome is Outcome.OVERTURNED, run.outcome is Outcome.FAILED
         places = run.data["footprint"].transpose("axis", "time").to_numpy()
-        tilt = run.measures["largest_tilt"] / given.column.tipping_angle
+        tilt = run.measures["peak_tilt"] / given.column.tipping_angle
         return xr.Dataset(
             {
                 "outcome": int(run.outcome),
@@ -96,7 +96,7 @@ def _run(inputs: Inputs, column: str, record: str, scale: float, parts: Parts) -
                 "uncertain": float(run.uncertain),
                 "tilt_ratio": np.inf if fallen else np.nan if undecided else tilt,
                 "residual_slip": run.measures["residual_displacement"],
-                "largest_slip": float(np.hypot(*places).max()),
+                "peak_slip": float(np.hypot(*places).max()),
                 "slip_path": run.measures["slip_distance"],
                 "time_sliding": run.measures["time_sliding"],
             }

@@ -29,7 +29,7 @@ def summary_of(data: Mapping[str, xr.Dataset], governing: list[str]) -> xr.Datas
         a small change could alter; `on_dissipation` and `on_vertical`, of records whose verdict depends on these;
         `not_robust`, of those with a verdict, at any dissipation at which it was repeated, that a small change flips;
         `changes_undecided`, of those with a small change that applies and is not decided; `planar_differs`, of those by
-        which the planar column does otherwise; `largest_tilt_ratio`; `friction_demand`, the largest of all runs, and
+        which the planar column does otherwise; `peak_tilt_ratio`; `friction_demand`, the largest of all runs, and
         over `record` too `friction_by_record`. Over `column`: `governing`;
         `least_overturning` of the central case, NaN where none overturned, and `least_record` that has it, empty where
         none does; `least_of_all`, of all cases; `friction_to_margin`, the largest of all cases, and the
@@ -65,7 +65,7 @@ def summary_of(data: Mapping[str, xr.Dataset], governing: list[str]) -> xr.Datas
     return xr.Dataset(
         {
             **counts,
-            "largest_tilt_ratio": tilt.max("record"),
+            "peak_tilt_ratio": tilt.max("record"),
             "friction_demand": verdicts["friction_demand"].max(("record", "dissipation", "vertical")),
             "friction_by_record": verdicts["friction_demand"].max(("dissipation", "vertical")),
             "governing": ("column", governing),

@@ -13,9 +13,9 @@ from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.computing import Progress
 
 _DEMANDS: Mapping[str, tuple[str, str]] = {
-    "largest_friction_demand": ("friction_demand", "largest friction force over normal force"),
-    "largest_pivoting_demand": ("pivoting_demand", "largest moment about the vertical over normal force and radius"),
-    "least_normal_force": ("least_normal_force", "least normal force over weight"),
+    "peak_friction_demand": ("friction_demand", "peak friction force over normal force"),
+    "peak_pivoting_demand": ("pivoting_demand", "largest moment about the vertical over normal force and radius"),
+    "minimum_normal_force": ("minimum_normal_force", "minimum normal force over weight"),
 }
 
 
@@ -27,7 +27,7 @@ def verdicts_on(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exe
     xarray.Dataset
         Over `record`, `dissipation`, `vertical` and `scale`: `overturned` (1, 0, −1 where the run is undecided),
         its `outcome`, `tilt_ratio`, `uncertain`, `friction_demand` while it stands and while it moves,
-        `pivoting_demand`, `least_normal_force`.
+        `pivoting_demand`, `minimum_normal_force`.
     """
     vertical = (True, False) if inputs.has_vertical else (True,)
     levels = inputs.dissipation

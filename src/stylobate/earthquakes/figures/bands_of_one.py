@@ -36,7 +36,7 @@ def plot_bands_of_one(found: xr.Dataset) -> Figure:
     Parameters
     ----------
     found
-        Overturning bands over no name: `band_from` … over the bands, `outcome` and `largest_tilt` over the scale.
+        Overturning bands over no name: `band_from` … over the bands, `outcome` and `peak_tilt` over the scale.
     """
     figure = new_figure(_HEIGHT)
     axes = figure.subplots()
@@ -62,7 +62,7 @@ def plot_bands_of_one(found: xr.Dataset) -> Figure:
 
 def _draw_runs(axes: Axes, found: xr.Dataset, amplitude: Floats) -> tuple[int, int]:
     """Draw the peak tilts of runs that stand; mark and count the runs that are uncertain or undecided."""
-    codes, tilt = found["outcome"].to_numpy(), found["largest_tilt"].to_numpy() / float(found["tipping_angle"])
+    codes, tilt = found["outcome"].to_numpy(), found["peak_tilt"].to_numpy() / float(found["tipping_angle"])
     unknown = np.isin(codes, UNRESOLVED)
     uncertain = found["uncertain"].to_numpy() & (codes != NOT_COMPUTED)
     stands = ~unknown & (codes != Outcome.OVERTURNED)

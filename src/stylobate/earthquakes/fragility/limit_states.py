@@ -27,7 +27,7 @@ def limit_states(
     Parameters
     ----------
     runs
-        With `outcome` and `largest_tilt` [rad], such as from `simulate_ensemble`, `overturning_map` or a sweep.
+        With `outcome` and `peak_tilt` [rad], such as from `simulate_ensemble`, `overturning_map` or a sweep.
     slenderness
         c of each run; by default the coordinate `slenderness` of `runs`.
     tilt_ratios
@@ -51,17 +51,17 @@ def limit_states(
     >>> import xarray as xr
     >>> from stylobate import Outcome
     >>> codes = [Outcome.AT_REST, Outcome.SURVIVED, Outcome.OVERTURNED]
-    >>> runs = xr.Dataset({"outcome": ("run", codes), "largest_tilt": ("run", [0.0, 0.06, 0.09])})
+    >>> runs = xr.Dataset({"outcome": ("run", codes), "peak_tilt": ("run", [0.0, 0.06, 0.09])})
     >>> states = limit_states(runs, slenderness=0.1)
     >>> print(states.sel(limit_state="tilt 0.5 α").values, states.sel(limit_state="overturning").values)
     [0 1 1] [0 0 1]
     """
-    for name in ("outcome", "largest_tilt"):
+    for name in ("outcome", "peak_tilt"):
         if name not in runs:
             message = f"runs must hold the variable {name}, got {', '.join(map(str, runs.data_vars)) or 'none'}"
             raise ParameterError(message)
     critical = np.arctan(_slenderness(runs, slenderness))
-    codes, tilt = runs["outcome"], runs["largest_tilt"]
+    codes, tilt = runs["outcome"], runs["peak_tilt"]
     fallen = codes == Outcome.OVERTURNED
     decided = ~codes.isin([NOT_COMPUTED, *UNRESOLVED])
     limits = {

@@ -165,7 +165,7 @@ def _numbers(model: Model, motion: BaseMotion, values: Mapping[str, Floats]) -> 
                 column.frequency_parameter,
                 column.tipping_angle,
                 column.rim_distance,
-                moved.largest_horizontal(0.0) / (column.gravity * column.slenderness),
+                moved.peak_horizontal(0.0) / (column.gravity * column.slenderness),
                 frequency_of(moved) / column.frequency_parameter,
                 moved.duration,
             )

@@ -100,7 +100,7 @@ def _spectrum(runs: xr.Dataset, cases: Cases, provenance: str) -> xr.Dataset:
     safe = overturned_or_not(runs) == 0
     rate = peak_tilt_rate(*(runs[name].to_numpy() for name in _HISTORIES))
     ratios = {
-        "peak_tilt_ratio": (runs["largest_tilt"].to_numpy() / cases.numbers["tipping_angle"], "1", "peak tilt / α_c"),
+        "peak_tilt_ratio": (runs["peak_tilt"].to_numpy() / cases.numbers["tipping_angle"], "1", "peak tilt / α_c"),
         "peak_rate_ratio": (rate / cases.numbers["frequency_parameter"], "rad", "peak rate of tilt / p"),
     }
     kept = {

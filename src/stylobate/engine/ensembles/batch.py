@@ -223,7 +223,7 @@ def _rest_energy(options: Options, models: ModelColumns, motions: MotionColumns)
         energy = usual_rest_energy(
             motions.mean_frequency,
             motions.largest,
-            motions.least_vertical,
+            motions.minimum_vertical,
             models.capacity,
             least=motions.least_rest_energy,
         )
@@ -246,7 +246,7 @@ def _empty_table(plan: Plan, shape: Shape, count: int, breaks: int) -> Floats:
     table[:, notes:traces] = np.nan
     for column in (Log.FIRST_AZIMUTH, Log.LAST_AZIMUTH):
         table[:, LOG + column] = np.nan
-    for column in (Log.LEAST_TILT, Log.LEAST_PASSAGE, Log.NORMAL):
+    for column in (Log.MINIMUM_TILT, Log.LEAST_PASSAGE, Log.NORMAL):
         table[:, LOG + column] = np.inf
     return table
 
@@ -272,8 +272,8 @@ def _fill_setup(
         Setup.REST_ENERGY: energy,
         Setup.REST_ENERGY_FOR_GOOD: _rest_energy_for_good(options, models, motions),
         Setup.LARGEST_HORIZONTAL: motions.largest,
-        Setup.LEAST_VERTICAL: motions.least_vertical,
-        Setup.LARGEST_VERTICAL: motions.largest_vertical,
+        Setup.MINIMUM_VERTICAL: motions.minimum_vertical,
+        Setup.MAXIMUM_VERTICAL: motions.maximum_vertical,
         Setup.TIME_SCALE: models.time_scale,
         Setup.FREQUENCY: motions.frequency,
         Setup.PERIOD: motions.period,

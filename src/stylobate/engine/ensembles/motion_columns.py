@@ -16,7 +16,7 @@ from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.polynomials import Table, one_after_another, tabulated
 from stylobate.engine.ensembles.stretched import tabulated_alike
 from stylobate.engine.kernel.forcing import Harmonics, KernelForcing, Polynomials
-from stylobate.engine.parameters import changed_motion, declared_names, largest_acceleration
+from stylobate.engine.parameters import changed_motion, declared_names, peak_acceleration
 from stylobate.engine.thresholds import least_rest_energy
 
 Floats = npt.NDArray[np.float64]
@@ -77,7 +77,7 @@ class MotionPlan:
             changes = (dict(zip(names, numbers, strict=True)) for numbers in chosen.tolist())
             members = tuple(changed_motion(motion, change) for change in changes)
         scaled = "acceleration" in values
-        base = np.array([largest_acceleration(member) if scaled else 1.0 for member in members])
+        base = np.array([peak_acceleration(member) if scaled else 1.0 for member in members])
         vertical = any(bound != 0.0 for member in members for bound in member.vertical_range(0.0))
         nowhere = np.zeros(1, dtype=np.intp)
         varied = (names, levels, combinations)
@@ -133,8 +133,8 @@ class MotionColumns:
     period: Floats
     phase: Floats
     largest: Floats
-    least_vertical: Floats
-    largest_vertical: Floats
+    minimum_vertical: Floats
+    maximum_vertical: Floats
     directions: Floats
     forward: Floats
     backward: Floats
@@ -179,9 +179,9 @@ class MotionColumns:
             duration=np.where(lasts > 0.0, np.maximum(0.0, lasts + values.get("delay", 0.0)), 0.0),
             period=period / models.time_scale,
             phase=phase,
-            largest=np.abs(per_gravity) * each(lambda motion: motion.largest_horizontal(0.0)),
-            least_vertical=bounds.min(axis=0),
-            largest_vertical=bounds.max(axis=0),
+            largest=np.abs(per_gravity) * each(lambda motion: motion.peak_horizontal(0.0)),
+            minimum_vertical=bounds.min(axis=0),
+            maximum_vertical=bounds.max(axis=0),
             directions=_directions(plan.members, which, factor, rotation),
             forward=forward,
             backward=backward,

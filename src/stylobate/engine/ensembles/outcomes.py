@@ -41,7 +41,7 @@ class Late:
     turned: Floats
     mean_tilt: Floats
     phase: Floats
-    least_tilt: Floats
+    minimum_tilt: Floats
     repetition: Floats
     repetition_before: Floats
     drift: Floats
@@ -80,7 +80,7 @@ def late_periods(batch: Batch) -> Late:
         turned=known(turned),
         mean_tilt=mean_tilt,
         phase=known(np.angle(np.exp(1j * phase))),
-        least_tilt=known(batch.log(Log.LATE_LEAST)),
+        minimum_tilt=known(batch.log(Log.LATE_LEAST)),
         repetition=known(_repetition(batch, LATE, mean_tilt)),
         repetition_before=known(_repetition(batch, BEFORE, mean_tilt), before),
         drift=known(np.abs(lags[0] / (n * LOOKS) - lags[1] / (n * LOOKS)), before),
@@ -98,7 +98,7 @@ def _window(batch: Batch, first: int, column: Window) -> Floats:
 
 
 def _repetition(batch: Batch, first: int, mean_tilt: Floats) -> Floats:
-    """Return the largest difference of states one period apart, over the largest tilt or rate.
+    """Return the largest difference of states one period apart, over the peak tilt or rate.
 
     All looks may fall on passages of the upright: then tilts are compared with the mean tilt of the last periods.
     Infinite where the looks saw nothing but a column that stands: what it does between them is not known to repeat.
@@ -139,7 +139,7 @@ def grounds_of(batch: Batch, late: Late) -> npt.NDArray[np.int8]:
     """Return on which `Ground` the outcome of each run rests that moves at its end."""
     evidence = Evidence(
         turned=np.nan_to_num(late.turned),
-        least_tilt=np.nan_to_num(late.least_tilt) / batch.models.slenderness,
+        minimum_tilt=np.nan_to_num(late.minimum_tilt) / batch.models.slenderness,
         repetition=np.nan_to_num(late.repetition, nan=np.inf),
         repetition_before=late.repetition_before,
         drift=late.drift,

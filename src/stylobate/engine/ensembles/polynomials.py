@@ -18,7 +18,7 @@ DEGREE = 15
 # Numbers of a row before its coefficients; the kernels know it too.
 _BEFORE = 6
 # Pieces are no longer than half the shortest period, and halved where the polynomials do not get as near as this part
-# of the largest acceleration, so often at most.
+# of the peak acceleration, so often at most.
 _ACCURACY, _HALVINGS = 1e-11, 12
 _MOST_PIECES = 2_000_000
 # A piece begins where the one before ends if its acceleration does, to this part of the largest.
@@ -83,7 +83,7 @@ def tabulated(motion: BaseMotion, end: float) -> Table:
     if len(edges) + end / longest > _MOST_PIECES:
         message = f"motion is too long to tabulate: {end!r} s in pieces of {longest!r} s; shorten the duration"
         raise UnsupportedError(message)
-    size = max(motion.largest_horizontal(0.0), *map(abs, motion.vertical_range(0.0)))
+    size = max(motion.peak_horizontal(0.0), *map(abs, motion.vertical_range(0.0)))
     pieces: list[tuple[float, float, Floats]] = []
     after = next((time for time in motion.breaks if time >= end), math.inf)
     for low, high in zip(edges, [*edges[1:], math.inf], strict=True):
@@ -91,7 +91,7 @@ def tabulated(motion: BaseMotion, end: float) -> Table:
         for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
             pieces += _fitted(motion, a, b, size, _HALVINGS)
     starts, ends, coefficients = zip(*pieces, strict=True)
-    bounds = np.array([(motion.largest_horizontal(time), *motion.vertical_range(time)) for time in starts])
+    bounds = np.array([(motion.peak_horizontal(time), *motion.vertical_range(time)) for time in starts])
     return Table.of(np.column_stack([starts, ends]), bounds, np.stack(coefficients))
 
 

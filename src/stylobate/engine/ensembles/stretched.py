@@ -11,7 +11,7 @@ from stylobate.engine.ensembles.polynomials import Table, tabulated
 
 Floats = npt.NDArray[np.float64]
 
-# A stretched table is that of a motion if it meets it to this part of the largest acceleration, in the middle of each
+# A stretched table is that of a motion if it meets it to this part of the peak acceleration, in the middle of each
 # piece and at its quarters: no worse than a fit.
 _MEETS = 1e-10
 _BEYOND = 1.0 + 1e-9
@@ -38,13 +38,13 @@ def _edges(motion: BaseMotion) -> Floats:
 def _stretched(table: Table, of: BaseMotion, motion: BaseMotion, end: float) -> Table | None:
     """Return the table of a motion that goes between its breaks as another does; None if it does not."""
     before, after = _edges(of), _edges(motion)
-    size = of.largest_horizontal(0.0)
+    size = of.peak_horizontal(0.0)
     if len(before) != len(after) or len(before) == 1 or not size > 0.0:
         return None
     going = table.rows[:, 1] <= before[-1]
     if np.any(table.coefficients[~going]):
         return None  # it never ends
-    strength = motion.largest_horizontal(0.0) / size
+    strength = motion.peak_horizontal(0.0) / size
     spans = np.interp(table.rows[going, :2], before, after)
     rest = (after[-1], max(end, after[-1] + 1.0))
     coefficients = np.append(strength * table.coefficients[going], np.zeros((1, *table.coefficients.shape[1:])), axis=0)

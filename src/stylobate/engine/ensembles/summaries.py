@@ -59,18 +59,18 @@ QUANTITIES: Mapping[str, Quantity] = {
     "end_tilt": _numbers("tilt vector at the end", "rad", "axis"),
     "end_tilt_rate": _numbers("rate of the tilt vector at the end", "rad s-1", "axis"),
     "direction": _numbers("azimuth in which it overturned", "rad"),
-    "largest_tilt": _numbers("largest tilt", "rad"),
-    "time_of_largest_tilt": _numbers("time of the largest tilt", "s"),
-    "least_tilt": _numbers("least tilt while it moves", "rad"),
+    "peak_tilt": _numbers("peak tilt", "rad"),
+    "time_of_peak_tilt": _numbers("time of the peak tilt", "s"),
+    "minimum_tilt": _numbers("minimum tilt while it moves", "rad"),
     "turns": _numbers("turns of the contact point", "1"),
     "mean_tilt": _numbers("mean tilt over the last periods", "rad"),
     "phase": _numbers("phase of the lean to the base acceleration, over the last periods", "rad"),
     "mean_rolling_rate": _numbers("mean rolling rate over the last periods", "rad s-1"),
     "repetition": _numbers("change from period to period, over the last periods", "1"),
     "end_spin": _numbers("angular velocity about the axis at the end", "rad s-1"),
-    "largest_friction_demand": _numbers("largest friction force over normal force", "1"),
-    "largest_pivoting_demand": _numbers("largest moment about the vertical over normal force and radius", "1"),
-    "least_normal_force": _numbers("least normal force over weight", "1"),
+    "peak_friction_demand": _numbers("peak friction force over normal force", "1"),
+    "peak_pivoting_demand": _numbers("largest moment about the vertical over normal force and radius", "1"),
+    "minimum_normal_force": _numbers("minimum normal force over weight", "1"),
     "end_footprint": _numbers("centre of the footprint circle at the end", "m", "axis"),
     "end_twist": _numbers("angle of turn about the axis at the end", "rad"),
     "end_contact": Quantity(
@@ -97,7 +97,7 @@ QUANTITIES: Mapping[str, Quantity] = {
 }
 
 
-_DEMANDS = ("largest_friction_demand", "largest_pivoting_demand", "least_normal_force")
+_DEMANDS = ("peak_friction_demand", "peak_pivoting_demand", "minimum_normal_force")
 
 
 def empty(model: Model, options: Options, count: int) -> Arrays:
@@ -149,7 +149,7 @@ def _all(batch: Batch) -> Arrays:
         batch.rest_energy,
         batch.motions.mean_frequency,
         batch.motions.largest,
-        batch.motions.least_vertical,
+        batch.motions.minimum_vertical,
         batch.models.capacity,
     )
     uncertain = passage < CLOSE_PASSAGE * batch.models.slenderness
@@ -165,9 +165,11 @@ def _all(batch: Batch) -> Arrays:
         "end_tilt": tilt,
         "end_tilt_rate": rate / scale[:, np.newaxis],
         "direction": np.where(overturned, np.arctan2(tilt[:, 1], tilt[:, 0]), np.nan),
-        "largest_tilt": batch.log(Log.LARGEST_TILT),
-        "time_of_largest_tilt": batch.log(Log.LARGEST_AT) * scale,
-        "least_tilt": np.where(touched, 0.0, np.minimum.reduce([start, batch.log(Log.LEAST_TILT), np.hypot(*tilt.T)])),
+        "peak_tilt": batch.log(Log.PEAK_TILT),
+        "time_of_peak_tilt": batch.log(Log.LARGEST_AT) * scale,
+        "minimum_tilt": np.where(
+            touched, 0.0, np.minimum.reduce([start, batch.log(Log.MINIMUM_TILT), np.hypot(*tilt.T)])
+        ),
         "turns": _turns(batch),
         "mean_tilt": late.mean_tilt,
         "phase": late.phase,
@@ -226,7 +228,7 @@ def _in_doubt(batch: Batch, outcome: npt.NDArray[np.int8]) -> npt.NDArray[np.boo
     doubtful = in_doubt(
         overturned=fallen(outcome),
         decided=batch.log(Log.DECIDED),
-        largest_tilt=batch.log(Log.LARGEST_TILT),
+        peak_tilt=batch.log(Log.PEAK_TILT),
         released_again=batch.log(Log.RELEASED_FROM_REST) > 0.0,
         slenderness=batch.models.slenderness,
     )

@@ -135,7 +135,7 @@ def error_of(y: Table, new: Table, h: float, k: npt.NDArray[np.float64], rtol: f
 
 
 def note_tilt(y: Table, new: Table, duration: float, numbers: Vector, noted: Vector) -> float:
-    """Note the least and the largest tilt of a step, by a cubic through the squares at its ends.
+    """Note the minimum and maximum tilt of a step, by a cubic through the squares at its ends.
 
     Return where in the step the cubic turns, or 0 where it does not.
     """
@@ -265,8 +265,8 @@ def flow(
 ) -> int:
     """Carry `y` from `begin` to `end` [turns of the base motion]; return how that went.
 
-    `limits`: relative and absolute tolerance, least and largest tilt. `noted`: least and largest tilt met, number of
-    steps, side of the upright on which it leans (for motion in a plane), passages of the negative x axis.
+    `limits`: relative and absolute tolerance, minimum and maximum tilt. `noted`: minimum and maximum tilt met, number
+    of steps, side of the upright on which it leans (for motion in a plane), passages of the negative x axis.
     """
     rtol, atol, least, largest = limits
     k = np.zeros((13, ORDER, ORDER + 2))

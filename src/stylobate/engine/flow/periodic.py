@@ -58,8 +58,8 @@ class Flow:
     end: Floats
     by_start: Floats
     by_parameter: Floats
-    least_tilt: float
-    largest_tilt: float
+    minimum_tilt: float
+    peak_tilt: float
     steps: int
     side: float
     turns: float
@@ -107,7 +107,7 @@ class PeriodicSystem:
     def safe_tilt(self) -> float:
         """Tilt beyond which no periodic motion comes back, or a right angle."""
         gravity = self.model.column.gravity
-        largest = self.motion.largest_horizontal(0.0) / gravity
+        largest = self.motion.peak_horizontal(0.0) / gravity
         least = self.motion.vertical_range(0.0)[0] / gravity
         return min(self.model.least_safe_tilt(largest, least), 0.5 * math.pi)
 
@@ -164,7 +164,7 @@ class PeriodicSystem:
         *,
         change: Numbers | None = None,
         side: float = 0.0,
-        largest_tilt: float | None = None,
+        peak_tilt: float | None = None,
     ) -> Flow:
         """Carry `state` from `begin` to `end`, in turns of the base motion.
 
@@ -178,7 +178,7 @@ class PeriodicSystem:
             What the numbers change by along a parameter, see `derivative`.
         side
             Side of the upright (±1) on which a motion in a plane begins; by default that of its tilt, or of its rate.
-        largest_tilt
+        peak_tilt
             Beyond it the motion is given up; the tilt of no return by default.
         """
         order, numbers = self.order, self.numbers
@@ -193,7 +193,7 @@ class PeriodicSystem:
                 self.rtol,
                 0.01 * self.rtol * self.scale,
                 max(LOST_TILT * self.scale, self.model.loss_tilt),
-                self.safe_tilt if largest_tilt is None else largest_tilt,
+                self.safe_tilt if peak_tilt is None else peak_tilt,
             ]
         )
         if self.planar and side == 0.0:

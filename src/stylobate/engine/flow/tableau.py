@@ -21,6 +21,6 @@ class Status(IntEnum):
     LOST = 1
     """It came to the upright, where the derivatives do not exist."""
     GONE = 2
-    """It went beyond the largest tilt."""
+    """It went beyond the peak tilt."""
     FAILED = 3
     """The steps became too many or too short."""

@@ -35,8 +35,8 @@ class Setup(_FromZero):
     REST_ENERGY_FOR_GOOD = auto()
     """ε once nothing to come can release the column again."""
     LARGEST_HORIZONTAL = auto()
-    LEAST_VERTICAL = auto()
-    LARGEST_VERTICAL = auto()
+    MINIMUM_VERTICAL = auto()
+    MAXIMUM_VERTICAL = auto()
     TIME_SCALE = auto()
     """Unit of time [s]."""
     FREQUENCY = auto()
@@ -54,7 +54,7 @@ class Setup(_FromZero):
     TRACES = auto()
     """How many entries of a trace, in columns behind these, it has room for; 0 where none is kept."""
     PASSAGE_TILT = auto()
-    """Least tilt below which a passage of the upright out of a plane loses energy; 0 where none does."""
+    """Minimum tilt below which a passage of the upright out of a plane loses energy; 0 where none does."""
     LINE_X = auto()
     LINE_Y = auto()
     """Unit vector of the line along which the base moves or, in a plane, the column too; 0, 0 without one."""
@@ -78,9 +78,9 @@ class Log(_FromZero):
     RESTS = auto()
     RELEASED_FROM_REST = auto()
     """1 once it came to rest and was released again."""
-    LARGEST_TILT = auto()
+    PEAK_TILT = auto()
     LARGEST_AT = auto()
-    LEAST_TILT = auto()
+    MINIMUM_TILT = auto()
     """Where the tilt stopped falling."""
     LEAST_PASSAGE = auto()
     """The same out of a plane."""
@@ -110,11 +110,11 @@ class Log(_FromZero):
     PIVOTING = auto()
     """Largest demands on the contact, while the column moves and while it stands."""
     NORMAL = auto()
-    """Least normal force [m g]; followed with the demands where they are asked for."""
+    """Minimum normal force [m g]; followed with the demands where they are asked for."""
     WATCHED = auto()
     """1 in the last periods, in which the following are taken."""
     LATE_LEAST = auto()
-    """Least tilt in them."""
+    """Minimum tilt in them."""
     MEAN_TILT = auto()
     FORWARD_COS = auto()
     FORWARD_SIN = auto()
@@ -173,11 +173,11 @@ class Lane(_FromZero):
     TURNS = auto()
     """Whole turns of the lean so far."""
     LOW = auto()
-    """Least tilt within the step."""
+    """Minimum tilt within the step."""
     SLOW = auto()
     """Flag: it may have been slow enough within the step to come to rest."""
     PEAK = auto()
-    """Flag: a largest tilt lies within the step."""
+    """Flag: a peak tilt lies within the step."""
     FLAG = auto()
     """Not 0 where the driver must look at the lane."""
     ERROR = auto()

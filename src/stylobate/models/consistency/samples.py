@@ -10,7 +10,7 @@ from stylobate.models.model import Model
 # Half the step of central differences, in the time of the model: their error is of its square.
 _STEP = 1e-4
 
-# Largest tilt of a random state [rad], and largest tilt and rate in units of c.
+# Peak tilt of a random state [rad], and peak tilt and rate in units of c.
 _TOP, _TIMES_C = 1.2, 3.0
 
 

@@ -31,7 +31,7 @@ from stylobate.models.sliding.phases import Contact, Numbers, State
 from stylobate.models.sliding.reactions import project, reset_map
 from stylobate.quantities import Quantity
 
-# A least tilt counts as a stroke of the base below this, unless the user sets another [c].
+# A minimum tilt counts as a stroke of the base below this, unless the user sets another [c].
 _PASSAGE = 0.01
 
 

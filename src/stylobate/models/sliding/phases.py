@@ -80,7 +80,7 @@ class Numbers(NamedTuple):
     normal_restitution
         e_n of impacts.
     passage_tilt
-        Least tilt below which a passage of the upright is a stroke of the base on the plane [rad].
+        Minimum tilt below which a passage of the upright is a stroke of the base on the plane [rad].
     slope_x, slope_y, relief
         What an inclined plane adds to the base acceleration [g].
     """

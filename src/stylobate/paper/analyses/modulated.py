@@ -64,7 +64,7 @@ def _third_kind() -> Finding:
     tilt = (1.02 * start["tilt"][0], 1.02 * start["tilt"][1])
     run = simulate(model, motion, tilt=tilt, tilt_rate=start["tilt_rate"], duration=150.0 * motion.period, rtol=1e-7)
     steady = math.hypot(*start["tilt"])
-    low, high = (run.measures.get(name, math.nan) / steady for name in ("least_tilt_late", "largest_tilt_late"))
+    low, high = (run.measures.get(name, math.nan) / steady for name in ("minimum_tilt_late", "peak_tilt_late"))
     ranges = [theory.modulated_rolling(nu, _A0, c=_C, eta=DAMPING).amplitude_range]
     return Finding(
         "conclusion 3",

@@ -32,7 +32,7 @@ def check_straight() -> Section:
 
 
 def full_response_data() -> xr.Dataset:
-    """Return mean, least and largest tilt of the full motion started on the averaged solution; NaN: it overturned."""
+    """Return mean, minimum and maximum tilt of the full motion started on the averaged solution; NaN: it overturned."""
     nu = np.array([0.9, 1.1, 1.3, 1.5, 1.75, 2.0, 2.25, 2.5, 3.0, 3.5, 4.0])
     values = np.full((len(AMPLITUDES), nu.size, 3), np.nan)
     for i, a1 in enumerate(AMPLITUDES):

@@ -58,7 +58,7 @@ def outcome_differences(
     -------
     xarray.Dataset
         Of kind "outcome differences": over the two names `comparison`, codes of `Comparison`; `first_outcome`,
-        `second_outcome`, and `first_largest_tilt`, `second_largest_tilt` [rad], with demands=True also those on the
+        `second_outcome`, and `first_peak_tilt`, `second_peak_tilt` [rad], with demands=True also those on the
         contact; `count` and `share` over `comparison_name`.
 
     Raises
@@ -107,7 +107,7 @@ def _compared(first: npt.NDArray[np.int8], second: npt.NDArray[np.int8]) -> npt.
 
 
 # What is kept of each model's runs; the demands where they were asked for.
-_COMPARED = ("outcome", "largest_tilt", "largest_friction_demand", "largest_pivoting_demand", "least_normal_force")
+_COMPARED = ("outcome", "peak_tilt", "peak_friction_demand", "peak_pivoting_demand", "minimum_normal_force")
 
 
 def _dataset(maps: list[xr.Dataset], codes: npt.NDArray[np.int8], models: tuple[Model, Model]) -> xr.Dataset:

@@ -73,10 +73,10 @@ def model_hierarchy(
     -------
     xarray.Dataset
         Of kind "model hierarchy", over `model`, and `slenderness` where it is given: `outcome`, `uncertain`,
-        `largest_tilt`,
+        `peak_tilt`,
         `mean_late_tilt`, `mean_late_spin` (over the last fifth of the run; NaN where it ended before, or cannot spin),
-        largest demands on the contact, `least_normal_force` over the weight, `steps`, `warnings`; differences from the
-        `reference`; `deviation` (model, other_model), the largest distance of the tilt vectors while both runs last
+        peak demands on the contact, `minimum_normal_force` over the weight, `steps`, `warnings`; differences from
+        the `reference`; `deviation` (model, other_model), the largest distance of the tilt vectors while both runs last
         [rad]. With two slendernesses or more `deviation_order`, the power of c with which `deviation`/c falls. With
         `samples` the histories `amplitude` [rad] and `spin` [rad/s] over `time`.
 
@@ -200,16 +200,16 @@ def _scaled(case: Case, slendernesses: Floats) -> list[Case]:
 
 
 _MEASURES = {
-    "largest_tilt": ("rad", "largest tilt angle"),
+    "peak_tilt": ("rad", "peak tilt angle"),
     "mean_late_tilt": ("rad", "mean tilt angle over the last fifth of the run"),
     "mean_late_spin": ("rad s-1", "mean spin over the last fifth of the run"),
-    "largest_friction_demand": ("1", "largest friction force over normal force"),
-    "largest_pivoting_demand": ("1", "largest moment about the vertical over normal force and radius"),
-    "least_normal_force": ("1", "least normal force over weight"),
+    "peak_friction_demand": ("1", "peak friction force over normal force"),
+    "peak_pivoting_demand": ("1", "largest moment about the vertical over normal force and radius"),
+    "minimum_normal_force": ("1", "minimum normal force over weight"),
     "decided_at": ("s", "time at which the outcome was decided"),
     "steps": ("1", "integration steps"),
 }
-_DIFFERENT = ("largest_tilt", "mean_late_tilt", "largest_friction_demand", "largest_pivoting_demand")
+_DIFFERENT = ("peak_tilt", "mean_late_tilt", "peak_friction_demand", "peak_pivoting_demand")
 
 
 def _compared(case: Case, runs: Sequence[Response], time: Floats, duration: float) -> xr.Dataset:

@@ -144,7 +144,7 @@ def label_attractors(
         The runs without their stroboscopic samples, with `attractor` (−1 where not computed). Over `attractor_index`,
         by kind and size, "not settled" last: `attractor_name`, `attractor_kind`, `attractor_period` [forcing periods, 0
         for none], `attractor_turns` [per forcing period; NaN if unknown], mean and maximum tilt [rad], `count`,
-        `fraction` of all runs computed, `fraction_low` and `fraction_high`. Over `orbit_point`, the largest tilt first:
+        `fraction` of all runs computed, `fraction_low` and `fraction_high`. Over `orbit_point`, the peak tilt first:
         the stroboscopic samples `attractor_tilt` [rad] and `attractor_tilt_rate` [rad/s]; `orbit_tilt` along the path.
         `unsettled` and `computed` count runs. Fractions add up to one.
 

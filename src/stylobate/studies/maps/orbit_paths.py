@@ -21,7 +21,7 @@ _SAMPLES, _PERIODS_UNREPEATED = 1025, 20
 def orbit_paths(
     model: Model, motion: BaseMotion | None, attractors: Sequence[Attractor], scales: OrbitScales
 ) -> xr.Dataset:
-    """Return the tilt along each attractor, and its mean and largest tilt.
+    """Return the tilt along each attractor, and its mean and peak tilt.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def orbit_paths(
     -------
     xarray.Dataset
         `orbit_tilt` (attractor_index, orbit_sample, axis) [rad], at equal times over the period (20 forcing periods
-        for one that does not repeat); `attractor_mean_tilt` and `attractor_largest_tilt` (attractor_index) [rad]. NaN
+        for one that does not repeat); `attractor_mean_tilt` and `attractor_peak_tilt` (attractor_index) [rad]. NaN
         where the attractor ends a run, has not been reached, or its path is not known.
     """
     tilt = np.full((len(attractors), _SAMPLES, 2), np.nan)
@@ -53,7 +53,7 @@ def orbit_paths(
     return xr.Dataset(
         {
             "attractor_mean_tilt": ("attractor_index", mean, {"units": "rad", "long_name": "mean tilt"}),
-            "attractor_largest_tilt": ("attractor_index", largest, {"units": "rad", "long_name": "largest tilt"}),
+            "attractor_peak_tilt": ("attractor_index", largest, {"units": "rad", "long_name": "peak tilt"}),
             "orbit_tilt": (
                 ("attractor_index", "orbit_sample", "axis"),
                 tilt,

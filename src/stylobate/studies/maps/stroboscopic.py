@@ -199,7 +199,7 @@ def is_flat(cycle: Complexes, tolerance: float) -> bool:
     cycle
         Dimensionless states, shape (k, 2).
     tolerance
-        Of the angular momentum, as a part of the largest tilt times the largest rate.
+        Of the angular momentum, as a part of the peak tilt times the largest rate.
     """
     tilt, rate = cycle.T
     return bool(np.abs(np.imag(np.conj(tilt) * rate)).max() < tolerance * np.abs(tilt).max() * np.abs(rate).max())

@@ -55,7 +55,7 @@ def averaging_map(
     -------
     xarray.Dataset
         Over the parameter and `angular_frequency`: `exact` and `averaged` (1 stable, 0 unstable, −1 no such rolling),
-        `error`, the mean tilt of the exact orbit over the averaged one less 1, and `swing`, its largest tilt over the
+        `error`, the mean tilt of the exact orbit over the averaged one less 1, and `swing`, its peak tilt over the
         averaged one. Without damping stable means neutrally stable.
 
     Raises
@@ -122,7 +122,7 @@ def _at(branch: Branch, amplitude: Floats, frequencies: Floats) -> tuple[npt.NDA
     """
     points = branch.points
     at, stable = points["angular_frequency"].to_numpy(), points["stable"].to_numpy()
-    ratios = [points[name].to_numpy() / amplitude for name in ("mean_tilt", "largest_tilt")]
+    ratios = [points[name].to_numpy() / amplitude for name in ("mean_tilt", "peak_tilt")]
     found = [np.full(frequencies.size, np.nan) for _ in ratios]
     codes = np.full(frequencies.size, _NONE, dtype=np.int8)
     for index in range(at.size - 1):

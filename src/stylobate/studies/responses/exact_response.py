@@ -22,7 +22,7 @@ from stylobate.studies.responses.response_curves import response_curves
 _AVERAGED_POINTS = 400
 # Two base motions, or two models, are one if their numbers agree to this part of the largest.
 _SAME, _PHASES = 1e-9, 16
-_BIFURCATION_UNITS = {"angular_frequency": "rad s-1", "mean_tilt": "rad", "largest_tilt": "rad"}
+_BIFURCATION_UNITS = {"angular_frequency": "rad s-1", "mean_tilt": "rad", "peak_tilt": "rad"}
 
 
 def exact_response(
@@ -59,7 +59,7 @@ def exact_response(
     Returns
     -------
     xarray.Dataset
-        Over `point`: `angular_frequency`, `mean_tilt`, `least_tilt`, `largest_tilt`, `phase` [rad], `stable` (of a
+        Over `point`: `angular_frequency`, `mean_tilt`, `minimum_tilt`, `peak_tilt`, `phase` [rad], `stable` (of a
         planar orbit: within its plane; without damping: neutrally), multipliers, and the `branch` of each. A
         bifurcation is a point of its branch, and is not marked stable. Over `branch_index`: name, length in periods,
         ends. Over `bifurcation`: kind, frequency, branch, mean tilt, coefficient, and `bifurcation_supercritical` (1

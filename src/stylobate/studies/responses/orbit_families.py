@@ -92,7 +92,7 @@ def _meet(probe: Branch, other: Branch) -> bool:
         orbit = probe.orbit(index)
         scale = orbit.system.scale
         for candidate in other.orbits_at(point.value):
-            tilts = (candidate.least_tilt - orbit.least_tilt, candidate.largest_tilt - orbit.largest_tilt)
+            tilts = (candidate.minimum_tilt - orbit.minimum_tilt, candidate.peak_tilt - orbit.peak_tilt)
             traces = complex(candidate.multipliers.sum()), complex(orbit.multipliers.sum())
             same = abs(traces[0] - traces[1]) <= _ALIKE_MULTIPLIERS * max(1.0, abs(traces[1]))
             if same and max(map(abs, tilts)) <= _ALIKE * scale:

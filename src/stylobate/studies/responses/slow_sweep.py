@@ -30,8 +30,8 @@ _PERIODS_LOOKED_AT = 25
 _ENDINGS = (Outcome.OVERTURNED, Outcome.LIMIT_REACHED, Outcome.LIFTED_OFF, Outcome.FAILED)
 _NUMBERS = {
     "mean_tilt": ("mean tilt", "rad"),
-    "least_tilt": ("least tilt", "rad"),
-    "largest_tilt": ("largest tilt", "rad"),
+    "minimum_tilt": ("minimum tilt", "rad"),
+    "peak_tilt": ("peak tilt", "rad"),
     "turns_per_period": ("turns a period", "1"),
 }
 _VECTORS = {
@@ -91,7 +91,7 @@ def slow_sweep(
     -------
     xarray.Dataset
         Of kind "slow sweep", over (step, sweep), `parameter` among the coordinates: over the last 2n + 1 periods of
-        each step `mean_tilt`, `least_tilt`, `largest_tilt` [rad], `turns_per_period`, anticlockwise positive, and the
+        each step `mean_tilt`, `minimum_tilt`, `peak_tilt` [rad], `turns_per_period`, anticlockwise positive, and the
         `outcome`; `end_tilt` [rad] and `end_tilt_rate` [rad/s], the state at the phase of t = 0 with which the step
         ends. A column that overturned (or lifted off, or failed) has this outcome and NaN; later steps are not
         computed. A column at rest has tilts and turns of zero; it continues from rest, since a later value may make it
@@ -190,8 +190,8 @@ class _Hold:
         sampled = np.hypot(*np.moveaxis(runs["sampled_tilt"].to_numpy(), -1, 0))
         found = {
             "mean_tilt": np.trapezoid(sampled, axis=1) / (samples - 1),
-            "least_tilt": runs["least_tilt"].to_numpy(),
-            "largest_tilt": runs["largest_tilt"].to_numpy(),
+            "minimum_tilt": runs["minimum_tilt"].to_numpy(),
+            "peak_tilt": runs["peak_tilt"].to_numpy(),
             "turns_per_period": runs["turns"].to_numpy() / self.watched,
         }
         # What came to rest for good ended early: it stands, whatever it did before.

@@ -158,7 +158,7 @@ def _slid(assessment: Assessment, column: str, scale: float) -> str:
         for words, some in by_state
         if some.size
     ]
-    most = float(runs["largest_slip"].max())
+    most = float(runs["peak_slip"].max())
     slid = [] if math.isnan(most) else [f"and slid by up to {number(1000.0 * most)} mm"]
     doubtful = names[runs["uncertain"].to_numpy() == 1].tolist()
     doubt = f" Rounding could change the outcome under {listed(doubtful)}." if doubtful else ""

@@ -37,7 +37,7 @@ def shown_point(column: xr.Dataset) -> tuple[float, str]:
 
 
 def tilt_cells(ratio: float, column: xr.Dataset) -> tuple[str, str, str]:
-    """Return a largest tilt as a fraction of α, in degrees, and as the displacement of the shown point in mm."""
+    """Return a peak tilt as a fraction of α, in degrees, and as the displacement of the shown point in mm."""
     if not math.isfinite(ratio):
         return tilt(ratio), "–", "–"
     angle = ratio * float(column["tipping_angle"])
@@ -51,6 +51,6 @@ def _at_least(value: float, least: float) -> str:
 
 
 def tilt_words(ratio: float, column: xr.Dataset) -> str:
-    """Return a largest tilt in words."""
+    """Return a peak tilt in words."""
     fraction, angle, moved = tilt_cells(ratio, column)
     return f"{angle}° ({fraction} α), which displaces its {shown_point(column)[1]} by {moved} mm"

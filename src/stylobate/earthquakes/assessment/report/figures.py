@@ -95,7 +95,7 @@ def _bars(axes: Axes, low: xr.DataArray, high: xr.DataArray, height: float, look
 
 @styled
 def tilts_figure(assessment: Assessment, column: str, scale: float) -> Figure:
-    """Return the largest tilts of a column under each record, for each dissipation, and those of the planar column."""
+    """Return the peak tilts of a column under each record, for each dissipation, and those of the planar column."""
     own = assessment.data["verdicts"]["tilt_ratio"].sel(column=column, scale=scale)
     records = [str(name) for name in own["record"].to_numpy()]
     figure, axes = _rows_figure(records)
@@ -233,7 +233,7 @@ def history_figure(assessment: Assessment, column: str) -> Figure:
 
 def _run_words(run: xr.Dataset) -> str:
     """Return scale, case and outcome of a run of a governing record."""
-    tilt = float(run["largest_tilt_ratio"])
+    tilt = float(run["peak_tilt_ratio"])
     if undecided_reasons(run["outcome"]):
         came_to = undecided_label(run["outcome"])
     elif math.isinf(tilt):

@@ -32,7 +32,7 @@ def bands_by_record(assessment: Assessment) -> Table:
 
 
 def governing(assessment: Assessment) -> Table:
-    """Return the governing record of each column, and the largest tilt in each of its runs that are drawn."""
+    """Return the governing record of each column, and the peak tilt in each of its runs that are drawn."""
     own, runs = assessment.data["summary"], assessment.data["histories"]
     header = (
         *("column", "governing record", "smallest overturning scale", "smallest of all cases", "scale of the run"),
@@ -45,9 +45,9 @@ def governing(assessment: Assessment) -> Table:
         margins = assessment.data["margins"].sel(column=column, case=CENTRAL, record=record)
         first = (str(column), record, least_scale(margins), number(float(one["least_of_all"]), 4))
         for scale, run in drawn_runs(runs.sel(column=column)):
-            ratio = float(run["largest_tilt_ratio"])
+            ratio = float(run["peak_tilt_ratio"])
             azimuth = degrees(float(run["azimuth"])) if ratio > 0.0 else "–"
-            at = number(float(run["time_of_largest_tilt"]))
+            at = number(float(run["time_of_peak_tilt"]))
             rows.append((*first, number(scale, 4), *tilt_cells(ratio, body), azimuth, at))
     return Table(header, rows)
 

@@ -55,7 +55,7 @@ def _of_column(assessment: Assessment, column: str, place: int) -> Pictures:
             f"{column}: scale factors of each record that overturned it (hatched) and did not, at each dissipation. An "
             "interval narrower than the step of the scan may have been missed.",
         )
-    if bool((assessment.data["histories"]["largest_tilt_ratio"].sel(column=column) > SMALLEST_TILT).any()):
+    if bool((assessment.data["histories"]["peak_tilt_ratio"].sel(column=column) > SMALLEST_TILT).any()):
         found[f"history-{place}"] = Picture(
             history_figure(assessment, column),
             f"{column} under its governing record: tilt and base acceleration against time; right, the direction of "

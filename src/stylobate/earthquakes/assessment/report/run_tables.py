@@ -40,7 +40,7 @@ def verdicts(assessment: Assessment) -> Table:
 
 
 def tilts(assessment: Assessment) -> Table:
-    """Return the largest tilts by record: at the central dissipation, and the largest of all cases."""
+    """Return the peak tilts by record: at the central dissipation, and the largest of all cases."""
     header = (
         *("column", "record", "scale", *(f"{name}, central" for name in TILT_HEADER)),
         *(*(f"{name}, largest of all cases" for name in TILT_HEADER), "displacement of the"),
@@ -96,7 +96,7 @@ def every_run(assessment: Assessment) -> Table:
             continue
         need = float(one["friction_demand"])
         friction = (number(need), _enough(need, _stated_friction(assessment, column)))
-        more = (number(float(one[name])) for name in ("pivoting_demand", "least_normal_force"))
+        more = (number(float(one[name])) for name in ("pivoting_demand", "minimum_normal_force"))
         tilted = tilt_cells(float(one["tilt_ratio"]), assessment.data["columns"].sel(column=column))
         state = ("yes" if acts == _ACTS else "no", verdict(float(one["overturned"])))
         rows.append((*where[:-1], *state, *tilted, *friction, *more))
@@ -114,7 +114,7 @@ def sliding(assessment: Assessment) -> Table:
     rows = []
     for where, run in cells(assessment.data["sliding"], *_PLACES):
         if not math.isnan(float(run["time_sliding"])):
-            slips = (number(1000.0 * float(run[name])) for name in ("largest_slip", "residual_slip"))
+            slips = (number(1000.0 * float(run[name])) for name in ("peak_slip", "residual_slip"))
             rows.append((*where, verdict(float(run["overturned"])), *slips, number(float(run["time_sliding"]))))
     return Table(header, rows)
 

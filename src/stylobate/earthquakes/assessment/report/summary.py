@@ -60,7 +60,7 @@ def columns_of(assessment: Assessment) -> list[str]:
 
 
 def _tilt(assessment: Assessment, name: str, scale: float) -> str:
-    """Return the largest tilt of the central runs that did not overturn."""
+    """Return the peak tilt of the central runs that did not overturn."""
     runs = assessment.data["verdicts"].sel(column=name, scale=scale, dissipation=CENTRAL, vertical="with")
     ratios = runs["tilt_ratio"].where(runs["overturned"] == 0).dropna("record")
     if ratios.size == 0:

@@ -52,7 +52,7 @@ def _summary(assessment: Assessment) -> Table:
     rows = []
     for where, one in cells(own, "column", "scale"):
         counts = (f"{int(one[name])}" for name in (*names, *optional))
-        tilted = tilt_cells(float(one["largest_tilt_ratio"]), assessment.data["columns"].sel(column=where[0]))
+        tilted = tilt_cells(float(one["peak_tilt_ratio"]), assessment.data["columns"].sel(column=where[0]))
         rows.append((*where, *counts, *tilted, number(float(one["friction_demand"]))))
     return Table(header, rows)
 

@@ -28,7 +28,7 @@ def number(value: float, digits: int = 3) -> str:
 
 
 def tilt(value: float) -> str:
-    """Return a largest tilt over α in words."""
+    """Return a peak tilt over α in words."""
     return OVERTURNED if math.isinf(value) else number(value)
 
 

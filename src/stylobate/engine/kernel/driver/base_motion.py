@@ -101,10 +101,10 @@ def load_piece(buf: Table, i: int, motion: Table, pieces: Table, index: int) -> 
             buf[row + FORCING_ROWS, i] = vertical * piece[COEFFICIENTS_AT + 2 * FORCING_ROWS + k]
     largest, up, down = abs(factor) * piece[2], vertical * piece[3], vertical * piece[4]
     least = min(up, down)
-    changed = largest != buf[R.LARGEST_HORIZONTAL, i] or least != buf[R.LEAST_VERTICAL, i]
+    changed = largest != buf[R.LARGEST_HORIZONTAL, i] or least != buf[R.MINIMUM_VERTICAL, i]
     buf[R.LARGEST_HORIZONTAL, i] = largest
-    buf[R.LEAST_VERTICAL, i] = least
-    buf[R.LARGEST_VERTICAL, i] = max(up, down)
+    buf[R.MINIMUM_VERTICAL, i] = least
+    buf[R.MAXIMUM_VERTICAL, i] = max(up, down)
     if changed:
         set_no_return(buf, i)
     buf[R.LEG_ENDS, i] = (end + delay) / scale if index - first < count - 1 else math.inf
@@ -142,7 +142,7 @@ def piece_at(pieces: Table, near: int, first: int, last: int, delay: float, time
 def set_no_return(buf: Table, i: int) -> None:
     bound = math.inf
     if CAN_PROVE_NO_RETURN:
-        bound = model_no_return(buf, i, buf[R.LARGEST_HORIZONTAL, i], buf[R.LEAST_VERTICAL, i])
+        bound = model_no_return(buf, i, buf[R.LARGEST_HORIZONTAL, i], buf[R.MINIMUM_VERTICAL, i])
     buf[R.NO_RETURN, i] = bound if bound < math.inf else buf[R.OVERTURNED_TILT, i]
 
 
@@ -157,15 +157,15 @@ def forcing_rate(buf: Table, i: int) -> float:
             row += 2
         z = buf[row, i] if VERTICAL else 0.0
         return per_half * (math.hypot(x, y) + buf[R.SLENDERNESS, i] * abs(z))
-    vertical = max(abs(buf[R.LEAST_VERTICAL, i]), abs(buf[R.LARGEST_VERTICAL, i]))
+    vertical = max(abs(buf[R.MINIMUM_VERTICAL, i]), abs(buf[R.MAXIMUM_VERTICAL, i]))
     return buf[R.FREQUENCY, i] * (buf[R.LARGEST_HORIZONTAL, i] + buf[R.SLENDERNESS, i] * vertical)
 
 
 def least_force(buf: Table, i: int) -> float:
     """Return the least force that holds a standing column down from now on; below zero where it can be released."""
     pushed = buf[R.LARGEST_HORIZONTAL, i] + math.hypot(buf[R.SLOPE_X, i], buf[R.SLOPE_Y, i])
-    return buf[R.CAPACITY, i] * (1.0 + buf[R.LEAST_VERTICAL, i] + buf[R.SLOPE_Z, i]) - pushed
+    return buf[R.CAPACITY, i] * (1.0 + buf[R.MINIMUM_VERTICAL, i] + buf[R.SLOPE_Z, i]) - pushed
 
 
 def held_for_good(buf: Table, i: int) -> bool:
-    return least_force(buf, i) >= 0.0 and 1.0 + buf[R.LEAST_VERTICAL, i] + buf[R.SLOPE_Z, i] > 0.0
+    return least_force(buf, i) >= 0.0 and 1.0 + buf[R.MINIMUM_VERTICAL, i] + buf[R.SLOPE_Z, i] > 0.0

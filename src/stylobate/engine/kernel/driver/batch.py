@@ -79,7 +79,7 @@ def quiet(buf: Table, i: int) -> None:
         buf[row, i] = 0.0
     for row in (R.STATE, R.TILT, R.X, R.SLENDERNESS, R.SIDE, R.ATOL, R.ATOL_NOW):
         buf[row, i] = 1.0
-    for row in (R.STOP, R.NO_RETURN, R.TILT_LIMIT, R.LARGEST_TILT, R.MOST_STEPS):
+    for row in (R.STOP, R.NO_RETURN, R.TILT_LIMIT, R.PEAK_TILT, R.MOST_STEPS):
         buf[row, i] = 1e300
     if ORBITS:
         buf[R.PHASE_ZERO_AT, i] = math.inf

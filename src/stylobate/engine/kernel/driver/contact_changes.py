@@ -167,8 +167,8 @@ def set_moving(buf: Table, i: int, table: Table, pieces: Table) -> int:
         buf[R.TURNS, i] = 0.0 if math.isnan(last) else last
         buf[R.TOUCHED_UPRIGHT, i] = 1.0
     buf[R.TRACE_AZIMUTH, i] = azimuth_now(buf, i)
-    if tilt > buf[R.LARGEST_TILT, i]:
-        buf[R.LARGEST_TILT, i] = tilt
+    if tilt > buf[R.PEAK_TILT, i]:
+        buf[R.PEAK_TILT, i] = tilt
         buf[R.LARGEST_AT, i] = t
     buf[R.IN_SPACE, i] = 1.0
     buf[R.ATOL_NOW, i] = buf[R.ATOL, i]

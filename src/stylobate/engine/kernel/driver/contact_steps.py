@@ -50,7 +50,7 @@ def come_to(buf: Table, i: int, table: Table, elapsed: float) -> float:
     slope0, slope1 = 2.0 * elapsed * radial, 2.0 * elapsed * buf[R.RADIAL, i]
     if slope0 < 0.0 < slope1:
         low = math.sqrt(max(turning_point(tilt0 * tilt0, tilt1 * tilt1, slope0, slope1, -1.0)[1], 0.0))
-        buf[R.LEAST_TILT, i] = min(buf[R.LEAST_TILT, i], low)
+        buf[R.MINIMUM_TILT, i] = min(buf[R.MINIMUM_TILT, i], low)
     if slope0 > 0.0 > slope1:
         set_rates(buf, i, buf[R.TIME, i])
         beyond = measure_peak(buf, i)
@@ -61,8 +61,8 @@ def come_to(buf: Table, i: int, table: Table, elapsed: float) -> float:
 
 
 def note_tilt(buf: Table, i: int) -> None:
-    if buf[R.TILT, i] > buf[R.LARGEST_TILT, i]:
-        buf[R.LARGEST_TILT, i] = buf[R.TILT, i]
+    if buf[R.TILT, i] > buf[R.PEAK_TILT, i]:
+        buf[R.PEAK_TILT, i] = buf[R.TILT, i]
         buf[R.LARGEST_AT, i] = buf[R.TIME, i]
 
 
@@ -71,7 +71,7 @@ def end_contact(buf: Table, i: int, table: Table, pieces: Table, elapsed: float,
     if elapsed > 0.0:
         come_to(buf, i, table, elapsed)
     if number == LAST:
-        buf[R.LEAST_TILT, i] = min(buf[R.LEAST_TILT, i], buf[R.TILT, i])
+        buf[R.MINIMUM_TILT, i] = min(buf[R.MINIMUM_TILT, i], buf[R.TILT, i])
     if number == LAST or buf[R.CONTACT, i] == FLYING:
         buf[R.WANTED, i] = 0.0
     if buf[R.STEPS, i] >= buf[R.MOST_STEPS, i]:

@@ -117,8 +117,8 @@ def arrived(buf: Table, i: int, table: Table, pieces: Table) -> int:
         return Status.WAITING
     creep(buf, i, further)
     buf[R.AIMED, i] = 0.0
-    if buf[R.TILT, i] > buf[R.LARGEST_TILT, i]:
-        buf[R.LARGEST_TILT, i] = buf[R.TILT, i]
+    if buf[R.TILT, i] > buf[R.PEAK_TILT, i]:
+        buf[R.PEAK_TILT, i] = buf[R.TILT, i]
         buf[R.LARGEST_AT, i] = buf[R.TIME, i]
     if meets_upright(buf, i):
         return cross_upright(buf, i, table, pieces)

@@ -13,7 +13,7 @@ from stylobate.engine.tolerances import SAMPLES_PER_PERIOD
 def find_lift(buf: Table, i: int, table: Table, pieces: Table) -> None:
     """Set when the base begins to fall faster than gravity."""
     buf[R.LIFTS_AT, i] = math.inf
-    if not VERTICAL or buf[R.LEAST_VERTICAL, i] > -1.0:
+    if not VERTICAL or buf[R.MINIMUM_VERTICAL, i] > -1.0:
         return
     t, end = buf[R.TIME, i], buf[R.END, i]
     first = int(buf[R.NEXT_BREAK, i])

@@ -83,8 +83,8 @@ def set_off(buf: Table, i: int, t: float, wanted: float) -> None:
         buf[R.TRACE_AZIMUTH, i] = azimuth
     atol = buf[R.ATOL, i]
     buf[R.ATOL_NOW, i] = min(atol, buf[R.RTOL, i] * tilt) if tilt > 0.0 else atol
-    if tilt > buf[R.LARGEST_TILT, i]:
-        buf[R.LARGEST_TILT, i] = tilt
+    if tilt > buf[R.PEAK_TILT, i]:
+        buf[R.PEAK_TILT, i] = tilt
         buf[R.LARGEST_AT, i] = t
     set_rates(buf, i, t)
     buf[R.AIMED, i] = 0.0

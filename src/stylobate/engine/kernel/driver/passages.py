@@ -45,7 +45,7 @@ def loses(buf: Table, i: int) -> bool:
 
 
 def strike(buf: Table, i: int, table: Table, pieces: Table) -> int:
-    """Take the loss of a passage, at the least tilt; return as `resume` does."""
+    """Take the loss of a passage, at the minimum tilt; return as `resume` does."""
     trace_event(buf, i, table, TraceKind.IMPACT, buf[R.TIME, i])
     set_state(buf, i, model_struck(buf, i))
     set_off(buf, i, buf[R.TIME, i], buf[R.WANTED, i])
@@ -77,7 +77,7 @@ def hop(buf: Table, i: int, table: Table) -> None:
         set_state(buf, i, model_struck(buf, i))
     set_lean(buf, i)
     closest = abs(momentum) / speed
-    buf[R.LEAST_TILT, i] = min(buf[R.LEAST_TILT, i], closest)
+    buf[R.MINIMUM_TILT, i] = min(buf[R.MINIMUM_TILT, i], closest)
     if speed * speed > buf[R.REST_SQUARE, i]:
         buf[R.LEAST_PASSAGE, i] = min(buf[R.LEAST_PASSAGE, i], closest)
     buf[R.LAST_AZIMUTH, i] = azimuth

@@ -1,4 +1,4 @@
-"""The largest tilt within a step."""
+"""The peak tilt within a step."""
 
 import math
 
@@ -15,7 +15,7 @@ DIFFERENCE = 1e-5
 
 
 def measure_peak(buf: Table, i: int) -> float:
-    """Measure the largest tilt within the step just made.
+    """Measure the peak tilt within the step just made.
 
     Return the time into the step at which it passes the tilt limit, or 0: then nothing is noted.
     """
@@ -35,8 +35,8 @@ def measure_peak(buf: Table, i: int) -> float:
         else:
             high = u
     if tilt <= limit:
-        if tilt > buf[R.LARGEST_TILT, i]:
-            buf[R.LARGEST_TILT, i] = tilt
+        if tilt > buf[R.PEAK_TILT, i]:
+            buf[R.PEAK_TILT, i] = tilt
             buf[R.LARGEST_AT, i] = buf[R.TIME, i] - h + low * h
         return 0.0
     low = 0.0

@@ -10,7 +10,7 @@ from stylobate.engine.tolerances import SAMPLES_PER_PERIOD
 
 
 def bear_standing(buf: Table, i: int, start: float, end: float) -> None:
-    """Note the largest friction demand |a_h|/(1 + a_z), and the least normal force, of standing from start to end.
+    """Note the peak friction demand |a_h|/(1 + a_z), and the minimum normal force, of standing from start to end.
 
     Where the acceleration is linear in time both are reached at an end: the demand is quasi-convex there. Otherwise
     peaks are those of parabolas through three of the samples by which a release is sought.

@@ -22,7 +22,7 @@ SAFETY, LEAST_FACTOR, LARGEST_FACTOR, LEAST_ERROR = 0.9, 0.2, 10.0, 1e-12
 RETRY = 0.5
 # A step shorter than this part of the time cannot be made.
 SHORTEST = 2.3e-15
-# A largest tilt within a step is measured if it may exceed the largest so far by this part.
+# A peak tilt within a step is measured if it may exceed the largest so far by this part.
 NEW_PEAK = 1.0 + 1e-7
 # Added where a divisor may be zero.
 TINY = 1e-300
@@ -122,7 +122,7 @@ def overshoot(buf: Table, i: int, x: float, vx: float, tilt: float, radial: floa
 
 
 def note_extremes(buf: Table, i: int) -> None:
-    """Note the least and the largest tilt within the step.
+    """Note the minimum and maximum tilt within the step.
 
     They are those of the square of the tilt, whose least value at a passage of the upright is kept; in a plane of the
     tilt itself, which may begin at the upright.
@@ -138,7 +138,7 @@ def note_extremes(buf: Table, i: int) -> None:
     buf[R.LOW, i] = low
     # A step towards an event may go beyond it: its ends do not count yet.
     ends = 0.0 if buf[R.AIMED, i] > 0.0 else max(tilt0, tilt1)
-    largest = buf[R.LARGEST_TILT, i]
+    largest = buf[R.PEAK_TILT, i]
     # An extreme that may be above all others so far is measured by the driver, which looks at aimed steps anyway.
     highest = highest if rises > 0.0 else 0.0
     above = max(2.0 * highest - ends - largest * NEW_PEAK, buf[R.AIMED, i])
@@ -149,8 +149,8 @@ def note_extremes(buf: Table, i: int) -> None:
     now = buf[R.TIME, i] + h * (share if rises > 0.0 else (1.0 if tilt1 > tilt0 else 0.0))
     before = buf[R.LARGEST_AT, i]
     buf[R.LARGEST_AT, i] = now if seen > largest else before
-    buf[R.LARGEST_TILT, i] = max(largest, seen)
-    note_least(buf, i, R.LEAST_TILT, low, go * falls)
+    buf[R.PEAK_TILT, i] = max(largest, seen)
+    note_least(buf, i, R.MINIMUM_TILT, low, go * falls)
     if not PLANAR:
         # Passages as slow as rest do not count.
         square = buf[R.NEW_VX, i] * buf[R.NEW_VX, i] + buf[R.NEW_VY, i] * buf[R.NEW_VY, i]

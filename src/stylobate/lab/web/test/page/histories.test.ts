@@ -89,7 +89,7 @@ test("a peak that lies between the samples and beyond the plot is reported off t
   const found = run({ friction_demand: [0.1, 0.11, 0.12] });
   const peaked = {
     ...found,
-    answer: { ...found.answer, measures: { ...found.answer.measures, largest_friction_demand: 0.607 } },
+    answer: { ...found.answer, measures: { ...found.answer.measures, peak_friction_demand: 0.607 } },
   };
   const demand = historyOf("friction_demand", peaked);
   assert.ok(demand.limits[1] < 0.607);

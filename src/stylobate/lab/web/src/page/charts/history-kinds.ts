@@ -105,9 +105,9 @@ export function historyOf(name: HistoryName, { answer, frequency }: RunShown): H
     case "rolling_rate":
       return rollingRate(values, frequency);
     case "friction_demand":
-      return demand(name, "T/N", values, drawn.friction_coefficient, answer.measures["largest_friction_demand"]);
+      return demand(name, "T/N", values, drawn.friction_coefficient, answer.measures["peak_friction_demand"]);
     case "pivoting_demand":
-      return demand(name, "M/(N r)", values, null, answer.measures["largest_pivoting_demand"]);
+      return demand(name, "M/(N r)", values, null, answer.measures["peak_pivoting_demand"]);
     case "normal_force":
       return { ...signed(name, "green", "N/(m g)", "", values), level: { value: 1, label: "weight" } };
     case "displacement_x":

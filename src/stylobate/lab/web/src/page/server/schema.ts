@@ -207,9 +207,9 @@ export type ExactOrbits = {
     /** [rad] */
     readonly mean_tilt: readonly number[];
     /** [rad] */
-    readonly least_tilt: readonly number[];
+    readonly minimum_tilt: readonly number[];
     /** [rad] */
-    readonly largest_tilt: readonly number[];
+    readonly peak_tilt: readonly number[];
     /** [rad] */
     readonly phase: readonly (number | null)[];
     /** whether it is stable */
@@ -329,14 +329,14 @@ export type MapResult = {
 /** Numbers of the run as a whole, null where one is not finite. Models may add further ones. */
 export type Measures = {
   /** [rad] */
-  readonly largest_tilt: number | null;
+  readonly peak_tilt: number | null;
   /** the same over the slenderness */
-  readonly largest_tilt_over_c: number | null;
+  readonly peak_tilt_over_c: number | null;
   /** [s] */
-  readonly time_of_largest_tilt: number | null;
+  readonly time_of_peak_tilt: number | null;
   /** [rad] */
-  readonly least_tilt: number | null;
-  /** least tilt at a passage of the upright [rad]; null without a passage */
+  readonly minimum_tilt: number | null;
+  /** minimum tilt at a passage of the upright [rad]; null without a passage */
   readonly least_passage: number | null;
   /** of the contact point round the rim */
   readonly turns: number | null;
@@ -349,19 +349,19 @@ export type Measures = {
   /** over the last periods [rad] */
   readonly mean_tilt_late?: number | null;
   /** over the last periods [rad] */
-  readonly least_tilt_late?: number | null;
+  readonly minimum_tilt_late?: number | null;
   /** over the last periods [rad] */
-  readonly largest_tilt_late?: number | null;
+  readonly peak_tilt_late?: number | null;
   /** of the modulation over the last periods */
   readonly modulation_change?: number | null;
   /** of the mean rate, by the turns */
   readonly rolling_rate_error?: number | null;
   /** friction over normal force; null where nothing presses */
-  readonly largest_friction_demand?: number | null;
+  readonly peak_friction_demand?: number | null;
   /** moment over normal force and radius */
-  readonly largest_pivoting_demand?: number | null;
+  readonly peak_pivoting_demand?: number | null;
   /** over the weight */
-  readonly least_normal_force?: number | null;
+  readonly minimum_normal_force?: number | null;
   /** resting [s] */
   readonly time_resting?: number | null;
   /** sliding [s] */
