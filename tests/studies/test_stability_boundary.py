@@ -16,8 +16,9 @@ LINE = sb.Harmonic.straight(acceleration=0.1, angular_frequency=3.0)
 
 def test_under_circular_motion_the_boundary_is_the_closed_form():
     found = sb.studies.stability_boundary(
-        MODEL, CIRCLE, bounds=(0.03, 0.2), angular_frequency=(0.8, 3.0), values=[0.065]
+        MODEL, CIRCLE, bounds=(0.03, 0.2), angular_frequency=(0.8, 3.0), values=[0.065, 0.1]
     )
+    # From two bifurcations on one curve it is followed once.
     assert found["curve_kind"].values.tolist() == ["Neimark-Sacker"]
     critical = sb.theory.critical_frequency(found["acceleration"].to_numpy(), c=C, eta=ETA)
     # The theory's own root is told to about 1e-10, the curve to 1e-10 of its bounds.
@@ -38,13 +39,6 @@ def test_under_straight_motion_the_boundary_passes_through_the_pitchforks():
     assert np.interp(0.13, acceleration, frequency) == pytest.approx(1.620454, abs=5e-4)
     averaged = np.interp(acceleration, found["theory_parameter"], found["theory_frequency"])
     assert np.all(frequency > averaged)
-
-
-def test_each_curve_is_followed_once():
-    found = sb.studies.stability_boundary(
-        MODEL, CIRCLE, bounds=(0.05, 0.1), angular_frequency=(1.0, 3.0), values=[0.06, 0.07, 0.08]
-    )
-    assert found.sizes["curve_index"] == 1
 
 
 def test_where_the_ellipse_is_nearly_a_circle_another_bifurcation_takes_over():
@@ -69,15 +63,13 @@ def test_where_the_ellipse_is_nearly_a_circle_another_bifurcation_takes_over():
 
 
 def test_averaging_is_exact_for_circular_motion():
-    found = sb.studies.averaging_map(MODEL, CIRCLE, values=[0.05, 0.08], angular_frequency=np.linspace(1.05, 3.0, 14))
+    found = sb.studies.averaging_map(MODEL, CIRCLE, values=[0.05, 0.08], angular_frequency=np.linspace(1.05, 3.0, 6))
     np.testing.assert_array_equal(found["exact"], found["averaged"])
     assert float(abs(found["error"]).max()) < 1e-9
 
 
 def test_averaging_errs_the_more_the_larger_the_acceleration():
-    found = sb.studies.averaging_map(
-        MODEL, LINE, values=[0.04, 0.08, 0.16], angular_frequency=np.linspace(1.0, 4.0, 13)
-    )
+    found = sb.studies.averaging_map(MODEL, LINE, values=[0.04, 0.08, 0.16], angular_frequency=np.linspace(1.0, 4.0, 7))
     error = found["error"].sel(angular_frequency=3.0).to_numpy()
     assert np.all(np.diff(error) > 0.0)
     # In c units the error is of second order in a1/c.
@@ -107,7 +99,7 @@ def test_bad_input_is_told_in_one_line(options, told):
 
 def test_a_curve_begun_on_a_bound_is_followed_once():
     # The first of the default values is the bound itself.
-    found = sb.studies.stability_boundary(MODEL, LINE, bounds=(0.1, 0.2), angular_frequency=(1.0, 3.0))
+    found = sb.studies.stability_boundary(MODEL, LINE, bounds=(0.12, 0.14), angular_frequency=(1.3, 2.0))
     assert found["curve_kind"].values.tolist() == ["pitchfork"]
 
 
