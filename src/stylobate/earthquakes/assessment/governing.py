@@ -35,7 +35,7 @@ def governing_record(verdicts: xr.Dataset, margins: xr.Dataset, scale: int) -> s
 
     A record that overturns it at the stated scale governs before one that does not; and that in the central case before
     one that does so in another. Among equals it is the one of the least scale that overturns, in the central case, then
-    in any; then the one of the peak tilt at the stated scale, then at any.
+    in any; then the one of the largest peak tilt at the stated scale, then at any.
 
     Parameters
     ----------

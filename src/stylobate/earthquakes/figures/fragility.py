@@ -131,11 +131,15 @@ def _title_lines(found: xr.Dataset) -> list[str]:
     return lines
 
 
+# Multiples of powers of ten at which there are ticks, for axes whose ends have less than this ratio.
+_TICKS = ((20.0, (1.0, 2.0, 3.0, 5.0)), (300.0, (1.0, 2.0, 5.0)))
+
+
 def _plain_ticks(axes: Axes) -> None:
-    """Write intensities as plain numbers; in between too where there is less than about a decade."""
+    """Write intensities as plain numbers; the shorter the axis, the more of each decade."""
     low, high = axes.get_xlim()
-    short = high / low < 30.0  # noqa: PLR2004  a decade and a half
-    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 3.0, 5.0) if short else (1.0,)))
+    subs = next((subs for ratio, subs in _TICKS if high / low < ratio), (1.0,))
+    axes.xaxis.set_major_locator(LogLocator(subs=subs))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
 

@@ -140,7 +140,8 @@ def _draw_polar(axes: PolarAxes, one: xr.Dataset, name: str, *, turned: bool) ->
     axes.plot(angle[known], shown[known], "o", color=colour, markersize=3.5)
     axes.plot(angle[~known], shown[~known], "o", color=colour, mfc="white", markersize=4.5)
     if not turned:
-        whole, _ = _radius(one["tilt_ratio"].to_numpy()[np.newaxis], scale)
+        whole, other_rim = _radius(one["tilt_ratio"].to_numpy()[np.newaxis], scale)
+        rim = max(rim, other_rim) if np.isfinite(whole[0]) else rim
         if np.isfinite(whole[0]):
             axes.plot(np.linspace(0.0, 2.0 * np.pi, 181), np.full(181, whole[0]), color=BLUE, linewidth=1.8)
     axes.set_ylim(0.0, 1.05 * rim)
@@ -150,8 +151,10 @@ def _draw_polar(axes: PolarAxes, one: xr.Dataset, name: str, *, turned: bool) ->
 
 
 def _radius(tilt: Floats, scale: Floats) -> tuple[Floats, float]:
-    """Return the radius for each row of `tilt`, not finite where it lies beyond, and the radius of the rim."""
+    """Return the radius for each row of `tilt`, not finite if the value lies beyond, and the radius of the rim."""
     if scale.size > 1:
-        return np.where(np.isinf(tilt), scale, np.inf).min(axis=1), 1.08 * float(scale.max())
+        radius = np.where(np.isinf(tilt), scale, np.inf).min(axis=1)
+        end = scale.max() if np.isinf(radius).any() else radius.max()
+        return radius, 1.08 * float(end)
     finite = tilt[np.isfinite(tilt)]
     return tilt[:, 0], 1.1 * max(1.0, float(finite.max(initial=0.0)))

@@ -265,8 +265,8 @@ def flow(
 ) -> int:
     """Carry `y` from `begin` to `end` [turns of the base motion]; return how that went.
 
-    `limits`: relative and absolute tolerance, minimum and maximum tilt. `noted`: minimum and maximum tilt met, number of
-    steps, side of the upright on which it leans (for motion in a plane), passages of the negative x axis.
+    `limits`: relative and absolute tolerance, minimum and maximum tilt. `noted`: minimum and maximum tilt met, number
+    of steps, side of the upright on which it leans (for motion in a plane), passages of the negative x axis.
     """
     rtol, atol, least, largest = limits
     k = np.zeros((13, ORDER, ORDER + 2))

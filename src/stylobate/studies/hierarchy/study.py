@@ -75,8 +75,8 @@ def model_hierarchy(
         Of kind "model hierarchy", over `model`, and `slenderness` where it is given: `outcome`, `uncertain`,
         `peak_tilt`,
         `mean_late_tilt`, `mean_late_spin` (over the last fifth of the run; NaN where it ended before, or cannot spin),
-        largest demands on the contact, `minimum_normal_force` over the weight, `steps`, `warnings`; differences from the
-        `reference`; `deviation` (model, other_model), the largest distance of the tilt vectors while both runs last
+        peak demands on the contact, `minimum_normal_force` over the weight, `steps`, `warnings`; differences from
+        the `reference`; `deviation` (model, other_model), the largest distance of the tilt vectors while both runs last
         [rad]. With two slendernesses or more `deviation_order`, the power of c with which `deviation`/c falls. With
         `samples` the histories `amplitude` [rad] and `spin` [rad/s] over `time`.
 
