@@ -143,8 +143,8 @@ def test_a_column_overturned_as_recorded_is_not_shown_safe_and_the_records_are_n
     assert found.line == "NOT shown safe: overturned at the recorded level under 2 of 3 records (A, B)."
     more = column_verdict(made([*FALLEN, ("B", "low", "with", 1)]), "k", 1.0)
     assert more.sentence == (
-        "overturned at the recorded level under 1 of 3 records (A) and under 1 more only at another dissipation than "
-        "central (B at low)."
+        "overturned at the recorded level under 1 of 3 records (A) and under 1 more, but not at central dissipation "
+        "(B at low)."
     )
     assert (
         least_overturning_scale(assessment, "k") == "Smallest overturning scale of all cases: 0.7 (B, low dissipation)."
@@ -155,8 +155,7 @@ def test_a_column_overturned_at_one_stated_dissipation_only_is_not_shown_safe():
     found = column_verdict(made([("B", "low", "with", 1), ("B", "high", "with", 1)]), "k", 1.0)
     assert found.verdict is VerdictClass.OVERTURNED
     assert found.sentence == (
-        "overturned at the recorded level under 1 of 3 records only at another dissipation than central (B at low and "
-        "high)."
+        "overturned at the recorded level under 1 of 3 records, but not at central dissipation (B at low and high)."
     )
 
 
@@ -183,7 +182,7 @@ def test_a_column_that_stood_in_every_run_survived_every_run():
             {"changed": [(name, level, -1) for name in RECORDS for level in LEVELS]},
             "a small change was not decided under A, B, C",
         ),
-        ({"decided": {("B", "high"): 0.4}}, "not every scale up to this one was decided (from 0.4 on)"),
+        ({"decided": {("B", "high"): 0.4}}, "not every scale up to this one was decided (only up to 0.4)"),
         ({"decided": {("B", "high"): np.nan}}, "not every scale up to this one was decided"),
         ({"uncertain": ["A"]}, "rounding could change the outcome under A"),
         ({"need": [("A", 0.72)]}, "the base would slip under A (friction 0.72 needed)"),
@@ -213,18 +212,18 @@ def test_a_column_that_slides_before_it_rocks_is_not_described_where_a_record_ca
         (
             2.0,
             0.4,
-            "Smallest overturning scale of all cases: 2 (B, low dissipation); not every scale from 0.4 on was decided.",
+            "Smallest overturning scale of all cases: 2 (B, low dissipation); not every scale above 0.4 was decided.",
         ),
         (
             2.0,
             np.nan,
-            "Overturned at scale 2 (B, low dissipation); already at the smallest scale some run was not decided.",
+            "Overturned at scale 2 (B, low dissipation); some run at the smallest scale was not decided.",
         ),
-        (np.nan, 3.0, "No scale up to 3 overturned it in any case; not every scale from 3 on was decided."),
+        (np.nan, 3.0, "No scale up to 3 overturned it in any case; not every scale above 3 was decided."),
         (
             np.nan,
             np.nan,
-            "No run that was decided overturned it; already at the smallest scale some run was not decided.",
+            "No decided run overturned it; some run at the smallest scale was not decided.",
         ),
     ],
 )

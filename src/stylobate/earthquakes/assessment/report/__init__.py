@@ -1,4 +1,4 @@
-"""The report of an assessment: its tables, its figures, and one page that holds all of it."""
+"""The report of an assessment: tables, figures, and one page with both."""
 
 from stylobate.earthquakes.assessment.report.document import assessment_report
 from stylobate.earthquakes.assessment.report.tables import assessment_tables

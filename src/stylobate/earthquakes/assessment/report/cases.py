@@ -1,4 +1,4 @@
-"""What the runs on one column at one scale found, record by record: the ground of every verdict."""
+"""Outcomes of the runs on one column at one scale, by record: the basis of every verdict."""
 
 from dataclasses import dataclass
 
@@ -20,25 +20,26 @@ class Cases:
     Attributes
     ----------
     records
-        All of them.
+        All records.
     overturned, undecided
-        In the central case: central dissipation, vertical component included.
+        Records that overturned the column, or left it undecided, in the central case: central dissipation, vertical
+        component included.
     none_decided
-        Whether no run at all was decided.
+        Whether no run was decided.
     at_other_dissipation
-        Records that overturned it with the vertical component at another dissipation only, with these levels.
+        Records that overturned the column at another dissipation only (vertical component included), with the levels.
     without_vertical
-        Records that overturned it without their vertical component only, with the levels of dissipation.
+        Records that overturned the column only without their vertical component, with the levels of dissipation.
     undecided_elsewhere
-        Records with a run that was not decided in another case.
+        Records with an undecided run in another case.
     flipped
-        Records whose verdict some small change flips.
+        Records whose verdict a small change flips.
     changes_undecided
         Records with a small change that applies and is not decided.
     borderline
         Records with a run whose outcome rounding could change.
     slipping
-        Records under which some run needed more than the stated friction, with the largest friction needed.
+        Records with a run that needed more than the stated friction, with the largest friction needed.
     """
 
     records: tuple[str, ...]
@@ -55,12 +56,12 @@ class Cases:
 
     @property
     def stood(self) -> tuple[str, ...]:
-        """Records that did not overturn it in the central case."""
+        """Records that did not overturn the column in the central case."""
         return tuple(name for name in self.records if name not in (*self.overturned, *self.undecided))
 
 
 def cases_of(assessment: Assessment, column: str, scale: float) -> Cases:
-    """Return what the runs on a column found at a scale."""
+    """Collect the outcomes of the runs on a column at a scale."""
     runs = assessment.data["verdicts"].sel(column=column, scale=scale)
     central = runs["overturned"].sel(dissipation=CENTRAL, vertical=_ACTS)
     overturned, undecided = _where(central == 1), _where(central < 0)
@@ -88,7 +89,7 @@ def case_name(level: str, vertical: str) -> str:
 
 
 def acts_in(assessment: Assessment, record: str, case: str) -> bool:
-    """Return whether a case is one of its own for a record: only a vertical component can be left out."""
+    """Return whether a case applies to a record: the case without vertical component needs a record with one."""
     rises = float(assessment.data["records"]["peak_acceleration_z"].sel(record=record)) > 0.0
     return rises or not case.endswith(_NO_VERTICAL)
 
@@ -106,7 +107,7 @@ def _any(flags: xr.DataArray) -> xr.DataArray:
 
 
 def _levels(fallen: xr.DataArray, known: tuple[str, ...]) -> dict[str, tuple[str, ...]]:
-    """Return the levels of dissipation at which records overturned it, of those records that are not `known`."""
+    """Map each record that is not `known` to the levels of dissipation at which it overturned the column."""
     levels = [str(level) for level in fallen["dissipation"].to_numpy()]
     flags = fallen.transpose("record", "dissipation").to_numpy()
     found = {
@@ -117,7 +118,7 @@ def _levels(fallen: xr.DataArray, known: tuple[str, ...]) -> dict[str, tuple[str
 
 
 def _with_changes(assessment: Assessment, counted: str, column: str, scale: float) -> tuple[str, ...]:
-    """Return the records of which some small change is `counted`, at any dissipation."""
+    """Return the records with a small change that is `counted`, at any dissipation."""
     if "robustness" not in assessment.data:
         return ()
     return _where(_any(assessment.data["robustness"][counted].sel(column=column, scale=scale) > 0))

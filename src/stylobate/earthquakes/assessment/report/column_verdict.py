@@ -49,7 +49,7 @@ class ColumnVerdict:
 
 
 def recorded_scale(assessment: Assessment) -> float:
-    """Return the stated scale at which the verdicts are given first: that nearest to 1."""
+    """Return the stated scale nearest to 1: the scale of the first verdicts."""
     return float(min(assessment.setting["scales"], key=lambda scale: abs(math.log(scale))))
 
 
@@ -67,7 +67,7 @@ def column_verdict(assessment: Assessment, column: str, scale: float) -> ColumnV
     if cases.overturned or cases.at_other_dissipation:
         return ColumnVerdict(VerdictClass.OVERTURNED, _overturned(cases, where))
     if cases.none_decided:
-        return ColumnVerdict(VerdictClass.NOT_DESCRIBED, f"no run {where} could be followed to a decision.")
+        return ColumnVerdict(VerdictClass.NOT_DESCRIBED, f"no run {where} was decided.")
     doubts = _reservations(assessment, column, scale, cases)
     survived = f"did not overturn {where} under {records(len(cases.stood), total)}"
     if doubts:
@@ -78,7 +78,7 @@ def column_verdict(assessment: Assessment, column: str, scale: float) -> ColumnV
 
 
 def _overturned(cases: Cases, where: str) -> str:
-    """Return under which records a column overturned at any stated dissipation."""
+    """List the records that overturned a column at any stated dissipation."""
     total, phrases = len(cases.records), []
     if cases.overturned:
         phrases.append(f"under {records(len(cases.overturned), total)} ({listed(cases.overturned)})")
@@ -86,27 +86,27 @@ def _overturned(cases: Cases, where: str) -> str:
         names = [f"{name} at {listed(levels, 'and')}" for name, levels in cases.at_other_dissipation.items()]
         count = len(names)
         more = f"{count} more" if cases.overturned else records(count, total)
-        phrases.append(f"under {more} only at another dissipation than central ({listed(names)})")
+        phrases.append(f"under {more}, but not at central dissipation ({listed(names)})")
     undecided = f" Not decided: {listed(cases.undecided)}." if cases.undecided else ""
     return f"overturned {where} {listed(phrases, 'and')}.{undecided}"
 
 
 def least_overturning_scale(assessment: Assessment, column: str) -> str:
-    """Return the smallest overturning scale the column in any case, or the largest that was run, in a sentence."""
+    """State the smallest overturning scale of a column over all cases, or the largest decided scale, in a sentence."""
     least, words = _least(assessment, column)
     decided, highest = largest_decided(assessment, column), float(assessment.setting["margin_scales"][1])
     if math.isnan(decided):
-        found = "No run that was decided overturned it" if math.isnan(least) else f"Overturned at scale {words}"
-        return f"{found}; already at the smallest scale some run was not decided."
+        found = "No decided run overturned it" if math.isnan(least) else f"Overturned at scale {words}"
+        return f"{found}; some run at the smallest scale was not decided."
     known = decided >= (highest if math.isnan(least) else least)
-    open_scales = "" if known else f"; not every scale from {number(decided)} on was decided"
+    open_scales = "" if known else f"; not every scale above {number(decided)} was decided"
     if math.isnan(least):
         return f"No scale up to {number(decided)} overturned it in any case{open_scales}."
     return f"Smallest overturning scale of all cases: {words}{open_scales}."
 
 
 def _least(assessment: Assessment, column: str) -> tuple[float, str]:
-    """Return the smallest overturning scale the column in any case, and that in words; NaN where none did."""
+    """Return the smallest overturning scale of a column over all cases, and its words; NaN if none overturned it."""
     least = assessment.data["margins"]["least_overturning"].sel(column=column).transpose("case", "record")
     if bool(least.isnull().all()):
         return math.nan, ""
@@ -118,21 +118,21 @@ def _least(assessment: Assessment, column: str) -> tuple[float, str]:
 
 
 def _tried_at(assessment: Assessment) -> str:
-    """Return at which dissipation small changes were tried, where that is not every one."""
+    """Name the levels of dissipation with small changes; empty if all have them."""
     changes, levels = assessment.data["robustness"], assessment.data["verdicts"]["dissipation"].to_numpy()
     tried = [str(level) for level in changes["dissipation"].to_numpy()]
     return "" if len(tried) == levels.size else f" at {listed(tried, 'and')} dissipation"
 
 
 def largest_decided(assessment: Assessment, column: str, record: str | None = None, case: str | None = None) -> float:
-    """Return the largest scale up to which every run of the margin was decided; NaN if already the first was not."""
+    """Return the largest scale up to which every run of the margin was decided; NaN if the first scale was not."""
     margins = assessment.data["margins"].sel(column=column)
     chosen = {name: value for name, value in (("record", record), ("case", case)) if value is not None}
     return float(margins["decided_to"].sel(chosen).min(skipna=False))
 
 
 def _slides_first(assessment: Assessment, column: str, scale: float) -> str:
-    """Return why a column slides before it rocks; nothing if it does not, or if no record makes it slide."""
+    """Explain why a column slides before it rocks; empty if it does not, or if no record makes it slide."""
     slips = (assessment.data["margins"]["standing_slip"].sel(column=column) <= scale).any("case")
     sliding = [str(name) for name in slips["record"].to_numpy()[slips.to_numpy()]]
     if not sliding:
@@ -141,13 +141,13 @@ def _slides_first(assessment: Assessment, column: str, scale: float) -> str:
     friction, slenderness = float(own["friction_coefficient"]), float(own["slenderness"])
     return (
         f"the stated friction {number(friction)} is less than r/h = {number(slenderness)}, so the column slides before "
-        f"it rocks. Horizontal accelerations above about {number(friction)} g make it slide: {level_words(scale)} "
-        f"under {records(len(sliding), total)} ({listed(sliding)}).{_slid(assessment, column, scale)}"
+        f"it rocks. Horizontal accelerations above about {number(friction)} g make it slide; {level_words(scale)} "
+        f"this happens under {records(len(sliding), total)} ({listed(sliding)}).{_slid(assessment, column, scale)}"
     )
 
 
 def _slid(assessment: Assessment, column: str, scale: float) -> str:
-    """Return the outcomes by the model that slides, where its runs were made."""
+    """State the outcomes with the sliding model; empty if it was not run."""
     if "sliding" not in assessment.data:
         return ""
     runs = assessment.data["sliding"].sel(column=column, scale=scale)
@@ -166,7 +166,7 @@ def _slid(assessment: Assessment, column: str, scale: float) -> str:
 
 
 def _reservations(assessment: Assessment, column: str, scale: float, cases: Cases) -> list[str]:
-    """Return what the survival of a column depends on, a phrase each."""
+    """List the reservations about the survival of a column, one phrase each."""
     least, words = _least(assessment, column)
     decided = largest_decided(assessment, column)
     undecided = (*cases.undecided, *cases.undecided_elsewhere)
@@ -191,5 +191,5 @@ def _reservations(assessment: Assessment, column: str, scale: float, cases: Case
 
 
 def _beyond(decided: float) -> str:
-    """Return from which scale on runs were not decided; nothing if already the first was not."""
-    return "" if math.isnan(decided) else f" (from {number(decided)} on)"
+    """Return the largest decided scale in parentheses; empty if the first scale was not decided."""
+    return "" if math.isnan(decided) else f" (only up to {number(decided)})"

@@ -8,17 +8,17 @@ from stylobate.earthquakes.assessment.report.wording import number, tilt
 
 _MM = 1000.0
 SMALLEST_TILT = 1e-3
-"""Tilts over α below this one are not worth a figure."""
-# Smaller tilts over α, tilts [°] and displacements [mm] are shown as less than these.
+"""Smallest tilt over α_c that is worth a figure."""
+# Smallest tilt over α_c, tilt [°] and displacement [mm] that are shown as numbers; smaller ones are shown as "< …".
 _LEAST = (SMALLEST_TILT, 0.01, 0.1)
-TILT_HEADER = ("tilt / α", "tilt [°]", "displacement [mm]")
+TILT_HEADER = ("tilt / α_c", "tilt [°]", "displacement [mm]")
 
 
 def displacement(angle: float, *, radius: float, height: float) -> float:
-    """Return the horizontal displacement of a point of the axis, relative to the base [m].
+    """Compute the horizontal displacement of a point of the axis, relative to the base [m].
 
-    The column stands on its rim and the point of contact does not move. A point at the height H of the axis is then
-    displaced by H sin θ + r (1 − cos θ), whatever the direction of the tilt θ.
+    The column stands on its rim and the contact point does not move. A point at the height H of the axis then moves
+    by H sin θ + r (1 − cos θ), for any direction of the tilt θ.
 
     Parameters
     ----------
@@ -31,13 +31,13 @@ def displacement(angle: float, *, radius: float, height: float) -> float:
 
 
 def shown_point(column: xr.Dataset) -> tuple[float, str]:
-    """Return height [m] and name of the point whose displacement is shown: the top where the height is known."""
+    """Return height [m] and name of the displaced point: the top, or the centre of mass if the height is unknown."""
     height = float(column["height"])
     return (float(column["mass_height"]), "centre of mass") if math.isnan(height) else (height, "top")
 
 
 def tilt_cells(ratio: float, column: xr.Dataset) -> tuple[str, str, str]:
-    """Return a peak tilt as a fraction of α, in degrees, and as the displacement of the shown point in mm."""
+    """Format a peak tilt as a fraction of α_c, in degrees, and as the displacement of the shown point in mm."""
     if not math.isfinite(ratio):
         return tilt(ratio), "–", "–"
     angle = ratio * float(column["tipping_angle"])
@@ -51,6 +51,6 @@ def _at_least(value: float, least: float) -> str:
 
 
 def tilt_words(ratio: float, column: xr.Dataset) -> str:
-    """Return a peak tilt in words."""
+    """Describe a peak tilt in words."""
     fraction, angle, moved = tilt_cells(ratio, column)
-    return f"{angle}° ({fraction} α), which displaces its {shown_point(column)[1]} by {moved} mm"
+    return f"{angle}° ({fraction} α_c), which displaces its {shown_point(column)[1]} by {moved} mm"

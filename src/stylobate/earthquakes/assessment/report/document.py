@@ -1,4 +1,4 @@
-"""The report of an assessment: one page with all tables and figures, and each of them as a file."""
+"""The report of an assessment: one page with all tables and figures, and a file for each table and figure."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -14,8 +14,8 @@ from stylobate.plots.page import page, png_of
 from stylobate.results.assessment import Assessment
 from stylobate.studies.sweeps.computing import silent
 
-# Tables of a dozen columns, wanted whole on a screen and legible on a narrow one, where figures are scrolled too. In
-# print figures are as wide as they need to be legible, so that a page holds two or three and few pages stay half empty.
+# Tables of a dozen columns fit a wide screen; a narrow screen scrolls tables and figures. In print, figures are only as
+# wide as legibility needs, so that a page holds two or three.
 _STYLE = """
 .wide + .wide { margin-top: 1.8rem; }
 body > .wide:nth-of-type(2) td:nth-child(2) { font-weight: 600; } nav a { display: inline-block; }
@@ -41,10 +41,10 @@ def assessment_report(
     assessment
         From `stylobate.earthquakes.assess`, or loaded.
     folder
-        Gets `report.html`, which needs no other file and no network; `summary.txt`; `tables/*.csv`;
-        `figures/*.png`; and `assessment.nc`.
+        Folder for `report.html` (which needs no other file and no network), `summary.txt`, `tables/*.csv`,
+        `figures/*.png` and `assessment.nc`.
     progress
-        Called with the figures drawn and the figures in all.
+        Called with the number of figures drawn and their total number.
 
     Raises
     ------

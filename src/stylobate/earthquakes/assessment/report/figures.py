@@ -1,4 +1,4 @@
-"""The figures of an assessment: margins, tilts, contact, robustness, the history of the governing record."""
+"""Figures of an assessment: margins, tilts, contact, robustness, and the time history under the governing record."""
 
 import math
 from typing import Any
@@ -17,28 +17,26 @@ from stylobate.plots.cells import fill_options
 from stylobate.plots.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, new_figure, styled
 from stylobate.results.assessment import Assessment
 
-# Heights [inches]: of a line in a figure of records, of its frame, and the most that is drawn.
+# Heights of a line in a figure of records, of the frame, and of the tallest figure [inches].
 _ROW, _FRAME, _TALLEST = 0.17, 1.5, 9.0
 _BAR = 0.8
 _MARKS = ("v", "o", "^", "D", "s", "P", "X")
 _COLOURS = (SKY, BLUE, BLACK, GREEN, PURPLE, ORANGE)
-# How far tilts are drawn, over α.
+# Largest tilt drawn, over α_c.
 _MOST_TILT = 1.5
 _HISTORY_LOOKS: dict[str, dict[str, Any]] = {
     "stated": {"color": GREY, "linewidth": 1.6},
     "stands": {"color": BLUE, "linewidth": 1.0},
     "overturns": {"color": VERMILION, "linewidth": 1.0, "linestyle": "-."},
 }
-# Where overturned runs are marked, in tilts over α.
-_FALLEN = 1.25
-# Where undecided runs are.
-_UNKNOWN = 1.5
+# Places of the marks of overturned and of undecided runs, in tilts over α_c.
+_FALLEN, _UNKNOWN = 1.25, 1.5
 _UNDECIDED_MARK: dict[str, Any] = {"marker": "x", "linestyle": "none", "markersize": 5.5}
 
 
 @styled
 def margins_figure(assessment: Assessment, column: str) -> Figure:
-    """Return all bands of scale factors in which each record overturns a column, a line for each case."""
+    """Draw the overturning intervals of each record for a column, one line for each case."""
     own = assessment.data["margins"].sel(column=column)
     cases, records = ([str(name) for name in own[dim].to_numpy()] for dim in ("case", "record"))
     lines = len(records) * (len(cases) + 1)
@@ -66,7 +64,7 @@ def margins_figure(assessment: Assessment, column: str) -> Figure:
         handles.append(Patch(label=undecided_label(own["outcome"]), **fill_options(UNDECIDED)))
     handles += [
         Line2D([], [], color=BLACK, label="as recorded"),
-        Line2D([], [], linestyle="none", marker="|", color=GREY, label="scales run first"),
+        Line2D([], [], linestyle="none", marker="|", color=GREY, label="scales of the scan"),
     ]
     if any(scale != 1.0 for scale in assessment.setting["scales"]):
         handles.append(Line2D([], [], color=BLACK, linestyle="--", label="other stated scales"))
@@ -82,7 +80,7 @@ def _band_line(axes: Axes, own: xr.Dataset, height: float, ends: tuple[float, fl
     overturned = {"color": VERMILION, "hatch": "////", "edgecolor": "white"}
     _bars(axes, own["undecided_from"], own["undecided_to"], height, fill_options(UNDECIDED))
     _bars(axes, own["band_from"], own["band_to"], height, overturned)
-    # A narrow band is to be seen all the same.
+    # This mark shows an interval too narrow for its bar.
     first = own["band_from"].to_numpy()
     axes.plot(first, np.full(first.size, height), "|", color=VERMILION, markersize=6.5)
 
@@ -95,7 +93,7 @@ def _bars(axes: Axes, low: xr.DataArray, high: xr.DataArray, height: float, look
 
 @styled
 def tilts_figure(assessment: Assessment, column: str, scale: float) -> Figure:
-    """Return the peak tilts of a column under each record, for each dissipation, and those of the planar column."""
+    """Draw the peak tilts of a column under each record at each dissipation, and those of the planar column."""
     own = assessment.data["verdicts"]["tilt_ratio"].sel(column=column, scale=scale)
     records = [str(name) for name in own["record"].to_numpy()]
     figure, axes = _rows_figure(records)
@@ -129,19 +127,19 @@ def tilts_figure(assessment: Assessment, column: str, scale: float) -> Figure:
 
 
 def _undecided_marks(values: np.ndarray, heights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return where undecided runs are drawn: beyond those that overturned."""
+    """Return the coordinates of the marks of undecided runs, beyond those of overturned runs."""
     chosen = np.isnan(values)
     return np.full(int(chosen.sum()), _UNKNOWN), heights[chosen]
 
 
 def _placed(values: np.ndarray) -> np.ndarray:
-    """Return where tilts are drawn: overturned ones beyond all others, those above α at α's place or beyond."""
+    """Return the abscissas of tilts: overturned runs beyond all others, large tilts limited to stay below these."""
     return np.where(np.isinf(values), _FALLEN, np.minimum(values, _FALLEN - 0.16))
 
 
 @styled
 def contact_figure(assessment: Assessment, column: str) -> Figure:
-    """Return the friction that the runs of each record needed, against the stated coefficient."""
+    """Draw the friction that the runs of each record needed, and the stated coefficient."""
     own = assessment.data["verdicts"]["friction_demand"].sel(column=column)
     records = [str(name) for name in own["record"].to_numpy()]
     figure, axes = _rows_figure(records)
@@ -164,7 +162,7 @@ def contact_figure(assessment: Assessment, column: str) -> Figure:
 
 @styled
 def robustness_figure(assessment: Assessment, column: str, scale: float) -> Figure:
-    """Return which small change flips the verdict under which record, at each dissipation."""
+    """Draw the small changes that flip the verdict under each record, at each dissipation."""
     own = assessment.data["robustness"].sel(column=column, scale=scale)
     records, changes, levels = (
         [str(name) for name in own[dim].to_numpy()] for dim in ("record", "change", "dissipation")
@@ -186,7 +184,7 @@ def robustness_figure(assessment: Assessment, column: str, scale: float) -> Figu
     axes.set(ylim=(len(names) - 0.5, -0.5), xlim=(-0.5, len(changes) - 0.5))
     axes.set_title(f"{column}, scale {scale:g}: does the verdict flip?")
     handles = [
-        Line2D([], [], linestyle="none", marker="o", color=SKY, label="the same verdict"),
+        Line2D([], [], linestyle="none", marker="o", color=SKY, label="same verdict"),
         Line2D([], [], linestyle="none", marker="X", color=VERMILION, label="flipped"),
         Line2D([], [], linestyle="none", marker="x", color=GREY, label="not decided"),
     ]
@@ -196,9 +194,9 @@ def robustness_figure(assessment: Assessment, column: str, scale: float) -> Figu
 
 @styled
 def history_figure(assessment: Assessment, column: str) -> Figure:
-    """Return the motion of a column under its governing record, at the stated scale and on both sides of the margin.
+    """Draw the motion of a column under its governing record, at the stated scale and on both sides of the margin.
 
-    Tilt against time, the base acceleration of the record, and where it leans.
+    The figure shows tilt and base acceleration against time, and the path of the tilt vector.
     """
     own = assessment.data["histories"].sel(column=column)
     figure = new_figure(4.4)
@@ -232,17 +230,17 @@ def history_figure(assessment: Assessment, column: str) -> Figure:
 
 
 def _run_words(run: xr.Dataset) -> str:
-    """Return scale, case and outcome of a run of a governing record."""
+    """Describe scale, case and outcome of a run under the governing record."""
     tilt = float(run["peak_tilt_ratio"])
     if undecided_reasons(run["outcome"]):
-        came_to = undecided_label(run["outcome"])
+        outcome = undecided_label(run["outcome"])
     elif math.isinf(tilt):
-        came_to = "overturned"
+        outcome = "overturned"
     else:
-        came_to = f"did not overturn, peak tilt {number(tilt)} α" if tilt > 0.0 else "did not move"
+        outcome = rf"did not overturn, peak tilt {number(tilt)} $\alpha_c$" if tilt > 0.0 else "did not move"
     case = str(run["case"].item())
     level = f"{case} dissipation" if "," not in case else case.replace(",", " dissipation,")
-    return f"scale {number(float(run['scale']), 4)}, {level}: {came_to}"
+    return f"scale {number(float(run['scale']), 4)}, {level}: {outcome}"
 
 
 def _rows_figure(records: list[str]) -> tuple[Figure, Axes]:

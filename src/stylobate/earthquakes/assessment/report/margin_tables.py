@@ -1,4 +1,4 @@
-"""Tables of margins: bands of scale factors, governing records, friction up to the margin."""
+"""Tables of margins: overturning intervals, governing records, friction up to the margin."""
 
 import math
 
@@ -13,12 +13,12 @@ from stylobate.results.assessment import Assessment
 
 
 def bands_by_record(assessment: Assessment) -> Table:
-    """Return all bands of scale factors that overturned a column, by record and case."""
+    """Tabulate the overturning intervals of each column, by record and case."""
     own = assessment.data["margins"]
     header = (
         "column",
         "record",
-        "case of dissipation",
+        "case",
         "smallest overturning scale",
         "overturning intervals found",
         "runs not decided",
@@ -32,11 +32,11 @@ def bands_by_record(assessment: Assessment) -> Table:
 
 
 def governing(assessment: Assessment) -> Table:
-    """Return the governing record of each column, and the peak tilt in each of its runs that are drawn."""
+    """Tabulate the governing record of each column, and the peak tilt of each run that is drawn."""
     own, runs = assessment.data["summary"], assessment.data["histories"]
     header = (
         *("column", "governing record", "smallest overturning scale", "smallest of all cases", "scale of the run"),
-        *("its peak tilt / α", "tilt [°]", "displacement [mm]", "azimuth, from x to y", "at [s]"),
+        *("peak tilt / α_c", "tilt [°]", "displacement [mm]", "azimuth, from x to y", "time of peak [s]"),
     )
     rows = []
     for column in own["column"].to_numpy():
@@ -59,10 +59,10 @@ def drawn_runs(histories: xr.Dataset) -> list[tuple[float, xr.Dataset]]:
 
 
 def friction_to_margin(assessment: Assessment) -> Table:
-    """Return the friction needed below the smallest overturning scale, and the smallest scale that needs too much."""
+    """Tabulate the friction needed below the smallest overturning scale, and the smallest scale that needs too much."""
     header = (
-        *("column", "record", "case of dissipation", "smallest overturning scale", "friction needed below it"),
-        *("stated", "smallest scale that needs more"),
+        *("column", "record", "case", "smallest overturning scale", "friction needed below it"),
+        *("stated friction", "smallest scale that needs more"),
     )
     margins, rows = assessment.data["margins"], []
     for where, one in cells(margins, "column", "record", "case") if assessment.setting["contact"] else ():

@@ -1,4 +1,4 @@
-"""The figures of the report with their captions; those that would show that nothing happened are left out."""
+"""The figures of the report with their captions; figures of a column that hardly moved are left out."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -20,7 +20,7 @@ Pictures = dict[str, Picture]
 
 
 def report_pictures(assessment: Assessment) -> Pictures:
-    """Return the pictures by the name of their file, which begins with that of their section."""
+    """Return the pictures by file name; each name begins with the name of the section."""
     found = _of_records(assessment)
     for place, name in enumerate(assessment.data["columns"]["column"].to_numpy()):
         found |= _of_column(assessment, str(name), place + 1)
@@ -35,14 +35,14 @@ def _of_records(assessment: Assessment) -> Pictures:
     for first in range(0, len(names), RECORDS_A_FIGURE):
         some = names[first : first + RECORDS_A_FIGURE]
         found[f"records-{first // RECORDS_A_FIGURE + 1}"] = Picture(
-            records_figure(assessment, some), "Ground accelerations as recorded (scale 1), along x and y, and up."
+            records_figure(assessment, some), "Ground accelerations as recorded (scale 1) along x, y and up."
         )
     design = assessment.setting.get("details", {}).get("design_spectrum")
     over = f" Dashed: {design['name']}, {100.0 * design['damping']:g} % damping." if design else ""
     found["spectra-1"] = Picture(
         spectra_figure(assessment),
-        "Pseudo-acceleration of the records (RotD50, of a record along one axis that of this component), and the "
-        f"mean.{over}",
+        "Pseudo-acceleration spectra of the records and their mean. They are RotD50; the spectrum of a record along "
+        f"one axis is that of its component.{over}",
     )
     return found
 
@@ -52,31 +52,32 @@ def _of_column(assessment: Assessment, column: str, place: int) -> Pictures:
     if bool((assessment.data["margins"]["bands"].sel(column=column) > 0).any()):
         found[f"margins-{place}"] = Picture(
             margins_figure(assessment, column),
-            f"{column}: scale factors of each record that overturned it (hatched) and did not, at each dissipation. An "
-            "interval narrower than the step of the scan may have been missed.",
+            f"{column}: scale factors of each record at which it overturned (hatched) or did not, at each dissipation. "
+            "An interval narrower than the step of the scan may have been missed.",
         )
     if bool((assessment.data["histories"]["peak_tilt_ratio"].sel(column=column) > SMALLEST_TILT).any()):
         found[f"history-{place}"] = Picture(
             history_figure(assessment, column),
-            f"{column} under its governing record: tilt and base acceleration against time; right, the direction of "
-            "the tilt. Dashed: α, at which the centre of mass stands above the rim.",
+            f"{column} under its governing record. Left: tilt and base acceleration against time. Right: path of the "
+            "tilt. Dashed: the tipping angle α_c, at which the centre of mass stands above the rim.",
         )
     if bool((assessment.data["verdicts"]["friction_demand"].sel(column=column) > 0.0).any()):
         found[f"contact-{place}"] = Picture(
-            contact_figure(assessment, column), f"{column}: friction needed in each run; dashed, what is stated."
+            contact_figure(assessment, column),
+            f"{column}: friction needed in each run. Dashed: the stated coefficient.",
         )
     for scale in assessment.setting["scales"]:
         if not _rocked(assessment, column, scale):
             continue
         found[f"tilts-{place}-scale-{scale:g}"] = Picture(
             tilts_figure(assessment, column, scale),
-            f"{column}, records times {scale:g}: peak tilts at each dissipation, vertical component included, "
-            "and those of the planar column where it was computed.",
+            f"{column} at scale {scale:g}: peak tilts at each dissipation (vertical component included), and those of "
+            "the planar column if it was computed.",
         )
         if "robustness" in assessment.data:
             found[f"robustness-{place}-scale-{scale:g}"] = Picture(
                 robustness_figure(assessment, column, scale),
-                f"{column}, records times {scale:g}: does a small change flip the verdict?",
+                f"{column} at scale {scale:g}: does a small change flip the verdict?",
             )
     if "fragility" in assessment.data:
         found[f"fragility-{place}"] = Picture(_fragility(assessment, column), f"{column}: fragility.")

@@ -10,14 +10,14 @@ from stylobate.plots.style import BLACK, GREY, PALETTE, VERMILION, new_figure, s
 from stylobate.results.assessment import Assessment
 
 RECORDS_A_FIGURE = 6
-"""Records whose components are drawn in one figure."""
-# Height [inches] of a record's row and of the frame; more records than this have no colour of their own.
+"""Number of records in one figure of components."""
+# Height of a row and of the frame [inches]; largest number of records that have a colour each.
 _ROW, _FRAME, _COLOURED = 0.85, 0.75, 6
 
 
 @styled
 def records_figure(assessment: Assessment, records: Sequence[str]) -> Figure:
-    """Draw the components of records against time, a row for each record."""
+    """Draw the components of records against time, one row for each record."""
     own = assessment.data["ground_motions"]
     figure = new_figure(_FRAME + _ROW * len(records))
     grid = figure.subplots(len(records), 3, squeeze=False, sharey="row", sharex="row")
@@ -38,7 +38,7 @@ def records_figure(assessment: Assessment, records: Sequence[str]) -> Figure:
 
 @styled
 def spectra_figure(assessment: Assessment) -> Figure:
-    """Draw the response spectra of the records, their mean, and the design spectrum where one is given."""
+    """Draw the response spectra of the records, their mean, and the design spectrum if it is given."""
     own = assessment.data["spectra"]["spectral_acceleration"].transpose("record", "period") / STANDARD_GRAVITY
     period = own["period"].to_numpy()
     figure = new_figure(3.3)

@@ -13,10 +13,10 @@ from stylobate.results.assessment import Assessment
 
 # The damping of the spectra of the records.
 _DAMPING = 0.05
-# More records than this are shown by the least and the largest.
+# If there are more records, the table of spectra has only the smallest and the largest value.
 _FEW = 6
 _SHOWN_PERIODS = (0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0)
-# What a reader notes of a file: its name, the unit, the title in its header.
+# Provenance line of a record file: its name, its unit, and the title in its header.
 _READ = re.compile(r"read from (?P<file>.+?), in [^:]+(?:: (?P<title>.+))?")
 
 
@@ -26,13 +26,13 @@ def names(assessment: Assessment) -> list[str]:
 
 
 def drifting(assessment: Assessment) -> list[str]:
-    """Return the records that end with a velocity of more than 5 % of their PGV along some axis."""
+    """Return the names of the records that end with a velocity above 5 % of their PGV along some axis."""
     own = assessment.data["records"]
     return [str(name) for name in own["record"].to_numpy()[own["drifts"].to_numpy() == 1]]
 
 
 def events(assessment: Assessment) -> Table:
-    """Return event, station and files of each record."""
+    """Tabulate event, station and files of each record."""
     about = assessment.setting.get("details", {}).get("about_records", {})
     rows = []
     for name in names(assessment):
@@ -47,18 +47,18 @@ def events(assessment: Assessment) -> Table:
 
 
 def _without_component(title: str) -> str:
-    """Return a title without its last field where it has several: "event, date, station, component"."""
+    """Remove the last field of a title that has several: "event, date, station, component"."""
     return title.rpartition(",")[0] if title.count(",") > 1 else title
 
 
 def intensities(assessment: Assessment) -> Table:
-    """Return the intensities of each record as recorded."""
+    """Tabulate the intensities of each record as recorded."""
     own, period = assessment.data["records"], _period(assessment)
     spectral = _spectral(assessment)
     header = (
         *("record", "definition", "PGA [g]", "PGA [m/s²]", "PGV [m/s]", f"Sa({period:g} s) [g]", "PGA, vector [g]"),
-        *("along x [g]", "along y [g]", "up [g]", "PGV, vector [m/s]", "length [s]", "step [s]"),
-        *("velocity left [m/s]", "drift"),
+        *("PGA along x [g]", "PGA along y [g]", "PGA up [g]", "PGV, vector [m/s]", "duration [s]", "step [s]"),
+        *("velocity at the end [m/s]", "drift"),
     )
     rows = []
     for name in names(assessment):
@@ -81,9 +81,9 @@ def intensities(assessment: Assessment) -> Table:
 
 
 def margin_intensities(assessment: Assessment) -> Table:
-    """Return PGA, PGV and Sa of each record times the smallest overturning scale of a column.
+    """Tabulate PGA, PGV and Sa of each record times the smallest overturning scale of a column.
 
-    That is the least at the central dissipation, and the smallest of all cases where it is less.
+    One row has the smallest scale of the central case; another has the smallest scale of all cases if that is smaller.
     """
     period = _period(assessment)
     header = (
@@ -107,7 +107,7 @@ def margin_intensities(assessment: Assessment) -> Table:
 
 
 def _at_scale(assessment: Assessment, record: str, scale: float, highest: float) -> tuple[str, ...]:
-    """Return the cells of a record times a scale; of the highest scale decided, marked so, where the scale is NaN."""
+    """Return the cells of a record times a scale; if that is NaN, times the highest decided scale, marked with ">"."""
     own = assessment.data["records"].sel(record=record)
     above = "> " if math.isnan(scale) and not math.isnan(highest) else ""
     scale = highest if math.isnan(scale) else scale
@@ -119,16 +119,16 @@ def _at_scale(assessment: Assessment, record: str, scale: float, highest: float)
 
 
 def spectra(assessment: Assessment) -> Table:
-    """Return spectral accelerations of the records at some periods, their mean and the design spectrum.
+    """Tabulate spectral accelerations of the records at some periods, their mean and the design spectrum.
 
-    The spectra of the records have 5 % damping: their mean is divided by a design spectrum of that damping only.
+    The spectra of the records have 5 % damping: their mean is divided only by a design spectrum of the same damping.
     """
     if "spectra" not in assessment.data:
         return Table((), [])
     own = assessment.data["spectra"]["spectral_acceleration"]
     design = assessment.setting.get("details", {}).get("design_spectrum")
     alike = design is not None and math.isclose(design["damping"], _DAMPING)
-    each = names(assessment) if own.sizes["record"] <= _FEW else ["least", "largest"]
+    each = names(assessment) if own.sizes["record"] <= _FEW else ["smallest", "largest"]
     header = ["period [s]", *(f"{name} [g]" for name in each), "mean [g]"]
     header += [f"{design['name']} [g]", "mean / design"] if design else []
     rows = []
@@ -145,7 +145,7 @@ def spectra(assessment: Assessment) -> Table:
 
 
 def provenance(assessment: Assessment) -> Table:
-    """Return where each record comes from, what was done to it, and its digests."""
+    """Tabulate origin, processing and digests of each record."""
     rows = []
     for name, record in assessment.setting["records"].items():
         rows += [(name, f"{place + 1}. {line}") for place, line in enumerate(record["processing"])]
@@ -154,7 +154,7 @@ def provenance(assessment: Assessment) -> Table:
         ]
         if record["digest"]:
             rows.append((name, f"SHA-256 of its numbers: {record['digest']}"))
-    return Table(("record", "where it comes from, and what was done"), rows)
+    return Table(("record", "origin and processing"), rows)
 
 
 def _period(assessment: Assessment) -> float:
@@ -162,7 +162,7 @@ def _period(assessment: Assessment) -> float:
 
 
 def _spectral(assessment: Assessment) -> dict[str, float]:
-    """Return the spectral acceleration of each record at the stated period [m/s²]; nothing where there are none."""
+    """Return the spectral acceleration of each record at the stated period [m/s²]; empty if there are no spectra."""
     if "spectra" not in assessment.data:
         return {}
     own = assessment.data["spectra"]["spectral_acceleration"]
@@ -170,5 +170,5 @@ def _spectral(assessment: Assessment) -> dict[str, float]:
 
 
 def _at(spectrum: xr.DataArray, period: float) -> float:
-    """Return a spectrum between its periods, linear in their logarithm."""
+    """Interpolate a spectrum linearly in the logarithm of the period."""
     return float(np.interp(math.log(period), np.log(spectrum["period"].to_numpy()), spectrum.to_numpy()))

@@ -18,7 +18,7 @@ _PLACES = ("column", "record", "scale")
 
 
 def verdicts(assessment: Assessment) -> Table:
-    """Return the class of each verdict, and the names of the records on which it rests."""
+    """Tabulate the class of each verdict, and the records that decide it."""
     header = (
         *("column", "scale", "verdict", "overturned it (central dissipation)", "only at another dissipation"),
         *("only without the vertical component", "flipped by a small change", "small change not decided"),
@@ -40,10 +40,10 @@ def verdicts(assessment: Assessment) -> Table:
 
 
 def tilts(assessment: Assessment) -> Table:
-    """Return the peak tilts by record: at the central dissipation, and the largest of all cases."""
+    """Tabulate the peak tilts by record: at the central dissipation, and the largest of all cases."""
     header = (
         *("column", "record", "scale", *(f"{name}, central" for name in TILT_HEADER)),
-        *(*(f"{name}, largest of all cases" for name in TILT_HEADER), "displacement of the"),
+        *(*(f"{name}, largest of all cases" for name in TILT_HEADER), "displaced point"),
     )
     rows = []
     for where, one in cells(assessment.data["verdicts"], *_PLACES):
@@ -54,7 +54,7 @@ def tilts(assessment: Assessment) -> Table:
 
 
 def verdicts_by_record(assessment: Assessment) -> Table:
-    """Return the verdict of each record at each dissipation, with and without the vertical component."""
+    """Tabulate the outcome under each record at each dissipation, with and without the vertical component."""
     own = assessment.data["verdicts"]
     levels, acting = (own[dim].to_numpy() for dim in ("dissipation", "vertical"))
     cases = [(level, acts) for acts in acting for level in levels if acts == _ACTS or level == CENTRAL]
@@ -67,8 +67,8 @@ def verdicts_by_record(assessment: Assessment) -> Table:
 
 
 def friction_by_record(assessment: Assessment) -> Table:
-    """Return the largest friction that the runs under each record needed."""
-    header, rows = (*_PLACES, "largest friction needed", "stated", "enough"), []
+    """Tabulate the largest friction that the runs under each record needed."""
+    header, rows = (*_PLACES, "largest friction needed", "stated friction", "sufficient"), []
     for where, one in cells(assessment.data["summary"], *_PLACES) if assessment.setting["contact"] else ():
         need, stated = float(one["friction_by_record"]), _stated_friction(assessment, where[0])
         rows.append((*where, number(need), number(stated), _enough(need, stated)))
@@ -84,10 +84,10 @@ def _enough(need: float, stated: float) -> str:
 
 
 def every_run(assessment: Assessment) -> Table:
-    """Return every run at the stated scales."""
+    """Tabulate every run at the stated scales."""
     header = (
         *("column", "record", "scale", "dissipation", "vertical", "verdict", *TILT_HEADER),
-        *("friction needed", "enough", "pivoting moment / (N r)", "minimum normal force / weight"),
+        *("friction needed", "sufficient", "pivoting moment / (N r)", "minimum normal force / weight"),
     )
     rows = []
     for where, one in cells(assessment.data["verdicts"], *_PLACES, "dissipation", "vertical"):
@@ -104,10 +104,10 @@ def every_run(assessment: Assessment) -> Table:
 
 
 def sliding(assessment: Assessment) -> Table:
-    """Return the runs by the model that slides, of the columns that slide before they rock."""
+    """Tabulate the runs with the sliding model, for the columns that slide before they rock."""
     header = (
-        *("column", "record", "scale", "verdict with the sliding model", "largest slip [mm]", "slip left [mm]"),
-        "sliding for [s]",
+        *("column", "record", "scale", "verdict with the sliding model", "peak slip [mm]", "residual slip [mm]"),
+        "time sliding [s]",
     )
     if "sliding" not in assessment.data:
         return Table(header, [])
@@ -120,10 +120,10 @@ def sliding(assessment: Assessment) -> Table:
 
 
 def small_changes(assessment: Assessment) -> Table:
-    """Return how many small changes flip each verdict, and which."""
+    """Tabulate number and names of the small changes that flip each verdict."""
     header = (
-        *("column", "record", "scale", "dissipation", "verdict", "changes that flip it", "changes decided"),
-        *("tilt / α from", "to", "which flip it", "which are not decided"),
+        *("column", "record", "scale", "dissipation", "verdict", "number that flip it", "number decided"),
+        *("smallest tilt / α_c", "largest tilt / α_c", "changes that flip it", "changes not decided"),
     )
     if "robustness" not in assessment.data:
         return Table(header, [])
@@ -140,10 +140,10 @@ def small_changes(assessment: Assessment) -> Table:
 
 
 def planar(assessment: Assessment) -> Table:
-    """Return the verdicts in three dimensions beside those of the planar column."""
+    """Tabulate the verdicts in three dimensions beside those of the planar column."""
     header = (
-        *("column", "record", "scale", "three-dimensional", "peak tilt / α", "planar (worse component)"),
-        "peak tilt / α",
+        *("column", "record", "scale", "three-dimensional", "peak tilt / α_c", "planar (worse component)"),
+        "planar peak tilt / α_c",
     )
     if "planar" not in assessment.data:
         return Table(header, [])
@@ -158,10 +158,10 @@ def planar(assessment: Assessment) -> Table:
 
 
 def planar_bias(assessment: Assessment) -> Table:
-    """Return the mean logarithm of the tilts in three dimensions over those of the planar column."""
+    """Tabulate the mean logarithm of the tilts in three dimensions over those of the planar column."""
     header = (
         *("column", "scale", "mean ln(tilt in three dimensions / planar)", "standard error", "records compared"),
-        *("overturn in three dimensions only", "planar only"),
+        *("overturned in three dimensions only", "overturned in the planar calculation only"),
     )
     if "planar" not in assessment.data:
         return Table(header, [])

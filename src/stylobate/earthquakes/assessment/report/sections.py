@@ -1,4 +1,4 @@
-"""The sections of the report, in their order, with the texts that introduce them."""
+"""The sections of the report, in order, with their introductory texts."""
 
 from collections.abc import Mapping
 
@@ -21,7 +21,7 @@ Part = str | Picture | Table
 
 
 def document_table(assessment: Assessment) -> Table:
-    """Return project, author, date, study file and program, those that are stated."""
+    """Tabulate project, author, date, study file and program, if stated."""
     details = assessment.setting.get("details", {})
     study = details.get("study_file", "")
     lines = {
@@ -37,7 +37,7 @@ def document_table(assessment: Assessment) -> Table:
 def report_sections(
     assessment: Assessment, tables: Mapping[str, Table], pictures: Mapping[str, Picture]
 ) -> list[Section]:
-    """Return the sections of the report; those without content are left out."""
+    """Return the sections of the report that have content."""
 
     def drawn(name: str) -> list[Part]:
         return [picture for file, picture in pictures.items() if file.startswith(f"{name}-")]
@@ -89,24 +89,24 @@ def report_sections(
 def _record_text(assessment: Assessment) -> str:
     drift = drifting(assessment)
     remark = (
-        f" Drift: {listed(drift)} ends with a velocity of more than 5 % of its PGV; filter it or correct its baseline, "
-        "or state why it may stay."
+        f" Drift: at the end of {listed(drift, 'and')} the velocity exceeds 5 % of PGV. Filter the record or correct "
+        "its baseline, or state why the drift is acceptable."
         if drift
         else ""
     )
     return (
-        f"Verdicts are given at the scale factors {scales(assessment.setting['scales'])}; 1 is the record as listed in "
-        f"the appendix on its origin.{remark}"
+        f"Verdicts are given at the scale factors {scales(assessment.setting['scales'])}. Scale 1 is the record as "
+        f"processed; the appendix on the origin of the records lists the processing.{remark}"
     )
 
 
 def _intensity_text(assessment: Assessment) -> str:
     del assessment
     return (
-        "PGA, PGV and Sa (5 % damping) are RotD50, the median over all horizontal directions (Boore 2010); of a record "
-        "along one axis they are those of this component. “Vector” is the peak of the horizontal vector, "
-        "which is never below RotD50: compare hazard curves and design spectra with RotD50. Drift is a velocity of "
-        "more than 5 % of PGV at the end of a record, along x, y or z."
+        "PGA, PGV and Sa (5 % damping) are RotD50: the median, over all horizontal directions, of the peak along a "
+        "direction (Boore 2010). For a record along one axis they are the values of that component. “Vector” is the "
+        "peak of the horizontal vector, which is never below RotD50. Compare hazard curves and design spectra with "
+        "RotD50. A record drifts if its velocity at the end exceeds 5 % of its PGV along x, y or z."
     )
 
 
@@ -115,35 +115,38 @@ def _margin_text(assessment: Assessment) -> str:
     resolution = assessment.setting["resolution"]
     return (
         f"Every record was run at {count} scale factors from {number(low)} to {number(high)}, and every change of the "
-        f"outcome was bisected to {100.0 * assessment.setting['width']:g} %. The margin is the smallest scale factor "
-        "that overturned the column. Overturning is not monotonic: a column may survive above that scale, so the last "
-        "table lists every interval found. Near the limit the outcome is erratic: a scan at other factors finds other "
-        f"narrow intervals. {resolution[0].upper()}{resolution[1:]}. “Governs” marks the record whose runs are drawn. "
-        "“>” marks records that overturned the column at no scale: the value is that of the largest scale decided."
+        f"outcome was located by bisection to {100.0 * assessment.setting['width']:g} %. The margin is the smallest "
+        "scale factor that overturned the column. A case is a level of dissipation, or the central level without the "
+        "vertical component. Overturning is not monotonic: a column may survive above the margin, so the last table "
+        "lists every overturning interval found. Near the limit the outcome is erratic: a scan at other factors finds "
+        f"other narrow intervals. {resolution[0].upper()}{resolution[1:]}. “Governs” marks the record whose runs are "
+        "drawn. “>” marks a record that overturned the column at no scale; its values are those at the largest decided "
+        "scale."
     )
 
 
 def _tilt_text() -> str:
     return (
-        "α = atan(r/h) is the tilt at which the centre of mass stands above the rim. The displacement is horizontal "
-        "and relative to the base: H sin θ + r (1 − cos θ) for a point at the height H of the axis and a tilt θ, with "
-        "the point of contact at rest. H is the height of the column; where only the centre of mass is known, the "
-        "displacement is that of the centre of mass. The edge of a wide top can move farther."
+        "The tipping angle α_c = arctan(r/h) is the tilt at which the centre of mass stands above the rim. The "
+        "displacement is horizontal and relative to the base: H sin θ + r (1 − cos θ) for a tilt θ and a point of the "
+        "axis at the height H, with the contact point at rest. H is the height of the column, or the height of the "
+        "centre of mass if only that is known. The edge of a wide top can move farther."
     )
 
 
 def _verdict_text(assessment: Assessment) -> str:
     tail = assessment.setting["tail"]
     followed = (
-        f"{tail} of free vibration (p: frequency parameter, in the table of columns)"
+        f"{tail} of free vibration (p is the frequency parameter in the table of columns)"
         if isinstance(tail, str)
         else f"{number(tail)} s of free vibration"
     )
     return (
-        f"Records at the scale factors {scales(assessment.setting['scales'])}, at every stated dissipation, with the "
-        f"vertical component and without where a record has one. Each run went on for {followed} after its record; "
-        "a column that had not overturned by then counts as not overturned. A run that could not be followed to its "
-        "end, for instance because it would have taken too many steps, is not decided."
+        f"Each record was run at the scale factors {scales(assessment.setting['scales'])} and at every stated "
+        "dissipation, with its vertical component and, if it has one, without it. The first table counts records, at "
+        f"central dissipation unless its heading says otherwise. Each run continued for {followed} after its record; a "
+        "column that had not overturned by then counts as not overturned. A run that could not be completed, for "
+        "instance because it needed too many steps, is not decided."
     )
 
 
@@ -152,9 +155,9 @@ def _contact_text(assessment: Assessment) -> str:
         return "The friction needed was not computed (contact = false): it is not known whether the base would slip."
     return (
         "The friction needed is the peak ratio of horizontal to normal force in a run, up to overturning if the "
-        "column overturned. Where it exceeds the stated coefficient the base would slip, and the run no longer "
-        "describes the column. A normal force of zero would be lift-off. The last table gives the friction needed at "
-        "the scale factors that were run for the margin."
+        "column overturned. If it exceeds the stated coefficient, the base would slip, and the run no longer "
+        "describes the column. A normal force of zero would mean lift-off. The second table gives the friction needed "
+        "at the scale factors that were run for the margin."
     )
 
 
@@ -162,12 +165,13 @@ def _robust_text(assessment: Assessment) -> str:
     changes = assessment.setting["changes"]
     if not changes:
         return (
-            "No verdict was repeated under small changes (robustness = false), so it is not known which are repeatable."
+            "No verdict was repeated under small changes (robustness = false), so it is not known which verdicts are "
+            "repeatable."
         )
     return (
         "Each verdict was repeated under small changes of record, dissipation, size and integration, one at a time: "
-        f"{', '.join(changes)}. A cross: a run was not decided, so it is not known "
-        "whether the verdict stays the same. No mark: the change does not apply to the record."
+        f"{', '.join(changes)}. In the figures, a thin grey cross marks a change whose run was not decided, so it is "
+        "not known whether the verdict stays the same. No mark means that the change does not apply to the record."
     )
 
 
@@ -192,8 +196,9 @@ def _model_text(assessment: Assessment) -> str:
     kinds = sorted({str(one["model"].get("kind", "own")) for one in assessment.setting["columns"].values()})
     return (
         f"Equations of motion: {', '.join(kinds)}. The damping of a column that rocks in three dimensions is not a "
-        "material constant and is seldom measured. So several levels were stated, and each verdict is given at all of "
-        "them."
+        "material constant and is seldom measured. Therefore several levels were stated, and each verdict is given at "
+        "all of them. R is the distance from the centre of mass to the rim, p the frequency parameter √(mgR/K) with "
+        "the moment of inertia K about the rim."
     )
 
 
@@ -206,7 +211,7 @@ def _assumptions(assessment: Assessment) -> Table:
 
 
 def not_covered(assessment: Assessment) -> Table:
-    """Return the subjects that the assessment leaves out."""
+    """Tabulate the subjects that the assessment does not cover."""
     return Table(("subject", "why it matters"), [*NOT_COVERED, SLIP_AND_FLIGHT[bool(assessment.setting["sliding"])]])
 
 
@@ -217,5 +222,5 @@ def _software(assessment: Assessment) -> str:
         f"Computed with stylobate {assessment.setting['version']}. "
         + (f"Versions: {versions}. " if versions else "")
         + (f"Options of the runs: {options}. " if options else "")
-        + "All numbers are in assessment.nc beside this page, from which the page can be made again."
+        + "The file assessment.nc beside this page holds all numbers; stylobate assess writes the page from it again."
     )

@@ -1,4 +1,4 @@
-"""The text that a reader sees first: a line on each column, then findings by subject."""
+"""The summary of an assessment: a verdict in one line for each column, then findings by subject."""
 
 import math
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ from stylobate.results.assessment import Assessment
 
 
 def verdict_table(assessment: Assessment) -> Table:
-    """Return the verdict on each column in one line, at the scale nearest to 1."""
+    """Tabulate the verdict on each column in one line, at the scale nearest to 1."""
     rows = []
     for name in columns_of(assessment):
         found = column_verdict(assessment, name, recorded_scale(assessment))
@@ -31,7 +31,7 @@ def verdict_table(assessment: Assessment) -> Table:
 
 
 def column_findings(assessment: Assessment, name: str) -> Table:
-    """Return what the runs found for one column, a row for each subject, in words that promise nothing."""
+    """Tabulate the findings on one column, one row for each subject."""
     own = assessment.data["summary"].sel(column=name)
     first = recorded_scale(assessment)
     described = column_verdict(assessment, name, first).describes
@@ -46,7 +46,7 @@ def column_findings(assessment: Assessment, name: str) -> Table:
 
 
 def summary_text(assessment: Assessment, heads: Sequence[Table]) -> str:
-    """Return the summary as plain text: the tables `heads`, the findings on each column, and how to read them."""
+    """Write the summary as plain text: the tables `heads`, the findings on each column, and a guide to them."""
     blocks = ["\n".join(": ".join(row) for row in table.rows) for table in heads]
     for name in columns_of(assessment):
         findings = column_findings(assessment, name)
@@ -60,7 +60,7 @@ def columns_of(assessment: Assessment) -> list[str]:
 
 
 def _tilt(assessment: Assessment, name: str, scale: float) -> str:
-    """Return the peak tilt of the central runs that did not overturn."""
+    """State the peak tilt of the central runs that did not overturn."""
     runs = assessment.data["verdicts"].sel(column=name, scale=scale, dissipation=CENTRAL, vertical="with")
     ratios = runs["tilt_ratio"].where(runs["overturned"] == 0).dropna("record")
     if ratios.size == 0:
@@ -70,9 +70,9 @@ def _tilt(assessment: Assessment, name: str, scale: float) -> str:
         others = ratios.size < runs.sizes["record"]
         return f"It did not rock{' under the other records' if others else ''}."
     if float(most) < SMALLEST_TILT:
-        return f"It hardly rocked: the peak tilt without overturning is below {SMALLEST_TILT:g} α."
+        return f"It hardly rocked: the peak tilt without overturning is below {SMALLEST_TILT:g} α_c."
     words = tilt_words(float(most), assessment.data["columns"].sel(column=name))
-    return f"Peak tilt without overturning: {words} ({most['record'].item()})."
+    return f"Peak tilt at {CENTRAL} dissipation without overturning: {words} ({most['record'].item()})."
 
 
 def _margin(assessment: Assessment, name: str, own: xr.Dataset) -> str:
@@ -80,7 +80,7 @@ def _margin(assessment: Assessment, name: str, own: xr.Dataset) -> str:
     record = str(own["least_record"].item())
     least, least_of_all = float(own["least_overturning"]), float(own["least_of_all"])
     if math.isnan(least) and math.isnan(high):
-        sentence = f"At central dissipation already the smallest scale factor {number(low)} was not decided."
+        sentence = f"At central dissipation the smallest scale factor, {number(low)}, was not decided."
     elif math.isnan(least):
         sentence = f"No scale factor from {number(low)} to {number(high)} overturned it at central dissipation."
     else:
@@ -93,24 +93,27 @@ def _margin(assessment: Assessment, name: str, own: xr.Dataset) -> str:
     again = int(own["stands_again"])
     if again:
         under = records(again, assessment.data["records"].sizes["record"])
-        sentence += f" Some larger scales did not overturn it, under {under}: survival is not monotonic in the scale."
+        sentence += (
+            f" Under {under}, it survived some scales above one that overturned it: overturning is not monotonic in "
+            "the scale."
+        )
     return sentence
 
 
 def _intensity(assessment: Assessment, column: str, record: str) -> str:
-    """Return PGA, PGV and Sa of a record at the smallest overturning scale of a column."""
+    """State PGA, PGV and Sa of a record at the smallest overturning scale of a column."""
     table = margin_intensities(assessment)
     row = next(row for row in table.rows if tuple(row[:2]) == (column, record))
     cells = dict(zip(table.header, row, strict=True))
     spectral = next(name for name in table.header if name.startswith("Sa") and name.endswith("[g]"))
     return (
-        f"There PGA is {cells['PGA [g]']} g, PGV {cells['PGV [m/s]']} m/s and {spectral.removesuffix(' [g]')} "
+        f"At that scale PGA is {cells['PGA [g]']} g, PGV {cells['PGV [m/s]']} m/s and {spectral.removesuffix(' [g]')} "
         f"{cells[spectral]} g ({cells['definition']})."
     )
 
 
 def _lasting(assessment: Assessment, column: str, record: str) -> str:
-    """Return a remark on a least scale with survival at the scales just below and above."""
+    """Remark on an isolated smallest overturning scale, with survival just below and above; else empty."""
     margins = assessment.data["margins"].sel(column=column, record=record, case=CENTRAL)
     least, lasting = float(margins["least_overturning"]), float(margins["least_lasting"])
     if lasting == least:
@@ -126,33 +129,33 @@ def _contact(assessment: Assessment, name: str, own: xr.Dataset) -> str:
     stated = float(assessment.setting["friction_coefficient"][name])
     if need <= stated:
         at_stated = (
-            f"The largest friction that any run at {_stated_scales(assessment)} needed is {number(need)}; the stated "
-            f"coefficient is {number(stated)}."
+            f"The runs at {_stated_scales(assessment)} needed a friction coefficient of up to {number(need)}; the "
+            f"stated coefficient is {number(stated)}."
         )
     else:
         at_stated = (
-            f"Some run needed a friction of {number(need)}, above the stated coefficient {number(stated)}: "
-            "there the base would slip, which these runs do not describe."
+            f"Some run needed a friction coefficient of {number(need)}, above the stated {number(stated)}: the base "
+            "would slip, which the run does not describe."
         )
     return f"{at_stated} {_contact_to_margin(own)}"
 
 
 def _contact_to_margin(own: xr.Dataset) -> str:
-    """Return the friction needed up to the margin, and the smallest scale that needs more than is stated."""
+    """State the smallest scale that needs more friction than stated, relative to the margin."""
     need, slipping = (float(own[name]) for name in ("friction_to_margin", "least_slipping"))
     if math.isnan(need) and math.isnan(slipping):
         return "The friction needed at other scales was not computed."
     if math.isnan(slipping):
-        return "No scale factor that was run for the margin needed more than the stated friction."
+        return "No run for the margin needed more friction than stated."
     sentence = f"The smallest scale that needs more friction than stated is {number(slipping, 4)}"
     if math.isnan(float(own["least_of_all"])):
-        return f"{sentence}: beyond that scale the base would slip, and these runs do not describe the column."
+        return f"{sentence}: beyond it the base would slip, and these runs do not describe the column."
     if int(own["slips_first"]):
         return (
-            f"{sentence}, in some case below the smallest overturning scale: the base would slip first, and these "
-            "runs do not give its margin."
+            f"{sentence}. In some case that is below the smallest overturning scale: the base would slip first, and "
+            "these runs do not give the margin."
         )
-    return f"{sentence}, above the smallest overturning scale: beyond that scale the base would slip."
+    return f"{sentence}, above the smallest overturning scale: the column overturns before its base would slip."
 
 
 def _stated_scales(assessment: Assessment) -> str:
@@ -161,14 +164,14 @@ def _stated_scales(assessment: Assessment) -> str:
 
 
 def how_to_read(assessment: Assessment) -> str:
-    """Return what a verdict says, and what it does not."""
+    """Explain the meaning and the limits of a verdict."""
     repeated = (
-        "Verdicts were therefore repeated under small changes; take a verdict that flips as open."
+        "Verdicts were therefore repeated under small changes; treat a verdict that flips as open."
         if assessment.setting["changes"]
         else "No verdict was repeated under small changes here, so it is not known whether any verdict is repeatable."
     )
     return (
-        "How to read this: a verdict reports the runs that were made, of a rigid column under these records only. "
-        "“Did not overturn” does not prove that the column cannot overturn. A single rocking run is barely repeatable "
-        f"near the limit. {repeated}"
+        "How to read this: a verdict reports runs of a rigid column under these records only. “Did not overturn” does "
+        "not prove that the column cannot overturn. Near the overturning limit, a single rocking run is barely "
+        f"repeatable. {repeated}"
     )

@@ -1,4 +1,4 @@
-"""The tables of an assessment: the same in the report and as files."""
+"""The tables of an assessment, for the report and for files."""
 
 import math
 from collections.abc import Callable
@@ -12,15 +12,15 @@ from stylobate.results.assessment import Assessment
 
 
 def assessment_tables(assessment: Assessment) -> dict[str, Table]:
-    """Return the tables by name: all numbers of the report, as text."""
+    """Format all tables of an assessment, by name."""
     made = {name: make(assessment) for name, make in _TABLES.items()}
     return {name: table for name, table in made.items() if table.rows}
 
 
 def _columns(assessment: Assessment) -> Table:
     header = (
-        *("column", "radius [m]", "height [m]", "centre of mass [m]", "mass [kg]", "c = r/h", "α [°]", "R [m]"),
-        *("p [1/s]", "rocks above [m/s²]", "stated friction", "displacements are of the"),
+        *("column", "radius [m]", "height [m]", "centre of mass [m]", "mass [kg]", "c = r/h", "α_c [°]", "R [m]"),
+        *("p [1/s]", "rocks above [m/s²]", "stated friction", "displaced point"),
     )
     names = (
         *("radius", "height", "mass_height", "mass", "slenderness", "tipping_angle", "rim_distance"),
@@ -38,14 +38,14 @@ def _summary(assessment: Assessment) -> Table:
     own = assessment.data["summary"]
     names = ("stood", "overturned", "undecided", "overturned_in_some", "on_dissipation", "on_vertical")
     optional = {
-        "not_robust": "flip under small changes",
+        "not_robust": "verdict flips under small changes",
         "changes_undecided": "small changes not decided",
-        "planar_differs": "planar column differs",
+        "planar_differs": "planar verdict differs",
     }
     optional = {name: words for name, words in optional.items() if name in own}
     header = (
         *("column", "scale", "did not overturn it", "overturned it", "not decided", "overturned it in some case"),
-        *("depend on dissipation", "depend on vertical", *optional.values()),
+        *("verdict depends on dissipation", "verdict depends on vertical component", *optional.values()),
         *(f"peak {name}" for name in TILT_HEADER),
         "largest friction needed",
     )
@@ -59,8 +59,8 @@ def _summary(assessment: Assessment) -> Table:
 
 def _fragility(assessment: Assessment) -> Table:
     header = (
-        *("column", "limit state", "median PGA, RotD50 [m/s²]", "from", "to", "dispersion β_f", "from", "to", "runs"),
-        *("reached", "records with survival above an overturning scale"),
+        *("column", "limit state", "median PGA, RotD50 [m/s²]", "median from", "median to", "dispersion β_f"),
+        *("β_f from", "β_f to", "runs", "runs that reached it", "records with survival above an overturning scale"),
     )
     if "fragility" not in assessment.data:
         return Table(header, [])
@@ -68,8 +68,14 @@ def _fragility(assessment: Assessment) -> Table:
     rows = []
     for where, one in cells(assessment.data["fragility"], "column", "limit_state"):
         counts = (f"{int(one[name])}" for name in ("runs", "runs_reached", "non_monotone_records"))
-        rows.append((*where, *(number(float(one[name])) for name in numbers), *counts))
+        column, state = where
+        rows.append((column, _limit_state(state), *(number(float(one[name])) for name in numbers), *counts))
     return Table(header, rows)
+
+
+def _limit_state(name: str) -> str:
+    """Return a limit state such as "tilt 0.5 α" with the symbol α_c of the report."""
+    return name.replace("α", "α_c")
 
 
 def _dissipation(assessment: Assessment) -> Table:
@@ -78,7 +84,7 @@ def _dissipation(assessment: Assessment) -> Table:
         for level, numbers in assessment.setting["dissipation"].items()
         for name, value in numbers.items()
     ]
-    return Table(("level", "number of the model", "value"), rows)
+    return Table(("level", "parameter of the model", "value"), rows)
 
 
 _TABLES: dict[str, Callable[[Assessment], Table]] = {

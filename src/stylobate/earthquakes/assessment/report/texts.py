@@ -1,28 +1,28 @@
-"""Fixed texts of the report: assumptions, what it does not cover, classes of verdicts, the planar column, sources."""
+"""Fixed texts of the report: assumptions, subjects not covered, classes of verdicts, planar column, references."""
 
 ASSUMPTIONS: tuple[tuple[str, str], ...] = (
     ("body", "a rigid body of revolution in one piece, symmetric about its axis, on a flat circular base"),
     ("ground", "rigid, level and flat; the base acceleration acts on the whole footprint at once"),
-    ("start", "upright and at rest, nothing leaning, no crack or wear of the rim"),
+    ("start", "upright and at rest, without cracks or wear of the rim"),
     (
         "contact",
-        "the base does not slip, pivot freely or lift off; the friction needed for that is listed above: compare it "
-        "with what the joint can bear",
+        "the base does not slip, pivot freely or lift off; the section Contact demand lists the friction needed: "
+        "compare it with the friction that the joint provides",
     ),
-    ("dissipation", "the stated one: low, central and high levels, none of them measured by this program"),
+    ("dissipation", "as stated by the author of the study, at low, central and high levels; not measured or checked"),
     ("after the record", "the base stands still; the run continues for the stated free-vibration time"),
-    ("scaled records", "all components times one factor, the time axis unchanged"),
+    ("scaled records", "one factor multiplies all components; the time axis does not change"),
     ("direction", "a round column on level ground has no weak direction: rotating the record only rotates the motion"),
 )
 
 NOT_COVERED: tuple[tuple[str, str], ...] = (
     ("several drums or blocks", "joints open and slide; the column is taken as one piece"),
-    ("flexible soil and foundation", "rocking of the footing, uplift of the soil, amplification on the way up"),
+    ("flexible soil and foundation", "rocking and uplift of the footing, amplification of the ground motion"),
     ("flexible superstructure", "a floor, pedestal or shaking building changes the record before it reaches the base"),
-    ("sloshing liquid", "a tank's content moves against it"),
-    ("anchors, dowels, clamps", "and what happens when they break"),
+    ("sloshing liquid", "the liquid in a tank moves against its wall"),
+    ("anchors, dowels, clamps", "they restrain the column until they break"),
     ("bases that are not circular", "square plinths, broken rims, feet"),
-    ("contact that gives way", "crushing of the edge, wear, mortar and lead beds"),
+    ("contact that yields", "crushing of the edge, wear, mortar and lead beds"),
     ("neighbours", "impact against walls, other columns, an architrave on top"),
     ("other ground motions", "only the records listed were run; whether they represent the site is not judged here"),
 )
@@ -35,7 +35,7 @@ SLIP_AND_FLIGHT: dict[bool, tuple[str, str]] = {
         "dissipation; all other runs assume that the base neither slips nor lifts off",
     ),
 }
-"""What is not covered, by whether `sliding` was asked for."""
+"""Remark on slip and flight, by the option `sliding`."""
 
 VERDICT_CLASSES: tuple[tuple[str, str], ...] = (
     ("NOT shown safe", "at least one record overturned the column at some stated dissipation"),
@@ -56,16 +56,17 @@ VERDICT_CLASSES: tuple[tuple[str, str], ...] = (
 )
 
 PLANAR = (
-    "The usual calculation takes each horizontal component alone, in its plane, with the loss of energy at impacts "
-    "after Housner (1963). It is shown for comparison and decides nothing here.",
-    "Why the two differ: a planar block hits the ground with its whole base in every half cycle, and each impact takes "
-    "a fixed fraction of its energy. A round column under two components rolls on its rim and seldom passes through "
-    "the vertical, so it has hardly any impacts; its energy goes only into the stated damping, which is another "
-    "mechanism than restitution. It can therefore reach several times the tilt of the planar block under the same "
-    "record; on cylinders in three dimensions see Vassiliou et al. (2017). The comparison depends on the stated "
-    "damping.",
-    "A positive mean logarithm says that the column tilts more in three dimensions. The mean is over records under "
-    "which both rock by more than 0.001 α and neither overturns; the others are counted and enter no mean.",
+    "The usual calculation applies each horizontal component alone to a planar block, which loses energy at impacts "
+    "by the formula of Housner (1963). It is shown for comparison; no verdict depends on it.",
+    "The two calculations differ for this reason: a planar block hits the ground with its whole base in every half "
+    "cycle, and each impact takes a fixed fraction of its energy. A round column under two components rolls on its rim "
+    "and seldom passes through the vertical, so it has hardly any impacts. It loses energy only by the stated damping, "
+    "a different mechanism from restitution. It can therefore reach several times the tilt of the planar block under "
+    "the same record; for cylinders in three dimensions see Vassiliou et al. (2017). The comparison depends on the "
+    "stated damping.",
+    "A positive mean logarithm means that the column tilts more in three dimensions. The mean covers the records under "
+    "which both columns rock by more than 0.001 α_c and neither overturns. The last columns of the table count the "
+    "records under which only one of them overturns.",
 )
 
 REFERENCES: tuple[tuple[str, str], ...] = (
@@ -96,11 +97,11 @@ REFERENCES: tuple[tuple[str, str], ...] = (
     ),
     (
         "equations of motion",
-        "stylobate, documentation, pages Models and Equations: a rigid body whose rim rolls without slip, viscous "
-        "damping of its tilting",
+        "documentation of stylobate, pages Models and Equations: a rigid body whose rim rolls without slip, with "
+        "viscous damping of the tilt",
     ),
     (
         "damping",
-        "no published value is relied on: the three levels are those stated by the author of the study",
+        "no published value is used: the author of the study stated the levels",
     ),
 )

@@ -1,4 +1,4 @@
-"""How an assessment says things: verdicts without promises, numbers with three digits."""
+"""Words and numbers of an assessment report: verdicts without promises, three significant digits."""
 
 import math
 from collections.abc import Sequence
@@ -16,24 +16,24 @@ _OF_STATE = {1: OVERTURNED, 0: STOOD, -1: UNDECIDED}
 
 
 def verdict(state: float) -> str:
-    """Return the words for a run: 1 overturned, 0 did not, −1 is undecided."""
+    """Return the words for the state of a run: 1 overturned, 0 did not overturn, −1 undecided."""
     return _OF_STATE[int(state)]
 
 
 def number(value: float, digits: int = 3) -> str:
-    """Return a number with so many significant digits; a dash where there is none."""
+    """Format a number with `digits` significant digits; a dash for NaN."""
     if not math.isfinite(value):
         return "–" if math.isnan(value) else "∞"
     return f"{value:.{digits}g}"
 
 
 def tilt(value: float) -> str:
-    """Return a peak tilt over α in words."""
+    """Format a peak tilt over α_c; infinity means overturned."""
     return OVERTURNED if math.isinf(value) else number(value)
 
 
 def least_scale(margins: xr.Dataset) -> str:
-    """Return the smallest overturning scale, of one column, case and record, with the next below that did not."""
+    """State the smallest overturning scale of one column, case and record, and the next smaller run that survived."""
     if int(margins["bands"]) == 0:
         if undecided := undecided_scales(margins):
             return f"none found; {undecided}"
@@ -47,7 +47,7 @@ def least_scale(margins: xr.Dataset) -> str:
 
 
 def bands(margins: xr.Dataset) -> str:
-    """Return all bands of scales that overturned, of one column, case and record, and those that are not decided."""
+    """List the overturning intervals of one column, case and record, and the undecided scales."""
     names = ("band_from", "band_to", "open_below", "open_above", "undecided_below", "undecided_above")
     found = []
     for low, high, below, above, unknown_below, unknown_above in zip(
@@ -64,7 +64,7 @@ def bands(margins: xr.Dataset) -> str:
 
 
 def undecided_scales(margins: xr.Dataset) -> str:
-    """Return the scales at which one column, case and record is not decided, with the reasons; nothing if none."""
+    """List the undecided scales of one column, case and record, with the reasons; empty if there are none."""
     pairs = zip(margins["undecided_from"].to_numpy(), margins["undecided_to"].to_numpy(), strict=True)
     stretches = [f"{number(low, 4)} to {number(high, 4)}" for low, high in pairs if not math.isnan(low)]
     if not stretches:
@@ -73,7 +73,7 @@ def undecided_scales(margins: xr.Dataset) -> str:
 
 
 def listed(names: Sequence[str], last: str = "") -> str:
-    """Return names with commas between, at most eight; the word `last` goes before the last of them.
+    """Join at most eight names with commas; the word `last` stands before the last name.
 
     >>> listed(("low", "high"), "and")
     'low and high'
@@ -85,22 +85,22 @@ def listed(names: Sequence[str], last: str = "") -> str:
 
 
 def in_g(acceleration: float) -> str:
-    """Return an acceleration [m/s²] in g."""
+    """Format an acceleration [m/s²] in g."""
     return number(acceleration / STANDARD_GRAVITY)
 
 
 def scales(values: np.ndarray) -> str:
-    """Return scale factors in words."""
+    """Format scale factors."""
     return ", ".join(f"{value:g}" for value in values)
 
 
 def degrees(angle: float) -> str:
-    """Return an azimuth in degrees from x."""
+    """Format an azimuth [rad] in degrees from x."""
     return "–" if math.isnan(angle) else f"{math.degrees(angle) % 360.0:.0f}°"
 
 
 def records(count: int, total: int) -> str:
-    """Return how many of the records, in words."""
+    """State a number of records in words."""
     if total == 1:
         return "the one record" if count == 1 else "not the one record"
     if count == total:
