@@ -26,7 +26,7 @@ import numpy as np
 
 import stylobate as sb
 
-from .constrained_body import ATTITUDE, PLACE, TURNING, UP, VELOCITY, _crossing, _product, _rotation, _turn
+from .constrained_body import ATTITUDE, PLACE, TURNING, UP, VELOCITY, _cross, _crossing, _product, _rotation, _turn
 
 IDENTITY = np.eye(3)
 # Coulomb's friction on a patch (Contensou), after Zhuravlev: the exponent, and numbers of a pressure after Hertz.
@@ -119,7 +119,7 @@ class SlidingBody:
         u = np.cross(n, e3)
         spin, arm = w1 * u + w2 * n + w3 * e3, self.column.radius * u - self.column.mass_height * e3
         place = self.column.radius * d + gap * UP - arm
-        return np.concatenate([place, attitude, np.array([*slip, rise]) - _crossing(spin) @ arm, spin])
+        return np.concatenate([place, attitude, np.array([*slip, rise]) - _cross(spin, arm), spin])
 
     def axis(self, state):
         """Return e3 (3,); both forms of a state will do, here and where only attitude and ω are looked at."""
@@ -136,11 +136,11 @@ class SlidingBody:
 
     def touching(self, state):
         """Return (G, q, v_C, ω) of a `state` (G, q, v, ω)."""
-        return self._with_velocity(state, state[VELOCITY] + _crossing(state[TURNING]) @ self.arm(state))
+        return self._with_velocity(state, state[VELOCITY] + _cross(state[TURNING], self.arm(state)))
 
     def whole(self, touching):
         """Return the state (G, q, v, ω) of (G, q, v_C, ω)."""
-        return self._with_velocity(touching, touching[VELOCITY] - _crossing(touching[TURNING]) @ self.arm(touching))
+        return self._with_velocity(touching, touching[VELOCITY] - _cross(touching[TURNING], self.arm(touching)))
 
     def gap(self, state):
         """Return the height of C above the plane [m]."""
@@ -151,21 +151,22 @@ class SlidingBody:
         r, h, mass = self.column.radius, self.column.mass_height, self.column.mass
         transverse, axial = self.column.transverse_inertia, self.column.axial_inertia
         spin, e3 = state[TURNING], self.axis(state)
-        turning = _crossing(spin)
-        e3_rate = turning @ e3
-        lean = math.hypot(e3[0], e3[1])
-        d = np.array([e3[0] / lean, e3[1] / lean, 0.0])
-        lean_rate = d @ e3_rate
-        d_rate = np.array([e3_rate[0] - lean_rate * d[0], e3_rate[1] - lean_rate * d[1], 0.0]) / lean
-        arm = r * (e3[2] * d - lean * UP) - h * e3
-        arm_rate = r * (e3_rate[2] * d + e3[2] * d_rate - lean_rate * UP) - h * e3_rate
+        e3_rate = _cross(spin, e3)
+        (x, y, z), (x_rate, y_rate, z_rate) = e3.tolist(), e3_rate.tolist()
+        lean = math.hypot(x, y)
+        d = x / lean, y / lean
+        lean_rate = d[0] * x_rate + d[1] * y_rate
+        d_rate = (x_rate - lean_rate * d[0]) / lean, (y_rate - lean_rate * d[1]) / lean
+        arm = r * np.array([z * d[0], z * d[1], -lean]) - h * e3
+        rim_rate = np.array([z_rate * d[0] + z * d_rate[0], z_rate * d[1] + z * d_rate[1], -lean_rate])
+        arm_rate = r * rim_rate - h * e3_rate
         mobility = IDENTITY / transverse + (1.0 / axial - 1.0 / transverse) * e3[:, np.newaxis] * e3
         around = spin @ e3
         # I ω̇ + ω × Iω = couple, with Iω = I_t ω + (I_a − I_t)(ω·e3) e3
         couple = -self.viscous * (spin - around * e3) - (axial - transverse) * around * e3_rate
         free_spin = mobility @ couple
         lever = _crossing(arm)
-        free = turning @ arm_rate - lever @ free_spin - self.column.gravity * UP - acceleration
+        free = _cross(spin, arm_rate) - lever @ free_spin - self.column.gravity * UP - acceleration
         return Touch(e3, arm, lever, mobility, free_spin, free, IDENTITY / mass - lever @ mobility @ lever)
 
     def slip(self, touching):
@@ -242,7 +243,7 @@ class SlidingBody:
     def rates_touching(self, touching, at, load):
         """Return the rates (13,) of (G, q, v_C, ω)."""
         spin = touching[TURNING]
-        velocity = touching[VELOCITY] - _crossing(spin) @ at.arm
+        velocity = touching[VELOCITY] - _cross(spin, at.arm)
         angular = at.free_spin + at.mobility @ (at.lever @ load.force + load.couple)
         linear = at.free + at.response @ load.force + at.by_couple(load.couple)
         return np.concatenate([velocity, self._attitude_rate(touching), linear, angular])
@@ -252,7 +253,7 @@ class SlidingBody:
         spin, e3 = state[TURNING], self.axis(state)
         transverse, axial = self.column.transverse_inertia, self.column.axial_inertia
         # The couple −(I_a − I_t)(ω·e3) ω × e3 is across e3.
-        angular = (1.0 - axial / transverse) * (spin @ e3) * (_crossing(spin) @ e3)
+        angular = (1.0 - axial / transverse) * (spin @ e3) * _cross(spin, e3)
         linear = -self.column.gravity * UP - np.asarray(acceleration, dtype=float)
         return np.concatenate([state[VELOCITY], self._attitude_rate(state), linear, angular])
 
