@@ -1,4 +1,4 @@
-"""A small sweep, who counts what is computed, and one cluster for all tests."""
+"""A small sweep, and who counts what is computed."""
 
 import json
 
@@ -80,14 +80,3 @@ def assert_same_arrays():
             assert array.values.tobytes() == second[name].values.tobytes(), name
 
     return check
-
-
-@pytest.fixture(scope="session")
-def client():
-    import distributed  # noqa: PLC0415  slow to import, for the few tests that need it
-
-    with (
-        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster,
-        distributed.Client(cluster, set_as_default=False) as client,
-    ):
-        yield client

@@ -1,4 +1,4 @@
-"""Killed workers and killed drivers: the arrays at the end are those of an undisturbed serial run."""
+"""Killed and interrupted drivers: the arrays at the end are those of an undisturbed serial run."""
 
 import os
 import re
@@ -8,46 +8,8 @@ import sys
 
 import pytest
 
-from stylobate.errors import StylobateError
-from stylobate.studies.sweeps import Dask, Threads, run_sweep
+from stylobate.studies.sweeps import Threads, run_sweep
 from stylobate.studies.sweeps.store import Store
-
-
-class Through:
-    """An executor that hands a changed `work` on."""
-
-    def __init__(self, inner, change):
-        self.inner, self.change = inner, change
-
-    def results(self, work, tasks, progress=None):
-        return self.inner.results(self.change(work), tasks, progress)
-
-
-@pytest.mark.parametrize("moment", ["before", pytest.param("after", marks=pytest.mark.slow)])
-@pytest.mark.parametrize("stored", [True, pytest.param(False, marks=pytest.mark.slow)])
-def test_a_worker_killed_in_the_middle_changes_nothing(
-    grid, client, tmp_path, assert_same_arrays, counting, undisturbed, moment, stored
-):
-    once = tmp_path / "killed"
-
-    def change(work):
-        # Local, so that it travels to the workers by value.
-        def fragile(task, *, threads, progress):
-            if moment == "after":
-                work(task, threads=threads, progress=progress)
-            if task.block.index == 2 and not once.exists():
-                once.touch()
-                os.kill(os.getpid(), signal.SIGKILL)
-            return work(task, threads=threads, progress=progress)
-
-        return fragile
-
-    executor = counting(Through(Dask(client=client), change))
-    data = run_sweep(grid, executor=executor, chunk_size=2, store=tmp_path / "sweep.zarr" if stored else None)
-    assert once.exists()
-    assert sorted(executor.blocks) == list(range(len(executor.blocks)))
-    assert_same_arrays(data, undisturbed(grid))
-
 
 DRIVER = """
 import os, signal, sys, time
@@ -93,7 +55,8 @@ def test_a_driver_killed_and_started_again_changes_nothing(
     assert_same_arrays(data, undisturbed(grid))
 
 
-@pytest.mark.parametrize("executor", ["threads", pytest.param("dask://", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("executor", ["threads", "dask://"])
 def test_ctrl_c_in_a_terminal_stops_at_once_and_leaves_a_store_to_go_on_with(
     grid, tmp_path, assert_same_arrays, undisturbed, executor
 ):
@@ -107,49 +70,3 @@ def test_ctrl_c_in_a_terminal_stops_at_once_and_leaves_a_store_to_go_on_with(
     assert int(stopped[1]) < 20
     data = run_sweep(grid, store=tmp_path / "sweep.zarr", resume=True, executor=Threads(1))
     assert_same_arrays(data, undisturbed(grid))
-
-
-@pytest.mark.slow
-def test_a_chunk_that_kills_every_worker_is_named(points, client):
-    def change(work):
-        def deadly(task, *, threads, progress):
-            if task.block.index == 1:
-                os.kill(os.getpid(), signal.SIGKILL)
-            return work(task, threads=threads, progress=progress)
-
-        return deadly
-
-    with pytest.raises(StylobateError, match=r"4 workers died on chunk 1 of 1 runs; give them more memory, or"):
-        run_sweep(points, executor=Through(Dask(client=client), change), chunk_size=1)
-
-
-@pytest.mark.slow
-def test_a_lost_scheduler_is_told_and_the_store_goes_on(grid, tmp_path, assert_same_arrays, undisturbed):
-    address, path = "127.0.0.1:38786", tmp_path / "sweep.zarr"
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    dask = [sys.executable, "-m", "dask"]
-    scheduler = subprocess.Popen([*dask, "scheduler", "--host", "tcp://" + address, "--no-dashboard"], **quiet)
-    worker = subprocess.Popen([*dask, "worker", "tcp://" + address, "--nthreads", "1", "--no-dashboard"], **quiet)
-
-    def lose(done, total):
-        if done:
-            scheduler.kill()
-
-    with scheduler, worker:
-        try:
-            with pytest.raises(StylobateError, match="the Dask scheduler was lost"):
-                run_sweep(grid, store=path, executor=Dask(address="tcp://" + address), chunk_size=1, progress=lose)
-        finally:
-            scheduler.kill()
-            worker.kill()
-    assert_same_arrays(run_sweep(grid, store=path, resume=True), undisturbed(grid))
-
-
-def test_a_scheduler_that_does_not_answer_is_named(points):
-    import dask  # noqa: PLC0415
-
-    with (
-        dask.config.set({"distributed.comm.timeouts.connect": "0.5s"}),
-        pytest.raises(StylobateError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:1"),
-    ):
-        run_sweep(points, executor=Dask(address="tcp://127.0.0.1:1"))

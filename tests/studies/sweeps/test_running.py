@@ -2,7 +2,6 @@
 
 import json
 
-import dask
 import numpy as np
 import pytest
 import xarray as xr
@@ -50,27 +49,6 @@ def test_results_do_not_depend_on_the_chunks(sweep, chunk_size, tmp_path, assert
     whole = undisturbed(sweep)
     assert_same_arrays(run_sweep(sweep, chunk_size=chunk_size), whole)
     assert_same_arrays(run_sweep(sweep, chunk_size=chunk_size, store=tmp_path / "sweep.zarr"), whole)
-
-
-def test_workers_compute_what_threads_do(sweep, client, tmp_path, assert_same_arrays, undisturbed, counting):
-    whole = undisturbed(sweep)
-    workers = counting(Dask(client=client))
-    assert_same_arrays(run_sweep(sweep, executor=workers, chunk_size=3), whole)
-    assert sorted(workers.blocks) == list(range(len(workers.blocks)))
-    assert_same_arrays(run_sweep(sweep, executor=workers, chunk_size=3, store=tmp_path / "sweep.zarr"), whole)
-
-
-def test_a_scheduler_is_reached_by_its_address(points, client, assert_same_arrays, undisturbed):
-    executor = executor_from(client.scheduler.address.replace("tcp://", "dask://"))
-    assert_same_arrays(run_sweep(points, executor=executor, chunk_size=1), undisturbed(points))
-
-
-def test_a_result_is_saved_while_a_dask_client_is_active(client, tmp_path):
-    run = sb.simulate(MODEL, MOTION, tilt=(0.01, 0.0), duration=1.0)
-    with client.as_current():
-        assert dask.base.get_scheduler().__self__ is client
-        loaded = sb.load(run.save(tmp_path / "run.nc"))
-    xr.testing.assert_identical(loaded.data, run.data)
 
 
 @pytest.mark.parametrize("stored", [True, False])
@@ -239,26 +217,6 @@ def test_without_dask_the_remedy_is_told(points, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "distributed", None)
     with pytest.raises(UnsupportedError, match=r'pip install "stylobate\[cluster\]"'):
         run_sweep(points, executor=Dask())
-
-
-def test_a_mistake_in_a_worker_is_told_here(client):
-    class Broken(sb.base_motions.BaseMotion):
-        def derivative(self, time, order):
-            message = "the record is empty"
-            raise RuntimeError(message)
-
-        def peak_horizontal(self, since=0.0):
-            return 0.1
-
-        def vertical_range(self, since=0.0):
-            return 0.0, 0.0
-
-        def directions(self):
-            return ((1.0, 0.0), (0.0, 1.0))
-
-    sweep = Sweep.points(MODEL, Broken(), at={"tilt_x": [0.01, 0.02]}, duration=1.0)
-    with pytest.raises(RuntimeError, match="the record is empty"):
-        run_sweep(sweep, executor=Dask(client=client))
 
 
 def test_an_unfinished_store_opens_with_holes(grid, tmp_path):
