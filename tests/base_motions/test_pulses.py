@@ -99,7 +99,7 @@ def test_the_acceleration_given_is_the_largest(name):
 
 
 @given(data=st.data(), share=st.floats(-0.2, 1.1))
-@settings(max_examples=200)
+@settings(max_examples=80)
 def test_the_bounds_hold_from_any_time_on_and_are_met(data, share):
     pulse = data.draw(
         st.one_of(

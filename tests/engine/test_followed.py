@@ -1,5 +1,7 @@
 """A run followed by kernels with a trace agrees with an independent integration, and to the bit with an ensemble."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from tests.reference import integrated, switched
@@ -52,6 +54,7 @@ def ignored(_steps, _time):
     """Take no notice of a pause."""
 
 
+@cache
 def followed(case, **options):
     model, motion, tilt, rate, duration, _ = CASES[case]
     pauses = []
@@ -60,6 +63,7 @@ def followed(case, **options):
     return run, pauses
 
 
+@cache
 def referred(case, **options):
     model, motion, tilt, rate, duration, _ = CASES[case]
     return integrated(model, motion, tilt=tilt, tilt_rate=rate, duration=duration, rtol=RTOL, **options)
@@ -102,7 +106,7 @@ def assert_alike(model, run, other):
 
 
 @pytest.mark.parametrize("make", [sb.Slender, sb.SlenderRolling, sb.Wobbling, sb.Rolling, sb.PlanarRocking])
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", [*range(3), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(3, 6))])
 def test_runs_at_random_agree_with_an_independent_integration(make, seed):
     random = np.random.default_rng(seed)
     model = make(COLUMN, damping=0.2 * random.random())
@@ -233,6 +237,7 @@ SLIDING = {
 }
 
 
+@cache
 def slid(case):
     model, motion, tilt, rate, turning, duration, _ = SLIDING[case]
     return Followed.of(

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 from tests.reference.forcing import Forcing
@@ -29,6 +29,7 @@ def standing_acceleration(kind, frequency, start_phase, acceleration=C):
 
 
 @pytest.mark.parametrize("kind", ["circular", "straight", "elliptic"])
+@settings(max_examples=30)
 @given(frequency=st.floats(0.05, 40.0), start_phase=st.floats(-7.0, 7.0))
 def test_a_column_at_rest_stays_while_the_acceleration_never_exceeds_c(kind, frequency, start_phase):
     run = sb.simulate(model(0.1), standing_acceleration(kind, frequency, start_phase), duration=100.0)

@@ -109,7 +109,7 @@ LIFTED = [
 
 
 @pytest.mark.parametrize("model", LIFTED, ids=lambda model: model.name)
-@pytest.mark.parametrize("frequency", [2.0, 3.0, 3.1, 4.7])
+@pytest.mark.parametrize("frequency", [3.0, 4.7, *(pytest.param(nu, marks=pytest.mark.slow) for nu in (2.0, 3.1))])
 def test_the_demand_of_a_run_that_lifts_off_is_unbounded_and_no_number_made_of_rounding(model, frequency, tmp_path):
     throw = sb.Harmonic.oblique(acceleration=1.6, angular_frequency=frequency, angle=1.2)
     run = sb.simulate(model, throw, tilt=(0.05, 0.0), tilt_rate=(0.0, 0.03), duration=30.0, friction_coefficient=0.3)
@@ -227,7 +227,7 @@ BELOW_UPLIFT = {
 }
 
 
-@pytest.mark.parametrize("name", BELOW_UPLIFT)
+@pytest.mark.parametrize("name", ["beside a vertical", "pulse", pytest.param("straight", marks=pytest.mark.slow)])
 def test_a_column_that_stands_needs_the_friction_of_a_body_that_moves_with_the_base(name):
     motion, expected = BELOW_UPLIFT[name]
     run = sb.simulate(STOUT, motion, duration=20.0, friction_coefficient=0.9 * expected)

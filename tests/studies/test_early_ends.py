@@ -29,7 +29,10 @@ def ended_early(early, full):
     return ended
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize(
+    "name",
+    ["slender", "rolling", *(pytest.param(one, marks=pytest.mark.slow) for one in ("slender rolling", "wobbling"))],
+)
 def test_a_map_has_the_outcomes_of_full_durations(name):
     over = {"angular_frequency": np.linspace(1.0, 5.0, 20), "acceleration": np.linspace(0.02, 0.3, 20)}
     options = {"over": over, "periods": 250.0, "tilt": (0.03, 0.0)}
@@ -44,8 +47,14 @@ def test_a_map_has_the_outcomes_of_full_durations(name):
         np.testing.assert_allclose(early[variable].values[ended], full[variable].values[ended], rtol=1e-7)
 
 
-@pytest.mark.parametrize("name", ["slender", "wobbling", "rolling"])
-@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize(
+    ("name", "turned"),
+    [
+        *[("slender", True), ("rolling", False)],
+        *[pytest.param("wobbling", turned, marks=pytest.mark.slow) for turned in (False, True)],
+        *[pytest.param(*case, marks=pytest.mark.slow) for case in (("slender", False), ("rolling", True))],
+    ],
+)
 def test_a_basin_has_the_attractors_of_full_durations(name, turned):
     # Clockwise, with another phase at t = 0.
     motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8, sense=-1, start_phase=2.0)

@@ -96,7 +96,10 @@ def test_rocking_is_said_of_an_orbit_that_does_not_travel_round():
     assert (both(near(0.05), rolling(turns=0.0))[1]["outcome"] == Outcome.ROCKING).all()
 
 
-@pytest.mark.parametrize("motion", [None, sb.Pulse.one_sine(acceleration=0.05, angular_frequency=2.0)])
+@pytest.mark.parametrize(
+    "motion",
+    [pytest.param(None, marks=pytest.mark.slow), sb.Pulse.one_sine(acceleration=0.05, angular_frequency=2.0)],
+)
 def test_without_a_period_no_run_is_compared(motion):
     options = {**near(0.2), "duration": 200.0}
     full, early = (sb.simulate_ensemble(MODEL, motion, known_orbits=known, **options) for known in (None, rolling()))

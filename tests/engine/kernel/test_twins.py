@@ -32,7 +32,13 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("case", CASES)
+# Their steps are made of the same functions as those of other cases.
+LIKE_OTHERS = {"slender", "slender rolling", "rolling"}
+
+
+@pytest.mark.parametrize(
+    "case", [pytest.param(case, marks=pytest.mark.slow) if case in LIKE_OTHERS else case for case in CASES]
+)
 def test_steps_have_the_bits_of_plain_python(case, plan_of):
     model, motion, options = CASES[case]
     plan = plan_of(model, motion, **options)
