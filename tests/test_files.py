@@ -211,7 +211,7 @@ def read_only(monkeypatch):
 def test_a_read_only_folder_is_named_with_the_file_asked_for(name, tmp_path):
     with pytest.raises(FileError) as refusal:
         check_writable(None, tmp_path / name, stores=True)
-    assert str(refusal.value) == f"cannot write {tmp_path / name}: {tmp_path} is no folder one can write into"
+    assert str(refusal.value) == f"cannot write {tmp_path / name}: {tmp_path} is not a writable folder"
 
 
 @pytest.mark.usefixtures("read_only")

@@ -98,7 +98,7 @@ def test_simulate_animates_the_run_it_prints(tmp_path, capsys):
         (["simulate", *COLUMN, "--velocity", "1", "2"], ["--velocity must be followed by 3 numbers; got fewer"]),
         (
             ["simulate", *COLUMN, "--velocity", "1", "2", "--duration", "3"],
-            ["--velocity must be followed by 3 numbers; one of them is no number"],
+            ["--velocity must be followed by 3 numbers; one of them is not a number"],
         ),
         (
             ["map", *COLUMN, "--x", "damping", "0.1", "0.2", "2.5"],

@@ -42,7 +42,7 @@ def test_the_table_has_a_row_for_each_level_and_says_how_they_converge(capsys, t
     arguments = [*CASE, "--scaled-to", "0.05", "--scaled-to", "0.2", "--friction-coefficient", "0.05"]
     assert run(["hierarchy", *arguments, "--figure", str(drawn), "--output", str(saved)]) == 0
     printed = capsys.readouterr().out
-    assert "the distance of wobbling from slender goes with c to the power 2.0" in printed
+    assert "the distance of wobbling from slender is proportional to c to the power 2.0" in printed
     assert "rolling: it would slip" in printed
     assert drawn.stat().st_size > 10_000
     assert saved.stat().st_size > 10_000
@@ -129,7 +129,7 @@ def test_demands_and_warnings_are_printed(capsys):
     options = ["--model", "rolling", "--spin-damping", "0.1", "--friction-coefficient", "0.02"]
     assert run(["simulate", *CASE, *options]) == 0
     table = capsys.readouterr().out
-    assert all(text in table for text in ("needs a friction coefficient of", "minimum normal force", "it would slip"))
+    assert all(text in table for text in ("required friction coefficient", "minimum normal force", "it would slip"))
     assert run(["simulate", *CASE, *options, "--json"]) == 0
     printed = told(capsys)
     assert printed["warnings"][0].startswith("it would slip")

@@ -200,7 +200,7 @@ def test_dask_workers_compute_the_same(tmp_path):
         ([*MAP, *MORE, "--x", "acceleration", "nan", "1", "2"], ["map.x: from must be finite, got nan", "must differ"]),
         (
             [*MAP, "--x", "acceleration", "0.1", "one", "2"],
-            ["--x must be followed by NAME FROM TO NUMBER; one of them is no number"],
+            ["--x must be followed by NAME FROM TO NUMBER; one of them is not a number"],
         ),
         ([*MAP, *MORE, "--x", "colour", "0.1", "1", "2"], ["map.x: colour is not known here; known are tilt_x,"]),
         ([*MAP, "--output", "map.csv"], ["--output must end with .nc or .zarr, got 'map.csv'"]),
@@ -218,7 +218,7 @@ def test_dask_workers_compute_the_same(tmp_path):
         ),
         ([*MAP, "--threads", "0"], ["threads must be a whole number of at least 1"]),
         ([*MAP, "--output", "none/map.nc"], ["cannot write none/map.nc"]),
-        ([*MAP, "--output", "none/map.zarr"], ["none is no folder one can write into"]),
+        ([*MAP, "--output", "none/map.zarr"], ["none is not a writable folder"]),
         (["map", "none.nc"], ["cannot read none.nc: No such file or directory"]),
         (["map", "none.zarr"], ["cannot read none.zarr: No such file or directory"]),
         (

@@ -442,7 +442,7 @@ def test_figures_of_an_earlier_report_do_not_stay(found, tmp_path):
 
 
 def test_an_assessment_is_no_single_figure(found):
-    with pytest.raises(sb.errors.ParameterError, match=r"write its report by earthquakes\.assessment_report"):
+    with pytest.raises(sb.errors.ParameterError, match=r"Write its report by earthquakes\.assessment_report"):
         sb.plot(found)
 
 

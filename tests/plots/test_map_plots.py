@@ -112,7 +112,7 @@ def test_runs_that_are_over_no_plane_are_refused():
 
 
 def test_a_map_without_runs_says_so():
-    with pytest.raises(ParameterError, match="a map needs runs, and there are none in"):
+    with pytest.raises(ParameterError, match="a map needs at least one run, got sizes"):
         sb.plot(a_map(np.empty((0, 2)), tilt_x=[], tilt_y=[0.0, 0.1]))
 
 
@@ -138,7 +138,7 @@ def free_basins():
 
 def test_a_map_of_basins_names_and_marks_its_attractors(free_basins):
     figure = sb.plot(free_basins)
-    assert legend_of(figure) == ["at rest  33.3 %", "overturned  66.7 %", "attractors, at the strobe"]
+    assert legend_of(figure) == ["at rest  33.3 %", "overturned  66.7 %", "attractors (stroboscopic samples)"]
     # Overturning has no state.
     np.testing.assert_array_equal(figure.axes[0].lines[0].get_xydata(), [[0.0, 0.0]])
 

@@ -166,7 +166,7 @@ def test_without_damping_stable_is_called_neutrally_stable():
     curves = sb.studies.exact_response(model, line, angular_frequency=(2.9, 3.1), generations=0)
     assert "bold: neutrally stable" in texts(sb.plot(curves).axes[0].get_legend())
     compared = sb.studies.averaging_map(model, line, values=[0.04, 0.05], angular_frequency=[2.9, 3.1])
-    assert texts(sb.plot(compared).legends[0]) == ["neutrally stable, as averaging says"]
+    assert texts(sb.plot(compared).legends[0]) == ["neutrally stable, as averaging predicts"]
 
 
 def test_a_boundary_shows_nothing_outside_the_range_and_says_where_there_is_none():

@@ -1,4 +1,4 @@
-"""The command line: one file a command."""
+"""Command line: one module per command."""
 
 from stylobate.cli.interrupts import interrupted_by_signals
 

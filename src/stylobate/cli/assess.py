@@ -1,4 +1,4 @@
-"""`stylobate assess`: columns under a folder of records, with a report that others can read."""
+"""`stylobate assess`: columns under a folder of records, with a self-contained report."""
 
 import hashlib
 import sys
@@ -36,8 +36,8 @@ def assess(options: Options) -> None:
     """Assess whether columns survive records, and how robust the answer is.
 
     A study is a TOML file: columns, a folder of records, the dissipation at three levels, the friction coefficient.
-    The command writes report.html, which needs no other file and no network; tables, figures, a summary and the
-    numbers. Computed parts are kept: after Ctrl-C the same command continues. Examples:
+    The command writes report.html, which needs no other file and no network; also tables, figures, a summary and the
+    numbers. It stores each computed part: after Ctrl-C the same command continues. Examples:
 
     stylobate assess study.toml
 
@@ -77,12 +77,12 @@ def assess(options: Options) -> None:
 
 @contextmanager
 def _locked(folder: Path) -> Iterator[None]:
-    """Hold the folder while this process writes into it.
+    """Lock the folder while this process writes into it.
 
     Raises
     ------
     FileError
-        If another process holds it.
+        If another process has locked the folder.
     """
     from filelock import FileLock, Timeout  # noqa: PLC0415  as above
 
@@ -142,7 +142,7 @@ def _refuse_folder_of_another(target: Path, title: str) -> None:
         return
     try:
         other = _loaded(earlier).setting["title"]
-    except FileError:  # damaged: written again
+    except FileError:  # damaged: this command writes it again
         return
     if other != title:
         message = f"{target} holds the assessment {other!r}; name another folder with --folder, or remove it"

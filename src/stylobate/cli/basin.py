@@ -1,4 +1,4 @@
-"""`stylobate basin`: which initial conditions lead to which attractor."""
+"""`stylobate basin`: basins of attraction over initial conditions."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -81,7 +81,7 @@ def _with_sample(values: dict[str, Any], options: Options) -> dict[str, Any]:
     sample = options.pick("random")
     ranges = dict(named_range(text) for text in options["over"] or ())
     if sample or table.get("random") is not None:
-        sample |= options.pick("seed")  # nothing is drawn for a grid
+        sample |= options.pick("seed")  # a grid has no seed
     if "random" in sample:
         table = {name: value for name, value in table.items() if name not in ("x", "y")}
     if ranges:
@@ -99,7 +99,7 @@ def _check_names(options: Mapping[str, Any]) -> None:
 
 
 def _labelled(saved: "xr.Dataset", source: Path | None, confidence: float | None) -> "xr.Dataset":
-    """Return saved basins; the runs of a store with the attractor that each has come to."""
+    """Return saved basins; add to the runs of a store the attractor of each."""
     from stylobate.studies.maps.attractor_search import NOT_SETTLED  # noqa: PLC0415
     from stylobate.studies.proportions import fraction_interval  # noqa: PLC0415
 
@@ -111,9 +111,7 @@ def _labelled(saved: "xr.Dataset", source: Path | None, confidence: float | None
         ends = {"fraction_low": ("attractor_index", low), "fraction_high": ("attractor_index", high)}
         return saved.assign(ends).assign_attrs(confidence=confidence)
     if "strobe_tilt" not in saved:
-        message = (
-            f"{source}: runs without stroboscopic samples, which determine no attractors. Show them with stylobate map."
-        )
+        message = f"{source}: runs without stroboscopic samples have no attractors. Show them with stylobate map."
         raise FileError(message)
     setup = config.BasinConfig.of_saved(provenance_of(saved), axes_of(saved)).build()
     share = 0.95 if confidence is None else confidence

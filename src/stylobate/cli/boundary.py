@@ -1,4 +1,4 @@
-"""`stylobate boundary`: the stability boundary of steady rolling, over the frequency and a second parameter."""
+"""`stylobate boundary`: stability boundary of steady rolling over the frequency and a second parameter."""
 
 from typing import TYPE_CHECKING
 
@@ -22,7 +22,7 @@ _ROWS = 9
 
 
 @command(
-    Option("bounds", "its lowest and highest value, SI; needed", tuple[float, float]),
+    Option("bounds", "lowest and highest value of the second parameter, SI; required", tuple[float, float]),
     Option(
         "parameter",
         "second parameter: acceleration (by default), amplitude-y, damping, slenderness",
@@ -41,8 +41,8 @@ _ROWS = 9
 def boundary(options: Options) -> None:
     """Compute the stability boundary of steady rolling over two parameters.
 
-    They are the frequency of the base and a second one. The result holds curves of pitchforks, Neimark–Sacker points
-    and folds, and the critical frequency of theory. Example:
+    The parameters are the frequency of the base and a second one. The result holds curves of pitchforks, Neimark–Sacker
+    points and folds, and the critical frequency of theory. Example:
 
     stylobate boundary --slenderness 0.1 --damping 0.1 --motion straight --acceleration 0.1
     --angular-frequency-range 0.5 6 --bounds 0.02 0.4 --figure boundary.png

@@ -1,4 +1,4 @@
-"""Make a command from its function, the groups of options that it takes, and its own options."""
+"""Commands: made from a function, groups of options, and the command's own options."""
 
 import inspect
 import tomllib
@@ -18,7 +18,7 @@ from stylobate.cli.parts import PARTS, joined
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Argument:
-    """The argument of a command that is no option: a file, or several."""
+    """The positional argument of a command: one or several files."""
 
     text: str
     name: str = "source"
@@ -36,7 +36,7 @@ class Argument:
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """A command: its function, which reads the options, and the declarations of these."""
+    """A command: its function, which reads the options, and the declarations of the options."""
 
     function: Callable[[Options], None]
     argument: Argument | None
@@ -49,7 +49,7 @@ class Command:
         return {option.name: option for option in joined(groups)}
 
     def program(self, name: str, arguments: Sequence[str] = ()) -> Any:
-        """Make the parser of this command for a command line, which may choose classes of a user's own.
+        """Make the parser of this command for a command line, which may choose user-defined classes.
 
         Raises
         ------
@@ -91,7 +91,7 @@ class Command:
 def command(
     *own: Option, argument: Argument | str | None = None, groups: Sequence[Group] = ()
 ) -> Callable[[Callable[[Options], None]], Command]:
-    """Make a function a command: it has these options of its `own`, and those of the groups; a decorator."""
+    """Make a function a command with its `own` options and the options of the groups; a decorator."""
     made = Argument(text=argument) if isinstance(argument, str) else argument
     return lambda function: Command(function, made, own, groups)
 
@@ -118,7 +118,7 @@ def _count(kind: Any) -> int:
 
 
 def _tables(source: Path) -> dict[str, str]:
-    """Read the kinds of model and motion in a file; mistakes in the file are reported when it is read as a whole."""
+    """Read the kinds of model and motion in a file; ignore mistakes, which the full reading of the file reports."""
     try:
         values = tomllib.loads(source.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):

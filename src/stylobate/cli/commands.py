@@ -1,4 +1,4 @@
-"""The commands by name: where each is, and what it does in one line; a module is imported when its command runs."""
+"""Table of commands: name, module and one-line help; a module is imported when its command runs."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
@@ -8,7 +8,7 @@ if TYPE_CHECKING:
 
 
 class Entry(NamedTuple):
-    """A command: its module, its name there, and the first line of its help."""
+    """A command: its module, its name in the module, and the first line of its help."""
 
     module: str
     attribute: str

@@ -1,4 +1,4 @@
-"""Declare the options of commands: each once, in groups that commands take."""
+"""Declarations of the options of commands: each once, in groups that commands share."""
 
 import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -13,7 +13,7 @@ from stylobate.errors import FileError
 from stylobate.quantities import Parameter
 
 MAX_NAMED_KINDS = 3
-"""How many kinds a help text or a remedy lists."""
+"""Maximum number of kinds that a help text or a remedy lists."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,15 +23,15 @@ class Option:
     Parameters
     ----------
     name
-        As in Python; the flag follows from it unless `flag` is another one.
+        Name in Python; the flag is derived from the name unless `flag` is given.
     text
-        What help shows.
+        Help text.
     type
-        Of one value; a tuple for several values, a list for an option that may be repeated, bool for a switch.
+        Type of one value; a tuple for several values, a list for an option that may be repeated, bool for a switch.
     panel
-        The heading of the help below which the option stands.
+        Heading of the option in the help.
     part, number
-        The table of a configuration, such as "motion", and the name there; empty for other options.
+        The table of a configuration, such as "motion", and the name in this table; empty for other options.
     kinds
         The kinds of this part that have the number, as in files.
     """
@@ -71,13 +71,13 @@ class Option:
 
 
 def _several(kind: Any) -> str | None:
-    """Return how the values of an option that takes several are written in help; None for other options."""
+    """Return the metavar of an option that takes several values; None for other options."""
     return " ".join(["NUMBER"] * len(get_args(kind))) if get_origin(kind) is tuple else None
 
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """Options that several commands take; they are made when a command of these is chosen."""
+    """Options that several commands share; they are made when one of these commands is chosen."""
 
     make: Callable[[Chosen], Iterable[Option]]
     left_out: tuple[str, ...] = ()
@@ -89,7 +89,7 @@ class Group:
         return cls(lambda _: [replace(option, panel=panel) for option in options])
 
     def without(self, *names: str) -> "Group":
-        """Return this group but for the options of these names."""
+        """Return this group without the options of these names."""
         return replace(self, left_out=(*self.left_out, *names))
 
     def reduced_to(self, *names: str) -> "Group":
@@ -124,7 +124,7 @@ def type_of(parameter: Parameter) -> Any:
 
 
 def text_of(parameter: Parameter, kinds: Sequence[str] = ()) -> str:
-    """Describe an option from its declaration: text, unit, choices, default, and the only `kinds` that have it."""
+    """Describe an option from its declaration: text, unit, choices, default, and the `kinds` that have it."""
     quantity, default = parameter.quantity, parameter.default
     unit = quantity.unit and f"[{quantity.unit}]"
     text = " ".join(part for part in (quantity.text, quantity.symbol, unit) if part)
@@ -132,14 +132,14 @@ def text_of(parameter: Parameter, kinds: Sequence[str] = ()) -> str:
     if words:
         text += f": {listed(words)}"
     if kinds:
-        text += f"; only of {listed(kinds, 'and')}"
+        text += f"; only for {listed(kinds, 'and')}"
     if not (parameter.required or default is None or default in (0.0, (0.0,) * quantity.components)):
         text += f"; {written(default) if isinstance(default, str) else f'{default:g}'} by default"
     return text
 
 
 def written(name: str) -> str:
-    """Write the name of an option or a kind as on the command line; a user's own class as it is.
+    """Write the name of an option or a kind as on the command line; leave user-defined classes unchanged.
 
     >>> written("half_sine"), written("my_models.py:Tethered")
     ('half-sine', 'my_models.py:Tethered')
@@ -183,7 +183,7 @@ UNITS = Option("units", "unit of files that do not state it: g, m/s2 or cm/s2", 
 STEP = Option("step", "time step of files that do not state it [s]")
 EARLY_END = Group.of(
     "Run",
-    Option("end_converged", "end runs early that have converged to steady rolling; circular motion only", bool),
+    Option("end_converged", "end a run early once it has converged to steady rolling; circular motion only", bool),
 )
 SINGLE = Option("single", "accept records of one component without a warning", bool)
 SAMPLE = 'record that comes with the package: "el centro 1940", or "el centro 1940 corrected"'

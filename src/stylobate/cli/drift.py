@@ -1,4 +1,4 @@
-"""`stylobate drift`: the mean transport velocity of a column on a vibrating base."""
+"""`stylobate drift`: mean transport velocity of a column on a vibrating base."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -20,7 +20,7 @@ from stylobate.errors import FileError, ParameterError
 if TYPE_CHECKING:
     import xarray as xr
 
-# Tables longer than this show the fastest runs only.
+# Maximum rows of a table; longer tables show only the fastest runs.
 _ROWS, _FASTEST = 40, 12
 
 
@@ -78,7 +78,7 @@ def _prepared(saved: "xr.Dataset | None", options: Options) -> "tuple[Callable[.
 
 
 def _with_speeds(saved: "xr.Dataset", source: Path | None) -> "xr.Dataset":
-    """Return a saved drift; the runs of a store with speeds and throw numbers."""
+    """Return a saved drift; add speeds and throw numbers to the runs of a store."""
     from stylobate.conveying.transport import walked  # noqa: PLC0415
 
     if "transport_speed" in saved:

@@ -1,4 +1,4 @@
-"""`stylobate fragility`: the probability that records of an intensity overturn the column, and its annual rate."""
+"""`stylobate fragility`: probability of overturning versus intensity, and its annual rate."""
 
 import json
 from collections.abc import Mapping
@@ -140,7 +140,7 @@ def fragility(options: Options) -> None:
 
 
 _OF_HAZARD = ("hazard", "hazard_units", "hazard_component", "hazard_site")
-# What changes the fits and not the runs.
+# Options that change the fits and not the runs.
 _OF_FITS = ("counting", "confidence", "resamples", *_OF_HAZARD, "years", "runs_figure")
 
 
@@ -173,7 +173,7 @@ def _described(source: Path | None) -> dict[str, Any]:
 
 
 def _overlay(described: Mapping[str, Any], options: Options) -> dict[str, Any]:
-    """Return the values `described` with the options laid over them."""
+    """Return the values `described`, overridden by the options."""
     values = overlay(described, options, earthquakes.config.FragilityConfig.model_fields)
     if not values.get("motion"):
         values.pop("motion", None)
@@ -189,7 +189,7 @@ def _records(described: Any, options: Options) -> Any:
     if options["sample_records"]:
         table["samples"] = tuple(options["sample_records"])
     source = table.get("source")
-    if source is not None:  # samples know their units
+    if source is not None:  # sample records state their units
         table |= options.pick("units", "step", "single")
     if isinstance(source, str):
         table["source"] = str(Path(source).absolute())
@@ -229,7 +229,7 @@ def _hazard(described: Any, options: Options) -> dict[str, Any]:
     own |= {name: options[f"hazard_{name}"] for name in ("units", "component") if options[f"hazard_{name}"] is not None}
     if options["hazard_site"] is not None:
         own["site"] = _site(options["hazard_site"])
-    # Another file is another curve: the description of the first one is not about it.
+    # Another file is another curve: the description of the first curve does not apply.
     kept = dict(described) if isinstance(described, Mapping) and options["hazard"] is None else {}
     return {"hazard": {**kept, **own}} if own else {}
 

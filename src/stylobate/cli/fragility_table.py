@@ -1,4 +1,4 @@
-"""The results of `stylobate fragility`: a table of fits, or the same as JSON."""
+"""Output of `stylobate fragility`: a table of fits, or the same as JSON."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def summary(
     runs: "xr.Dataset", fits: "xr.Dataset", parts: "xr.Dataset | None", rates: "xr.Dataset | None"
 ) -> dict[str, Any]:
-    """Return runs, fits, parts of the dispersion and annual rates as plain values, for JSON."""
+    """Convert runs, fits, parts of the dispersion and annual rates to plain values for JSON."""
     return {
         "kind": "fragility",
         "intensity": {
@@ -64,7 +64,7 @@ def _row(fits: "xr.Dataset", rates: "xr.Dataset | None", place: int) -> dict[str
 
 
 def print_fits(runs: "xr.Dataset", fits: "xr.Dataset", parts: "xr.Dataset | None", rates: "xr.Dataset | None") -> None:
-    """Print a row for each limit state, and remarks that readers of the table need."""
+    """Print a row for each limit state, and remarks on the table."""
     unit = _UNITS.get(str(fits["median"].attrs.get("units")), "")
     header = ["limit state", f"median{unit}", "dispersion", "reached", "not monotonic"]
     if rates is not None:
@@ -118,7 +118,7 @@ def _rate_cells(row: Mapping[str, Any]) -> list[str]:
 
 
 def _percent(probability: float) -> str:
-    """Return a probability in percent, of two digits; one near certainty is no certainty.
+    """Return a probability in percent with two digits, and "> 99.9 %" near certainty.
 
     >>> _percent(0.036), _percent(0.5), _percent(0.9999), _percent(1.0)
     ('3.6 %', '50 %', '> 99.9 %', '> 99.9 %')
@@ -138,7 +138,7 @@ def _of_hazard(rates: "xr.Dataset") -> list[str]:
 
 
 def _remarks_on_rates(rows: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Describe how much of the annual rates lies beyond the hazard curve, and why a rate is withheld."""
+    """Describe the fraction of the annual rates beyond the hazard curve, and the reasons for withheld rates."""
     shares = [row["share_beyond"] for row in rows if math.isfinite(row["annual_rate"])]
     lines = [f"annual rates: up to {100.0 * max(shares):.0f} % from beyond the hazard curve"] if shares else []
     for row in rows:

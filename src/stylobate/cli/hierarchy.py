@@ -1,4 +1,4 @@
-"""`stylobate hierarchy`: one case by all models of the hierarchy."""
+"""`stylobate hierarchy`: comparison of all models of the hierarchy in one case."""
 
 import math
 from typing import TYPE_CHECKING, Any
@@ -93,7 +93,7 @@ def _summary(result: "xr.Dataset") -> dict[str, Any]:
 
 _ATTRIBUTES = ("reference", "column_slenderness", "provenance")
 
-# Samples of the histories in a figure, unless --samples says how many.
+# Samples of the histories in a figure, unless --samples states another number.
 _DRAWN = 4000
 
 
@@ -105,17 +105,17 @@ def _print(result: "xr.Dataset") -> None:
         c = float(at["slenderness"]) if several else float(result.attrs["column_slenderness"])
         rows += [_row(at.sel(model=model), c, several=several) for model in result["model"].to_numpy()]
     header = (*(("c",) if several else ()), *_HEADER)
-    from_where = f"distance: the largest of the tilt vector from that of {result.attrs['reference']}"
-    print_table(f"tilts over c; late: the last fifth of the run; {from_where}", rows, header)
+    distance = f"distance: maximum deviation of the tilt vector from {result.attrs['reference']}"
+    print_table(f"tilts over c; late: the last fifth of the run; {distance}", rows, header)
     if "deviation_order" in result:
         for first, second in (("slender", "wobbling"), ("slender rolling", "rolling"), ("slender", "rolling")):
             order = float(result["deviation_order"].sel(model=first, other_model=second))
-            print(f"the distance of {second} from {first} goes with c to the power {order:.2f}")
+            print(f"the distance of {second} from {first} is proportional to c to the power {order:.2f}")
     for model, warnings in _warnings(result):
         print(f"{model}: {warnings}")
 
 
-_HEADER = ("model", "outcome", "top tilt", "late mean", "spin rad/s", "friction", "pivoting", "least N", "distance")
+_HEADER = ("model", "outcome", "peak tilt", "late mean", "spin rad/s", "friction", "pivoting", "min N", "distance")
 
 
 def _row(at: "xr.Dataset", c: float, *, several: bool) -> list[str]:
@@ -142,7 +142,7 @@ def _cell(value: float) -> str:
 
 
 def _warnings(result: "xr.Dataset") -> list[tuple[str, str]]:
-    """Return the models with warnings; over several slendernesses those of the largest."""
+    """Return the models with warnings; over several slendernesses, the warnings at the largest."""
     shown = result
     if "slenderness" in result.dims:
         shown = result.isel(slenderness=int(np.argmax(result["slenderness"].to_numpy())))

@@ -1,7 +1,7 @@
-"""Ctrl-C and SIGTERM: they raise KeyboardInterrupt, so that what is done is kept.
+"""Ctrl-C and SIGTERM: both raise KeyboardInterrupt, so that completed work is saved.
 
-During an import they end the program with one line instead, since nothing is lost yet: Python raises KeyboardInterrupt
-wherever the program is, and an import may catch it, or end in half a module.
+During an import both end the program with one line instead, since no work is lost yet: Python raises
+KeyboardInterrupt at any point of the program, and an import may catch it, or leave a module half imported.
 """
 
 import os

@@ -1,4 +1,4 @@
-"""The program `stylobate`: it finds the command, runs it, and reports mistakes one to a line."""
+"""The program `stylobate`: find the command, run it, and report mistakes one per line."""
 
 import difflib
 import shutil
@@ -64,7 +64,7 @@ def _run(arguments: Sequence[str]) -> int:
 
 
 def _run_command(name: str, arguments: Sequence[str]) -> int:
-    import typer  # noqa: PLC0415  the list of commands needs no parser
+    import typer  # noqa: PLC0415  not needed for the list of commands
 
     from stylobate.cli.usage import joined_ranges, usage_error  # noqa: PLC0415
 
@@ -81,7 +81,7 @@ def _run_command(name: str, arguments: Sequence[str]) -> int:
         return _report(error.problems)
     except StylobateError as error:
         return _report([str(error)])
-    except OSError as error:  # a name that no system accepts, or a disk that fails
+    except OSError as error:  # a file name that the system rejects, or a disk failure
         reason = error.strerror or str(error)
         return _report(
             [f"{error.filename}: cannot be used ({reason}). Name another one." if error.filename else reason]
@@ -95,7 +95,7 @@ def _run_command(name: str, arguments: Sequence[str]) -> int:
 
 def _report(problems: Sequence[str]) -> int:
     for problem in problems:
-        line = problem.replace("\n", "\\n")  # of a name that holds one
+        line = problem.replace("\n", "\\n")  # names may contain line ends
         print(f"stylobate: {line}", file=sys.stderr)
     return _BAD_INPUT
 

@@ -1,4 +1,4 @@
-"""Compute many runs with progress, to the end or to Ctrl-C, and write them: for `map`, `basin` and other studies."""
+"""Compute many runs with progress, to the end or to Ctrl-C, and write them: `map`, `basin` and other studies."""
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -23,26 +23,26 @@ if TYPE_CHECKING:
     from stylobate.config import Setup
     from stylobate.studies import Dask, Threads
 
-# Options that do not change what is computed.
+# Options that do not change the runs.
 _HOW = ("source", "figure", "output", "as_json", "resume", "executor", "threads")
 
 
 def is_to_compute(saved: "xr.Dataset | None", options: Options, *, shown_with: Sequence[str] = ("confidence",)) -> bool:
-    """Return whether there is something to compute: `saved` results are only shown unless options change them.
+    """Return whether there are runs to compute: `saved` results are only shown unless options change them.
 
     Parameters
     ----------
     saved
         The results, or None.
     options
-        Of the command.
+        Options of the command.
     shown_with
-        Names of options that change what is shown of saved results, and not the runs.
+        Names of options that change the output of saved results, and not the runs.
 
     Raises
     ------
     ConfigError
-        If results are only shown and an option says how to compute them.
+        If results are only shown and an option concerns their computation.
     """
     changes = any(name not in (*_HOW, *shown_with) for name in options.flags)
     if saved is None or changes or options["resume"] or _is_store(options["output"]):
@@ -53,7 +53,7 @@ def is_to_compute(saved: "xr.Dataset | None", options: Options, *, shown_with: S
 
 
 def check_outputs(options: Options) -> None:
-    """Raise an error now for an output that could not be written when the work is done; see `check_writable`."""
+    """Raise an error before the computation for an output that is not writable; see `check_writable`."""
     check_writable(options["figure"], options["output"], stores=True)
 
 
@@ -69,15 +69,15 @@ def run_study(
     Parameters
     ----------
     options
-        Of the command.
+        Options of the command.
     what
         Name of the study in its progress.
     saved
         The saved study, or None.
     show_saved
-        Completes the saved study.
+        Function that completes the saved study.
     prepare
-        Returns the function of the study, and its arguments as a setup.
+        Function that returns the function of the study, and its arguments as a setup.
 
     Returns
     -------
@@ -95,14 +95,14 @@ def run_study(
 def study_values(
     saved: "xr.Dataset | None", options: Options, kind: Any, usual: Mapping[str, Any] | None = None, **of_saved: Any
 ) -> dict[str, Any]:
-    """Lay the options over the values of a file or of a saved study.
+    """Override the values of a file or of a saved study by the options.
 
     Parameters
     ----------
     saved
         The saved study, or None.
     options
-        Of the command.
+        Options of the command.
     kind
         Class of the configuration.
     usual
@@ -131,7 +131,7 @@ def finish(
 
 
 def check_axes(section: str, setup: "Setup") -> None:
-    """Raise ParameterError for an impossible quantity along x or y, or value of it; the message names its place."""
+    """Raise ParameterError for an impossible quantity or value along x or y; the message names the axis."""
     from stylobate.studies.sweeps.quantities import check_quantities, checked_values  # noqa: PLC0415
 
     for place, (name, values) in zip("xy", setup.options["over"].items(), strict=False):
@@ -147,9 +147,9 @@ def computed(
     Raises
     ------
     StylobateError
-        If the options contradict each other, nothing uses one of them, the store cannot be used, or the study refuses.
+        If the options contradict each other, an option is unused, or the store or an argument is invalid.
     typer.Exit
-        After Ctrl-C before any run was done: there is nothing to write.
+        After Ctrl-C before the first run is complete: there is nothing to write.
     """
     store, resume = _store(options), options["resume"]
     executor = _executor(options["executor"], options["threads"])
@@ -176,7 +176,7 @@ def computed(
 
 
 def save(result: "xr.Dataset", output: Path) -> None:
-    """Write a result into a netCDF file; a store holds it already."""
+    """Write a result into a netCDF file; a store already holds its result."""
     if not _is_store(output):
         from stylobate.results import write_netcdf  # noqa: PLC0415  heavy imports wait until they are needed
 
@@ -184,7 +184,7 @@ def save(result: "xr.Dataset", output: Path) -> None:
 
 
 def end(result: "xr.Dataset", options: Options, *, complete: bool) -> None:
-    """End the command with status 130 if it was interrupted, and report how many runs are done."""
+    """End the command with status 130 if it was interrupted, and report the number of completed runs."""
     if complete:
         return
     store = _store(options)

@@ -1,4 +1,4 @@
-"""`stylobate map`: outcomes of the column over two parameters."""
+"""`stylobate map`: overturning map, the outcomes of the column over two parameters."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -60,7 +60,7 @@ def _summary(result: "xr.Dataset") -> dict[str, Any]:
     return study_summary(result, outcomes=outcomes, uncertain=int(result["uncertain"].sum()))
 
 
-# What the counts of each kind of map are over.
+# Dimension of the counts of each kind of map.
 _NAMES = {"overturning map": "outcome_name", "contact map": "class_name"}
 
 

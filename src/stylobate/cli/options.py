@@ -1,4 +1,4 @@
-"""The options that a command line states, and which of them the command has used."""
+"""Options on a command line, with a record of the options that the command has used."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -18,7 +18,7 @@ _USED_BY_ALL = ("source", "as_json")
 
 @dataclass(frozen=True, slots=True)
 class Options(Mapping[str, Any]):
-    """All options of a command by name; a command uses an option by reading its value.
+    """All options of a command by name; reading the value of an option marks it as used.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ class Options(Mapping[str, Any]):
     by_name
         The value of each option; the default of each option that is not stated.
     flags
-        How each option that is stated is written, by name.
+        The flag of each stated option as the user wrote it, by name.
     declared
         The declarations of all options, by name.
     chosen
@@ -59,7 +59,7 @@ class Options(Mapping[str, Any]):
         return cls(command, values, flags, declared, chosen)
 
     def __getitem__(self, name: str) -> Any:
-        """Return the value of an option, which is used then."""
+        """Return the value of an option and mark the option as used."""
         value = self.by_name[name]
         self._used.add(name)
         return value
@@ -78,26 +78,26 @@ class Options(Mapping[str, Any]):
         return [one for one in declared if self.by_name.get(one.name) is not None]
 
     def pick(self, *names: str) -> dict[str, Any]:
-        """Return the values of those options of these names that have one."""
+        """Return the values of the options of these names, without options that have no value."""
         return {name: self[name] for name in names if self.by_name.get(name) is not None}
 
     def use(self, *names: str) -> None:
-        """Note that the command uses the options of these names."""
+        """Mark the options of these names as used."""
         self._used.update(names)
 
     def without(self, *names: str) -> Self:
-        """Return the options but for these; options that are used here are used there."""
+        """Return the options without these; both objects share the record of used options."""
         return replace(self, by_name={name: value for name, value in self.by_name.items() if name not in names})
 
     def refuse_unused(self, because: str = "") -> None:
-        """Raise ConfigError, one line each, for options that are stated and that nothing has used."""
+        """Raise ConfigError with one line for each stated option that the command has not used."""
         unused = [name for name in self.flags if name not in self._used]
         if unused:
             reason = because and f" {because}"
             raise ConfigError([self.refusal(name, f"{self.command} does not use it{reason}") for name in unused])
 
     def refusal(self, name: str, problem: str, remedy: str = "Remove it.") -> str:
-        """Write the line that refuses an option."""
+        """Write the error line for an option."""
         self._used.add(name)
         value = self.by_name[name]
         got = " ".join(map(str, value)) if isinstance(value, (tuple, list)) else repr(value)
@@ -105,7 +105,7 @@ class Options(Mapping[str, Any]):
         return f"{self.flags.get(name, name)}: {problem}{got}. {remedy}"
 
     def refusal_by_kind(self, option: Option, noun: str, kind: str) -> str:
-        """Write the line that refuses a number which this kind of column, model or motion does not have."""
+        """Write the error line for a number that this kind of column, model or motion does not have."""
         chooser = next((one for one in self.declared.values() if one.part == option.part and one.number in _TAGS), None)
         offered = [one for one in option.kinds if chooser and one in chooser.kinds][:MAX_NAMED_KINDS]
         remedy = f"Remove it, or choose --{written(chooser.name)} {listed(offered)}." if chooser and offered else ""

@@ -1,4 +1,4 @@
-"""What commands print and write: tables and JSON on stdout, figures and data into files."""
+"""Output of commands: tables and JSON on stdout, figures and data in files."""
 
 import json
 import math
@@ -28,7 +28,7 @@ def print_json(values: Any) -> None:
 
 
 def print_table(title: str, rows: Sequence[Sequence[str]], header: Sequence[str] | None = None) -> None:
-    """Print `rows` as a table, on a terminal as wide as it is, and below one with a header its title."""
+    """Print `rows` as a table with the width of the terminal; a table with a header has its title below."""
     from rich.console import Console  # noqa: PLC0415  only tables need it
     from rich.table import Table  # noqa: PLC0415
 
@@ -56,15 +56,15 @@ def deliver(
     Parameters
     ----------
     result
-        Of a run or a study.
+        A run or the result of a study.
     options
-        Of the command: output, figure, as_json.
+        Options of the command: output, figure, as_json.
     save
-        Writes the result into the file `output`.
+        Function that writes the result into the file `output`.
     summary
-        Makes the plain values that are printed as JSON.
+        Function that returns plain values for JSON.
     show
-        Prints a table.
+        Function that prints a table.
     """
     from stylobate import plots  # noqa: PLC0415  only figures need it
 
@@ -79,23 +79,23 @@ def deliver(
 
 
 def check_writable(figure: Path | None, output: Path | None = None, *, stores: bool = False) -> None:
-    """Raise an error now for a path that could not be written when the work is done.
+    """Raise an error before the computation for a path that is not writable.
 
     Parameters
     ----------
     figure
         A file whose ending names a format for figures.
     output
-        The data: a netCDF file, or a store where there are `stores`.
+        File of the data: netCDF, or a store if `stores` is true.
     stores
-        Whether there are.
+        Whether the command supports stores.
 
     Raises
     ------
     ParameterError
-        If an ending is another than that of the format.
+        If the ending is not one of a supported format.
     FileError
-        If there is a folder in its place, or none in which it could be.
+        If the path is a folder, or its parent folder is missing.
     """
     if figure is not None and figure.suffix.lower() not in FIGURES:
         message = f"cannot draw into {figure}: --figure must end with {', '.join(FIGURES[:-1])} or {FIGURES[-1]}"
@@ -105,7 +105,7 @@ def check_writable(figure: Path | None, output: Path | None = None, *, stores: b
         if output.suffix not in endings:
             message = f"--output must end with {' or '.join(endings)}, got {str(output)!r}"
             raise ParameterError(message)
-        if output.suffix == STORE and output.is_dir():  # to be continued; if it is complete, nothing is written
+        if output.suffix == STORE and output.is_dir():  # to continue; nothing is written if the store is complete
             output = None
     for path in (figure, output):
         if path is not None:
@@ -113,14 +113,14 @@ def check_writable(figure: Path | None, output: Path | None = None, *, stores: b
 
 
 def check_animation(path: Path, speed: float | None) -> None:
-    """Raise an error now for an animation that could not be made when the run is done.
+    """Raise an error before the run for an animation that cannot be made.
 
     Raises
     ------
     ParameterError
-        If the suffix is none of an animation, or the speed is not positive.
+        If the suffix is not .gif, .mp4 or .html, or the speed is not positive.
     FileError
-        If there is a folder in the place of the file, or none in which it could be.
+        If the path is a folder, or its parent folder is missing.
     """
     from stylobate.plots.animation.animation import checked_path  # noqa: PLC0415  only animations need it
 
@@ -130,10 +130,10 @@ def check_animation(path: Path, speed: float | None) -> None:
 
 
 def check_place(path: Path) -> None:
-    """Raise FileError if there is a folder in the place of this file, or none in which it could be."""
+    """Raise FileError if the path is a folder, or its parent folder is missing or not writable."""
     folder = path.parent
     if path.is_dir() or not folder.is_dir() or not os.access(path if path.exists() else folder, os.W_OK):
-        reason = "it is a folder" if path.is_dir() else f"{folder} is no folder one can write into"
+        reason = "it is a folder" if path.is_dir() else f"{folder} is not a writable folder"
         message = f"cannot write {path}: {reason}"
         raise FileError(message)
 
@@ -144,7 +144,7 @@ def save_figure(figure: "Figure", path: Path) -> None:
     Raises
     ------
     FileError
-        If it cannot be written or the ending is no format for figures.
+        If the file cannot be written, or its ending is not a format for figures.
     """
     drawn = BytesIO()
     try:

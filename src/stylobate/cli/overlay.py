@@ -1,4 +1,4 @@
-"""Lay the options of a command line over the values of a file: same names, options win."""
+"""Overlay of options on a file: options override values of the same names."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -12,16 +12,16 @@ _TABLES = ("column", "model", "motion", "records")
 
 
 def overlay(values: Mapping[str, Any], options: Options, fields: Iterable[str]) -> dict[str, Any]:
-    """Lay the options over the values of a file.
+    """Override the values of a file by the options.
 
     Parameters
     ----------
     values
-        As read from a TOML file, or nothing.
+        Values from a TOML file, or empty.
     options
         All options of the command.
     fields
-        Names at the top of the configuration: other options of the run are not read.
+        Names at the top level of the configuration; other options of the run are ignored.
 
     Raises
     ------
@@ -36,12 +36,12 @@ def overlay(values: Mapping[str, Any], options: Options, fields: Iterable[str]) 
     chosen = options.pick(*(name for name in fields if name not in of_parts))
     for name, other in (("duration", "periods"), ("periods", "duration")):
         if name in chosen and other not in chosen:
-            result.pop(other, None)  # one of them states the duration
+            result.pop(other, None)  # either states the duration
     return result | chosen
 
 
 def merge(values: dict[str, Any], name: str, options: Mapping[str, Any], tag: str = "") -> None:
-    """Lay options over the table `name` of `values`; another kind, at the key `tag`, replaces the table."""
+    """Override the table `name` of `values` by options; another kind, at the key `tag`, replaces the table."""
     table = values.get(name, {})
     if not isinstance(table, Mapping):
         return
@@ -52,7 +52,7 @@ def merge(values: dict[str, Any], name: str, options: Mapping[str, Any], tag: st
 
 
 def with_axes(values: Mapping[str, Any], options: Options, section: str) -> dict[str, Any]:
-    """Lay the options x, y, x_spacing and y_spacing over the axes in the table `section` of `values`."""
+    """Override the axes in the table `section` of `values` by the options x, y, x_spacing and y_spacing."""
     result, table = dict(values), values.get(section, {})
     if not isinstance(table, Mapping):
         return result
@@ -83,8 +83,8 @@ def _numbers(
 ) -> tuple[dict[str, Any], list[str]]:
     """Return the stated numbers of a part, and the names of their options.
 
-    An option that this kind does not use is one more line in `problems`, unless a run has a number of that name in
-    its `fields`. Without a kind, or with one that does not exist, all are kept: the configuration reports that.
+    An option that this kind does not use adds a line to `problems`, unless a run has a number of that name in its
+    `fields`. If the kind is missing or unknown, all numbers are kept, and the configuration reports the mistake.
     """
     numbers, names = dict[str, Any](), list[str]()
     known = kind in part.kinds or part.table in options.chosen.classes
@@ -102,7 +102,7 @@ def _numbers(
 
 
 def _column(values: dict[str, Any], options: Options, problems: list[str]) -> list[str]:
-    """Merge the column; options may not change the shape that a file has unless --shape states it."""
+    """Merge the column; options may change the shape of a file only if --shape states it."""
     from stylobate.config.columns import implied_shape  # noqa: PLC0415  heavy imports wait until the options are read
 
     part, stated = PARTS["column"], options.stated("column")
@@ -126,7 +126,7 @@ def _column(values: dict[str, Any], options: Options, problems: list[str]) -> li
 
 
 def _model(values: dict[str, Any], options: Options, fields: Iterable[str], problems: list[str]) -> list[str]:
-    """Merge the model; another kind than that of the file keeps the numbers there that it has."""
+    """Merge the model; a kind that differs from the kind in the file keeps the numbers that both have."""
     part, table = PARTS["model"], values.get("model", {})
     kind = None
     if "model" in options.declared and options.declared["model"].part:
@@ -147,7 +147,7 @@ def _kept(table: Mapping[str, Any], kind: str, options: Options) -> dict[str, An
 
 
 def _motion(values: dict[str, Any], options: Options, problems: list[str]) -> list[str]:
-    """Merge the base motion; another kind than that of the file replaces it.
+    """Merge the base motion; a kind that differs from the kind in the file replaces the motion.
 
     Raises
     ------
@@ -176,7 +176,7 @@ def _motion(values: dict[str, Any], options: Options, problems: list[str]) -> li
 
 
 def _record(table: Mapping[str, Any], options: Options) -> dict[str, Any]:
-    """Return the options of a record; only files can lack a component."""
+    """Return the options of a record; only a record from files can lack a component."""
     if "record" not in options.declared:
         return {}
     stated = options.pick("units", "step", "scale", "rotation", "tail")

@@ -1,4 +1,4 @@
-"""The kinds of model and base motion that a command line chooses, those of a user's own by their place among them."""
+"""Kinds of model and base motion that a command line chooses, including user-defined classes by their file."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -13,9 +13,9 @@ class Chosen:
     Parameters
     ----------
     kinds
-        By part, "model" or "motion"; a part whose kind is not chosen is missing.
+        Kinds by part, "model" or "motion"; a part without a chosen kind is missing.
     classes
-        The classes of a user's own among them, by part.
+        User-defined classes among these kinds, by part.
     """
 
     kinds: Mapping[str, str] = field(default_factory=dict)
@@ -23,12 +23,12 @@ class Chosen:
 
     @classmethod
     def of(cls, kinds: Mapping[str, str], folder: Path = Path()) -> "Chosen":
-        """Load the classes among these kinds, such as "mine.py:Tethered"; their files are relative to `folder`.
+        """Load user-defined classes among these kinds, such as "mine.py:Tethered"; paths are relative to `folder`.
 
         Raises
         ------
         ParameterError
-            If a place holds no such class.
+            If a file has no such class.
         """
         if not any(":" in kind for kind in kinds.values()):
             return cls(kinds)

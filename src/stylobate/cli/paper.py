@@ -1,4 +1,4 @@
-"""`stylobate paper`: the source paper reproduced, checked and corrected."""
+"""`stylobate paper`: reproduction, check and correction of the source paper."""
 
 import os
 from pathlib import Path
@@ -24,7 +24,7 @@ def paper(options: Options) -> None:
     verdict on every claim. It takes about a minute on two cores, and ends with status 1 if a claim could not be
     confirmed.
 
-    The folder keeps each finished section: after Ctrl-C the same command computes only the others.
+    The folder stores each finished section: after Ctrl-C the same command computes only the other sections.
     """
     from stylobate.paper import check_paper, paper_report  # noqa: PLC0415  heavy imports wait until they are used
     from stylobate.results import Verdict  # noqa: PLC0415

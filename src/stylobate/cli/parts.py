@@ -1,4 +1,4 @@
-"""Columns, models and base motions: their kinds, and the options made from the declarations of these."""
+"""Columns, models and base motions: their kinds, and the options from the declarations of these kinds."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -10,9 +10,9 @@ from stylobate.cli.own_classes import Chosen
 from stylobate.kinds import loaded
 from stylobate.quantities import Parameter, parameters_of
 
-# Two numbers of these names have one option: the model takes it if it has the number, the run otherwise.
+# Two numbers of these names share one option: the model uses the option if it has the number, otherwise the run.
 _OF_MODEL_OR_RUN = ("friction_coefficient",)
-# --velocity is that of the column at the start.
+# --velocity is the initial velocity of the column.
 _RENAMED = {("motion", "velocity"): "pulse_velocity"}
 
 
@@ -23,15 +23,15 @@ class Part:
     Parameters
     ----------
     table
-        Its name in a file, such as "column".
+        Name of the table in a file, such as "column".
     tag
         The key in this table that chooses the kind.
     flag
-        The option that chooses it, without hyphens.
+        The option that chooses the kind, without hyphens.
     noun
-        As in messages.
+        Name of the part in messages.
     place
-        Where the class or constructor of each kind is registered; imported when it is needed.
+        Module and name of the registry of classes or constructors; imported on first use.
     """
 
     table: str
@@ -60,7 +60,7 @@ def _motions_by(function: str) -> tuple[str, ...]:
 
 
 kinds_in_files = partial(_motions_by, "composite_kinds")
-"""Returns the kinds of base motion that consist of others: no options state their numbers."""
+"""Returns the kinds of base motion that combine others: no options state their numbers."""
 
 PARTS = {
     "column": Part("column", "shape", "shape", "column shape", "stylobate.column:SHAPES"),
@@ -77,7 +77,7 @@ def part_group(
     left_out: tuple[str, ...] = (),
     default: str = "",
 ) -> Group:
-    """Make the options of a part: one that chooses the kind, and those of the numbers.
+    """Make the options of a part: one for the kind, and one for each number.
 
     Parameters
     ----------
@@ -86,9 +86,9 @@ def part_group(
     panel
         Heading of the help.
     kinds
-        Gives the kinds that a command offers; all by default, but for those in `left_out`.
+        Function that returns the kinds of a command; by default all kinds except `left_out`.
     default
-        What help shows behind the kinds.
+        Text after the kinds in the help.
     """
 
     def made(chosen: Chosen) -> Iterable[Option]:
@@ -115,7 +115,7 @@ def part_group(
 def _option(
     part: Part, number: str, having: Mapping[str, Parameter], chosen: str, panel: str, only: tuple[str, ...]
 ) -> Option:
-    """Make the option of a number that some kinds have; it follows the declaration of the `chosen` kind, if any."""
+    """Make the option of a number of some kinds, from the declaration of the `chosen` kind, if any."""
     parameter = having.get(chosen) or next(iter(having.values()))
     types = {type_of(one) for one in having.values() if one.quantity.components == parameter.quantity.components}
     return Option(
@@ -145,7 +145,7 @@ HORIZONTAL_MOTION = part_group(
 
 
 def joined(groups: Iterable[Iterable[Option]]) -> list[Option]:
-    """Join the options of groups; the name of a number that another option has gets its part before it."""
+    """Join the options of groups; a number with the name of another option gets its part as a prefix."""
     result: dict[str, Option] = {}
     for option in (one for group in groups for one in group):
         name = option.name

@@ -1,4 +1,4 @@
-"""Progress of long work on stderr: a line that moves on a terminal, and the warnings of the library."""
+"""Progress of long computations on stderr: a progress bar on a terminal, and the warnings of the library."""
 
 import logging
 import sys
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def runs_done(what: str) -> Iterator[Callable[[int, int], None]]:
     """Yield a function that shows completed runs and all runs, with their rate and the remaining time.
 
-    If stderr is no terminal, only warnings are printed, one to a line.
+    If stderr is not a terminal, only warnings are printed, one per line.
     """
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn  # noqa: PLC0415
 
@@ -34,7 +34,7 @@ def runs_done(what: str) -> Iterator[Callable[[int, int], None]]:
 def parts_done() -> Iterator[Callable[[str, int, int], None]]:
     """Yield a function that shows the current part of an assessment, and the fraction that is complete.
 
-    If stderr is no terminal, each part is a line.
+    If stderr is not a terminal, each part is a line.
     """
     from rich.progress import BarColumn, TaskProgressColumn, TimeRemainingColumn  # noqa: PLC0415
 
@@ -90,7 +90,7 @@ def remaining(moments: list[tuple[float, float]]) -> str:
 def _bar(
     what: str, *columns: "ProgressColumn", level: int = logging.WARNING, total: float | None = None, **fields: Any
 ) -> Iterator[Callable[..., "Task"]]:
-    """Yield a function that updates a line of progress, above which the library's records of a `level` are printed."""
+    """Yield a function that updates a progress bar; the library's records from a `level` up are printed above it."""
     from rich.console import Console  # noqa: PLC0415  heavy imports wait until the options are read
     from rich.progress import Progress, TextColumn  # noqa: PLC0415
 
@@ -108,13 +108,13 @@ def _bar(
 
 @contextmanager
 def log_lines() -> Iterator[None]:
-    """Print warnings of the library on stderr, and of what it reports while it computes a line every few seconds."""
+    """Print the library's warnings on stderr, and one line of its progress reports every few seconds."""
     with _handled_by(_Lines()):
         yield
 
 
 class _Lines(logging.Handler):
-    """Prints records one to a line; reports below warnings after so much processor time without another."""
+    """Print records one per line; print reports below warnings only after some processor time without a line."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -128,12 +128,12 @@ class _Lines(logging.Handler):
         print(f"stylobate: {record.getMessage()}", file=sys.stderr, flush=True)
 
 
-# Processor time that a computation may take without a line [s].
+# Processor time between lines [s].
 _QUIET = 4.0
 
 
 class _OnConsole(logging.Handler):
-    """Prints records above the line that moves."""
+    """Print records above the progress bar."""
 
     def __init__(self, console: "Console", level: int) -> None:
         super().__init__(level)
@@ -145,7 +145,7 @@ class _OnConsole(logging.Handler):
 
 @contextmanager
 def _handled_by(handler: logging.Handler) -> Iterator[None]:
-    """Let this handler alone print what the library logs."""
+    """Print the library's log records through this handler only."""
     log = logging.getLogger("stylobate")
     before = log.handlers[:], log.level
     log.handlers = [handler]

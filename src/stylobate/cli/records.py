@@ -1,4 +1,4 @@
-"""`stylobate records`: the files of each record, and its intensities."""
+"""`stylobate records`: files, components and intensities of ground-motion records."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -95,7 +95,7 @@ def records(options: Options) -> None:
 
 
 def _values(sources: Sequence[str], options: Options) -> dict[str, Any]:
-    """Return the plain values of a description of records, options over those of a study."""
+    """Return the plain values of a description of records; options override the values of a study."""
     values = _described(sources)
     if options["sample_records"]:
         values["samples"] = tuple(options["sample_records"])

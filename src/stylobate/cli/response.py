@@ -1,4 +1,4 @@
-"""`stylobate response`: amplitude and phase of steady rolling against frequency, from theory."""
+"""`stylobate response`: amplitude and phase of steady rolling against frequency."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -85,14 +85,14 @@ _LABELS = {1: "supercritical", 0: "subcritical", -1: ""}
 
 
 def _stable_ranges(curves: "xr.Dataset") -> list[list[str]]:
-    """Return the stretches of each branch on which orbits are stable, between the points that bound them."""
+    """Return the intervals of each branch with stable orbits, from one bounding point to the other."""
     rows = []
     for index, name in enumerate(curves["branch_name"].to_numpy()):
         part = curves.isel(point=np.nonzero(curves["branch"].to_numpy() == index)[0])
         stable = part["stable"].to_numpy()
         edges = np.flatnonzero(np.diff(np.concatenate([[False], stable, [False]]).astype(int)))
         for first, last in zip(edges[::2], edges[1::2] - 1, strict=True):
-            # The points next to a stretch are the bifurcations that end it.
+            # The points next to an interval are the bifurcations that bound it.
             low, high = max(first - 1, 0), min(last + 1, stable.size - 1)
             ends = sorted(float(part["angular_frequency"][k]) for k in (low, high))
             tilts = sorted(float(part["mean_tilt"][k]) for k in (low, high))

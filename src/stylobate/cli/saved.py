@@ -1,4 +1,4 @@
-"""Results of studies in files: read from netCDF files and stores, written to netCDF files."""
+"""Saved results of studies: reading of netCDF files and stores, writing of netCDF files."""
 
 import json
 from collections.abc import Collection, Mapping
@@ -20,7 +20,7 @@ def open_saved(source: Path | None) -> "xr.Dataset | None":
     Raises
     ------
     FileError
-        If it cannot be read or holds no runs of a study.
+        If the file cannot be read, or holds no runs of a study.
     """
     if source is None or source.suffix not in (NETCDF, STORE):
         return None
@@ -48,14 +48,14 @@ def open_study(source: Path | None, kinds: Collection[str], *, lacks: str, store
     kinds
         The kinds of study that the command shows.
     lacks
-        What a file of another kind does not hold, for its message.
+        Noun for the message about a file of another kind, which lacks it.
     store
-        Why a store cannot be shown, and the remedy.
+        Message about a store: the problem and the remedy.
 
     Raises
     ------
     FileError
-        If it is a store, of another kind, or cannot be read.
+        If the source is a store or of another kind, or cannot be read.
     """
     if source is not None and source.suffix == STORE:
         message = f"{source} is {store}"
@@ -68,7 +68,7 @@ def open_study(source: Path | None, kinds: Collection[str], *, lacks: str, store
 
 
 def _relocated(data: "xr.Dataset", source: Path) -> "xr.Dataset":
-    """Return `data` with the files of records that were moved together with them found again."""
+    """Return `data` with new paths of records that were moved together with the file."""
     return data.assign_attrs(provenance=json.dumps(config.relocated(provenance_of(data), source.parent)))
 
 
@@ -79,7 +79,7 @@ def provenance_of(data: "xr.Dataset") -> dict[str, Any]:
 
 
 def model_named(data: "xr.Dataset") -> str:
-    """Return the model of the runs in `data` in words, with its damping where that does not vary."""
+    """Return the model of the runs in `data` in words, with its damping unless the damping varies."""
     model = provenance_of(data).get("model", {})
     damping = "" if "damping" not in model or "damping" in data.dims else f", damping {model['damping']:g}"
     return f"model {model.get('kind', 'unknown')}{damping}"
@@ -92,13 +92,13 @@ def axes_of(data: "xr.Dataset") -> dict[str, list[float]]:
 
 
 def study_summary(data: "xr.Dataset", **own: Any) -> dict[str, Any]:
-    """Describe a study for JSON: its kind and axes, its `own` values, how many runs are computed, its provenance."""
+    """Describe a study for JSON: kind, axes, `own` values, number of computed runs, provenance."""
     done = {"computed": int(data["computed"]), "runs": data["outcome"].size}
     return {"kind": data.attrs["kind"], **plain_axes(data), **own, **done, "provenance": provenance_of(data)}
 
 
 def number_of_runs(data: "xr.Dataset", over: str = "", word: str = "run") -> str:
-    """Describe in words how many runs a study has, and how many of them are computed."""
+    """Describe in words the number of runs of a study, and the number of computed runs."""
     done, total = int(data["computed"]), data["outcome"].size
     return f"{plural(total, word)}{over}" + (f", {done} of them done" if done < total else "")
 

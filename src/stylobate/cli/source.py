@@ -1,4 +1,4 @@
-"""The file from which a command starts: a TOML description, or a saved run."""
+"""Source of a command: a TOML description, or a saved run."""
 
 from pathlib import Path
 from typing import Any
@@ -8,16 +8,16 @@ from stylobate.errors import FileError
 
 
 def read_source(source: Path | None) -> dict[str, Any]:
-    """Read the plain values of a description; of a saved run (.nc), those that repeat it.
+    """Read the plain values of a description, or of a saved run (.nc) to repeat it.
 
     Raises
     ------
     FileError
-        If the file is missing or is neither.
+        If the file is missing, or is neither a description nor a saved run.
 
     Notes
     -----
-    Files of records that were moved together with a saved run are found again, see `config.relocated`.
+    `config.relocated` finds records that were moved together with a saved run.
     """
     if source is None:
         return {}

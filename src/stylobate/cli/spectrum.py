@@ -1,4 +1,4 @@
-"""`stylobate spectrum`: overturning intervals of the amplitude for columns of many sizes, or rocking spectra."""
+"""`stylobate spectrum`: overturning intervals of the amplitude, or rocking spectra, over size or other numbers."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -33,7 +33,7 @@ _SPECTRUM = Group.of(
     Option("free_tail", "free vibration time after the base motion [s]; 40/p by default"),
 )
 
-# Tables longer than this show the cases that overturn first, or rock most, only.
+# Longer tables show only the cases that overturn first, or rock most.
 _ROWS, _FIRST = 40, 12
 
 
@@ -94,7 +94,7 @@ _KINDS = (_BANDS, _ROCKING)
 
 
 def _with_spectrum(values: Mapping[str, Any], options: Options) -> dict[str, Any]:
-    """Lay the options of a spectrum over its table in the values."""
+    """Override the table of a spectrum in the values by its options."""
     table = values.get("spectrum", {})
     if not isinstance(table, Mapping):
         return dict(values)
@@ -106,13 +106,13 @@ def _with_spectrum(values: Mapping[str, Any], options: Options) -> dict[str, Any
         table["tail"] = options["free_tail"]
     kept = dict(values)
     if options["duration"] is None and options["free_tail"] is not None:
-        kept.pop("duration", None)  # one of them states how long a run lasts
+        kept.pop("duration", None)  # either states the duration
     if options["duration"] is not None and options["free_tail"] is None:
         table.pop("tail", None)
     return {**kept, "spectrum": table}
 
 
-# What limits the ends of intervals.
+# Bounds of the ends of intervals.
 _ACCURACY = ("width", "scale_step", "resolution")
 
 

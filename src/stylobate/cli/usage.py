@@ -1,4 +1,4 @@
-"""Mistakes in the options of a command line, described by what the option needs."""
+"""Messages about mistakes in the options of a command line, with the values that an option needs."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -9,14 +9,14 @@ _RANGE = 3
 
 
 def usage_error(error: Exception, program: Any) -> str:
-    """Write one line for a mistake that the parser of options found.
+    """Write one line for a mistake in the options.
 
-    For an option that is followed by several values it states which these are.
+    For an option with several values, the line states these values.
 
     Parameters
     ----------
     error
-        What the parser raised.
+        The exception of the parser.
     program
         The parser of the command.
     """
@@ -29,12 +29,12 @@ def usage_error(error: Exception, program: Any) -> str:
     wanted = f"{count} numbers" if set(names.split()) <= {"NUMBER"} else names
     if "requires" in message:
         return f"{option.opts[0]} must be followed by {wanted}; got fewer"
-    wrong = f"{wanted.split()[-1]} must be a whole number" if "integer" in message else "one of them is no number"
+    wrong = f"{wanted.split()[-1]} must be a whole number" if "integer" in message else "one of them is not a number"
     return f"{option.opts[0]} must be followed by {wanted}; {wrong}"
 
 
 def _named(error: Exception, program: Any) -> Any:
-    """Find the option that an error of too few values names, or None; the error does not name the command."""
+    """Find the option in an error about too few values, or None; the error does not name the command."""
     name = getattr(error, "option_name", None)
     return next((option for option in getattr(program, "params", ()) if name in option.opts), None)
 

@@ -1,6 +1,6 @@
 """Figures from results; nothing is computed here.
 
-The public names, imported when they are first used, are those of `__init__.pyi`.
+`__init__.pyi` lists the public names, which are imported on first use.
 """
 
 import lazy_loader

@@ -1,4 +1,4 @@
-"""What runs come to beside a bifurcation."""
+"""Bars of the outcomes of runs near a bifurcation."""
 
 from dataclasses import replace
 
@@ -12,14 +12,14 @@ from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import new_figure, styled
 
-# Textures of orbits of several periods, which have the colour of those of one.
+# Textures of orbits of several periods; orbits of one period and of several have the same colour.
 _TEXTURES, _MANY_PERIODS = {2: "//", 3: "||", 4: ".."}, "++"
 
 
 @figure_of("after bifurcation")
 @styled
 def plot_after_bifurcation(found: xr.Dataset) -> Figure:
-    """Return a figure of the kind "fates": for each value of the parameter the shares of what runs came to.
+    """Draw the shares of the outcomes of runs at each value of the parameter.
 
     Colours are those of maps. A dashed line lies between the bars on either side of the bifurcation.
     """
@@ -60,7 +60,7 @@ def plot_after_bifurcation(found: xr.Dataset) -> Figure:
 
 
 def _look(fate: str) -> Look:
-    """Return the look of what runs come to: that of its kind in maps, with a texture for each number of periods."""
+    """Return the look of an outcome: the look of its kind in maps, with a texture for each number of periods."""
     kind, _, periods = fate.partition(", period ")
     look = KIND_LOOKS.get(kind, OUTCOME_LOOKS[Outcome.STILL_MOVING])
     return replace(look, texture=_TEXTURES.get(int(periods), _MANY_PERIODS)) if periods else look

@@ -1,4 +1,4 @@
-"""Points and bodies in space drawn on paper: parallel projection, seen from above and from a side."""
+"""Axonometry: parallel projection of three-dimensional points and bodies."""
 
 import math
 from dataclasses import dataclass
@@ -13,21 +13,21 @@ _CIRCLE = np.linspace(0.0, 2.0 * np.pi, 181)
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """Where one looks from.
+    """Direction of view.
 
     Parameters
     ----------
     azimuth
-        Of the eye about the vertical [rad].
+        Azimuth of the viewer about the vertical [rad].
     elevation
-        Of the eye above the ground [rad].
+        Elevation of the viewer above the ground [rad].
     """
 
     azimuth: float = math.radians(-60.0)
     elevation: float = math.radians(22.0)
 
     def project(self, points: npt.ArrayLike) -> Floats:
-        """Return the places on paper, shape (…, 2), of `points` in space, shape (…, 3)."""
+        """Return the projections, shape (…, 2), of `points`, shape (…, 3)."""
         x, y, z = np.moveaxis(np.asarray(points, dtype=float), -1, 0)
         sine, cosine = math.sin(self.azimuth), math.cos(self.azimuth)
         right = cosine * y - sine * x
@@ -35,26 +35,26 @@ class View:
         return np.stack([right, z * math.cos(self.elevation) + back * math.sin(self.elevation)], axis=-1)
 
     def outline(self, solid: "Cylinder") -> Floats:
-        """Return the corners of what a cylinder covers on paper, in order."""
+        """Return the corners of the outline of a projected cylinder, in order."""
         return hull(self.project(np.concatenate([solid.circle(0.0), solid.circle(1.0)])))
 
     def sees(self, normal: Floats) -> bool:
-        """Return whether a face with this outward `normal` is seen."""
+        """Return whether a face with this outward `normal` is visible."""
         return float(np.dot(normal, direction(self.azimuth, self.elevation))) > 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class Cylinder:
-    """A round column in space.
+    """A round column in three dimensions.
 
     Parameters
     ----------
     base
         Centre of its base [m].
     frame
-        Columns: the body's own x and y, which turn with it, and its axis.
+        Matrix with columns: the body's own x and y, which turn with the body, and its axis.
     radius, height
-        [m].
+    Base radius and height [m].
     """
 
     base: Floats
@@ -64,7 +64,7 @@ class Cylinder:
 
     @classmethod
     def leaning(cls, tilt: Floats, twist: float, footprint: Floats, radius: float, height: float) -> "Cylinder":
-        """Return the column that leans by the `tilt` vector [rad] and stands on its rim, or upright.
+        """Return a column that leans by the `tilt` vector [rad] and stands on its rim, or upright.
 
         Parameters
         ----------
@@ -81,7 +81,7 @@ class Cylinder:
         return self.frame[:, 2]
 
     def circle(self, part: float) -> Floats:
-        """Return the circle at this `part` of the height, shape (n, 3)."""
+        """Return the circle at this fraction of the height, shape (n, 3)."""
         around = np.cos(_CIRCLE)[:, None] * self.frame[:, 0] + np.sin(_CIRCLE)[:, None] * self.frame[:, 1]
         return np.asarray(self.base + part * self.height * self.axis + self.radius * around)
 
@@ -98,7 +98,7 @@ def direction(azimuth: float, elevation: float) -> Floats:
 
 
 def hull(points: Floats) -> Floats:
-    """Return the convex hull of points on paper, anticlockwise: Andrew's monotone chain."""
+    """Return the convex hull of points in the plane, anticlockwise: Andrew's monotone chain."""
     ordered = sorted(points.tolist())
 
     def chain(given: list[list[float]]) -> list[list[float]]:

@@ -25,12 +25,12 @@ _COMPONENTS = {"tilt_x": ("attractor_tilt", "x"), "tilt_y": ("attractor_tilt", "
     "tilt_rate_y": ("attractor_tilt_rate", "y"),
 }
 _AT_REST = "at rest"
-# Dashes through whose gaps other lines are seen, and the fraction of brightness by which two of a kind differ.
+# Dashes with gaps that show other lines, and the fraction of brightness by which two of a kind differ.
 _GAPS = (0.0, (3.0, 2.2))
 _DARKER = 0.4
-# Sizes of circles at the strobe [points].
+# Sizes of circles at stroboscopic samples [points].
 _LARGEST, _SMALLEST = 8.0, 4.0
-# Height of an entry of the legend below the orbits, and so many entries have room in the least height [inches].
+# Height of an entry of the legend below the orbits [inches], and number of entries in the minimum height.
 _ENTRY, _ENTRIES = 0.17, 2
 _MARKER: dict[str, Any] = {"marker": "o", "linestyle": "none", "markerfacecolor": "white", "markeredgecolor": BLACK}
 
@@ -38,12 +38,11 @@ _MARKER: dict[str, Any] = {"marker": "o", "linestyle": "none", "markerfacecolor"
 @figure_of("attractors", "basins")
 @styled
 def plot_basins(found: xr.Dataset) -> Figure:
-    """Return a figure of basins: on a grid a map of which start leads where, else fractions and orbits.
+    """Return a figure of basins: on a grid a map of the attractor of each initial condition, else fractions and orbits.
 
-    On a map circles mark the strobed states of the attractors that repeat, at phase zero of the base motion. Error bars
-    are the intervals of the fractions. Of the orbits that repeat, and of those that do not, the first is drawn whole
-    and all others with gaps, through which one on the same path is seen. Circles mark the strobed states of those that
-    repeat; others have no state of their own to mark.
+    Circles mark the stroboscopic samples of attractors that repeat, at phase zero of the base motion. Error bars are
+    the intervals of the fractions. The first orbit that repeats and the first that does not have solid lines; other
+    orbits have dashed lines, whose gaps show orbits on the same path.
 
     Parameters
     ----------
@@ -81,7 +80,7 @@ def _mark_attractors(axes: Axes, found: xr.Dataset) -> list[Artist]:
     limits = axes.get_xlim(), axes.get_ylim()
     axes.plot(x[inside], y[inside], markersize=6.5, zorder=3, **_MARKER)
     axes.set(xlim=limits[0], ylim=limits[1])
-    return [Line2D([], [], label="attractors, at the strobe", markersize=6.5, **_MARKER)]
+    return [Line2D([], [], label="attractors (stroboscopic samples)", markersize=6.5, **_MARKER)]
 
 
 def _draw_fractions(axes: Axes, found: xr.Dataset) -> None:
@@ -117,7 +116,7 @@ def _runs(found: xr.Dataset) -> str:
 
 
 def _draw_orbits(axes: Axes, found: xr.Dataset) -> None:
-    """Draw the path of each attractor's tilt, with the strobed states of those that repeat."""
+    """Draw the path of each attractor's tilt, with the stroboscopic samples of attractors that repeat."""
     classes, drawn, marks, used = attractor_classes(found), [0, 0], 0, [BLACK]
     for place, marked in enumerate(_has_states(found)):
         one, path = classes[place], found["orbit_tilt"].isel(attractor_index=place)
@@ -130,7 +129,7 @@ def _draw_orbits(axes: Axes, found: xr.Dataset) -> None:
             axes.lines[-1].set_label(one.name)
             used.append(colour)
             drawn[repeats] += 1
-        if marked:  # smaller ones on top, so that all are seen where they meet
+        if marked:  # smaller circles on top, so that coincident circles are all visible
             look = _MARKER | {"markerfacecolor": colour, "markersize": max(_LARGEST - 2.0 * marks, _SMALLEST)}
             axes.plot(strobes.sel(axis="x"), strobes.sel(axis="y"), zorder=3, **look)
             marks += 1
@@ -139,22 +138,22 @@ def _draw_orbits(axes: Axes, found: xr.Dataset) -> None:
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel(r"tilt $\theta_x$ [rad]")
     axes.set_ylabel(r"tilt $\theta_y$ [rad]")
-    axes.set_title("orbits, ○ at the strobe")
+    axes.set_title("orbits, ○ stroboscopic samples")
 
 
 def _draw_orbit(axes: Axes, x: xr.DataArray, y: xr.DataArray, colour: str, *, repeats: bool, gaps: bool) -> None:
-    """Draw a path; with `gaps` in it, through which another one on the same path is seen."""
+    """Draw a path, with `gaps` dashed, so that another orbit on the same path is visible."""
     style: Any = _GAPS if gaps else "-"
     if not repeats:
         axes.plot(x, y, color=colour, linewidth=0.7, linestyle=style, zorder=1.5)
         return
-    if not gaps:  # a dark edge carries pale colours on white paper
+    if not gaps:  # a dark edge makes pale colours visible on white
         axes.plot(x, y, color=BLACK, linewidth=2.8)
     axes.plot(x, y, color=colour, linewidth=1.7, linestyle=style)
 
 
 def _colour(colour: str, used: Sequence[str]) -> str:
-    """Return `colour`, or one nearer to black where it is used already, until it differs from all `used`."""
+    """Return `colour`, darkened until it differs from all `used`."""
     while colour in used and colour != BLACK:
         red, green, blue = to_rgb(colour)
         colour = to_hex((_DARKER * red, _DARKER * green, _DARKER * blue))
@@ -162,6 +161,6 @@ def _colour(colour: str, used: Sequence[str]) -> str:
 
 
 def _has_states(found: xr.Dataset) -> npt.NDArray[np.bool_]:
-    """Return which attractors have strobed states of their own: those that repeat, and standing."""
+    """Return whether each attractor has stroboscopic samples of its own: orbits that repeat, and standing."""
     repeats, stands = found["attractor_period"].to_numpy() > 0, found["attractor_kind"].to_numpy() == _AT_REST
     return np.asarray(repeats | stands, dtype=bool)

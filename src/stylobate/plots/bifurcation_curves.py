@@ -1,4 +1,4 @@
-"""Curves of bifurcations in the plane of two parameters."""
+"""Bifurcation curves in the plane of two parameters."""
 
 import json
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ from stylobate.plots.labels import axis_label
 from stylobate.plots.style import PALETTE, new_figure, styled
 
 _HEIGHT = 4.4
-# How a line is drawn where the bifurcation is supercritical, subcritical, undecided.
+# Line styles of supercritical, subcritical and undecided bifurcations.
 _LINES: dict[int, dict[str, Any]] = {
     1: {"linewidth": 2.4, "linestyle": "-"},
     0: {"linewidth": 1.6, "linestyle": (0, (4, 2))},
@@ -33,8 +33,8 @@ def plot_bifurcation_curve(points: xr.Dataset) -> Figure:
 def plot_bifurcation_curves(curves: Sequence[xr.Dataset], labels: Sequence[str] | None = None) -> Figure:
     """Return a figure of curves of bifurcations in the plane of their two parameters.
 
-    Bold where the bifurcation is supercritical, dashed where it is subcritical, thin at folds and where that is not
-    decided.
+    Lines are bold for supercritical bifurcations, dashed for subcritical ones, and thin for folds and undecided
+    bifurcations.
 
     Parameters
     ----------

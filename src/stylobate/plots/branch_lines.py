@@ -1,4 +1,4 @@
-"""Branches of orbits as lines: stable bold, unstable thin, with the range of their tilt and their bifurcations."""
+"""Lines of branches of orbits: bold if stable, thin if unstable, with the range of tilt and the bifurcations."""
 
 import numpy as np
 import numpy.typing as npt
@@ -35,7 +35,7 @@ def shade_range(axes: Axes, part: xr.Dataset, x: str, colour: str) -> None:
 
 
 def mark_bifurcations(axes: Axes, found: xr.Dataset, x: xr.DataArray) -> None:
-    """Mark the bifurcations of `found` at `x` and their mean tilt, each kind once in the legend."""
+    """Mark the bifurcations of `found` at `x` and their mean tilt; the legend lists each kind once."""
     kinds = found["bifurcation_kind"].to_numpy().astype(str)
     named = axes.get_legend_handles_labels()[1]
     for kind, (marker, name) in BIFURCATION_MARKS.items():
@@ -63,7 +63,7 @@ def key_of_stability(axes: Axes, found: xr.Dataset) -> None:
 
 
 def stability_of(found: xr.Dataset) -> str:
-    """Return the meaning of "stable": neutrally without damping, within the plane for planar orbits."""
+    """Return the meaning of "stable": neutrally stable without damping, in the plane for planar orbits."""
     neutral = "" if found.attrs.get("friction", 1) else "neutrally "
     return f"{neutral}stable{' in the plane' if found.attrs.get('planar', 0) else ''}"
 

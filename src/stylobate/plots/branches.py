@@ -1,4 +1,4 @@
-"""Branches of exact periodic orbits over their parameter."""
+"""Bifurcation diagrams: branches of exact periodic orbits over their parameter."""
 
 from collections.abc import Sequence
 
@@ -25,7 +25,7 @@ def plot_branches(branches: Sequence[xr.Dataset], labels: Sequence[str] | None =
     """Return a figure of the mean tilt of branches against their parameter.
 
     Stable orbits are bold, unstable ones thin; a shade shows the range of the tilt of stable orbits over a period.
-    Bifurcations are marked: black if supercritical, white if subcritical, grey if that is not decided.
+    Bifurcations are marked: black if supercritical, white if subcritical, grey if undecided.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Maps of classes: cells filled and textured, with their legend."""
+"""Maps of classes: filled and textured cells, with their legend."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -19,19 +19,19 @@ Integers = npt.NDArray[np.integer]
 
 _TICKS = 7
 _FRAME = "#555555"
-# Values whose ratios are equal to this part, and whose differences are not, are spaced geometrically.
+# Relative tolerance: values with equal ratios but unequal differences are spaced geometrically.
 _EQUAL = 1e-6
 _LEAST_FOR_SPACING = 3
-# On maps of this many cells or more each way a texture is drawn only where a class fills this fraction of the cells
-# about, within so many of them to each side: elsewhere it would look like noise. A class of which less than the last
-# fraction lies so has no texture.
+# Fine maps have this many cells or more each way. There, a cell has a texture only if its class fills this fraction
+# of the cells within so many to each side: elsewhere the texture would look like noise. A class has no texture if
+# less than the last fraction of its cells qualifies.
 _FINE, _FILLED, _ABOUT, _LEAST = 60, 0.97, 4, 0.5
 
 
 def cell_edges(values: npt.ArrayLike) -> Floats:
     """Return the edges of the cells about increasing `values`: midway between neighbours, the outer ones mirrored.
 
-    Midway in the logarithm where the values are spaced geometrically.
+    Geometrically spaced values have edges midway in the logarithm.
     """
     centres = np.asarray(values, dtype=float)
     if centres.size == 1:
@@ -60,7 +60,7 @@ def draw_cells(axes: Axes, x: npt.ArrayLike, y: npt.ArrayLike, codes: Integers, 
     codes
         Shape (y, x).
     classes
-        What the codes mean; those not among them are left white.
+        The classes of the codes; cells with other codes stay white.
     """
     x_edges, y_edges = cell_edges(x), cell_edges(y)
     places = np.full(codes.shape, -1)
@@ -81,7 +81,7 @@ def draw_cells(axes: Axes, x: npt.ArrayLike, y: npt.ArrayLike, codes: Integers, 
 
 
 def set_scale(axes: Axes, name: Literal["x", "y"], values: npt.ArrayLike) -> None:
-    """Make an axis logarithmic if its `values` are spaced geometrically, and mark it with few plain numbers."""
+    """Make an axis logarithmic if its `values` are spaced geometrically, with few plain numbers as ticks."""
     axis = axes.xaxis if name == "x" else axes.yaxis
     if is_geometric(values):
         axes.set(**{f"{name}scale": "log"})
@@ -93,7 +93,7 @@ def set_scale(axes: Axes, name: Literal["x", "y"], values: npt.ArrayLike) -> Non
 
 
 def _coherent(inside: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """Return the cells of a class that lie among others of it, on a fine map; all of them on a coarse one."""
+    """Return the cells of a class surrounded by cells of the same class; on a coarse map, all of its cells."""
     if min(inside.shape) < _FINE:
         return inside
     window = 2 * _ABOUT + 1
@@ -105,12 +105,12 @@ def _coherent(inside: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
 
 
 def _texture(outline: Path, look: Look) -> PathPatch:
-    # The colour of the edge, which has no width, is that of the hatch.
+    # The edge has no width; its colour sets the colour of the hatch.
     return PathPatch(outline, facecolor="none", edgecolor=look.ink, hatch=look.texture, linewidth=0.0)
 
 
 def _outline(x_edges: Floats, y_edges: Floats, inside: npt.NDArray[np.bool_]) -> Path:
-    """Return the cells `inside` as one path: a rectangle for each unbroken run of cells along x."""
+    """Return the cells `inside` as one path: a rectangle for each unbroken row of cells along x."""
     padded = np.pad(inside, ((0, 0), (1, 1))).astype(np.int8)
     changes = np.diff(padded, axis=1)
     rows, starts = np.nonzero(changes == 1)
@@ -123,7 +123,7 @@ def _outline(x_edges: Floats, y_edges: Floats, inside: npt.NDArray[np.bool_]) ->
 
 
 def fill_options(look: Look) -> dict[str, Any]:
-    """Return the options with which patches and bars show a `look`."""
+    """Return Matplotlib options that give patches and bars a `look`."""
     return {
         "facecolor": look.colour,
         "edgecolor": look.ink if look.texture else _FRAME,
@@ -133,7 +133,7 @@ def fill_options(look: Look) -> dict[str, Any]:
 
 
 def class_legend(codes: Integers, classes: Sequence[MapClass]) -> list[Patch]:
-    """Return a patch for each class that occurs in `codes`, named with its share of all runs, computed or not."""
+    """Return a patch for each class in `codes`, labelled with its share of all runs, computed or not."""
     entries = []
     for one in classes:
         count = int(np.count_nonzero(codes == one.code))
@@ -145,7 +145,7 @@ def class_legend(codes: Integers, classes: Sequence[MapClass]) -> list[Patch]:
 
 
 def percent(count: int, total: int) -> str:
-    """Return the share in percent, with a digit more where it is small but not nothing."""
+    """Return the share in percent, with one more digit if it is small but not zero."""
     share = 100.0 * count / total
     tiny = 0.05
     return "< 0.1 %" if 0.0 < share < tiny else f"{share:.1f} %"

@@ -1,7 +1,7 @@
-"""Looks of the classes in maps: a colour and a texture for each outcome and attractor, the same in every figure.
+"""Looks of the classes in maps: one colour and texture per outcome and attractor, the same in every figure.
 
-The hues are those of Okabe and Ito's palette for colour-blind readers; the lightness of the usual classes is apart by
-a tenth of its range or more, and textures tell the others apart where print has no colour.
+The hues are from Okabe and Ito's palette for colour-blind readers. The lightness of the usual classes differs by a
+tenth of its range or more; textures tell the others apart in print without colour.
 """
 
 from collections.abc import Iterable, Sequence
@@ -37,7 +37,7 @@ _MODULATED, _MODULATED_BACK = Look(_SEA, "..."), Look(_MINT, "ooo", _DARK_INK)
 _APERIODIC = Look(_MAUVE, "---")
 _UNSETTLED, _OVERTURNED = Look(_LILAC, "xx", _LILAC_INK), Look(_NIGHT)
 UNFINISHED = Look("#ffffff", "//////", "#b0b0b0")
-"""What has not been computed: white paper, finely hatched."""
+"""Runs that are not computed: white, finely hatched."""
 
 # From standing to falling.
 OUTCOME_LOOKS = {
@@ -71,7 +71,7 @@ KIND_LOOKS = {
     "survived": OUTCOME_LOOKS[Outcome.SURVIVED],
     "not settled": _UNSETTLED,
 }
-# Textures of the second, third … attractor of a kind; after the last they begin again.
+# Textures of the second, third … attractor of a kind; after the last texture the first one follows.
 _MORE_TEXTURES = ("///", "...", "|||", "---", "ooo", "+++")
 
 
@@ -88,23 +88,23 @@ UNFINISHED_CLASS = MapClass(NOT_COMPUTED, "not computed", UNFINISHED)
 
 
 def classes_of(names: Iterable[object], looks: Iterable[Look]) -> tuple[MapClass, ...]:
-    """Return classes of these names and looks, whose codes are their places."""
+    """Return classes of these names and looks, whose codes are their indices."""
     return tuple(MapClass(code, str(name), look) for code, (name, look) in enumerate(zip(names, looks, strict=True)))
 
 
 def outcome_classes() -> tuple[MapClass, ...]:
-    """Return the classes of outcomes, from standing to falling, the last for what has not been computed."""
+    """Return the classes of outcomes, from standing to falling, and last the class of runs not computed."""
     return (*(MapClass(int(one), one.label, look) for one, look in OUTCOME_LOOKS.items()), UNFINISHED_CLASS)
 
 
 def contact_classes(found: xr.Dataset) -> tuple[MapClass, ...]:
-    """Return the classes of a contact map, from standing to falling, the last for what has not been computed."""
+    """Return the classes of a contact map, from standing to falling, and last the class of runs not computed."""
     looks = (_AT_REST, _SLIDING, _ROCKING, _ROLLING_BACK, Look(_GREY, "**"), _OVERTURNED)
     return (*classes_of(found["class_name"].to_numpy(), (*looks, OUTCOME_LOOKS[Outcome.FAILED])), UNFINISHED_CLASS)
 
 
 def attractor_classes(found: xr.Dataset) -> tuple[MapClass, ...]:
-    """Return the classes of the attractors in a table over `attractor_index`, those not settled too, and of no runs."""
+    """Return the classes of attractors in a table over `attractor_index`, of runs not settled and not computed."""
     kinds = [str(kind) for kind in found["attractor_kind"].to_numpy()]
     return (*classes_of(found["attractor_name"].to_numpy(), _looks(kinds)), UNFINISHED_CLASS)
 

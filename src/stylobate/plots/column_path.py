@@ -1,4 +1,4 @@
-"""The column in space at chosen times, with the path of its contact point on the base, and that path from above."""
+"""The column at chosen times in axonometry, with the path of its contact point, and this path from above."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -20,12 +20,13 @@ from stylobate.plots.style import BLACK, BLUE, GREY, SKY, VERMILION, new_figure,
 from stylobate.results import Response
 
 _GHOSTS = 4
-# The base is drawn this far beyond what happens on it, in radii.
+# Margin of the base about the path [base radii].
 _MARGIN = 0.35
 _TICKS = 3
-# Samples of paths, and into how many parts a step is cut at most where the contact point turns by more than this [rad].
+# Number of samples of a path; maximum number of parts of a step in which the contact point turns by more than this
+# angle [rad].
 _SAMPLES, _PARTS, _TURN = 1500, 64, 0.06
-# A contact that can change moves less than this between samples, in radii, unless it leaps.
+# Maximum distance between samples that a contact that can change moves without a jump [base radii].
 _LEAP = 0.5
 
 
@@ -38,22 +39,22 @@ def plot_column_path(
     azimuth: float = -60.0,
     elevation: float = 22.0,
 ) -> Figure:
-    """Return a figure of the column in space and of the path of its contact point, in the frame of the base.
+    """Draw the column in three dimensions and the path of its contact point, in the frame of the base.
 
-    The column is a cylinder of its base radius and height at chosen times, the last drawn full, those before as ghosts;
-    a line on its top turns with it. On the base: the path of the contact point, and of the centre of the footprint
-    circle, which moves where the column turns about its axis. To the right the same from above.
+    The column is a cylinder of its base radius and height at chosen times: opaque at the last, transparent before; a
+    line on its top turns with the column. The base shows the paths of the contact point and of the centre of the
+    footprint circle, which moves if the column turns about its axis. The right panel shows the same from above.
 
     Parameters
     ----------
     run
         A run of a model that has a contact point.
     times
-        When the column is drawn [s]: within the run, rising. By default five times along what is shown.
+        Times at which the column is drawn [s]: within the run, rising. By default five times along the paths.
     until
-        End of the paths [s]; by default that of the run, or the last of the `times`.
+        End of the paths [s]; by default the end of the run, or the last of the `times`.
     azimuth, elevation
-        Where one looks from [degrees].
+        Direction of view [degrees].
 
     Raises
     ------
@@ -86,7 +87,7 @@ def plot_column_path(
 
 
 def _shown(run: Response, times: Sequence[float] | None, until: float | None) -> tuple[xr.Dataset, npt.NDArray[Any]]:
-    """Return the samples up to the end of what is shown, and the places in them at which the column is drawn."""
+    """Return the samples up to the end of the paths, and their indices at which the column is drawn."""
     end = float(run.data["time"][-1])
     last = until if until is not None else end if times is None else max(times, default=0.0)
     chosen = np.linspace(0.0, last, _GHOSTS + 1) if times is None else np.asarray(times, dtype=float)
@@ -98,12 +99,12 @@ def _shown(run: Response, times: Sequence[float] | None, until: float | None) ->
 
 
 def _path(run: Response, last: float, chosen: Floats) -> xr.Dataset:
-    """Return samples close enough for smooth paths; of a saved run those that were kept."""
+    """Return samples close enough for smooth paths; for a loaded run, its own samples."""
     if run.sampler is None:
         return run.data.isel(time=run.data["time"].to_numpy() <= last)
     time = np.unique(np.concatenate([np.linspace(0.0, last, _SAMPLES), chosen]))
     turned = np.nan_to_num(np.abs(np.diff(run.sample(time)["azimuth"].to_numpy())))
-    # Past the upright the contact point races round the rim.
+    # Near the vertical the contact point moves fast round the rim.
     parts = np.clip(np.ceil(turned / _TURN), 1, _PARTS).astype(int)
     pieces = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(time[:-1], time[1:], parts, strict=True)]
     return run.sample(np.append(np.concatenate(pieces), last))
@@ -120,7 +121,7 @@ def _column(data: xr.Dataset, at: int, radius: float, height: float) -> Cylinder
 
 
 def _extent(data: xr.Dataset, radius: float) -> tuple[Floats, Floats]:
-    """Return the corners of the ground that is drawn [m]: all that the footprint circle comes to."""
+    """Return the corners of the drawn ground [m], which contains the footprint circle at all times."""
     centres = _footprint(data)
     margin = (1.0 + _MARGIN) * radius
     return centres.min(axis=0) - margin, centres.max(axis=0) + margin
@@ -169,7 +170,7 @@ def _moved(corner: Floats, along: int, low: Floats, high: Floats) -> Floats:
 
 
 def _label(axes: Axes, at: Floats, other: Floats, text: str, size: float) -> None:
-    """Write beside the end `at` of a line, away from its `other` end."""
+    """Write a text beside the end `at` of a line, away from its `other` end."""
     outwards = 9.0 * (at - other) / np.hypot(*(at - other))
     axes.annotate(
         text,
@@ -183,7 +184,7 @@ def _label(axes: Axes, at: Floats, other: Floats, text: str, size: float) -> Non
 
 
 def _contact_path(data: xr.Dataset, radius: float) -> Floats:
-    """Return the path of the contact point, with a gap where it leapt: a base that strikes lands on another point."""
+    """Return the path of the contact point, with a gap at each jump: after a face impact the contact is elsewhere."""
     path = data["contact_point"].to_numpy()
     if "contact" not in data:
         return path
@@ -212,7 +213,7 @@ def _draw_column(axes: Axes, view: View, column: Cylinder, *, full: bool) -> Non
 
 
 def _draw_height(axes: Axes, view: View, low: Floats, high: Floats, height: float, text: str) -> None:
-    """Draw a rod as high as the column beside it, with its height as text."""
+    """Draw a rod beside the column with the same height, and this height as text."""
     corners = [np.array([x, y]) for x in (low[0], high[0]) for y in (low[1], high[1])]
     left = min(corners, key=lambda corner: float(view.project(_on_ground(corner))[0]))
     foot, top = view.project(np.array([[*left, 0.0], [*left, height]]))
@@ -252,7 +253,7 @@ def _draw_plan(
 
 
 def _name_plan(axes: Axes, run: Response) -> None:
-    """Name the axes, and the numbers in the plan where they have no unit."""
+    """Label the axes, and explain the numbers in the plan if they have no unit."""
     axes.set_xlabel(axis_label(run.data["contact_point"], "$x$"))
     axes.set_ylabel(axis_label(run.data["contact_point"], "$y$"))
     own = unit_label(run.data["time"]) != "s"

@@ -1,4 +1,4 @@
-"""How a column met the plane along a run: a bar in one row for each kind of contact."""
+"""Contact history of a run: bars in one row for each kind of contact."""
 
 from dataclasses import dataclass
 from typing import Any, Self
@@ -26,14 +26,14 @@ _THICK = 0.64
 
 @dataclass(frozen=True, slots=True)
 class ContactHistory:
-    """Which kind of contact a run had: `kinds`[i] between `edges`[i] and `edges`[i + 1] [s]."""
+    """Kinds of contact of a run: `kinds`[i] between `edges`[i] and `edges`[i + 1] [s]."""
 
     edges: Floats
     kinds: npt.NDArray[np.integer]
 
     @classmethod
     def of(cls, run: Response) -> Self:
-        """Return that of a run: to the instants of its events, and as close as its samples where there is none."""
+        """Return the contact history of a run, with changes at its events or, if there is no event, between samples."""
         time = run.data["time"].to_numpy()
         if run.sampler is None:
             return cls(time, run.data["contact"].to_numpy()[:-1])
@@ -42,7 +42,7 @@ class ContactHistory:
 
     @property
     def shown(self) -> list[Contact]:
-        """The kinds that there were, from resting up."""
+        """The kinds that occur, in the order from resting to flight."""
         return [Contact(value) for value in np.unique(self.kinds).tolist()]
 
     def spans(self, kind: Contact) -> list[tuple[float, float]]:
@@ -53,7 +53,7 @@ class ContactHistory:
 
 
 def draw_contact(axes: Axes, history: ContactHistory) -> None:
-    """Draw when a run had which kind of contact, a row for each kind; the shortest is a line still."""
+    """Draw the contact history, a row for each kind; the shortest intervals are visible as lines."""
     shown = history.shown
     for row, kind in enumerate(shown):
         look: dict[str, Any] = {"facecolor": COLOURS[kind], "edgecolor": COLOURS[kind], "linewidth": 0.6}

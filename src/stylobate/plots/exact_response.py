@@ -1,4 +1,4 @@
-"""Frequency response of exact periodic orbits, beside that of theory."""
+"""Frequency response of exact periodic orbits, compared with theory."""
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +13,7 @@ from stylobate.plots.style import GREY, PALETTE, new_figure, styled
 
 _DASHED = (0, (4, 2))
 _HEIGHT, _HEIGHT_OF_ONE, _RATIOS = 6.0, 4.4, (2.2, 1.0)
-# Of theory's curves where they are stable, and where not: thinner than exact ones.
+# Line widths of stable and unstable theory: thinner than exact curves.
 _THEORY_WIDTHS = 1.5, 0.8
 # Phases that differ by less than this fill their panel.
 _SPREAD = 0.5 * np.pi
@@ -22,11 +22,11 @@ _SPREAD = 0.5 * np.pi
 @figure_of("exact response")
 @styled
 def plot_exact_response(curves: xr.Dataset) -> Figure:
-    """Return a figure of `curves` of the kind "exact response": mean tilt with its range above, phase below.
+    """Draw exact response `curves`: mean tilt with its range above, phase below.
 
-    Stable orbits are bold, unstable ones thin; a shade from the minimum to maximum tilt shows how far stable ones
-    swing. Orbits without a phase have no panel below. Theory's curves are dashed, in grey. Bifurcations are marked:
-    black if supercritical, white if subcritical, grey if that is not decided.
+    Stable orbits are bold, unstable ones thin; a shade shows the minimum to maximum tilt of stable orbits. Orbits
+    without a phase have no panel below. Theory's curves are dashed, in grey. Bifurcations are marked: black if
+    supercritical, white if subcritical, grey if undecided.
     """
     phased = bool(np.isfinite(curves["phase"]).any())
     figure = new_figure(_HEIGHT if phased else _HEIGHT_OF_ONE)
@@ -54,7 +54,7 @@ def plot_exact_response(curves: xr.Dataset) -> Figure:
 
 
 def _set_phase_axis(axes: Axes, phase: npt.NDArray[np.float64]) -> None:
-    """Mark 0, π/2 and π, or show the phases of exact orbits enlarged where they hardly differ."""
+    """Mark 0, π/2 and π, or zoom in on the phases of exact orbits if these hardly differ."""
     low, high = float(np.nanmin(phase)), float(np.nanmax(phase))
     if high - low > _SPREAD:
         axes.set_yticks([0.0, np.pi / 2.0, np.pi], ["0", "π/2", "π"])

@@ -1,4 +1,4 @@
-"""The one function that draws any result."""
+"""`plot`: draw any result as the figure of its kind."""
 
 from collections.abc import Sequence
 from typing import Protocol, runtime_checkable
@@ -13,7 +13,7 @@ from stylobate.plots.kinds import figure_for
 from stylobate.plots.runs import plot_runs
 from stylobate.results import Assessment, Response
 
-# Results of which several are drawn in one figure, by their kind.
+# Functions that draw several results of a kind in one figure.
 _COMPARED = {"branch": plot_branches, "bifurcation curve": plot_bifurcation_curves}
 
 
@@ -63,7 +63,7 @@ def plot(
     if isinstance(result, xr.Dataset) and (draw := figure_for(str(result.attrs.get("kind")))) is not None:
         return draw(result)
     if isinstance(result, Assessment):
-        message = "result must be one figure's, got an Assessment: write its report by earthquakes.assessment_report"
+        message = "result must have one figure, got an Assessment. Write its report by earthquakes.assessment_report"
         raise ParameterError(message)
     message = (
         f"result must be a run, a branch, a curve, a sequence of one of these or the result of a study, "

@@ -19,13 +19,13 @@ from stylobate.plots.style import BLACK, new_figure, styled
 from stylobate.text import plural
 
 _HEIGHT = 4.2
-# Height of a line of the legend [inches], which has one for each band, two for their intervals, and its edges.
+# Height of a line of the legend [inches]; number of lines besides those of the bands: two for intervals, and edges.
 _ENTRY = 0.19
-# Bands thinner than this part of the height have no bar: it would stand for a line.
+# Bands thinner than this fraction of the height have no error bar: the bar would look like a line.
 _SEEN = 0.005
-# More bands than this are too many to tell apart: those of one kind that stay narrower are drawn as one.
+# If there are more bands than this, bands of one kind that stay narrower than this fraction are drawn as one.
 _MOST, _NARROW = 10, 0.06
-# Room beside the first and last value, in widths of the bands.
+# Margin beside the first and last value, in widths of the bands.
 _ROOM = 0.015
 
 
@@ -34,9 +34,9 @@ _ROOM = 0.015
 def plot_fractions(found: xr.Dataset) -> Figure:
     """Return a figure of basin fractions along a parameter, stacked.
 
-    A single value has a bar for its bands. The line on the upper edge of a band is the interval of that band's own
-    height. Runs that have not settled are the topmost band; values not computed stay white. Of many attractors the
-    narrow bands of one kind are drawn as one, named with their number.
+    A single value has one stacked bar. The line on the upper edge of a band is the interval of the height of this
+    band. Runs that have not settled are the topmost band; values not computed stay white. If there are many
+    attractors, narrow bands of one kind are drawn as one, labelled with their number.
     """
     (name,) = found["computed"].dims
     ordered = found.sortby(str(name)).isel({str(name): found.sortby(str(name))["computed"].to_numpy() > 0})
@@ -77,7 +77,7 @@ def plot_fractions(found: xr.Dataset) -> Figure:
 
 
 def _bands(fraction: Floats, kinds: list[str], classes: Sequence[MapClass]) -> list[tuple[str, Look, list[int]]]:
-    """Return name, look and attractors of each band, from below; narrow ones of a kind are one if there are many."""
+    """Return name, look and attractors of each band, from below; of many bands, narrow ones of a kind are joined."""
     present = [place for place in range(len(classes)) if fraction[:, place].any()]
     narrow = [place for place in present if fraction[:, place].max() < _NARROW] if len(present) > _MOST else []
     alike = {kind: [place for place in narrow if kinds[place] == kind] for kind in kinds}
@@ -101,7 +101,7 @@ def _draw_band(axes: Axes, x: Floats, low: Floats, high: Floats, look: Look) -> 
 
 
 def _limits(x: Floats) -> tuple[float, float] | None:
-    """Return the ends of the axis, with room beside the bands for the intervals of the first and last values."""
+    """Return the limits of the axis, with margins for the intervals of the first and last values."""
     if not x.size:
         return None
     geometric, edges = is_geometric(x), cell_edges(x) if x.size == 1 else x[[0, -1]]

@@ -1,4 +1,4 @@
-"""The models of the hierarchy compared: histories over one another, what the contact bears, convergence."""
+"""Comparison of the models of the hierarchy: tilt histories, contact demand, convergence with slenderness."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -20,7 +20,7 @@ from stylobate.plots.maps import draw_classes
 from stylobate.plots.style import BLACK, GREY, PALETTE, new_figure, styled
 from stylobate.results.outcomes import outcome_label
 
-# Models that cannot turn are blue and black, those that may turn vermilion and orange; finite tilt is dashed, over it.
+# Models without free axial rotation are blue and black, models with it vermilion and orange; finite tilt is dashed.
 _LINES: dict[str, dict[str, Any]] = {
     "slender": {"color": PALETTE[4], "linestyle": "-", "linewidth": 2.8},
     "slender rolling": {"color": PALETTE[5], "linestyle": "-", "linewidth": 2.8},
@@ -29,9 +29,9 @@ _LINES: dict[str, dict[str, Any]] = {
     "planar rocking": {"color": BLACK, "linestyle": ":", "linewidth": 1.3},
 }
 _MARKS = {"slender": "o", "slender rolling": "s", "wobbling": "D", "rolling": "^", "planar rocking": "v"}
-# Pairs whose deviation is drawn against the slenderness: what differs by the tilt alone, and what by the twist.
+# Pairs whose deviation is drawn against the slenderness: they differ in finite tilt, or in free axial rotation.
 _PAIRS = (("slender", "rolling"), ("slender", "wobbling"), ("slender rolling", "rolling"))
-# The line in proportion to c² stands below what it is compared with.
+# The line proportional to c² lies below the deviations by this factor.
 _BELOW, _ORDER = 0.3, 2
 
 _DIFFERENCES = (
@@ -46,13 +46,13 @@ _DIFFERENCES = (
 @figure_of("model hierarchy")
 @styled
 def plot_hierarchy(found: xr.Dataset) -> Figure:
-    """Return a figure of the models of a hierarchy compared.
+    """Return a figure that compares the models of the hierarchy.
 
-    Where it keeps histories: the tilt of all models against time, and the spin where there is some. Below, over several
-    slendernesses, how the models come together as c falls; of one case what the contact must bear. Histories of several
-    slendernesses are those of the largest.
+    If the result has histories, the upper panels show the tilt of all models against time, and the spin if there is
+    any, at the largest slenderness. The lower panels show the convergence of the models as c falls or, for a single
+    slenderness, the contact demand.
     """
-    if found.sizes.get("slenderness") == 1:  # one case: nothing to come together
+    if found.sizes.get("slenderness") == 1:  # no convergence to show
         found = found.isel(slenderness=0)
         found = found.assign_attrs(column_slenderness=float(found["slenderness"]))
     several = "slenderness" in found.dims
@@ -113,7 +113,7 @@ def _draw_spin(axes: Axes, shown: xr.Dataset) -> None:
 
 def _draw_tilts(axes: Axes, found: xr.Dataset, c: float) -> None:
     place = np.arange(found.sizes["model"])[::-1]
-    for name, label, filled in (("peak_tilt", "largest", True), ("mean_late_tilt", "late mean", False)):
+    for name, label, filled in (("peak_tilt", "peak", True), ("mean_late_tilt", "late mean", False)):
         _draw_dots(axes, place, found[name].to_numpy() / c, found["model"].to_numpy(), filled=filled)
         axes.plot([], [], "o", color=GREY, markerfacecolor=GREY if filled else "white", label=label)
     axes.set_yticks(place, list(found["model"].to_numpy()))
@@ -144,12 +144,12 @@ def _draw_demands(axes: Axes, found: xr.Dataset) -> None:
     axes.set_yticks(place, [])
     axes.set_ylim(-0.6, place.size - 0.1)
     axes.set_xlim(left=0.0)
-    axes.set_xlabel("largest demand on the contact")
+    axes.set_xlabel("peak contact demand")
     axes.legend(loc="upper left", ncols=3, fontsize=7.5, borderpad=0.1, handletextpad=0.1, columnspacing=0.8)
 
 
 def _draw_convergence(axes: Axes, found: xr.Dataset) -> None:
-    """Draw the deviations over c against c, and c² beside them."""
+    """Draw the deviations over c against c, with a line proportional to c²."""
     c = found["slenderness"].sortby("slenderness").to_numpy()
     models = set(found["model"].to_numpy())
     deviation = found["deviation"].sortby("slenderness")
@@ -161,12 +161,12 @@ def _draw_convergence(axes: Axes, found: xr.Dataset) -> None:
             axes.plot(c, relative, color=colour, marker=marker, markersize=4.5, linestyle=style, label=name)
     least = deviation.sel(model="slender", other_model="wobbling").to_numpy() / c
     guide = _BELOW * least[-1] * (c / c[-1]) ** _ORDER
-    axes.plot(c, guide, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), label="in proportion to $c^2$")
+    axes.plot(c, guide, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), label="proportional to $c^2$")
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, 0.93), fontsize=7)
     _set_slendernesses(axes, c)
-    axes.set_ylabel(r"largest distance of tilts, over $c$")
+    axes.set_ylabel(r"maximum distance of tilts over $c$")
 
 
 def _draw_over_slenderness(axes: Axes, found: xr.Dataset) -> None:
@@ -194,7 +194,7 @@ def _set_slendernesses(axes: Axes, c: np.ndarray) -> None:
 @figure_of("outcome differences")
 @styled
 def plot_outcome_differences(found: xr.Dataset) -> Figure:
-    """Return a figure of the kind "outcome differences": where two models disagree whether the column overturns."""
+    """Draw a map of the points at which two models disagree whether the column overturns."""
     figure = new_figure(4.6)
     axes = figure.subplots()
     names = [

@@ -1,4 +1,4 @@
-"""Integrity: the nearest overturning start on the map of starts, and its distance along a parameter."""
+"""Integrity of basins: the nearest overturning initial condition, and its distance along a parameter."""
 
 from typing import Any, Literal
 
@@ -21,16 +21,16 @@ _MAP_HEIGHT, _CURVE_HEIGHT = 4.6, 3.8
 @figure_of("integrity")
 @styled
 def plot_integrity(found: xr.Dataset) -> Figure:
-    """Return a figure of the outcomes over two starts, with the largest safe ellipse about the reference.
+    """Draw the outcomes over two initial conditions, with the largest safe ellipse about the reference.
 
-    The ellipse is the circle of the distance in units of c and cω0; dashed where nothing overturned within the grid.
+    The ellipse is the circle of the distance in units of c and cω0; dashed if nothing overturned within the grid.
     """
     figure = new_figure(_MAP_HEIGHT)
     axes = figure.subplots()
     legend = draw_outcomes(axes, found)
     names = [str(dim) for dim in found["outcome"].dims]
     distance, bound = float(found["distance"]), bool(found["at_least"])
-    # A start phase counts for no distance: the ellipse is then a band.
+    # A start phase adds no distance: the ellipse is then a band.
     half = [distance * float(found.attrs.get(f"unit_{name}", np.inf)) for name in names]
     centre = [float(found.attrs.get(f"reference_{name}", np.nan)) for name in names]
     if np.all(np.isfinite(half)):
@@ -46,7 +46,7 @@ def plot_integrity(found: xr.Dataset) -> Figure:
     if not bound and set(names) <= set(found["start"].to_numpy()):
         nearest = [float(found["nearest"].sel(start=name)) for name in names]
         axes.plot(*nearest, zorder=4, **_NEAREST)
-        legend.append(Line2D([], [], label="nearest overturning start", linestyle="none", **_NEAREST))
+        legend.append(Line2D([], [], label="nearest overturning run", linestyle="none", **_NEAREST))
     figure.legend(handles=legend, loc="outside right upper")
     return figure
 
@@ -54,9 +54,9 @@ def plot_integrity(found: xr.Dataset) -> Figure:
 @figure_of("erosion")
 @styled
 def plot_erosion(found: xr.Dataset) -> Figure:
-    """Return a figure of the integrity along a parameter, with the band that the resolution of the grid leaves.
+    """Draw the integrity along a parameter, with the uncertainty due to the resolution of the grid.
 
-    Hollow triangles are lower bounds: there nothing overturned within the grid.
+    Hollow triangles are lower bounds, because nothing overturned within the grid.
     """
     figure = new_figure(_CURVE_HEIGHT, width=5.6)
     axes = figure.subplots()
@@ -64,11 +64,11 @@ def plot_erosion(found: xr.Dataset) -> Figure:
     ordered = found.sortby(str(name))
     x, y = ordered[str(name)].to_numpy(), ordered["distance"].to_numpy()
     low, bound = ordered["distance_low"].to_numpy(), ordered["at_least"].to_numpy()
-    axes.fill_between(x, low, y, color=BLUE, alpha=0.22, linewidth=0.0, label="as near as a cell's diagonal")
+    axes.fill_between(x, low, y, color=BLUE, alpha=0.22, linewidth=0.0, label="within a cell's diagonal")
     axes.plot(x, y, color=BLUE, linewidth=1.6)
-    axes.plot(x[~bound], y[~bound], "o", color=BLUE, label="nearest overturning start")
+    axes.plot(x[~bound], y[~bound], "o", color=BLUE, label="nearest overturning run")
     if bound.any():
-        axes.plot(x[bound], y[bound], "^", color=BLUE, mfc="white", label="at least: the grid ends")
+        axes.plot(x[bound], y[bound], "^", color=BLUE, mfc="white", label="lower bound: the grid ends")
     set_scale(axes, "x", x)
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel(axis_label(found[str(name)]))
@@ -78,6 +78,6 @@ def plot_erosion(found: xr.Dataset) -> Figure:
     if first > 0.0:
         functions: Any = (lambda value: value / first, lambda value: value * first)
         ratio = axes.secondary_yaxis("right", functions=functions)
-        ratio.set_ylabel("integrity, over its first value")
+        ratio.set_ylabel("integrity over its first value")
         ratio.spines["right"].set_visible(True)
     return figure

@@ -1,4 +1,4 @@
-"""Which function draws a result: each figure states the kinds of result that it shows."""
+"""Registry of figures: the function that draws each kind of result."""
 
 import pkgutil
 from collections.abc import Callable
@@ -12,14 +12,14 @@ from matplotlib.figure import Figure
 Draw: TypeAlias = Callable[[xr.Dataset], Figure]
 _Draw = TypeVar("_Draw", bound=Draw)
 
-# Rooms whose modules draw; each is looked through once, when the first result is drawn.
+# Packages with figures; each is imported once, when the first result is drawn.
 _FOLDERS = ("stylobate.plots", "stylobate.earthquakes.figures", "stylobate.conveying.figures")
 
 _FIGURES: dict[str, Draw] = {}
 
 
 def figure_of(*kinds: str) -> Callable[[_Draw], _Draw]:
-    """Register a function as the one that draws results of these kinds; `stylobate.plot` finds it.
+    """Register a function that draws results of these kinds, for use by `stylobate.plot`.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Labels of axes: the name of a quantity, its symbol and its unit; of a dimensionless column in the column's units."""
+"""Labels of axes: name, symbol and unit of a quantity; ratios such as a/g for a dimensionless column."""
 
 import json
 import math
@@ -13,7 +13,7 @@ from stylobate.results import Response
 
 _EXPONENTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
-# Units of SI in those of a column with m = g = ω0 = 1, as TeX.
+# SI units in units of a column with m = g = ω0 = 1, as TeX.
 _OWN_UNITS = {
     "rad s-1": r"$\omega_0$",
     "s-1": r"$\omega_0$",
@@ -35,21 +35,21 @@ _OWN_LABELS = {
 _LABEL, _UNIT = "axis_label", "axis_unit"
 # A symbol with an index in a name, such as α_c.
 _INDEXED = re.compile(r"\b([^\W\d_])_([^\W_])\b")
-# Two numbers that differ by less, as a fraction, are equal but for rounding.
+# Relative tolerance for rounding.
 _ROUNDING = 1e-9
 
 _Result = TypeVar("_Result")
 
 
 def axis_label(quantity: xr.DataArray, name: str | None = None) -> str:
-    """Return the label of an axis, such as "angular frequency [rad/s]", or of a dimensionless column its ratio.
+    """Return the label of an axis, such as "angular frequency [rad/s]" or, for a dimensionless column, a ratio.
 
     Parameters
     ----------
     quantity
-        What the axis shows, with the attributes `units` and `long_name`.
+        The quantity on the axis, with the attributes `units` and `long_name`.
     name
-        A name in place of its own, to which the unit is added.
+        A name in place of `long_name`; the unit is added.
     """
     if name is None and _LABEL in quantity.attrs:
         return str(quantity.attrs[_LABEL])
@@ -60,7 +60,7 @@ def axis_label(quantity: xr.DataArray, name: str | None = None) -> str:
 
 
 def unit_label(quantity: xr.DataArray) -> str:
-    """Return the unit of a quantity as it is written: "m s-2" as m/s²; nothing for a number without unit."""
+    """Return the unit of a quantity in print, such as m/s² for "m s-2"; empty for a number without unit."""
     if _UNIT in quantity.attrs:
         return str(quantity.attrs[_UNIT])
     unit = str(quantity.attrs.get("units", ""))
@@ -70,8 +70,8 @@ def unit_label(quantity: xr.DataArray) -> str:
 def in_own_units(result: _Result) -> _Result:
     """Return a result that labels its quantities in units of its column, if that column is dimensionless.
 
-    The numbers stay: for a column with m = g = ω0 = 1 they are those of the dimensionless equations. Anything else is
-    returned as it is. Whether a column is dimensionless is read from the provenance, which files keep.
+    The values do not change: for a column with m = g = ω0 = 1 they are the values of the dimensionless equations. Other
+    results are returned unchanged. The provenance, which files contain, states whether a column is dimensionless.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def in_own_units(result: _Result) -> _Result:
 
 
 def _is_dimensionless(provenance: Mapping[str, Any]) -> bool:
-    """Return whether a result is of a column with m = g = ω0 = 1; two models compared have one column."""
+    """Return whether a result has a column with m = g = ω0 = 1; two compared models have the same column."""
     column = provenance.get("column") or provenance.get("first", {}).get("column") or {}
     try:
         mass, gravity, height = (float(column[name]) for name in ("mass", "gravity", "mass_height"))

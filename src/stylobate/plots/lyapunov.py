@@ -1,4 +1,4 @@
-"""Lyapunov exponents: the estimates as they settle."""
+"""Convergence of the estimates of Lyapunov exponents."""
 
 import numpy as np
 import xarray as xr
@@ -51,7 +51,7 @@ def _unit(exponent: xr.DataArray) -> str:
 
 
 def _value_and_error(value: float, error: float, unit: str) -> str:
-    """Return the value with as many places as its error has, and that with two digits."""
+    """Return value and error in text: the error with two digits, the value with as many decimals."""
     if not np.isfinite(value):
         return "undecided"
     place = _LARGEST_PLACE if error == 0.0 else int(np.clip(1 - np.floor(np.log10(error)), 0, _LARGEST_PLACE))

@@ -21,9 +21,9 @@ from stylobate.text import plural
 
 _PLANE = 2
 _HEIGHT = 4.6
-# A dot on an uncertain run is at most this large, and at least this [points].
+# Maximum and minimum size of a dot on an uncertain run [points].
 _DOTS = (1.2, 3.6)
-# Where more than this part of all runs is uncertain, dots would hide the map: they are counted only.
+# If more than this fraction of all runs is uncertain, dots would hide the map, and the legend states their number only.
 _MOST_MARKED = 0.2
 # Width of a map on its page [points].
 _MAP_WIDTH = 330.0
@@ -62,7 +62,7 @@ def draw_outcomes(axes: Axes, runs: xr.Dataset) -> list[Artist]:
 def draw_classes(axes: Axes, runs: xr.Dataset, codes: xr.DataArray, classes: Sequence[MapClass]) -> list[Artist]:
     """Draw the `codes` of `runs` over their two dimensions, the first along x, and return the legend's entries."""
     if codes.size == 0:
-        message = f"a map needs runs, and there are none in {dict(codes.sizes)}; give each dimension a value or more"
+        message = f"a map needs at least one run, got sizes {dict(codes.sizes)}. Give each dimension a value or more"
         raise ParameterError(message)
     if codes.ndim != _PLANE:
         message = f"a map needs runs over two dimensions, got {dict(codes.sizes)}"

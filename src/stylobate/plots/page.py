@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 # Dots per inch of embedded figures; the page scales them to its width.
 _RESOLUTION = 160
-# Tables of so many columns are printed small.
+# Tables of this many columns or more are printed small.
 _MANY_COLUMNS = 9
 
 _STYLE = """
@@ -36,9 +36,9 @@ nav a { margin-right: 1rem; }
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A figure with its `caption` and a text that says what it shows to those who cannot see it.
+    """A figure with its `caption`, which is also the text for readers who cannot see the figure.
 
-    `drawn` is what `png_of` makes of it, where that was done before.
+    `drawn` is the PNG of the figure by `png_of`, if it was computed before.
     """
 
     figure: Figure
@@ -75,7 +75,7 @@ def page(title: str, introduction: Sequence[str | Picture | Table], sections: Se
     )
 
 
-# A minus sign, and no line break, in numbers such as -0.025 and 2e-12.
+# Minus signs for hyphens, and no line break, in numbers such as -0.025 and 2e-12.
 _MINUS = re.compile(r"(?<![\w)])-(?=\d)")
 _EXPONENT = re.compile(r"(?<=\de)-(?=\d)")
 

@@ -1,4 +1,4 @@
-"""Poincaré sections: tilt and its rate once a period."""
+"""Poincaré sections: tilt and its rate once per period."""
 
 import numpy as np
 import xarray as xr
@@ -11,7 +11,7 @@ from stylobate.results.outcomes import outcome_label
 
 _HEIGHT = 3.9
 _QUANTITIES = (("section_tilt", "tilt", r"\theta"), ("section_tilt_rate", "tilt rate", r"\dot\theta"))
-# Points are drawn the smaller the more there are [points].
+# Size of the markers, which falls with their number [points].
 _LARGEST, _LEAST, _AREA = 4.5, 1.4, 60.0
 _MOST_NAMED = 7
 _NOTHING = "no points: the motion ended before"

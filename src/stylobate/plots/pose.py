@@ -1,4 +1,4 @@
-"""How a column that leans on its rim stands in space: the one definition that every picture of it shares."""
+"""Pose of a column that leans on its rim: the definition that all figures and animations share."""
 
 import numpy as np
 import numpy.typing as npt
@@ -9,7 +9,7 @@ Floats = npt.NDArray[np.float64]
 def quaternions(tilt: npt.ArrayLike, twist: npt.ArrayLike) -> Floats:
     """Return the rotations Rz(β) Ry(θ) Rz(χ − β) of leaning columns as unit quaternions w, x, y, z.
 
-    They are smooth functions of tilt vector and twist, through the upright too: along a motion no sign leaps.
+    The quaternions are smooth functions of tilt vector and twist, also through the vertical: their sign never jumps.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ def quaternions(tilt: npt.ArrayLike, twist: npt.ArrayLike) -> Floats:
     """
     lean, half = np.asarray(tilt, dtype=float), 0.5 * np.asarray(twist, dtype=float)
     angle = np.hypot(lean[..., 0], lean[..., 1])
-    # sin(θ/2)/θ, ½ where the column is upright; np.sinc(u) is sin(πu)/(πu).
+    # sin(θ/2)/θ, ½ at θ = 0; np.sinc(u) is sin(πu)/(πu).
     share = 0.5 * np.sinc(angle / (2.0 * np.pi))
     sine, cosine = np.sin(half), np.cos(half)
     return np.stack(
@@ -40,7 +40,7 @@ def quaternions(tilt: npt.ArrayLike, twist: npt.ArrayLike) -> Floats:
 
 
 def frames(rotation: npt.ArrayLike) -> Floats:
-    """Return the matrices of unit quaternions, shape (…, 3, 3): their columns are the body's x, y and axis."""
+    """Return the matrices of unit quaternions, shape (…, 3, 3), with the body's x, y and axis as columns."""
     w, x, y, z = np.moveaxis(np.asarray(rotation, dtype=float), -1, 0)
     rows = [
         [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
@@ -62,7 +62,7 @@ def base_centres(
     footprint
         Centres of the circles on the ground about which the contact points lie, shape (…, 2) [m].
     radius
-        Of the base [m].
+        Base radius [m].
     clearance
         Heights of the lowest points above the ground [m].
 
@@ -73,7 +73,7 @@ def base_centres(
     """
     lean = np.asarray(tilt, dtype=float)
     angle = np.hypot(lean[..., 0], lean[..., 1])
-    # (1 − cosθ)/θ along the lean, 0 where the column is upright.
+    # (1 − cosθ)/θ along the lean, 0 at θ = 0.
     share = np.sin(0.5 * angle) * np.sinc(angle / (2.0 * np.pi))
     along = np.asarray(footprint, dtype=float) + radius * share[..., None] * lean
     return np.concatenate([along, (radius * np.sin(angle) + clearance)[..., None]], axis=-1)

@@ -38,7 +38,7 @@ def plot_response(curves: xr.Dataset) -> Figure:
 
 
 def _distinct(curves: xr.Dataset) -> list[tuple[str, str]]:
-    """Return the senses of rolling to draw with their names; senses with the same curve are drawn once."""
+    """Return the senses of rolling and their names; senses with the same curve appear once."""
     senses = [str(sense) for sense in curves["sense"].to_numpy()]
     first = curves["amplitude"].sel(sense=senses[0]).to_numpy()
     if len(senses) > 1 and np.allclose(first, curves["amplitude"].sel(sense=senses[1]), rtol=1e-9, equal_nan=True):

@@ -1,4 +1,4 @@
-"""Pictures of single runs: tilt against time, orbit of the tilt vector, azimuth; one run or several compared."""
+"""Figures of single runs: tilt against time, orbit of the tilt vector, azimuth; one run or several compared."""
 
 import textwrap
 from collections.abc import Sequence
@@ -24,15 +24,15 @@ _EVENT_NAMES = {
     "lifted": "lifted off",
     "failed": "failed",
 }
-# Heights of a panel, of a row of kinds of contact, and of what is about the rows [inches].
+# Heights of a panel, of a row of kinds of contact, and of the margin about the rows [inches].
 _PANEL, _ROW, _GAP = 1.75, 0.19, 0.3
-# Where the base does not move, two panels have the height of three, so that the path beside them has room.
+# If the base does not move, two panels have the height of three, as the path beside them needs.
 _HIGH_PANEL = 1.5 * _PANEL
-# The name of an event later than this part of the run stands to its left.
+# The name of an event later than this fraction of the run is written to its left.
 _LATE = 0.8
-# A line whose direction has no more than this part along x runs along y, but for rounding.
+# Tolerance for rounding: a direction with no more than this fraction along x is the direction of y.
 _ALONG_Y = 1e-9
-# Room about the orbit, and characters in a line of the reason beside it.
+# Margin about the orbit, and characters in a line of the reason beside it.
 _ROOM, _LINE = 1.08, 46
 _MOST_REASONS = 2
 _DASHED = (0, (4, 2))
@@ -43,10 +43,10 @@ _LIMIT: dict[str, Any] = {"color": GREY, "linewidth": 0.9, "linestyle": _DASHED}
 def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> Figure:
     """Return a figure of one run, or of several compared.
 
-    Shows the tilt angle, the azimuth of the lean (in a plane: the tilt with its sign) and the base acceleration
-    against time, and the path of the tilt vector. Dashed: θ = c, beyond which the column, left alone, falls, and the
-    acceleration c g at which it uplifts. Of one run of a model that changes its contact also how the column met the
-    plane, a row for each kind of contact. Below the path the reason for the outcome of one run, or a key to several.
+    The panels show the tilt angle, the azimuth of the lean (for planar motion: the tilt with its sign) and the base
+    acceleration against time, and the path of the tilt vector. Dashed lines show θ = c, beyond which the column falls
+    on a base at rest, and the acceleration c g at which it uplifts. For one run of a model that changes its contact, a
+    strip shows the contact history. The text below the path is the reason for the outcome, or a key to several runs.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
         azimuth.plot(
             time, _signed_tilt(run.data) if planar else run.data["azimuth"] / (2.0 * np.pi), linewidth=1.1, **line
         )
-        if shaken:  # later runs below, so that weaker ones are seen
+        if shaken:  # later runs below, so that weaker ones stay visible
             acceleration = np.hypot(*run.data["base_acceleration"].to_numpy()[:, :2].T)
             axes["base"].plot(time, acceleration, linewidth=0.9, zorder=2.0 - 0.01 * index, **line)
         _draw_orbit(orbit, run.data, line)
@@ -93,7 +93,7 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
 
 
 def _panels(contact: ContactHistory | None, *, shaken: bool) -> tuple[Figure, dict[str, Axes]]:
-    """Return a figure and its panels by name; kinds of contact are drawn, the base has a panel if it moves."""
+    """Return a figure and its panels by name; contact and base have panels only if they change or move."""
     panel = _PANEL if shaken else _HIGH_PANEL
     heights = {"tilt": panel, "contact": 0.0, "azimuth": panel, "base": panel}
     if contact is None:
@@ -128,7 +128,7 @@ def _draw_orbit(axes: Axes, data: xr.Dataset, line: dict[str, Any]) -> None:
 
 
 def _signed_tilt(data: xr.Dataset) -> np.ndarray:
-    """Return the tilt along the line in which a planar run moves, positive towards +x, or +y of a line along y."""
+    """Return the tilt along the line of a planar run, positive towards +x, or towards +y if the line is along y."""
     tilt = data["tilt"].to_numpy()
     x, y = tilt[np.argmax(np.hypot(*tilt.T))]
     length = np.hypot(x, y)
@@ -139,7 +139,7 @@ def _signed_tilt(data: xr.Dataset) -> np.ndarray:
 
 
 def _mark_events(axes: Axes, run: Response) -> None:
-    # The first and the last: a run may be released and come to rest in every period.
+    # The first and the last only: a run may uplift and come to rest in every period.
     events = [event for event in run.events if not event.repeats]
     for event in dict.fromkeys((*events[:1], *events[-1:])):
         height = float(np.interp(event.time, run.data["time"], run.data["amplitude"]))
@@ -177,7 +177,7 @@ def _finish(tilt: Axes, orbit: Axes, c: float, runs: Sequence[Response]) -> None
 
 
 def _write_key(axes: Axes, runs: Sequence[Response], names: Sequence[str], *, shaken: bool) -> None:
-    """Write what the marks mean, and the outcomes with their reasons, as far as there is room."""
+    """Write the legend, and the outcomes with their reasons as far as there is room."""
     axes.axis("off")
     mark: dict[str, Any] = {"linestyle": "none", "color": BLACK, "markersize": 5}
     entries = [

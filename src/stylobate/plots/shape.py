@@ -1,4 +1,4 @@
-"""The body that is drawn: what a run knows of its column, completed."""
+"""Shape of the column in figures and animations, from the parameters of a run."""
 
 import math
 from collections.abc import Mapping
@@ -8,7 +8,7 @@ from typing import Any, Self
 from stylobate.column import Height, MassHeight, Radius, Slenderness, TopRadius
 from stylobate.results import Response
 
-# A body whose axial inertia is that of the frustum with its centre of mass, to this part, is that frustum.
+# Relative tolerance of the axial inertia of a frustum with the same centre of mass.
 _SAME = 1e-9
 
 
@@ -19,9 +19,9 @@ class Shape:
     Attributes
     ----------
     radius, top_radius
-        Of base and top [m].
+        Radii of base and top [m].
     height
-        [m]; of a column known by its inertia twice the height of its centre of mass.
+        Height [m]; twice the height of the centre of mass for a column given by its inertia.
     mass_height
         Height of the centre of mass [m].
     slenderness
@@ -36,7 +36,7 @@ class Shape:
 
     @classmethod
     def of(cls, run: Response) -> Self:
-        """Return the body of the column of `run`: a frustum if it has the inertia of a solid one, else a cylinder."""
+        """Return the shape of the column of `run`: a frustum if its inertia is that of a solid one, else a cylinder."""
         column = run.provenance["column"]
         radius, mass_height = float(column["radius"]), float(column["mass_height"])
         return cls(
@@ -49,7 +49,7 @@ class Shape:
 
 
 def _top_radius(column: Mapping[str, Any]) -> float:
-    """Return the top radius of the solid frustum that these numbers describe, or the base radius."""
+    """Return the top radius of the solid frustum with these parameters, or the base radius if there is none."""
     radius = float(column["radius"])
     if not column.get("height"):
         return radius

@@ -29,9 +29,9 @@ _MOST_NAMED, _MOST_MARKED = 8, 30
 def plot_slow_sweep(found: xr.Dataset) -> Figure:
     """Return a figure of tilt and turns a period against the parameter of a slow sweep.
 
-    Lines are means over the last periods at each value, bands reach from the minimum to maximum tilt. Full
-    triangles point right where the parameter rises, hollow ones left where it falls. A cross marks where a column
-    overturned, at the tilt it had before.
+    Lines are means over the last periods at each value, bands reach from the minimum to maximum tilt. Full triangles
+    point right if the parameter rises, hollow triangles left if it falls. A cross marks overturning, at the last mean
+    tilt.
     """
     figure = new_figure(_HEIGHT)
     tilts, turns = figure.subplots(2, 1, sharex=True, height_ratios=_HEIGHT_RATIOS)
@@ -54,7 +54,7 @@ def plot_slow_sweep(found: xr.Dataset) -> Figure:
     tilts.set_ylim(bottom=0.0)
     tilts.legend(handles=legend)
     turns.set_ylabel("turns per period")
-    # What is left of a whole number of turns shows as such.
+    # Deviations from a whole number of turns stay visible.
     low, high = turns.get_ylim()
     turns.set_ylim(min(low, -0.1), max(high, 1.1) if high > 0.0 else 0.1)
     turns.set_xlabel(axis_label(found[name]))
@@ -100,7 +100,7 @@ def _line(colour: str, *, rising: bool, label: str = "") -> Line2D:
 
 
 def _draw_ends(axes: Axes, found: xr.Dataset) -> list[Line2D]:
-    """Mark where columns ended, at their last mean tilt, and return the entries for it."""
+    """Mark the ends of the runs at their last mean tilt, and return the entries of the legend."""
     name, named = str(found.attrs["parameter"]), dict[Outcome, str]()
     for sweep in range(found.sizes["sweep"]):
         one = found.isel(sweep=sweep)

@@ -1,4 +1,4 @@
-"""Where rolling loses its stability, and where averaging is wrong about it."""
+"""Stability boundary of rolling, and map of the errors of averaging."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ from stylobate.plots.labels import axis_label
 from stylobate.plots.style import GREY, PALETTE, new_figure, styled
 
 _DASHED = (0, (4, 2))
-# Theory is thinner than what is exact.
+# Theory is thinner than exact curves.
 _THEORY_WIDTH = 1.2
 _STYLES = {
     "pitchfork": (PALETTE[0], "-"),
@@ -29,7 +29,7 @@ _NAMES = {"Neimark-Sacker": "Neimark–Sacker"}
 @figure_of("stability boundary")
 @styled
 def plot_stability_boundary(boundary: xr.Dataset) -> Figure:
-    """Draw curves of the kind "stability boundary".
+    """Draw the curves of a stability boundary.
 
     Curves are bold if the loss of stability is supercritical, half as bold if it is subcritical, and thin if the orbit
     is unstable on both sides. If there is no curve, a note states the stability of rolling.
@@ -80,7 +80,7 @@ def plot_stability_boundary(boundary: xr.Dataset) -> Figure:
 
 
 def _inside(boundary: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Return theory's curve; NaN beyond the frequencies asked for, but for the points next to them."""
+    """Return theory's curve within the requested frequencies and one point beyond; NaN elsewhere."""
     x, y = boundary["theory_frequency"].to_numpy(), boundary["theory_parameter"].to_numpy()
     low, high = boundary.attrs.get("angular_frequency_range", (-np.inf, np.inf))
     inside = np.concatenate([[False], (x >= low) & (x <= high), [False]])
@@ -88,16 +88,16 @@ def _inside(boundary: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _runs(chosen: np.ndarray) -> list[tuple[int, int]]:
-    """Return first and last index of each stretch, each begun at the point before, so that stretches meet."""
+    """Return first and last index of each interval, starting one point before so that intervals meet."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], chosen, [False]]).astype(int)))
     return [(max(int(first) - 1, 0), int(last) - 1) for first, last in zip(edges[::2], edges[1::2], strict=True)]
 
 
 _CASES = (
-    ((1, 1), "stable, as averaging says", PALETTE[0]),
-    ((0, 1), "unstable, though averaging says stable", PALETTE[1]),
-    ((1, 0), "stable, though averaging says unstable", PALETTE[2]),
-    ((0, 0), "unstable, as averaging says", "#d9d9d9"),
+    ((1, 1), "stable, as averaging predicts", PALETTE[0]),
+    ((0, 1), "unstable, averaging predicts stable", PALETTE[1]),
+    ((1, 0), "stable, averaging predicts unstable", PALETTE[2]),
+    ((0, 0), "unstable, as averaging predicts", "#d9d9d9"),
     ((-1, None), "exact rolling not found", "white"),
 )
 _LEVELS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
@@ -106,7 +106,7 @@ _LEVELS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
 @figure_of("averaging map")
 @styled
 def plot_averaging_map(found: xr.Dataset) -> Figure:
-    """Return a figure of a map of the kind "averaging map": who is right about stability, and the error of the tilt."""
+    """Draw an averaging map: agreement of averaged and exact stability, and the error of the mean tilt."""
     figure = new_figure(5.0)
     axes = figure.subplots()
     parameter = str(found.attrs["parameter"])
@@ -138,7 +138,7 @@ def _called(name: str, neutral: str) -> str:
 
 
 def _contours(axes: Axes, x: np.ndarray, y: np.ndarray, error: np.ndarray) -> None:
-    """Draw where the mean tilt differs by round percentages from the averaged one."""
+    """Draw contours of the deviation of the averaged mean tilt at round percentages."""
     inside = [level for level in _LEVELS if np.nanmin(error) < level < np.nanmax(error)]
     if not inside or min(error.shape) < 2:  # noqa: PLR2004
         return

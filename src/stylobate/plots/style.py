@@ -1,4 +1,4 @@
-"""How figures look: one palette that survives colour blindness and grey print, one page width."""
+"""Style of figures: a palette for colour-blind readers and grey print, and one page width."""
 
 from collections.abc import Callable
 from functools import wraps
@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from stylobate.plots.labels import in_own_units
 
-# Okabe and Ito's palette ("Color Universal Design", 2008), its yellow left out; order alternates in lightness.
+# Okabe and Ito's palette ("Color Universal Design", 2008) without its yellow; the lightness alternates.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 BLUE, VERMILION, GREEN, PURPLE, SKY, ORANGE, BLACK = PALETTE
 GREY = "#767676"
@@ -40,7 +40,7 @@ P = ParamSpec("P")
 
 
 def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
-    """Draw with the common settings, results of dimensionless columns in their units; settings of the user stay."""
+    """Apply the common settings, and label dimensionless columns in their units; the user's settings stay."""
 
     @wraps(draw)
     def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:

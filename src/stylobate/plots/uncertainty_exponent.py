@@ -1,4 +1,4 @@
-"""The uncertainty exponent: share of uncertain starts against the error of the start."""
+"""Uncertainty exponent: share of uncertain initial conditions against their perturbation."""
 
 import numpy as np
 import xarray as xr
@@ -9,20 +9,19 @@ from stylobate.plots.labels import axis_label
 from stylobate.plots.style import BLUE, GREY, VERMILION, new_figure, styled
 
 _HEIGHT = 3.8
-# A share of dropped starts above which the figure states it.
+# If the share of dropped starts is larger, the figure states it.
 _MANY_DROPPED = 0.1
-# The axis reaches this far below the lowest mark, as a factor: room for the arrow that hangs there.
+# Factor by which the axis extends below the lowest mark, for the arrow there.
 _ROOM = 2.5
 
 
 @figure_of("uncertainty exponent")
 @styled
 def plot_exponent(found: xr.Dataset) -> Figure:
-    """Return a figure of the share of uncertain starts against the shift ε, on logarithmic axes, with the fit.
+    """Draw the share of uncertain initial conditions against the shift ε, on logarithmic axes, with the fit.
 
-    Hollow circles are too near saturation for the fit; an arrow hangs from the upper end of the interval where no
-    start was uncertain. Where more than a tenth of the starts is dropped, because they are undecided, the title
-    says so.
+    Hollow circles are too near saturation for the fit. An arrow points down from the upper end of the interval if no
+    initial condition was uncertain. If more than a tenth of the runs are dropped as undecided, the title states it.
     """
     figure = new_figure(_HEIGHT, width=5.4)
     axes = figure.subplots()
@@ -40,7 +39,7 @@ def plot_exponent(found: xr.Dataset) -> Figure:
             )
     none = (fraction == 0.0) & (found["pairs"].to_numpy() > 0)
     if none.any():
-        axes.plot(epsilon[none], high[none], linestyle="none", marker="v", color=GREY, label="none found: below this")
+        axes.plot(epsilon[none], high[none], linestyle="none", marker="v", color=GREY, label="none found: upper bound")
     if np.isfinite(float(found["uncertainty_exponent"])):
         axes.plot(
             epsilon,
@@ -49,7 +48,7 @@ def plot_exponent(found: xr.Dataset) -> Figure:
             linestyle="--",
             label=r"fit $\varepsilon^{\upsilon}$",
         )
-    axes.set(xscale="log", yscale="log", ylabel="fraction of uncertain starts")
+    axes.set(xscale="log", yscale="log", ylabel="fraction of uncertain initial conditions")
     axes.set_xlabel(f"shift ε of {axis_label(found['epsilon'])}")
     axes.set_ylim(_lowest(found) / _ROOM, 1.3)
     axes.set_title(_title(found))

@@ -72,8 +72,8 @@ def _contact_rows(run: "Response") -> Rows:
 def _demand_rows(run: "Response") -> Rows:
     measures = run.measures
     rows = [
-        ("needs a friction coefficient of", "peak_friction_demand", ""),
-        ("and to resist pivoting with", "peak_pivoting_demand", " of normal force times radius"),
+        ("required friction coefficient", "peak_friction_demand", ""),
+        ("required pivoting moment", "peak_pivoting_demand", " of normal force times radius"),
         ("minimum normal force", "minimum_normal_force", " of the weight"),
     ]
     return [(label, _bounded(measures[name], unit)) for label, name, unit in rows if name in measures]

@@ -45,7 +45,7 @@ def pictures_of(data):
 def test_a_gif_has_every_picture_and_takes_its_time(animation, gif):
     durations = [duration for _, duration in pictures_of(gif)]
     assert len(durations) == len(animation) == 13
-    # 12 pictures a second in hundredths of a second: 80 and 90 ms by turns, 1 s in all, and a pause at the end.
+    # 12 frames per second in hundredths of a second: 80 and 90 ms by turns, 1 s in all, and a pause at the end.
     assert set(durations[:-1]) == {80, 90}
     assert sum(durations[:-1]) == 1000
     assert durations[-1] == 2500
@@ -79,7 +79,7 @@ def test_too_few_pictures_of_a_swing_are_told_with_the_speed_that_shows_it():
     model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
     fast = sb.Harmonic.straight(acceleration=0.05, angular_frequency=60.0)
     run = sb.simulate(model, fast, tilt=(0.03, 0.0), duration=1.0)
-    with pytest.warns(UnlikelyInputWarning, match=r"9.549 times a second.*make speed 0.31 times"):
+    with pytest.warns(UnlikelyInputWarning, match=r"base frequency of 9.549 Hz. Multiply speed by 0.31 or less"):
         sb.animate(run, **SMALL)
     sb.animate(run, **SMALL, speed=0.31)
 

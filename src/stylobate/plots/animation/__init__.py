@@ -1,6 +1,6 @@
-"""Pictures that move: the motion of a column as numbers, as GIF, as MP4, and as a page of its own.
+"""Animations: the motion of a column as numbers, GIF, MP4 or self-contained web page.
 
-The public names, imported when they are first used, are those of `__init__.pyi`: numbers need no pictures.
+`__init__.pyi` lists the public names, which are imported on first use: numbers need no imaging library.
 """
 
 import lazy_loader

@@ -27,13 +27,13 @@ from stylobate.plots.animation.video import write_mp4
 from stylobate.plots.axonometry import View
 from stylobate.results import Response
 
-# Pictures in an animation at most: a minute at the usual rate.
+# Maximum number of frames in an animation: a minute at the usual rate.
 _MOST = 1500
-# A GIF's clock runs in hundredths of a second, and viewers slow down what is faster than half of them.
+# A GIF counts time in hundredths of a second, and viewers slow down frames shorter than two hundredths.
 _FASTEST = 50.0
-# With fewer pictures of each swing of the base one sees another motion.
+# With fewer frames per period of the base the animation shows another motion.
 _FEWEST_IN_A_PERIOD = 4.0
-# Width and height of pictures [pixels]: smaller ones cannot hold what is written in them.
+# Width and height of frames [pixels]: smaller frames have no room for their text.
 _SMALLEST, _LARGEST = (320, 280), (3840, 2160)
 _SUFFIXES = (".gif", ".mp4", ".html")
 
@@ -77,7 +77,7 @@ class Animation:
         return gif_of(drawing.picture, len(self), self.frames_per_second, progress)
 
     def html(self) -> str:
-        """Return the text of a web page in which one can turn, stop and slow down the motion.
+        """Return the HTML of a web page in which one can turn, stop and slow down the motion.
 
         Raises
         ------
@@ -100,7 +100,7 @@ class Animation:
         """
         path = checked_path(path)
         with written_aside(path) as beside:
-            beside.touch()  # an error before the first picture is drawn if nothing can be written there
+            beside.touch()  # raises before the first frame is drawn if the folder is not writable
             match path.suffix.lower():
                 case ".gif":
                     beside.write_bytes(self.gif(progress))
@@ -199,14 +199,14 @@ def animate(
 
 
 def _remark_on_few(run: Response, pictures: float) -> None:
-    """Warn of so few `pictures` in a second of the run that its base seems to stand still or to move otherwise."""
+    """Warn if there are too few `pictures` per second of the run to show the motion of its base."""
     frequency = run.provenance["motion"].get("angular_frequency")
     if not isinstance(frequency, float) or pictures * 2.0 * math.pi >= _FEWEST_IN_A_PERIOD * frequency:
         return
     least = pictures * 2.0 * math.pi / (_FEWEST_IN_A_PERIOD * frequency)
     message = (
-        f"the base swings {frequency / (2.0 * math.pi):.4g} times a second, of which {pictures:.4g} pictures a second "
-        f"show too little: make speed {least:.2g} times what it is, or less"
+        f"speed: {pictures:.4g} frames per second of the run are too few for a base frequency of "
+        f"{frequency / (2.0 * math.pi):.4g} Hz. Multiply speed by {least:.2g} or less"
     )
     warnings.warn(message, UnlikelyInputWarning, stacklevel=3)
 
@@ -243,10 +243,10 @@ def _view(azimuth: float, elevation: float) -> View:
 def _require_few(end: float, rate: float, pace: float) -> None:
     if end * rate / pace > _MOST - 1:
         least = end * rate / (_MOST - 1)
-        # Rounded up, so that it works.
+        # Rounded up, so that the value in the message is accepted.
         power = 10.0 ** (math.floor(math.log10(least)) - 2)
         message = (
-            f"speed must be at least {math.ceil(least / power) * power:.3g} to show {end:.6g} s by {_MOST} pictures at "
-            f"{rate:g} a second, got {pace!r}"
+            f"speed must be at least {math.ceil(least / power) * power:.3g} to show {end:.6g} s in {_MOST} frames at "
+            f"{rate:g} per second, got {pace!r}"
         )
         raise ParameterError(message)

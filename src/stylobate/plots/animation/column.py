@@ -1,4 +1,4 @@
-"""The column as facets: a fluted shaft with one flute marked, so that rolling and spin are seen."""
+"""Facets of a fluted shaft with one marked flute, which makes rolling and spin visible."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -11,12 +11,12 @@ from stylobate.plots.animation.palette import MARK, STONE
 from stylobate.plots.pose import Floats
 from stylobate.plots.shape import Shape
 
-# A Doric column has 20 flutes; facets across each, and how far their normals turn from that of its middle [rad].
+# A Doric column has 20 flutes; facets across each, and angle from the normal of a flute's middle to its edge [rad].
 _FLUTES, _FACETS, _HOLLOW = 20, 4, 0.85
 MARKED = -0.5 * np.pi
-"""Azimuth of the marked flute from the body's x [rad]: it faces the viewer where there is no twist."""
+"""Azimuth of the marked flute from the body's x [rad]: without twist the flute faces the viewer."""
 
-# Brightness of what the light does not reach, and what it adds.
+# Ambient brightness, and brightness that the light adds.
 _AMBIENT, _DIRECT = 0.52, 0.54
 
 
@@ -59,7 +59,7 @@ class FlutedColumn:
 
     @property
     def wedge(self) -> npt.NDArray[np.intp]:
-        """Places of the corners of the marked flute."""
+        """Indices of the corners of the marked flute."""
         return np.arange(_FACETS + 1)
 
 
@@ -69,6 +69,6 @@ def ring(angles: Floats, radius: float, height: float) -> Floats:
 
 
 def lit(colours: Floats, normals: Floats, light: Floats) -> Floats:
-    """Return colours under `light`, after Lambert, with some light from everywhere; shapes (n, 3), 0 to 1."""
+    """Return colours under `light`, after Lambert, with ambient light; shapes (n, 3), 0 to 1."""
     bright = _AMBIENT + _DIRECT * np.clip(normals @ light, 0.0, None)
     return np.clip(colours * bright[..., None], 0.0, 1.0)

@@ -1,4 +1,4 @@
-"""Pictures of a column on its shaking base, drawn by Matplotlib an instant at a time."""
+"""Frames of an animation: a column on its shaking base, drawn by Matplotlib one instant at a time."""
 
 import math
 from collections.abc import Callable
@@ -31,19 +31,19 @@ from stylobate.plots.style import BLUE, VERMILION
 _DPI = 100
 # Room about the scene [pixels]: at the sides, above for two lines of text, below for the history of the tilt.
 _EDGE, _ABOVE, _BELOW = 22, 46, 92
-# Of the history of the tilt: from the sides, from the lower edge, and its height [pixels].
+# The history of the tilt: distance from the sides and from the lower edge, and height [pixels].
 _INDENT, _FLOOR, _BAND = 58, 16, 34
 # A base narrower than this is shown from above as well, in a square of this side, if the picture is as wide as this.
 _NARROW, _SIDE, _WIDE = 110.0, 132, 420
-# A footprint that wanders farther than this is seen without such a square [base radii].
+# If the footprint wanders farther than this, there is no such square [base radii].
 _WANDERS = 3.0
 # The latest part of the path is drawn bold: this fraction of the motion.
 _LATEST = 0.08
-# Least distance between marks on the ground [pixels]; they fade over this fraction of the height of the scene.
+# Minimum distance between marks on the ground [pixels]; the marks fade over this fraction of the scene's height.
 _MARKS_APART, _FADE = 34.0, 0.45
 # The tilt of unstable balance is drawn if the tilt comes to this fraction of it.
 _NEAR = 0.4
-# The light's azimuth beside the eye's and its elevation [rad].
+# The light's azimuth relative to the viewer, and its elevation [rad].
 _BESIDE, _HIGH = math.radians(-62.0), math.radians(48.0)
 _LARGE, _SMALL = 9.0, 8.0
 _FALLS = (Outcome.OVERTURNED,)
@@ -55,14 +55,14 @@ _A = TypeVar("_A", bound=Artist)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Look:
-    """How a motion is drawn.
+    """Size, view and title of the pictures of a motion.
 
     Parameters
     ----------
     size
         Width and height of the picture [pixels].
     view
-        Where the eye is.
+        Direction of view.
     title
         A line above the picture.
     pace
@@ -79,14 +79,14 @@ class Look:
 
 
 class Drawing:
-    """The figure of a motion: static parts are drawn once, the others again for each instant.
+    """The figure of a motion: static parts are drawn once, moving parts again for each instant.
 
     Parameters
     ----------
     motion
-        The instants of which there are pictures.
+        The motion sampled at the frames.
     history
-        The same motion sampled finer, for paths and curves.
+        The same motion with finer samples, for paths and curves.
     look
         Size, view, title.
     """
@@ -125,11 +125,11 @@ class Drawing:
         return Image.frombuffer("RGBA", self.look.size, self._canvas.buffer_rgba()).convert("RGB")
 
     def pixels(self, points: Floats) -> Floats:
-        """Return the pixels of points in space, shape (…, 3), from the upper left corner, shape (…, 2)."""
+        """Return the pixels, shape (…, 2) from the upper left corner, of points of shape (…, 3)."""
         across = self.space.transData.transform(self.look.view.project(points).reshape(-1, 2))
         return np.asarray(np.array([0.0, self.look.size[1]]) + across * [1.0, -1.0]).reshape(*points.shape[:-1], 2)
 
-    # Axes and what stands still.
+    # Axes and static parts.
 
     def _axes(self, left: float, bottom: float, right: float, top: float) -> Axes:
         """Add axes without frame between two corners [pixels from the lower left]."""
@@ -184,7 +184,7 @@ class Drawing:
         return float(self.space.bbox.width / (right - left))
 
     def _add_tilt_history(self, history: DrawnMotion) -> None:
-        """Draw |tilt|/c against time below the scene, in full and pale; the moving curve covers it."""
+        """Draw all of |tilt|/c against time below the scene in a pale colour; the moving curve covers it."""
         self._history = history.time, np.hypot(*history.tilt.T) / history.shape.slenderness
         time, size = self._history
         highest = float(size.max())
@@ -205,7 +205,7 @@ class Drawing:
         self._now = self._animated(strip.plot([], [], "o", color=BLUE, markersize=5, clip_on=False)[0])
 
     def _add_texts(self) -> None:
-        """Write the title, the scale and the grid; time, tilt and outcome are written again in each picture."""
+        """Write the title, the scale and the grid; each frame writes time, tilt and outcome again."""
         width, height = self.look.size
         self._state = self._animated(self._text(_EDGE, height - 20, "", palette.INK, size=_LARGE))
         self._verdict = self._animated(self._text(width - _EDGE, height - 20, "", palette.INK, ha="right", size=_LARGE))
@@ -221,7 +221,7 @@ class Drawing:
         self._text(_EDGE, floor - 4, f"grid {_metres(self.scene.grid)}", palette.PALE)
 
     def _text(self, x: float, y: float, text: str, colour: str, **options: Any) -> Text:
-        """Write at a place [pixels from the lower left]."""
+        """Write a text at a position [pixels from the lower left]."""
         place: dict[str, Any] = {
             "va": "baseline",
             "size": _SMALL,
@@ -231,14 +231,14 @@ class Drawing:
         return self._figure.text(x, y, text, **place)
 
     def _fit(self, text: Text, room: float) -> None:
-        """Shorten a text to the `room` that it has [pixels]."""
+        """Shorten a text to the width `room` [pixels]."""
         whole = text.get_text()
         for kept in range(len(whole), 0, -1):
             if text.get_window_extent(self._canvas.get_renderer()).width <= room:
                 return
             text.set_text(f"{whole[: kept - 1].rstrip()}…")
 
-    # What moves.
+    # Moving parts.
 
     def _animated(self, artist: _A) -> _A:
         artist.set_animated(True)
@@ -278,7 +278,7 @@ class Drawing:
             self._mark = line(self.plan, palette.MARK, 2.5)
 
     def _projections(self) -> list[tuple[Axes, Callable[[Floats, Floats], Floats]]]:
-        """Return for each view how points in the plane of the base, displaced with it, are projected."""
+        """Return, for each view, the projection of points in the displaced plane of the base."""
         return [(self.space, self._on_slab), *([] if self.plan is None else [(self.plan, self._from_above)])]
 
     def _on_slab(self, points: Floats, base: Floats) -> Floats:
@@ -325,7 +325,7 @@ class Drawing:
             self._wedge.set(xy=np.concatenate([rim.mean(axis=0)[None], rim[column.wedge]]), facecolor=mark)
 
     def _place_contact(self, index: int, base: Floats, frame: Floats) -> None:
-        """Place the footprint, the path and the contact point: a ring where the column stands before it."""
+        """Place the footprint, the path and the contact point; the point is a ring if the column hides it."""
         motion, time = self.motion, float(self.motion.time[index])
         around = ring(_AROUND, motion.shape.radius, 0.0)[:, :2] + motion.footprint[index]
         last = int(np.searchsorted(self._times, time, side="right"))
@@ -340,7 +340,7 @@ class Drawing:
             dot.set(markerfacecolor=palette.CONTACT_POINT, markeredgecolor=palette.BACKGROUND)
         lean = self.scene.turned @ np.append(motion.contact_point[index] - motion.footprint[index], 0.0)
         outward = lean - (lean @ frame[:, 2]) * frame[:, 2]
-        if frame[:, 2] @ self._eye > 0.0 > outward @ self._eye:  # both faces that meet there face away
+        if frame[:, 2] @ self._eye > 0.0 > outward @ self._eye:  # shaft and base face away from the viewer
             self._dots[0].set(markerfacecolor="none", markeredgecolor=palette.CONTACT_POINT)
         if self.plan is not None:
             turn = motion.twist[index] + MARKED
@@ -348,14 +348,14 @@ class Drawing:
             self._mark.set_data(*self._from_above(motion.footprint[index] + np.array([[0.55], [1.0]]) * radius).T)
 
     def _place_time(self, index: int) -> None:
-        """Place the instant in the history of the tilt, and write time, tilt and, at the end, the outcome."""
+        """Mark the instant in the history of the tilt, and write time, tilt and, at the end, the outcome."""
         motion, (time, size) = self.motion, self._history
         now, tilt = float(motion.time[index]), math.hypot(*motion.tilt[index])
         last = int(np.searchsorted(time, now, side="right"))
         height = float(np.interp(now, time, size))
         self._progress.set_data(np.append(time[:last], now), np.append(size[:last], height))
         self._now.set_data([now], [height])
-        # Three digits of the time at the end, and no fewer than seconds.
+        # Three digits of the time at the end, but at least whole seconds.
         digits = max(0, 2 - math.floor(math.log10(motion.time[-1])))
         over = tilt / motion.shape.slenderness
         self._state.set_text(f"{now:.{digits}f} s    tilt {over:.2f} c    {math.degrees(tilt):.1f}°")
@@ -375,7 +375,7 @@ class Drawing:
 
 
 def _metres(length: float) -> str:
-    """Return a length in the unit in which it reads well.
+    """Return a length in mm, cm, m or km with few digits.
 
     >>> _metres(0.02), _metres(0.5), _metres(0.002)
     ('2 cm', '0.5 m', '2 mm')

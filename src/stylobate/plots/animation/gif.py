@@ -1,4 +1,4 @@
-"""Pictures as one GIF: colours shared by all of them, and of each what changed."""
+"""GIF encoder: one palette for all frames, and only the changed rectangle of each frame."""
 
 import math
 import struct
@@ -13,37 +13,37 @@ from stylobate.plots.animation.palette import BACKGROUND, CONTACT, CONTACT_POINT
 
 Progress = Callable[[int, int], None]
 
-# Colours that all pictures share, and the number of one more, which stands for what does not change.
+# Number of colours that all frames share, and the index of one more colour, for unchanged pixels.
 _COLOURS = 96
 _UNCHANGED = _COLOURS
 # Levels between the colours for which Pillow finds the nearest one.
 _MESH = 4
-# Colours that a dot or a line has, and the parts of them where its edge is smoothed.
+# Colours of dots and lines, and the fractions of these colours along smoothed edges.
 _STRONG, _PARTS = (MARK, CONTACT, CONTACT_POINT), (1.0, 0.7, 0.4)
-# The format: bytes of the header, before the shared colours, and in it the flags that hold their number; behind them a
-# control block and a comma, after which the place of the picture stands; and what ends a file.
+# The format: length of the header before the shared colours, and position of the flags with their number; then a
+# control block and a comma, followed by the position of the frame; and the byte that ends a file.
 _HEADER, _FLAGS, _PLACE, _COMMA, _TRAILER = 13, 10, 9, 0x2C, b";"
-# Pictures from which the colours are taken.
+# Number of frames from which the colours are taken.
 _SAMPLED = 8
-# How long the last one is shown [s].
+# Duration of the last frame [s].
 _HOLD = 2.5
 
 
 def gif_of(
     picture: Callable[[int], Image.Image], count: int, frames_per_second: float, progress: Progress | None = None
 ) -> bytes:
-    """Return a GIF that repeats for ever and pauses at its end.
+    """Encode a GIF that repeats forever and pauses at its end.
 
     Parameters
     ----------
     picture
-        Returns the picture with this number.
+        Function that returns the frame with a given index.
     count
-        How many there are.
+        Number of frames.
     frames_per_second
-        How fast; a GIF counts in hundredths of a second, which are shared out so that the whole takes its time.
+        Frames per second; a GIF counts in hundredths of a second, distributed so that the total time is right.
     progress
-        Called after each picture with the number done and the total.
+        Called after each frame with the number done and the total.
     """
     palette = _palette([picture(number) for number in _spread(count)])
     parts, before = [], None
@@ -57,17 +57,17 @@ def gif_of(
 
 
 def _encoded(picture: Image.Image, duration: int, **options: int) -> bytes:
-    """Return a GIF of one picture without its end: written each by itself, no more than two need be held."""
+    """Encode one frame as a GIF without its trailer, so that memory holds at most two frames."""
     buffer = BytesIO()
     picture.save(buffer, "GIF", duration=duration, transparency=_UNCHANGED, disposal=1, optimize=False, **options)
     return buffer.getvalue().removesuffix(_TRAILER)
 
 
 def _changes(before: Image.Image, now: Image.Image, duration: int) -> bytes:
-    """Return the blocks of a GIF that lead from one picture to the next: what changes, in the rectangle about it."""
+    """Return the GIF blocks from one frame to the next: the changes and their bounding rectangle."""
     same = np.asarray(now) == np.asarray(before)
     rows, columns = np.flatnonzero(~same.all(axis=1)), np.flatnonzero(~same.all(axis=0))
-    # Where nothing changes one pixel is written, to pass the time.
+    # If nothing changes, one pixel is written, which carries the duration.
     left, upper, right, lower = (columns[0], rows[0], columns[-1], rows[-1]) if rows.size else (0, 0, 0, 0)
     changed = now.copy()
     changed.paste(_UNCHANGED, mask=Image.fromarray(same.view(np.uint8) * 255))
@@ -80,7 +80,7 @@ def _changes(before: Image.Image, now: Image.Image, duration: int) -> bytes:
 
 
 def _palette(pictures: Sequence[Image.Image]) -> Image.Image:
-    """Return a picture whose palette serves all `pictures`: small things of strong colour keep theirs."""
+    """Return an image with a palette for all `pictures`; small objects keep their strong colours."""
     width, height = pictures[0].size
     sheet = Image.new("RGB", (width, height * len(pictures)))
     for row, one in enumerate(pictures):
@@ -88,7 +88,7 @@ def _palette(pictures: Sequence[Image.Image]) -> Image.Image:
     strong = [round(255 * one) for colour in _STRONG for part in _PARTS for one in mixed(BACKGROUND, colour, part)]
     left = _COLOURS - len(strong) // 3
     others = np.array(sheet.quantize(left, method=Image.Quantize.MEDIANCUT).getpalette()).reshape(-1, 3)[:left]
-    # Pillow looks up the nearest of them on a grid: what lies within its mesh of the background would take its place.
+    # Pillow finds the nearest colour on a grid: a colour within a mesh of the background would replace the background.
     background = [round(255 * one) for one in to_rgb(BACKGROUND)]
     others[np.abs(others - background).max(axis=1) <= _MESH] = background
     found = Image.new("P", (1, 1))
@@ -101,7 +101,7 @@ def _spread(count: int) -> list[int]:
 
 
 def _durations(count: int, frames_per_second: float) -> list[int]:
-    """Return how long each picture is shown [ms], in whole hundredths of a second that add up to the right time."""
+    """Return the duration of each frame [ms], in whole hundredths of a second with the right sum."""
     ends = [math.floor(100.0 * (number + 1) / frames_per_second + 0.5) for number in range(count)]
     shown = [10 * (end - begin) for begin, end in zip([0, *ends], ends, strict=False)]
     return [*shown[:-1], round(1000.0 * _HOLD)]

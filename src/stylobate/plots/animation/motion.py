@@ -1,4 +1,4 @@
-"""The motion of a column as it is drawn: poses at equal steps in time."""
+"""The motion of a column for animations: poses at equal time steps."""
 
 import math
 from collections.abc import Mapping
@@ -15,13 +15,13 @@ from stylobate.plots.shape import Shape
 from stylobate.results import Response
 from stylobate.results.plain import plain_numbers
 
-# No more instants than this, however long the run: a page holds them all.
+# Maximum number of instants of a run: a page contains them all.
 _MOST = 2000
-# Rounding in the number of instants.
+# Tolerance for rounding in the number of instants.
 _SLACK = 1e-9
-# What is joined by straight lines between samples.
+# Variables that are interpolated linearly between samples.
 _SMOOTH = ("tilt", "tilt_rate", "twist", "spin", "footprint", "clearance", "base_displacement")
-# Digits that are kept where a motion is written as text.
+# Significant digits of a motion in JSON.
 _DIGITS = 7
 
 
@@ -44,7 +44,7 @@ class DrawnMotion:
         models without it.
     footprint, contact_point
         Centre of the footprint circle on the base, and contact point, shape (n, 2) [m]. While the column stands
-        upright, the contact point is the last one, or the first one to come.
+        upright, the contact point is the previous one or, before the first tilt, the next one.
     resting
         Whether the whole base is in contact, shape (n,).
     clearance
@@ -56,7 +56,7 @@ class DrawnMotion:
     friction_coefficient
         Friction coefficient of the contact, if known.
     outcome, decided_at, title
-        The outcome, when it was decided [s], and a line that states both.
+        The outcome, the time at which it was decided [s], and a line that states both.
     """
 
     shape: Shape
@@ -87,7 +87,7 @@ class DrawnMotion:
         title: str | None = None,
         most: int = _MOST,
     ) -> Self:
-        """Return the motion of `run`; arguments and errors as for `drawn_motion`, with no more than `most` instants."""
+        """Return the motion of `run` in at most `most` instants; arguments and errors as for `drawn_motion`."""
         _require_run(run)
         data = _at_equal_steps(run, frames_per_second, most)
         shape, plane = Shape.of(run), run.provenance["model"]
@@ -120,7 +120,7 @@ class DrawnMotion:
 
     @property
     def rotation(self) -> Floats:
-        """The column's rotation as unit quaternions w, x, y, z, shape (n, 4); no sign leaps."""
+        """The column's rotation as unit quaternions w, x, y, z, shape (n, 4), without jumps of the sign."""
         return quaternions(self.tilt, self.twist)
 
     @property
@@ -131,7 +131,7 @@ class DrawnMotion:
 
     @property
     def on_rim(self) -> npt.NDArray[np.bool_]:
-        """Where a point of the rim touches and no more, shape (n,)."""
+        """Whether only a point of the rim touches the base, shape (n,)."""
         flying = np.zeros(self.time.size, dtype=bool) if self.clearance is None else self.clearance > 0.0
         return ~self.resting & ~flying
 
@@ -219,7 +219,7 @@ def _at_equal_steps(run: Response, frames_per_second: float | None, most: int) -
 
 
 def _between(data: xr.Dataset, time: Floats) -> xr.Dataset:
-    """Return samples joined by straight lines, and what is no number as it was at the sample before."""
+    """Interpolate samples linearly; values that are not numbers keep the value of the sample before."""
     own = data["time"].to_numpy()
     before = np.clip(np.searchsorted(own, time, side="right") - 1, 0, own.size - 1)
     smooth = [name for name in _SMOOTH if name in data]
@@ -238,7 +238,7 @@ def _optional(data: Mapping[Any, xr.DataArray], name: str) -> Floats | None:
 
 
 def _directions(tilt: Floats) -> Floats:
-    """Return unit vectors along the tilt, where there is none those of the nearest instant before, or else after."""
+    """Return unit vectors along the tilt; without tilt, the vector of the nearest instant before, or else after."""
     size = np.hypot(*tilt.T)
     leaning = np.flatnonzero(size > 0.0)
     if not leaning.size:

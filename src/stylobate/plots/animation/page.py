@@ -1,4 +1,4 @@
-"""A motion as a page of its own: the viewer and the numbers in one file, nothing fetched."""
+"""Animation as a self-contained web page: the viewer and the numbers in one file, nothing fetched."""
 
 import base64
 import hashlib
@@ -23,9 +23,9 @@ stylobateViewer.mount(document.getElementById("viewer"), JSON.parse(document.get
 
 
 def page_of(motion: Mapping[str, Any]) -> str:
-    """Return the HTML of a page that shows a drawn motion, in space, to be turned about and stopped.
+    """Return the HTML of a page that shows a motion in three dimensions, with controls to turn and stop it.
 
-    The page may run its own two scripts, identified by their hashes, and load nothing.
+    The page may run only its own two scripts, identified by their hashes, and may not load anything.
 
     Raises
     ------
@@ -43,14 +43,14 @@ def page_of(motion: Mapping[str, Any]) -> str:
         f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
         f"<title>{title}</title><style>{_STYLE}</style></head>"
-        f'<body><div id="viewer"></div><noscript>{title}. The moving picture needs scripts, which are in this file.'
+        f'<body><div id="viewer"></div><noscript>{title}. The animation needs scripts, which are in this file.'
         f'</noscript><script type="application/json" id="motion">{numbers}</script>'
         f"<script>{viewer}</script><script>{_START}</script></body></html>\n"
     )
 
 
 def _viewer() -> str:
-    """Return the viewer's script, such that no page mistakes a part of it for its end."""
+    """Return the viewer's script, escaped so that no part of the script ends its element."""
     try:
         text = files("stylobate.plots.animation").joinpath("viewer.js").read_text(encoding="utf-8")
     except FileNotFoundError:
@@ -59,7 +59,7 @@ def _viewer() -> str:
             "'npm ci && npm run build' in src/stylobate/lab/web, or write a .gif"
         )
         raise UnsupportedError(message) from None
-    # Line ends as a browser reads them, or the hash would be of another text.
+    # Line ends as browsers read them; otherwise the hash would not match.
     return text.replace("\r\n", "\n").replace("</script", "<\\/script").replace("<!--", "<\\!--")
 
 

@@ -1,4 +1,4 @@
-"""Colours of the things in a picture: one colour, one meaning, those of the page and its viewer on a light ground."""
+"""Colours of animations: one colour, one meaning, the same as in the page and its viewer on a light background."""
 
 from matplotlib.colors import to_rgb
 
@@ -8,22 +8,22 @@ BACKGROUND, GROUND_LINE = "#f5f7fa", "#c3ccd8"
 SLAB, SLAB_SIDE, SLAB_LINE = "#e3e8ef", "#aeb8c6", "#aab6c6"
 STONE, FOOTPRINT, INK = "#f1ebde", "#5d6b7d", "#3c4856"
 MARK = VERMILION
-"""The marked flute and the radius to it: what turns with the body."""
+"""The marked flute and the radius to it, which turn with the body."""
 
 CONTACT, CONTACT_OLD = BLUE, "#9cc3de"
 """The path of the contact point, recent and old, and the footprint of a column that stands."""
 
 PALE = FOOTPRINT
-"""Text beside that in ink."""
+"""Secondary text."""
 
 CONTACT_POINT = "#0b1622"
-"""The point that touches now."""
+"""The present contact point."""
 
 SHADOW, SHADOW_STRENGTH = "#1d2733", 0.3
 
 
 def mixed(first: str, second: str, fraction: float) -> tuple[float, ...]:
-    """Return the red, green and blue of a colour between two: this fraction of the second."""
+    """Mix two colours with this fraction of the second; return red, green and blue."""
     pairs = zip(to_rgb(first), to_rgb(second), strict=True)
     return tuple((1.0 - fraction) * one + fraction * other for one, other in pairs)
 

@@ -6,16 +6,16 @@ import numpy.typing as npt
 from stylobate.plots.animation.motion import DrawnMotion
 from stylobate.plots.pose import Floats
 
-# A contact that can change moves less than this between instants, in radii, unless it leaps.
+# Maximum distance between instants that a contact that can change moves without a jump [base radii].
 _LEAP = 0.5
-# Between instants the contact point runs along the footprint circle, drawn in chords no wider than this [rad].
+# Between instants the contact point moves along the footprint circle, drawn in chords no wider than this [rad].
 _CHORD = 0.1
 
 
 def contact_path(motion: DrawnMotion) -> tuple[Floats, Floats]:
     """Return times, shape (n,) [s], and points in the plane of the base, shape (n, 2) [m], of the contact point.
 
-    A row of NaN parts the pieces where no point of the rim touches, and where the contact leaps to another point.
+    Rows of NaN separate the pieces: no point of the rim touches there, or the contact jumps to another point.
     """
     pieces = [_on_arcs(motion, piece) for piece in _touching(motion)]
     if not pieces:
@@ -27,10 +27,10 @@ def contact_path(motion: DrawnMotion) -> tuple[Floats, Floats]:
 
 
 def _touching(motion: DrawnMotion) -> list[npt.NDArray[np.intp]]:
-    """Return the places of instants in which the rim touches, in pieces along which its contact does not leap."""
+    """Return the indices of instants in which the rim touches, in pieces without jumps of the contact."""
     absent = ~motion.on_rim
     moved = np.hypot(*np.diff(motion.contact_point, axis=0).T)
-    # A contact that cannot change races round the rim near the vertical; one that can leaps there at an impact.
+    # Near the vertical, a contact that cannot change moves fast round the rim; one that can change jumps at impacts.
     leaps = (moved > _LEAP * motion.shape.radius) & (motion.clearance is not None)
     breaks = np.flatnonzero(leaps | (absent[1:] != absent[:-1])) + 1
     pieces = np.split(np.arange(motion.time.size), breaks)
@@ -38,7 +38,7 @@ def _touching(motion: DrawnMotion) -> list[npt.NDArray[np.intp]]:
 
 
 def _on_arcs(motion: DrawnMotion, piece: npt.NDArray[np.intp]) -> tuple[Floats, Floats]:
-    """Return times and points of a path, with points between those instants that lie far apart on the circle."""
+    """Return times and points of a path, with more points between instants that lie far apart on the circle."""
     rim = motion.contact_point[piece] - motion.footprint[piece]
     azimuth = np.unwrap(np.arctan2(rim[:, 1], rim[:, 0]))
     parts = np.ceil(np.abs(np.diff(azimuth)) / _CHORD).astype(int).clip(1)

@@ -1,4 +1,4 @@
-"""What stands where: the slab that moves with the base, the ground below it, and all that a picture must hold."""
+"""Scene of an animation: the slab that moves with the base, the ground below, and the extent of the frames."""
 
 import math
 from dataclasses import dataclass
@@ -10,11 +10,11 @@ import numpy.typing as npt
 from stylobate.plots.animation.motion import DrawnMotion
 from stylobate.plots.pose import Floats, frames, quaternions
 
-# Half the least width of the slab: in base radii, and in heights of the column.
+# Half the minimum width of the slab: in base radii, and in heights of the column.
 _LEAST, _OF_HEIGHT = 2.3, 0.16
-# How far the slab reaches beyond what happens on it [base radii], its thickness in half widths, lines across it.
+# Margin of the slab about the path [base radii], its thickness in half widths, number of lines across it.
 _MARGIN, _THICKNESS, _LINES = 1.7, 0.09, 8
-# Poses that decide what the picture must hold.
+# Number of poses that set the extent of the frames.
 _SEEN = 240
 
 
@@ -25,11 +25,11 @@ class Scene:
     Attributes
     ----------
     turned
-        Matrix that takes the frame of the plane to space: the inclination, shape (3, 3).
+        Rotation matrix from the frame of the inclined plane to the frame of gravity, shape (3, 3).
     low, high
         Corners of the slab in its plane, shape (2,) [m].
     thickness, ground
-        Of the slab, and height of the ground [m].
+        Thickness of the slab, and height of the ground [m].
     grid
         Distance between lines on the slab and marks on the ground [m].
     """
@@ -43,7 +43,7 @@ class Scene:
 
     @classmethod
     def of(cls, motion: DrawnMotion) -> Self:
-        """Return the scene that holds all of a motion."""
+        """Return the scene that contains all of a motion."""
         shape = motion.shape
         least, most = motion.footprint.min(axis=0), motion.footprint.max(axis=0)
         middle, reach = 0.5 * (least + most), 0.5 * float(np.max(most - least))
@@ -63,7 +63,7 @@ class Scene:
         )
 
     def slab(self, height: float) -> Floats:
-        """Return the corners of the slab at a `height` over its upper face, anticlockwise, in its own frame."""
+        """Return the corners of the slab at a `height` above its upper face, anticlockwise, in its own frame."""
         return _corners(self.low, self.high, height)
 
     def lines(self) -> Floats:
@@ -80,11 +80,11 @@ class Scene:
 
     @property
     def normal(self) -> Floats:
-        """Unit vector upwards from the plane, in space."""
+        """Unit vector upwards from the plane, in the frame of gravity."""
         return self.turned[:, 2]
 
     def everything(self, motion: DrawnMotion) -> Floats:
-        """Return points in space between which all happens, shape (n, 3)."""
+        """Return points whose hull contains slab and column at all times, shape (n, 3)."""
         shape, chosen = motion.shape, _spread(motion.time.size)
         poses, base = frames(motion.rotation[chosen]), motion.base[chosen]
         around = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)

@@ -1,4 +1,4 @@
-"""Pictures as an MP4, written by the ffmpeg that imageio-ffmpeg brings along."""
+"""MP4 encoder: H.264 video by the ffmpeg that imageio-ffmpeg contains."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -8,19 +8,19 @@ from PIL import Image
 
 from stylobate.errors import FileError, ParameterError, UnsupportedError
 
-# Of x264: what it may lose, lower being finer; and how long the last picture is shown [s].
+# x264's quality (lower is finer), and duration of the last frame [s].
 _FACTOR, _HOLD = "20", 1.5
 
 
 def write_mp4(path: Path, pictures: Iterable[Image.Image], size: tuple[int, int], frames_per_second: float) -> None:
-    """Write pictures of one `size` [pixels] as H.264 video to `path`.
+    """Write frames of one `size` [pixels] as H.264 video to `path`.
 
     Raises
     ------
     UnsupportedError
         If imageio-ffmpeg is not installed, or has no ffmpeg for this machine.
     ParameterError
-        If width or height is odd, which this kind of video cannot have.
+        If width or height is odd, which H.264 does not support.
     FileError
         If the file cannot be written.
     """
@@ -53,7 +53,7 @@ def write_mp4(path: Path, pictures: Iterable[Image.Image], size: tuple[int, int]
 
 
 def _encoder() -> Any:
-    """Return what writes frames to ffmpeg."""
+    """Return the function that writes frames to ffmpeg."""
     try:
         import imageio_ffmpeg  # noqa: PLC0415  an extra
 
