@@ -118,4 +118,6 @@ def test_counts_beyond_memory_are_refused_and_large_integers_keep_all_digits():
     assert require_whole("seed", 2**62 + 1, least=0, most=LARGEST_SEED) == 2**62 + 1
     with pytest.raises(ParameterError) as caught:
         require_whole("samples", 2_000_000_000, least=2)
-    assert str(caught.value) == ("samples: too large (got 2000000000). Give at most 10000000: each takes memory.")
+    assert str(caught.value) == (
+        "samples: too large (got 2000000000). Give at most 10000000: each number takes memory."
+    )

@@ -137,7 +137,7 @@ class Column:
         b = require_positive("top_radius", top_radius, "m")
         height = require_positive("height", height, "m")
         density = require_positive("density", density, "kg/m³")
-        # Moments of the cross-section: ∫ R² zⁿ dz and ∫ R⁴ dz with R running linearly from a to b, z in heights.
+        # Moments of the cross-section: ∫ R² zⁿ dz and ∫ R⁴ dz with R linear from a to b, z in heights.
         area = (a * a + a * b + b * b) / 3.0
         first = (a * a + 2.0 * a * b + 3.0 * b * b) / 12.0
         second = (a * a + 3.0 * a * b + 6.0 * b * b) / 30.0
@@ -262,7 +262,7 @@ class Column:
 
     @property
     def tipping_angle(self) -> float:
-        """α = atan(r/h), the angle of static tipping of the rocking-block literature [rad]."""
+        """α_c = atan(r/h), the angle of static tipping of the rocking-block literature [rad]."""
         return math.atan2(self.radius, self.mass_height)
 
     @property

@@ -1,4 +1,4 @@
-"""The exceptions stylobate raises, the checks that raise them, and the outcomes a motion can have.
+"""Exceptions, the checks that raise them, and the outcomes of a run.
 
 ::
 
@@ -6,15 +6,15 @@
     ├── ParameterError (ValueError)    a number or an option that no column, motion or run can have
     │   ├── ConfigError           the same in a TOML or JSON description: one line for each mistake
     │   └── ModelError                 a model whose members contradict each other: one line for each mistake
-    ├── UnsupportedError               a study asks for what a model lacks
+    ├── UnsupportedError               a study that the model does not support
     ├── NoOrbitError                   no periodic orbit was reached from a guess
     ├── FileError                      a file that cannot be read or written
     └── WorkerLostError                a worker process that ended before its result
 
     Interrupted (KeyboardInterrupt)    Ctrl-C in the middle of many runs; carries what had been computed
-    UnlikelyInputWarning (UserWarning)          input that can be, but is more likely a slip
+    UnlikelyInputWarning (UserWarning)          input that is possible, but is more likely a mistake
 
-Misuse is an exception. What the physics does, numerical failure included, is an `Outcome`.
+Misuse raises an exception. A physical result, numerical failure included, is an `Outcome`.
 """
 
 import math
@@ -23,23 +23,23 @@ from enum import IntEnum
 from typing import Any, NamedTuple
 
 SMALLEST, LARGEST = 1e-30, 1e15
-"""Sizes of numbers other than zero: those of columns are far within, and their products within those of a double."""
+"""Limits for the size of a number other than zero: numbers of columns are far inside, and no product overflows."""
 
 
 class Most(NamedTuple):
-    """How large a count may be, and why."""
+    """Maximum of a count, and the reason for it."""
 
     number: int
     reason: str
 
 
-MOST_NUMBERS = Most(10_000_000, "each takes memory")
-MOST_RUNS = Most(10**12, "a million a second take 12 days")
+MOST_NUMBERS = Most(10_000_000, "each number takes memory")
+MOST_RUNS = Most(10**12, "a million runs per second take 12 days")
 MOST_STEPS = Most(2**31 - 1, "steps are counted in 32 bits")
 MOST_THREADS = Most(4096, "no machine has more cores")
 LARGEST_SEED = Most(2**63, "seeds have 63 bits")
 
-# What grows with the third to fifth power of a length.
+# Units of quantities that grow with the third to fifth power of a length.
 _SIZES = dict.fromkeys(("kg", "kg m²", "kg m2"), (1e-150, 1e150))
 
 
@@ -232,9 +232,9 @@ def require_size(name: str, number: float, unit: str = "", *, zero: bool = True)
 
 
 def as_float(name: str, value: Any) -> float:
-    """Return `value` as a float, or raise ParameterError unless it is a real number; NaN and infinities are."""
+    """Return `value` as a float, or raise ParameterError unless it is a real number; NaN and infinities pass."""
     try:
-        # A string that spells a number is a mistake all the same.
+        # The sum rejects strings, even those that spell a number.
         return float(value + 0.0)
     except (TypeError, ValueError, OverflowError):
         message = f"{name} must be a real number, got {value!r}"

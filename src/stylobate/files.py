@@ -1,4 +1,4 @@
-"""Files that are written whole or not at all, and that show by a checksum whether they are still as written."""
+"""Atomic writing of files, and checksums that detect damage."""
 
 import csv
 import hashlib
@@ -22,7 +22,7 @@ _MACHINE = hashlib.sha256(platform.node().encode()).hexdigest()[:6]
 
 _LABEL = b"\n#stylobate sha256 "
 _SEAL_LENGTH = len(_LABEL) + hashlib.sha256().digest_size * 2 + 1
-# A seal with so many damaged bytes in its label is still seen to be one.
+# A label with at least so many intact bytes marks a seal.
 _LABEL_BYTES_SEEN = len(_LABEL) // 2
 
 
@@ -32,9 +32,9 @@ def write_whole(path: str | Path, content: bytes | str) -> Path:
     Raises
     ------
     FileError
-        If the file cannot be written; nothing is left of it then.
+        If the file cannot be written; no part of it remains.
     """
-    # Names of files that are no UTF-8 are written as they are.
+    # File names that are not UTF-8 are written unchanged.
     data = content.encode("utf-8", "surrogateescape") if isinstance(content, str) else content
     with written_aside(path) as beside, beside.open("wb") as file:
         file.write(data)
@@ -48,8 +48,8 @@ def write_whole(path: str | Path, content: bytes | str) -> Path:
 def written_aside(path: str | Path) -> Iterator[Path]:
     """Yield a path beside `path` for a new file or folder; it moves to `path` at the end, or is removed after an error.
 
-    A file replaces an older one, of which it takes the permissions; a folder does not. A link stays, and the file that
-    it names is replaced. A device or pipe is written directly. What a killed process left of the same file is removed.
+    A file replaces an older file and takes its permissions; a folder replaces nothing. A link stays, and its target is
+    replaced. A device or pipe is written directly. Parts that a killed process left of the same file are removed.
 
     Raises
     ------
@@ -101,14 +101,14 @@ def _remove_left_behind(target: Path) -> None:
     """Remove the parts of the file `target` whose writers, on this machine, are no longer alive."""
     stem, suffix = re.escape(target.stem[:_STEM]), re.escape(target.suffix)
     name = re.compile(rf"\.{stem}\.{_MACHINE}-(\d+)-[0-9a-f]+\.part{suffix}")
-    with suppress(OSError):  # of a folder that cannot be listed, or a part of another user
+    with suppress(OSError):  # the folder cannot be listed, or a part belongs to another user
         for other in target.parent.iterdir():
             if (match := name.fullmatch(other.name)) and not _is_alive(int(match[1])):
                 _remove(other)
 
 
 def _is_alive(process: int) -> bool:
-    if process == os.getpid() or os.name == "nt":  # there os.kill would end it
+    if process == os.getpid() or os.name == "nt":  # on Windows os.kill would end the process
         return True
     with suppress(ProcessLookupError, OverflowError):
         with suppress(PermissionError):
@@ -118,7 +118,7 @@ def _is_alive(process: int) -> bool:
 
 
 def csv_text(header: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
-    """Return a table as the text of a CSV file."""
+    """Format a table as the text of a CSV file."""
     text = StringIO(newline="")
     writer = csv.writer(text)
     writer.writerow(header)
@@ -132,12 +132,12 @@ def sealed(content: bytes | memoryview) -> bytes:
 
 
 def read_sealed(path: str | Path) -> tuple[bytes, bool]:
-    """Return the content of the file `path` and whether it ends with a seal, which is checked and left out.
+    """Read the file `path`; return its content without a seal, and whether it had a seal, which is checked.
 
     Raises
     ------
     FileError
-        If the file cannot be read, or is not as it was written.
+        If the file cannot be read, or its checksum differs.
     """
     path = Path(path)
     try:

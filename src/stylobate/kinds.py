@@ -1,6 +1,6 @@
-"""Kinds of models and base motions: a name and the place of what makes one, imported when it is first used.
+"""Kinds of models and base motions: a name and the place of a class or constructor, imported at first use.
 
-A class of the user's own is a kind by its place: "file.py:Class" or "package.module:Class".
+The kind of a user's own class is its place: "file.py:Class" or "package.module:Class".
 """
 
 import hashlib
@@ -16,13 +16,13 @@ from typing import Any
 from stylobate.errors import ParameterError
 
 _FILE = "__stylobate_file__"
-"""The name under which a module that was loaded from a file of the user's holds the path of that file."""
+"""Name under which a module that was loaded from a user's file holds the path of that file."""
 
 
 class Place(str):
-    """The place of a class of the user's own, which may be loaded: it stands in a file or a result of the user's.
+    """The place of a user's own class that may be loaded, because it comes from a file or a result of the user.
 
-    Any other text that has the form of a place, such as one in a request over the network, is a kind that is not known.
+    Other text in the form of a place, such as text in a network request, is an unknown kind.
     """
 
     __slots__ = ()
@@ -30,16 +30,16 @@ class Place(str):
 
 @dataclass(frozen=True, slots=True)
 class Kinds(Mapping[str, Callable[..., Any]]):
-    """The kinds of `what`: classes below the one at the place `base`, or named constructors, by name.
+    """The kinds of `what` by name: subclasses of the class at the place `base`, or named constructors.
 
     Parameters
     ----------
     what
-        In words: "model" or "motion".
+        Noun in messages: "model" or "motion".
     base
-        The place of the class below which all kinds are.
+        Place of the base class of all kinds.
     places
-        Of the kinds of the package, by name.
+        Places of the package's kinds, by name.
     """
 
     what: str
@@ -47,7 +47,7 @@ class Kinds(Mapping[str, Callable[..., Any]]):
     places: Mapping[str, str]
 
     def __getitem__(self, kind: str) -> Callable[..., Any]:
-        """Return what makes this kind: one of the package by name, or a class of the user's own by its `Place`."""
+        """Return the class or constructor of a kind: the package's by name, a user's own by its `Place`."""
         if not isinstance(kind, Place):
             found: Callable[..., Any] = loaded(self.places[kind])
             return found
@@ -60,11 +60,11 @@ class Kinds(Mapping[str, Callable[..., Any]]):
         raise ParameterError(message)
 
     def __iter__(self) -> Iterator[str]:
-        """Return the names of the package's kinds."""
+        """Iterate over the names of the package's kinds."""
         return iter(self.places)
 
     def __len__(self) -> int:
-        """Return how many kinds the package has."""
+        """Return the number of the package's kinds."""
         return len(self.places)
 
     def __contains__(self, kind: object) -> bool:
@@ -72,13 +72,13 @@ class Kinds(Mapping[str, Callable[..., Any]]):
         return kind in self.places
 
     def name_of(self, make: Callable[..., Any]) -> str:
-        """Return the kind that is made by `make`: the name, or the place of a class of the user's own; "" for none."""
+        """Return the kind that `make` makes: a name, or the place of a user's own class; "" for none."""
         place = place_of(make)
         return next((name for name, one in self.places.items() if one == place), place)
 
 
 def place_of(make: Callable[..., Any]) -> str:
-    """Return the place from which `make` can be loaded; "" for none, as of what a function or a notebook defines."""
+    """Return the place from which `make` can be loaded; "" for a definition in a function or a notebook."""
     module = sys.modules.get(make.__module__)
     if module is None or make.__module__ == "__main__":
         return ""
@@ -89,12 +89,12 @@ def place_of(make: Callable[..., Any]) -> str:
 
 
 def loaded(place: str) -> Any:
-    """Return what stands at "package.module:Name" or "path/to/file.py:Name".
+    """Import the object at "package.module:Name" or "path/to/file.py:Name".
 
     Raises
     ------
     ParameterError
-        If there is nothing, or its file cannot be run.
+        If there is no such object, or its file cannot be run.
     """
     where, _, names = place.rpartition(":")
     try:
@@ -111,7 +111,7 @@ def loaded(place: str) -> Any:
 
 
 def with_places(values: Any, folder: Path | None = None) -> Any:
-    """Return plain values in which kinds that are places may be loaded; files are found from `folder` on."""
+    """Mark the kinds in plain values that are places as loadable; paths of files are relative to `folder`."""
     if isinstance(values, list):
         return [with_places(one, folder) for one in values]
     if not isinstance(values, Mapping):
@@ -123,7 +123,7 @@ def with_places(values: Any, folder: Path | None = None) -> Any:
 
 
 def names_code(values: Any) -> bool:
-    """Return whether a kind in plain values, at any depth, is the place of a class of the user's own."""
+    """Return whether a kind in plain values, at any depth, is the place of a user's own class."""
     if isinstance(values, Mapping):
         return ":" in str(values.get("kind", "")) or any(map(names_code, values.values()))
     return isinstance(values, list) and any(map(names_code, values))
@@ -137,7 +137,7 @@ def _placed(kind: str, folder: Path | None) -> str:
 
 
 def _module_of_file(path: Path) -> ModuleType:
-    """Return the module in a file, which is run once in a process."""
+    """Return the module of a file, which runs once per process."""
     path = path.absolute()
     name = f"_stylobate_{hashlib.sha256(str(path).encode()).hexdigest()[:16]}"
     if name not in sys.modules:
@@ -156,5 +156,5 @@ def _module_of_file(path: Path) -> ModuleType:
 
 
 def new_of(place: str) -> Any:
-    """Return a value without a state of the class at `place`, in a process that may not have loaded its file."""
+    """Create an object without state of the class at `place`, whose file this process may not have loaded."""
     return object.__new__(loaded(place))

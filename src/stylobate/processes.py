@@ -1,8 +1,8 @@
-"""Worker processes: started in one way, ended with the process that started them, however that ends.
+"""Worker processes, which end with the process that started them, however that process ends.
 
-A worker takes tasks through its standard input and answers through its standard output, one after the other. It needs
-no `if __name__ == "__main__"` in the user's script, and Ctrl-C in a terminal reaches only the process that started it,
-which ends its workers.
+A worker reads tasks from its standard input and writes answers to its standard output, one after the other. The user's
+script needs no `if __name__ == "__main__"`. Ctrl-C in a terminal reaches only the parent process, which ends its
+workers.
 """
 
 import os
@@ -27,7 +27,7 @@ if sys.platform != "win32":
 _K = TypeVar("_K")
 _R = TypeVar("_R")
 
-# How often a wait is broken off to notice Ctrl-C [s].
+# Interval at which a wait checks for Ctrl-C [s].
 _LOOK = 0.1
 
 _running: set["Worker"] = set()
@@ -35,13 +35,13 @@ _running: set["Worker"] = set()
 
 @dataclass(frozen=True, slots=True)
 class Worker:
-    """A process that does tasks for this one."""
+    """A process that computes tasks for this process."""
 
     process: subprocess.Popen[bytes]
 
     @classmethod
     def started(cls, *, quiet: bool = False) -> "Worker":
-        """Start a process; what it logs goes to stderr unless it is `quiet`.
+        """Start a process; its log goes to stderr unless it is `quiet`.
 
         Raises
         ------
@@ -59,7 +59,7 @@ class Worker:
         return worker
 
     def call(self, task: Callable[..., _R], *arguments: Any) -> _R:
-        """Return what `task`, a function that its process can import, returns there.
+        """Run `task`, a function that the worker can import, in the worker and return its result.
 
         Raises
         ------
@@ -68,7 +68,7 @@ class Worker:
         KeyboardInterrupt
             If `end_all` ends it.
         Exception
-            What the task raises; a note holds the traceback of its process.
+            The exception of the task; a note holds the traceback of the worker.
         """
         pipes = cast("tuple[IO[bytes], IO[bytes]]", (self.process.stdin, self.process.stdout))
         request = pickle.dumps((task, arguments))
@@ -86,7 +86,7 @@ class Worker:
         return cast("_R", answer)
 
     def end(self) -> None:
-        """End the process, whatever it does."""
+        """End the process at once."""
         _running.discard(self)
         self.process.kill()
         self.process.wait()
@@ -96,7 +96,7 @@ class Worker:
 
 
 def computed(tasks: Mapping[_K, Callable[[], _R]], *, workers: int) -> Generator[tuple[_K, _R], None, None]:
-    """Compute tasks on so many worker processes; yield the key and the result of each as it is done.
+    """Compute tasks on `workers` processes; yield the key and the result of each task when it is done.
 
     Close the iterator (`contextlib.closing`) to end the processes before all is done.
 
@@ -105,7 +105,7 @@ def computed(tasks: Mapping[_K, Callable[[], _R]], *, workers: int) -> Generator
     WorkerLostError
         If a process ends before its answer.
     Exception
-        What a task raises.
+        The exception of a task.
     """
     waiting = deque(tasks.items())
     running: dict[Future[_R], tuple[_K, Worker]] = {}
@@ -113,7 +113,7 @@ def computed(tasks: Mapping[_K, Callable[[], _R]], *, workers: int) -> Generator
     started: list[Worker] = []
     try:
         for _ in range(min(workers, len(tasks))):
-            started.append(Worker.started())  # noqa: PERF401  those started are ended if the next one cannot be
+            started.append(Worker.started())  # noqa: PERF401  if the next start fails, the others are ended
         idle = list(started)
         while waiting or running:
             while waiting and idle:
@@ -139,25 +139,25 @@ def end_all() -> None:
 
 
 def end_when_closed(pipe: int, *, watched: bool = True) -> None:
-    """End this process as soon as the other end of `pipe` is closed, as its owner's death closes it.
+    """End this process when the other end of `pipe` is closed, for example by the death of its owner.
 
-    The system does this with a signal: no thread has to run, as none can while a compiler holds Python's lock. Bytes
-    that arrive end the process too, so stop watching before any may come. For a process of `multiprocessing` the pipe
-    is `multiprocessing.parent_process().sentinel`. On Windows this does nothing.
+    The system sends a signal, which works while a compiler holds Python's lock and no thread can run. Bytes that arrive
+    end the process too: stop watching before any can arrive. For a process of `multiprocessing` the pipe is
+    `multiprocessing.parent_process().sentinel`. On Windows this does nothing.
 
     Parameters
     ----------
     pipe
         File descriptor of the end that this process reads.
     watched
-        Whether to watch it from now on, or no longer.
+        Whether to start or to stop watching the pipe.
     """
     if sys.platform == "win32":
         return
     flags = fcntl.fcntl(pipe, fcntl.F_GETFL)
     fcntl.fcntl(pipe, fcntl.F_SETOWN, os.getpid())
     fcntl.fcntl(pipe, fcntl.F_SETFL, flags | os.O_ASYNC if watched else flags & ~os.O_ASYNC)
-    if watched:  # it may have been closed before
+    if watched:  # the pipe may be closed already
         look = select.poll()
         look.register(pipe, select.POLLHUP)
         if any(event & select.POLLHUP for _, event in look.poll(0)):
@@ -165,9 +165,9 @@ def end_when_closed(pipe: int, *, watched: bool = True) -> None:
 
 
 def _serve() -> None:
-    """Do the tasks of the process that started this one, until it closes the pipe or ends."""
+    """Compute the tasks of the parent process until it closes the pipe or ends."""
     requests, answers = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what a task prints is no answer
+    os.dup2(2, 1)  # keeps the output of a task out of the answers
     while True:
         try:
             task, arguments = pickle.load(requests)  # noqa: S301  our own parent
@@ -186,18 +186,18 @@ def _serve() -> None:
 def _answer(task: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[Any, Exception | None]:
     try:
         return task(*arguments), None
-    except Exception as error:  # noqa: BLE001  raised in the process that asked
+    except Exception as error:  # noqa: BLE001  raised in the calling process
         error.add_note(traceback.format_exc())
         try:
             pickle.loads(pickle.dumps(error))  # noqa: S301  our own
-        except Exception:  # noqa: BLE001  an exception can refuse in any way
+        except Exception:  # noqa: BLE001  pickling can fail in any way
             return None, RuntimeError(traceback.format_exc())
         return None, error
 
 
 @contextmanager
 def _without_interrupts() -> Iterator[None]:
-    """Block Ctrl-C, which a process started meanwhile inherits; one that arrives is seen afterwards."""
+    """Block Ctrl-C until the end; processes that start meanwhile inherit the block."""
     if sys.platform == "win32":
         yield
         return

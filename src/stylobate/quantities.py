@@ -198,7 +198,7 @@ class Declared:
         """Raise ParameterError for numbers that contradict each other; each number has been checked before."""
 
     def __reduce_ex__(self, protocol: Any) -> Any:
-        """Let a value of a class in a file of the user's be unpickled in another process, by the place of the class."""
+        """Pickle a value of a class from a user's file by the place of the class; another process can load it then."""
         place = place_of(type(self))
         if not place.rpartition(":")[0].endswith(".py"):
             return object.__reduce_ex__(self, protocol)
@@ -213,7 +213,7 @@ def parameters_of(make: Callable[..., Any]) -> Mapping[str, Parameter]:
     """
     try:
         signature = inspect.signature(make, eval_str=True)
-    except NameError:  # a name that only the type checker knows
+    except NameError:  # a name that is imported for type checking only
         signature = inspect.signature(make)
     arguments = signature.parameters.items()
     declared = (parameter_of(name, argument.annotation, argument.default) for name, argument in arguments)
@@ -237,7 +237,7 @@ def is_declared(make: Callable[..., Any], *others: str) -> bool:
 
 
 def checked_arguments(make: Callable[_P, _T]) -> Callable[_P, _T]:
-    """Make the declared arguments of a named constructor floats, as `check_declared` does; a decorator."""
+    """Check and convert the declared arguments of a named constructor, as `check_declared` does; a decorator."""
 
     @wraps(make)
     def checking(*arguments: _P.args, **values: _P.kwargs) -> _T:
@@ -264,12 +264,12 @@ def states(make: object, fact: str) -> bool:
 
 
 def check_declared(made: Any) -> None:
-    """Make the declared numbers of a frozen dataclass floats.
+    """Check the declared numbers of a frozen dataclass and convert them to floats.
 
     Raises
     ------
     ParameterError
-        If one of them is not what its declaration says.
+        If a number violates its declaration.
     """
     for name, parameter in parameters_of(made.__class__).items():
         object.__setattr__(made, name, parameter.checked(getattr(made, name)))
@@ -285,9 +285,9 @@ def _member(kind: type[StrEnum], name: str, value: Any) -> StrEnum:
 
 def _declared(annotation: Any) -> Quantity | None:
     """Return the quantity of an annotation, or of a part of it as in `Damping | None`."""
-    of_all = [one for one in getattr(annotation, "__metadata__", ()) if isinstance(one, Quantity)]
+    own = [one for one in getattr(annotation, "__metadata__", ()) if isinstance(one, Quantity)]
     parts = (_declared(part) for part in get_args(annotation))
-    return next((one for one in (*of_all, *parts) if one is not None), None)
+    return next((one for one in (*own, *parts) if one is not None), None)
 
 
 def _without_declaration(annotation: Any) -> Any:

@@ -1,14 +1,14 @@
-"""Numbers of things in words."""
+"""Counts in words."""
 
 
 def plural(number: int, noun: str) -> str:
-    """Return a number of things, such as "1 run" or "3 runs".
+    """Format a count, such as "1 run" or "3 runs".
 
     Parameters
     ----------
     number
-        How many there are.
+        Count.
     noun
-        What they are, in the singular; its plural ends with s.
+        Noun in the singular; its plural ends with s.
     """
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

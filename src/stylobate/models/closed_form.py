@@ -1,4 +1,4 @@
-"""Which closed form of steady rolling holds for a model."""
+"""The closed form of steady rolling that holds for a model."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -25,7 +25,7 @@ class ClosedForm:
     eta, zeta
         Damping η and spin damping ζ that it takes; ζ is infinite for a column that cannot turn about the vertical.
     requires
-        Name of a number of the model whose value is not the one that the closed form requires, and the required value.
+        Name of a number of the model that differs from the value that the closed form requires, and that value.
     """
 
     law: RollingLaw
@@ -35,5 +35,5 @@ class ClosedForm:
 
 
 def zero(model: object, *names: str) -> tuple[str, float] | None:
-    """Return what a closed form requires that holds only where these numbers of `model` are zero; None if they are."""
+    """Return the name of the first of these numbers of `model` that is not zero, and 0; None if all are zero."""
     return next(((name, 0) for name in names if getattr(model, name) != 0.0), None)

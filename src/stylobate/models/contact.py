@@ -1,4 +1,4 @@
-"""What the contact must bear along a run, and where it lies."""
+"""Contact demand along a run, and the path of the contact point."""
 
 from typing import NamedTuple
 
@@ -8,20 +8,20 @@ import numpy.typing as npt
 from stylobate.models.model import Floats, Model, Output
 
 LEAST_FORCE = 1e-8
-"""The part of the weight below which a force is none.
+"""Fraction of the weight below which a force counts as zero.
 
-A normal force is what weight and inertia leave over, each about as large as the weight and known to the usual tolerance
-of a run, `rtol`: below it nothing is distinguished from lift-off, and a ratio to it is made of rounding.
+A normal force is the difference of weight and inertia, both of the order of the weight and accurate to `rtol`.
+A smaller force cannot be distinguished from lift-off, and a ratio to it contains only rounding errors.
 """
 
 
 def per_normal_force(force: Floats, normal: Floats) -> Floats:
-    """Return a force or moment over the normal force: infinite where there is no normal force to bear it.
+    """Divide a force or moment by the normal force; a load without normal force gives infinity.
 
     Parameters
     ----------
     force, normal
-        In units of the weight; where both are none there is no demand.
+        In units of the weight; the ratio is 0 where both are zero.
     """
     presses = normal > LEAST_FORCE
     ratio = force / np.where(presses, normal, 1.0)
@@ -29,7 +29,7 @@ def per_normal_force(force: Floats, normal: Floats) -> Floats:
 
 
 class ContactLoads(NamedTuple):
-    """What the contact bears along a run, each of shape (n,).
+    """Contact loads along a run, each of shape (n,).
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class ContactLoads(NamedTuple):
 
 
 def contact_loads(model: Model, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> ContactLoads:
-    """Compute what the contact bears along a run of a model with `contact`; of a standing column no moment.
+    """Compute the contact loads along a run of a model with `contact`; a standing column has no moment.
 
     Parameters
     ----------
@@ -69,15 +69,15 @@ def contact_loads(model: Model, states: Floats, accelerations: Floats, resting: 
 def contact_outputs(
     model: Model, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]
 ) -> dict[str, Output]:
-    """Return the normal force [N], the friction that is needed over it, and the moment about the vertical over N r.
+    """Return the normal force N [N], the friction force over N, and the moment about the vertical over N r.
 
-    Where there is no normal force the column lifts off, or would: the demands are infinite there (`per_normal_force`).
-    At rest there is no moment.
+    Without normal force the column lifts off, or would: the demands are infinite there (`per_normal_force`). At rest
+    the moment is zero.
 
     Parameters
     ----------
     model
-        A model; without `contact` nothing is returned.
+        A model; the result is empty without `contact`.
     states, accelerations, resting
         As for `Model.outputs`.
     """
@@ -95,7 +95,7 @@ def contact_outputs(
 def path_outputs(model: Model, states: Floats, footprint: Floats) -> dict[str, Output]:
     """Return the centre of the footprint circle and the contact point on its rim [m], in the frame of the base.
 
-    There is no contact point, NaN, where the column stands upright.
+    The contact point is NaN where the column stands upright.
     """
     tilt = model.tilt(states)
     size = np.hypot(*tilt)

@@ -1,4 +1,4 @@
-"""The declared numbers of all models by name: for studies that vary them, and for controls that set them."""
+"""The declared numbers of all models by name, for studies that vary them and for controls that set them."""
 
 from collections.abc import Callable, Mapping
 from functools import cache
@@ -46,7 +46,7 @@ def dissipation_names() -> tuple[str, ...]:
 
 
 def name_by_symbol(model: type, symbol: str) -> str:
-    """Return the name of the number of a class of models that has this symbol; the symbol itself where none has it."""
+    """Return the name of the number of a class of models with this symbol; the symbol itself if no number has it."""
     return next((name for name, one in parameters_of(model).items() if one.quantity.symbol == symbol), symbol)
 
 

@@ -1,4 +1,4 @@
-"""How a column leaves its base: series in the time since its release."""
+"""Uplift of a column from its base: series in the time since uplift."""
 
 from stylobate.models.model import Push
 
@@ -6,7 +6,7 @@ from stylobate.models.model import Push
 def departing_lean(
     push: Push, elapsed: float, eta: float, inertia: float, response: float
 ) -> tuple[float, float, float, float, float]:
-    """Return the lean a short time δ = `elapsed` after release, by series about α = 0.
+    """Return the tilt vector a short time δ = `elapsed` after uplift, by series about α = 0.
 
     Along the push α = Fδ²/2 with F = (excess + (excess_rate − η excess/K) δ/3)/K; across it α = qδ³ with
     q (4 + 2b|a_h|/F) = b |a_h| × turning_rate, which for F → 0 is a lean that follows −a_h.
@@ -14,20 +14,20 @@ def departing_lean(
     Parameters
     ----------
     push
-        What releases the column.
+        Push of the base at uplift.
     elapsed
         δ.
     eta
-        Viscous friction.
+        Damping η.
     inertia
-        K, the moment of inertia that a lean along the push meets, over J0.
+        K, the moment of inertia for a lean along the push, over J0.
     response
-        b, with which a base acceleration a_n across the lean accelerates it by −b a_n.
+        b: a base acceleration a_n across the lean accelerates the lean by −b a_n.
 
     Returns
     -------
     tuple
-        The lean, its rate, and the rate at which the push turns ahead of the lean.
+        Tilt vector, tilt rate, and the rate at which the push turns ahead of the lean.
     """
     jerk = push.excess_rate - eta * push.excess / inertia
     mean = (push.excess + jerk * elapsed / 3.0) / inertia

@@ -1,4 +1,4 @@
-"""The equation of the tilt that the levels at finite tilt share, and the trigonometry that it needs.
+"""Tilt equation of the models at finite tilt, and its trigonometry.
 
 Everything is divided by J0: m h² becomes κ, I_t becomes 1 − κ, I_a becomes κ i_a c², K becomes 1 + κc², weight times h
 becomes 1; lengths are in units of h, accelerations of the base in g. u is the direction in which the tilt θ grows, n
@@ -16,18 +16,18 @@ from stylobate.models.model import Balance
 
 Floats = npt.NDArray[np.float64]
 
-# Keeps the direction of the lean finite at the upright itself, far below any tilt that is resolved.
+# Keeps the direction of the lean finite at the vertical, far below any resolved tilt.
 TINY = 1e-300
 
-# Angular rate below which rolling resistance fades out [ω0]: it is no friction that holds a column.
+# Angular rate below which rolling resistance fades out [ω0]; rolling resistance cannot hold a column in place.
 FADING = 1e-3
 
-# A minimum tilt counts as a passage of the upright below this, unless the user sets another [c].
+# Default tilt below which a minimum of the tilt counts as a passage of the vertical [c].
 _PASSAGE = 0.01
 
 
 def sine_over_angle(p: float) -> float:
-    """Return sin θ/θ for p = θ², right to 2e-16 up to θ = π/2, with an error of 3e-15 at θ = 2.3."""
+    """Return sin θ/θ for p = θ², accurate to 2e-16 up to θ = π/2 and to 3e-15 at θ = 2.3."""
     series = 1.0 / 51090942171709440000.0
     series = -1.0 / 121645100408832000.0 + p * series
     series = 1.0 / 355687428096000.0 + p * series
@@ -42,7 +42,7 @@ def sine_over_angle(p: float) -> float:
 
 
 def cosine(p: float) -> float:
-    """Return cos θ for p = θ², right to 2e-16 up to θ = π/2."""
+    """Return cos θ for p = θ², accurate to 2e-16 up to θ = π/2."""
     series = 1.0 / 2432902008176640000.0
     series = -1.0 / 6402373705728000.0 + p * series
     series = 1.0 / 20922789888000.0 + p * series
@@ -78,7 +78,7 @@ def tilt_acceleration(
     rate, across
         Angular rates about the horizontal directions n, which is θ̇, and d.
     sine, cos
-        Of the tilt.
+        Sine and cosine of the tilt.
     weight
         1 + a_z.
     c, kappa, resistance
@@ -105,7 +105,7 @@ def planar_acceleration(
     kappa: float,
     resistance: float,
 ) -> tuple[float, float, float]:
-    """Return the acceleration of a tilt in a vertical plane; N and T, the latter along the lean, over m g.
+    """Return the tilt acceleration of planar motion, and N and the component of T along the lean, over m g.
 
     K θ̈ = −(1 + a_z) z' − ρ' a_d − ηθ̇ − δN θ̇/|θ̇|, θ being `side` (±1) times the tilt.
     """
@@ -120,10 +120,10 @@ def planar_acceleration(
 
 
 def no_return_tilt(peak_horizontal: float, minimum_vertical: float, c: float) -> float:
-    """Return atan c + atan(sup|a_h|/(1 + inf a_z)) [rad], beyond which a growing tilt without spin cannot come back.
+    """Return the point of no return without spin, atan c + atan(sup|a_h|/(1 + inf a_z)) [rad].
 
-    From there on (1 + a_z)(sin θ − c cos θ) exceeds |a_h|(cos θ + c sin θ). It is π/2 at most, where the column lies.
-    With 1 + inf a_z ≤ 0 nothing is certain and the answer is infinite.
+    Beyond this tilt (1 + a_z)(sin θ − c cos θ) exceeds |a_h|(cos θ + c sin θ). The result is at most π/2, where the
+    column lies, and infinite if 1 + inf a_z ≤ 0.
     """
     weight = 1.0 + minimum_vertical
     if weight <= 0.0:
@@ -148,7 +148,7 @@ def balance(column: Column) -> Balance:
 
 
 def loss_tilt(column: Column, restitution: float, passage_tilt: float | None) -> float:
-    """Return the tilt below which a passage of the upright loses energy [rad]; 0 where none does."""
+    """Return the tilt below which a passage of the vertical loses energy [rad]; 0 without loss."""
     if restitution == 1.0:
         return 0.0
     return _PASSAGE * column.slenderness if passage_tilt is None else passage_tilt

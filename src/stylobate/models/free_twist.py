@@ -1,18 +1,19 @@
-"""How a column that may turn about its axis leaves its base and passes the upright: with what its spin does to it."""
+"""Uplift and passage of the vertical of a column with free axial rotation (spin)."""
 
 import math
 
 from stylobate.models.departing import departing_lean
 from stylobate.models.model import Push
-from stylobate.models.passing import past_the_upright
+from stylobate.models.passing import pass_vertical
 
 
 def departing(
     push: Push, elapsed: float, inertia: float, c: float, eta: float, kappa: float, axial: float
 ) -> tuple[float, float, float, float, float]:
-    """Return the state a short time δ after release, its spin −½|a_h| β (1 − κ)δ²/(cκD).
+    """Return the state a short time δ after uplift, with the spin −½|a_h| β (1 − κ)δ²/(cκΛ).
 
-    β is the rate at which the push turns ahead of the lean, `inertia` that about a tangent of the rim over J0.
+    β is the rate at which the push turns ahead of the lean, `inertia` the moment of inertia about a tangent of the rim
+    over J0.
     """
     freedom = 1.0 + axial - kappa
     x, y, vx, vy, ahead = departing_lean(push, elapsed, eta, inertia, axial / freedom)
@@ -31,9 +32,9 @@ def passing(
     kappa: float,
     axial: float,
 ) -> tuple[float, tuple[float, float, float, float, float]]:
-    """Return the duration and the end of a passage of the upright, on which the spin turns the path.
+    """Return the duration and the end state of a passage of the vertical; the spin bends the path.
 
-    Without loss: the limit of grazing rolling.
+    The passage loses no energy: the limit of grazing rolling.
     """
     x, y, vx, vy = lean
     ax, ay, az = acceleration
@@ -42,8 +43,8 @@ def passing(
     freedom, sideways = 1.0 + axial - kappa, ay * ux - ax * uy
     along, across = (ax * ux + ay * uy) / inertia, sideways * axial / freedom
     push = (across * uy - along * ux, -across * ux - along * uy)
-    # The base spins it up until it turns, and down as much behind.
+    # The base spins the column up until the path turns, and down by as much after the turn.
     gained = sideways * (1.0 - kappa) / (c * kappa * freedom) * (x * ux + y * uy) / speed
     gyration = c * kappa * (spin + gained)
-    elapsed, end = past_the_upright(lean, push, c * (1.0 + az), gyration, eta, inertia)
+    elapsed, end = pass_vertical(lean, push, c * (1.0 + az), gyration, eta, inertia)
     return elapsed, (*end, spin * math.exp(-zeta * elapsed))

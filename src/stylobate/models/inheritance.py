@@ -1,4 +1,4 @@
-"""Which class of a model states a member, and whether that statement belongs to the equations of the model."""
+"""Inheritance of model members: the class that states a member, and whether the member fits the equations."""
 
 from stylobate.models.closed_form import ClosedForm
 from stylobate.models.model import Model
@@ -31,7 +31,7 @@ def belongs_to_equations(kind: type[Model], name: str, *also: str) -> bool:
 
 
 def closed_form_of(model: object) -> ClosedForm | None:
-    """Return the closed form of steady rolling that a model states for its own equations; None where it states none."""
+    """Return the closed form of steady rolling that a model states for its own equations; None without one."""
     if not isinstance(model, Model) or not belongs_to_equations(type(model), "closed_form", "tilt_of", "start"):
         return None
     return model.closed_form

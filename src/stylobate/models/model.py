@@ -17,13 +17,13 @@ from stylobate.quantities import Declared
 
 Floats = npt.NDArray[np.float64]
 
-# Room for rounding in the release criterion [ulp]: with an acceleration of exactly the limit, about one sample in ten
-# of a circular motion exceeds it by one ulp.
+# Allowance for rounding in the uplift criterion: with an acceleration of exactly the limit, about one sample in ten of
+# a circular motion exceeds it by one ulp.
 RELEASE_MARGIN = 8.0 * float(np.finfo(float).eps)
 
 
 class Push(NamedTuple):
-    """What pushes a column off its base at the instant of release, dimensionless.
+    """Push of the base on a column at the instant of uplift, dimensionless.
 
     Parameters
     ----------
@@ -45,14 +45,14 @@ class Push(NamedTuple):
 
 
 class Balance(NamedTuple):
-    """Where a column stands on its rim in unstable balance, on a base at rest.
+    """Unstable balance of a column on its rim, on a base at rest.
 
     Parameters
     ----------
     tilt
-        [rad].
+        Tilt [rad].
     energy
-        Above that of rest [J].
+        Energy above rest [J].
     """
 
     tilt: float
@@ -72,20 +72,20 @@ class Model(Declared, ABC):
     """A column with its equations of motion.
 
     A model integrates in its own units: time in units of `time_scale`, accelerations of the base in units of
-    `column.gravity`. It never sees the base motion, only the acceleration of the moment.
+    `column.gravity`. It receives the current acceleration of the base, not the base motion.
 
-    Its physics stands in static functions of plain floats that end with the model's `parameters`. Single runs call
-    them, ensembles compile them, so that the equations are written once.
+    Its physics consists of static functions of plain floats, whose last arguments are the model's `parameters`. Single
+    runs call these functions, ensembles compile them.
 
     Notes
     -----
-    For developers: a model has a `column` and gives `state_names`, `parameters`, `rates`, `tilt_of` and `start`;
-    everything below them in this class has a default. Without `rest_energy` a column never comes to rest, without
-    `planar_rates` coplanar motion is integrated in space, without `no_return_tilt` a stated limit decides overturning.
+    For developers: a model has a `column` and defines `state_names`, `parameters`, `rates`, `tilt_of` and `start`; all
+    other members have a default. Without `rest_energy` a column never comes to rest. Without `planar_rates` planar
+    motion is integrated in three dimensions. Without `no_return_tilt` a stated limit decides overturning.
 
-    Ensembles compile these functions: arithmetic, `math`, conditions, loops, tuples and calls of functions that keep
-    to the same; what is not compiled is named with its line. `rates` and `planar_rates` run several columns at a time
-    where they have no branches and loops: a choice is `a if condition else b`; `math.sqrt`, `abs`, `min` and `max` cost
+    Ensembles compile these functions. They may use arithmetic, `math`, conditions, loops, tuples and calls of such
+    functions; an error names the line of anything else. `rates` and `planar_rates` compute several columns at a time if
+    they have no branches and loops: write a choice as `a if condition else b`. `math.sqrt`, `abs`, `min` and `max` cost
     little there, transcendental functions more.
     """
 
@@ -105,57 +105,57 @@ class Model(Declared, ABC):
     """
 
     spin_state: ClassVar[int | None] = None
-    """Which state is the spin, the angular velocity about the axis in the model's time; None for a model without."""
+    """Index of the spin, the angular velocity about the axis in the model's time; None for a model without spin."""
 
     planar_only: ClassVar[bool] = False
-    """Whether the model knows motion in a vertical plane only, by `planar_rates`."""
+    """Whether the model describes planar motion only, by `planar_rates`."""
 
     carried_names: ClassVar[tuple[str, ...]] = ()
-    """What a single run carries along: it follows from the states and acts on nothing; such as twist and footprint.
+    """Names of the passive states, which follow from the states and do not act on them, such as twist and footprint.
 
     The first is the twist [rad]; then come x and y of the centre of the footprint circle [base radii].
     """
 
     carried_rates: ClassVar[Callable[..., tuple[float, ...]] | None] = None
-    """(state…, parameters…) → the rates of what is carried along."""
+    """(state…, parameters…) → the rates of the passive states."""
 
     contact: ClassVar[Callable[..., tuple[float, float, float]] | None] = None
-    """(state…, ax, ay, az, parameters…) → what the contact bears: N/(m g), |T|/(m g), |M_z|/(m g r).
+    """(state…, ax, ay, az, parameters…) → the contact loads N/(m g), |T|/(m g), |M_z|/(m g r).
 
-    The normal force, the friction force, and the moment about the vertical, of a column that moves.
+    These are the normal force, the friction force and the moment about the vertical of a moving column.
     """
 
     impact_map: ClassVar[Callable[..., tuple[float, ...]] | None] = None
-    """(state…, parameters…) → the state after a passage of the upright below `loss_tilt`, with its loss."""
+    """(state…, parameters…) → the state after a passage of the vertical below `loss_tilt`, with the energy loss."""
 
     guard_names: ClassVar[tuple[str, ...]] = ()
-    """What each of the `guards` watches, of a model that switches between kinds of contact; else empty."""
+    """Names of the `guards` of a model that switches between kinds of contact; empty for other models."""
 
     guards: ClassVar[Callable[..., tuple[float, ...]] | None] = None
-    """(state…, ax, ay, az, ε, parameters…) → what is positive as long as a kind of contact lasts.
+    """(state…, ax, ay, az, ε, parameters…) → guards, which are positive as long as a kind of contact lasts.
 
-    One that is below zero ends it; the last does so only where it was above before. The tilt of "fallen" counts as
-    overturned; all others lead to `reset_map`. ε is the energy of rest.
+    A guard below zero ends the contact; the last guard does so only if it was positive before. At "fallen" the column
+    counts as overturned; all others lead to `reset_map`. ε is the rest energy.
     """
 
     reset_map: ClassVar[Callable[..., tuple[float, tuple[float, ...]]] | None] = None
-    """(state…, number of the margin, ax, ay, az, bx, by, bz, ahead, ε, parameters…) → elapsed time, and state.
+    """(state…, number of the guard, ax, ay, az, bx, by, bz, ahead, ε, parameters…) → elapsed time, and new state.
 
-    How the motion goes on; the base accelerates with (ax, ay, az) now and (bx, by, bz) a short time `ahead`, from which
-    a release goes. With the number −1 it gives the state with which a motion begins.
+    The base accelerates with (ax, ay, az) now and (bx, by, bz) after the short time `ahead`, in which uplift develops.
+    With the number −1 the result is the state with which a motion begins.
     """
 
     project: ClassVar[Callable[..., tuple[float, ...]] | None] = None
-    """(state…, parameters…) → the state with what it keeps from step to step brought up to date, after each step."""
+    """(state…, parameters…) → the state after a step, with its `kept_states` updated."""
 
     slip_states: ClassVar[tuple[int, ...]] = ()
-    """Which states are the velocity of slip, integrated more finely while a contact slips: its direction matters."""
+    """Indices of the slip velocity, which needs finer integration while a contact slips: its direction matters."""
 
     kept_states: ClassVar[tuple[int, ...]] = ()
-    """Which states do not change within a step: what `project` brings up to date, and the kind of contact."""
+    """Indices of the states that are constant within a step: those that `project` updates, and the kind of contact."""
 
     contact_kinds: ClassVar[type[IntEnum] | None] = None
-    """The kinds of contact, of which the last state is one.
+    """The kinds of contact; the last state has one of them as its value.
 
     The first two are those of a column that stands on its base, at rest (RESTING) and sliding (SLIDING).
     """
@@ -163,13 +163,13 @@ class Model(Declared, ABC):
     jacobian: ClassVar[Callable[..., tuple[tuple[float, ...], ...]] | None] = None
     """(state…, ax, ay, az, parameters…) → for each rate its derivatives by state, accelerations and parameters.
 
-    None lets them be derived from `rates`, which can be done unless these choose between cases by a comparison.
+    If None, they are derived from `rates`, which must not choose between cases by a comparison then.
     """
 
     planar_rates: ClassVar[Callable[..., tuple[float, float]] | None] = None
     """(tilt, rate, side, horizontal, vertical, parameters…) → the rates of tilt and rate in a vertical plane.
 
-    `side` (±1) is the side of the upright on which the column leans; accelerations in g. `from_plane` goes with it.
+    `side` (±1) is the side of the vertical on which the column leans; accelerations in g. Define `from_plane` too.
     """
 
     from_plane: ClassVar[Callable[..., tuple[Any, ...]] | None] = None
@@ -181,26 +181,26 @@ class Model(Declared, ABC):
     rest_energy: ClassVar[Callable[..., float] | None] = None
     """(|α| [rad], |α̇|, a_z [g], parameters…) → energy above the state of rest without the work of the base.
 
-    In units that make c² its scale.
+    Its unit is such that c² is its scale.
     """
 
     no_return_tilt: ClassVar[Callable[..., float] | None] = None
-    """(sup |a_h|, inf a_z, parameters…) → tilt [rad] beyond which a growing tilt can never come back, or inf.
+    """(sup |a_h|, inf a_z, parameters…) → point of no return of a growing tilt [rad], or inf.
 
-    Both bounds are those from now on [g].
+    Both bounds hold from now on [g].
     """
 
     departure: ClassVar[Callable[..., tuple[float, ...]] | None] = None
-    """(push, elapsed, parameters…) → the state a short time after the release by a `Push`."""
+    """(push, elapsed, parameters…) → the state a short time after uplift by a `Push`."""
 
     passage: ClassVar[Callable[..., tuple[float, tuple[float, ...]]] | None] = None
-    """(state…, ax, ay, az, parameters…) → duration and end state of a ballistic passage of the upright.
+    """(state…, ax, ay, az, parameters…) → duration and end state of a ballistic passage of the vertical.
 
-    It is asked for only where the path leads past the upright so closely that its turn cannot be resolved.
+    It is used only if the path passes the vertical so closely that its turn cannot be resolved.
     """
 
     at_rest: ClassVar[Callable[..., tuple[float, ...]] | None] = None
-    """(state…, parameters…) → the state in which a column that comes to rest stands; None for all zeros."""
+    """(state…, parameters…) → the state of a column that has come to rest; None for all zeros."""
 
     def __post_init__(self) -> None:
         """Check the column, then the numbers by their declarations."""
@@ -210,7 +210,7 @@ class Model(Declared, ABC):
     @property
     @abstractmethod
     def parameters(self) -> tuple[float, ...]:
-        """The numbers that the static functions take at their end."""
+        """The last arguments of the static functions."""
 
     @abstractmethod
     def start(self, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, ...]:
@@ -231,12 +231,12 @@ class Model(Declared, ABC):
 
     @property
     def rest_capacity(self) -> float:
-        """The |a_h|/(g + a_z) up to which the column stays on its base, a margin for rounding included."""
+        """Maximum |a_h|/(g + a_z) at which the column stays on its base, with an allowance for rounding."""
         return self.column.slenderness * (1.0 + RELEASE_MARGIN)
 
     @property
     def comes_to_rest(self) -> bool:
-        """Whether friction brings a free column to rest; without friction it never gets there."""
+        """Whether dissipation brings a free column to rest."""
         return False
 
     @property
@@ -246,16 +246,16 @@ class Model(Declared, ABC):
 
     @property
     def balance(self) -> Balance | None:
-        """The unstable balance over which free motion must go to overturn, or None for no such claim.
+        """The unstable balance that free motion must pass to overturn, or None for no such claim.
 
-        With less `energy` than it has there, and a smaller tilt, a column on a base at rest cannot overturn. A subclass
+        With less energy and a smaller tilt than the balance, a column on a base at rest cannot overturn. A subclass
         that replaces `rates` or `parameters` makes this claim only if it states `balance` again.
         """
         return None
 
     @property
     def closed_form(self) -> ClosedForm | None:
-        """The closed form of its steady rolling on a base that moves in a circle, or None where there is none.
+        """The closed form of steady rolling on a base that moves in a circle, or None.
 
         A subclass that replaces the equations makes this claim only if it states `closed_form` again; see
         `closed_form_of`.
@@ -268,14 +268,14 @@ class Model(Declared, ABC):
         Parameters
         ----------
         states
-            Shape (number of states, n), perhaps with what is carried along behind them.
+            Shape (number of states, n), optionally followed by the passive states.
         """
         del states
         return None
 
     @property
     def switches(self) -> bool:
-        """Whether it changes between kinds of contact."""
+        """Whether the model switches between kinds of contact."""
         return self.guards is not None
 
     def begun(
@@ -289,32 +289,32 @@ class Model(Declared, ABC):
         velocity: tuple[float, float, float],
         clearance: float,
     ) -> tuple[float, ...]:
-        """Return the state of a start of a model that changes between kinds of contact, in SI units."""
+        """Return the initial state of a model that switches between kinds of contact; arguments in SI units."""
         del spin, twist, position, velocity, clearance
         return self.start(tilt, tilt_rate)
 
     def event_of(self, margin: str, before: int, after: int) -> str:
-        """Return the name of an event, by the margin that was broken and the kinds of contact; "" for none."""
+        """Return the name of an event from its guard and the kinds of contact before and after; "" for none."""
         del margin, before, after
         return ""
 
     @property
     def slope(self) -> tuple[float, float, float]:
-        """What an inclined plane adds to the acceleration of the base [g]; `rates` add it themselves."""
+        """Term that an inclined plane adds to the acceleration of the base [g]; `rates` contains it."""
         return 0.0, 0.0, 0.0
 
     def stands(self, state: tuple[float, ...]) -> bool:
-        """Return whether the column stands on its base in this state: no tilt, and no rate of it."""
+        """Return whether the column stands on its base in this state: zero tilt and zero tilt rate."""
         return not any(self.tilt_of(*state[: len(self.state_names)], *self.parameters))
 
     def standing(self, state: tuple[float, ...]) -> tuple[float, ...]:
-        """Return the state in which a column that comes to rest from `state` stands; what is carried stays."""
+        """Return the state after coming to rest from `state`; the passive states keep their values."""
         moving, carried = state[: len(self.state_names)], state[len(self.state_names) :]
         still = (0.0,) * len(moving) if self.at_rest is None else self.at_rest(*moving, *self.parameters)
         return *still, *carried
 
     def least_safe_tilt(self, peak_horizontal: float, minimum_vertical: float) -> float:
-        """Return `no_return_tilt` for these bounds [g], infinite where the model has none."""
+        """Return `no_return_tilt` for these bounds [g]; infinite for a model without it."""
         if self.no_return_tilt is None:
             return math.inf
         return self.no_return_tilt(peak_horizontal, minimum_vertical, *self.parameters)
@@ -325,18 +325,18 @@ class Model(Declared, ABC):
         Parameters
         ----------
         states
-            Shape (number of states, n); behind them what is carried along.
+            Shape (number of states, n), followed by the passive states.
         accelerations
             ax, ay, az [g], shape (3, n).
         resting
-            Where the column stands on its base, shape (n,).
+            Whether the column stands on its base, shape (n,).
         """
         del states, accelerations, resting
         return {}
 
 
 def require_column(value: object) -> None:
-    """Raise ParameterError if `value` is no Column."""
+    """Raise ParameterError if `value` is not a Column."""
     if not isinstance(value, Column):
         message = f"column must be a Column, such as Column.solid(...), got {value!r}"
         raise ParameterError(message)

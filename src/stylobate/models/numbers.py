@@ -1,10 +1,10 @@
-"""The numbers that several models have. A number of one model is declared in its class."""
+"""Declared numbers that several models share. A number of one model is declared in its class."""
 
 from typing import Annotated
 
 from stylobate.quantities import Quantity
 
-# Beyond this Coulomb friction is not resolved; a column that never slips is another model.
+# Coulomb friction above this is not resolved; use a model without slip.
 _MOST_FRICTION = 1e8
 
 Damping = Annotated[float, Quantity(symbol="η", text="damping of tilting", ge=0.0, slider=(0.0, 0.5), dissipates=True)]

@@ -1,9 +1,9 @@
-"""How a column passes the upright so closely that its path cannot be resolved."""
+"""Ballistic passage of a column so close to the vertical that its path cannot be resolved."""
 
 import math
 
 
-def past_the_upright(
+def pass_vertical(
     lean: tuple[float, float, float, float],
     push: tuple[float, float],
     weight: float,
@@ -11,26 +11,26 @@ def past_the_upright(
     eta: float,
     inertia: float,
 ) -> tuple[float, tuple[float, float, float, float]]:
-    """Return the duration and the end of a passage, at the tilt at which it begins.
+    """Return the duration and the end state of a passage; it ends at the tilt at which it begins.
 
-    Near the upright, with the angular momentum ℓ = |α|²β̇ and the spin held, K d²|α|/dτ² = ℓ²/|α|³ − Gℓ/|α|²: a
-    conic, along which the azimuth turns by 2√K φ, tan φ = √K|ȧ|/(|ℓ|(1/|α| − G/ℓ)), and beyond all bounds by
-    √K [π + 2 sgn(ℓ) atan(G/(√K v))]. To this come the kick −(2wb/(Kv)) asinh(l/b) of the weight across a path with
-    offset b at speed v, l being the distance to the point of closest approach, and what friction and base do meanwhile,
-    half of it before the turn.
+    Near the vertical the angular momentum ℓ = |α|²β̇ and the spin are constant, and K d²|α|/dτ² = ℓ²/|α|³ − Gℓ/|α|².
+    The path is a conic, along which the azimuth turns by 2√K φ, tan φ = √K|ȧ|/(|ℓ|(1/|α| − G/ℓ)). Between infinite
+    distances it turns by √K [π + 2 sgn(ℓ) atan(G/(√K v))]. On a path with offset b and speed v, at the distance l from
+    the point of closest approach, the weight adds the kick −(2wb/(Kv)) asinh(l/b) across the path. The effect of
+    damping and base is also added, one half before the turn and one half after it.
 
     Parameters
     ----------
     lean
-        x, y, vx, vy where the passage begins.
+        x, y, vx, vy at the start of the passage.
     push
-        Rate of the tilt rate by all else than friction and weight.
+        Tilt acceleration without the terms of damping and weight.
     weight
         w = c(1 + a_z), the moment of the weight about the rim.
     gyration
         G = cκσ for a column with the spin σ.
     eta, inertia
-        Viscous friction, and K, the moment of inertia about a tangent of the rim over J0.
+        Damping η, and K, the moment of inertia about a tangent of the rim over J0.
     """
     x, y, vx, vy = lean
     speed = math.hypot(vx, vy)
@@ -42,7 +42,7 @@ def past_the_upright(
     bend = _bend(lean, gyration, math.sqrt(inertia))
     cos, sin = math.cos(bend), math.sin(bend)
     kick = -2.0 * weight / (inertia * speed) * (offset * math.asinh(ahead / abs(offset)) if offset != 0.0 else 0.0)
-    # The state on the other side of a straight passage, turned about the upright.
+    # The state on the other side of a straight passage, rotated about the vertical.
     out_x, out_y = ahead * ux - offset * uy, ahead * uy + offset * ux
     way_x, way_y = vx + jump_x - kick * uy, vy + jump_y + kick * ux
     way_x, way_y = cos * way_x - sin * way_y + jump_x, sin * way_x + cos * way_y + jump_y
@@ -52,7 +52,7 @@ def past_the_upright(
 
 
 def _bend(lean: tuple[float, float, float, float], gyration: float, root: float) -> float:
-    """Return by what more the azimuth turns than along a straight path; straight on, where it leads to the upright."""
+    """Return the turn of the azimuth beyond that of a straight path; 0 for a path through the vertical itself."""
     x, y, vx, vy = lean
     tilt, momentum = math.hypot(x, y), x * vy - y * vx
     if momentum == 0.0:

@@ -54,7 +54,7 @@ def contact(
     resistance: float,
     _restitution: float,
 ) -> tuple[float, float, float]:
-    """Return N and |T| over m g; nothing turns the body about the vertical."""
+    """Return N and |T| over m g, and the moment about the vertical, which is zero."""
     tilt = math.sqrt(x * x + y * y + TINY)
     ux, uy = x / tilt, y / tilt
     rate, horizontal = vx * ux + vy * uy, ax * ux + ay * uy
@@ -153,7 +153,7 @@ class PlanarRocking(TiltVectorModel):
         density
             Density [kg/m³].
         damping, restitution
-            As in the model; Housner's restitution is 1 − 1.5 sin²α here, with tan α = width/height.
+            As in the model; Housner's restitution is 1 − 1.5 sin²α_c here, with tan α_c = width/height.
         gravity
             Acceleration of gravity [m/s²].
 
@@ -165,7 +165,7 @@ class PlanarRocking(TiltVectorModel):
         width, height = require_positive("width", width, "m"), require_positive("height", height, "m")
         mass = require_positive("density", density, "kg/m³") * width * height
         transverse = mass * (width**2 + height**2) / 12.0
-        # Nothing turns about the axis in a plane; this is what the axial inertia of a square base would be.
+        # Planar motion does not use the axial inertia; this is its value for a square base.
         column = Column(
             radius=0.5 * width,
             mass_height=0.5 * height,
@@ -187,7 +187,7 @@ class PlanarRocking(TiltVectorModel):
 
     @property
     def impact_restitution(self) -> float:
-        """e, Housner's where `restitution` is None."""
+        """e; Housner's value if `restitution` is None."""
         if self.restitution is not None:
             return self.restitution
         column = self.column
@@ -207,7 +207,7 @@ class PlanarRocking(TiltVectorModel):
 
     @property
     def loss_tilt(self) -> float:
-        """Positive where impacts cost energy [rad]: every passage in a plane is one."""
+        """Positive if impacts lose energy [rad]; every planar passage of the vertical is an impact."""
         return finite_tilt.loss_tilt(self.column, self.impact_restitution, None)
 
     @property
@@ -224,7 +224,7 @@ class PlanarRocking(TiltVectorModel):
         return energy * (column.mass * column.gravity * column.mass_height)
 
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
-        """Return energy, the contact point, and what the contact bears."""
+        """Return energy, contact point and contact loads."""
         outputs = {
             "energy": Output(self.energy(states), "J", "energy above rest"),
             **path_outputs(self, states, np.zeros((states.shape[1], 2))),

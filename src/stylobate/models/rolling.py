@@ -1,4 +1,4 @@
-"""The column that rolls without slip at finite tilt, free to turn about its axis."""
+"""The column that rolls without slip at finite tilt, with free axial rotation (spin)."""
 
 import math
 from collections.abc import Mapping
@@ -46,14 +46,14 @@ def balance(
     outward, across = ax * ux + ay * uy, ay * ux - ax * uy
     transverse, inertia = 1.0 - kappa, kappa * axial * c * c  # I_t, I_a
     height, slope = cos + c * sine, c * cos - sine  # ρ', z'
-    freedom = 1.0 + axial - kappa  # D
+    freedom = 1.0 + axial - kappa  # Λ
     # K θ̈ = −(1 + a_z) z' − ρ' a_d − κρ'β̇ w + (1 − κ)β̇² sin θ cos θ − I_a β̇ sin θ w3 + M2,  w = c w3 − β̇ sin θ
     gyration = kappa * c * (height + axial * c * sine) * w3
     whirl = around * (around * sine * (cos + kappa * c * sine) - gyration)
     moment = whirl - (1.0 + az) * slope - height * outward - eta * w2
     rolling = w1 * cos + w3 * sine  # the angular rate about d
     falling, normal, drag = tilt_acceleration(moment, w2, rolling, sine, cos, 1.0 + az, c, kappa, resistance)
-    # The couples: −ηw1; −D0 ω_z about the vertical, D0 = ζ I_a D/i_a; rolling resistance about d.
+    # The couples: −ηw1; −D0 ω_z about the vertical, D0 = ζ I_a Λ/i_a; rolling resistance about d.
     pivoting = zeta * kappa * c * c * freedom * (w3 * cos - w1 * sine)
     m1 = pivoting * sine - eta * w1 - drag * rolling * cos
     m3 = -pivoting * cos - drag * rolling * sine
@@ -118,7 +118,7 @@ def contact(
     resistance: float,
     _restitution: float,
 ) -> tuple[float, float, float]:
-    """Return N and |T| over m g, and |M_z| over m g r, that of the spin damping."""
+    """Return N and |T| over m g, and the moment |M_z| of the spin damping over m g r."""
     _, _, _, normal, along, across, moment = balance(
         x, y, vx, vy, spin, ax, ay, az, c, eta, zeta, kappa, axial, resistance
     )
@@ -148,7 +148,7 @@ def planar_rates(
     resistance: float,
     _restitution: float,
 ) -> tuple[float, float]:
-    """Return the right-hand side in a vertical plane, in which nothing spins the column up."""
+    """Return the right-hand side of planar motion, which has no spin."""
     acceleration, _, _ = planar_acceleration(tilt, rate, side, horizontal, vertical, c, eta, kappa, resistance)
     return rate, acceleration
 
@@ -156,14 +156,14 @@ def planar_rates(
 def rest_energy(
     tilt: float, speed: float, vertical: float, c: float, _eta: float, _zeta: float, kappa: float, *_: float
 ) -> float:
-    """Return ½K|α̇|² + c(1 + a_z)|α|, what is left above the state of rest but for the spin."""
+    """Return ½K|α̇|² + c(1 + a_z)|α|, the energy above rest without that of the spin."""
     return finite_tilt.energy_at_rest(tilt, speed, vertical, c, kappa)
 
 
 def departure(
     push: Push, elapsed: float, c: float, eta: float, _zeta: float, kappa: float, axial: float, *_: float
 ) -> tuple[float, float, float, float, float]:
-    """Return the state a short time after release."""
+    """Return the state a short time after uplift."""
     return free_twist.departing(push, elapsed, 1.0 + kappa * c * c, c, eta, kappa, axial)
 
 
@@ -183,7 +183,7 @@ def passage(
     axial: float,
     *_: float,
 ) -> tuple[float, tuple[float, float, float, float, float]]:
-    """Return the duration and the end of a passage of the upright, on which the spin turns the path."""
+    """Return the duration and the end state of a passage of the vertical; the spin bends the path."""
     return free_twist.passing((x, y, vx, vy), spin, (ax, ay, az), 1.0 + kappa * c * c, c, eta, zeta, kappa, axial)
 
 
@@ -202,7 +202,7 @@ def impact_map(
     restitution: float,
     *_: float,
 ) -> tuple[float, float, float, float, float]:
-    """Return the state after a passage of the upright with loss: the tilt rate times the restitution."""
+    """Return the state after a passage of the vertical with loss: the tilt rate times the restitution."""
     return x, y, restitution * vx, restitution * vy, spin
 
 
@@ -272,8 +272,8 @@ class Rolling(SpinningModel):
         """c, η, ζ, κ, i_a, δ/r and e."""
         column = self.column
         shape = (column.inertia_ratio, column.axial_ratio)
-        frictions = (self.rolling_resistance, self.restitution)
-        return (column.slenderness, self.damping, self.spin_damping, *shape, *frictions)
+        losses = (self.rolling_resistance, self.restitution)
+        return (column.slenderness, self.damping, self.spin_damping, *shape, *losses)
 
     @property
     def comes_to_rest(self) -> bool:
@@ -282,11 +282,11 @@ class Rolling(SpinningModel):
 
     @property
     def loss_tilt(self) -> float:
-        """Tilt below which a passage of the upright loses energy [rad]; 0 where none does."""
+        """Tilt below which a passage of the vertical loses energy [rad]; 0 without loss."""
         return finite_tilt.loss_tilt(self.column, self.restitution, self.passage_tilt)
 
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
-        """Return spin, twist and footprint, the path of the contact point, energy, and what the contact bears."""
+        """Return spin, twist, footprint, path of the contact point, energy and contact loads."""
         column, scale = self.column, self.time_scale
         spin, twist = states[4:6]
         return {

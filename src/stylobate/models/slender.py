@@ -1,4 +1,4 @@
-"""The slender column that cannot turn about the vertical: equations (1) of the source paper."""
+"""The slender column without rotation about the vertical: equations (1) of the source paper."""
 
 import math
 from collections.abc import Mapping
@@ -14,10 +14,10 @@ from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.departing import departing_lean
 from stylobate.models.model import Balance, Floats, Output, Push
 from stylobate.models.numbers import Damping
-from stylobate.models.passing import past_the_upright
+from stylobate.models.passing import pass_vertical
 from stylobate.models.tilt_vector import TiltVectorModel
 
-# Keeps 1/|α| finite at the upright itself, far below any tilt that is resolved.
+# Keeps 1/|α| finite at the vertical, far below any resolved tilt.
 _TINY = 1e-300
 
 
@@ -39,15 +39,14 @@ def planar_rates(
 
 
 def rest_energy(tilt: float, speed: float, vertical: float, c: float, *_: float) -> float:
-    """Return ½|α̇|² + c(1 + a_z)|α|, what is left above the state of rest."""
+    """Return ½|α̇|² + c(1 + a_z)|α|, the energy above rest."""
     return 0.5 * speed * speed + c * (1.0 + vertical) * tilt
 
 
 def no_return_tilt(peak_horizontal: float, minimum_vertical: float, c: float, *_: float) -> float:
-    """Return c + sup|a_h|/(1 + inf a_z) [rad].
+    """Return the point of no return, c + sup|a_h|/(1 + inf a_z) [rad]; infinite if 1 + inf a_z ≤ 0.
 
-    From (6), Ä ≥ (1 + a_z)(A − c) − |a_h| − ηȦ: beyond this tilt Ȧ ≥ 0 stays so. With 1 + inf a_z ≤ 0 nothing is
-    certain and the answer is infinite.
+    From (6), Ä ≥ (1 + a_z)(A − c) − |a_h| − ηȦ: beyond this tilt Ȧ stays positive or zero.
     """
     weight = 1.0 + minimum_vertical
     return c + peak_horizontal / weight if weight > 0.0 else math.inf
@@ -56,7 +55,7 @@ def no_return_tilt(peak_horizontal: float, minimum_vertical: float, c: float, *_
 def contact(
     x: float, y: float, vx: float, vy: float, ax: float, ay: float, az: float, c: float, eta: float, kappa: float
 ) -> tuple[float, float, float]:
-    """Return N = 1 + a_z, |T| = |a_h + κα̈| and, what holds the column from turning, |M_z| = |T_n|, to leading order."""
+    """Return N = 1 + a_z, |T| = |a_h + κα̈| and the moment |M_z| = |T_n| that prevents rotation, to leading order."""
     _, _, bx, by = rates(x, y, vx, vy, ax, ay, az, c, eta, kappa)
     tx, ty = ax + kappa * bx, ay + kappa * by
     across = (x * ty - y * tx) / math.sqrt(x * x + y * y + _TINY)
@@ -64,15 +63,15 @@ def contact(
 
 
 def departure(push: Push, elapsed: float, _c: float, eta: float, *_: float) -> tuple[float, float, float, float]:
-    """Return the state a short time after release."""
+    """Return the state a short time after uplift."""
     return departing_lean(push, elapsed, eta, 1.0, 1.0)[:4]
 
 
 def passage(
     x: float, y: float, vx: float, vy: float, ax: float, ay: float, az: float, c: float, eta: float, *_: float
 ) -> tuple[float, tuple[float, float, float, float]]:
-    """Return the duration and the end of a passage straight past the upright."""
-    return past_the_upright((x, y, vx, vy), (-ax, -ay), c * (1.0 + az), 0.0, eta, 1.0)
+    """Return the duration and the end state of a straight passage of the vertical."""
+    return pass_vertical((x, y, vx, vy), (-ax, -ay), c * (1.0 + az), 0.0, eta, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +147,7 @@ class Slender(TiltVectorModel):
         return energy * unit * self.column.frequency_scale
 
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
-        """Return energy [J], angular momentum about the vertical [kg m²/s], and what the contact bears.
+        """Return energy [J], angular momentum about the vertical [kg m²/s] and contact loads.
 
         Energy is ½|α̇|² + cA − ½A² in units of J0 ω0², 0 at rest; angular momentum A²β̇ in units of J0 ω0: the two
         integrals of free motion (page "theory", free vibration). The centre of pressure [m] lies at −h a_h/(1 + a_z)

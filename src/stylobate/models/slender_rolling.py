@@ -1,4 +1,4 @@
-"""The slender column that rolls without slip and may turn about its axis."""
+"""The slender column that rolls without slip, with free axial rotation (spin)."""
 
 import math
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ from stylobate.models.numbers import Damping, SpinDamping
 from stylobate.models.tilt_vector import SpinningModel
 from stylobate.quantities import Quantity
 
-# As in the slender model: keeps 1/|α| finite at the upright itself.
+# As in the slender model: keeps 1/|α| finite at the vertical.
 _TINY = 1e-300
 
 Couples = Annotated[
@@ -44,10 +44,10 @@ def rates(
     """Return the rates of tilt vector, tilt rate and spin σ = w3/ω0; `contact` is 1 or, for isotropic couples, 0."""
     tilt = math.sqrt(x * x + y * y + _TINY)
     ux, uy = x / tilt, y / tilt
-    freedom = 1.0 + axial - kappa  # D
+    freedom = 1.0 + axial - kappa  # Λ
     across = ay * ux - ax * uy  # of the base acceleration
     turning = vy * ux - vx * uy  # of the tilt rate: |α| β̇
-    # Along n = (−u_y, u_x): the part of the base acceleration that the spin takes up; the reaction of the couples
+    # Along n = (−u_y, u_x): the share of the base acceleration that changes the spin; the reaction of the couples
     # through the contact force.
     given = across * (1.0 - kappa) / freedom
     reaction = contact * (eta * (kappa / freedom) * turning + c * kappa * zeta * spin)
@@ -68,12 +68,12 @@ def rates(
 def planar_rates(
     tilt: float, rate: float, side: float, horizontal: float, vertical: float, c: float, eta: float, *_: float
 ) -> tuple[float, float]:
-    """Return the right-hand side in a vertical plane, in which nothing spins the column up: that of the slender one."""
+    """Return the right-hand side of planar motion, which has no spin: that of the slender model."""
     return rate, (1.0 + vertical) * (tilt - c * side) - eta * rate - horizontal
 
 
 def rest_energy(tilt: float, speed: float, vertical: float, c: float, *_: float) -> float:
-    """Return ½|α̇|² + c(1 + a_z)|α|, what is left above the state of rest but for the spin."""
+    """Return ½|α̇|² + c(1 + a_z)|α|, the energy above rest without that of the spin."""
     return 0.5 * speed * speed + c * (1.0 + vertical) * tilt
 
 
@@ -93,7 +93,7 @@ def contact(
     axial: float,
     couples: float,
 ) -> tuple[float, float, float]:
-    """Return N = 1 + a_z, |T| and, of the spin damping, |M_z|, to leading order.
+    """Return N = 1 + a_z, |T| and the moment |M_z| of the spin damping, to leading order.
 
     T = a_h + κ(α̈ + cσβ̇ û − cσ̇ n): the centre of mass moves with the footprint, whose velocity is −cσ n.
     """
@@ -116,7 +116,7 @@ def carried_rates(x: float, y: float, _vx: float, _vy: float, spin: float, *_: f
 def departure(
     push: Push, elapsed: float, c: float, eta: float, _zeta: float, kappa: float, axial: float, *_: float
 ) -> tuple[float, float, float, float, float]:
-    """Return the state a short time after release."""
+    """Return the state a short time after uplift."""
     return free_twist.departing(push, elapsed, 1.0, c, eta, kappa, axial)
 
 
@@ -136,7 +136,7 @@ def passage(
     axial: float,
     *_: float,
 ) -> tuple[float, tuple[float, float, float, float, float]]:
-    """Return the duration and the end of a passage of the upright, on which the spin turns the path."""
+    """Return the duration and the end state of a passage of the vertical; the spin bends the path."""
     return free_twist.passing((x, y, vx, vy), spin, (ax, ay, az), 1.0, c, eta, zeta, kappa, axial)
 
 
@@ -206,12 +206,12 @@ class SlenderRolling(SpinningModel):
 
     @property
     def balance(self) -> Balance | None:
-        """That of the slender column; None with isotropic couples, which can feed the energy from the spin."""
+        """The balance of the slender model; None with isotropic couples, which can raise the energy from the spin."""
         return slender.Slender(self.column).balance if self.couples == "contact" else None
 
     @property
     def closed_form(self) -> ClosedForm:
-        """Steady rolling with a free twist, known for couples of the contact."""
+        """Steady rolling with spin, known for contact couples."""
         requires = None if self.couples == "contact" else ("couples", "contact")
         return ClosedForm(RollingLaw.FREE_TWIST, self.damping, self.spin_damping, requires)
 
@@ -228,9 +228,9 @@ class SlenderRolling(SpinningModel):
         return energy * unit
 
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
-        """Return energy, spin, twist and footprint, the path of the contact point, and what the contact bears.
+        """Return energy, spin, twist, footprint, path of the contact point and contact loads.
 
-        The energy is ½|α̇|² + cA − ½A² − cκσ Aβ̇ + ½κ(1 + i_a)c²σ² in units of J0 ω0². The centre of pressure is as of
+        The energy is ½|α̇|² + cA − ½A² − cκσ Aβ̇ + ½κ(1 + i_a)c²σ² in units of J0 ω0². The centre of pressure is that of
         the slender model; the moment about the vertical is that of the spin damping.
         """
         column, scale = self.column, self.time_scale

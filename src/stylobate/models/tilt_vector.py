@@ -1,4 +1,4 @@
-"""What models share whose state begins with the tilt vector and its rate: x, y, vx, vy, and perhaps a spin."""
+"""Base classes of models whose state is the tilt vector and its rate, x, y, vx, vy, and optionally a spin."""
 
 from typing import Any, ClassVar
 
@@ -19,7 +19,7 @@ def from_plane(tilt: Any, rate: Any, ux: float, uy: float, *_: float) -> tuple[A
 
 
 def from_plane_without_spin(tilt: Any, rate: Any, ux: float, uy: float, *_: float) -> tuple[Any, ...]:
-    """Return the same with a spin behind it, which there is none of in a plane."""
+    """Return the state of a motion along the unit vector (ux, uy), with zero spin."""
     return tilt * ux, tilt * uy, rate * ux, rate * uy, 0.0 * tilt
 
 

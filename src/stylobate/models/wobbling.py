@@ -1,4 +1,4 @@
-"""The column at finite tilt that cannot turn: the slender column's assumption kept, its small angles left behind."""
+"""The column at finite tilt without axial rotation: the slender model's constraint without its small angles."""
 
 import math
 from collections.abc import Mapping
@@ -15,11 +15,11 @@ from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
 from stylobate.models.model import Balance, Floats, Output
 from stylobate.models.numbers import Damping, PassageTilt, Restitution, RollingResistance
-from stylobate.models.passing import past_the_upright
+from stylobate.models.passing import pass_vertical
 from stylobate.models.tilt_vector import TiltVectorModel
 from stylobate.quantities import Quantity
 
-Constraint = Annotated[Literal["pure_tilt", "rubber"], Quantity(text="what keeps the column from turning")]
+Constraint = Annotated[Literal["pure_tilt", "rubber"], Quantity(text="constraint on the axial rotation")]
 
 # Keeps tan θ and its powers finite where the axis lies level.
 _LEVEL = 1e-100
@@ -69,7 +69,7 @@ def balance(
     driven = (turning + reach * (across - kappa * c * (1.0 + q_rate) * w1 * w2) + m1 + q * m3) / mass
     w1_rate = around * cos * w2 + driven
     w3_rate = q * w1_rate + q_rate * w2 * w1
-    # T_n = a_n − κ(ẇ − ρ'θ̇β̇); what turns it not about its axis is a couple along e3 + Z, or along Z.
+    # T_n = a_n − κ(ẇ − ρ'θ̇β̇); the couple that prevents rotation acts along e3 + Z, or along Z.
     friction = across - kappa * (c * w3_rate + w1_rate - height * w2 * around)
     couple = (inertia * w3_rate - c * friction - m3) * (rubber / up + 1.0 - rubber)
     inward = falling - tilt * around * around
@@ -115,7 +115,7 @@ def contact(
     rubber: float,
     _restitution: float,
 ) -> tuple[float, float, float]:
-    """Return N and |T| over m g, and |M_z| over m g r, that of the couple that holds the column from turning."""
+    """Return N and |T| over m g, and the moment |M_z| of the couple that prevents rotation, over m g r."""
     _, _, normal, along, across, couple = balance(x, y, vx, vy, ax, ay, az, c, eta, kappa, axial, resistance, rubber)
     return normal, math.sqrt(along * along + across * across), abs(couple) / c
 
@@ -155,7 +155,7 @@ def planar_rates(
     _rubber: float,
     _restitution: float,
 ) -> tuple[float, float]:
-    """Return the right-hand side in a vertical plane."""
+    """Return the right-hand side of planar motion."""
     acceleration, _, _ = planar_acceleration(tilt, rate, side, horizontal, vertical, c, eta, kappa, resistance)
     return rate, acceleration
 
@@ -173,13 +173,13 @@ def passage(
     kappa: float,
     *_: float,
 ) -> tuple[float, tuple[float, float, float, float]]:
-    """Return the duration and the end of a passage of the upright, along which the azimuth turns by π√K."""
+    """Return the duration and the end state of a passage of the vertical; the azimuth turns by π√K."""
     inertia = 1.0 + kappa * c * c
     speed = math.hypot(vx, vy)
     ux, uy = vx / speed, vy / speed
     along, across = (ax * ux + ay * uy) / inertia, ay * ux - ax * uy
     push = (across * uy - along * ux, -across * ux - along * uy)
-    return past_the_upright((x, y, vx, vy), push, c * (1.0 + az), 0.0, eta, inertia)
+    return pass_vertical((x, y, vx, vy), push, c * (1.0 + az), 0.0, eta, inertia)
 
 
 def impact_map(
@@ -196,7 +196,7 @@ def impact_map(
     restitution: float,
     *_: float,
 ) -> tuple[float, float, float, float]:
-    """Return the state after a passage of the upright with loss: the tilt rate times the restitution."""
+    """Return the state after a passage of the vertical with loss: the tilt rate times the restitution."""
     return x, y, restitution * vx, restitution * vy
 
 
@@ -221,7 +221,7 @@ class Wobbling(TiltVectorModel):
     passage_tilt
         Minimum tilt below which a swing counts as a passage of the vertical [rad]; by default 0.01 c.
     constraint
-        "pure_tilt": ω·(e3 + Z) = 0. "rubber": ω·Z = 0, no rotation about the vertical at all, as of a contact that
+        "pure_tilt": ω·(e3 + Z) = 0. "rubber": ω·Z = 0, no rotation about the vertical at all, as for a contact that
         cannot pivot; it is not holonomic, differs by O(c²), and the footprint wanders.
 
     Raises
@@ -268,12 +268,12 @@ class Wobbling(TiltVectorModel):
 
     @property
     def comes_to_rest(self) -> bool:
-        """Whether there is friction, or loss on passing the upright."""
+        """Whether there is damping, rolling resistance or loss."""
         return self.damping > 0.0 or self.rolling_resistance > 0.0 or self.restitution < 1.0
 
     @property
     def loss_tilt(self) -> float:
-        """Tilt below which a passage of the upright loses energy [rad]; 0 where none does."""
+        """Tilt below which a passage of the vertical loses energy [rad]; 0 without loss."""
         return finite_tilt.loss_tilt(self.column, self.restitution, self.passage_tilt)
 
     @property
@@ -317,10 +317,10 @@ class Wobbling(TiltVectorModel):
         return falling, around, moment
 
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
-        """Return energy, angular momentum, twist and footprint, the path of the contact, and what the contact bears.
+        """Return energy, angular momentum, twist, footprint, path of the contact point and contact loads.
 
-        Under pure tilt the angular momentum Mβ̇ [kg m²/s] belongs to the azimuth of the lean; without friction a base
-        at rest keeps both it and the energy.
+        Under pure tilt the angular momentum Mβ̇ [kg m²/s] belongs to the azimuth of the lean; on a base at rest it and
+        the energy are constant without dissipation.
         """
         column, (falling, around, moment) = self.column, self._motion(states)
         unit = column.base_inertia * column.frequency_scale

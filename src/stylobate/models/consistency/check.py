@@ -1,4 +1,4 @@
-"""`check`: all promises of a model, and the cheap ones before its first run."""
+"""Consistency checks of a model: all of them on request, the cheap ones before its first run."""
 
 import warnings
 from collections.abc import Callable, Iterator
@@ -22,10 +22,10 @@ from stylobate.models.model import Model
 
 Examination = Callable[[Subject], Iterator[str]]
 
-# Each of these needs what those before it found right.
+# Each stage requires that the stages before it found no problem.
 _STAGES: tuple[tuple[Examination, ...], ...] = ((problems_of_signatures,), (problems_of_lengths,), (problems_of_maps,))
 
-# Of models that keep to one kind of contact.
+# For models with one kind of contact.
 _OF_EQUATIONS: tuple[Examination, ...] = (
     problems_in_planes,
     problems_of_forces,
@@ -44,18 +44,18 @@ def check(model: Model) -> None:
     Call it in a test of a model of your own. It compares, at random states: the number of arguments and results of
     each function with `parameters` and `state_names`; `start`, `tilt_of` and `from_plane`; `planar_rates` with `rates`;
     `no_return_tilt` and `balance` with the inequalities that prove them; `departure`, `passage` and `rest_energy` near
-    the upright, `impact_map`, and `jacobian` with `rates`. The first run of a model of your own makes the cheap ones of
-    these comparisons by itself.
+    the vertical, `impact_map`, and `jacobian` with `rates`. The first run of a model of your own makes the cheap
+    comparisons by itself.
 
     Parameters
     ----------
     model
-        The model, with numbers that are not zero: a term that is zero cannot be missed.
+        The model, with nonzero numbers: the check cannot detect that a zero term is missing.
 
     Raises
     ------
     ModelError
-        If a member is wrong; its `problems` have a line for each one.
+        If a member is wrong; `problems` has a line for each wrong member.
     ParameterError
         If `model` is not a model.
 
@@ -75,7 +75,7 @@ _REMEMBERED = 4096
 
 
 def check_once(model: Model) -> None:
-    """Make the cheap comparisons of `check`, once for each class and parameters; not for the package's own classes."""
+    """Make the cheap comparisons of `check` once per class and parameters, except for classes of the package."""
     kind = type(model)
     if kind.__module__.startswith("stylobate.models."):
         return
@@ -111,14 +111,14 @@ def _problems(subject: Subject) -> list[str]:
 
 
 def _found(subject: Subject, examinations: tuple[Examination, ...]) -> list[str]:
-    """Return the problems that these find; a function that raises is one of a thorough check, else left to the run."""
+    """Return the problems that examinations find; only a thorough check reports functions that raise."""
     problems: list[str] = []
     for examine in examinations:
         try:
             with np.errstate(all="ignore"), warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 problems += examine(subject)
-        except Exception as error:  # noqa: BLE001  whatever a function of a user's may raise
+        except Exception as error:  # noqa: BLE001  a user's function may raise anything
             if subject.thorough:
                 problems.append(f"{_member(error)}: raises {type(error).__name__} at a random state ({error}).")
     return problems

@@ -1,4 +1,4 @@
-"""`jacobian` against differences of `rates`."""
+"""Check of `jacobian` against differences of `rates`."""
 
 from collections.abc import Iterator
 
@@ -10,7 +10,7 @@ _AGREE = 1e-5  # relative, above the error of central differences
 
 
 def problems_of_derivatives(subject: Subject) -> Iterator[str]:
-    """Yield a line where an entry of `jacobian` is not the derivative of a rate."""
+    """Yield a line if an entry of `jacobian` is not the derivative of a rate."""
     model, c = subject.model, subject.slenderness
     if model.jacobian is None:
         return

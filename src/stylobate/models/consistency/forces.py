@@ -1,4 +1,4 @@
-"""Contact forces belong to equations: inherited ones to those of the class that states them."""
+"""Check that inherited contact forces belong to the equations of the model."""
 
 from collections.abc import Iterator
 
@@ -10,20 +10,20 @@ from stylobate.models.model import Model
 
 
 def problems_of_forces(subject: Subject) -> Iterator[str]:
-    """Yield a line where `contact` is inherited although `rates` are new: its forces are of other equations."""
+    """Yield a line if `contact` is inherited although `rates` are new: its forces belong to other equations."""
     kind = type(subject.model)
     if subject.model.contact is None or belongs_to_equations(kind, "contact"):
         return
     owner = owner_of(kind, "contact")
     if not _moves_as(subject, owner):
         yield (
-            f"contact: inherited from {owner.__name__}, gives the forces of the equations of {owner.__name__}, which "
+            f"contact: inherited from {owner.__name__}, returns forces of the equations of {owner.__name__}, which "
             "rates or parameters replace. Define contact for these equations, or set contact = None."
         )
 
 
 def _moves_as(subject: Subject, owner: type) -> bool:
-    """Return whether the equations of `owner` are the same at these parameters."""
+    """Return whether the equations of `owner` give the same rates with the parameters of the model."""
     assert issubclass(owner, Model)
     for state in subject.random_states(3):
         push = (0.1, -0.2, 0.1)

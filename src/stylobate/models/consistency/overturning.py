@@ -1,4 +1,4 @@
-"""What a model claims about overturning: the point of no return, and the energy of its balance."""
+"""Checks of the claims of a model about overturning: the point of no return, and the energy of its balance."""
 
 from collections.abc import Iterator
 from itertools import product
@@ -12,14 +12,14 @@ from stylobate.models.model import Balance
 _BEYOND = 1e-4  # relative distance beyond the point of no return
 _ROUNDING = 1e-6
 _HIGHEST = 1.5  # tilt of a random state [rad]
-_NO_GAIN = 1e-4  # of m g h c² in a unit of time, above the error of the differences
+_NO_GAIN = 1e-4  # in m g h c² per unit of time, above the error of the differences
 
 
 def problems_of_no_return(subject: Subject) -> Iterator[str]:
-    """Yield a line where a tilt beyond `no_return_tilt` that stops growing falls back.
+    """Yield a line if a tilt beyond `no_return_tilt` that stops growing falls back.
 
-    The proof of every point of no return: wherever the growth Ȧ of the tilt A vanishes beyond it, Ä ≥ 0 under every
-    push within the bounds, so that Ȧ never changes its sign there.
+    Every point of no return rests on this proof: when the rate Ȧ of the tilt A vanishes beyond it, Ä ≥ 0 under every
+    push within the bounds, so that Ȧ never changes sign there.
     """
     model, c = subject.model, subject.slenderness
     if model.no_return_tilt is None:
@@ -44,16 +44,16 @@ def problems_of_no_return(subject: Subject) -> Iterator[str]:
                 yield (
                     f"no_return_tilt: is not a point of no return{subject.origin('no_return_tilt')} "
                     f"(beyond {limit:.4g} rad, at {tilt:.4g} rad, the tilt is accelerated by {growth:.3g}). "
-                    "Define it for these rates, return math.inf where nothing is proved, or set no_return_tilt = None."
+                    "Define it for these rates, return math.inf without a proof, or set no_return_tilt = None."
                 )
                 return
 
 
 def problems_of_balance(subject: Subject) -> Iterator[str]:
-    """Yield a line where the `balance` of a model does not hold a column back.
+    """Yield a line if the `balance` of a model does not prevent overturning.
 
-    The proof that a column cannot overturn any more: free motion only loses energy, and at the tilt of the balance
-    every state has its energy at least.
+    The proof that a column cannot overturn any more is: free motion only loses energy, and every state at the tilt of
+    the balance has at least the energy of the balance.
     """
     model = subject.model
     if model.balance is None or not belongs_to_equations(type(model), "balance", "energy"):
@@ -64,7 +64,7 @@ def problems_of_balance(subject: Subject) -> Iterator[str]:
         gained = float(np.diff(_energies(subject, before, after))[0]) / lapse
         if gained > _NO_GAIN * scale:
             yield (
-                f"energy: grows in free motion (by {gained / scale:.3g} m g h c² in a unit of time). Define energy for "
+                f"energy: grows in free motion (by {gained / scale:.3g} m g h c² per unit of time). Define energy for "
                 "these rates, or set balance = None."
             )
             return
@@ -77,14 +77,14 @@ def problems_of_balance(subject: Subject) -> Iterator[str]:
         energy = float(_energies(subject, state)[0])
         if energy < balance.energy * (1.0 - _ROUNDING):
             yield (
-                f"balance: a column at its tilt {balance.tilt:.4g} rad can have less energy than it says "
+                f"balance: a column at the tilt {balance.tilt:.4g} rad can have less than the energy of the balance "
                 f"({energy:.4g} J, not {balance.energy:.4g} J). Define balance for these rates, or set balance = None."
             )
             return
 
 
 def _below(subject: Subject, balance: Balance) -> Iterator[tuple[float, ...]]:
-    """Yield random states with less tilt and energy than the balance has."""
+    """Yield random states with less tilt and energy than the balance."""
     random, c = subject.generator(), subject.slenderness
     for _ in range(100 if subject.thorough else 12):
         lean, heading, size, speed = random.uniform([0.0, 0.0, 0.05, 0.0], [2.0 * np.pi, 2.0 * np.pi, 0.95, 1.0])

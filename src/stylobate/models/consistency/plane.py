@@ -1,4 +1,4 @@
-"""Motion in a vertical plane is motion in space: `planar_rates` against `rates`, and the maps between the two."""
+"""Checks of planar against three-dimensional motion: `planar_rates`, `rates`, and the maps between the two."""
 
 from collections.abc import Iterator
 
@@ -11,20 +11,20 @@ _AGREE = 1e-6  # relative, above the error of the differences
 
 
 def problems_of_maps(subject: Subject) -> Iterator[str]:
-    """Yield a line where `tilt_of` does not give back the tilt and the rate from which `start` makes a state."""
+    """Yield a line if `tilt_of` does not return the tilt and the rate from which `start` makes a state."""
     c = subject.slenderness
     given = np.array([0.3 * c, -0.4 * c, 0.1 * c, 0.2 * c])
     state = subject.state((given[0], given[1]), (given[2], given[3]))
     found = np.array(subject.model.tilt_of(*state, *subject.numbers), dtype=float)
     if np.abs(found - given).max() > _AGREE * c:
         yield (
-            "tilt_of: does not return the tilt and the rate with which start made the state "
+            "tilt_of: does not return the tilt and the rate from which start made the state "
             f"({_listed(given)} became {_listed(found)}). Return x, y, vx, vy, the rate in the time of the model."
         )
 
 
 def problems_in_planes(subject: Subject) -> Iterator[str]:
-    """Yield a line where motion along a line in space is not what `planar_rates` says, at random states."""
+    """Yield a line if `rates` along a line differ from `planar_rates`, at random states."""
     model, c = subject.model, subject.slenderness
     if model.planar_rates is None or model.from_plane is None:
         return
@@ -74,7 +74,7 @@ def _moved_wrongly(
     worst = int(np.argmax(error))
     return (
         f"planar_rates: does not agree with rates{subject.origin('planar_rates')} "
-        f"(rate of {subject.model.state_names[worst]} {planar[worst]:.4g} in the plane, {spatial[worst]:.4g} in space, "
+        f"(rate of {subject.model.state_names[worst]} {planar[worst]:.4g}, not {spatial[worst]:.4g} as by rates, "
         f"at tilt {tilt:.3g} rad). Define planar_rates with the terms of rates, or set planar_rates = None."
     )
 

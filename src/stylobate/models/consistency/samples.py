@@ -1,4 +1,4 @@
-"""Random states of a model, and what its equations make of them."""
+"""Random states of a model, with their rates and accelerations."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ import numpy as np
 from stylobate.models.inheritance import owner_of
 from stylobate.models.model import Model
 
-# Half the step of central differences, in the time of the model: their error is of its square.
+# Half the step of central differences, in the time of the model; the error is of second order.
 _STEP = 1e-4
 
 # Peak tilt of a random state [rad], and peak tilt and rate in units of c.
@@ -16,7 +16,7 @@ _TOP, _TIMES_C = 1.2, 3.0
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """A model under examination, its numbers read once.
+    """A model under examination, with its numbers.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Subject:
         return self.model.column.slenderness
 
     def generator(self) -> "np.random.Generator":
-        """Return the same random numbers every time."""
+        """Return a random generator with a fixed seed."""
         return np.random.default_rng(20)
 
     def state(self, tilt: tuple[float, float], rate: tuple[float, float], spin: float = 0.0) -> tuple[float, ...]:
@@ -46,7 +46,7 @@ class Subject:
         return tuple(float(spin if i == index and spin else value) for i, value in enumerate(begun))
 
     def random_states(self, count: int) -> list[tuple[float, ...]]:
-        """Return states of random tilts and rates about c, with spin where the model knows it."""
+        """Return states of random tilts and rates of the order of c, with spin if the model has it."""
         random, c = self.generator(), self.slenderness
         found = []
         for _ in range(count):
@@ -79,6 +79,6 @@ class Subject:
         return np.array(self.model.tilt_of(*state, *self.numbers), dtype=float)
 
     def origin(self, name: str) -> str:
-        """Return ", inherited from Slender," of a member that the class of the model does not state itself."""
+        """Return ", inherited from Slender," for a member that the class of the model does not state itself."""
         owner = owner_of(type(self.model), name)
         return "" if owner is type(self.model) else f", inherited from {owner.__name__},"

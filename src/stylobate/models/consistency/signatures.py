@@ -1,4 +1,4 @@
-"""How many numbers each function of a model takes, and how many it returns."""
+"""Number of arguments and of results of each function of a model."""
 
 import inspect
 from collections.abc import Callable, Iterator, Sequence
@@ -10,7 +10,7 @@ from stylobate.models.model import Push
 
 _PUSH = 3  # accelerations of the base
 
-# Arguments before the states, or in place of them, and behind them; the parameters follow.
+# Number of arguments between the states, or without states, and the parameters.
 _WITHOUT_STATE = {"planar_rates": 5, "from_plane": 4, "rest_energy": 3, "no_return_tilt": 2, "departure": 2}
 _BEHIND_STATE = {
     "rates": _PUSH,
@@ -50,7 +50,7 @@ def _given(subject: Subject, name: str) -> int:
 
 
 def _positions(function: Callable[..., Any]) -> tuple[float, float] | None:
-    """Return how many positional arguments a function takes, at least and at most; None where that is not known."""
+    """Return the minimum and maximum number of positional arguments of a function; None if unknown."""
     try:
         arguments = inspect.signature(getattr(function, "py_func", function)).parameters.values()
     except (TypeError, ValueError):
@@ -68,7 +68,7 @@ def _remedy(subject: Subject, name: str) -> str:
 
 
 def problems_of_lengths(subject: Subject) -> Iterator[str]:
-    """Yield a line for each function that does not return as many numbers as its place needs."""
+    """Yield a line for each function that returns a wrong number of results."""
     model, numbers = subject.model, subject.numbers
     states = len(model.state_names)
     state = subject.random_states(1)[0]
@@ -96,7 +96,7 @@ def problems_of_lengths(subject: Subject) -> Iterator[str]:
             continue
         found = function(*arguments, *numbers)
         if name == "passage":
-            found = found[1]  # behind the duration
+            found = found[1]  # the first result is the duration
         if len(found) != length:
             yield (
                 f"{name}: returns {len(found)} numbers{subject.origin(name)} where {length} are needed. "

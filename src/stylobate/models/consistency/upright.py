@@ -1,4 +1,4 @@
-"""What a model says about the neighbourhood of the upright: departure, rest, passage and loss."""
+"""Checks of a model near the vertical: departure, rest, passage and loss."""
 
 from collections.abc import Iterator
 
@@ -7,13 +7,13 @@ import numpy as np
 from stylobate.models.consistency.samples import Subject
 from stylobate.models.model import Push
 
-_LAPSE = 1e-3  # after the release, in the time of the model
-_CLOSE = 0.05  # relative: the series and the equations differ by less
-_NEAR = 1e-6  # tilts near the upright [c]
+_LAPSE = 1e-3  # after uplift, in the time of the model
+_CLOSE = 0.05  # maximum relative difference of series and equations
+_NEAR = 1e-6  # tilts near the vertical [c]
 
 
 def problems_of_departure(subject: Subject) -> Iterator[str]:
-    """Yield a line where `departure` does not follow `rates`, shortly after a release by a push that turns."""
+    """Yield a line if `departure` does not follow `rates` shortly after uplift by a push that turns."""
     model, c = subject.model, subject.slenderness
     if model.departure is None:
         return
@@ -32,13 +32,13 @@ def problems_of_departure(subject: Subject) -> Iterator[str]:
         worst = int(np.argmax(np.abs(slope - expected)))
         yield (
             f"departure: does not follow rates{subject.origin('departure')} (rate of {model.state_names[worst]} "
-            f"{slope[worst]:.4g} after a release, not {expected[worst]:.4g}). Define departure for these rates, or set "
+            f"{slope[worst]:.4g} after uplift, not {expected[worst]:.4g}). Define departure for these rates, or set "
             "departure = None."
         )
 
 
 def problems_of_rest(subject: Subject) -> Iterator[str]:
-    """Yield a line where `rest_energy` grows near the upright although the base stands still."""
+    """Yield a line if `rest_energy` grows near the vertical although the base is at rest."""
     model, c = subject.model, subject.slenderness
     if model.rest_energy is None or not model.comes_to_rest:
         return
@@ -53,14 +53,14 @@ def problems_of_rest(subject: Subject) -> Iterator[str]:
         gained = (there - here) / (2.0 * step)
         if gained > 1e-3 * c * abs(rate):
             yield (
-                f"rest_energy: grows in free motion near the upright{subject.origin('rest_energy')} (by {gained:.3g} "
-                "in a unit of time). Define rest_energy for these rates, or set rest_energy = None."
+                f"rest_energy: grows in free motion near the vertical{subject.origin('rest_energy')} (by {gained:.3g} "
+                "per unit of time). Define rest_energy for these rates, or set rest_energy = None."
             )
             return
 
 
 def problems_of_loss(subject: Subject) -> Iterator[str]:
-    """Yield a line where `impact_map` adds speed, or moves the column."""
+    """Yield a line if `impact_map` adds speed, or moves the column."""
     model = subject.model
     if model.impact_map is None or not model.loss_tilt > 0.0:
         return
@@ -79,7 +79,7 @@ def problems_of_loss(subject: Subject) -> Iterator[str]:
 
 
 def problems_of_passage(subject: Subject) -> Iterator[str]:
-    """Yield a line where `passage` does not end where `rates` lead, on a close passage of the upright."""
+    """Yield a line if the end of `passage` differs from that of `rates`, on a close passage of the vertical."""
     from scipy.integrate import solve_ivp  # noqa: PLC0415  a thorough check only
 
     model, c = subject.model, subject.slenderness
@@ -95,6 +95,6 @@ def problems_of_passage(subject: Subject) -> Iterator[str]:
     error = np.abs(tilts[0] - tilts[1])
     if error[:2].max() > _CLOSE * far or error[2:].max() > _CLOSE * speed:
         yield (
-            f"passage: does not end where rates lead{subject.origin('passage')} (its rate is off by "
+            f"passage: ends in another state than rates{subject.origin('passage')} (relative error of the tilt rate "
             f"{error[2:].max() / speed:.2g}). Define passage for these rates, or set passage = None."
         )

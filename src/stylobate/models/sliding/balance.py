@@ -1,13 +1,13 @@
-"""Newton's and Euler's equations of the column in every kind of contact, with the forces that go with it.
+"""Newton's and Euler's equations of the column in every kind of contact, with the contact forces.
 
-Units as in `finite_tilt`: everything over J0, lengths in h, accelerations of the base in g; forces come out over m g.
+Units as in `finite_tilt`: everything over J0, lengths in h, accelerations of the base in g; forces are over m g.
 The body turns with w1 u + w2 n + w3 e3; C is the lowest point of its rim, d the horizontal direction of the lean.
 
 I_t ẇ1 = I_t β̇w2 cos θ − I_a w2w3 + T_n + M1,   I_a ẇ3 = c T_n + M3,
 I_t ẇ2 = I_t β̇² sin θ cos θ − I_a β̇w3 sin θ + M2 − N z' − T_d ρ',   N = 1 + a_z + κ(z'ẇ2 − ρ'w2²),
 κ v̇_d = T_d − a_d − κ(ρ'ẇ2 + z'w2² + β̇w),   κ v̇_n = T_n − a_n + κ(ẇ − ρ'β̇w2),   w = c w3 + w1,
 
-v being the velocity of the body at C. Without slip v̇ = 0 gives T; with it T follows N; in the air both are zero.
+where v is the velocity of the body at C. Without slip v̇ = 0 gives T; with slip T follows N; in the air N = T = 0.
 """
 
 import math
@@ -16,7 +16,7 @@ from stylobate.models.finite_tilt import FADING, TINY, cosine, sine_over_angle, 
 from stylobate.models.sliding.friction import per_normal, reserve
 from stylobate.models.sliding.phases import FLYING, ROLLING, SLIDING, SLIPPING
 
-# A normal force or a denominator below this is as good as none.
+# Minimum of a denominator.
 _LEAST = 1e-12
 
 
@@ -56,8 +56,8 @@ def balance(
     -------
     tuple
         Rates of the tilt rate (2), of the spin, of the velocity (2); N, T_x, T_y over m g, M_z over m g h; ε ω̇_z of
-        the slip; what friction has left per normal force before it slips; Painlevé's denominator;
-        rate of the twist; that of the centre of the footprint but for its slip (2); ω_z.
+        the slip; the friction reserve (`reserve`); Painlevé's denominator; rate of the twist; rate of the centre of the
+        footprint without slip (2); ω_z.
     """
     rolls = 1.0 if contact == ROLLING else 0.0
     slips = 1.0 if contact == SLIPPING else 0.0
@@ -81,7 +81,7 @@ def balance(
     swing = c * w3 + w1  # w
     # The couples of a rim that touches: −η(w1 u + w2 n); −D0 ω_z about the vertical; rolling resistance.
     rolling = w1 * cos + w3 * sine  # the angular rate about d
-    freedom = 1.0 + axial - kappa  # D
+    freedom = 1.0 + axial - kappa  # Λ
     drained = zeta * kappa * c * c * freedom * yawing
     m1, m3 = drained * sine - eta * w1, -drained * cos
     whirl = around * (transverse * around * sine * cos - inertia * sine * w3)
@@ -89,7 +89,7 @@ def balance(
     leaned = whirl - kappa * height * around * swing - weight * slope - height * outward - eta * w2
     held_fall, held_normal, held_drag = tilt_acceleration(leaned, w2, rolling, sine, cos, weight, c, kappa, resistance)
     held_m1, held_m3 = m1 - held_drag * rolling * cos, m3 - held_drag * rolling * sine
-    # κv̇_n = 0: T_n, and where a patch is held the moment M_z that keeps it from turning
+    # κv̇_n = 0: T_n, and for a patch without slip the moment M_z that prevents its rotation
     gyro = inertia * w2 * w3
     unturned = kappa * (w2 * (inertia * w3 - transverse * c * w1) - held_m1) + transverse * across
     unturned = axial / freedom * (unturned - transverse * held_m3 / (axial * c))
@@ -98,7 +98,7 @@ def balance(
     answer = cos * (c * given + cos) / inertia - sine * (given - sine) / transverse
     pivot = (-spun / answer if patch > 0.0 else 0.0) * rolls
     held_n = unturned + given * pivot
-    # With slip: T = Nτ, and N from its own equation with ẇ2 put in
+    # With slip: T = Nτ, and N from its own equation after ẇ2 is eliminated
     tau_x, tau_y, tau_z = per_normal(slip_x, slip_y, yawing, hx, hy, hz, base * c + rim * patch * c, base, kinetic)
     tau_d, tau_n = tau_x * ux + tau_y * uy, tau_y * ux - tau_x * uy
     lever = c * resistance / math.sqrt(w2 * w2 + rolling * rolling + FADING * FADING)
@@ -111,7 +111,7 @@ def balance(
     slip_fall = (falls - slip_normal * arm) / transverse
     slip_m1 = m1 - lever * slip_normal * rolling * cos - tau_z * slip_normal * sine
     slip_m3 = m3 - lever * slip_normal * rolling * sine + tau_z * slip_normal * cos
-    # One of them, or the air, or the base
+    # Select rolling, slip, flight or base
     normal = rolls * held_normal + slips * slip_normal + base * weight
     falling = rolls * held_fall + slips * slip_fall + flies * whirl / transverse
     force_n = rolls * held_n + slips * slip_normal * tau_n
@@ -123,7 +123,7 @@ def balance(
     moving = rim + flies
     bx, by = moving * (inward * ux - sideways * uy), moving * (inward * uy + sideways * ux)
     spin_rate = (c * force_n + c3) / inertia
-    # Forces along x and y; resting, the plane takes the column along.
+    # Forces along x and y; a column at rest moves with the plane.
     held_d = outward + kappa * (height * held_fall + slope * w2 * w2 + around * swing)
     force_d = rolls * held_d + slips * slip_normal * tau_d
     standing_x = ax + slides * (tau_x * weight - ax)
@@ -138,7 +138,7 @@ def balance(
     free = 1.0 - rolls
     ox = free * (tx - ax + slips * (left_d * ux - left_n * uy)) / kappa
     oy = free * (ty - ay + slips * (left_d * uy + left_n * ux)) / kappa
-    # ω̇_z, with that of a patch or base in ε ω̇_z
+    # ω̇_z, and ε ω̇_z of a patch or base
     yaw_rate = spin_rate * cos - sine * (driven + w3 * w2)
     oz = slides * c * spin_rate + slips * patch * c * yaw_rate
     drag = math.sqrt(tx * tx + ty * ty)

@@ -1,4 +1,4 @@
-"""The equations of motion, what the contact bears and what ends a kind of contact, as the engines call them."""
+"""Equations of motion, contact loads and guards of the sliding column as functions of plain numbers."""
 
 import math
 
@@ -7,24 +7,25 @@ from stylobate.models.sliding.balance import balance
 from stylobate.models.sliding.phases import FLYING, RESTING, ROLLING, SLIDING, SLIPPING
 
 GUARDS = ("lift", "friction", "support", "rest", "jam", "fallen", "face_impact")
-"""What each of the `guards` watches, in their order.
+"""Names of the `guards` in their order, which are positive under these conditions.
 
-"lift": the contact presses. "friction": it holds, or still slips. "support": a base stands firm, or there is air under
-the rim. "rest": a column that rocks has energy left. "jam": Painlevé's denominator. "fallen": a tilt below π/2.
-"face_impact": no base strikes the plane, which it does where a tilt below `passage_tilt` stops falling.
+"lift": the contact presses. "friction": the contact holds, or still slips. "support": the base stands without tipping,
+or there is air under the rim. "rest": a rocking column has more than the rest energy. "jam": Painlevé's denominator is
+above its limit. "fallen": the tilt is below π/2. "face_impact": the base does not strike the plane; it strikes when a
+tilt below `passage_tilt` stops decreasing.
 """
 
 STILL = 1e-10
-"""Slip slower than this is none [h ω0]."""
+"""Slip slower than this counts as zero [h ω0]."""
 
 CLEAR = 1e-13
-"""A lowest point deeper than this has landed [h], if it goes deeper."""
+"""A lowest point deeper than this has landed [h] if it moves down."""
 
 JAM = 1e-3
-"""Painlevé's denominator at which slip jams."""
+"""Painlevé's denominator at which slip ends by dynamic jamming."""
 
-# Closer to the upright than this [of the smaller of c and the speed], on a path that leads past it at less than the
-# second number [c], the rest of the way is computed in closed form.
+# Relative to the smaller of c and the speed: distance from the vertical within which a path is computed in closed form,
+# and maximum offset of such a path from the vertical [c].
 _CLOSE, _STRAIGHT = 1e-6, 1e-9
 
 
@@ -65,7 +66,7 @@ def rates(
 ) -> tuple[
     float, float, float, float, float, float, float, float, float, float, float, float, float, float, float, float
 ]:
-    """Return the rates of the state; a kind of contact and a heading last until an event."""
+    """Return the rates of the state; kind of contact and heading are constant until an event."""
     bx, by, spin_rate, ox, oy, _, _, _, _, _, _, _, twisting, back_x, back_y, _ = balance(
         x,
         y,
@@ -219,10 +220,10 @@ def guards(
     slope_y: float,
     relief: float,
 ) -> tuple[float, float, float, float, float, float, float]:
-    """Return what is positive as long as a kind of contact lasts, in the order of GUARDS.
+    """Return the guards, which are positive as long as a kind of contact lasts, in the order of GUARDS.
 
-    Where one falls below zero an event ends it; the last where it does so from above only. `rest` is ε: on its rim a
-    column comes to rest below the energy ε c² where the plane would hold it.
+    An event ends the contact when a guard falls below zero; the last guard must have been positive before. `rest` is ε:
+    a column on its rim comes to rest below the energy ε c² if the plane would hold it.
     """
     _, _, _, ox, oy, normal, tx, ty, _, oz, kept, denominator, _, _, _, yawing = balance(
         x,
@@ -264,7 +265,7 @@ def guards(
     tilt = math.sqrt(square)
     speed = math.sqrt(vx * vx + vy * vy) + TINY
     radial, aside = x * vx + y * vy, abs(x * vy - y * vx) / speed
-    # Slip that fades and is all but gone, or what holds a contact that does not slip
+    # Slip that decreases to zero, or the friction reserve of a contact without slip
     radius = c if contact == SLIDING else patch * c
     slip = sx * hx + sy * hy + radius * yawing * hz
     slipping = max(slip - STILL, ox * hx + oy * hy + oz * hz)
@@ -275,19 +276,19 @@ def guards(
     sine, cos = sine_over_angle(square) * tilt, cosine(square)
     gap = rise - c * sine + sine * sine / (1.0 + cos)
     opening = climb - (c * cos - sine) * (radial / tilt)
-    # A base that slides trips only where kinetic friction exceeds c.
+    # A base that slides trips only if kinetic friction exceeds c.
     firm = rim > 0.0 or (kinetic <= c and not stands)
     support = max(gap, opening) + CLEAR if flies else 1.0 if firm else c * weight - drag
     energy = 0.5 * (1.0 + kappa * c * c) * speed * speed + c * weight * tilt - rest * c * c
-    # Set down, its base would slide with the kinetic friction, or be taken along; one that would trip has to stop
+    # Once set down, the base would slide with kinetic friction, or move with the plane; one that would trip stops
     trips = kinetic > c
     bx, by = sx + c * w3 * y / tilt, sy - c * w3 * x / tilt
     left = 0.5 * kappa * (bx * bx + by * by + axial * c * c * w3 * w3) if trips else 0.0
-    # One that stands slides only if it does not tip before
+    # A standing column slides only if it does not tip before
     slides = slips or (static <= c and pushed > static * weight)
     burden = kinetic * weight if slides and not trips else pushed
     rests = energy + left if rim > 0.0 and c * weight > burden else 1.0
-    # The path towards the upright, to its closest point or as far as it is followed
+    # Distance along the path to the vertical: to its closest point, or to the end of the integrated path
     close = _CLOSE * min(c, speed)
     far = tilt > passage and tilt > close
     towards = tilt - close if aside < _STRAIGHT * c else -radial / (tilt * speed)

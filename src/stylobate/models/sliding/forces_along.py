@@ -6,7 +6,7 @@ from stylobate.models.model import Floats
 from stylobate.models.sliding.balance import balance
 from stylobate.models.sliding.phases import Numbers, State
 
-# How many numbers `balance` returns for a state.
+# Number of results of `balance` for a state.
 _RESULTS = 16
 
 
@@ -18,7 +18,7 @@ def forces_along(states: Floats, accelerations: Floats, n: Numbers) -> Floats:
     states
         Shape (16, number of states).
     accelerations
-        Of the base [g], shape (3, number of states).
+        Accelerations of the base [g], shape (3, number of states).
     n
         The parameters.
     """

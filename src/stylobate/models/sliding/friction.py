@@ -1,35 +1,35 @@
-"""Friction of a contact that slips and turns on the plane: Coulomb's at a point, and over a patch by Contensou's idea.
+"""Friction of a contact that slips and turns on the plane: Coulomb at a point, Coulomb–Contensou over a patch.
 
-Slip is a vector of three, (v_x, v_y, ε ω_z): the velocity of the contact, and how fast the rim of a patch of radius ε
-turns. Force and moment fade into each other as a patch slips and turns at once. Of the small contact of a rim, with a
-pressure after Hertz, the integrals over it are approximated after V. F. Zhuravlev with the exponent 3. The force is
-exact within 3.6 %; the moment is up to 22.5 % too small, at s = 1.57 |v|, which is 16 % of the largest moment:
+Slip is a vector of three components, (v_x, v_y, ε ω_z): the velocity of the contact, and the speed of rotation at the
+rim of a patch of radius ε. Slip reduces the moment, and rotation reduces the force. For the small contact of a rim with
+Hertz's pressure, the integrals are approximated after V. F. Zhuravlev with the exponent 3. The error of the force is at
+most 3.6 %. The moment is up to 22.5 % too small, at s = 1.57 |v|, by 16 % of the maximum moment:
 
 T = −μN v/(|v|³ + (b s)³)^⅓,   M = −m μNε s_z/(s³ + (a|v|)³)^⅓,   s = |s_z|,  s_z = ε ω_z,
 
-in which b and a make the weak friction of a contact that turns fast, or slips fast, exact. Of a base that stands, with
-an even pressure, they are exact: elliptic integrals of the modulus k, the smaller of |v| and s over the larger (Z.
-Farkas and others, Phys. Rev. Lett. 90, 248302, 2003).
+in which b and a make the limits of fast rotation and of fast slip exact. For a standing base with uniform pressure the
+formulas are exact: elliptic integrals of the modulus k, the smaller of |v| and s over the larger (Z. Farkas and others,
+Phys. Rev. Lett. 90, 248302, 2003).
 """
 
 import math
 
-# b, a and m of the pressure of Hertz, of a small contact; m of an even pressure, under a base that stands.
+# b, a and m of Hertz's pressure in a small contact; m of a uniform pressure under a standing base.
 SLOWED, EASED, TWISTING = 8.0 / (3.0 * math.pi), 15.0 * math.pi / 16.0, 3.0 * math.pi / 16.0
 TWISTING_BASE = 2.0 / 3.0
-# The complement of a modulus is no less than this, at which the integrals are finite.
+# Minimum of the complementary modulus, at which the integrals are finite.
 _LEAST_COMPLEMENT = 1e-8
 
-# The loads that a patch can hold are bounded by those that it exerts as it slips: with T in μN and M in m μNε,
+# The loads that a patch can bear without slip are bounded by those of slip: with T in μN and M in m μNε,
 # T³ + M³ (1 + (b³a³ − 1) T³) = 1.
 _BULGE = (SLOWED * EASED) ** 3 - 1.0
 
-# Keeps a direction where there is no slip: it is that of the heading.
+# Weight of the heading, which sets the direction of friction without slip.
 _TRACE = 1e-140
 
 
 def cubic_sum(a: float, b: float) -> float:
-    """Return (a³ + b³)^⅓ of two numbers that are not negative, by two steps of Halley's rule from a straight line."""
+    """Return (a³ + b³)^⅓ of two nonnegative numbers, by two steps of Halley's method from a linear guess."""
     larger = max(a, b) + 1e-300
     share = min(a, b) / larger
     cubed = share * share * share
@@ -43,10 +43,10 @@ def cubic_sum(a: float, b: float) -> float:
 
 
 def even(speed: float, twisting: float) -> tuple[float, float]:
-    """Return |T|/|v| and |M|/(ε s) over μN of an even pressure on a disc that slips at |v| and turns at s = ε|ω_z|.
+    """Return |T|/|v| and |M|/(ε s) over μN for uniform pressure on a disc that slips at |v| and turns at s = ε|ω_z|.
 
-    With K(k) = π/(2a) by the arithmetic-geometric mean a of 1 and √(1 − k²), and E = K (1 − k²/2 − k⁴q), q the sum of
-    2ⁿ⁻¹(c_n/k²)² over its steps from the first. What cancels in the formulas of E and K is left out.
+    K(k) = π/(2a) with the arithmetic-geometric mean a of 1 and √(1 − k²), and E = K (1 − k²/2 − k⁴q); q is the sum of
+    2ⁿ⁻¹(c_n/k²)² over its steps from the first. Terms of E and K that cancel are left out.
     """
     larger = max(speed, twisting) + 1e-300
     share = min(speed, twisting) / larger
@@ -90,11 +90,11 @@ def per_normal(
     vx, vy, turning
         v [h ω0] and ω_z [ω0].
     hx, hy, hz
-        Heading: a unit vector of the slip; what has come to point backwards counts as if it went on.
+        Heading, a unit vector: a slip against it counts as slip along it.
     radius
         ε [h]; 0 for a point, which resists no turning.
     on_base
-        1 where the base stands on the plane, 0 where its rim touches.
+        1 if the base stands on the plane, 0 if its rim touches.
     coefficient
         μ.
     """
@@ -112,12 +112,12 @@ def per_normal(
 
 
 def reserve(force: float, moment: float, normal: float, radius: float, coefficient: float) -> float:
-    """Return what friction has left before a contact of the rim slips, per normal force; negative where it is too weak.
+    """Return the dimensionless friction reserve of a rim contact before it slips; negative if friction is too weak.
 
     Parameters
     ----------
     force, moment
-        |T| and |M_z| that hold the contact.
+        |T| and |M_z| that the contact needs without slip.
     normal
         N.
     radius, coefficient
@@ -125,7 +125,7 @@ def reserve(force: float, moment: float, normal: float, radius: float, coefficie
     """
     bound = max(coefficient * normal, 1e-300)
     dragged = force / bound
-    # Far outside the set the cubes are of no use, and may overflow.
+    # Far outside the limit the cubes are useless and may overflow.
     drag = min(dragged, 1e3)
     twist = min(moment / max(TWISTING * bound * radius, 1e-300), 1e3) if radius > 0.0 else 0.0
     drag, twist = drag * drag * drag, twist * twist * twist
@@ -133,14 +133,14 @@ def reserve(force: float, moment: float, normal: float, radius: float, coefficie
 
 
 def sense_of(force: float, moment: float, normal: float, radius: float, coefficient: float) -> tuple[float, float]:
-    """Return the shares of slip and of turning, as of a unit vector, with which a contact begins to give way.
+    """Return slip and rotation, as components of a unit vector, with which a contact begins to slip.
 
-    Its friction is then most like the load that it has just failed to hold; arguments as for `reserve`.
+    The friction of this slip is closest to the load that exceeds the limit; arguments as for `reserve`.
     """
     if radius == 0.0:
         return 1.0, 0.0
-    # What the plane would have to pull at slips rather than turns.
+    # A contact under tension slips and does not turn.
     drag = min(force / max(coefficient * normal, 1e-300), 1.0 - 1e-12) ** 3
-    ratio = SLOWED * (drag / (1.0 - drag)) ** (1.0 / 3.0)  # |v|/s, for which T is this part of μN
+    ratio = SLOWED * (drag / (1.0 - drag)) ** (1.0 / 3.0)  # |v|/s for which T is this fraction of μN
     length = math.sqrt(1.0 + ratio * ratio)
     return ratio / length, math.copysign(1.0 / length, -moment)

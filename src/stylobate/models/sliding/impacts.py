@@ -1,22 +1,22 @@
-"""Impulses of a column that strikes the plane, limited by friction, of which none adds energy.
+"""Impulses of a column that strikes the plane: limited by friction, without gain of energy.
 
 The law is that of A. Chatterjee and A. Ruina, "A new algebraic rigid-body collision law based on impulse space
-considerations", J. Appl. Mech. 65 (1998): P = (1 + e) P1 + q (P2 − P1), of which P1 without friction stops the
-approach, P2 stops all of the velocity at the contact, and q ≤ 1 is as large as |P_t| ≤ μ P_z allows. It takes energy
-whatever e ≤ 1 and μ, which impulses on the cone of friction against the slip of arrival do not.
+considerations", J. Appl. Mech. 65 (1998): P = (1 + e) P1 + q (P2 − P1). P1 stops the approach without friction, P2
+stops the whole velocity at the contact, and q ≤ 1 is the maximum that |P_t| ≤ μ P_z allows. The law never adds energy
+for e ≤ 1 and any μ; an impulse on the friction cone against the initial slip can.
 """
 
 import math
 
 REST_SPEED = 1e-5
-"""A rebound slower than this is none [h ω0], so that impacts which pile up come to their end.
+"""Minimum speed of a rebound [h ω0]: slower rebounds are plastic, so that a sequence of impacts ends.
 
-It rises to 5e-11 κ h, far above the height to which a landing is located.
+Such a rebound rises to 5e-11 κ h, far above the accuracy with which a landing is located.
 """
 
 
 def responses(sine: float, cos: float, c: float, kappa: float, axial: float) -> tuple[float, float, float, float]:
-    """Return changes of v at the lowest point of the rim by impulses there: W_dd, W_dz, W_zz, and W_nn."""
+    """Return the changes of v at the lowest rim point per unit impulse at this point: W_dd, W_dz, W_zz and W_nn."""
     height, slope, transverse = cos + c * sine, c * cos - sine, 1.0 - kappa
     mass = 1.0 / kappa
     return (
@@ -37,7 +37,7 @@ def impulse(
     vd, vn, vz = arrival
     dd, dz, zz, nn = response
     smooth = -vz / zz
-    # P2 − P1 leaves v_z alone: its vertical part follows that along d.
+    # P2 − P1 does not change v_z: its vertical component follows from that along d.
     rough_d = -(vd + dz * smooth) / (dd - dz * dz / zz)
     rough_n, rough_z = -vn / nn, -dz / zz * rough_d
     bounced = (1.0 + normal_restitution) * smooth
@@ -48,16 +48,16 @@ def impulse(
 
 
 def rebound(normal_restitution: float, approach: float) -> float:
-    """Return the restitution of an impact with this speed of approach: none where the rebound would be."""
+    """Return the restitution of an impact with this approach speed: 0 if the rebound would be too slow."""
     return normal_restitution if normal_restitution * approach > REST_SPEED else 0.0
 
 
 def base_impulse(
     vx: float, vy: float, w3: float, normal: float, coefficient: float, twisting: float, c: float, inertia: float
 ) -> tuple[float, float, float]:
-    """Return the impulse along x and y, and its moment, of a base that meets the plane flat, over the mass κ and I_a.
+    """Return the impulse along x and y, and its moment, of a base that lands flat, over the mass κ and I_a.
 
-    Slip and turning of the base are stopped as far as the normal impulse `normal`, over κ, allows each of them.
+    The impulse stops slip and rotation of the base as far as the normal impulse `normal`, over κ, allows each of them.
     """
     speed = math.hypot(vx, vy)
     kept = max(0.0, 1.0 - coefficient * normal / speed) if speed > 0.0 else 0.0

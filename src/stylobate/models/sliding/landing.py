@@ -1,4 +1,4 @@
-"""How a column goes on that comes down on the plane."""
+"""Landing of a column on the plane."""
 
 import math
 
@@ -13,7 +13,7 @@ from stylobate.models.sliding.strokes import Body, coming_down, flying_from, str
 
 
 def land(state: State, now: Triple, later: Triple, ahead: float, rest: float, n: Numbers) -> tuple[float, State]:
-    """Return how a column goes on whose lowest point has come down on the plane."""
+    """Return elapsed time and state after the lowest point of a column has landed on the plane."""
     if state.tilt_x == 0.0 and state.tilt_y == 0.0 and state.tilt_rate_x == 0.0 and state.tilt_rate_y == 0.0:
         return land_flat(state, now, later, ahead, n)
     ux, uy, sine, cos = lean_of(state)
@@ -39,12 +39,12 @@ def land(state: State, now: Triple, later: Triple, ahead: float, rest: float, n:
 
 
 def touching(state: State, vd: float, vn: float, ux: float, uy: float) -> State:
-    """Return a column whose lowest point touches, with this velocity."""
+    """Return a column whose lowest point touches the plane with this velocity."""
     return moving(state, (vd * ux - vn * uy, vd * uy + vn * ux), 0.0, 0.0, SLIPPING)
 
 
 def land_flat(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
-    """Return how a column goes on that comes down on the whole of its base: it may trip over the edge in front."""
+    """Return elapsed time and state of a column that lands on its whole base: it may trip over its leading edge."""
     vx, vy, approach = state.velocity_x, state.velocity_y, max(-state.rise_rate, 0.0)
     bounce = rebound(n.normal_restitution, approach)
     normal = (1.0 + bounce) * approach

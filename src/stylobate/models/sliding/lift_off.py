@@ -1,4 +1,4 @@
-"""How the column leaves the plane without an impact, and whether it would."""
+"""Lift-off of the column from the plane without an impact, and its condition."""
 
 import math
 
@@ -17,7 +17,7 @@ from stylobate.models.sliding.posture import (
 
 
 def lifted(state: State, n: Numbers) -> State:
-    """Return a column that leaves the plane without an impact."""
+    """Return the column in the air at the instant of lift-off without an impact."""
     return lifted_with(state, 0.0, n)
 
 
@@ -37,7 +37,7 @@ def lifted_with(state: State, opening: float, n: Numbers) -> State:
 
 
 def opens(state: State, now: Triple, n: Numbers) -> bool:
-    """Return whether the rim leaves the plane if it is left to itself: its lowest point then accelerates upwards."""
+    """Return whether the rim would leave the plane: without contact forces its lowest point accelerates upwards."""
     free = rates_of(placed(state, lean_with_rate(state), state.spin, FLYING), now, n)
     ux, uy, sine, cos = lean_of(state)
     _, w2 = turning(state)

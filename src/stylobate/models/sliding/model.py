@@ -1,4 +1,4 @@
-"""The column in six freedoms, on a plane that it can leave and on which it can slip."""
+"""The column with six degrees of freedom, on a plane that it can leave and on which it can slip."""
 
 import math
 from collections.abc import Mapping
@@ -31,7 +31,7 @@ from stylobate.models.sliding.phases import Contact, Numbers, State
 from stylobate.models.sliding.reactions import project, reset_map
 from stylobate.quantities import Quantity
 
-# A minimum tilt counts as a stroke of the base below this, unless the user sets another [c].
+# Default tilt below which a minimum of the tilt is an impact of the base face [c].
 _PASSAGE = 0.01
 
 
@@ -116,7 +116,7 @@ class Sliding(Model):
     contact_kinds: ClassVar[type[IntEnum] | None] = Contact
 
     def validate(self) -> None:
-        """Raise ParameterError if the contact holds less at rest than while it slides."""
+        """Raise ParameterError if the static coefficient of friction is below the kinetic one."""
         static, kinetic = self.static_friction_coefficient, self.friction_coefficient
         if static is not None and static < kinetic:
             message = f"static_friction_coefficient must not be below the kinetic {kinetic!r}, got {static!r}"
@@ -157,19 +157,19 @@ class Sliding(Model):
 
     @property
     def slope(self) -> tuple[float, float, float]:
-        """What the inclined plane adds to the acceleration of the base [g]."""
+        """Term that the inclined plane adds to the acceleration of the base [g]."""
         numbers = self.numbers
         return numbers.slope_x, numbers.slope_y, -numbers.relief
 
     @property
     def rest_capacity(self) -> float:
-        """The |a_h|/(g + a_z) up to which the column neither slides nor tips: the smaller of c and the static μ."""
+        """Maximum |a_h|/(g + a_z) at which the column neither slides nor tips: the smaller of c and the static μ."""
         numbers = self.numbers
         return min(numbers.c, numbers.static) * (1.0 + RELEASE_MARGIN)
 
     @property
     def comes_to_rest(self) -> bool:
-        """It does: strokes of the base take energy."""
+        """True: impacts of the base face dissipate energy."""
         return True
 
     @property
@@ -195,20 +195,20 @@ class Sliding(Model):
         velocity: tuple[float, float, float],
         clearance: float,
     ) -> tuple[float, ...]:
-        """Return the state of a start, from which `reset_map` determines the contact.
+        """Return the initial state, from which `reset_map` determines the contact.
 
         Parameters
         ----------
         tilt, tilt_rate
-            [rad], [rad/s].
+            Tilt vector [rad] and its rate [rad/s].
         spin, twist
-            [rad/s], [rad].
+            Spin [rad/s] and twist [rad].
         position
             Centre of the footprint circle [m].
         velocity
-            Of the lowest point of the rim, or the base, relative to the plane [m/s].
+            Velocity of the lowest point of the rim, or of the base, relative to the plane [m/s].
         clearance
-            Its height [m].
+            Height of this point [m].
         """
         length, scale = self.column.mass_height, self.time_scale
         vx, vy, vz = (part * scale / length for part in velocity)
@@ -223,7 +223,7 @@ class Sliding(Model):
         return tuple(touching._replace(contact=float(kind)))
 
     def event_of(self, margin: str, before: int, after: int) -> str:
-        """Return what an event is called that ended a kind of contact, by its margin, and led to another one."""
+        """Return the name of an event from its guard and the kinds of contact before and after."""
         if margin in ("jam", "face_impact") or after == Contact.JAMMED:
             return "face_impact" if margin == "face_impact" and after != Contact.JAMMED else "jam"
         return _EVENTS.get((Contact(before), Contact(after)), "")
@@ -231,7 +231,7 @@ class Sliding(Model):
     def outputs(self, states: Floats, accelerations: Floats, resting: npt.NDArray[np.bool_]) -> Mapping[str, Output]:
         """Return spin, twist, footprint, kind of contact, slip, the height of the lowest point, forces and energy.
 
-        Nothing is demanded of a contact that is not there: friction and pivoting demand are NaN in flight.
+        Friction and pivoting demand are NaN in flight.
         """
         del resting
         column, scale, numbers = self.column, self.time_scale, self.numbers
@@ -263,14 +263,14 @@ class Sliding(Model):
         }
 
     def _gap(self, state: State) -> Floats:
-        """Height of the lowest point above the plane [h]."""
+        """Return the height of the lowest point above the plane [h]."""
         tilt = np.hypot(state.tilt_x, state.tilt_y)
         flying = np.asarray(state.contact) == Contact.FLYING
         gap: Floats = np.where(flying, state.rise - finite_tilt.potential(tilt, self.column.slenderness), 0.0)
         return gap
 
     def _energy(self, state: State) -> Floats:
-        """½κ|V|² + ½(1 − κ)(w1² + w2²) + ½I_a w3², and the height of the centre of mass, in units of m g h."""
+        """Return ½κ|V|² + ½(1 − κ)(w1² + w2²) + ½I_a w3² plus the potential energy, in units of m g h [J]."""
         column = self.column
         c, kappa = column.slenderness, column.inertia_ratio
         x, y, vx, vy = (np.asarray(part) for part in state[:4])
@@ -281,7 +281,7 @@ class Sliding(Model):
         w1 = -np.sinc(tilt / np.pi) * (ux * vy - uy * vx)
         flies = np.asarray(state.contact) == Contact.FLYING
         height, slope = np.cos(tilt) + c * np.sin(tilt), c * np.cos(tilt) - np.sin(tilt)
-        # V = v + ρ'w2 d − w n where the column touches
+        # V = v + ρ'w2 d − w n if the column touches
         ahead, swing = np.where(flies, 0.0, height * w2), np.where(flies | (tilt == 0.0), 0.0, c * state.spin + w1)
         speed_x = state.velocity_x + ahead * ux + swing * uy
         speed_y = state.velocity_y + ahead * uy - swing * ux

@@ -1,4 +1,4 @@
-"""How a column goes on that stands on its base, and how it comes to do so."""
+"""Transitions of a column that stands on its base: rest, sliding, uplift, tripping and lift-off."""
 
 import math
 
@@ -26,12 +26,12 @@ from stylobate.models.sliding.posture import (
 
 _REST = 3
 
-# A base that trips while it slides begins to tilt by so much [c].
+# Initial tilt of a sliding base that trips [c].
 TRIPPED = 1e-9
 
 
 def settle_flat(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
-    """Return how a column goes on that stands on its base: at rest, sliding, released or in the air."""
+    """Return elapsed time and state of a column on its base: at rest, sliding, after uplift or in the air."""
     weight = 1.0 + now[2] - n.relief
     if weight <= 0.0:
         return 0.0, lifted(state, n)
@@ -53,19 +53,19 @@ def settle_flat(state: State, now: Triple, later: Triple, ahead: float, n: Numbe
 
 
 def upright(state: State, n: Numbers) -> State:
-    """Return a column on its rim set down on its base, with the slip of the middle of its base."""
+    """Return a column on its rim set down on its base; its velocity is the slip of the centre of the base."""
     ux, uy, _, _ = lean_of(state) if state.tilt_x != 0.0 or state.tilt_y != 0.0 else (0.0, 0.0, 0.0, 1.0)
     velocity = (state.velocity_x + n.c * state.spin * uy, state.velocity_y - n.c * state.spin * ux)
     return moving(placed(state, (0.0, 0.0, 0.0, 0.0), state.spin, SLIDING), velocity, 0.0, 0.0, SLIDING)
 
 
 def rests(state: State, now: Triple, rest: float, n: Numbers) -> bool:
-    """Return whether a column on its rim comes to rest there, as the guard "rest" decides."""
+    """Return whether a column on its rim comes to rest by the guard "rest"."""
     return margins_of(state, now, rest, n)[_REST] < 0.0
 
 
 def set_down(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
-    """Return how a column goes on that comes to rest on its rim: it stops, or its base slides on where it can."""
+    """Return elapsed time and state of a column that comes to rest on its rim: at rest, or its base slides on."""
     flat = upright(state, n)
     if n.kinetic > n.c:
         flat = moving(placed(flat, lean_with_rate(flat), 0.0, SLIDING), (0.0, 0.0), 0.0, 0.0, SLIDING)
@@ -73,13 +73,13 @@ def set_down(state: State, now: Triple, later: Triple, ahead: float, n: Numbers)
 
 
 def set_sliding(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
-    """Return a column that has stood so far a short time after it began to slide; without friction, at once."""
+    """Return elapsed time and state a short time after a column at rest begins to slide; at once without friction."""
     if n.static == 0.0:
         return 0.0, headed(state, (0.0, 0.0, 0.0), SLIDING)
     kick = KICK * STILL
     first = set_off(state, now[0] + n.slope_x, now[1] + n.slope_y, kick)
     pull = rates_of(first, now, n)
-    # What has begun to slide has the direction of the sum of its accelerations.
+    # The direction of the slip is that of the sum of its accelerations.
     px, py = later[0] + n.slope_x - n.kappa * pull[8], later[1] + n.slope_y - n.kappa * pull[9]
     last = set_off(state, px, py, max(ahead * math.hypot(pull[8], pull[9]), kick))
     begun = advanced(state, pull, 0.5 * ahead)
@@ -90,14 +90,14 @@ def set_sliding(state: State, now: Triple, later: Triple, ahead: float, n: Numbe
 
 
 def set_off(state: State, px: float, py: float, slip: float) -> State:
-    """Return a column that stands, sliding so fast against an acceleration."""
+    """Return a standing column that slides with the speed `slip` against an acceleration."""
     pushed = math.hypot(px, py)
     way = (-px / pushed, -py / pushed)
     return moving(headed(state, (way[0], way[1], 0.0), SLIDING), (slip * way[0], slip * way[1]), 0.0, 0.0, SLIDING)
 
 
 def released(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
-    """Return a column a short time after the base has let it go."""
+    """Return elapsed time and state a short time after uplift."""
     ax, ay, weight = now[0] + n.slope_x, now[1] + n.slope_y, 1.0 + now[2] - n.relief
     bx, by, heavier = later[0] + n.slope_x, later[1] + n.slope_y, 1.0 + later[2] - n.relief
     here, there = math.hypot(ax, ay), math.hypot(bx, by)
@@ -116,13 +116,13 @@ def released(state: State, now: Triple, later: Triple, ahead: float, n: Numbers)
 
 
 def tripping(state: State, now: Triple, n: Numbers) -> tuple[float, State]:
-    """Return a sliding column that friction has begun to tip, against its direction."""
+    """Return elapsed time and state of a sliding column that friction begins to tip."""
     sliding = forces(state, now, n)
     drag = math.hypot(sliding[6], sliding[7])
     way = (-sliding[6] / drag, -sliding[7] / drag)
     tilt = TRIPPED * n.c
     leaning = placed(state, (tilt * way[0], tilt * way[1], 0.0, 0.0), state.spin, SLIPPING)
-    # From the middle of the base to its rim
+    # From the centre of the base to its rim
     vx, vy = state.velocity_x - n.c * state.spin * way[1], state.velocity_y + n.c * state.spin * way[0]
     leaning = headed_along_slip(moving(leaning, (vx, vy), 0.0, 0.0, SLIPPING), n)
     found = forces(leaning, now, n)

@@ -1,4 +1,4 @@
-"""How a column goes on whose rim touches the plane."""
+"""Transitions of a column whose rim touches the plane: rolling, slip, lift-off and dynamic jamming."""
 
 from stylobate.models.finite_tilt import sine_over_angle
 from stylobate.models.sliding.equations import JAM
@@ -22,10 +22,10 @@ from stylobate.models.sliding.posture import (
 
 
 def settle_rim(state: State, now: Triple, n: Numbers) -> State:
-    """Return how a column goes on whose rim touches the plane and neither closes in nor opens.
+    """Return the next state of a column whose rim touches the plane without normal velocity.
 
-    Where it does not slip it rolls, even if friction is too weak for that: then its slip begins with the next event.
-    Without friction it slips, however slowly.
+    A column without slip rolls, even if friction is too weak: its slip then begins with the next event. Without
+    friction it slips at any speed.
     """
     if n.static == 0.0 or slips(state.velocity_x, state.velocity_y, n.patch * n.c * yaw(state)):
         slipping = headed_along_slip(placed(state, lean_with_rate(state), state.spin, SLIPPING), n)
@@ -41,7 +41,7 @@ def settle_rim(state: State, now: Triple, n: Numbers) -> State:
 
 
 def leaving(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
-    """Return how a column goes on whose rim the plane would have to pull: in the air, or slipping if that presses."""
+    """Return elapsed time and state at a negative normal force: in the air, or slipping if slip presses the rim."""
     if state.contact == SLIPPING or opens(state, now, n):
         return 0.0, lifted(state, n)
     return giving_way(state, now, later, ahead, n)
@@ -58,9 +58,9 @@ def held(state: State, n: Numbers) -> State:
 
 
 def jammed(state: State, n: Numbers) -> State:
-    """Return the state after the impulse with which slip ends where Painlevé's denominator vanishes.
+    """Return the state after the impulse that ends slip at a zero of Painlevé's denominator (dynamic jamming).
 
-    It stops all velocity of the contact, and takes energy: that is the end of a normal force that grows beyond bounds.
+    The impulse stops the contact and dissipates energy; it is the limit of an unbounded normal force.
     """
     ux, uy, sine, cos = lean_of(state)
     vd = state.velocity_x * ux + state.velocity_y * uy
@@ -72,7 +72,7 @@ def jammed(state: State, n: Numbers) -> State:
 
 
 def kicked(state: State, struck: Triple, n: Numbers) -> State:
-    """Return `state` turning as it does after an impulse along d, n and the vertical at its lowest point."""
+    """Return `state` with its angular velocity after an impulse along d, n and the vertical at its lowest point."""
     ux, uy, sine, cos = lean_of(state)
     w1, w2 = turning(state)
     w1 += struck[1] / (1.0 - n.kappa)

@@ -1,4 +1,4 @@
-"""How a rim that rolls begins to slip."""
+"""Onset of slip of a rolling rim."""
 
 import math
 
@@ -22,30 +22,28 @@ from stylobate.models.sliding.posture import (
     turning,
 )
 
-# The first of a slip takes no longer than the contact point takes for this part of the way round the rim [rad].
+# The onset lasts at most until the contact point has turned by this angle round the rim [rad].
 _PART_OF_A_TURN = 0.02
 
-# Nothing has slipped before.
+# Acceleration of the slip so far: none.
 STARTS = (0.0, 0.0, 0.0)
 
-# The direction in which a contact gives way is found in so many steps at most, by differences over a small turn, until
-# it is the same.
+# Newton's method for the direction of slip: maximum number of steps, angle of the differences, and tolerance.
 _MOST_TURNS, _SMALL_TURN, _SAME = 20, 1e-7, 1e-9
 
 
 def giving_way(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
-    """Return a column that has rolled so far a short time after it began to slip.
+    """Return elapsed time and state a short time after a rolling column begins to slip.
 
-    Friction then acts on with what it has, along a slip that follows the load. By that the motion departs from rolling
-    as the integral of the difference D of their rates, (D(0) + D(δ)) δ/2, with an error of the third power of δ; D(δ)
-    is that of a column which departed with D(0). A slip that began from nothing would take its direction from the load
-    within no time: it has grown when it is integrated.
+    Friction acts with its limit along a slip that follows the load. The motion departs from rolling by the integral of
+    the difference D of the rates, (D(0) + D(δ)) δ/2, with an error of the order δ³; D(δ) belongs to a column that
+    departs with D(0). A slip that starts at zero would turn to the load at once; integration starts after it has grown.
     """
     first = slipping_along(state, load_direction(state, now, STARTS, n), KICK * STILL, n)
     started = forces(first, now, n)
     if started[11] < JAM:
         return 0.0, (lifted(state, n) if opens(state, now, n) else headed(state, (0.0, 0.0, 0.0), JAMMED))
-    # The time in which the contact point goes a small part of the way round the rim
+    # The time in which the contact point turns by a small angle round the rim
     quick = _PART_OF_A_TURN * math.hypot(state.tilt_x, state.tilt_y) / pace(state)
     if quick < ahead:
         later, ahead = sooner(now, later, quick / ahead), quick
@@ -70,7 +68,7 @@ def giving_way(state: State, now: Triple, later: Triple, ahead: float, n: Number
 
 
 def sooner(now: Triple, later: Triple, share: float) -> Triple:
-    """Return what lies a share of the way between two accelerations."""
+    """Interpolate between two accelerations; `share` is the fraction of the way."""
     return (
         now[0] + share * (later[0] - now[0]),
         now[1] + share * (later[1] - now[1]),
@@ -79,7 +77,7 @@ def sooner(now: Triple, later: Triple, share: float) -> Triple:
 
 
 def slipping_along(state: State, heading: Triple, slip: float, n: Numbers) -> State:
-    """Return a column with so much slip along this heading."""
+    """Return a column with the speed `slip` of slip along this heading."""
     started = moving(headed(state, heading, SLIPPING), (slip * heading[0], slip * heading[1]), 0.0, 0.0, SLIPPING)
     if n.patch == 0.0:
         return started
@@ -89,10 +87,10 @@ def slipping_along(state: State, heading: Triple, slip: float, n: Numbers) -> St
 
 
 def load_direction(state: State, now: Triple, pull: Triple, n: Numbers) -> Triple:
-    """Return the heading along which a rolling contact gives way: that of the acceleration that its slip would have.
+    """Return the heading along which a rolling contact begins to slip: that of the acceleration of its slip.
 
-    What began to slip before, with the acceleration `pull`, has by now the direction of the sum of the two. Found by
-    Newton's rule from the slip whose friction is most like the load; where that has no answer, it is this one.
+    A slip that began earlier with the acceleration `pull` has the direction of the sum of the two accelerations.
+    Newton's method starts from the slip whose friction is closest to the load; if it fails, this slip is the result.
     """
     found = forces(state, now, n)
     drag = math.hypot(found[6], found[7])
@@ -112,7 +110,7 @@ def load_direction(state: State, now: Triple, pull: Triple, n: Numbers) -> Tripl
         # The two directions turn with the heading.
         gain = dot(here, heading)
         a, d = a - gain, d - gain
-        if n.patch == 0.0:  # a point turns freely: one direction only
+        if n.patch == 0.0:  # a point has no moment: one direction only
             b, c, d = 0.0, 0.0, 1.0
         size = a * d - b * c
         if size == 0.0:
@@ -129,7 +127,7 @@ def load_direction(state: State, now: Triple, pull: Triple, n: Numbers) -> Tripl
 
 
 def across(heading: Triple) -> tuple[Triple, Triple]:
-    """Return two unit vectors across a heading, the first level with the plane."""
+    """Return two unit vectors across a heading, the first parallel to the plane."""
     hx, hy, hz = heading
     level = math.hypot(hx, hy)
     one = (-hy / level, hx / level, 0.0) if level > 0.0 else (1.0, 0.0, 0.0)
@@ -137,25 +135,25 @@ def across(heading: Triple) -> tuple[Triple, Triple]:
 
 
 def tilted(heading: Triple, way: Triple, angle: float) -> Triple:
-    """Return a heading turned towards a `way` across it by an angle whose tangent is given."""
+    """Turn a heading towards the direction `way` across it by an angle with the tangent `angle`."""
     x, y, z = heading[0] + angle * way[0], heading[1] + angle * way[1], heading[2] + angle * way[2]
     size = math.sqrt(x * x + y * y + z * z)
     return x / size, y / size, z / size
 
 
 def slip_rate(state: State, heading: Triple, now: Triple, pull: Triple, n: Numbers) -> Triple:
-    """Return the acceleration of a slip along a heading, and `pull`."""
+    """Return the acceleration of a slip along a heading, plus `pull`."""
     found = forces(slipping_along(state, heading, KICK * STILL, n), now, n)
     return found[3] + pull[0], found[4] + pull[1], found[9] + pull[2]
 
 
 def dot(a: Triple, b: Triple) -> float:
-    """Return the scalar product."""
+    """Return the scalar product of two vectors."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def rolled_on(state: State, now: Triple, later: Triple, elapsed: float, n: Numbers) -> State:
-    """Return a column that goes on rolling for a short time, by the classical rule of Runge and Kutta."""
+    """Advance a rolling column by a short time, by the classical rule of Runge and Kutta."""
     middle = (0.5 * (now[0] + later[0]), 0.5 * (now[1] + later[1]), 0.5 * (now[2] + later[2]))
     first = rates_of(state, now, n)
     second = rates_of(advanced(state, first, 0.5 * elapsed), middle, n)

@@ -5,28 +5,28 @@ from typing import NamedTuple
 
 
 class Contact(IntEnum):
-    """How the column meets the plane: the value of the last state."""
+    """Kind of contact between column and plane: the value of the last state."""
 
     RESTING = 0
-    """It stands on its base, which does not move on the plane."""
+    """The column stands on its base, which does not move on the plane."""
     SLIDING = 1
-    """It stands on its base, which slides or turns on the plane."""
+    """The column stands on its base, which slides or turns on the plane."""
     ROLLING = 2
-    """The lowest point of its rim touches and does not slip; a patch of contact does not turn either."""
+    """The lowest point of the rim touches and does not slip; a patch of contact does not turn either."""
     SLIPPING = 3
-    """That point slips, or the patch turns."""
+    """The lowest point of the rim touches and slips, or the patch turns."""
     FLYING = 4
-    """Nothing touches."""
+    """The column is in the air."""
     JAMMED = 5
-    """It can neither stick nor slip nor open: Painlevé's paradox, which ends a run."""
+    """The contact can neither stick nor slip nor open: Painlevé's paradox, which ends a run."""
 
 
 RESTING, SLIDING, ROLLING, SLIPPING, FLYING, JAMMED = map(float, Contact)
-"""The same as the numbers that a state holds."""
+"""The kinds of contact as the numbers in a state."""
 
 
 class State(NamedTuple):
-    """What is integrated, in units of h and 1/ω0.
+    """The integrated state, in units of h and 1/ω0.
 
     Parameters
     ----------
@@ -37,13 +37,13 @@ class State(NamedTuple):
     footprint_x, footprint_y
         Centre of the circle in which the base would stand if it were tilted back over its contact point [h].
     velocity_x, velocity_y
-        While something touches, of the point of the body that touches, on its base the centre; in the air, of the
-        centre of mass: relative to the plane.
+        Velocity relative to the plane: of the contact point on the rim, of the centre of a standing base, or of the
+        centre of mass in the air.
     rise, rise_rate
-        Height of the centre of mass above that of a standing column, followed in the air.
+        Height of the centre of mass above that of a standing column, used in the air only.
     heading_x, heading_y, heading_z
-        Unit vector of the slip (v_x, v_y, ε ω_z) where the step began: friction acts against the sense of slip along
-        it, so that slip which ends is followed smoothly to the instant at which it does.
+        Unit vector of the slip (v_x, v_y, ε ω_z) at the start of the step. Friction acts against the sense of slip
+        along it, so that the equations are smooth up to the instant at which slip ends.
     contact
         A `Contact`.
     """
@@ -74,15 +74,15 @@ class Numbers(NamedTuple):
     c, eta, zeta, kappa, axial, resistance
         As for `Rolling`: c, η, ζ, κ, i_a and δ/r.
     kinetic, static
-        Coefficients of friction while it slips, and up to which it does not.
+        Kinetic and static coefficients of friction.
     patch
         ε/r, radius of the contact of the rim.
     normal_restitution
         e_n of impacts.
     passage_tilt
-        Minimum tilt below which a passage of the upright is a stroke of the base on the plane [rad].
+        Minimum tilt below which a passage of the vertical is an impact of the base face [rad].
     slope_x, slope_y, relief
-        What an inclined plane adds to the base acceleration [g].
+        Terms that an inclined plane adds to the base acceleration [g].
     """
 
     c: float

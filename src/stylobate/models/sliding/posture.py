@@ -1,4 +1,4 @@
-"""States of the column, made and looked at: lean, turning and slip, rates, forces and guards."""
+"""Construction and evaluation of states: lean, angular velocity and slip, rates, forces and guards."""
 
 import math
 
@@ -7,7 +7,7 @@ from stylobate.models.sliding.balance import balance
 from stylobate.models.sliding.equations import STILL, guards, rates
 from stylobate.models.sliding.phases import FLYING, SLIDING, Numbers, State
 
-# Slip begins with so much [STILL], too little to be seen and enough to have a direction.
+# Speed of the first slip [STILL]: negligible, but enough for a direction.
 KICK = 10.0
 
 Triple = tuple[float, float, float]
@@ -50,7 +50,7 @@ def margins_of(state: State, now: Triple, rest: float, n: Numbers) -> Margins:
 
 
 def advanced(state: State, by: Forces, elapsed: float) -> State:
-    """Return `state` after this time with the rates `by`."""
+    """Advance `state` by this time with the rates `by`."""
     return State(
         state.tilt_x + elapsed * by[0], state.tilt_y + elapsed * by[1], state.tilt_rate_x + elapsed * by[2],
         state.tilt_rate_y + elapsed * by[3], state.spin + elapsed * by[4], state.twist + elapsed * by[5],
@@ -88,12 +88,12 @@ def headed(state: State, heading: Triple, contact: float) -> State:
 
 
 def radius_of(state: State, n: Numbers) -> float:
-    """Return the radius of what touches: that of the patch, or of the base."""
+    """Return the radius of the contact: that of the patch, or of the base."""
     return n.c if state.contact == SLIDING else n.patch * n.c
 
 
 def lean_of(state: State) -> tuple[float, float, float, float]:
-    """Return the direction d of the lean, its sine and its cosine; upright, that in which it begins to lean."""
+    """Return the direction d of the lean, and sine and cosine of the tilt; at zero tilt, d of the tilt rate."""
     square = state.tilt_x**2 + state.tilt_y**2
     tilt = math.sqrt(square)
     if tilt > 0.0:
@@ -125,7 +125,7 @@ def yaw(state: State) -> float:
 
 
 def height_of(sine: float, cos: float, c: float) -> float:
-    """Return how much higher the centre of mass of a column on its rim is than that of one that stands."""
+    """Return the height of the centre of mass of a column on its rim above that of a standing column."""
     return c * sine - sine * sine / (1.0 + cos)
 
 
@@ -139,17 +139,17 @@ def headed_along_slip(state: State, n: Numbers) -> State:
 
 
 def slips(vx: float, vy: float, turning: float) -> bool:
-    """Return whether a slip is one, and does not count as none."""
+    """Return whether a slip is fast enough to count as slip."""
     return math.sqrt(vx * vx + vy * vy + turning * turning) > KICK * STILL
 
 
 def pace(state: State) -> float:
-    """Return |α̇|, and never zero."""
+    """Return |α̇| plus a tiny number, which keeps it above zero."""
     return math.hypot(state.tilt_rate_x, state.tilt_rate_y) + 1e-300
 
 
 def energy_of(state: State, n: Numbers) -> tuple[float, float]:
-    """Return the kinetic energy, and that of the height of the centre of mass above that at rest [m g h]."""
+    """Return the kinetic energy, and the potential energy of the centre of mass above rest [m g h]."""
     kinetic = n.kappa * n.axial * (n.c * state.spin) ** 2
     mx, my, climb, lift = state.velocity_x, state.velocity_y, 0.0, 0.0
     if state.tilt_x != 0.0 or state.tilt_y != 0.0 or state.tilt_rate_x != 0.0 or state.tilt_rate_y != 0.0:
@@ -166,7 +166,7 @@ def energy_of(state: State, n: Numbers) -> tuple[float, float]:
 
 
 def with_no_more(energy: float, state: State, n: Numbers) -> State:
-    """Return `state`, slowed down as a whole if it has more than this energy."""
+    """Return `state` with all velocities reduced by one factor if its energy exceeds `energy`."""
     kinetic, lift = energy_of(state, n)
     if kinetic + lift <= energy:
         return state

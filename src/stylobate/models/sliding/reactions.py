@@ -1,4 +1,4 @@
-"""The state after a kind of contact ends, as the engines ask for it: in plain numbers."""
+"""Reset map and projection of the sliding column as functions of plain numbers, for the engines."""
 
 import math
 
@@ -50,7 +50,7 @@ def reset_map(
     slope_y: float,
     relief: float,
 ) -> tuple[float, State]:
-    """Return how much later, and in which state, a column goes on; see `reaction`."""
+    """Return elapsed time and state after the end of a kind of contact; see `reaction`."""
     state = State(x, y, vx, vy, w3, twist, fx, fy, sx, sy, rise, climb, hx, hy, hz, contact)
     numbers = Numbers(
         c,
@@ -105,7 +105,7 @@ def project(
 ) -> tuple[
     float, float, float, float, float, float, float, float, float, float, float, float, float, float, float, float
 ]:
-    """Return the state with its heading along its slip, where it slips."""
+    """Return the state with its heading along its slip, if it slips."""
     slides, slips = contact == _SLIDING, contact == _SLIPPING
     square = x * x + y * y + TINY
     per_angle = sine_over_angle(square)

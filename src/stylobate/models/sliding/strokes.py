@@ -1,4 +1,4 @@
-"""How a column goes on that strikes the plane, upright, with the rim of its base."""
+"""Impact of the base face: the motion of a column after its base strikes the plane at the vertical."""
 
 import math
 from typing import NamedTuple
@@ -20,12 +20,12 @@ from stylobate.models.sliding.posture import (
     with_no_more,
 )
 
-# A rim that strikes again and again does so at most so often, and no more below this part of its first speed.
+# Maximum number of repeated impacts of a rim, and fraction of the first speed below which they stop.
 _MOST_STRIKES, _FAINT = 50, 1e-10
 
 
 class Body(NamedTuple):
-    """A column that stands upright for a moment: velocity of its centre of mass, rate of its tilt, and spin."""
+    """Motion of a column that is momentarily vertical: velocity of the centre of mass, tilt rate and spin."""
 
     velocity_x: float
     velocity_y: float
@@ -36,17 +36,17 @@ class Body(NamedTuple):
 
 
 def stroke(state: State, now: Triple, later: Triple, ahead: float, rest: float, n: Numbers) -> tuple[float, State]:
-    """Return how a column goes on whose base strikes the plane: on the other side, after an impact of the rim there.
+    """Return elapsed time and state after an impact of the base face, which is an impact of the opposite rim point.
 
-    The passage is taken for one in the vertical plane of its motion, with the energy that it has; where that does not
-    suffice for the slip it would have, the column strikes as it moves. e_n = 0 is Housner's impact; where the column
-    then leans another way than the struck point lies, the rim strikes again, until it rests on the point towards which
-    it leans. The tilt is neglected in all this, but no energy is gained by that.
+    The passage is computed in the vertical plane of the motion with the energy of the state. If this energy is too
+    small for the slip, the column strikes with its actual velocities. e_n = 0 is Housner's impact. If the column then
+    does not lean towards the struck point, the rim strikes again, until the column rests on the point towards which it
+    leans. The impact neglects the tilt but adds no energy.
     """
     x, y, vx, vy = lean_with_rate(state)
     tilt, pace = math.hypot(x, y), math.hypot(vx, vy)
     ux, uy = vx / pace, vy / pace
-    # A path that leads straight to the upright is followed there, and as long behind it.
+    # A path straight to the vertical is followed to the vertical, and for the same time behind it.
     straight = -(x * ux + y * uy) > 0.5 * tilt
     elapsed = 2.0 * tilt / pace if straight else 0.0
     speed = planar_speed(state, (ux, uy), n)
@@ -74,10 +74,10 @@ def coming_down(
     rest: float,
     n: Numbers,
 ) -> tuple[float, State]:
-    """Return how a column goes on that has struck the plane, upright, and stays on it.
+    """Return elapsed time and state of a vertical column that has struck the plane and stays on it.
 
-    It strikes again until it rests on the point of its rim towards which it leans, by `tilt`, or by as much as it goes
-    in the time `behind` the upright.
+    The rim strikes again until the column rests on the rim point towards which it leans. The tilt is then `tilt`, or
+    the tilt rate times the time `behind` the vertical.
     """
     kinetic, lift = energy_of(state, n)
     energy = kinetic + lift
@@ -101,9 +101,10 @@ def coming_down(
 
 
 def planar_speed(state: State, way: tuple[float, float], n: Numbers) -> float:
-    """Return the rate of tilt with which a column passes the upright in a plane that has the energy of `state`.
+    """Return the tilt rate of a planar passage of the vertical with the energy of `state`.
 
-    It then turns about the point of its rim behind it, with the slip that it has now. −1 where that has more energy.
+    The column then turns about the rim point behind it, with the slip of `state`. The result is −1 if this motion has
+    more energy than `state`.
     """
     c, kappa = n.c, n.kappa
     body = as_it_is(state, n)
@@ -117,7 +118,7 @@ def planar_speed(state: State, way: tuple[float, float], n: Numbers) -> float:
 
 
 def in_plane(state: State, way: tuple[float, float], speed: float, n: Numbers) -> Body:
-    """Return a column that passes the upright this way, at this rate of tilt, on the point of its rim behind it."""
+    """Return a column that passes the vertical in this direction with this tilt rate, on the rim point behind it."""
     return Body(
         state.velocity_x + speed * way[0] - n.c * state.spin * way[1],
         state.velocity_y + speed * way[1] + n.c * state.spin * way[0],
@@ -129,11 +130,11 @@ def in_plane(state: State, way: tuple[float, float], speed: float, n: Numbers) -
 
 
 def as_it_is(state: State, n: Numbers) -> Body:
-    """Return a column near the upright with the velocities that it has."""
+    """Return a column near the vertical with the velocities of `state`."""
     x, y, vx, vy = lean_with_rate(state)
     tilt = math.hypot(x, y)
     dx, dy = (x / tilt, y / tilt) if tilt > 0.0 else (-vx / math.hypot(vx, vy), -vy / math.hypot(vx, vy))
-    # The centre of mass: v + α̇ − c w3 Z × d where it touches, and upwards
+    # The centre of mass: v + α̇ − c w3 Z × d for a column that touches, and its vertical velocity
     return Body(
         state.velocity_x + vx + n.c * state.spin * dy,
         state.velocity_y + vy - n.c * state.spin * dx,
@@ -145,7 +146,7 @@ def as_it_is(state: State, n: Numbers) -> Body:
 
 
 def struck_at(body: Body, ux: float, uy: float, bounce: float, n: Numbers) -> Body:
-    """Return a column that stands upright after an impact of the point of its rim in the direction (ux, uy)."""
+    """Return a vertical column after an impact of its rim point in the direction (ux, uy)."""
     c, kappa = n.c, n.kappa
     vx = body.velocity_x - body.rate_x - c * body.spin * uy
     vy = body.velocity_y - body.rate_y + c * body.spin * ux
@@ -164,7 +165,7 @@ def struck_at(body: Body, ux: float, uy: float, bounce: float, n: Numbers) -> Bo
 
 
 def flying_from(state: State, body: Body, lean: tuple[float, float], n: Numbers) -> State:
-    """Return a column in the air that the plane has just thrown off, leaning this much."""
+    """Return a column with this lean in the air, just after a rebound from the plane."""
     tilt = math.hypot(lean[0], lean[1])
     square = tilt * tilt
     rise = height_of(sine_over_angle(square) * tilt, cosine(square), n.c)
@@ -174,7 +175,7 @@ def flying_from(state: State, body: Body, lean: tuple[float, float], n: Numbers)
 
 
 def flattened(state: State, body: Body, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
-    """Return a column too squat to rock over to its other side: its whole base stops on the plane."""
+    """Return elapsed time and state of a column too squat to rock to its other side: its base stops on the plane."""
     approach, vx, vy = max(-body.climb, 0.0), body.velocity_x, body.velocity_y
     kx, ky, turned = base_impulse(vx, vy, body.spin, approach, n.kinetic, TWISTING_BASE, n.c, n.axial * n.c * n.c)
     flat = placed(state, (0.0, 0.0, 0.0, 0.0), body.spin + turned, SLIDING)

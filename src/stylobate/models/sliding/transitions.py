@@ -24,25 +24,25 @@ from stylobate.models.sliding.strokes import stroke
 
 _LIFT, _FRICTION, _SUPPORT, _REST, _JAM, _STROKE = 0, 1, 2, 3, 4, 6
 
-# A weight that counts as none [m g]: there a sliding base lifts off, and friction vanishes with it.
+# A weight below this counts as zero [m g]: a sliding base lifts off, and friction vanishes.
 _WEIGHTLESS = 1e-12
 
 
 def reaction(
     state: State, event: int, now: Triple, later: Triple, ahead: float, rest: float, numbers: Numbers
 ) -> tuple[float, State]:
-    """Return how much later, and in which state, a column goes on whose guard of this number fell below zero.
+    """Return elapsed time and state after the guard of this number has fallen below zero.
 
     Parameters
     ----------
     state
         State at the event.
     event
-        Place of the margin in GUARDS; any other number asks how a column in this state goes on.
+        Index of the guard in GUARDS; any other number settles the contact of the state.
     now, later, ahead
-        Base accelerations [g] at the event, and so much `ahead` of it, from which a release goes.
+        Base accelerations [g] at the event and after the time `ahead`, in which uplift or slip develops.
     rest
-        ε.
+        Rest energy ε.
     numbers
         Parameters of the model.
     """
@@ -82,9 +82,9 @@ def reaction(
 
 
 def stopped(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
-    """Return how a column goes on whose slip along its heading has ended.
+    """Return elapsed time and state after the slip along the heading has ended.
 
-    A slip that has turned across its heading goes on, along a new one. Only a slip that has all but ended stops.
+    A slip that has turned across its heading continues along a new heading. Only a slip close to zero stops.
     """
     slip_z = radius_of(state, n) * yaw(state)
     along = state.velocity_x * state.heading_x + state.velocity_y * state.heading_y + slip_z * state.heading_z
