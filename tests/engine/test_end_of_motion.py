@@ -33,7 +33,7 @@ def test_a_motion_that_does_not_end_wants_a_duration(motion, what):
         sb.simulate(MODELS[0], motion)
 
 
-# The wobbling column has the energy and the balance of the rolling one.
+# The wobbling column has the balance of the rolling one, and a test of its energy below.
 QUICK = [
     pytest.param(model, id=model.name, marks=[pytest.mark.slow] if isinstance(model, sb.Wobbling) else [])
     for model in MODELS

@@ -87,7 +87,7 @@ def test_a_branch_does_not_depend_on_its_steps(straight_branches, largest):
         np.testing.assert_allclose(one.state, other.state, rtol=0.0, atol=1e-11)
 
 
-@pytest.mark.parametrize("nu", [2.0, 3.0])
+@pytest.mark.parametrize("nu", [2.0, pytest.param(3.0, marks=pytest.mark.slow)])
 def test_with_the_acceleration_circular_rolling_ends_at_the_upright(nu):
     """On the lower arm A → 0 as a0 → c; nothing of the other arm is followed again from there."""
     branch = continue_branch(circular_orbit(nu), "acceleration", bounds=(0.001, 0.3))

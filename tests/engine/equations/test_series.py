@@ -204,7 +204,7 @@ STARTS = st.floats(-1.5, 1.5)
 TERMS = st.lists(st.floats(-1.0, 1.0), min_size=1, max_size=COUNT)
 
 
-@settings(max_examples=150)
+@settings(max_examples=60)
 @given(tree=TREES, x=TERMS, y=TERMS, c=STARTS, d=STARTS)
 def test_coefficients_of_any_arithmetic_are_those_of_series_in_forty_digits(tree, x, y, c, d):
     def function(*values):

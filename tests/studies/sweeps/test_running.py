@@ -44,7 +44,7 @@ def test_starts_are_where_the_sweep_says(points):
         assert data["outcome"][i] == run["outcome"][0]
 
 
-@pytest.mark.parametrize("chunk_size", [1, 3])
+@pytest.mark.parametrize("chunk_size", [pytest.param(1, marks=pytest.mark.slow), 3])
 def test_results_do_not_depend_on_the_chunks(sweep, chunk_size, tmp_path, assert_same_arrays, undisturbed):
     whole = undisturbed(sweep)
     assert_same_arrays(run_sweep(sweep, chunk_size=chunk_size), whole)
