@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from contextlib import closing
 from pathlib import Path
@@ -15,7 +16,7 @@ import pytest
 
 from stylobate.engine.ensembles.pool import run_parts
 from stylobate.errors import WorkerLostError
-from stylobate.processes import Worker, computed
+from stylobate.processes import Worker, computed, ending_with_parent
 
 # Longer than any test is left to run.
 FOREVER = 600.0
@@ -124,3 +125,32 @@ def test_a_worker_that_holds_pythons_lock_ends_with_its_parent(tmp_path, end):
     parent.send_signal(end)
     parent.wait(60.0)
     until(lambda: not runs(worker))
+
+
+CHILD = """
+import os, pathlib, time
+from stylobate.processes import ending_with_parent
+with ending_with_parent():
+    pathlib.Path({place!r}).write_text(str(os.getpid()))
+    time.sleep(600)
+"""
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads the states of processes from /proc")
+def test_a_process_that_watches_its_parent_ends_with_it(tmp_path):
+    place = tmp_path / "pid"
+    program = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {CHILD.format(place=str(place))!r}])"
+    parent = subprocess.Popen([sys.executable, "-c", program])
+    until(lambda: place.exists() and place.read_text())
+    child = int(place.read_text())
+    assert runs(child)
+    parent.kill()
+    parent.wait(60.0)
+    until(lambda: not runs(child))
+
+
+def test_no_thread_outlives_the_watch_over_the_parent():
+    before = threading.active_count()
+    with ending_with_parent():
+        assert threading.active_count() == before + 1
+    assert threading.active_count() == before

@@ -11,6 +11,7 @@ import select
 import signal
 import subprocess
 import sys
+import threading
 import traceback
 from collections import deque
 from collections.abc import Callable, Generator, Iterator, Mapping
@@ -27,7 +28,7 @@ if sys.platform != "win32":
 _K = TypeVar("_K")
 _R = TypeVar("_R")
 
-# Interval at which a wait checks for Ctrl-C [s].
+# Interval at which a wait checks for Ctrl-C or for the end of the parent [s].
 _LOOK = 0.1
 
 _running: set["Worker"] = set()
@@ -162,6 +163,25 @@ def end_when_closed(pipe: int, *, watched: bool = True) -> None:
         look.register(pipe, select.POLLHUP)
         if any(event & select.POLLHUP for _, event in look.poll(0)):
             os._exit(1)
+
+
+@contextmanager
+def ending_with_parent() -> Iterator[None]:
+    """End this process if its parent ends meanwhile; afterwards no thread is left that a fork could lose."""
+    parent, done = os.getppid(), threading.Event()
+
+    def watch() -> None:
+        while not done.wait(_LOOK):
+            if os.getppid() != parent:
+                os._exit(1)
+
+    thread = threading.Thread(target=watch, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        done.set()
+        thread.join()
 
 
 def _serve() -> None:

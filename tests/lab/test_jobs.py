@@ -4,7 +4,6 @@ import multiprocessing
 import time
 from concurrent.futures import ThreadPoolExecutor
 
-import anyio
 import httpx
 import numpy as np
 import pytest
@@ -13,7 +12,6 @@ from tests.lab.conftest import client_of, laboratory
 import stylobate as sb
 from stylobate.lab import Limits
 from stylobate.lab.progressive_executor import Refining
-from stylobate.lab.worker_pool import LostError, Worker
 
 CIRCLE = {
     "column": {"shape": "dimensionless", "slenderness": 0.1},
@@ -208,18 +206,3 @@ def test_runs_that_are_taken_back_one_after_the_other_keep_nobody_waiting():
             with pytest.raises(httpx.ReadTimeout):
                 client.post("/api/simulate", json=SLOW, timeout=0.5)
         assert client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 200
-
-
-def test_a_pipe_that_is_closed_while_it_is_read_ends_its_process_only():
-    class Closed:
-        def recv(self):
-            raise TypeError
-
-    async def listen():
-        hears, heard = anyio.create_memory_object_stream(1)
-        worker = Worker(None, Closed(), heard, hears)
-        await worker.listen(anyio.CapacityLimiter(1))
-        with heard, pytest.raises(LostError):
-            await worker.next()
-
-    anyio.run(listen)

@@ -1,12 +1,17 @@
 """The processes that compute for the laboratory: as many at once as allowed, none kept busy for nobody."""
 
+import asyncio
+import logging
 import math
 import multiprocessing
+import sys
+import threading
 from collections.abc import Callable
+from concurrent.futures import Future
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
-from multiprocessing.context import SpawnProcess
-from typing import Any
+from multiprocessing.process import BaseProcess
+from typing import TYPE_CHECKING, Any
 
 import anyio
 from anyio import CapacityLimiter, Event, to_thread
@@ -16,8 +21,16 @@ from anyio.streams.memory import MemoryObjectReceiveStream, MemoryObjectSendStre
 from stylobate.lab.messages import Broken, Finished, Found, Lost, Note, Progress, Ready, Refused
 from stylobate.lab.worker import work
 
+if TYPE_CHECKING:
+    from multiprocessing.context import BaseContext
+
 Message = Found | Progress | Note
 Answer = Finished | Refused | Broken | Lost
+
+_log = logging.getLogger("stylobate.lab")
+
+_NAME = "stylobate lab"
+"""Name of each process."""
 
 GRACE = 1.5
 """How long a task that nobody waits for any more may take to its end before its process is ended [s].
@@ -48,21 +61,17 @@ class BusyError(Exception):
 class Worker:
     """One process, the pipe to it, and what came through."""
 
-    process: SpawnProcess
+    process: BaseProcess
     connection: Connection
     heard: MemoryObjectReceiveStream[Any]
     hears: MemoryObjectSendStream[Any]
 
     @classmethod
-    def started(cls) -> "Worker":
-        """Return a new process; it says when it is ready."""
-        context = multiprocessing.get_context("spawn")
-        here, there = context.Pipe()
-        process = context.Process(target=work, args=(there,), daemon=True, name="stylobate lab")
-        process.start()
-        there.close()
+    async def started(cls) -> "Worker":
+        """Start a process. It says when it is ready."""
+        process, connection = await _started()
         hears, heard = anyio.create_memory_object_stream[Any](math.inf)
-        return cls(process, here, heard, hears)
+        return cls(process, connection, heard, hears)
 
     async def listen(self, threads: CapacityLimiter) -> None:
         """Take what the process says, until it ends."""
@@ -89,6 +98,43 @@ class Worker:
         self.heard.close()
 
 
+async def _started() -> tuple[BaseProcess, Connection]:
+    """Start a process in a thread: it may wait for the imports of the fork server, and the end of the program may not.
+
+    A process that nobody takes any more ends when the pipe to it is closed.
+    """
+    started: Future[tuple[BaseProcess, Connection]] = Future()
+    started.set_running_or_notify_cancel()
+
+    def start() -> None:
+        try:
+            started.set_result(_process())
+        except Exception as error:  # noqa: BLE001  raised where somebody waits
+            started.set_exception(error)
+
+    threading.Thread(target=start, daemon=True).start()
+    return await asyncio.wrap_future(started)
+
+
+def _process() -> tuple[BaseProcess, Connection]:
+    """Start a process that computes.
+
+    On Linux a fork server imports what every process needs, once, and forks each process from itself in milliseconds.
+    Elsewhere each process imports for itself, because system libraries may not survive a fork.
+    """
+    context: BaseContext
+    if sys.platform == "linux":
+        context = multiprocessing.get_context("forkserver")
+        context.set_forkserver_preload(["stylobate.lab.worker_imports"])
+    else:
+        context = multiprocessing.get_context("spawn")
+    here, there = context.Pipe()
+    process = context.Process(target=work, args=(there,), daemon=True, name=_NAME)
+    process.start()
+    there.close()
+    return process, here
+
+
 @dataclass(slots=True)
 class Crew:
     """At most `limit` processes, which live in tasks of `group`; those that are idle are kept for the next task."""
@@ -96,6 +142,7 @@ class Crew:
     limit: int
     group: TaskGroup
     _all: set[Worker] = field(default_factory=set)
+    _starting: int = 0
     _idle: list[Worker] = field(default_factory=list)
     _changed: Event = field(default_factory=Event)
     _failed: LostError | None = None
@@ -107,7 +154,16 @@ class Crew:
         self._threads = CapacityLimiter(4 * self.limit)
 
     def warm_up(self) -> None:
-        """Have one process ready before the first task."""
+        """Have one process ready before the first task.
+
+        Raises
+        ------
+        RuntimeError
+            If this is such a process itself, which imports the user's program and thereby starts a laboratory.
+        """
+        if multiprocessing.current_process().name == _NAME:
+            message = "laboratory: a worker process started another. Call serve under `if __name__ == '__main__':`."
+            raise RuntimeError(message)
         self._begin()
 
     async def perform(
@@ -130,7 +186,7 @@ class Crew:
         TimeoutError
             If the task took longer than `limit` [s].
         """
-        if self._idle or len(self._all) < self.limit:
+        if self._idle or self._room():
             report(Note("a process starts, which takes long the first time"))  # it will not have to wait for others
         try:
             with anyio.fail_after(wait):
@@ -174,19 +230,34 @@ class Crew:
             if self._failed is not None:
                 failed, self._failed = self._failed, None
                 raise failed
-            if len(self._all) < self.limit:
+            if self._room():
                 self._begin()
             await self._changed.wait()
+
+    def _room(self) -> bool:
+        return len(self._all) + self._starting < self.limit
 
     def _begin(self) -> None:
         if not self._open:
             return
-        worker = Worker.started()
-        self._all.add(worker)
-        self.group.start_soon(worker.listen, self._threads)
-        self.group.start_soon(self._start, worker)
+        self._starting += 1
+        self.group.start_soon(self._start)
 
-    async def _start(self, worker: Worker) -> None:
+    async def _start(self) -> None:
+        try:
+            worker = await Worker.started()
+        except Exception:  # noqa: BLE001  whatever it is, who waits gets an answer
+            _log.exception("a worker process could not be started")
+            self._failed = LostError()
+            self._notify()
+            return
+        finally:
+            self._starting -= 1
+        self._all.add(worker)
+        if not self._open:
+            self._discard(worker)
+            return
+        self.group.start_soon(worker.listen, self._threads)
         try:
             while not isinstance(await worker.next(), Ready):
                 pass  # what is logged at the start

@@ -1,0 +1,99 @@
+"""The processes that compute for the laboratory."""
+
+import multiprocessing
+import os
+import sys
+import threading
+from pathlib import Path
+
+import anyio
+import pytest
+
+from stylobate.lab import worker_pool
+from stylobate.lab.messages import Finished, Lost
+from stylobate.lab.request_parsing import Described
+from stylobate.lab.worker_pool import Crew, LostError, Worker
+
+VALUES = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "tilt": [0.02, 0.0], "duration": 1.0}
+
+
+def performed(limit=1):
+    """Return how a run ended in a new crew, and what `/proc` says of each process that was started for it."""
+    answers, stats = [], []
+
+    async def perform():
+        before = multiprocessing.active_children()
+        async with anyio.create_task_group() as group:
+            crew = Crew(limit, group)
+            answers.append(await crew.perform("run", Described(VALUES, VALUES), lambda _: None))
+            started = [process for process in multiprocessing.active_children() if process not in before]
+            stats.extend(stat(process.pid) for process in started)
+            crew.end()
+            group.cancel_scope.cancel()
+
+    anyio.run(perform)
+    return answers[0], stats
+
+
+def stat(pid):
+    """Return the parent of a process and the processor time that the process has used [s]."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return int(fields[1]), (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc; only Linux has the fork server")
+def test_a_process_is_forked_after_the_imports_and_one_run_starts_one_process():
+    answer, ((server, used),) = performed(limit=3)
+    assert isinstance(answer, Finished)
+    assert server != os.getpid()
+    assert used < 0.5 * stat(server)[1]  # the fork server has imported; the process has only run
+
+
+@pytest.mark.parametrize("error", [BlockingIOError, RuntimeError])
+def test_a_process_that_cannot_be_started_is_reported(monkeypatch, caplog, error):
+    def refuse():
+        raise error
+
+    monkeypatch.setattr(worker_pool, "_process", refuse)
+    assert performed() == (Lost(None), [])
+    assert "could not be started" in caplog.text
+
+
+def test_a_laboratory_that_a_process_starts_as_it_imports_the_users_program_is_refused(monkeypatch):
+    monkeypatch.setattr(multiprocessing.current_process(), "_name", "stylobate lab")
+    with pytest.raises(RuntimeError, match="__main__"):
+        Crew(1, None).warm_up()
+
+
+def test_a_start_that_hangs_does_not_delay_the_end(monkeypatch):
+    end, waited = threading.Event(), []
+
+    def hang():
+        waited.append(end.wait(60.0))
+        raise BlockingIOError
+
+    async def begin_and_end():
+        async with anyio.create_task_group() as group:
+            Crew(1, group).warm_up()
+            await anyio.sleep(0.01)
+            group.cancel_scope.cancel()
+
+    monkeypatch.setattr(worker_pool, "_process", hang)
+    anyio.run(begin_and_end)
+    assert waited == []
+    end.set()
+
+
+def test_a_pipe_that_is_closed_while_it_is_read_ends_its_process_only():
+    class Closed:
+        def recv(self):
+            raise TypeError
+
+    async def listen():
+        hears, heard = anyio.create_memory_object_stream(1)
+        worker = Worker(None, Closed(), heard, hears)
+        await worker.listen(anyio.CapacityLimiter(1))
+        with heard, pytest.raises(LostError):
+            await worker.next()
+
+    anyio.run(listen)
