@@ -13,6 +13,14 @@ from stylobate.lab.pages import page_is_built
 REQUIRED = os.environ.get("STYLOBATE_BROWSER") == "required"
 # Drawn by the processor, as on machines without a graphics card.
 DRAWN = ("--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader-webgl", "--enable-unsafe-swiftshader")
+# Each new window would load pages for its address bar, which take as long as the page of the laboratory. The last
+# option of this name counts, so features that the driver switches off follow.
+OFF = (
+    *("WebUIOmniboxPopup", "WebUIOmniboxAimPopup"),
+    *("AimEnabled", "PreconnectToSearch", "NetworkTimeServiceQuerying", "OptimizationHints", "MediaRouter"),
+    *("HttpsUpgrades", "HttpsFirstBalancedModeAutoEnable", "ThirdPartyStoragePartitioning", "PaintHolding"),
+    *("AvoidCorsURLLoaderRestartOnRedirect", "AvoidUnnecessaryBeforeUnloadCheckSync", "DestroyProfileOnBrowserClose"),
+)
 # A page that plays keeps more than one core busy if the processor draws every frame of the screen.
 SEVEN_FRAMES_A_SECOND = """
 window.everyFrame = ((request, cancel) => () => {
@@ -41,7 +49,7 @@ def open_browser() -> Iterator[Browser]:
     """Start the browser, without a window."""
     path = found_browser()
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=path, args=list(DRAWN))
+        browser = playwright.chromium.launch(executable_path=path, args=[*DRAWN, f"--disable-features={','.join(OFF)}"])
         try:
             yield browser
         finally:
